@@ -1,0 +1,28 @@
+# How every library and program of retrace is built: language level, warnings, sanitizers.
+
+add_library(retrace_options INTERFACE)
+target_compile_features(retrace_options INTERFACE cxx_std_20)
+target_include_directories(retrace_options INTERFACE "${PROJECT_SOURCE_DIR}")
+# No errno and no trapping: the optimiser may keep square roots in registers. Rounding and NaN stay as IEEE 754 has them.
+# Contraction is off so that results do not depend on whether the target has fused multiply-add.
+target_compile_options(retrace_options INTERFACE -fno-math-errno -fno-trapping-math -ffp-contract=off)
+target_compile_options(retrace_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+                                                 -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align)
+if(RETRACE_WARNINGS_AS_ERRORS)
+  target_compile_options(retrace_options INTERFACE -Werror)
+endif()
+if(RETRACE_NATIVE)
+  target_compile_options(retrace_options INTERFACE -march=native)
+endif()
+if(RETRACE_SANITIZE)
+  target_compile_options(retrace_options INTERFACE -fsanitize=${RETRACE_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(retrace_options INTERFACE -fsanitize=${RETRACE_SANITIZE})
+endif()
+
+# retrace_library(NAME SOURCES ... [PUBLIC targets] [PRIVATE targets]) makes target retrace_NAME, alias retrace::NAME.
+function(retrace_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;PUBLIC;PRIVATE")
+  add_library(retrace_${name} STATIC ${arg_SOURCES})
+  add_library(retrace::${name} ALIAS retrace_${name})
+  target_link_libraries(retrace_${name} PUBLIC retrace_options ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+endfunction()

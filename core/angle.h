@@ -1,0 +1,29 @@
+#pragma once
+
+#include <compare>
+#include <numbers>
+
+namespace retrace {
+
+/// An angle that knows its unit: degrees at every file and command boundary, radians inside.
+class Angle {
+ public:
+  constexpr Angle() = default;
+  static constexpr Angle from_rad(double rad) { return Angle(rad); }
+  static constexpr Angle from_deg(double deg) { return Angle(deg * (std::numbers::pi / 180.0)); }
+
+  constexpr double rad() const { return rad_; }
+  constexpr double deg() const { return rad_ * (180.0 / std::numbers::pi); }
+
+  friend constexpr Angle operator-(Angle a) { return Angle(-a.rad_); }
+  friend constexpr Angle operator+(Angle a, Angle b) { return Angle(a.rad_ + b.rad_); }
+  friend constexpr Angle operator-(Angle a, Angle b) { return Angle(a.rad_ - b.rad_); }
+  friend constexpr Angle operator*(double k, Angle a) { return Angle(k * a.rad_); }
+  friend constexpr auto operator<=>(Angle, Angle) = default;
+
+ private:
+  explicit constexpr Angle(double rad) : rad_(rad) {}
+  double rad_ = 0.0;
+};
+
+}  // namespace retrace

@@ -1,0 +1,107 @@
+#include "core/atomic_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace retrace {
+namespace fs = std::filesystem;
+namespace {
+
+std::string reason(int error_number) { return std::generic_category().message(error_number); }
+
+/// Owns a file under a temporary name until it is moved into place; otherwise removes it.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target)
+      : name_(target.parent_path() / fmt::format(".{}.{}.tmp", target.filename().string(), ::getpid())) {
+    descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) throw OutputError(fmt::format("{}: cannot be written: {}", target.string(), reason(errno)));
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!moved_) ::unlink(name_.c_str());
+  }
+
+  void write(std::string_view content, const fs::path& target) {
+    while (!content.empty()) {
+      const ssize_t written = ::write(descriptor_, content.data(), content.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail(target);
+      content.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+
+  void move_to(const fs::path& target) {
+    if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target);
+    const int descriptor = descriptor_;
+    descriptor_ = -1;
+    if (::close(descriptor) != 0) fail(target);
+    if (::rename(name_.c_str(), target.c_str()) != 0) fail(target);
+    moved_ = true;
+  }
+
+ private:
+  [[noreturn]] static void fail(const fs::path& target) {
+    throw OutputError(fmt::format("{}: cannot be written: {}", target.string(), reason(errno)));
+  }
+
+  fs::path name_;
+  int descriptor_ = -1;
+  bool moved_ = false;
+};
+
+}  // namespace
+
+void write_file_atomically(const fs::path& path, std::string_view content) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
+    // A device such as /dev/null or a pipe has no "before" to keep: write through it.
+    if (fs::is_directory(path, ignored)) throw OutputError(path.string() + ": cannot be written: it is a folder");
+    std::ofstream stream(path, std::ios::binary);
+    stream << content << std::flush;
+    if (!stream) throw OutputError(path.string() + ": cannot be written");
+    return;
+  }
+  // Through a symbolic link the file it points to is replaced, not the link.
+  const fs::path target = fs::is_symlink(path, ignored) ? fs::canonical(path) : path;
+  TemporaryFile file(target);
+  file.write(content, target);
+  file.move_to(target);
+}
+
+void make_output_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder)) {
+    const std::string why = error ? error.message() : "a file of that name is in the way";
+    throw OutputError(fmt::format("{}: the output folder cannot be made: {}", folder.string(), why));
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw OutputError(fmt::format("{}: the output folder cannot be written to: {}", folder.string(), reason(errno)));
+}
+
+std::string read_file(const fs::path& path) {
+  const auto refuse = [&](const std::string& why) -> std::string {
+    throw InputError(InputLocation{path.string(), 0, ""}, "cannot be read: " + why);
+  };
+  std::error_code error;
+  if (fs::is_directory(path, error)) return refuse("it is a folder");
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return refuse(reason(errno != 0 ? errno : ENOENT));
+  std::string content((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (stream.bad()) return refuse("read error");
+  return content;
+}
+
+}  // namespace retrace

@@ -1,0 +1,24 @@
+#include "core/data_directory.h"
+
+#include <cstdlib>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace retrace {
+namespace fs = std::filesystem;
+
+fs::path data_directory() {
+  if (const char* chosen = std::getenv("RETRACE_DATA_DIR"); chosen != nullptr && *chosen != '\0') {
+    if (!fs::is_directory(chosen)) throw InputError(std::string("RETRACE_DATA_DIR: no such folder: ") + chosen);
+    return chosen;
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path folder = program.parent_path().parent_path() / "share" / "retrace";
+  if (error || !fs::is_directory(folder))
+    throw InputError("the data folder " + folder.string() + " is missing; set RETRACE_DATA_DIR to retrace's data folder");
+  return folder;
+}
+
+}  // namespace retrace

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <atomic>
+
+namespace retrace {
+
+/// Asked between pieces of work whether to stop. Safe to set from a signal handler.
+class Cancellation {
+ public:
+  void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
+  bool requested() const noexcept { return requested_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<bool> requested_{false};
+};
+
+/// Told how far long work has come. Calls come from one thread at a time.
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  /// `share` in 0..1, never falling.
+  virtual void at(double share) = 0;
+};
+
+}  // namespace retrace

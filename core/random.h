@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Random123/philox.h>
+
+#include <cstdint>
+
+namespace retrace {
+
+/// Counter-based random numbers (Philox4x32-10, Salmon et al. 2011): the value depends on key and counter alone, so any
+/// thread may draw any of them in any order.
+struct RandomKey {
+  std::uint32_t seed = 0;
+  std::uint32_t stream = 0;
+};
+
+/// Four independent 32-bit words for counter (a, b, c, d) under `key`.
+inline r123::Philox4x32::ctr_type philox(RandomKey key, std::uint32_t a, std::uint32_t b, std::uint32_t c = 0,
+                                       std::uint32_t d = 0) {
+  return r123::Philox4x32()({{a, b, c, d}}, {{key.seed, key.stream}});
+}
+
+/// Uniform in [0, 1): 0, 2^-32, ..., 1 - 2^-32.
+inline double unit_interval(std::uint32_t word) { return static_cast<double>(word) * 0x1p-32; }
+
+}  // namespace retrace

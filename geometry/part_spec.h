@@ -1,0 +1,51 @@
+#pragma once
+
+#include <variant>
+
+namespace retrace::geometry {
+
+/// Right triangular prism: two facets that meet at a roof edge along y, open towards +z.
+struct RtpElement {
+  double base_mm = 0.0;   ///< across the roof edge, along x; > 0
+  double width_mm = 0.0;  ///< along the roof edge, along y; > 0
+  double apex_angle_deg = 90.0;  ///< included angle of the two facets; 60..120
+};
+
+/// Full cube corner with a hexagonal aperture, apex down, one dihedral edge over +x.
+struct HexagonalCube {
+  double aperture_mm = 0.0;  ///< diameter of the circle round the hexagon, 2 a sqrt(2/3) for cube edge a; > 0
+};
+
+/// Cube corner with a triangular aperture, apex down, one dihedral edge over +x (turned cells: over -x).
+struct TriangularCube {
+  double aperture_mm = 0.0;  ///< diameter of the circle round the triangle, whose side is a sqrt(2); > 0
+};
+
+using Element = std::variant<RtpElement, HexagonalCube, TriangularCube>;
+
+enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
+enum class Extent { finite, infinite };
+/// Which rows of an offset array are shifted; rows count from 1 at y = 0. A single row is never shifted.
+enum class RowParity { even, odd };
+/// What becomes of an element that the border crosses.
+enum class PartialElements { cut, omit };
+
+/// What a designer says of a part: one element kind, how it is repeated, and the plate it stands on.
+/// Lengths in mm in the part frame (z up to the light, rims on z = 0).
+struct PartSpec {
+  Element element;
+  Arrangement arrangement = Arrangement::aligned;
+  Extent extent = Extent::finite;
+  RowParity shifted_rows = RowParity::even;
+  PartialElements partial_elements = PartialElements::cut;
+  double x_length_mm = 0.0;  ///< finite arrays that are not `single`
+  double y_length_mm = 0.0;
+  double x_gap_mm = 0.0;  ///< flat land between elements; RTP only
+  double y_gap_mm = 0.0;
+  double x_offset_mm = 0.0;  ///< flat margin kept free on both borders
+  double y_offset_mm = 0.0;
+  double overlap_percent = 50.0;  ///< shift of alternate rows of `offset`, in percent of the base
+  double thickness_mm = 0.0;      ///< plate between the entrance face and the rims; > 0
+};
+
+}  // namespace retrace::geometry
