@@ -1,0 +1,39 @@
+#include "geometry/check/boundary_check.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/measure.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/boost/graph/helpers.h>
+
+#include <vector>
+
+namespace retrace::geometry {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+BoundaryReport check_boundary(const BoundaryMesh& mesh) {
+  std::vector<Kernel::Point_3> points;
+  points.reserve(mesh.vertices.size());
+  for (const Vec3& p : mesh.vertices) points.emplace_back(p.x(), p.y(), p.z());
+  std::vector<std::vector<std::size_t>> polygons;
+  polygons.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) polygons.push_back({t[0], t[1], t[2]});
+
+  BoundaryReport report;
+  report.is_manifold = pmp::is_polygon_soup_a_polygon_mesh(polygons);
+  if (!report.is_manifold) return report;
+  CGAL::Surface_mesh<Kernel::Point_3> surface;
+  pmp::polygon_soup_to_polygon_mesh(points, polygons, surface);
+  report.is_closed = CGAL::is_closed(surface);
+  report.self_intersects = pmp::does_self_intersect(surface);
+  if (!report.is_closed || report.self_intersects) return report;
+  report.bounds_a_volume = pmp::does_bound_a_volume(surface);
+  report.volume_mm3 = pmp::volume(surface);
+  return report;
+}
+
+}  // namespace retrace::geometry

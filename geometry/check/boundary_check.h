@@ -1,0 +1,21 @@
+#pragma once
+
+#include "geometry/closed_boundary.h"
+
+namespace retrace::geometry {
+
+/// What CGAL finds of a boundary mesh.
+struct BoundaryReport {
+  bool is_manifold = false;        ///< every edge belongs to two triangles, consistently oriented
+  bool is_closed = false;
+  bool self_intersects = true;
+  bool bounds_a_volume = false;    ///< closed, free of self-intersections, normals outward
+  double volume_mm3 = 0.0;
+
+  bool ok() const { return is_manifold && is_closed && !self_intersects && bounds_a_volume; }
+};
+
+/// Checks that a boundary is closed, manifold, outward oriented and does not cross itself (CGAL, exact predicates).
+BoundaryReport check_boundary(const BoundaryMesh& mesh);
+
+}  // namespace retrace::geometry

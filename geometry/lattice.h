@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/part_spec.h"
+#include "geometry/polygon.h"
+
+namespace retrace::geometry {
+
+/// What a face of the part is there for; the ledger books light that leaves by the role of the face it left through.
+enum class FacetRole : std::uint8_t {
+  entrance,     ///< flat face at z = +thickness
+  retro_facet,  ///< a facet of an element
+  flat_back,    ///< flat land, margin or omitted element on z = 0
+  inner_gable,  ///< vertical wall between cells of different depth
+  border_wall,  ///< vertical wall that closes what the border of the array cuts
+  side          ///< side of the plate
+};
+
+/// A plane as a height over the part's xy plane: z = height_mm + slope . (x, y).
+struct HeightPlane {
+  double height_mm = 0.0;
+  Vec2 slope = Vec2::Zero();
+
+  double at(const Vec2& p) const { return height_mm + slope.dot(p); }
+};
+
+/// One facet of an element seen from above: its outline and the plane it lies in.
+struct CellFacet {
+  Polygon outline;
+  HeightPlane plane;
+};
+
+/// An element (its facets in the contract's order), or a piece of flat land (one facet on z = 0).
+struct Cell {
+  bool is_element = true;
+  Polygon outline;
+  std::vector<CellFacet> facets;
+};
+
+/// Cells that fill the plane without overlap when repeated with a rectangular period.
+struct Lattice {
+  Vec2 period_mm = Vec2::Zero();
+  std::vector<Cell> cells;
+  int elements_per_period = 0;
+};
+
+/// A right triangular prism with its lower left corner at `corner_mm`; `turned` by 90 degrees about z it has its roof
+/// edge along x (base = width then).
+Cell rtp_cell(const RtpElement& element, const Vec2& corner_mm, bool turned = false);
+
+/// A full cube corner with its apex over `centre_mm` and its three highest rim points on z = 0.
+Cell hexagonal_cube_cell(const HexagonalCube& element, const Vec2& centre_mm);
+
+/// A triangular cube corner with its apex over `centre_mm` and its rim on z = 0; `turned` by 180 degrees about z.
+Cell triangular_cube_cell(const TriangularCube& element, const Vec2& centre_mm, bool turned = false);
+
+/// Depth of an element from z = 0 to its root or apex.
+double element_depth_mm(const Element& element);
+
+/// The outline of one element's aperture, its bounding box starting at the origin.
+Polygon aperture_outline(const Element& element);
+
+/// The periodic tiling that an arrangement repeats. For RTP arrays the lower left corner of an element in row 1, unshifted,
+/// is at the origin; for cube corners the apex of an unturned cell is. `rows_are_shifted` is false for a single row.
+/// \pre the arrangement fits the element and is not `single`.
+Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted);
+
+}  // namespace retrace::geometry

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "geometry/part_spec.h"
+#include "geometry/polygon.h"
+#include "geometry/surface_patch.h"
+
+namespace retrace::geometry {
+
+/// A patch of the back surface, moved to its place in the part frame.
+struct Placement {
+  std::uint32_t patch = 0;
+  Vec2 offset_mm = Vec2::Zero();
+};
+
+/// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below z = 0
+/// the elements. A finite part is the prism over a convex outline, open at the bottom only where the back surface ends it;
+/// an infinite one repeats with a rectangular period.
+///
+/// The back surface is stored as few distinct patches and many placements, so that a large array costs the memory of its
+/// different pieces (interior, borders, corners).
+struct Part {
+  PartSpec spec;
+  double thickness_mm = 0.0;
+  double element_depth_mm = 0.0;
+  double size_mm = 0.0;  ///< of an element in plan, the scale for tolerances
+  std::vector<SurfacePatch> patches;
+  std::vector<Placement> placements;
+  Polygon outline;                  ///< finite parts; counter-clockwise
+  std::optional<Vec2> period_mm;    ///< infinite parts: the surface covers [-margin, 1 + margin] periods in x and y
+  int periods_beyond = 0;           ///< that margin
+  std::int64_t elements_full = 0;   ///< finite: whole elements; infinite: elements per period
+  std::int64_t elements_partial = 0;
+  double entrance_area_mm2 = 0.0;     ///< infinite: of one period
+  double retro_facet_area_mm2 = 0.0;  ///< infinite: of one period
+};
+
+/// Builds the part. `origin_mm` moves it in the plane (finite parts), for tests of numerical robustness.
+/// \pre the specification is consistent (studies::parse_design checks it)
+/// \throw InputError when it holds no whole element
+Part build_part(const PartSpec& spec, const Vec2& origin_mm = Vec2::Zero());
+
+/// Area of a facet of a patch.
+double facet_area(const SurfacePatch& patch, const PatchFacet& facet);
+
+}  // namespace retrace::geometry

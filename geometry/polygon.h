@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "geometry/vec.h"
+
+namespace retrace::geometry {
+
+/// A convex polygon in the plane, counter-clockwise, in mm.
+using Polygon = std::vector<Vec2>;
+
+/// An axis-aligned rectangle; empty when an upper bound does not exceed its lower bound.
+struct Rectangle {
+  Vec2 lower = Vec2::Zero();
+  Vec2 upper = Vec2::Zero();
+
+  Vec2 size() const { return upper - lower; }
+  bool empty() const { return !(upper.x() > lower.x() && upper.y() > lower.y()); }
+};
+
+double area(const Polygon& polygon);
+Vec2 centroid(const Polygon& polygon);
+Polygon to_polygon(const Rectangle& rectangle);
+Rectangle bounding_box(const Polygon& polygon);
+
+/// The part of a convex polygon inside a rectangle. Vertices within `tolerance_mm` of a border count as on it and stay
+/// where they are, so that an edge that coincides with the border up to rounding is neither moved nor doubled. Empty when
+/// nothing wider than the tolerance is left.
+Polygon clip(const Polygon& polygon, const Rectangle& rectangle, double tolerance_mm);
+
+/// True if every vertex lies in the rectangle widened by `tolerance_mm`.
+bool contains(const Rectangle& rectangle, const Polygon& polygon, double tolerance_mm);
+
+}  // namespace retrace::geometry

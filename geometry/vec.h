@@ -1,0 +1,10 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace retrace::geometry {
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+
+}  // namespace retrace::geometry

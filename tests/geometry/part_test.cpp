@@ -1,0 +1,200 @@
+#include "geometry/part.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "geometry/check/boundary_check.h"
+
+namespace retrace::geometry {
+namespace {
+
+PartSpec rtp_array(double base, double width, double length, Arrangement arrangement) {
+  PartSpec spec;
+  spec.element = RtpElement{base, width, 90.0};
+  spec.arrangement = arrangement;
+  spec.x_length_mm = spec.y_length_mm = length;
+  spec.thickness_mm = 0.5;
+  return spec;
+}
+
+PartSpec cube_array(Element element, Arrangement arrangement, double length) {
+  PartSpec spec;
+  spec.element = element;
+  spec.arrangement = arrangement;
+  spec.x_length_mm = length;
+  spec.y_length_mm = 0.8 * length;
+  spec.thickness_mm = 0.5;
+  return spec;
+}
+
+void expect_valid(const PartSpec& spec) {
+  const Part part = build_part(spec);
+  const BoundaryReport report = check_boundary(closed_boundary(part));
+  EXPECT_TRUE(report.is_manifold);
+  EXPECT_TRUE(report.is_closed);
+  EXPECT_FALSE(report.self_intersects);
+  EXPECT_TRUE(report.bounds_a_volume);
+  // The boundary's volume is that of the plate and of what the back surface encloses below z = 0.
+  double below = 0.0;
+  for (const SurfacePatch& patch : part.patches) {
+    for (const PatchFacet& facet : patch.facets) {
+      const double plan_area = facet_area(patch, facet) * -facet.normal.z();
+      Vec3 middle = Vec3::Zero();
+      for (std::uint32_t k = 0; k < facet.corner_count; ++k)
+        middle += patch.vertices[patch.corners[facet.first_corner + k]] / facet.corner_count;
+      // Exact for triangles and parallelograms; the cut ones are left to the closedness test.
+      below -= plan_area * middle.z();
+    }
+  }
+  if (part.elements_partial == 0) {
+    EXPECT_NEAR(report.volume_mm3, part.entrance_area_mm2 * part.thickness_mm + below, 1e-9);
+  }
+}
+
+TEST(Part, SingleElementsAreClosed) {
+  PartSpec spec;
+  spec.arrangement = Arrangement::single;
+  spec.thickness_mm = 0.5;
+  for (const Element element : {Element(RtpElement{0.45, 0.45, 90.0}), Element(HexagonalCube{1.6}), Element(TriangularCube{1.6})}) {
+    spec.element = element;
+    expect_valid(spec);
+  }
+}
+
+TEST(Part, RtpArraysAreClosed) {
+  for (const Arrangement arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
+    PartSpec spec = rtp_array(0.5, 0.5, 2.5, arrangement);
+    expect_valid(spec);
+    spec.x_gap_mm = 0.05;
+    spec.y_gap_mm = 0.1;
+    expect_valid(spec);
+    spec.x_offset_mm = 0.2;
+    spec.y_offset_mm = 0.1;
+    expect_valid(spec);
+    spec.shifted_rows = RowParity::odd;
+    spec.overlap_percent = 30.0;
+    expect_valid(spec);
+    spec.partial_elements = PartialElements::omit;
+    expect_valid(spec);
+  }
+}
+
+TEST(Part, CubeCornerArraysAreClosed) {
+  for (const PartialElements partial : {PartialElements::cut, PartialElements::omit}) {
+    PartSpec hexagonal = cube_array(HexagonalCube{1.0}, Arrangement::honeycomb, 4.3);
+    PartSpec triangular = cube_array(TriangularCube{1.0}, Arrangement::triangular, 4.3);
+    hexagonal.partial_elements = triangular.partial_elements = partial;
+    expect_valid(hexagonal);
+    expect_valid(triangular);
+    hexagonal.x_offset_mm = triangular.y_offset_mm = 0.3;
+    expect_valid(hexagonal);
+    expect_valid(triangular);
+  }
+}
+
+// Counts printed in Hamilton et al. 2017, Table 1 (first row shifted) and Milliken 2017, section 2.7 (second row shifted).
+TEST(Part, CountsOfTheSeeds) {
+  const auto full = [](double base, RowParity parity, double length = 10.0) {
+    PartSpec spec = rtp_array(base, base, length, Arrangement::offset);
+    spec.shifted_rows = parity;
+    return build_part(spec).elements_full;
+  };
+  EXPECT_EQ(full(10, RowParity::odd), 1);
+  EXPECT_EQ(full(5, RowParity::odd), 3);
+  EXPECT_EQ(full(2, RowParity::odd), 22);
+  EXPECT_EQ(full(1, RowParity::odd), 95);
+  EXPECT_EQ(full(0.5, RowParity::odd), 390);
+  EXPECT_EQ(full(0.451, RowParity::even, 25 * 0.451), 613);
+  EXPECT_EQ(full(0.451, RowParity::even, 3 * 0.451), 8);
+  EXPECT_EQ(full(0.451, RowParity::even, 5 * 0.451), 23);
+  EXPECT_EQ(full(0.451, RowParity::even, 7 * 0.451), 46);
+}
+
+TEST(Part, TotalReflectiveFacetAreaOfTable1) {
+  for (const double base : {10.0, 5.0, 2.0, 1.0, 0.5}) {
+    PartSpec spec = rtp_array(base, base, 10.0, Arrangement::offset);
+    spec.shifted_rows = RowParity::odd;
+    EXPECT_NEAR(build_part(spec).retro_facet_area_mm2, 141.42, 5e-3);
+  }
+}
+
+TEST(Part, FacetsAreAtTheRightAngles) {
+  for (const Element element : {Element(HexagonalCube{1.3}), Element(TriangularCube{1.3})}) {
+    PartSpec spec;
+    spec.element = element;
+    spec.arrangement = Arrangement::single;
+    spec.thickness_mm = 1.0;
+    const Part part = build_part(spec);
+    const auto& facets = part.patches[0].facets;
+    ASSERT_EQ(facets.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(facets[i].normal.dot(facets[(i + 1) % 3].normal), 0.0, 1e-14);
+      EXPECT_NEAR(facets[i].normal.z(), -1.0 / std::numbers::sqrt3, 1e-14);
+    }
+  }
+}
+
+TEST(Part, DepthsOfTheContract) {
+  const double a = 0.7;
+  EXPECT_NEAR(element_depth_mm(HexagonalCube{2.0 * a * std::sqrt(2.0 / 3.0)}), 2.0 * a / std::sqrt(3.0), 1e-14);
+  EXPECT_NEAR(element_depth_mm(TriangularCube{2.0 * a * std::sqrt(2.0 / 3.0)}), a / std::sqrt(3.0), 1e-14);
+  EXPECT_NEAR(element_depth_mm(RtpElement{0.5, 0.5, 90.0}), 0.25, 1e-15);
+}
+
+// One dihedral edge, seen from the apex, runs over +x: the facet opposite to it faces -x.
+TEST(Part, CubeCornerOrientation) {
+  PartSpec spec;
+  spec.element = TriangularCube{1.0};
+  spec.arrangement = Arrangement::single;
+  spec.thickness_mm = 1.0;
+  const Part part = build_part(spec);
+  const Vec3 opposite = part.patches[0].facets[1].normal;
+  EXPECT_NEAR(opposite.x(), -std::sqrt(2.0 / 3.0), 1e-14);
+  EXPECT_NEAR(opposite.y(), 0.0, 1e-14);
+}
+
+// Interior pieces are shared: a large array has few distinct ones, and none of its area is missing.
+TEST(Part, LargeArraysShareTheirPieces) {
+  const Part rtp = build_part(rtp_array(0.451, 0.451, 222 * 0.451, Arrangement::offset));
+  EXPECT_EQ(rtp.elements_full, 222 * 222 - 111);
+  EXPECT_LE(rtp.patches.size(), 16U);
+  EXPECT_GT(rtp.placements.size(), 20U);
+  EXPECT_NEAR(rtp.retro_facet_area_mm2, std::numbers::sqrt2 * rtp.entrance_area_mm2, 1e-6);
+  const Part honeycomb = build_part(cube_array(HexagonalCube{0.5}, Arrangement::honeycomb, 60.0));
+  EXPECT_LE(honeycomb.patches.size(), 16U);
+  EXPECT_NEAR(honeycomb.retro_facet_area_mm2, std::numbers::sqrt3 * honeycomb.entrance_area_mm2, 1e-6);
+}
+
+TEST(Part, InfiniteCellCoversItsPeriod) {
+  PartSpec spec = rtp_array(0.5, 0.4, 0.0, Arrangement::offset);
+  spec.extent = Extent::infinite;
+  const Part part = build_part(spec);
+  EXPECT_NEAR(part.period_mm->x(), 0.5, 1e-15);
+  EXPECT_NEAR(part.period_mm->y(), 0.8, 1e-15);
+  EXPECT_NEAR(part.retro_facet_area_mm2, std::numbers::sqrt2 * 0.4, 1e-12);
+}
+
+TEST(Part, WholeNumbersUpToRoundingAreWhole) {
+  EXPECT_EQ(build_part(rtp_array(0.1, 0.1, 0.3, Arrangement::aligned)).elements_full, 9);
+  EXPECT_EQ(build_part(rtp_array(0.1, 0.1, 0.7 * (1.0 - 5e-10), Arrangement::aligned)).elements_full, 49);
+}
+
+TEST(Part, OneRowIsNeverShifted) {
+  PartSpec spec = rtp_array(1.0, 1.0, 3.0, Arrangement::offset);
+  spec.y_length_mm = 1.0;
+  spec.shifted_rows = RowParity::odd;
+  const Part part = build_part(spec);
+  EXPECT_EQ(part.elements_full, 3);
+  EXPECT_EQ(part.elements_partial, 0);
+}
+
+TEST(Part, TooSmallForOneElement) {
+  EXPECT_THROW(build_part(rtp_array(1.0, 1.0, 0.9, Arrangement::aligned)), InputError);
+  EXPECT_THROW(build_part(cube_array(HexagonalCube{1.0}, Arrangement::honeycomb, 0.9)), InputError);
+}
+
+}  // namespace
+}  // namespace retrace::geometry
