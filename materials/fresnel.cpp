@@ -1,0 +1,36 @@
+#include "materials/fresnel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::materials {
+
+FresnelCoefficients fresnel(double index_ratio, double cos_incidence) {
+  const double ci = std::clamp(cos_incidence, 0.0, 1.0);
+  const double sin2_refracted = index_ratio * index_ratio * (1.0 - ci * ci);
+  FresnelCoefficients f;
+  if (sin2_refracted >= 1.0) {
+    f.total_reflection = true;
+    const std::complex<double> ct(0.0, std::sqrt(sin2_refracted - 1.0));
+    f.r_s = (index_ratio * ci - ct) / (index_ratio * ci + ct);
+    f.r_p = (ci - index_ratio * ct) / (ci + index_ratio * ct);
+    return f;
+  }
+  const double ct = std::sqrt(1.0 - sin2_refracted);
+  f.cos_refracted = ct;
+  const double s_sum = index_ratio * ci + ct;
+  const double p_sum = ci + index_ratio * ct;
+  f.r_s = (index_ratio * ci - ct) / s_sum;
+  f.r_p = (ci - index_ratio * ct) / p_sum;
+  const double flux = 2.0 * std::sqrt(index_ratio * ci * ct);
+  f.t_s = flux / s_sum;
+  f.t_p = flux / p_sum;
+  return f;
+}
+
+double reflectance(double index_ratio, double cos_incidence) {
+  const FresnelCoefficients f = fresnel(index_ratio, cos_incidence);
+  return 0.5 * (std::norm(f.r_s) + std::norm(f.r_p));
+}
+
+}  // namespace retrace::materials
