@@ -1,0 +1,127 @@
+#include "report/axis_ticks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/number_format.h"
+
+namespace retrace::report {
+namespace {
+
+/// Beyond this, differences of two values would overflow.
+constexpr double kLargest = 1e300;
+/// The narrowest range that is drawn, relative to its values: narrower ones are rounding noise.
+constexpr double kNarrowest = 1e-9;
+/// How far a value may lie beyond a tick, in steps, and still count as on it.
+constexpr double kOnTick = 1e-6;
+
+/// 1, 2 or 5 times ten to a whole power. Kept as integers so that multiples come out as the nearest double: 0.3, not
+/// 0.30000000000000004.
+struct NiceStep {
+  int mantissa = 1;
+  int exponent = 0;
+
+  double times(double count) const {
+    const double units = count * mantissa;
+    return exponent < 0 ? units / std::pow(10.0, -exponent) : units * std::pow(10.0, exponent);
+  }
+  NiceStep next() const {
+    if (mantissa == 1) return {2, exponent};
+    if (mantissa == 2) return {5, exponent};
+    return {1, exponent + 1};
+  }
+};
+
+/// The smallest nice step that divides `span` into at most `most` intervals.
+NiceStep nice_step(double span, int most) {
+  const double wanted = span / most;
+  NiceStep step{1, static_cast<int>(std::floor(std::log10(wanted))) - 1};
+  while (step.times(1.0) < wanted * (1.0 - kOnTick)) step = step.next();
+  return step;
+}
+
+std::string with_true_minus(std::string text) {
+  if (!text.empty() && text.front() == '-') text.replace(0, 1, "\u2212");
+  return text;
+}
+
+/// Digits as the step needs them. Very large and very small axes are written with an exponent, the same for every
+/// label.
+std::vector<std::string> tick_labels(const std::vector<double>& positions, NiceStep step) {
+  double largest = 0.0;
+  for (const double position : positions) largest = std::max(largest, std::abs(position));
+  const int magnitude = largest > 0.0 ? static_cast<int>(std::floor(std::log10(largest) + kNarrowest)) : 0;
+  const bool with_exponent = magnitude > 6 || step.exponent < -6;
+
+  std::vector<std::string> labels;
+  for (const double position : positions) {
+    std::string label;
+    if (with_exponent && position != 0.0) {
+      const double mantissa = position / std::pow(10.0, magnitude);
+      label = fmt::format("{}e{}", fixed(mantissa, std::clamp(magnitude - step.exponent, 0, 12)), magnitude);
+    } else {
+      label = with_exponent ? "0" : fixed(position, std::max(0, -step.exponent));
+    }
+    labels.push_back(with_true_minus(label));
+  }
+  return labels;
+}
+
+}  // namespace
+
+std::optional<Range> extent_of(std::span<const double> values) {
+  std::optional<Range> extent;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    if (!extent) extent = Range{value, value};
+    extent->low = std::min(extent->low, value);
+    extent->high = std::max(extent->high, value);
+  }
+  return extent;
+}
+
+Range drawable(Range range) {
+  if (!std::isfinite(range.low) || !std::isfinite(range.high)) return {0.0, 1.0};
+  if (range.low > range.high) std::swap(range.low, range.high);
+  range.low = std::clamp(range.low, -kLargest, kLargest);
+  range.high = std::clamp(range.high, -kLargest, kLargest);
+  const double magnitude = std::max(std::abs(range.low), std::abs(range.high));
+  if (magnitude < 1.0 / kLargest) return {-1.0, 1.0};
+  if (range.span() >= kNarrowest * magnitude) return range;
+  const double middle = range.low + 0.5 * range.span();
+  const double half = 0.05 * magnitude;
+  return {middle - half, middle + half};
+}
+
+Ticks make_ticks(Range range, int most) {
+  range = drawable(range);
+  const NiceStep step = nice_step(range.span(), most);
+  Ticks ticks;
+  ticks.step = step.times(1.0);
+  const double first = std::ceil(range.low / ticks.step - kOnTick);
+  const double last = std::floor(range.high / ticks.step + kOnTick);
+  for (double count = first; count <= last; count += 1.0) {
+    // Adding 0 turns the -0 of a negative count's end into 0.
+    ticks.positions.push_back(step.times(count) + 0.0);
+  }
+  ticks.labels = tick_labels(ticks.positions, step);
+  return ticks;
+}
+
+Range rounded_range(Range data, Range with_errors, int most) {
+  if (data.low == 0.0 && data.high == 0.0) data.high = 1.0;
+  data = drawable(data);
+  if (data.low >= 0.0 && data.span() > 0.5 * data.high) data.low = 0.0;
+  constexpr double error_slack = 0.05;
+  const NiceStep step = nice_step(data.span(), most);
+  const double size = step.times(1.0);
+  double first = std::floor(data.low / size + kOnTick);
+  double last = std::ceil(data.high / size - kOnTick);
+  if (std::isfinite(with_errors.low)) first = std::min(first, std::floor(with_errors.low / size + error_slack));
+  if (std::isfinite(with_errors.high)) last = std::max(last, std::ceil(with_errors.high / size - error_slack));
+  return drawable({step.times(first) + 0.0, step.times(last) + 0.0});
+}
+
+}  // namespace retrace::report

@@ -1,0 +1,281 @@
+#include "report/canvas.h"
+
+#include <cairo-svg.h>
+#include <cairo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "core/error.h"
+
+#if defined(__SANITIZE_ADDRESS__)
+// Fontconfig keeps what it learned of the fonts until the process ends; the leak checker asks here what to pass over.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libfontconfig\n";
+}
+#endif
+
+namespace retrace::report {
+namespace {
+
+constexpr std::string_view kEllipsis = "\u2026";
+/// Points of 1/72 inch, cairo's unit of SVG, to the drawing unit.
+constexpr double kPointsPerUnit = 0.75;
+
+struct Release {
+  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+  void operator()(cairo_t* context) const { cairo_destroy(context); }
+  void operator()(cairo_font_options_t* options) const { cairo_font_options_destroy(options); }
+};
+
+void check(cairo_status_t status) {
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw OutputError(std::string("the plot cannot be drawn: ") + cairo_status_to_string(status));
+}
+
+cairo_status_t append(void* closure, const unsigned char* data, unsigned int length) noexcept {
+  try {
+    static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
+    return CAIRO_STATUS_SUCCESS;
+  } catch (...) {  // no exception may cross cairo's C code
+    return CAIRO_STATUS_NO_MEMORY;
+  }
+}
+
+/// Bytes of the UTF-8 sequence at the start of `text`, or 0 if it is broken (overlong and surrogate forms included).
+std::size_t sequence_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
+  const std::uint8_t lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  const std::uint8_t second = byte(1);
+  if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second > 0x9f)) return 0;
+  if ((lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second > 0x8f)) return 0;
+  return length;
+}
+
+/// The characters of valid UTF-8.
+std::vector<std::string> characters(std::string_view text) {
+  std::vector<std::string> result;
+  while (!text.empty()) {
+    const std::size_t length = std::max<std::size_t>(1, sequence_length(text));
+    result.emplace_back(text.substr(0, length));
+    text.remove_prefix(length);
+  }
+  return result;
+}
+
+/// Cairo numbers its surfaces through the life of the process and writes the number as an id: it would make the second
+/// plot differ from the first. Nothing refers to it.
+std::string without_surface_ids(std::string svg) {
+  constexpr std::string_view start = " id=\"surface";
+  for (std::size_t at = svg.find(start); at != std::string::npos; at = svg.find(start, at)) {
+    const std::size_t end = svg.find('"', at + start.size());
+    if (end == std::string::npos) break;
+    svg.erase(at, end + 1 - at);
+  }
+  return svg;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t length = sequence_length(text);
+    if (length == 0) {
+      result += "\ufffd";
+    } else if (length == 1 && (static_cast<unsigned char>(text[0]) < 0x20 || text[0] == 0x7f)) {
+      result += ' ';
+    } else {
+      result += text.substr(0, length);
+    }
+    text.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  return result;
+}
+
+struct Canvas::Hidden {
+  Format format;
+  std::string bytes;
+  std::unique_ptr<cairo_surface_t, Release> surface;
+  std::unique_ptr<cairo_t, Release> context;
+
+  void set(Colour colour) const { cairo_set_source_rgb(context.get(), colour.red, colour.green, colour.blue); }
+  void set(Font font) const {
+    cairo_select_font_face(context.get(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                           font.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(context.get(), font.size);
+  }
+};
+
+Canvas::Canvas(Format format, Size size, double scale) : hidden_(std::make_unique<Hidden>()) {
+  Hidden& hidden = *hidden_;
+  hidden.format = format;
+  if (format == Format::svg) {
+    hidden.surface.reset(cairo_svg_surface_create_for_stream(append, &hidden.bytes, size.width * kPointsPerUnit,
+                                                             size.height * kPointsPerUnit));
+    check(cairo_surface_status(hidden.surface.get()));
+    scale = kPointsPerUnit;
+  } else {
+    hidden.surface.reset(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
+                                                    static_cast<int>(std::lround(size.width * scale)),
+                                                    static_cast<int>(std::lround(size.height * scale))));
+    check(cairo_surface_status(hidden.surface.get()));
+  }
+  hidden.context.reset(cairo_create(hidden.surface.get()));
+  cairo_t* const context = hidden.context.get();
+  cairo_scale(context, scale, scale);
+  cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
+  // Independent of the user's font settings, and the same layout at every scale.
+  const std::unique_ptr<cairo_font_options_t, Release> options(cairo_font_options_create());
+  cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
+  cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+  cairo_set_font_options(context, options.get());
+  check(cairo_status(context));
+}
+
+Canvas::~Canvas() = default;
+
+double Canvas::text_width(std::string_view text, Font font) const {
+  hidden_->set(font);
+  cairo_text_extents_t extents{};
+  cairo_text_extents(hidden_->context.get(), std::string(text).c_str(), &extents);
+  check(cairo_status(hidden_->context.get()));
+  return extents.x_advance;
+}
+
+std::vector<std::string> Canvas::fitted(std::string_view raw, Font font, double width, int most_lines,
+                                        Ellipsis ellipsis) const {
+  const std::string text = printable(raw);
+  std::vector<std::string> lines;
+  std::string rest = text.substr(std::min(text.find_first_not_of(' '), text.size()));
+  while (!rest.empty() && static_cast<int>(lines.size()) + 1 < most_lines && text_width(rest, font) > width) {
+    // The longest part that ends before a space and fits; a word longer than a line is left to the ellipsis.
+    std::size_t best = 0;
+    for (std::size_t at = rest.find(' '); at != std::string::npos; at = rest.find(' ', at + 1)) {
+      if (text_width(rest.substr(0, at), font) > width) break;
+      best = at;
+    }
+    if (best == 0) break;
+    lines.push_back(rest.substr(0, best));
+    rest.erase(0, rest.find_first_not_of(' ', best));
+  }
+  if (rest.empty()) return lines;
+  if (text_width(rest, font) > width) {
+    // Keep as many characters as fit.
+    const std::vector<std::string> all = characters(rest);
+    const auto shortened = [&](std::size_t kept) {
+      const std::size_t tail = ellipsis == Ellipsis::middle ? kept / 2 : 0;
+      std::string result;
+      for (std::size_t i = 0; i < kept - tail; ++i) result += all[i];
+      result += kEllipsis;
+      for (std::size_t i = all.size() - tail; i < all.size(); ++i) result += all[i];
+      return result;
+    };
+    std::size_t fits = 0;
+    std::size_t too_many = all.size();
+    while (too_many - fits > 1) {
+      const std::size_t middle = fits + (too_many - fits) / 2;
+      (text_width(shortened(middle), font) <= width ? fits : too_many) = middle;
+    }
+    rest = shortened(fits);
+  }
+  lines.push_back(rest);
+  return lines;
+}
+
+void Canvas::fill_rectangle(Point corner, Size size, Colour colour) {
+  hidden_->set(colour);
+  cairo_rectangle(hidden_->context.get(), corner.x, corner.y, size.width, size.height);
+  cairo_fill(hidden_->context.get());
+}
+
+void Canvas::line(const std::vector<Point>& points, const Stroke& stroke) {
+  cairo_t* const context = hidden_->context.get();
+  hidden_->set(stroke.colour);
+  cairo_set_line_width(context, stroke.width);
+  cairo_set_line_cap(context, stroke.dashes.empty() ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+  cairo_set_dash(context, stroke.dashes.data(), static_cast<int>(stroke.dashes.size()), 0.0);
+  cairo_new_path(context);
+  for (const Point point : points) cairo_line_to(context, point.x, point.y);
+  cairo_stroke(context);
+}
+
+void Canvas::marker(Point centre, Marker shape, double radius, Colour colour) {
+  cairo_t* const context = hidden_->context.get();
+  // Sizes by which the shapes look alike in weight.
+  const auto polygon = [&](std::vector<Point> corners) {
+    for (const Point corner : corners)
+      cairo_line_to(context, centre.x + radius * corner.x, centre.y + radius * corner.y);
+    cairo_close_path(context);
+  };
+  cairo_new_path(context);
+  switch (shape) {
+    case Marker::circle:
+      cairo_arc(context, centre.x, centre.y, radius, 0.0, 2.0 * std::numbers::pi);
+      break;
+    case Marker::square:
+      polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}});
+      break;
+    case Marker::triangle:
+      polygon({{0.0, -1.3}, {1.15, 0.75}, {-1.15, 0.75}});
+      break;
+    case Marker::diamond:
+      polygon({{0.0, -1.35}, {1.2, 0.0}, {0.0, 1.35}, {-1.2, 0.0}});
+      break;
+    case Marker::inverted_triangle:
+      polygon({{0.0, 1.3}, {1.15, -0.75}, {-1.15, -0.75}});
+      break;
+  }
+  // A thin white rim keeps markers apart where curves cross.
+  hidden_->set(colour);
+  cairo_fill_preserve(context);
+  hidden_->set(Colour{1.0, 1.0, 1.0});
+  cairo_set_dash(context, nullptr, 0, 0.0);
+  cairo_set_line_width(context, 0.6);
+  cairo_stroke(context);
+}
+
+void Canvas::text(Point baseline, std::string_view text, Font font, Colour colour, Align align, bool upwards) {
+  cairo_t* const context = hidden_->context.get();
+  const std::string shown = printable(text);
+  const double width = text_width(shown, font);
+  cairo_save(context);
+  hidden_->set(colour);
+  cairo_translate(context, baseline.x, baseline.y);
+  if (upwards) cairo_rotate(context, -std::numbers::pi / 2.0);
+  cairo_move_to(context, align == Align::left ? 0.0 : align == Align::centre ? -0.5 * width : -width, 0.0);
+  cairo_show_text(context, shown.c_str());
+  cairo_restore(context);
+}
+
+void Canvas::clip(Point corner, Size size) {
+  cairo_save(hidden_->context.get());
+  cairo_rectangle(hidden_->context.get(), corner.x, corner.y, size.width, size.height);
+  cairo_clip(hidden_->context.get());
+}
+
+void Canvas::end_clip() {
+  cairo_restore(hidden_->context.get());
+}
+
+std::string Canvas::finish() {
+  Hidden& hidden = *hidden_;
+  check(cairo_status(hidden.context.get()));
+  cairo_show_page(hidden.context.get());
+  if (hidden.format == Format::png)
+    check(cairo_surface_write_to_png_stream(hidden.surface.get(), append, &hidden.bytes));
+  cairo_surface_finish(hidden.surface.get());
+  check(cairo_surface_status(hidden.surface.get()));
+  return hidden.format == Format::svg ? without_surface_ids(std::move(hidden.bytes)) : std::move(hidden.bytes);
+}
+
+}  // namespace retrace::report

@@ -1,0 +1,81 @@
+#pragma once
+
+// Private to report/: the few drawing operations a plot needs, over cairo, which no other header names.
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace retrace::report {
+
+struct Point {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+struct Size {
+  double width = 0.0;
+  double height = 0.0;
+};
+
+/// sRGB, each 0..1.
+struct Colour {
+  double red = 0.0;
+  double green = 0.0;
+  double blue = 0.0;
+};
+
+struct Font {
+  double size = 12.0;
+  bool bold = false;
+};
+
+struct Stroke {
+  Colour colour;
+  double width = 1.0;
+  std::vector<double> dashes;  ///< lengths on and off in turn; empty: solid
+};
+
+enum class Align { left, centre, right };
+/// Where a text is shortened: sentences at their end, names in the middle, because names often differ in their ends.
+enum class Ellipsis { end, middle };
+enum class Marker { circle, square, triangle, diamond, inverted_triangle };
+
+/// `text` as valid UTF-8 in one line: broken sequences become U+FFFD, control characters spaces.
+std::string printable(std::string_view text);
+
+/// A drawing of fixed size in units of 1/96 inch, y down, kept in memory. \throw OutputError from any member if cairo
+/// fails.
+class Canvas {
+ public:
+  enum class Format { svg, png };
+  Canvas(Format format, Size size, double scale);
+  Canvas(const Canvas&) = delete;
+  Canvas& operator=(const Canvas&) = delete;
+  ~Canvas();
+
+  double text_width(std::string_view text, Font font) const;
+  /// `text` in at most `most_lines` lines of at most `width`, broken at spaces; an ellipsis in the last line stands for
+  /// what is too much.
+  std::vector<std::string> fitted(std::string_view text, Font font, double width, int most_lines,
+                                  Ellipsis ellipsis) const;
+
+  void fill_rectangle(Point corner, Size size, Colour colour);
+  void line(const std::vector<Point>& points, const Stroke& stroke);
+  void marker(Point centre, Marker shape, double radius, Colour colour);
+  /// `baseline` is the point of the text's baseline that `align` names; `upwards` turns the text by 90 degrees to the
+  /// left.
+  void text(Point baseline, std::string_view text, Font font, Colour colour, Align align, bool upwards = false);
+  void clip(Point corner, Size size);
+  void end_clip();
+
+  /// Ends the drawing and returns the file's bytes.
+  std::string finish();
+
+ private:
+  struct Hidden;
+  std::unique_ptr<Hidden> hidden_;
+};
+
+}  // namespace retrace::report

@@ -1,0 +1,360 @@
+#include "report/plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "report/canvas.h"
+
+namespace retrace::report {
+namespace {
+
+// Colours of Okabe and Ito (2008), told apart with any kind of colour vision; their yellow is too pale for a line on
+// white. Dashes and marker shapes change when the colours start again.
+constexpr std::array<Colour, 7> kPalette = {{{0.000, 0.447, 0.698},    // blue
+                                             {0.835, 0.369, 0.000},    // vermilion
+                                             {0.000, 0.620, 0.451},    // bluish green
+                                             {0.800, 0.475, 0.655},    // reddish purple
+                                             {0.902, 0.624, 0.000},    // orange
+                                             {0.337, 0.706, 0.914},    // sky blue
+                                             {0.000, 0.000, 0.000}}};  // black
+const std::array<std::vector<double>, 4> kDashes = {{{}, {7.0, 3.5}, {2.0, 2.5}, {8.0, 3.0, 2.0, 3.0}}};
+constexpr std::array kMarkers = {Marker::circle, Marker::square, Marker::triangle, Marker::diamond,
+                                 Marker::inverted_triangle};
+
+constexpr Colour kWhite{1.0, 1.0, 1.0};
+constexpr Colour kGrid{0.90, 0.90, 0.90};
+constexpr Colour kAxis{0.35, 0.35, 0.35};
+constexpr Colour kText{0.13, 0.13, 0.13};
+
+constexpr Font kTitleFont{16.0, true};
+constexpr Font kLabelFont{13.5, false};
+constexpr Font kTickFont{12.0, false};
+constexpr Font kLegendFont{12.0, false};
+
+constexpr double kPlotWidth = 620.0;  ///< of the area inside the axes
+constexpr double kPlotHeight = 370.0;
+constexpr double kMargin = 22.0;
+constexpr double kTickLength = 5.0;
+constexpr double kLineSpacing = 1.3;
+constexpr double kLegendRow = 19.0;
+constexpr double kLegendKey = 30.0;  ///< length of a legend's sample of the line
+constexpr double kLegendGap = 8.0;
+constexpr double kLegendTextWidth = 230.0;
+constexpr std::size_t kMostLegendEntries = 60;
+constexpr std::size_t kMostMarkers = 45;  ///< of one series; longer ones are drawn as a line alone
+constexpr int kMostXTicks = 9;
+constexpr int kMostYTicks = 7;
+/// An error bar whose half is shorter than this would hide in the marker or the line.
+constexpr double kShortestErrorBar = 1.5;
+
+/// How a series is drawn, by its place in the plot.
+struct Look {
+  Colour colour;
+  std::vector<double> dashes;
+  Marker marker = Marker::circle;
+};
+
+Look look_of(std::size_t index) {
+  return {kPalette[index % kPalette.size()], kDashes[index / kPalette.size() % kDashes.size()],
+          kMarkers[(index % kPalette.size() + index / kPalette.size()) % kMarkers.size()]};
+}
+
+bool is_drawn(const Series& series, std::size_t i) {
+  return std::isfinite(series.x[i]) && std::isfinite(series.y[i]);
+}
+
+std::size_t drawn_points(const Series& series) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < series.x.size(); ++i) count += is_drawn(series, i) ? 1U : 0U;
+  return count;
+}
+
+/// The ranges of both axes.
+std::pair<Range, Range> axis_ranges(const LinePlot& plot) {
+  std::vector<double> xs;
+  std::vector<double> ys;
+  std::vector<double> with_errors;
+  for (const Series& series : plot.series) {
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      if (!is_drawn(series, i)) continue;
+      xs.push_back(series.x[i]);
+      ys.push_back(series.y[i]);
+      const double error = series.y_error.empty() ? 0.0 : series.y_error[i];
+      with_errors.push_back(series.y[i] - error);
+      with_errors.push_back(series.y[i] + error);
+    }
+  }
+  const Range x = plot.x_range.value_or(extent_of(xs).value_or(Range{0.0, 1.0}));
+  if (plot.y_range) return {drawable(x), drawable(*plot.y_range)};
+  const Range data = extent_of(ys).value_or(Range{0.0, 1.0});
+  Range y = rounded_range(data, extent_of(with_errors).value_or(data), kMostYTicks);
+  // Shares stay within what a share can be.
+  if (plot.y_label.find('%') != std::string::npos && data.low >= 0.0 && data.high <= 100.0)
+    y = drawable({std::max(y.low, 0.0), std::min(y.high, 100.0)});
+  return {drawable(x), y};
+}
+
+struct LegendEntry {
+  std::string text;
+  double width = 0.0;
+  Look look;
+  bool is_sample = true;  ///< false: text alone
+};
+
+enum class LegendPlace { none, row, column };
+
+/// Where everything lies.
+struct Layout {
+  Size figure;
+  Point corner;  ///< of the plot area, top left
+  AxisScale x;
+  AxisScale y;
+  Ticks x_ticks;
+  Ticks y_ticks;
+  std::vector<std::string> title;
+  std::vector<std::string> x_label;
+  std::vector<std::string> y_label;
+  std::vector<LegendEntry> legend;
+  LegendPlace legend_place = LegendPlace::none;
+  double legend_width = 0.0;
+  double title_top = 0.0;
+};
+
+double height_of(const std::vector<std::string>& lines, Font font) {
+  return static_cast<double>(lines.size()) * font.size * kLineSpacing;
+}
+
+std::vector<LegendEntry> legend_entries(const LinePlot& plot, const Canvas& canvas) {
+  std::vector<LegendEntry> entries;
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    if (plot.series[i].label.empty()) continue;
+    if (entries.size() == kMostLegendEntries) {
+      ++left_out;
+      continue;
+    }
+    std::vector<std::string> lines =
+        canvas.fitted(plot.series[i].label, kLegendFont, kLegendTextWidth, 1, Ellipsis::middle);
+    std::string text = lines.empty() ? std::string() : std::move(lines.front());
+    const double width = canvas.text_width(text, kLegendFont);
+    entries.push_back({std::move(text), width, look_of(i), true});
+  }
+  if (left_out > 0) {
+    std::string text = fmt::format("and {} more", left_out);
+    const double width = canvas.text_width(text, kLegendFont);
+    entries.push_back({std::move(text), width, {}, false});
+  }
+  return entries;
+}
+
+double widest(const std::vector<std::string>& labels, const Canvas& canvas) {
+  double width = 0.0;
+  for (const std::string& label : labels) width = std::max(width, canvas.text_width(label, kTickFont));
+  return width;
+}
+
+/// As many ticks as their labels leave room for.
+Ticks x_ticks_that_fit(Range range, const Canvas& canvas) {
+  for (int most = kMostXTicks;; --most) {
+    Ticks ticks = make_ticks(range, most);
+    const double room = ticks.step / range.span() * kPlotWidth;
+    if (most == 1 || widest(ticks.labels, canvas) + 10.0 <= room) return ticks;
+  }
+}
+
+/// Measures texts on `canvas` and places everything; draws nothing.
+Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
+  Layout layout;
+  const auto [x_range, y_range] = axis_ranges(plot);
+  layout.x_ticks = x_ticks_that_fit(x_range, canvas);
+  layout.y_ticks = make_ticks(y_range, kMostYTicks);
+  layout.title = canvas.fitted(plot.title, kTitleFont, kPlotWidth, 2, Ellipsis::end);
+  layout.x_label = canvas.fitted(plot.x_label, kLabelFont, kPlotWidth, 2, Ellipsis::end);
+  layout.y_label = canvas.fitted(plot.y_label, kLabelFont, kPlotHeight, 2, Ellipsis::end);
+  layout.legend = legend_entries(plot, canvas);
+
+  double row_width = -2.0 * kLegendGap;
+  double column_width = 0.0;
+  for (const LegendEntry& entry : layout.legend) {
+    const double width = kLegendKey + kLegendGap + entry.width;
+    row_width += width + 2.0 * kLegendGap;
+    column_width = std::max(column_width, width);
+  }
+  if (!layout.legend.empty()) layout.legend_place = row_width <= kPlotWidth ? LegendPlace::row : LegendPlace::column;
+  layout.legend_width = layout.legend_place == LegendPlace::row ? row_width : column_width;
+
+  const double y_tick_width = widest(layout.y_ticks.labels, canvas);
+  const bool in_column = layout.legend_place == LegendPlace::column;
+  layout.title_top = kMargin;
+  double top = kMargin + height_of(layout.title, kTitleFont) + (layout.title.empty() ? 0.0 : 8.0);
+  if (layout.legend_place == LegendPlace::row) top += kLegendRow + 6.0;
+  const double left =
+      kMargin + height_of(layout.y_label, kLabelFont) + (layout.y_label.empty() ? 0.0 : 6.0) + y_tick_width + 12.0;
+  const double below = kTickLength + 8.0 + kTickFont.size + 8.0 + height_of(layout.x_label, kLabelFont) + kMargin;
+  // The last label of the x axis may hang over the plot's right end.
+  const double right = std::max(kMargin, 0.5 * widest(layout.x_ticks.labels, canvas) + 8.0);
+  const double column_height = in_column ? kLegendRow * static_cast<double>(layout.legend.size()) : 0.0;
+  layout.corner = {left, top};
+  layout.figure = {std::ceil(left + kPlotWidth + right + (in_column ? layout.legend_width + kMargin : 0.0)),
+                   std::ceil(top + std::max(kPlotHeight + below, column_height + kMargin))};
+  layout.x = {x_range, left, left + kPlotWidth};
+  layout.y = {y_range, top + kPlotHeight, top};
+  return layout;
+}
+
+void draw_axes(Canvas& canvas, const Layout& layout) {
+  const double left = layout.corner.x;
+  const double right = left + kPlotWidth;
+  const double top = layout.corner.y;
+  const double bottom = top + kPlotHeight;
+  const auto grid = [&](Point from, Point to, double value) {
+    canvas.line({from, to}, {kGrid, value == 0.0 ? 1.6 : 0.9, {}});
+  };
+  for (const double value : layout.x_ticks.positions)
+    grid({layout.x.at(value), top}, {layout.x.at(value), bottom}, value);
+  for (const double value : layout.y_ticks.positions)
+    grid({left, layout.y.at(value)}, {right, layout.y.at(value)}, value);
+
+  const Stroke axis{kAxis, 1.1, {}};
+  canvas.line({{left, top}, {left, bottom}, {right, bottom}}, axis);
+  for (std::size_t i = 0; i < layout.x_ticks.positions.size(); ++i) {
+    const double x = layout.x.at(layout.x_ticks.positions[i]);
+    canvas.line({{x, bottom}, {x, bottom + kTickLength}}, axis);
+    canvas.text({x, bottom + kTickLength + 5.0 + kTickFont.size}, layout.x_ticks.labels[i], kTickFont, kText,
+                Align::centre);
+  }
+  for (std::size_t i = 0; i < layout.y_ticks.positions.size(); ++i) {
+    const double y = layout.y.at(layout.y_ticks.positions[i]);
+    canvas.line({{left - kTickLength, y}, {left, y}}, axis);
+    canvas.text({left - kTickLength - 5.0, y + 0.36 * kTickFont.size}, layout.y_ticks.labels[i], kTickFont, kText,
+                Align::right);
+  }
+}
+
+void draw_texts(Canvas& canvas, const Layout& layout) {
+  const double middle_x = layout.corner.x + 0.5 * kPlotWidth;
+  const double middle_y = layout.corner.y + 0.5 * kPlotHeight;
+  const auto lines = [](const std::vector<std::string>& texts, Font font, double first_baseline, auto&& put) {
+    double baseline = first_baseline;
+    for (const std::string& text : texts) {
+      put(text, baseline);
+      baseline += font.size * kLineSpacing;
+    }
+  };
+  lines(layout.title, kTitleFont, layout.title_top + kTitleFont.size, [&](const std::string& text, double baseline) {
+    canvas.text({middle_x, baseline}, text, kTitleFont, kText, Align::centre);
+  });
+  const double x_label_top = layout.corner.y + kPlotHeight + kTickLength + 8.0 + kTickFont.size + 8.0;
+  lines(layout.x_label, kLabelFont, x_label_top + kLabelFont.size, [&](const std::string& text, double baseline) {
+    canvas.text({middle_x, baseline}, text, kLabelFont, kText, Align::centre);
+  });
+  lines(layout.y_label, kLabelFont, kMargin + kLabelFont.size, [&](const std::string& text, double baseline) {
+    canvas.text({baseline, middle_y}, text, kLabelFont, kText, Align::centre, true);
+  });
+}
+
+void draw_legend(Canvas& canvas, const Layout& layout) {
+  if (layout.legend_place == LegendPlace::none) return;
+  const bool in_row = layout.legend_place == LegendPlace::row;
+  Point at = in_row ? Point{layout.corner.x + 0.5 * (kPlotWidth - layout.legend_width), layout.corner.y - 15.0}
+                    : Point{layout.figure.width - kMargin - layout.legend_width, layout.corner.y + 0.5 * kLegendRow};
+  for (const LegendEntry& entry : layout.legend) {
+    if (entry.is_sample) {
+      canvas.line({at, {at.x + kLegendKey, at.y}}, {entry.look.colour, 2.0, entry.look.dashes});
+      canvas.marker({at.x + 0.5 * kLegendKey, at.y}, entry.look.marker, 3.4, entry.look.colour);
+    }
+    canvas.text({at.x + kLegendKey + kLegendGap, at.y + 0.36 * kLegendFont.size}, entry.text, kLegendFont, kText,
+                Align::left);
+    if (in_row) {
+      at.x += kLegendKey + entry.width + 3.0 * kLegendGap;
+    } else {
+      at.y += kLegendRow;
+    }
+  }
+}
+
+/// Keeps markers of neighbouring points apart where the points lie close.
+double marker_radius(const Series& series, const Layout& layout) {
+  double closest = kPlotWidth;
+  for (std::size_t i = 1; i < series.x.size(); ++i) {
+    if (!is_drawn(series, i - 1) || !is_drawn(series, i)) continue;
+    closest = std::min(closest, std::hypot(layout.x.at(series.x[i]) - layout.x.at(series.x[i - 1]),
+                                           layout.y.at(series.y[i]) - layout.y.at(series.y[i - 1])));
+  }
+  return std::clamp(0.45 * closest, 2.4, 3.8);
+}
+
+void draw_series(Canvas& canvas, const Layout& layout, const Series& series, const Look& look) {
+  const auto place = [&](double x, double y) { return Point{layout.x.at(x), layout.y.at(y)}; };
+  // Half a line's width beyond the axes, so that a curve on the border keeps its weight.
+  canvas.clip({layout.corner.x - 1.5, layout.corner.y - 1.5}, {kPlotWidth + 3.0, kPlotHeight + 3.0});
+  std::vector<Point> stretch;
+  const auto draw_stretch = [&] {
+    if (stretch.size() > 1) canvas.line(stretch, {look.colour, 1.8, look.dashes});
+    stretch.clear();
+  };
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    if (is_drawn(series, i)) {
+      stretch.push_back(place(series.x[i], series.y[i]));
+    } else {
+      draw_stretch();
+    }
+  }
+  draw_stretch();
+
+  for (std::size_t i = 0; i < series.y_error.size(); ++i) {
+    const double error = series.y_error[i];
+    if (!is_drawn(series, i) || !std::isfinite(error)) continue;
+    const Point low = place(series.x[i], series.y[i] - error);
+    const Point high = place(series.x[i], series.y[i] + error);
+    if (std::abs(low.y - high.y) < 2.0 * kShortestErrorBar) continue;
+    const Stroke bar{look.colour, 1.1, {}};
+    canvas.line({low, high}, bar);
+    for (const Point end : {low, high}) canvas.line({{end.x - 3.5, end.y}, {end.x + 3.5, end.y}}, bar);
+  }
+  canvas.end_clip();
+
+  if (drawn_points(series) > kMostMarkers) return;
+  const double radius = marker_radius(series, layout);
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    if (!is_drawn(series, i)) continue;
+    if (!layout.x.values.contains(series.x[i]) || !layout.y.values.contains(series.y[i])) continue;
+    canvas.marker(place(series.x[i], series.y[i]), look.marker, radius, look.colour);
+  }
+}
+
+std::string render(const LinePlot& plot, Canvas::Format format, double scale) {
+  for (const Series& series : plot.series) {
+    const bool errors_match = series.y_error.empty() || series.y_error.size() == series.x.size();
+    if (series.x.size() != series.y.size() || !errors_match)
+      throw std::invalid_argument(fmt::format("series '{}': {} x, {} y and {} y_error values", series.label,
+                                              series.x.size(), series.y.size(), series.y_error.size()));
+  }
+  // Texts measure alike on every canvas, so a small one serves to find the size of the real one.
+  const Layout layout = lay_out(plot, Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0));
+  Canvas canvas(format, layout.figure, scale);
+  canvas.fill_rectangle({0.0, 0.0}, layout.figure, kWhite);
+  draw_axes(canvas, layout);
+  draw_texts(canvas, layout);
+  draw_legend(canvas, layout);
+  for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(canvas, layout, plot.series[i], look_of(i));
+  return canvas.finish();
+}
+
+}  // namespace
+
+std::string render_svg(const LinePlot& plot) {
+  return render(plot, Canvas::Format::svg, 1.0);
+}
+
+std::string render_png(const LinePlot& plot, double scale) {
+  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
+  return render(plot, Canvas::Format::png, scale);
+}
+
+}  // namespace retrace::report
