@@ -4,14 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "geometry/part_spec.h"
 
 namespace retrace::studies {
 
 /// The optical idealisations a design may ask for, to be checked against theory.
 struct Idealisation {
-  bool mirror_facets = false;      ///< retro facets reflect everything at every angle
-  bool lossless_entrance = false;  ///< entrance face refracts with T = 1 both ways; beyond the critical angle light ends
+  bool mirror_facets = false;  ///< retro facets reflect everything at every angle
+  bool lossless_entrance =
+      false;  ///< entrance face refracts with T = 1 both ways; beyond the critical angle light ends
 };
 
 /// Everything a design file says, checked and with its defaults filled in.
@@ -20,7 +22,8 @@ struct Design {
   std::string title;   ///< empty if none was given
   geometry::PartSpec part;
   std::string material = "PMMA";
-  std::optional<double> refractive_index;  ///< wins over the material; relative to air, >= 1
+  InputLocation material_location;          ///< where the material was named, for whoever finds that it is not shipped
+  std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
   std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
   double wavelength_nm = 587.56;
   std::vector<double> acceptance_half_angle_deg = {0.5};  ///< ascending, each in (0, 90]

@@ -1,0 +1,256 @@
+#include "studies/design/design_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iostream>
+#include <system_error>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "studies/design/array_checks.h"
+#include "studies/design/design_keys.h"
+#include "studies/design/message_text.h"
+#include "studies/design/table_reader.h"
+
+namespace retrace::studies {
+namespace fs = std::filesystem;
+namespace {
+
+using geometry::Arrangement;
+using geometry::Extent;
+using geometry::PartialElements;
+using geometry::PartSpec;
+using geometry::RowParity;
+
+enum class Kind { rtp, hexagonal_icc, triangular_icc };
+
+constexpr std::string_view kSchema = "retrace.design/1";
+constexpr std::array kKinds = {Choice<Kind>{"rtp", Kind::rtp}, Choice<Kind>{"hexagonal_icc", Kind::hexagonal_icc},
+                               Choice<Kind>{"triangular_icc", Kind::triangular_icc}};
+/// The first of each is the default.
+constexpr std::array kRtpArrangements = {
+    Choice<Arrangement>{"aligned", Arrangement::aligned}, Choice<Arrangement>{"offset", Arrangement::offset},
+    Choice<Arrangement>{"checker", Arrangement::checker}, Choice<Arrangement>{"single", Arrangement::single}};
+constexpr std::array kHexagonalArrangements = {Choice<Arrangement>{"honeycomb", Arrangement::honeycomb},
+                                               Choice<Arrangement>{"single", Arrangement::single}};
+constexpr std::array kTriangularArrangements = {Choice<Arrangement>{"triangular", Arrangement::triangular},
+                                                Choice<Arrangement>{"single", Arrangement::single}};
+constexpr std::array kExtents = {Choice<Extent>{"finite", Extent::finite},
+                                 Choice<Extent>{"infinite", Extent::infinite}};
+constexpr std::array kRowParities = {Choice<RowParity>{"even", RowParity::even},
+                                     Choice<RowParity>{"odd", RowParity::odd}};
+constexpr std::array kPartialElements = {Choice<PartialElements>{"cut", PartialElements::cut},
+                                         Choice<PartialElements>{"omit", PartialElements::omit}};
+constexpr std::array kFacetModels = {Choice<bool>{"real", false}, Choice<bool>{"mirror", true}};
+constexpr std::array kEntranceModels = {Choice<bool>{"real", false}, Choice<bool>{"lossless", true}};
+
+constexpr Range kApexAngle{.low = 60.0, .high = 120.0};
+constexpr Range kOverlap{.low = 0.0, .high = 100.0, .high_included = false};
+constexpr Range kRefractiveIndex{.low = 1.0};
+constexpr Range kAcceptance{.low = 0.0, .low_included = false, .high = 90.0};
+/// From one nanometre to one kilometre: beyond that, differences of coordinates have too few digits.
+constexpr Range kSaneSize{.low = 1e-6, .high = 1e6};
+constexpr Range kGap{.low = 0.0, .high = kSaneSize.high};
+
+template <class Value, std::size_t size>
+std::span<const Choice<Value>> all(const std::array<Choice<Value>, size>& choices) {
+  return choices;
+}
+
+/// A required length in mm.
+double read_size(TableReader& table, std::string_view key) {
+  table.required_number(key, kPositive);
+  return table.required_number(key, kSaneSize);
+}
+
+Kind read_kind(TableReader& element) {
+  return element.required_choice("kind", all(kKinds));
+}
+
+geometry::Element read_element(TableReader& element, Kind kind) {
+  element.skip({"cant_deg", "cant_azimuth_deg"});
+  if (kind == Kind::rtp) {
+    element.refuse({"aperture_mm"}, "not allowed for kind = \"rtp\", which has base_mm and width_mm");
+    geometry::RtpElement rtp;
+    rtp.base_mm = read_size(element, "base_mm");
+    rtp.width_mm = read_size(element, "width_mm");
+    rtp.apex_angle_deg = element.number("apex_angle_deg", kApexAngle).value_or(rtp.apex_angle_deg);
+    return rtp;
+  }
+  element.refuse({"base_mm", "width_mm", "apex_angle_deg"}, "only allowed for kind = \"rtp\", others have aperture_mm");
+  const double aperture_mm = read_size(element, "aperture_mm");
+  if (kind == Kind::hexagonal_icc) return geometry::HexagonalCube{aperture_mm};
+  return geometry::TriangularCube{aperture_mm};
+}
+
+std::span<const Choice<Arrangement>> arrangements_of(Kind kind) {
+  switch (kind) {
+    case Kind::rtp:
+      return kRtpArrangements;
+    case Kind::hexagonal_icc:
+      return kHexagonalArrangements;
+    case Kind::triangular_icc:
+      break;
+  }
+  return kTriangularArrangements;
+}
+
+Arrangement read_arrangement(TableReader& array, Kind kind) {
+  const std::span<const Choice<Arrangement>> fitting = arrangements_of(kind);
+  const std::string given = array.text("arrangement").value_or(std::string(fitting.front().name));
+  for (const Kind other : {Kind::rtp, Kind::hexagonal_icc, Kind::triangular_icc}) {
+    const auto is_given = [&](const Choice<Arrangement>& choice) { return choice.name == given; };
+    if (std::ranges::any_of(fitting, is_given) || std::ranges::none_of(arrangements_of(other), is_given)) continue;
+    std::vector<std::string_view> names;
+    for (const Choice<Arrangement>& choice : fitting) names.push_back(choice.name);
+    array.fail("arrangement", fmt::format("must be {} for kind = {}, got {}", alternatives(names),
+                                          in_quotes(kKinds[static_cast<std::size_t>(kind)].name), in_quotes(given)));
+  }
+  return array.choice("arrangement", fitting).value_or(fitting.front().value);
+}
+
+/// Lengths and margins: required or allowed for finite arrays, without meaning for one cell or one element.
+void read_extent(TableReader& array, PartSpec& part) {
+  const bool single = part.arrangement == Arrangement::single;
+  if (single || part.extent == Extent::infinite) {
+    const std::string why = single ? "not allowed for arrangement = \"single\", whose extent is the element's aperture"
+                                   : "not allowed for extent = \"infinite\", which is one periodic cell";
+    array.refuse({"x_length_mm", "y_length_mm"}, why);
+    array.refuse_unless_zero({"x_offset_mm", "y_offset_mm"}, why);
+    return;
+  }
+  part.x_length_mm = read_size(array, "x_length_mm");
+  part.y_length_mm = read_size(array, "y_length_mm");
+  part.x_offset_mm = array.number("x_offset_mm", kGap).value_or(0.0);
+  part.y_offset_mm = array.number("y_offset_mm", kGap).value_or(0.0);
+}
+
+void read_gaps(TableReader& array, PartSpec& part, Kind kind) {
+  if (kind != Kind::rtp) array.refuse_unless_zero({"x_gap_mm", "y_gap_mm"}, "only allowed for kind = \"rtp\"");
+  if (part.arrangement == Arrangement::single)
+    array.refuse_unless_zero({"x_gap_mm", "y_gap_mm"}, "not allowed for arrangement = \"single\"");
+  part.x_gap_mm = array.number("x_gap_mm", kGap).value_or(0.0);
+  part.y_gap_mm = array.number("y_gap_mm", kGap).value_or(0.0);
+}
+
+void read_rows(TableReader& array, PartSpec& part) {
+  if (part.arrangement != Arrangement::offset)
+    array.refuse({"shifted_rows", "overlap_percent"}, "only allowed for arrangement = \"offset\"");
+  part.shifted_rows = array.choice("shifted_rows", all(kRowParities)).value_or(part.shifted_rows);
+  part.overlap_percent = array.number("overlap_percent", kOverlap).value_or(part.overlap_percent);
+  part.partial_elements = array.choice("partial_elements", all(kPartialElements)).value_or(part.partial_elements);
+}
+
+void read_array(TableReader& array, PartSpec& part, Kind kind) {
+  part.arrangement = read_arrangement(array, kind);
+  part.extent = array.choice("extent", all(kExtents)).value_or(part.extent);
+  if (part.arrangement == Arrangement::single && part.extent == Extent::infinite)
+    array.fail("extent", "must be \"finite\" for arrangement = \"single\", got \"infinite\"");
+  read_extent(array, part);
+  read_gaps(array, part, kind);
+  read_rows(array, part);
+}
+
+PartSpec read_part(const DesignDocument& document) {
+  TableReader element(document, "element");
+  TableReader array(document, "array");
+  PartSpec part;
+  const Kind kind = read_kind(element);
+  part.element = read_element(element, kind);
+  read_array(array, part, kind);
+  element.finish();
+  array.finish();
+  check_array(part, array, element);
+  return part;
+}
+
+void read_body(TableReader& body, Design& design) {
+  design.part.thickness_mm = read_size(body, "thickness_mm");
+  design.material_location = body.where("material");
+  design.material = body.text("material").value_or(design.material);
+  if (design.material.empty()) body.fail("material", "must name a material, such as \"PMMA\", got \"\"");
+  design.refractive_index = body.number("refractive_index", kRefractiveIndex);
+  design.absorption_per_mm = body.number("absorption_per_mm", kNotNegative);
+  body.skip({"back_index", "facet_coating"});
+  body.finish();
+}
+
+void read_light_and_detector(const DesignDocument& document, Design& design) {
+  TableReader light(document, "light");
+  design.wavelength_nm = light.number("wavelength_nm", kPositive).value_or(design.wavelength_nm);
+  light.skip({"polarisation"});
+  light.finish();
+  TableReader detector(document, "detector");
+  std::vector<double> angles_deg =
+      detector.numbers("acceptance_half_angle_deg", kAcceptance).value_or(design.acceptance_half_angle_deg);
+  detector.finish();
+  std::ranges::sort(angles_deg);
+  const auto repeated = std::ranges::unique(angles_deg);
+  angles_deg.erase(repeated.begin(), repeated.end());
+  design.acceptance_half_angle_deg = angles_deg;
+}
+
+void read_idealisation(const DesignDocument& document, Design& design) {
+  TableReader idealisation(document, "idealisation");
+  design.idealisation.mirror_facets = idealisation.choice("facets", all(kFacetModels)).value_or(false);
+  design.idealisation.lossless_entrance = idealisation.choice("entrance", all(kEntranceModels)).value_or(false);
+  idealisation.finish();
+}
+
+/// Before anything else: a file of another format must not be blamed for its keys.
+void check_schema(TableReader& top) {
+  const std::optional<std::string> schema = top.text("schema");
+  if (schema && *schema != kSchema)
+    top.fail("schema", fmt::format("must be {}, got {}", in_quotes(kSchema), in_quotes(*schema)));
+}
+
+/// Everything from a stream that may never end, but no more than shows that it is too long for a design.
+std::string read_stream(std::istream& stream, const std::string& name) {
+  std::string text(DesignDocument::max_bytes + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) throw InputError(InputLocation{name, 0, ""}, "cannot be read");
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+std::string read_text(const fs::path& file) {
+  std::error_code ignored;
+  const bool is_special =
+      fs::exists(file, ignored) && !fs::is_directory(file, ignored) &&
+      (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) > DesignDocument::max_bytes);
+  if (!is_special) return read_file(file);
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(InputLocation{file.string(), 0, ""}, "cannot be read");
+  return read_stream(stream, file.string());
+}
+
+}  // namespace
+
+Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
+  const DesignDocument document(text, source_name, overrides);
+  TableReader top(document, "");
+  check_schema(top);
+  check_keys(document);
+  Design design;
+  design.source = source_name;
+  design.title = top.text("title").value_or("");
+  design.part = read_part(document);
+  TableReader body(document, "body");
+  read_body(body, design);
+  read_light_and_detector(document, design);
+  read_idealisation(document, design);
+  return design;
+}
+
+Design read_design(const fs::path& file, std::span<const std::string> overrides) {
+  if (file != "-") return parse_design(read_text(file), file.string(), overrides);
+  const std::string name = "standard input";
+  Design design = parse_design(read_stream(std::cin, name), name, overrides);
+  design.source = "-";
+  return design;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "studies/design/design.h"
+
+namespace retrace::studies {
+
+/// Reads and checks a design file; "-" is standard input.
+/// \param overrides `key=value` texts that take precedence over the file, such as `element.base_mm=0.4`; the value is
+///        TOML, or a bare string where it is not (`array.arrangement=offset`). The last one for a key wins.
+/// \throw InputError naming file, line, key, what was given and what is allowed, on one line.
+Design read_design(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+/// The same for the text of a design file; `source_name` stands for the file in messages and in Design::source.
+Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides = {});
+
+}  // namespace retrace::studies

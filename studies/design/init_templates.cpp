@@ -1,0 +1,108 @@
+#include "studies/design/init_templates.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/error.h"
+#include "studies/design/message_text.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr std::array<std::string_view, 3> kKinds = {"rtp", "hexagonal_icc", "triangular_icc"};
+
+constexpr std::string_view kRtpHead =
+    R"(# A retroreflector of right triangular prisms. Lengths in mm, angles in degrees.
+# Lines that begin with "#" show defaults and alternatives.
+schema = "retrace.design/1"
+title = "Right triangular prisms in brick rows"
+
+[element]
+kind = "rtp"                      # right triangular prism
+base_mm = 0.5                     # across the roof edge (x)
+width_mm = 0.5                    # along the roof edge (y)
+# apex_angle_deg = 90             # included angle of the two facets, 60 to 120
+
+[array]
+arrangement = "offset"            # single | aligned (default) | offset (brick rows) | checker (base = width)
+shifted_rows = "odd"              # offset only: "even" (default) shifts rows 2, 4, ...; "odd" rows 1, 3, ...
+# overlap_percent = 50            # offset only: by how much of the base rows are shifted
+x_length_mm = 10                  # not for "single" and extent = "infinite"
+y_length_mm = 10
+# x_gap_mm = 0                    # flat land between elements
+# y_gap_mm = 0
+)";
+
+constexpr std::string_view kHexagonalHead =
+    R"(# A retroreflector of full cube corners with hexagonal apertures. Lengths in mm, angles in degrees.
+# Lines that begin with "#" show defaults and alternatives.
+schema = "retrace.design/1"
+title = "Hexagonal cube corners in a honeycomb"
+
+[element]
+kind = "hexagonal_icc"            # inverted cube corner, hexagonal aperture
+aperture_mm = 1.632993161855452   # circle round the hexagon, 2 a sqrt(2/3); here the cube's edge a is 1 mm
+
+[array]
+arrangement = "honeycomb"         # honeycomb (default) | single
+x_length_mm = 10                  # not for "single" and extent = "infinite"
+y_length_mm = 10
+)";
+
+constexpr std::string_view kTriangularHead =
+    R"(# A retroreflector of cube corners with triangular apertures. Lengths in mm, angles in degrees.
+# Lines that begin with "#" show defaults and alternatives.
+schema = "retrace.design/1"
+title = "Triangular cube corners"
+
+[element]
+kind = "triangular_icc"           # inverted cube corner, triangular aperture
+aperture_mm = 1.632993161855452   # circle round the triangle, whose side is a sqrt(2); here the cube's edge a is 1 mm
+
+[array]
+arrangement = "triangular"        # triangular (default) | single
+x_length_mm = 10                  # not for "single" and extent = "infinite"
+y_length_mm = 10
+)";
+
+constexpr std::string_view kCommonTail = R"(# x_offset_mm = 0                 # flat margin kept free on both borders
+# y_offset_mm = 0
+# extent = "finite"               # "infinite" is one periodic cell and takes no lengths
+# partial_elements = "cut"        # what the border leaves of an element; "omit" leaves flat back face there
+
+[body]
+thickness_mm = 2.0                # plate between the entrance face and the rims of the elements
+material = "PMMA"                 # `retrace list materials` shows what there is
+# refractive_index = 1.4917       # wins over the material
+# absorption_per_mm = 0           # Napierian, for power; wins over the material
+
+[light]
+wavelength_nm = 587.56
+# polarisation = "unpolarised"
+
+[detector]
+acceptance_half_angle_deg = 0.5   # in air; a list such as [0.2, 0.5, 1] gives RRE against acceptance
+
+[surface]
+model = "smooth"                  # the retroreflecting facets
+
+# [idealisation]                  # for checks against theory
+# facets = "real"                 # "mirror": facets reflect everything at every angle
+# entrance = "real"               # "lossless": the entrance face refracts with T = 1
+)";
+
+}  // namespace
+
+std::span<const std::string_view> design_kinds() {
+  return kKinds;
+}
+
+std::string design_template(std::string_view kind) {
+  if (kind == kKinds[0]) return std::string(kRtpHead).append(kCommonTail);
+  if (kind == kKinds[1]) return std::string(kHexagonalHead).append(kCommonTail);
+  if (kind == kKinds[2]) return std::string(kTriangularHead).append(kCommonTail);
+  throw InputError(fmt::format("KIND must be one of {}, got {}", alternatives(kKinds), in_quotes(kind)));
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,91 @@
+#include "studies/design/message_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace retrace::studies {
+namespace {
+
+/// Length in bytes of the printable UTF-8 character that `text` starts with; 0 if it starts with anything else.
+std::size_t printable_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return lead >= 0x20 && lead != 0x7f ? 1 : 0;
+  const std::size_t length = lead >= 0xf5 ? 0 : lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : lead >= 0xc2 ? 2 : 0;
+  if (length == 0 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  const bool overlong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
+  const bool outside = (lead == 0xed && byte(1) >= 0xa0) || (lead == 0xf4 && byte(1) >= 0x90);
+  const bool c1_control = lead == 0xc2 && byte(1) < 0xa0;
+  const bool line_separator = lead == 0xe2 && byte(1) == 0x80 && (byte(2) == 0xa8 || byte(2) == 0xa9);
+  return overlong || outside || c1_control || line_separator ? 0 : length;
+}
+
+std::string escaped(char c) {
+  if (c == '\n') return "\\n";
+  if (c == '\r') return "\\r";
+  if (c == '\t') return "\\t";
+  return fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::size_t max_bytes) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t length = printable_character(text);
+    const std::string piece = length > 0 ? std::string(text.substr(0, length)) : escaped(text.front());
+    if (result.size() + piece.size() > max_bytes) return result + "...";
+    result += piece;
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return result;
+}
+
+std::string in_quotes(std::string_view text) {
+  return '"' + printable(text) + '"';
+}
+
+std::string alternatives(std::span<const std::string_view> names) {
+  std::string result;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) result += i + 1 == names.size() ? " or " : ", ";
+    result += in_quotes(names[i]);
+  }
+  return result;
+}
+
+std::string_view closest(std::string_view given, std::span<const std::string_view> names) {
+  constexpr std::size_t longest = 64;  // no key is longer; keeps the comparison short whatever the input
+  if (given.empty() || given.size() > longest) return {};
+  std::size_t best = std::max<std::size_t>(1, given.size() / 3) + 1;
+  std::string_view found;
+  for (const std::string_view name : names) {
+    const std::size_t distance = edit_distance(given, name);
+    if (distance >= best) continue;
+    best = distance;
+    found = name;
+  }
+  return found;
+}
+
+}  // namespace retrace::studies

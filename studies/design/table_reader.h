@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/design/design_document.h"
+
+namespace retrace::studies {
+
+/// What a number may be. Infinite bounds are not named in messages.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  bool low_included = true;
+  double high = std::numeric_limits<double>::infinity();
+  bool high_included = true;
+
+  bool contains(double value) const;
+  /// "> 0", ">= 60 and <= 120"
+  std::string text() const;
+};
+
+inline constexpr Range kPositive{.low = 0.0, .low_included = false};
+inline constexpr Range kNotNegative{.low = 0.0};
+
+/// A word that a key may have, and what it stands for.
+template <class Value>
+struct Choice {
+  std::string_view name;
+  Value value;
+};
+
+/// A value of the tree as a message shows it: -3, "text", a table, a list.
+std::string shown(const toml::node& node);
+
+/// Reads one table of a design, checks every value it hands out and remembers which keys were asked for.
+/// Every function throws InputError with file, line and key if what was given is not what is allowed.
+class TableReader {
+ public:
+  /// The table `name`, which reads as empty if it is absent; an empty `name` is the top level.
+  TableReader(const DesignDocument& document, std::string_view name);
+
+  bool has(std::string_view key) const { return find(key) != nullptr; }
+  InputLocation where(std::string_view key) const;
+  [[noreturn]] void fail(std::string_view key, std::string_view text) const;
+
+  std::optional<double> number(std::string_view key, const Range& range);
+  double required_number(std::string_view key, const Range& range);
+  /// A number or a list of one or more numbers.
+  std::optional<std::vector<double>> numbers(std::string_view key, const Range& range);
+  std::optional<std::string> text(std::string_view key);
+
+  template <class Value>
+  std::optional<Value> choice(std::string_view key, std::span<const Choice<Value>> choices) {
+    const std::vector<std::string_view> names = names_of(choices);
+    const std::optional<std::size_t> index = choice_index(key, names);
+    return index ? std::optional<Value>(choices[*index].value) : std::nullopt;
+  }
+  template <class Value>
+  Value required_choice(std::string_view key, std::span<const Choice<Value>> choices) {
+    if (!has(key)) fail_missing(key, "must be " + choice_text(names_of(choices)));
+    return *choice(key, choices);
+  }
+
+  /// Throws for each of `keys` that was given: it has no meaning here. `why` says where it has.
+  void refuse(std::initializer_list<std::string_view> keys, std::string_view why);
+  /// The same for keys whose 0 says "none": 0 is let pass.
+  void refuse_unless_zero(std::initializer_list<std::string_view> keys, std::string_view why);
+  /// Counts `keys`, which check_keys() has checked, as asked for.
+  void skip(std::initializer_list<std::string_view> keys) { taken_.insert(keys.begin(), keys.end()); }
+  /// Throws for the first key, in file order, that no call above has asked for.
+  void finish() const;
+
+ private:
+  const toml::node* find(std::string_view key) const;
+  const toml::node* take(std::string_view key);
+  std::string full_name(std::string_view key) const;
+  double checked_number(std::string_view key, const toml::node& node, const Range& range) const;
+  std::optional<std::size_t> choice_index(std::string_view key, std::span<const std::string_view> names);
+  [[noreturn]] void fail_missing(std::string_view key, std::string_view allowed) const;
+  static std::string choice_text(std::span<const std::string_view> names);
+
+  template <class Value>
+  static std::vector<std::string_view> names_of(std::span<const Choice<Value>> choices) {
+    std::vector<std::string_view> names;
+    for (const Choice<Value>& choice : choices) names.push_back(choice.name);
+    return names;
+  }
+
+  const DesignDocument& document_;
+  std::string name_;
+  const toml::table* table_ = nullptr;  ///< null if the design has no such table
+  std::set<std::string, std::less<>> taken_;
+};
+
+}  // namespace retrace::studies
