@@ -1,0 +1,187 @@
+#include "raytrace/monte_carlo.h"
+
+#include <fmt/format.h>
+#include <pmmintrin.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "raytrace/back_surface.h"
+#include "raytrace/entrance_sampler.h"
+#include "raytrace/sobol.h"
+
+namespace retrace::raytrace {
+namespace {
+
+constexpr std::uint32_t kReplicates = MonteCarlo::kReplicates;
+// Rays of a replicate that one task traces: small enough to share out, large enough to hide the cost of a task.
+constexpr std::uint32_t kRaysPerTask = 2048;
+// Rays of a replicate before its error is looked at for the first time.
+constexpr std::uint32_t kFirstRound = 1024;
+// Power that may be missing before the run counts as unsound.
+constexpr double kLostLimit = 1e-9;
+
+// Philox streams: one for the scrambles of the entry points, one for choices on the way.
+constexpr std::uint32_t kScrambleStream = 1;
+constexpr std::uint32_t kChoiceStream = 2;
+
+/// Embree wants denormals flushed; done here for the whole task so that every task computes alike.
+class FlushDenormals {
+ public:
+  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); }
+  ~FlushDenormals() { _mm_setcsr(saved_); }
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned saved_;
+};
+
+/// Rays first..last-1 of one replicate.
+struct Task {
+  std::uint32_t replicate = 0;
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+
+Tally trace_task(const PathSetup& setup, const EntranceSampler& entrance, std::uint32_t seed, const Task& task) {
+  const FlushDenormals flush;
+  Tally tally(setup.cone_chord2.size());
+  const auto scramble = philox({seed, kScrambleStream}, task.replicate, 0);
+  const SobolSquare square(scramble[0], scramble[1]);
+  PathWalker walker(setup, tally);
+  for (std::uint32_t ray = task.first; ray < task.last; ++ray)
+    walker.trace(entrance(square(ray)), {seed, kChoiceStream}, task.replicate, ray);
+  return tally;
+}
+
+/// What the replicates have collected so far, and what that says.
+class Collection {
+ public:
+  explicit Collection(std::size_t cones) : replicates_(kReplicates, Tally(cones)) {}
+
+  void add(std::uint32_t replicate, const Tally& tally) { replicates_[replicate].add(tally); }
+  void set_rays_per_replicate(std::uint32_t rays) { rays_ = rays; }
+
+  MonteCarloResult result(const std::vector<double>& cones_deg) const {
+    MonteCarloResult result;
+    result.rays = std::uint64_t{rays_} * kReplicates;
+    for (const Tally& tally : replicates_) {
+      result.segments += tally.segments;
+      result.misses += tally.misses;
+    }
+    for (std::size_t cone = 0; cone < cones_deg.size() && rays_ > 0; ++cone)
+      result.cones.push_back(cone_result(cones_deg[cone], cone));
+    return result;
+  }
+
+ private:
+  ConeResult cone_result(double half_angle_deg, std::size_t cone) const {
+    ConeResult result;
+    result.half_angle_deg = half_angle_deg;
+    std::vector<double> rre;
+    for (const Tally& tally : replicates_) {
+      const Ledger ledger = tally.ledger(cone);
+      rre.push_back(ledger[Account::retroreflected] / rays_);
+      for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays_ / kReplicates;
+    }
+    result.rre = result.ledger[Account::retroreflected];
+    double squares = 0.0;
+    for (const double r : rre) squares += (r - result.rre) * (r - result.rre);
+    result.std_error = std::sqrt(squares / (kReplicates - 1.0) / kReplicates);
+    // Replicates that agree to rounding say the same.
+    if (result.std_error < 1e-15) result.std_error = 0.0;
+    return result;
+  }
+
+  std::vector<Tally> replicates_;
+  std::uint32_t rays_ = 0;
+};
+
+double largest_error(const MonteCarloResult& result) {
+  double largest = 0.0;
+  for (const ConeResult& cone : result.cones) largest = std::max(largest, cone.std_error);
+  return largest;
+}
+
+void check_lost(const MonteCarloResult& result) {
+  for (const ConeResult& cone : result.cones)
+    if (cone.ledger[Account::lost] > kLostLimit)
+      throw BudgetError(fmt::format("{} of {} rays missed every face from inside the part ({} of the power): this is a defect "
+                                    "of retrace, please report the design",
+                                    result.misses, result.rays, cone.ledger[Account::lost]));
+}
+
+}  // namespace
+
+struct MonteCarlo::Scene {
+  explicit Scene(const geometry::Part& p) : part(p), entrance(p), surface(p, entrance.centre_mm()) {}
+
+  const geometry::Part& part;
+  EntranceSampler entrance;
+  BackSurface surface;
+};
+
+MonteCarlo::MonteCarlo(const geometry::Part& part) : scene_(std::make_unique<Scene>(part)) {}
+MonteCarlo::~MonteCarlo() = default;
+
+MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& illumination,
+                                   const std::vector<double>& cones_deg, const Sampling& sampling,
+                                   const PathPolicy& policy, const Cancellation* cancel) const {
+  const PathSetup setup(scene_->part, scene_->surface, scene_->entrance.centre_mm(), optics, illumination, cones_deg,
+                        policy);
+  const auto cancelled = [&] { return cancel != nullptr && cancel->requested(); };
+  const auto per_replicate = [](std::uint64_t rays) {
+    const std::uint64_t each = (rays + kReplicates - 1) / kReplicates;
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(each, UINT32_MAX));
+  };
+  const std::uint32_t goal = per_replicate(sampling.rays.value_or(sampling.max_rays));
+  Collection collection(cones_deg.size());
+  MonteCarloResult result;
+
+  for (std::uint32_t done = 0; done < goal;) {
+    // Doubling keeps every round's points the first 2^k of their sequence, where they are best stratified.
+    const std::uint32_t until = done == 0 ? std::min(goal, kFirstRound) : (done > goal / 2 ? goal : 2 * done);
+    std::vector<Task> tasks;
+    for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate)
+      for (std::uint32_t first = done; first < until;) {
+        const std::uint32_t last = until - first > kRaysPerTask ? first + kRaysPerTask : until;
+        tasks.push_back({replicate, first, last});
+        first = last;
+      }
+    std::vector<std::optional<Tally>> tallies(tasks.size());
+    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t k) {
+      if (!cancelled()) tallies[k] = trace_task(setup, scene_->entrance, sampling.seed, tasks[k]);
+    });
+    if (std::any_of(tallies.begin(), tallies.end(), [](const auto& t) { return !t.has_value(); })) {
+      result.complete = false;
+      return result;  // what the rounds before gave
+    }
+    for (std::size_t k = 0; k < tasks.size(); ++k) collection.add(tasks[k].replicate, *tallies[k]);
+    done = until;
+    collection.set_rays_per_replicate(done);
+    result = collection.result(cones_deg);
+    check_lost(result);
+    if (!sampling.rays && largest_error(result) <= sampling.target_error) return result;
+  }
+  result.reached_target = sampling.rays.has_value();
+  return result;
+}
+
+void run_with_threads(unsigned threads, const std::function<void()>& work) {
+  if (threads == 0) {
+    work();
+    return;
+  }
+  // TBB's own limit is the number of cores; asking for more is allowed.
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute(work);
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/angle.h"
+
+namespace retrace::raytrace {
+
+/// What the part is made of and how its faces treat light, at one wavelength.
+struct Optics {
+  double index = 1.0;              ///< of the body, relative to the air around it; >= 1
+  double absorption_per_mm = 0.0;  ///< Napierian, for power
+  bool mirror_facets = false;      ///< retro facets reflect everything
+  bool lossless_entrance = false;  ///< entrance refracts with T = 1; light beyond the critical angle ends there
+};
+
+/// Where the light comes from: the source lies in direction (sin t cos p, sin t sin p, cos t) of the part frame, with
+/// t the incidence angle (negative: the other side) and p the azimuth.
+struct Illumination {
+  Angle incidence;
+  Angle azimuth;
+};
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,408 @@
+#include "raytrace/path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::FacetRole;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Pieces of an infinite surface that one straight line may cross before it counts as trapped.
+constexpr int kMaxWraps = 1000;
+
+/// The direction after refraction at a plane whose unit normal `against` faces the ray.
+Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted) {
+  return (ratio * direction + (ratio * cos_incidence - cos_refracted) * against).normalized();
+}
+
+Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
+  return (direction - 2.0 * normal.dot(direction) * normal).normalized();
+}
+
+materials::FresnelCoefficients perfect_mirror() {
+  materials::FresnelCoefficients f;
+  f.r_s = -1.0;
+  f.r_p = 1.0;
+  f.total_reflection = true;
+  return f;
+}
+
+Account account_of_exit(FacetRole role) {
+  const bool is_side = role == FacetRole::side || role == FacetRole::border_wall;
+  return is_side ? Account::side_exit : Account::transmitted;
+}
+
+}  // namespace
+
+void Tally::add(const Tally& more) {
+  for (std::size_t k = 0; k < returned.size(); ++k) returned[k] += more.returned[k];
+  for (std::size_t k = 0; k < front.size(); ++k) front[k] += more.front[k];
+  for (std::size_t k = 0; k < kAccountCount; ++k) other.power[k] += more.other.power[k];
+  segments += more.segments;
+  misses += more.misses;
+}
+
+Ledger Tally::ledger(std::size_t cone) const {
+  Ledger ledger = other;
+  for (std::size_t k = 0; k < returned.size(); ++k) {
+    ledger[k <= cone ? Account::retroreflected : Account::returned_elsewhere] += returned[k];
+    ledger[k <= cone ? Account::retroreflected : Account::front_specular] += front[k];
+  }
+  return ledger;
+}
+
+PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const Vec2& centre_mm, const Optics& how,
+                     const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& paths)
+    : surface(back),
+      optics(how),
+      policy(paths),
+      thickness_mm(part.thickness_mm),
+      depth_mm(part.element_depth_mm),
+      clearance_mm(std::min(0.01 * part.element_depth_mm, 0.5 * part.thickness_mm)) {
+  const double t = illumination.incidence.rad();
+  const double p = illumination.azimuth.rad();
+  to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+  for (const double half_angle_deg : cones_deg) {
+    const double chord = 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad());
+    cone_chord2.push_back(chord * chord * (1.0 + 1e-9));  // the cone's edge belongs to it, rounding or not
+  }
+  for (std::size_t k = 0; k < part.outline.size(); ++k) {
+    const Vec2 a = part.outline[k] - centre_mm;
+    const Vec2 along = (part.outline[(k + 1) % part.outline.size()] - part.outline[k]).normalized();
+    const Vec3 normal(along.y(), -along.x(), 0.0);
+    sides.push_back({normal, normal.head<2>().dot(a)});
+  }
+  if (part.period_mm) {
+    period_mm = *part.period_mm;
+    // The cells of the outermost periods do not fill them to the edge.
+    tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
+  }
+}
+
+void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample) {
+  key_ = key;
+  replicate_ = replicate;
+  sample_ = sample;
+  choices_ = 0;
+  enter(entry_mm);
+  while (!pending_.empty()) {
+    State state = pending_.back();
+    pending_.pop_back();
+    while (advance(state)) {
+    }
+  }
+}
+
+void PathWalker::enter(const Vec2& entry_mm) {
+  State state;
+  state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
+  state.direction = -setup_.to_source;
+  state.field.s_axis = state.direction.cross(state.direction.cross(Vec3::UnitX())).normalized();
+  if (!state.field.s_axis.allFinite()) state.field.s_axis = Vec3::UnitY();
+  state.field.turn_to(state.direction, Vec3::UnitZ());
+
+  const double ratio = 1.0 / setup_.optics.index;
+  const double cos_incidence = setup_.to_source.z();
+  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
+  if (!setup_.optics.lossless_entrance) {
+    book_by_cone(tally_.front, mirrored(state.direction, Vec3::UnitZ()), state.field.reflected(f).power());
+    state.field = state.field.transmitted(f);
+  }
+  state.direction = refracted(state.direction, Vec3::UnitZ(), ratio, cos_incidence, f.cos_refracted);
+  pending_.push_back(state);
+}
+
+/// Takes a path to the next interface and past it. False when the path has ended.
+bool PathWalker::advance(State& state) {
+  const double power = state.field.power();
+  if (power < setup_.policy.cutoff || state.events++ >= setup_.policy.max_events)
+    return finish(state, Account::truncated);
+  ++tally_.segments;
+  const Step step = state.inside ? (setup_.infinite() ? step_inside_periodic(state) : step_inside(state))
+                                 : (setup_.infinite() ? step_outside_periodic(state) : step_outside(state));
+  if (state.inside && setup_.optics.absorption_per_mm > 0.0 && step.end != End::miss) {
+    const double kept = std::exp(-setup_.optics.absorption_per_mm * step.length_mm);
+    tally_.other[Account::absorbed] += power * (1.0 - kept);
+    state.field.scale(std::sqrt(kept));
+  }
+  switch (step.end) {
+    case End::facet: return meet_facet(state, step.hit);
+    case End::entrance: return meet_entrance(state);
+    case End::side: return meet_side(state, setup_.sides[step.side].normal);
+    case End::escape: return escape(state);
+    case End::trapped: return finish(state, Account::truncated);
+    case End::miss: break;
+  }
+  ++tally_.misses;
+  return finish(state, Account::lost);
+}
+
+std::optional<SurfaceHit> PathWalker::search(const State& state, double t_max) const {
+  return setup_.surface.first_hit(
+      {state.position, state.direction, state.source, state.inside, state.near_edge, t_max});
+}
+
+std::optional<SurfaceHit> PathWalker::search_exactly(const State& state, double t_max) const {
+  return setup_.surface.exact_first_hit({state.position, state.direction, state.source, state.inside, true, t_max});
+}
+
+/// Inside a finite part: the nearest of entrance, sides and back surface.
+PathWalker::Step PathWalker::step_inside(State& state) const {
+  Step step;
+  double limit = kInfinity;
+  if (state.direction.z() > 0.0) {
+    limit = (setup_.thickness_mm - state.position.z()) / state.direction.z();
+    step.end = End::entrance;
+  }
+  for (std::size_t k = 0; k < setup_.sides.size(); ++k) {
+    const double towards = setup_.sides[k].normal.dot(state.direction);
+    if (towards <= 0.0) continue;
+    const double t = (setup_.sides[k].offset_mm - setup_.sides[k].normal.dot(state.position)) / towards;
+    if (t >= limit) continue;
+    limit = std::max(t, 0.0);
+    step.end = End::side;
+    step.side = k;
+  }
+  // Above the clearance only falling rays can meet the back surface, and not before they are down there.
+  double skipped = 0.0;
+  if (state.position.z() > setup_.clearance_mm) {
+    skipped = state.direction.z() < 0.0 ? (state.position.z() - setup_.clearance_mm) / -state.direction.z() : kInfinity;
+    if (skipped < limit) {
+      state.position += skipped * state.direction;
+      state.source = {};
+      state.near_edge = false;
+    }
+  }
+  if (skipped < limit) {
+    auto hit = search(state, limit - skipped);
+    // A side reached below z = 0 may be where a ray slipped between two pieces of the surface.
+    const double end_z = state.position.z() + (limit - skipped) * state.direction.z();
+    if (!hit && (step.end == End::miss || (step.end == End::side && end_z < 0.0)))
+      hit = search_exactly(state, limit - skipped);
+    if (hit) {
+      step.end = End::facet;
+      step.hit = *hit;
+      limit = skipped + hit->t;
+    } else if (step.end == End::side && end_z < -setup_.depth_mm - setup_.clearance_mm) {
+      step.end = End::miss;
+    }
+  } else {
+    skipped = 0.0;
+  }
+  if (step.end != End::miss) state.position += (limit - skipped) * state.direction;
+  step.length_mm = limit;
+  return step;
+}
+
+/// Inside an infinite part: the surface near the central period stands for all of it.
+PathWalker::Step PathWalker::step_inside_periodic(State& state) const {
+  Step step;
+  const double dz = state.direction.z();
+  const auto move = [&](double t) {
+    state.position += t * state.direction;
+    step.length_mm += t;
+  };
+  for (int wraps = 0; wraps < kMaxWraps; ++wraps) {
+    if (state.position.z() >= setup_.clearance_mm * (1.0 - 1e-9)) {
+      if (dz > 0.0) {
+        move((setup_.thickness_mm - state.position.z()) / dz);
+        wrap(state);
+        step.end = End::entrance;
+        return step;
+      }
+      if (dz == 0.0) break;  // along the plate for ever
+      if (state.position.z() > setup_.clearance_mm) {
+        move((state.position.z() - setup_.clearance_mm) / -dz);
+        wrap(state);
+      }
+    }
+    const double up = dz > 0.0 ? (setup_.clearance_mm - state.position.z()) / dz : kInfinity;
+    const double limit = std::min(up, distance_to_tile_border(state));
+    auto hit = search(state, limit);
+    if (!hit && state.position.z() + limit * dz < -setup_.depth_mm) hit = search_exactly(state, kInfinity);
+    if (hit) {
+      move(hit->t);
+      step.end = End::facet;
+      step.hit = *hit;
+      return step;
+    }
+    if (state.position.z() + limit * dz < -setup_.depth_mm) return step;
+    move(limit);
+    if (up > limit) wrap(state);
+  }
+  step.end = End::trapped;
+  return step;
+}
+
+/// In the air below a finite part: a facet, or away.
+PathWalker::Step PathWalker::step_outside(State& state) const {
+  Step step;
+  auto hit = search(state, kInfinity);
+  if (!hit && state.direction.z() > 0.0 &&
+      is_over_part(state.position - state.position.z() / state.direction.z() * state.direction)) {
+    // It would rise through the plate: no such ray can have missed the surface.
+    hit = search_exactly(state, kInfinity);
+    if (!hit) return step;
+  }
+  step.end = hit ? End::facet : End::escape;
+  if (!hit) return step;
+  step.hit = *hit;
+  state.position += hit->t * state.direction;
+  return step;
+}
+
+PathWalker::Step PathWalker::step_outside_periodic(State& state) const {
+  Step step;
+  const double dz = state.direction.z();
+  for (int wraps = 0; wraps < kMaxWraps; ++wraps) {
+    const double down =
+        dz < 0.0 ? std::max(0.0, (state.position.z() + setup_.depth_mm + setup_.clearance_mm) / -dz) : kInfinity;
+    const double up = dz > 0.0 ? std::max(0.0, (setup_.clearance_mm - state.position.z()) / dz) : kInfinity;
+    const double border = distance_to_tile_border(state);
+    const double limit = std::min({down, up, border});
+    auto hit = search(state, limit);
+    if (!hit && limit == up) hit = search_exactly(state, kInfinity);
+    if (hit) {
+      state.position += hit->t * state.direction;
+      step.end = End::facet;
+      step.hit = *hit;
+      return step;
+    }
+    if (limit == up) return step;
+    if (limit == down) {
+      step.end = End::escape;
+      return step;
+    }
+    state.position += limit * state.direction;
+    wrap(state);
+  }
+  step.end = End::trapped;
+  return step;
+}
+
+double PathWalker::distance_to_tile_border(const State& state) const {
+  double least = kInfinity;
+  for (const Eigen::Index axis : {0, 1}) {
+    const double d = state.direction[axis];
+    if (d != 0.0)
+      least = std::min(least, ((d > 0.0 ? 1.0 : -1.0) * setup_.tile_half_mm[axis] - state.position[axis]) / d);
+  }
+  return std::max(least, 0.0);
+}
+
+/// Brings a position back into the central period; nothing near it is the facet it came from any more.
+void PathWalker::wrap(State& state) const {
+  for (const Eigen::Index axis : {0, 1})
+    state.position[axis] -= setup_.period_mm[axis] * std::floor(state.position[axis] / setup_.period_mm[axis] + 0.5);
+  state.source = {};
+  state.near_edge = false;
+}
+
+bool PathWalker::is_over_part(const Vec3& position) const {
+  return std::all_of(setup_.sides.begin(), setup_.sides.end(), [&](const PathSetup::Side& side) {
+    return side.normal.dot(position) < side.offset_mm - setup_.clearance_mm;
+  });
+}
+
+bool PathWalker::meet_entrance(State& state) {
+  state.position.z() = setup_.thickness_mm;
+  const Vec3 down = -Vec3::UnitZ();
+  const double cos_incidence = state.direction.z();
+  const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, cos_incidence);
+  const Vec3 out = refracted(state.direction, down, setup_.optics.index, cos_incidence, f.cos_refracted);
+  if (setup_.optics.lossless_entrance) {
+    if (f.total_reflection)
+      tally_.returned.back() += state.field.power();
+    else
+      book_by_cone(tally_.returned, out, state.field.power());
+    return false;
+  }
+  state.field.turn_to(state.direction, down);
+  Field reflected = state.field.reflected(f);
+  Field transmitted = state.field.transmitted(f);
+  const Branch branch = choose(reflected, transmitted);
+  if (branch != Branch::reflected) book_by_cone(tally_.returned, out, transmitted.power());
+  state.field = reflected;
+  state.direction = mirrored(state.direction, down);
+  state.source = {};
+  state.near_edge = false;
+  return branch != Branch::transmitted;
+}
+
+bool PathWalker::meet_side(State& state, const Vec3& normal) {
+  const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, normal.dot(state.direction));
+  state.field.turn_to(state.direction, normal);
+  Field reflected = state.field.reflected(f);
+  Field transmitted = state.field.transmitted(f);
+  const Branch branch = choose(reflected, transmitted);
+  // The part is the prism over a convex outline: what leaves through a side does not come back.
+  if (branch != Branch::reflected) tally_.other[Account::side_exit] += transmitted.power();
+  state.field = reflected;
+  state.direction = mirrored(state.direction, normal);
+  state.source = {};
+  // Where a side meets the back surface, single precision may not tell on which side of the edge the ray starts.
+  state.near_edge = state.position.z() < setup_.clearance_mm;
+  return branch != Branch::transmitted;
+}
+
+bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
+  const ExactSurface::Facet& facet = setup_.surface.facet(hit.facet);
+  const bool is_mirror = setup_.optics.mirror_facets && facet.role == FacetRole::retro_facet;
+  const Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
+  const double ratio = state.inside ? setup_.optics.index : 1.0 / setup_.optics.index;
+  const double cos_incidence = -against.dot(state.direction);
+  const materials::FresnelCoefficients f = is_mirror ? perfect_mirror() : materials::fresnel(ratio, cos_incidence);
+
+  state.source = hit.facet;
+  state.near_edge = hit.near_edge;
+  state.field.turn_to(state.direction, against);
+  Field reflected = state.field.reflected(f);
+  Field transmitted = state.field.transmitted(f);
+  const Branch branch = choose(reflected, transmitted);
+  if (branch != Branch::reflected) {
+    State through = state;
+    through.field = transmitted;
+    through.direction = refracted(state.direction, against, ratio, cos_incidence, f.cos_refracted);
+    through.inside = !state.inside;
+    if (state.inside) through.left_through = facet.role;
+    if (branch == Branch::transmitted) {
+      state = through;
+      return true;
+    }
+    pending_.push_back(through);
+  }
+  state.field = reflected;
+  state.direction = mirrored(state.direction, against);
+  return true;
+}
+
+/// Both branches while both matter, else one at random that takes the power of both: nothing is lost or made.
+PathWalker::Branch PathWalker::choose(Field& reflected, Field& transmitted) {
+  const double r = reflected.power();
+  const double t = transmitted.power();
+  if (t <= 0.0) return Branch::reflected;
+  if (r <= 0.0) return Branch::transmitted;
+  if (std::min(r, t) >= setup_.policy.split_power) return Branch::both;
+  const double u = unit_interval(philox(key_, replicate_, sample_, choices_++)[0]);
+  const bool take_reflected = u * (r + t) < r;
+  (take_reflected ? reflected : transmitted).scale(std::sqrt((r + t) / (take_reflected ? r : t)));
+  return take_reflected ? Branch::reflected : Branch::transmitted;
+}
+
+void PathWalker::book_by_cone(std::vector<double>& by_cone, const Vec3& direction, double power) const {
+  const double chord2 = (direction - setup_.to_source).squaredNorm();
+  std::size_t k = 0;
+  while (k < setup_.cone_chord2.size() && chord2 > setup_.cone_chord2[k]) ++k;
+  by_cone[k] += power;
+}
+
+bool PathWalker::finish(const State& state, Account account) {
+  tally_.other[account] += state.field.power();
+  return false;
+}
+
+bool PathWalker::escape(const State& state) { return finish(state, account_of_exit(state.left_through)); }
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "geometry/vec.h"
+
+namespace retrace::raytrace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+/// A facet of the back surface: which placement of which patch, and which facet of that.
+struct FacetRef {
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t placement = kNone;
+  std::uint32_t facet = kNone;
+
+  friend bool operator==(const FacetRef&, const FacetRef&) = default;
+};
+
+/// A ray towards the back surface. It never hits the facet it starts from: that one is excluded by name, not by distance.
+struct SurfaceRay {
+  Vec3 origin = Vec3::Zero();
+  Vec3 direction = Vec3::UnitZ();
+  FacetRef source;
+  bool inside = true;              ///< in the part's material
+  bool starts_near_edge = false;   ///< the origin is too near an edge of its facet for single precision
+  double t_max = std::numeric_limits<double>::infinity();
+};
+
+struct SurfaceHit {
+  FacetRef facet;
+  double t = std::numeric_limits<double>::infinity();
+  bool near_edge = false;
+};
+
+}  // namespace retrace::raytrace
