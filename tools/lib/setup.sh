@@ -1,0 +1,120 @@
+# shellcheck shell=bash
+# What tools/run and tools/test share: finding packages, configuring, building. To be sourced; the caller has set `root`
+# to the repository's folder. Everything said here goes to standard error: standard output belongs to the program.
+
+: "${root:?set by the script that sources this}"
+
+say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
+
+# As the program itself: 1 is an answer of no, 3 that something could not be done.
+give_up() {
+  say "$*"
+  exit 3
+}
+
+# listed_packages SECTION... - the lines of those sections of packages.txt, without comments.
+listed_packages() {
+  local section='' line
+  while IFS= read -r line; do
+    line=${line%%#*}
+    line=${line%"${line##*[![:space:]]}"}
+    case $line in
+      '') ;;
+      '['*) section=${line//[\[\]]/} ;;
+      *) [[ " $* " != *" $section "* ]] || printf '%s\n' "$line" ;;
+    esac
+  done <"$root/tools/packages.txt"
+}
+
+# missing_packages SECTION... - one a line. A single dpkg-query call, so that asking costs nothing.
+missing_packages() {
+  local package command wanted=()
+  while IFS='| ' read -r package command; do
+    [[ -n $command ]] && command -v "$command" >/dev/null || wanted+=("$package")
+  done < <(listed_packages "$@")
+  ((${#wanted[@]})) || return 0
+  # An unknown package is an error to dpkg-query and missing to us.
+  local installed
+  installed=$(dpkg-query --show --showformat='${Package} ${db:Status-Status}\n' "${wanted[@]}" 2>/dev/null || true)
+  for package in "${wanted[@]}"; do
+    grep --quiet --line-regexp --fixed-strings "$package installed" <<<"$installed" || printf '%s\n' "$package"
+  done
+}
+
+# as_root COMMAND... - through sudo unless we are root already.
+as_root() {
+  if ((EUID == 0)); then "$@"; else sudo "$@"; fi
+}
+
+apt_install() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends \
+    -o DPkg::Lock::Timeout=300 "$@" >&2
+}
+
+apt_update() {
+  say "refreshing the package lists (apt-get update)"
+  as_root apt-get update -o DPkg::Lock::Timeout=300 >&2
+}
+
+# need_packages MAY_INSTALL SECTION... - sees to it that they are there; MAY_INSTALL is yes or no.
+need_packages() {
+  local may_install=$1
+  shift
+  if ! command -v dpkg-query >/dev/null; then
+    say "no dpkg here: this is not Debian, so the libraries of docs/dependencies.md are taken to be installed"
+    return 0
+  fi
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  ((${#missing[@]})) || return 0
+
+  local command="apt-get install --no-install-recommends ${missing[*]}"
+  [[ $may_install == yes ]] || give_up "missing packages: ${missing[*]}
+  install them as root with:  $command"
+  command -v apt-get >/dev/null || give_up "missing packages, and no apt-get to install them: ${missing[*]}"
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null || give_up "missing packages, and neither root nor sudo to install them; ask for:  $command"
+    # Without a terminal sudo could only wait for a password that never comes.
+    [[ -t 0 ]] || sudo --non-interactive true 2>/dev/null ||
+      give_up "missing packages, and sudo wants a password; install them with:  sudo $command"
+  fi
+
+  say "will install with apt-get: ${missing[*]}"
+  if ! compgen -G '/var/lib/apt/lists/*_Packages*' >/dev/null; then
+    apt_update || give_up "apt-get update failed"
+    apt_install "${missing[@]}" || give_up "apt-get could not install: ${missing[*]}"
+  elif ! apt_install "${missing[@]}"; then
+    # Old lists name versions that the mirror no longer holds.
+    apt_update || give_up "apt-get update failed"
+    apt_install "${missing[@]}" || give_up "apt-get could not install: ${missing[*]}"
+  fi
+}
+
+# configure FOLDER CMAKE_ARGUMENTS... - unless that folder was configured the same way before; Ninja itself notices
+# changed CMakeLists. FOLDER is relative to the repository.
+configure() {
+  local folder=$root/$1
+  shift
+  local arguments=("$@")
+  ! command -v ccache >/dev/null ||
+    arguments+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  local presets wanted
+  presets=$(cksum <"$root/CMakePresets.json")
+  wanted=$(printf '%s\n' "$root" "$presets" "${arguments[@]}")
+  [[ ! -f $folder/build.ninja || $(cat "$folder/.configured" 2>/dev/null) != "$wanted" ]] || return 0
+
+  say "configuring $folder"
+  rm -f "$folder/.configured"
+  # A cache from other arguments, or of a checkout that was moved, is of no use.
+  [[ ! -f $folder/CMakeCache.txt ]] || arguments+=(--fresh)
+  (cd "$root" && cmake "${arguments[@]}") >&2 || give_up "cmake could not configure $folder"
+  printf '%s\n' "$wanted" >"$folder/.configured"
+}
+
+# build FOLDER [TARGET...] - with all cores. FOLDER is relative to the repository. Silent when there is nothing to do.
+build() {
+  local folder=$root/$1
+  shift
+  [[ $(ninja -C "$folder" -n "$@" 2>/dev/null) != *'no work to do'* ]] || return 0
+  ninja -C "$folder" -j "$(nproc)" "$@" >&2 || give_up "the build in $folder failed"
+}
