@@ -1,0 +1,215 @@
+#include "tests/layering/layer_rules.h"
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <optional>
+#include <regex>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+namespace retrace::layering {
+namespace fs = std::filesystem;
+namespace {
+
+using Names = std::set<std::string>;
+
+/// The layers: what each folder may include besides itself.
+const std::map<std::string, Names>& folders() {
+  static const std::map<std::string, Names> order = {
+      {"core", {}},
+      {"geometry", {"core"}},
+      {"materials", {"core"}},
+      {"surface_models", {"core", "geometry", "materials"}},
+      {"raytrace", {"core", "geometry", "materials", "surface_models"}},
+      {"fabrication", {"core", "geometry"}},
+      {"studies", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication"}},
+      {"report", {"core", "geometry", "studies"}},
+      {"app", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication", "studies", "report"}}};
+  return order;
+}
+
+/// What a room of studies/ may see of the others. Rooms that come later are listed here first.
+const std::map<std::string, Names>& study_rooms() {
+  static const std::map<std::string, Names> rooms = {{"design", {}}, {"rre", {"design"}}, {"inspect", {"design"}}};
+  return rooms;
+}
+
+/// Folders that may include anything, or hold no code of the program.
+bool is_outside_the_layers(const std::string& folder) {
+  static const Names outside = {"benchmarks", "build",   "cmake", "data", "docs",
+                                "examples",   "install", "tests", "tools"};
+  return outside.contains(folder) || folder.starts_with(".");
+}
+
+/// Where a file lies: folder, and room if it is in one.
+struct Place {
+  std::string folder;
+  std::string room;
+
+  bool operator==(const Place&) const = default;
+};
+
+Place place_of(const std::string& path) {
+  const std::size_t first = path.find('/');
+  if (first == std::string::npos) return {};
+  const std::size_t second = path.find('/', first + 1);
+  return {path.substr(0, first), second == std::string::npos ? "" : path.substr(first + 1, second - first - 1)};
+}
+
+bool is_header(const std::string& path) {
+  return path.ends_with(".h");
+}
+bool in_io_room(const std::string& path) {
+  return path.find("/io/") != std::string::npos;
+}
+
+/// A library that is kept behind few files.
+struct Library {
+  std::string_view name;
+  std::string_view include_prefix;
+  std::string_view where;
+  std::function<bool(const std::string& path)> may_include;
+};
+
+const std::vector<Library>& libraries() {
+  static const std::vector<Library> all = {
+      {"CGAL", "CGAL/", "geometry/check/ or an io/ room",
+       [](const std::string& path) { return path.starts_with("geometry/check/") || in_io_room(path); }},
+      {"Embree", "embree", "a .cpp file of raytrace/",
+       [](const std::string& path) { return path.starts_with("raytrace/") && !is_header(path); }},
+      {"toml++", "toml++/", "studies/design/ or an io/ room",
+       [](const std::string& path) { return path.starts_with("studies/design/") || in_io_room(path); }},
+      {"CLI11", "CLI/", "app/", [](const std::string& path) { return path.starts_with("app/"); }},
+      {"cairo", "cairo", "a .cpp file of report/",
+       [](const std::string& path) { return path.starts_with("report/") && !is_header(path); }}};
+  return all;
+}
+
+const Library* library_of(const std::string& included) {
+  for (const Library& library : libraries())
+    if (included.starts_with(library.include_prefix)) return &library;
+  return nullptr;
+}
+
+struct Include {
+  int line = 0;
+  bool is_quoted = false;
+  std::string target;
+};
+
+std::vector<Include> includes_of(const fs::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error("cannot read " + file.string());
+  static const std::regex directive(R"re(^\s*#\s*include\s*(["<])([^">]+)[">])re");
+  std::vector<Include> includes;
+  std::string text;
+  for (int line = 1; std::getline(stream, text); ++line) {
+    std::smatch match;
+    if (std::regex_search(text, match, directive)) includes.push_back({line, match[1] == "\"", match[2]});
+  }
+  return includes;
+}
+
+class Checker {
+ public:
+  explicit Checker(const fs::path& root) {
+    if (!fs::is_directory(root / "core")) throw std::runtime_error("no source tree: " + (root / "core").string());
+    for (const fs::directory_entry& top : fs::directory_iterator(root)) {
+      const std::string folder = top.path().filename().string();
+      if (!top.is_directory() || is_outside_the_layers(folder)) continue;
+      for (const fs::directory_entry& entry : fs::recursive_directory_iterator(top.path())) {
+        const std::string extension = entry.path().extension().string();
+        if (entry.is_regular_file() && (extension == ".h" || extension == ".cpp"))
+          files_[fs::relative(entry.path(), root).generic_string()] = includes_of(entry.path());
+      }
+    }
+    if (files_.empty()) throw std::runtime_error("no source files below " + root.string());
+  }
+
+  std::vector<Violation> run() {
+    for (const auto& [path, includes] : files_) {
+      if (!folders().contains(place_of(path).folder)) {
+        report(path, 1, "folder " + place_of(path).folder + "/ has no place in the order of layers");
+        continue;
+      }
+      for (const Include& include : includes) check(path, include);
+    }
+    return std::move(violations_);
+  }
+
+ private:
+  void report(const std::string& path, int line, std::string text) {
+    violations_.push_back({path, line, std::move(text)});
+  }
+
+  void check(const std::string& path, const Include& include) {
+    if (const Library* const library = library_of(include.target)) {
+      if (!library->may_include(path))
+        report(path, include.line,
+               std::string(library->name) + " may be included only in " + std::string(library->where));
+      return;
+    }
+    const Place target = place_of(include.target);
+    if (!folders().contains(target.folder)) {
+      if (include.is_quoted)
+        report(path, include.line, "\"" + include.target + "\" is no path from the root of the source tree");
+      return;
+    }
+    check_order(path, include, target);
+    // Types of a library must not reach other rooms through a header either.
+    if (!(place_of(path) == target))
+      for (const std::string_view library : leaked_by(include.target))
+        report(path, include.line, include.target + " brings " + std::string(library) + " out of its room");
+  }
+
+  void check_order(const std::string& path, const Include& include, const Place& target) {
+    const Place from = place_of(path);
+    if (target.folder != from.folder && !folders().at(from.folder).contains(target.folder)) {
+      report(path, include.line, from.folder + "/ may not include " + include.target);
+      return;
+    }
+    if (from.folder != "studies" || target.folder != "studies" || from.room == target.room) return;
+    const auto room = study_rooms().find(from.room);
+    if (room == study_rooms().end()) {
+      report(path, include.line, "room studies/" + from.room + "/ has no place in the order of rooms");
+    } else if (!room->second.contains(target.room)) {
+      report(path, include.line, "studies/" + from.room + "/ may not include " + include.target);
+    }
+  }
+
+  /// The kept-back libraries that including `path` brings along, directly or through other headers.
+  std::set<std::string_view> leaked_by(const std::string& path) {
+    std::set<std::string_view> leaked;
+    std::set<std::string> seen;
+    std::vector<std::string> open = {path};
+    while (!open.empty()) {
+      const std::string next = open.back();
+      open.pop_back();
+      const auto file = files_.find(next);
+      if (file == files_.end() || !seen.insert(next).second) continue;
+      for (const Include& include : file->second) {
+        if (const Library* const library = library_of(include.target)) leaked.insert(library->name);
+        open.push_back(include.target);
+      }
+    }
+    return leaked;
+  }
+
+  std::map<std::string, std::vector<Include>> files_;
+  std::vector<Violation> violations_;
+};
+
+}  // namespace
+
+std::string to_string(const Violation& violation) {
+  return violation.file + ":" + std::to_string(violation.line) + ": " + violation.text;
+}
+
+std::vector<Violation> check_tree(const fs::path& root) {
+  return Checker(root).run();
+}
+
+}  // namespace retrace::layering

@@ -1,0 +1,119 @@
+// The order of folders and rooms holds in the source tree, and the check that says so does see violations.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/layering/layer_rules.h"
+
+namespace retrace::layering {
+namespace fs = std::filesystem;
+namespace {
+
+/// A source tree made for one test and removed after it. It starts with a core/ that is in order.
+class SyntheticTree : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* const info = testing::UnitTest::GetInstance()->current_test_info();
+    root_ = fs::temp_directory_path() / ("layering_" + std::string(info->name()) + "_" + std::to_string(::getpid()));
+    fs::remove_all(root_);
+    add("core/error.h", "#pragma once\n#include <string>\n");
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  void add(const std::string& path, const std::string& content) {
+    fs::create_directories((root_ / path).parent_path());
+    std::ofstream(root_ / path) << content;
+  }
+  std::vector<std::string> found() const {
+    std::vector<std::string> lines;
+    for (const Violation& violation : check_tree(root_)) lines.push_back(to_string(violation));
+    return lines;
+  }
+
+  fs::path root_;
+};
+
+using Lines = std::vector<std::string>;
+
+TEST(Layering, HoldsInTheSourceTree) {
+  for (const Violation& violation : check_tree(RETRACE_SOURCE_DIR)) ADD_FAILURE() << to_string(violation);
+}
+
+TEST(Layering, RefusesAMissingTree) {
+  EXPECT_THROW(check_tree("/no/such/tree"), std::runtime_error);
+}
+
+TEST_F(SyntheticTree, WithoutCoreIsRefused) {
+  fs::remove_all(root_ / "core");
+  EXPECT_THROW(check_tree(root_), std::runtime_error);
+  fs::create_directories(root_ / "core");
+  EXPECT_THROW(check_tree(root_), std::runtime_error) << "a tree without a single source file";
+}
+
+TEST_F(SyntheticTree, InOrderPasses) {
+  add("geometry/part.h", "#include \"core/error.h\"\n#include <Eigen/Core>\n");
+  add("geometry/check/closed.cpp", "#include <CGAL/Surface_mesh.h>\n#include \"geometry/check/closed.h\"\n");
+  add("materials/io/library.cpp", "#include <toml++/toml.h>\n");
+  add("raytrace/scene.cpp", "#include <embree3/rtcore.h>\n#include \"geometry/part.h\"\n");
+  add("studies/design/document.h", "#include <toml++/toml.h>\n");
+  add("studies/design/reader.cpp", "#include \"studies/design/document.h\"\n");
+  add("studies/rre/rre.cpp", "#include \"studies/design/design.h\"\n#include \"raytrace/scene.h\"\n");
+  add("report/plot.cpp", "#include <cairo.h>\n");
+  add("app/main.cpp", "#include <CLI/CLI.hpp>\n#include \"report/plot.h\"\n#include \"studies/rre/rre.h\"\n");
+  add("tests/anything.cpp", "#include <CGAL/Surface_mesh.h>\n#include \"app/main.h\"\n");
+  add("build/release/generated.cpp", "#include \"nowhere.h\"\n");
+  EXPECT_EQ(found(), Lines{});
+}
+
+TEST_F(SyntheticTree, UpwardIncludesAreNamedWithFileAndLine) {
+  add("core/number.cpp", "// text\n\n  #  include \"geometry/part.h\"\n");
+  add("materials/fresnel.cpp", "#include \"geometry/part.h\"\n");
+  add("report/plot.cpp", "#include \"raytrace/ledger.h\"\n");
+  EXPECT_EQ(found(), (Lines{"core/number.cpp:3: core/ may not include geometry/part.h",
+                            "materials/fresnel.cpp:1: materials/ may not include geometry/part.h",
+                            "report/plot.cpp:1: report/ may not include raytrace/ledger.h"}));
+}
+
+TEST_F(SyntheticTree, RoomsSeeOnlyWhatTheyMay) {
+  add("studies/design/reader.cpp", "#include \"studies/rre/rre.h\"\n");
+  add("studies/inspect/inspect.cpp", "#include \"studies/rre/rre.h\"\n");
+  add("studies/novel/novel.cpp", "#include \"studies/design/design.h\"\n");
+  EXPECT_EQ(found(), (Lines{"studies/design/reader.cpp:1: studies/design/ may not include studies/rre/rre.h",
+                            "studies/inspect/inspect.cpp:1: studies/inspect/ may not include studies/rre/rre.h",
+                            "studies/novel/novel.cpp:1: room studies/novel/ has no place in the order of rooms"}));
+}
+
+TEST_F(SyntheticTree, LibrariesStayInTheirRooms) {
+  add("geometry/part.cpp", "#include <CGAL/Kernel.h>\n");
+  add("raytrace/scene.h", "#include <embree3/rtcore.h>\n");
+  add("raytrace/scene.cpp", "#include <toml++/toml.h>\n");
+  add("studies/rre/rre.cpp", "#include <CLI/CLI.hpp>\n");
+  add("report/canvas.h", "#include <cairo.h>\n");
+  EXPECT_EQ(found(), (Lines{"geometry/part.cpp:1: CGAL may be included only in geometry/check/ or an io/ room",
+                            "raytrace/scene.cpp:1: toml++ may be included only in studies/design/ or an io/ room",
+                            "raytrace/scene.h:1: Embree may be included only in a .cpp file of raytrace/",
+                            "report/canvas.h:1: cairo may be included only in a .cpp file of report/",
+                            "studies/rre/rre.cpp:1: CLI11 may be included only in app/"}));
+}
+
+TEST_F(SyntheticTree, LibrariesDoNotLeakThroughHeaders) {
+  add("studies/design/document.h", "#include <toml++/toml.h>\n");
+  add("studies/design/design.h", "#include \"core/error.h\"\n#include \"studies/design/document.h\"\n");
+  add("studies/rre/rre.cpp", "#include \"core/error.h\"\n#include \"studies/design/design.h\"\n");
+  EXPECT_EQ(found(), Lines{"studies/rre/rre.cpp:2: studies/design/design.h brings toml++ out of its room"});
+}
+
+TEST_F(SyntheticTree, EveryFolderAndEveryIncludeHasAPlace) {
+  add("misc/helper.cpp", "#include \"core/error.h\"\n");
+  add("core/error.cpp", "#include \"error.h\"\n");
+  EXPECT_EQ(found(), (Lines{"core/error.cpp:1: \"error.h\" is no path from the root of the source tree",
+                            "misc/helper.cpp:1: folder misc/ has no place in the order of layers"}));
+}
+
+}  // namespace
+}  // namespace retrace::layering
