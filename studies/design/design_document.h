@@ -22,9 +22,9 @@ class DesignDocument {
   /// KEY=VALUE.
   DesignDocument(std::string_view text, std::string_view source_name, std::span<const std::string> overrides);
 
-  /// toml++ recurses once per level when it destroys a tree, and `a.a.a...` makes a level of two bytes: more than this
-  /// could run out of stack. A design file has about one KiB.
-  static constexpr std::size_t max_bytes = 64 * 1024;
+  /// toml++ recurses once per level when it destroys a tree, and two bytes of `a.a.a...` make a level: 64 KiB of it run
+  /// out of an 8 MiB stack. A design file has about one KiB.
+  static constexpr std::size_t max_bytes = 16 * 1024;
 
   const toml::table& root() const { return root_; }
 

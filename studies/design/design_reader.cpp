@@ -187,9 +187,8 @@ void read_light_and_detector(const DesignDocument& document, Design& design) {
   std::vector<double> angles_deg =
       detector.numbers("acceptance_half_angle_deg", kAcceptance).value_or(design.acceptance_half_angle_deg);
   detector.finish();
-  std::ranges::sort(angles_deg);
-  const auto repeated = std::ranges::unique(angles_deg);
-  angles_deg.erase(repeated.begin(), repeated.end());
+  std::sort(angles_deg.begin(), angles_deg.end());
+  angles_deg.erase(std::unique(angles_deg.begin(), angles_deg.end()), angles_deg.end());
   design.acceptance_half_angle_deg = angles_deg;
 }
 

@@ -1,0 +1,39 @@
+// Whatever a design file or an override holds, the reader either returns a design or throws an InputError of one line.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+#include "studies/design/design_reader.h"
+
+namespace {
+
+/// The first line is an override if it begins with "#--set "; to TOML that is a comment.
+std::string override_of(std::string_view text) {
+  constexpr std::string_view mark = "#--set ";
+  if (text.substr(0, mark.size()) != mark) return {};
+  const std::string_view line = text.substr(0, text.find('\n'));
+  return std::string(line.substr(mark.size()));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(data, data + size);
+  const std::array<std::string, 1> given = {override_of(text)};
+  const std::span<const std::string> overrides(given.data(), given.front().empty() ? 0 : 1);
+  try {
+    retrace::studies::parse_design(text, "fuzz.toml", overrides);
+  } catch (const retrace::InputError& error) {
+    const std::string_view message = error.what();
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+  }
+  return 0;
+}

@@ -1,0 +1,619 @@
+#include "studies/design/design_reader.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "studies/design/init_templates.h"
+
+namespace retrace::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using geometry::Arrangement;
+using geometry::Extent;
+using geometry::HexagonalCube;
+using geometry::PartialElements;
+using geometry::RowParity;
+using geometry::RtpElement;
+using geometry::TriangularCube;
+
+/// The lines of a valid design, so that tests can speak of line numbers.
+const std::vector<std::string> kLines = {
+    "[element]",                 // 1
+    "kind = \"rtp\"",            // 2
+    "base_mm = 0.5",             // 3
+    "width_mm = 0.5",            // 4
+    "[array]",                   // 5
+    "arrangement = \"offset\"",  // 6
+    "x_length_mm = 10",          // 7
+    "y_length_mm = 10",          // 8
+    "[body]",                    // 9
+    "thickness_mm = 2.0",        // 10
+};
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+/// The valid design with line `number` (from 1) replaced; number 11 appends.
+std::string with_line(std::size_t number, const std::string& line) {
+  std::vector<std::string> lines = kLines;
+  lines.resize(std::max(lines.size(), number));
+  lines[number - 1] = line;
+  return joined(lines);
+}
+
+/// What reading `text` complains of; empty if it does not.
+std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    parse_design(text, "d.toml", overrides);
+    return {};
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.exit_code(), ExitCode::bad_input);
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error.what();
+  }
+}
+
+/// What a valid design complains of when `key=value` is set.
+std::string set_complaint(const std::vector<std::string>& overrides) {
+  return complaint(joined(kLines), overrides);
+}
+
+Design set(const std::vector<std::string>& overrides) {
+  return parse_design(joined(kLines), "d.toml", overrides);
+}
+
+/// A design of one element kind: `element` and `array` hold the lines of these tables, separated by "; ".
+std::string design_of(std::string element, std::string array) {
+  const auto in_lines = [](std::string text) {
+    for (std::size_t at; (at = text.find("; ")) != std::string::npos;) text.replace(at, 2, "\n");
+    return text + "\n";
+  };
+  return "[element]\n" + in_lines(element) + "[array]\n" + in_lines(array) + "[body]\nthickness_mm = 1\n";
+}
+
+const std::string kHexagonal = "kind = \"hexagonal_icc\"; aperture_mm = 2";
+const std::string kTriangular = "kind = \"triangular_icc\"; aperture_mm = 2";
+const std::string kRtp = "kind = \"rtp\"; base_mm = 1; width_mm = 1";
+
+TEST(DesignReader, MinimalDesignHasTheDefaults) {
+  const Design design = parse_design(joined(kLines), "d.toml", {});
+  const auto& rtp = std::get<RtpElement>(design.part.element);
+  EXPECT_EQ(design.source, "d.toml");
+  EXPECT_EQ(design.title, "");
+  EXPECT_EQ(rtp.base_mm, 0.5);
+  EXPECT_EQ(rtp.width_mm, 0.5);
+  EXPECT_EQ(rtp.apex_angle_deg, 90.0);
+  EXPECT_EQ(design.part.arrangement, Arrangement::offset);
+  EXPECT_EQ(design.part.extent, Extent::finite);
+  EXPECT_EQ(design.part.shifted_rows, RowParity::even);
+  EXPECT_EQ(design.part.partial_elements, PartialElements::cut);
+  EXPECT_EQ(design.part.x_length_mm, 10.0);
+  EXPECT_EQ(design.part.y_length_mm, 10.0);
+  EXPECT_EQ(design.part.x_gap_mm, 0.0);
+  EXPECT_EQ(design.part.y_offset_mm, 0.0);
+  EXPECT_EQ(design.part.overlap_percent, 50.0);
+  EXPECT_EQ(design.part.thickness_mm, 2.0);
+  EXPECT_EQ(design.material, "PMMA");
+  EXPECT_FALSE(design.refractive_index);
+  EXPECT_FALSE(design.absorption_per_mm);
+  EXPECT_EQ(design.wavelength_nm, 587.56);
+  EXPECT_EQ(design.acceptance_half_angle_deg, std::vector<double>{0.5});
+  EXPECT_FALSE(design.idealisation.mirror_facets);
+  EXPECT_FALSE(design.idealisation.lossless_entrance);
+}
+
+TEST(DesignReader, ArrangementDefaultsToTheOneOfItsKind) {
+  const std::string lengths = "x_length_mm = 10; y_length_mm = 10";
+  EXPECT_EQ(parse_design(design_of(kRtp, lengths), "d", {}).part.arrangement, Arrangement::aligned);
+  EXPECT_EQ(parse_design(design_of(kHexagonal, lengths), "d", {}).part.arrangement, Arrangement::honeycomb);
+  EXPECT_EQ(parse_design(design_of(kTriangular, lengths), "d", {}).part.arrangement, Arrangement::triangular);
+}
+
+TEST(DesignReader, EveryServedKeyArrives) {
+  const Design design = parse_design(R"(schema = "retrace.design/1"
+title = "all"
+[element]
+kind = "rtp"
+base_mm = 1
+width_mm = 2
+apex_angle_deg = 91.5
+[array]
+arrangement = "offset"
+extent = "finite"
+shifted_rows = "odd"
+partial_elements = "omit"
+x_length_mm = 20
+y_length_mm = 30
+x_gap_mm = 0.1
+y_gap_mm = 0.2
+x_offset_mm = 1
+y_offset_mm = 2
+overlap_percent = 25
+[body]
+thickness_mm = 3
+material = "PC"
+refractive_index = 1.58
+absorption_per_mm = 0.001
+back_index = 1
+facet_coating = "none"
+[light]
+wavelength_nm = 633
+polarisation = "unpolarised"
+[detector]
+acceptance_half_angle_deg = [1, 0.2, 0.5, 0.2]
+[surface]
+model = "smooth"
+roughness_sq_nm = 0
+walls = "smooth"
+facet_tilt_arcmin = [0, 0.0]
+[idealisation]
+facets = "mirror"
+entrance = "lossless"
+)",
+                                     "d.toml", {});
+  EXPECT_EQ(design.title, "all");
+  EXPECT_EQ(std::get<RtpElement>(design.part.element).apex_angle_deg, 91.5);
+  EXPECT_EQ(design.part.shifted_rows, RowParity::odd);
+  EXPECT_EQ(design.part.partial_elements, PartialElements::omit);
+  EXPECT_EQ(design.part.y_length_mm, 30.0);
+  EXPECT_EQ(design.part.x_gap_mm, 0.1);
+  EXPECT_EQ(design.part.y_gap_mm, 0.2);
+  EXPECT_EQ(design.part.x_offset_mm, 1.0);
+  EXPECT_EQ(design.part.y_offset_mm, 2.0);
+  EXPECT_EQ(design.part.overlap_percent, 25.0);
+  EXPECT_EQ(design.material, "PC");
+  EXPECT_EQ(design.material_location.line, 22);
+  EXPECT_EQ(design.material_location.key, "body.material");
+  EXPECT_EQ(design.refractive_index, 1.58);
+  EXPECT_EQ(design.absorption_per_mm, 0.001);
+  EXPECT_EQ(design.wavelength_nm, 633.0);
+  EXPECT_EQ(design.acceptance_half_angle_deg, (std::vector<double>{0.2, 0.5, 1.0}));
+  EXPECT_TRUE(design.idealisation.mirror_facets);
+  EXPECT_TRUE(design.idealisation.lossless_entrance);
+}
+
+TEST(DesignReader, NumbersOutOfRangeAreRefused) {
+  EXPECT_EQ(complaint(with_line(3, "base_mm = -3")), "d.toml:3: element.base_mm: must be > 0, got -3");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = 0")), "d.toml:3: element.base_mm: must be > 0, got 0");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = 0.0")), "d.toml:3: element.base_mm: must be > 0, got 0");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = inf")), "d.toml:3: element.base_mm: must be a finite number, got inf");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = nan")), "d.toml:3: element.base_mm: must be a finite number, got nan");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = 1e7")),
+            "d.toml:3: element.base_mm: must be >= 1e-06 and <= 1e+06, got 1e+07");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = 1e-7")),
+            "d.toml:3: element.base_mm: must be >= 1e-06 and <= 1e+06, got 1e-07");
+  EXPECT_EQ(complaint(with_line(7, "x_length_mm = -inf")),
+            "d.toml:7: array.x_length_mm: must be a finite number, got -inf");
+  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 0")), "d.toml:10: body.thickness_mm: must be > 0, got 0");
+  EXPECT_EQ(complaint(with_line(11, "refractive_index = 0.9")),
+            "d.toml:11: body.refractive_index: must be >= 1, got 0.9");
+  EXPECT_EQ(complaint(with_line(11, "absorption_per_mm = -1")),
+            "d.toml:11: body.absorption_per_mm: must be >= 0, got -1");
+  EXPECT_EQ(complaint(with_line(11, "light.wavelength_nm = 0")),
+            "d.toml:11: body.light: unknown key (allowed: thickness_mm, material, refractive_index, "
+            "absorption_per_mm)");
+  EXPECT_EQ(complaint(with_line(11, "[light]\nwavelength_nm = 0")),
+            "d.toml:12: light.wavelength_nm: must be > 0, got 0");
+}
+
+TEST(DesignReader, ApexAngleIsFrom60To120) {
+  const std::string range = "must be >= 60 and <= 120, got ";
+  EXPECT_EQ(complaint(with_line(4, "width_mm = 0.5\napex_angle_deg = 59.9")),
+            "d.toml:5: element.apex_angle_deg: " + range + "59.9");
+  EXPECT_EQ(complaint(with_line(4, "width_mm = 0.5\napex_angle_deg = 121")),
+            "d.toml:5: element.apex_angle_deg: " + range + "121");
+  EXPECT_EQ(std::get<RtpElement>(set({"element.apex_angle_deg=60"}).part.element).apex_angle_deg, 60.0);
+  EXPECT_EQ(std::get<RtpElement>(set({"element.apex_angle_deg=120"}).part.element).apex_angle_deg, 120.0);
+}
+
+TEST(DesignReader, AcceptanceIsANumberOrAListWithin90Degrees) {
+  const auto refused = [](const std::string& value) {
+    return complaint(with_line(11, "[detector]\nacceptance_half_angle_deg = " + value));
+  };
+  const std::string where = "d.toml:12: detector.acceptance_half_angle_deg: ";
+  EXPECT_EQ(refused("0"), where + "must be > 0 and <= 90, got 0");
+  EXPECT_EQ(refused("90.5"), where + "must be > 0 and <= 90, got 90.5");
+  EXPECT_EQ(refused("[0.5, -1]"), where + "must be > 0 and <= 90, got -1");
+  EXPECT_EQ(refused("[0.5,\n\"x\"]"), "d.toml:13: detector.acceptance_half_angle_deg: must be a number, got \"x\"");
+  EXPECT_EQ(refused("[]"), where + "must be a number or a list of at least one number, got an empty list");
+  EXPECT_EQ(refused("\"a\""), where + "must be a number or a list of numbers, got \"a\"");
+  EXPECT_EQ(refused("90"), "");
+}
+
+TEST(DesignReader, WrongTypesAreRefused) {
+  EXPECT_EQ(complaint(with_line(3, "base_mm = \"0.5\"")), "d.toml:3: element.base_mm: must be a number, got \"0.5\"");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = true")), "d.toml:3: element.base_mm: must be a number, got true");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = [1]")), "d.toml:3: element.base_mm: must be a number, got a list");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = {a = 1}")), "d.toml:3: element.base_mm: must be a number, got a table");
+  EXPECT_EQ(complaint(with_line(3, "base_mm = 2020-01-01")),
+            "d.toml:3: element.base_mm: must be a number, got a date or time");
+  EXPECT_EQ(complaint(with_line(2, "kind = 5")), "d.toml:2: element.kind: must be a string, got 5");
+  EXPECT_EQ(complaint("title = 1\n" + joined(kLines)), "d.toml:1: title: must be a string, got 1");
+  EXPECT_EQ(complaint("element = 3\n"), "d.toml:1: element: must be a table, got 3");
+  EXPECT_EQ(complaint("[[element]]\nkind = \"rtp\"\n"), "d.toml:1: element: must be a table, got a list");
+}
+
+TEST(DesignReader, UnknownKeysAreNamedWithASuggestion) {
+  EXPECT_EQ(complaint(with_line(3, "bse_mm = 0.5")),
+            "d.toml:3: element.bse_mm: unknown key, did you mean \"base_mm\"? (allowed: kind, base_mm, width_mm, "
+            "apex_angle_deg, aperture_mm)");
+  EXPECT_EQ(complaint(with_line(10, "thickness = 2")),
+            "d.toml:10: body.thickness: unknown key, did you mean \"thickness_mm\"? (allowed: thickness_mm, material, "
+            "refractive_index, absorption_per_mm)");
+  EXPECT_EQ(complaint(with_line(11, "colour = \"red\"")),
+            "d.toml:11: body.colour: unknown key (allowed: thickness_mm, material, refractive_index, "
+            "absorption_per_mm)");
+  EXPECT_EQ(complaint(with_line(11, "[boddy]\nx = 1")),
+            "d.toml:11: boddy: unknown table, did you mean \"body\"? (allowed: element, array, body, light, detector, "
+            "surface, idealisation)");
+  EXPECT_EQ(complaint("titel = \"x\"\n" + joined(kLines)),
+            "d.toml:1: titel: unknown key, did you mean \"title\"? (allowed: schema, title, element, array, body, "
+            "light, detector, surface, idealisation)");
+  EXPECT_EQ(complaint("thickness_mm = 2\n" + joined(kLines)),
+            "d.toml:1: thickness_mm: unknown key at the top level, it belongs in [body]");
+}
+
+TEST(DesignReader, TheFirstUnknownKeyOfTheFileIsReported) {
+  const std::string text = "[light]\nzz = 1\naa = 2\n[array]\nbb = 3\n";
+  EXPECT_EQ(complaint(text).substr(0, 21), "d.toml:2: light.zz: u");
+  EXPECT_EQ(complaint(text, {"array.aa=1"}).substr(0, 21), "d.toml:2: light.zz: u");
+}
+
+TEST(DesignReader, MissingKeysAreReportedAtTheirTable) {
+  EXPECT_EQ(complaint(with_line(3, "")), "d.toml:1: element.base_mm: missing, must be > 0");
+  EXPECT_EQ(complaint(with_line(2, "")),
+            "d.toml:1: element.kind: missing, must be one of \"rtp\", \"hexagonal_icc\" or \"triangular_icc\"");
+  EXPECT_EQ(complaint(with_line(8, "")), "d.toml:5: array.y_length_mm: missing, must be > 0");
+  EXPECT_EQ(complaint(with_line(10, "")), "d.toml:9: body.thickness_mm: missing, must be > 0");
+  EXPECT_EQ(complaint("[element]\nkind = \"hexagonal_icc\"\n"), "d.toml:1: element.aperture_mm: missing, must be > 0");
+  EXPECT_EQ(complaint(""),
+            "d.toml: element.kind: missing, must be one of \"rtp\", \"hexagonal_icc\" or \"triangular_icc\"");
+  EXPECT_EQ(complaint("", {"element.kind=rtp"}), "d.toml: element.base_mm: missing, must be > 0");
+}
+
+TEST(DesignReader, WordsAreCheckedWithASuggestion) {
+  EXPECT_EQ(complaint(with_line(2, "kind = \"rpt\"")),
+            "d.toml:2: element.kind: must be one of \"rtp\", \"hexagonal_icc\" or \"triangular_icc\", got \"rpt\"; "
+            "did you mean \"rtp\"?");
+  EXPECT_EQ(complaint(with_line(2, "kind = \"hexagonal\"")),
+            "d.toml:2: element.kind: must be one of \"rtp\", \"hexagonal_icc\" or \"triangular_icc\", got "
+            "\"hexagonal\"");
+  EXPECT_EQ(complaint(with_line(6, "arrangement = \"ofset\"")),
+            "d.toml:6: array.arrangement: must be one of \"aligned\", \"offset\", \"checker\" or \"single\", got "
+            "\"ofset\"; did you mean \"offset\"?");
+  EXPECT_EQ(set_complaint({"array.shifted_rows=uneven"}),
+            "--set array.shifted_rows=uneven: array.shifted_rows: must be one of \"even\" or \"odd\", got \"uneven\"; "
+            "did you mean \"even\"?");
+  EXPECT_EQ(set_complaint({"idealisation.facets=miror"}),
+            "--set idealisation.facets=miror: idealisation.facets: must be one of \"real\" or \"mirror\", got "
+            "\"miror\"; did you mean \"mirror\"?");
+  EXPECT_EQ(complaint("schema = \"retrace.design/2\"\nnew_key = 1\n"),
+            "d.toml:1: schema: must be \"retrace.design/1\", got \"retrace.design/2\"");
+  EXPECT_EQ(complaint(with_line(11, "material = \"\"")),
+            "d.toml:11: body.material: must name a material, such as \"PMMA\", got \"\"");
+}
+
+TEST(DesignReader, ArrangementMustFitTheKind) {
+  EXPECT_EQ(complaint(with_line(6, "arrangement = \"honeycomb\"")),
+            "d.toml:6: array.arrangement: must be \"aligned\", \"offset\", \"checker\" or \"single\" for kind = "
+            "\"rtp\", got \"honeycomb\"");
+  EXPECT_EQ(complaint(design_of(kHexagonal, "arrangement = \"triangular\"")),
+            "d.toml:5: array.arrangement: must be \"honeycomb\" or \"single\" for kind = \"hexagonal_icc\", got "
+            "\"triangular\"");
+  EXPECT_EQ(complaint(design_of(kTriangular, "arrangement = \"offset\"")),
+            "d.toml:5: array.arrangement: must be \"triangular\" or \"single\" for kind = \"triangular_icc\", got "
+            "\"offset\"");
+}
+
+TEST(DesignReader, KeysOfAnotherKindAreRefused) {
+  EXPECT_EQ(set_complaint({"element.aperture_mm=1"}),
+            "--set element.aperture_mm=1: element.aperture_mm: not allowed for kind = \"rtp\", which has base_mm and "
+            "width_mm, got 1");
+  EXPECT_EQ(complaint(design_of(kHexagonal + "; base_mm = 1", "")),
+            "d.toml:4: element.base_mm: only allowed for kind = \"rtp\", others have aperture_mm, got 1");
+}
+
+TEST(DesignReader, SingleAndInfiniteTakeNoLengths) {
+  const std::string single = "not allowed for arrangement = \"single\", whose extent is the element's aperture, got ";
+  const std::string infinite = "not allowed for extent = \"infinite\", which is one periodic cell, got ";
+  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; x_length_mm = 1")),
+            "d.toml:7: array.x_length_mm: " + single + "1");
+  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; y_offset_mm = 1")),
+            "d.toml:7: array.y_offset_mm: " + single + "1");
+  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; y_length_mm = 3")),
+            "d.toml:7: array.y_length_mm: " + infinite + "3");
+  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; x_offset_mm = 3")),
+            "d.toml:7: array.x_offset_mm: " + infinite + "3");
+  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; extent = \"infinite\"")),
+            "d.toml:7: array.extent: must be \"finite\" for arrangement = \"single\", got \"infinite\"");
+  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; x_offset_mm = 0; x_gap_mm = 0.0")), "");
+}
+
+TEST(DesignReader, GapsRowsAndOverlapOnlyWhereTheyMeanSomething) {
+  EXPECT_EQ(complaint(design_of(kHexagonal, "extent = \"infinite\"; x_gap_mm = 0.1")),
+            "d.toml:6: array.x_gap_mm: only allowed for kind = \"rtp\", got 0.1");
+  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; y_gap_mm = 0.1")),
+            "d.toml:7: array.y_gap_mm: not allowed for arrangement = \"single\", got 0.1");
+  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; shifted_rows = \"odd\"")),
+            "d.toml:7: array.shifted_rows: only allowed for arrangement = \"offset\", got \"odd\"");
+  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; overlap_percent = 50")),
+            "d.toml:7: array.overlap_percent: only allowed for arrangement = \"offset\", got 50");
+  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; x_gap_mm = 0.1")), "");
+  EXPECT_EQ(set_complaint({"array.x_gap_mm=-0.1"}),
+            "--set array.x_gap_mm=-0.1: array.x_gap_mm: must be >= 0 and <= 1e+06, got -0.1");
+  EXPECT_EQ(set_complaint({"array.y_offset_mm=-0.1"}),
+            "--set array.y_offset_mm=-0.1: array.y_offset_mm: must be >= 0 and <= 1e+06, got -0.1");
+  EXPECT_EQ(set_complaint({"array.overlap_percent=100"}),
+            "--set array.overlap_percent=100: array.overlap_percent: must be >= 0 and < 100, got 100");
+  EXPECT_EQ(set({"array.overlap_percent=0"}).part.overlap_percent, 0.0);
+}
+
+TEST(DesignReader, CheckerNeedsSquareCells) {
+  const std::string lengths = "x_length_mm = 10; y_length_mm = 10; arrangement = \"checker\"";
+  EXPECT_EQ(complaint(design_of("kind = \"rtp\"; base_mm = 0.5; width_mm = 0.4", lengths)),
+            "d.toml:4: element.width_mm: must equal base_mm (0.5) for arrangement = \"checker\", got 0.4");
+  EXPECT_EQ(complaint(design_of("kind = \"rtp\"; base_mm = 0.5; width_mm = 0.5000000001", lengths)), "");
+}
+
+TEST(DesignReader, ArrayMustHoldOneElement) {
+  EXPECT_EQ(complaint(with_line(7, "x_length_mm = 0.3")),
+            "d.toml:7: array.x_length_mm: must be >= 0.5 to hold one element of 0.5 mm, got 0.3");
+  EXPECT_EQ(set_complaint({"array.y_offset_mm=4.9"}),
+            "d.toml:8: array.y_length_mm: must be >= 10.3 to hold one element of 0.5 mm and two margins of 4.9 mm, got "
+            "10");
+  EXPECT_EQ(complaint(design_of(kRtp, "x_length_mm = 0.9999999999; y_length_mm = 1")), "");
+  // A hexagon or triangle of radius 1 with its apex at the centre of the extent: 2 by sqrt(3).
+  for (const std::string& cube : {kHexagonal, kTriangular}) {
+    EXPECT_EQ(complaint(design_of(cube, "x_length_mm = 2; y_length_mm = 1.7320508075688772")), "");
+    EXPECT_EQ(
+        complaint(design_of(cube, "x_length_mm = 2; y_length_mm = 1.73")),
+        "d.toml:6: array.y_length_mm: must be >= 1.7320508075688772 to hold one element of 1.7320508075688772 mm, "
+        "got 1.73");
+    EXPECT_EQ(complaint(design_of(cube, "x_length_mm = 1.9; y_length_mm = 5")),
+              "d.toml:5: array.x_length_mm: must be >= 2 to hold one element of 2 mm, got 1.9");
+  }
+}
+
+TEST(DesignReader, ArrayHasAtMost1e8Elements) {
+  EXPECT_EQ(
+      set_complaint({"array.x_length_mm=1e6", "array.y_length_mm=1e6"}),
+      "--set array.x_length_mm=1e6: array.x_length_mm: the array would have 4e+12 elements, at most 100000000 are "
+      "allowed; make it smaller or its elements larger");
+  EXPECT_EQ(set_complaint({"array.x_length_mm=5000", "array.y_length_mm=5000"}), "");
+}
+
+TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
+  const std::string no = ": not available in this version";
+  const auto refused = [](const std::string& set) { return set_complaint({set}); };
+  EXPECT_EQ(refused("array.mask=m.png"), "--set array.mask=m.png: array.mask" + no);
+  EXPECT_EQ(refused("array.mask_threshold=0.7"), "--set array.mask_threshold=0.7: array.mask_threshold" + no);
+  EXPECT_EQ(refused("light.spectrum=A"), "--set light.spectrum=A: light.spectrum" + no);
+  EXPECT_EQ(refused("body.back_index=1.33"),
+            "--set body.back_index=1.33: body.back_index" + no + ", which takes only 1, got 1.33");
+  EXPECT_EQ(refused("body.facet_coating=aluminium"), "--set body.facet_coating=aluminium: body.facet_coating" + no +
+                                                         ", which takes only \"none\", got \"aluminium\"");
+  EXPECT_EQ(refused("light.polarisation=linear"), "--set light.polarisation=linear: light.polarisation" + no +
+                                                      ", which takes only \"unpolarised\", got \"linear\"");
+  EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")),
+            "d.toml:11: part" + no + ", which takes only [element] and [array]");
+  EXPECT_EQ(refused("surface.model=abg"),
+            "--set surface.model=abg: surface.model" + no + ", which takes only \"smooth\", got \"abg\"");
+  for (const std::string key :
+       {"element.cant_deg", "element.cant_azimuth_deg", "surface.roughness_sq_nm", "surface.correlation_length_um",
+        "surface.waviness_sq_nm", "surface.waviness_length_um", "surface.root_radius_um", "surface.rim_radius_um",
+        "surface.root_chamfer_um", "surface.dihedral_error_arcmin", "surface.facet_tilt_arcmin",
+        "surface.angle_error_sigma_arcmin"}) {
+    EXPECT_EQ(refused(key + "=2"), "--set " + key + "=2: " + key + no + ", which takes only 0, got 2");
+    EXPECT_EQ(refused(key + "=0"), "");
+  }
+  EXPECT_EQ(refused("surface.dihedral_error_arcmin=[0, 1, 0]"),
+            "--set surface.dihedral_error_arcmin=[0, 1, 0]: surface.dihedral_error_arcmin" + no +
+                ", which takes only 0, got a list");
+  EXPECT_EQ(refused("surface.roughness_sq_nm=rough"),
+            "--set surface.roughness_sq_nm=rough: surface.roughness_sq_nm: must be a number, got \"rough\"");
+}
+
+TEST(DesignReader, TextThatIsNotTomlIsRefusedWithItsLine) {
+  EXPECT_EQ(complaint("[element]\nkind = \n").substr(0, 26), "d.toml:2: not valid TOML: ");
+  EXPECT_EQ(complaint("[\n").substr(0, 26), "d.toml:1: not valid TOML: ");
+  EXPECT_EQ(complaint("[element]\nkind = \"a\nb\"\n").substr(0, 26), "d.toml:2: not valid TOML: ");
+  EXPECT_EQ(complaint("[element]\n[element]\n").substr(0, 26), "d.toml:2: not valid TOML: ");
+  EXPECT_EQ(complaint("a = 1e999\n").substr(0, 26), "d.toml:1: not valid TOML: ");
+  EXPECT_EQ(complaint("title = \"\xff\"\n"), "d.toml:1: not valid TOML: Encountered invalid utf-8 sequence");
+  EXPECT_NE(complaint(std::string("a = \0 1\n", 8)), "");
+}
+
+TEST(DesignReader, TextOfAbsurdLengthOrDepthIsRefused) {
+  EXPECT_EQ(complaint(std::string(70000, '\n')), "d.toml: too long for a design file, at most 16384 bytes are allowed");
+  std::string deep;
+  for (int i = 0; i < 8100; ++i) deep += "a.";
+  EXPECT_EQ(complaint(deep + "a=1\n").substr(0, 24), "d.toml:1: a: unknown tab");
+  EXPECT_NE(complaint("x = " + std::string(16000, '[')), "");
+}
+
+TEST(DesignReader, MessagesShowControlCharactersEscapedAndStayShort) {
+  EXPECT_EQ(complaint(with_line(2, "kind = \"a\\nb\\u001bc\\u0085\"")),
+            "d.toml:2: element.kind: must be one of \"rtp\", \"hexagonal_icc\" or \"triangular_icc\", got "
+            "\"a\\nb\\x1bc\\xc2\\x85\"");
+  EXPECT_LT(complaint(with_line(2, "kind = \"" + std::string(5000, 'x') + "\"")).size(), 250U);
+  EXPECT_LT(complaint(with_line(3, std::string(5000, 'x') + " = 1")).size(), 250U);
+}
+
+TEST(DesignReader, OverridesTakePrecedenceAndTheLastOneWins) {
+  const Design design = set({"element.base_mm=0.3", "array.arrangement=aligned", "title=\"two words\"",
+                             "array.x_length_mm = 12", "element.base_mm=0.4"});
+  EXPECT_EQ(std::get<RtpElement>(design.part.element).base_mm, 0.4);
+  EXPECT_EQ(design.part.arrangement, Arrangement::aligned);
+  EXPECT_EQ(design.part.x_length_mm, 12.0);
+  EXPECT_EQ(design.title, "two words");
+  EXPECT_EQ(set({"array.arrangement=\"aligned\""}).part.arrangement, Arrangement::aligned);
+  EXPECT_EQ(set({"title=Part #3 \"new\" \\ old"}).title, "Part #3 \"new\" \\ old");
+  EXPECT_EQ(set({"detector.acceptance_half_angle_deg=[1,2]"}).acceptance_half_angle_deg, (std::vector<double>{1, 2}));
+  EXPECT_EQ(set({"body={material=\"PC\"}"}).part.thickness_mm, 2.0);
+  EXPECT_EQ(set({"body.material=PC"}).material_location.file, "--set body.material=PC");
+}
+
+TEST(DesignReader, AnOverrideMendsAFileThatIsWrongThere) {
+  EXPECT_EQ(complaint(with_line(3, "base_mm = -1"), {"element.base_mm=1"}), "");
+}
+
+TEST(DesignReader, ErrorsInOverridesNameTheOverride) {
+  EXPECT_EQ(set_complaint({"element.base_mm=0"}), "--set element.base_mm=0: element.base_mm: must be > 0, got 0");
+  EXPECT_EQ(set_complaint({"element.base_mm=0.4mm"}),
+            "--set element.base_mm=0.4mm: element.base_mm: must be a number, got \"0.4mm\"");
+  EXPECT_EQ(set_complaint({"element.base_mm="}), "--set element.base_mm=: element.base_mm: must be a number, got \"\"");
+  EXPECT_EQ(set_complaint({"elemnt.base_mm=1"}).substr(0, 71),
+            "--set elemnt.base_mm=1: elemnt: unknown table, did you mean \"element\"?");
+  EXPECT_EQ(set_complaint({"element=3"}), "--set element=3: element: must be a table, got 3");
+  const std::string form = ": must be of the form KEY=VALUE, such as element.base_mm=0.5";
+  for (const std::string text : {"", "x", "=3", "[body]", "# x", "a b=3"})
+    EXPECT_EQ(set_complaint({text}), "--set " + text + form) << text;
+  EXPECT_EQ(set_complaint({"title=a\nb=1"}), "--set title=a\\nb=1: must be one line of the form KEY=VALUE");
+  EXPECT_EQ(set_complaint({"a..b=x"}).substr(0, 31), "--set a..b=x: not valid TOML: E");
+  EXPECT_EQ(set_complaint({"title=\xff"}).substr(0, 33), "--set title=\\xff: not valid TOML:");
+}
+
+TEST(DesignReader, UnreadablePathsAreRefused) {
+  const auto refused = [](const fs::path& path) -> std::string {
+    try {
+      read_design(path);
+      return {};
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(refused("no/such.toml"), "no/such.toml: cannot be read: No such file or directory");
+  EXPECT_EQ(refused("/"), "/: cannot be read: it is a folder");
+  EXPECT_EQ(refused("/dev/zero"), "/dev/zero: too long for a design file, at most 16384 bytes are allowed");
+  EXPECT_EQ(refused("/dev/null").substr(0, 24), "/dev/null: element.kind:");
+}
+
+/// Stands in for standard input while it lives.
+class StandardInput {
+ public:
+  explicit StandardInput(const std::string& text) : stream_(text), before_(std::cin.rdbuf(stream_.rdbuf())) {}
+  ~StandardInput() {
+    std::cin.rdbuf(before_);
+    std::cin.clear();
+  }
+  StandardInput(const StandardInput&) = delete;
+  StandardInput& operator=(const StandardInput&) = delete;
+
+ private:
+  std::istringstream stream_;
+  std::streambuf* before_;
+};
+
+TEST(DesignReader, DashIsStandardInput) {
+  {
+    const StandardInput input(joined(kLines));
+    EXPECT_EQ(read_design("-").source, "-");
+  }
+  const StandardInput input(with_line(3, "base_mm = -3"));
+  try {
+    read_design("-");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "standard input:3: element.base_mm: must be > 0, got -3");
+  }
+}
+
+TEST(DesignReader, EveryExampleIsValid) {
+  int count = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "examples")) {
+    if (entry.path().extension() != ".toml") continue;
+    std::ifstream stream(entry.path());
+    std::stringstream text;
+    text << stream.rdbuf();
+    // Studies and jobs live in the same folder; a design says so or says nothing.
+    if (text.str().find("schema = \"retrace.design/1\"") == std::string::npos) continue;
+    ++count;
+    EXPECT_NO_THROW(read_design(entry.path())) << entry.path();
+    EXPECT_EQ(text.str().substr(0, 2), "# ") << entry.path() << " has no head that says what it is";
+  }
+  EXPECT_GE(count, 9);
+}
+
+TEST(InitTemplates, EveryKindParsesAndIsCommented) {
+  ASSERT_EQ(design_kinds().size(), 3U);
+  for (const std::string_view kind : design_kinds()) {
+    const std::string text = design_template(kind);
+    EXPECT_NO_THROW(parse_design(text, "t.toml", {})) << kind;
+    EXPECT_EQ(text.substr(0, 2), "# ");
+  }
+  EXPECT_TRUE(std::holds_alternative<RtpElement>(parse_design(design_template("rtp"), "t", {}).part.element));
+  EXPECT_TRUE(
+      std::holds_alternative<HexagonalCube>(parse_design(design_template("hexagonal_icc"), "t", {}).part.element));
+  EXPECT_TRUE(
+      std::holds_alternative<TriangularCube>(parse_design(design_template("triangular_icc"), "t", {}).part.element));
+}
+
+/// The lines that show a default must be valid when their "#" is taken away.
+TEST(InitTemplates, CommentedDefaultsAreValidAndTheDefaults) {
+  for (const std::string_view kind : design_kinds()) {
+    std::istringstream lines(design_template(kind));
+    std::string text;
+    int uncommented = 0;
+    for (std::string line; std::getline(lines, line);) {
+      const bool is_setting = line.substr(0, 2) == "# " && (line.find(" = ") != std::string::npos || line[2] == '[');
+      const bool needs_more =
+          line.find("refractive_index") != std::string::npos || line.find("absorption") != std::string::npos;
+      uncommented += is_setting ? 1 : 0;
+      text += (is_setting && !needs_more ? line.substr(2) : line) + "\n";
+    }
+    EXPECT_GT(uncommented, 5);
+    EXPECT_NO_THROW(parse_design(text, "t.toml", {})) << text;
+  }
+}
+
+TEST(InitTemplates, UnknownKindIsRefused) {
+  try {
+    design_template("cube");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "KIND must be one of \"rtp\", \"hexagonal_icc\" or \"triangular_icc\", got \"cube\"");
+  }
+}
+
+/// Whatever the text is, the reader returns or throws an InputError of one line; anything else fails the test.
+void expect_graceful(const std::string& text, const std::vector<std::string>& overrides) {
+  try {
+    parse_design(text, "d.toml", overrides);
+  } catch (const InputError& error) {
+    RC_ASSERT(std::string(error.what()).find('\n') == std::string::npos);
+  }
+}
+
+TEST(DesignReader, ArbitraryBytesNeverCrash) {
+  EXPECT_TRUE(rc::check("bytes", [](const std::string& text) { expect_graceful(text, {}); }));
+  EXPECT_TRUE(rc::check("override", [](const std::string& text) {
+    expect_graceful(joined(kLines), {text});
+    expect_graceful(joined(kLines), {"element.base_mm=" + text});
+  }));
+}
+
+TEST(DesignReader, DamagedDesignsNeverCrash) {
+  EXPECT_TRUE(rc::check("a valid design with one stretch replaced", [] {
+    std::string text = design_template("rtp");
+    const auto at = *rc::gen::inRange<std::size_t>(0, text.size());
+    const auto length = *rc::gen::inRange<std::size_t>(0, 20);
+    text.replace(at, length, *rc::gen::arbitrary<std::string>());
+    expect_graceful(text, {});
+  }));
+}
+
+}  // namespace
+}  // namespace retrace::studies
