@@ -24,7 +24,7 @@ class DesignDocument {
 
   /// toml++ recurses once per level when it destroys a tree, and two bytes of `a.a.a...` make a level: 64 KiB of it run
   /// out of an 8 MiB stack. A design file has about one KiB.
-  static constexpr std::size_t max_bytes = 16 * 1024;
+  static constexpr std::size_t max_bytes = 16384;
 
   const toml::table& root() const { return root_; }
 

@@ -66,10 +66,6 @@ double read_size(TableReader& table, std::string_view key) {
   return table.required_number(key, kSaneSize);
 }
 
-Kind read_kind(TableReader& element) {
-  return element.required_choice("kind", all(kKinds));
-}
-
 geometry::Element read_element(TableReader& element, Kind kind) {
   element.skip({"cant_deg", "cant_azimuth_deg"});
   if (kind == Kind::rtp) {
@@ -158,7 +154,7 @@ PartSpec read_part(const DesignDocument& document) {
   TableReader element(document, "element");
   TableReader array(document, "array");
   PartSpec part;
-  const Kind kind = read_kind(element);
+  const Kind kind = element.required_choice("kind", all(kKinds));
   part.element = read_element(element, kind);
   read_array(array, part, kind);
   element.finish();
