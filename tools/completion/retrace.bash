@@ -1,0 +1,83 @@
+# shellcheck shell=bash
+# Completion of retrace's commands and options for bash. Source it, or install it as
+# share/bash-completion/completions/retrace.
+
+# _retrace_files PATTERN - files and folders that begin as the current word; PATTERN (a suffix) chooses among the files.
+_retrace_files() {
+  local word=$1 suffix=$2 path
+  while IFS= read -r path; do
+    [[ ! -d $path && $path != *"$suffix" ]] || COMPREPLY+=("$path")
+  done < <(compgen -f -- "$word")
+  compopt -o filenames 2>/dev/null
+}
+
+# _retrace_words WORDS - those that begin as the current word.
+_retrace_words() {
+  mapfile -t COMPREPLY < <(compgen -W "$2" -- "$1")
+}
+
+_retrace() {
+  local commands='rre inspect init list'
+  local common='--json --out --threads --seed --set --quiet --version --help -o -h'
+  local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
+  COMPREPLY=()
+
+  # Bash splits at "=": "--engine=au" comes as three words.
+  if [[ $word == '=' ]]; then
+    word=''
+  elif [[ $previous == '=' ]] && ((COMP_CWORD >= 2)); then
+    previous=${COMP_WORDS[COMP_CWORD - 2]}
+  fi
+  # The first word that is neither an option nor an option's value.
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    case ${COMP_WORDS[i]} in
+      --json | --out | -o | --threads | --seed | --set)
+        i=$((i + 1))
+        [[ ${COMP_WORDS[i]} != '=' ]] || i=$((i + 1))
+        ;;
+      -* | =) ;;
+      *)
+        command=${COMP_WORDS[i]}
+        break
+        ;;
+    esac
+  done
+
+  case $previous in
+    --json)
+      _retrace_files "$word" .json
+      return
+      ;;
+    --out | -o)
+      mapfile -t COMPREPLY < <(compgen -d -- "$word")
+      compopt -o filenames 2>/dev/null
+      return
+      ;;
+    --engine)
+      _retrace_words "$word" 'auto montecarlo embree'
+      return
+      ;;
+    --set)
+      compopt -o nospace 2>/dev/null
+      _retrace_words "$word" 'element. array. body. light. detector. idealisation.'
+      return
+      ;;
+    --threads | --seed | --incidence | --azimuth | --samples | --target-error | --cutoff) return ;;
+  esac
+
+  if [[ $word == -* ]]; then
+    case $command in
+      rre) _retrace_words "$word" "$common --incidence --azimuth --engine --samples --target-error --cutoff" ;;
+      *) _retrace_words "$word" "$common" ;;
+    esac
+    return
+  fi
+  case $command in
+    '') _retrace_words "$word" "$commands" ;;
+    rre | inspect) _retrace_files "$word" .toml ;;
+    init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
+    list) _retrace_words "$word" 'materials' ;;
+  esac
+}
+
+complete -F _retrace retrace
