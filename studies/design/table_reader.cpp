@@ -63,7 +63,7 @@ void TableReader::fail(std::string_view key, std::string_view text) const {
 }
 
 void TableReader::fail_missing(std::string_view key, std::string_view allowed) const {
-  fail(key, fmt::format("missing, {}", allowed));
+  fail(key, fmt::format("missing, must be {}", allowed));
 }
 
 double TableReader::checked_number(std::string_view key, const toml::node& node, const Range& range) const {
@@ -84,7 +84,7 @@ std::optional<double> TableReader::number(std::string_view key, const Range& ran
 
 double TableReader::required_number(std::string_view key, const Range& range) {
   const std::optional<double> value = number(key, range);
-  if (!value) fail_missing(key, "must be " + range.text());
+  if (!value) fail_missing(key, range.text());
   return *value;
 }
 

@@ -65,7 +65,7 @@ class TableReader {
   }
   template <class Value>
   Value required_choice(std::string_view key, std::span<const Choice<Value>> choices) {
-    if (!has(key)) fail_missing(key, "must be " + choice_text(names_of(choices)));
+    if (!has(key)) fail_missing(key, choice_text(names_of(choices)));
     return *choice(key, choices);
   }
 

@@ -1,0 +1,98 @@
+#include "app/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+
+#include "app/output.h"
+#include "core/error.h"
+#include "core/version.h"
+
+namespace retrace::app {
+namespace {
+
+void add_common(CLI::App& app, CommonOptions& common) {
+  app.add_option("--json", common.json, "write the result as JSON to FILE; - is standard output")->type_name("FILE");
+  app.add_option("-o,--out", common.out, "write the result's files to folder DIR (init: to file FILE)")->type_name("DIR");
+  app.add_option("--threads", common.threads, "threads to use [all cores the process may use]")
+      ->type_name("N")
+      ->check(CLI::Range(1U, 4096U));
+  app.add_option("--seed", common.seed, "seed of the random numbers")->type_name("S")->capture_default_str();
+  app.add_option("--set", common.overrides, "override a key of the design, such as element.base_mm=0.4")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  app.add_flag("--quiet", common.quiet, "no progress bar, no table, no remarks");
+  app.set_version_flag("--version", std::string("retrace ") + kVersion, "show the version and leave");
+  app.set_help_flag("-h,--help", "show this help and leave");
+}
+
+void add_rre(CLI::App& app, RreOptions& rre) {
+  CLI::App* command = app.add_subcommand("rre", "retroreflective efficiency against angle");
+  command->add_option("DESIGN", rre.designs, "design files; - is standard input")->required();
+  command->add_option("--incidence", rre.incidence, "incidence angles in degrees: a,b,c and start:stop:step")
+      ->type_name("LIST")
+      ->capture_default_str();
+  command->add_option("--azimuth", rre.azimuth, "azimuths of the source in degrees, likewise")
+      ->type_name("LIST")
+      ->capture_default_str();
+  command->add_option("--engine", rre.engine, "auto, montecarlo or embree (exact, cell: not in this version)")
+      ->type_name("ENGINE")
+      ->capture_default_str();
+  auto* samples = command->add_option("--samples", rre.samples, "rays for each point [until the target error is reached]")
+                      ->type_name("N")
+                      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 36));
+  command->add_option("--target-error", rre.target_error, "standard error of RRE to reach, as a fraction")
+      ->type_name("E")
+      ->capture_default_str()
+      ->excludes(samples);
+  command->add_option("--cutoff", rre.cutoff, "least power that is followed, as a share of the incident power")
+      ->type_name("W")
+      ->capture_default_str();
+}
+
+/// CLI11 words its errors over several lines at times.
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+std::optional<CommandLine> read_command_line(int argc, const char* const* argv) {
+  CommandLine line;
+  CLI::App app("retrace: what a retroreflector array sends back, from its design file", "retrace");
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.get_formatter()->column_width(34);
+  add_common(app, line.common);
+  add_rre(app, line.rre);
+  app.add_subcommand("inspect", "what a design is: counts, areas, depth, limits of total reflection")
+      ->add_option("DESIGN", line.design, "design file; - is standard input")
+      ->required();
+  app.add_subcommand("init", "a commented design file to start from")
+      ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
+      ->required();
+  app.add_subcommand("list", "what is shipped")->add_option("WHAT", line.what, "materials")->required();
+  for (CLI::App* command : app.get_subcommands({})) {
+    command->fallthrough();
+    command->footer("Options of every command, before or after it: --json FILE, -o/--out DIR, --threads N [all cores],\n"
+                    "--seed S [1], --set KEY=VALUE (repeatable), --quiet, --version, --help");
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    print(app.help());
+    return std::nullopt;
+  } catch (const CLI::CallForVersion&) {
+    print(std::string("retrace ") + kVersion + "\n");
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(one_line(error.what()) + "; see retrace --help");
+  }
+  line.command = app.get_subcommands().front()->get_name();
+  return line;
+}
+
+}  // namespace retrace::app

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+
+namespace retrace::app {
+
+/// Options that every command has.
+struct CommonOptions {
+  std::string json;              ///< file for the JSON document; "-" is standard output; empty: none
+  std::string out;               ///< output folder; empty: none
+  std::optional<unsigned> threads;
+  std::uint32_t seed = 1;
+  std::vector<std::string> overrides;  ///< --set key=value
+  bool quiet = false;
+};
+
+struct RreOptions {
+  std::vector<std::string> designs;
+  std::string incidence = "0";
+  std::string azimuth = "0";
+  std::string engine = "auto";
+  std::optional<std::uint64_t> samples;
+  double target_error = 1e-4;
+  double cutoff = 1e-10;
+};
+
+/// What the user typed.
+struct CommandLine {
+  std::string command;
+  CommonOptions common;
+  RreOptions rre;
+  std::string design;  ///< inspect
+  std::string kind;    ///< init
+  std::string what;    ///< list
+};
+
+/// Reads the command line. Nothing is returned if help or the version was asked for: that is printed.
+/// \throw InputError for a usage error
+std::optional<CommandLine> read_command_line(int argc, const char* const* argv);
+
+}  // namespace retrace::app

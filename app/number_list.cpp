@@ -1,0 +1,87 @@
+#include "app/number_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace retrace::app {
+namespace {
+
+constexpr double kMostValues = 1e5;
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = text.find(separator, begin);
+    parts.push_back(text.substr(begin, end - begin));
+    if (end == std::string_view::npos) return parts;
+    begin = end + 1;
+  }
+}
+
+class ListReader {
+ public:
+  explicit ListReader(const std::string& option) : option_(option) {}
+
+  std::vector<double> values;
+
+  void read_item(std::string_view item) {
+    const auto parts = split(item, ':');
+    if (parts.size() == 1) {
+      add(number(parts[0], item));
+      return;
+    }
+    if (parts.size() != 3) fail(fmt::format("a range must be start:stop:step, got \"{}\"", item));
+    add_range(number(parts[0], item), number(parts[1], item), number(parts[2], item), item);
+  }
+
+  [[noreturn]] void fail(const std::string& text) const { throw InputError({"", 0, option_}, text); }
+
+ private:
+  double number(std::string_view text, std::string_view item) const {
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+      fail(fmt::format("must be numbers a,b,c or ranges start:stop:step, got \"{}\"", item));
+    return value;
+  }
+
+  void add_range(double start, double stop, double step, std::string_view item) {
+    if (step == 0.0) fail(fmt::format("the step of a range must not be 0, got \"{}\"", item));
+    const double steps = (stop - start) / step;
+    if (steps < 0.0) fail(fmt::format("the range runs away from its stop, got \"{}\"", item));
+    if (steps > kMostValues) fail(fmt::format("a range may have at most 100000 values, got \"{}\"", item));
+    // The stop belongs to the range although start + i * step may miss it by rounding.
+    const auto last = static_cast<long>(std::floor(steps + 1e-9 * std::max(1.0, steps)));
+    for (long i = 0; i <= last; ++i) {
+      const double value = start + static_cast<double>(i) * step;
+      const bool is_stop = std::abs(value - stop) <= 1e-9 * std::abs(step);
+      add(is_stop ? stop : value);
+    }
+  }
+
+  void add(double value) {
+    if (value == 0.0) value = 0.0;  // -0 is 0
+    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+  }
+
+  const std::string& option_;
+};
+
+}  // namespace
+
+std::vector<double> read_number_list(std::string_view text, const std::string& option) {
+  ListReader reader(option);
+  if (text.find_first_not_of(' ') == std::string_view::npos) reader.fail("the list is empty");
+  for (const std::string_view item : split(text, ',')) reader.read_item(item);
+  return reader.values;
+}
+
+}  // namespace retrace::app

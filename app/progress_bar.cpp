@@ -1,0 +1,38 @@
+#include "app/progress_bar.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace retrace::app {
+namespace {
+
+constexpr int kWidth = 30;
+constexpr std::chrono::milliseconds kRedraw{100};
+
+}  // namespace
+
+ProgressBar::ProgressBar(std::string what, bool enabled)
+    : what_(std::move(what)), enabled_(enabled && ::isatty(STDERR_FILENO) != 0) {}
+
+ProgressBar::~ProgressBar() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressBar::at(double share) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!enabled_ || (drawn_ && share < 1.0 && now - last_ < kRedraw)) return;
+  last_ = now;
+  drawn_ = true;
+  const auto full = static_cast<int>(std::lround(share * kWidth));
+  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
+  const double left_s = share > 0.0 ? elapsed_s * (1.0 - share) / share : 0.0;
+  fmt::print(stderr, "\r\033[K{} [{:=>{}}{:>{}}] {:3.0f} %  {:.0f} s left", what_, "", full, "", kWidth - full,
+             100.0 * share, left_s);
+  std::fflush(stderr);
+}
+
+}  // namespace retrace::app

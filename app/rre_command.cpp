@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/commands.h"
+#include "app/number_list.h"
+#include "app/output.h"
+#include "app/progress_bar.h"
+#include "raytrace/monte_carlo.h"
+#include "report/rre_plot.h"
+#include "studies/design/design_reader.h"
+#include "studies/rre/io/rre_files.h"
+
+namespace retrace::app {
+namespace {
+
+void check_share(double value, bool zero_allowed, const char* option) {
+  if (!(value > 0.0 && value < 1.0) && !(zero_allowed && value == 0.0))
+    throw InputError({"", 0, option},
+                     fmt::format("must lie between 0 {}and 1, got {}", zero_allowed ? "(included) " : "", value));
+}
+
+studies::RreRequest request_of(const CommandLine& line) {
+  studies::RreRequest request;
+  request.incidence_deg = read_number_list(line.rre.incidence, "--incidence");
+  request.azimuth_deg = read_number_list(line.rre.azimuth, "--azimuth");
+  request.engine = studies::engine_from_name(line.rre.engine);
+  request.rays = line.rre.samples;
+  check_share(line.rre.target_error, false, "--target-error");
+  check_share(line.rre.cutoff, true, "--cutoff");
+  request.target_error = line.rre.target_error;
+  request.cutoff = line.rre.cutoff;
+  request.seed = line.common.seed;
+  return request;
+}
+
+std::vector<studies::Design> designs_of(const CommandLine& line) {
+  if (std::count(line.rre.designs.begin(), line.rre.designs.end(), "-") > 1)
+    throw InputError("standard input can be read as one design only");
+  std::vector<studies::Design> designs;
+  for (const std::string& file : line.rre.designs) designs.push_back(studies::read_design(file, line.common.overrides));
+  return designs;
+}
+
+}  // namespace
+
+ExitCode run_rre_command(const CommandLine& line, const Cancellation& cancel) {
+  studies::RreRequest request = request_of(line);
+  const studies::RreStudy study(designs_of(line), std::move(request));
+  prepare_outputs(line.common);
+
+  studies::RreResult result;
+  {
+    ProgressBar bar("tracing", !line.common.quiet);
+    raytrace::run_with_threads(line.common.threads.value_or(0), [&] { result = study.run(&bar, &cancel); });
+  }
+  const std::string json = studies::rre_json(result);
+  std::vector<OutputFile> files;
+  if (!line.common.out.empty()) {
+    const report::LinePlot plot = report::rre_plot(result);
+    files = {{"rre.json", json},
+             {"rre.csv", studies::rre_csv(result)},
+             {"rre.svg", report::render_svg(plot)},
+             {"rre.png", report::render_png(plot)}};
+  }
+  write_outputs(line.common, json, files, studies::rre_table(result));
+  print_warnings(line.common, result.warnings);
+  if (!result.complete) {
+    fmt::print(stderr, "retrace: interrupted; what is written holds the {} finished points\n", result.points.size());
+    return ExitCode::interrupted;
+  }
+  return ExitCode::done;
+}
+
+}  // namespace retrace::app

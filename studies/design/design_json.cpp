@@ -1,0 +1,89 @@
+#include "studies/design/design_json.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/number_format.h"
+
+namespace retrace::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using namespace geometry;
+
+const char* name_of(Arrangement arrangement) {
+  switch (arrangement) {
+    case Arrangement::single: return "single";
+    case Arrangement::aligned: return "aligned";
+    case Arrangement::offset: return "offset";
+    case Arrangement::checker: return "checker";
+    case Arrangement::honeycomb: return "honeycomb";
+    case Arrangement::triangular: return "triangular";
+  }
+  return "";
+}
+
+struct ElementJson {
+  Json operator()(const RtpElement& e) const {
+    return {{"kind", "rtp"}, {"base_mm", e.base_mm}, {"width_mm", e.width_mm}, {"apex_angle_deg", e.apex_angle_deg}};
+  }
+  Json operator()(const HexagonalCube& e) const { return {{"kind", "hexagonal_icc"}, {"aperture_mm", e.aperture_mm}}; }
+  Json operator()(const TriangularCube& e) const { return {{"kind", "triangular_icc"}, {"aperture_mm", e.aperture_mm}}; }
+};
+
+Json array_json(const PartSpec& part) {
+  Json array = {{"arrangement", name_of(part.arrangement)}};
+  if (part.arrangement == Arrangement::single) return array;
+  array["extent"] = part.extent == Extent::infinite ? "infinite" : "finite";
+  if (part.extent == Extent::finite) {
+    array["x_length_mm"] = part.x_length_mm;
+    array["y_length_mm"] = part.y_length_mm;
+    array["x_offset_mm"] = part.x_offset_mm;
+    array["y_offset_mm"] = part.y_offset_mm;
+    array["partial_elements"] = part.partial_elements == PartialElements::cut ? "cut" : "omit";
+  }
+  if (std::holds_alternative<RtpElement>(part.element)) {
+    array["x_gap_mm"] = part.x_gap_mm;
+    array["y_gap_mm"] = part.y_gap_mm;
+  }
+  if (part.arrangement == Arrangement::offset) {
+    array["overlap_percent"] = part.overlap_percent;
+    array["shifted_rows"] = part.shifted_rows == RowParity::even ? "even" : "odd";
+  }
+  return array;
+}
+
+struct ElementName {
+  std::string operator()(const RtpElement& e) const {
+    return fmt::format("RTP {} x {} mm", shortest(e.base_mm), shortest(e.width_mm));
+  }
+  std::string operator()(const HexagonalCube& e) const { return fmt::format("hexagonal ICC {} mm", fixed(e.aperture_mm, 3)); }
+  std::string operator()(const TriangularCube& e) const { return fmt::format("triangular ICC {} mm", fixed(e.aperture_mm, 3)); }
+};
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const Design& design) {
+  Json body = {{"thickness_mm", design.part.thickness_mm}, {"material", design.material}};
+  if (design.refractive_index) body["refractive_index"] = *design.refractive_index;
+  if (design.absorption_per_mm) body["absorption_per_mm"] = *design.absorption_per_mm;
+  Json json = {{"source", design.source}};
+  if (!design.title.empty()) json["title"] = design.title;
+  json["element"] = std::visit(ElementJson{}, design.part.element);
+  json["array"] = array_json(design.part);
+  json["body"] = body;
+  json["light"] = {{"wavelength_nm", design.wavelength_nm}, {"polarisation", "unpolarised"}};
+  json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};
+  json["idealisation"] = {{"facets", design.idealisation.mirror_facets ? "mirror" : "real"},
+                          {"entrance", design.idealisation.lossless_entrance ? "lossless" : "real"}};
+  return json;
+}
+
+std::string short_name(const Design& design) {
+  if (!design.title.empty()) return design.title;
+  const std::string element = std::visit(ElementName{}, design.part.element);
+  return fmt::format("{}, {}", element, name_of(design.part.arrangement));
+}
+
+}  // namespace retrace::studies

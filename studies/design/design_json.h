@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "studies/design/design.h"
+
+namespace retrace::studies {
+
+/// The design as results quote it: the keys of the design file, defaults filled in, and the file it came from.
+nlohmann::ordered_json to_json(const Design& design);
+
+/// A short name for legends and tables: the title, or what kind of array it is and its size.
+std::string short_name(const Design& design);
+
+}  // namespace retrace::studies

@@ -1,0 +1,103 @@
+#include "studies/inspect/inspect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/angle.h"
+#include "geometry/check/boundary_check.h"
+#include "studies/design/optical_model.h"
+
+namespace retrace::studies {
+namespace {
+
+// Boundaries of more elements than this are checked on a smaller part of the same kind: CGAL needs seconds beyond.
+constexpr double kElementsToCheck = 1000.0;
+
+/// The incidence inside at which the facet that is hit at the flattest angle stops to reflect totally.
+double inner_limit_rad(const geometry::Element& element, double index) {
+  const double critical = std::asin(1.0 / index);
+  if (const auto* rtp = std::get_if<geometry::RtpElement>(&element)) {
+    // In the plane across the roof the angles of incidence on the two facets add up to the apex angle.
+    const double apex = Angle::from_deg(rtp->apex_angle_deg).rad();
+    const double first = Angle::from_deg(90.0).rad() - 0.5 * apex;
+    return std::min(first, apex - first) - critical;
+  }
+  // A cube corner's facets stand at acos(1/sqrt 3) to its axis, and reflections keep the direction's angles to them.
+  return std::acos(1.0 / std::sqrt(3.0)) - critical;
+}
+
+/// A finite part of the same elements that CGAL checks quickly: the design itself if it is small.
+geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_mm, bool& is_whole) {
+  geometry::PartSpec small = spec;
+  is_whole = spec.arrangement == geometry::Arrangement::single;
+  if (is_whole) return small;
+  if (spec.extent == geometry::Extent::finite &&
+      spec.x_length_mm * spec.y_length_mm < kElementsToCheck * element_mm * element_mm) {
+    is_whole = true;
+    return small;
+  }
+  const double gap = std::max(spec.x_gap_mm, spec.y_gap_mm);
+  double side = 0.0;
+  if (const auto* rtp = std::get_if<geometry::RtpElement>(&spec.element))
+    side = std::max(rtp->base_mm, rtp->width_mm);
+  else
+    side = 2.0 * element_mm;
+  small.extent = geometry::Extent::finite;
+  small.x_length_mm = 6.0 * (side + gap) + 2.0 * spec.x_offset_mm;
+  small.y_length_mm = 6.0 * (side + gap) + 2.0 * spec.y_offset_mm;
+  return small;
+}
+
+std::string boundary_finding(const geometry::PartSpec& spec, double element_mm) {
+  bool is_whole = false;
+  const geometry::Part part = geometry::build_part(part_to_check(spec, element_mm, is_whole));
+  if (part.placements.size() != 1) return "not checked: the elements differ too much in size from their array";
+  const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
+  const std::string finding = report.ok() ? "closed, free of self-intersections"
+                              : report.self_intersects ? "crosses itself"
+                                                       : "not closed";
+  return is_whole ? finding : finding + " (checked on a smaller array of the same elements)";
+}
+
+void add_warnings(Inspection& result, const geometry::Part& part) {
+  if (!result.tir_limit_deg && !result.design.idealisation.mirror_facets)
+    result.warnings.push_back(fmt::format("{}: no total reflection at the facets at normal incidence (n = {:.4f})",
+                                          result.design.source, result.refractive_index));
+  if (part.elements_partial > 0 && part.spec.partial_elements == geometry::PartialElements::cut)
+    result.warnings.push_back(
+        fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
+                    result.design.source, part.elements_partial));
+}
+
+}  // namespace
+
+std::optional<double> tir_limit_deg(const geometry::Element& element, double index) {
+  const double inside = inner_limit_rad(element, index);
+  if (!(inside >= 0.0)) return std::nullopt;
+  const double sine = index * std::sin(inside);
+  return sine >= 1.0 ? 90.0 : Angle::from_rad(std::asin(sine)).deg();
+}
+
+Inspection inspect(const Design& design, const materials::MaterialLibrary& library) {
+  const OpticalModel model = make_model(design, library);
+  const geometry::Part& part = model.part;
+  Inspection result;
+  result.design = design;
+  result.elements_full = part.elements_full;
+  result.elements_partial = part.elements_partial;
+  result.element_depth_mm = part.element_depth_mm;
+  result.facet_area_mm2 = part.retro_facet_area_mm2;
+  result.entrance_area_mm2 = part.entrance_area_mm2;
+  const double aperture = geometry::area(geometry::aperture_outline(design.part.element));
+  result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
+  result.refractive_index = model.optics.index;
+  result.tir_limit_deg = tir_limit_deg(design.part.element, model.optics.index);
+  result.boundary = boundary_finding(design.part, part.size_mm);
+  result.warnings = model.warnings;
+  add_warnings(result, part);
+  return result;
+}
+
+}  // namespace retrace::studies

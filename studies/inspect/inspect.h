@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "materials/io/material_library.h"
+#include "studies/design/design.h"
+
+namespace retrace::studies {
+
+/// What a design is, before any light is traced. Areas and counts of an infinite array are those of one period.
+struct Inspection {
+  Design design;
+  std::int64_t elements_full = 0;
+  std::int64_t elements_partial = 0;
+  double element_depth_mm = 0.0;
+  double facet_area_mm2 = 0.0;    ///< of all retro facets, partial elements included
+  double entrance_area_mm2 = 0.0;
+  double full_element_share = 0.0;  ///< of the entrance area
+  double refractive_index = 1.0;
+  /// Largest incidence up to which the retroreflected light is totally reflected at every facet: across the roof edge for
+  /// an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence.
+  std::optional<double> tir_limit_deg;
+  double dead_zone_share = 0.0;  ///< of the facet area that edge rounding takes
+  std::string boundary;          ///< what the check of the boundary found
+  std::vector<std::string> warnings;
+};
+
+/// Largest incidence of total reflection for an element of this index; closed form. \pre index >= 1
+std::optional<double> tir_limit_deg(const geometry::Element& element, double index);
+
+/// \throw InputError as make_model()
+Inspection inspect(const Design& design, const materials::MaterialLibrary& library);
+
+}  // namespace retrace::studies

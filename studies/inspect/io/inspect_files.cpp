@@ -1,0 +1,53 @@
+#include "studies/inspect/io/inspect_files.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/json_text.h"
+#include "core/number_format.h"
+#include "core/version.h"
+#include "studies/design/design_json.h"
+
+namespace retrace::studies {
+
+std::string inspect_json(const Inspection& i) {
+  nlohmann::ordered_json json = {{"schema", "retrace.inspect/1"},
+                                 {"design", to_json(i.design)},
+                                 {"elements_full", i.elements_full},
+                                 {"elements_partial", i.elements_partial},
+                                 {"element_depth_mm", i.element_depth_mm},
+                                 {"facet_area_mm2", i.facet_area_mm2},
+                                 {"entrance_area_mm2", i.entrance_area_mm2},
+                                 {"full_element_share", i.full_element_share},
+                                 {"refractive_index", i.refractive_index}};
+  if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
+  json["dead_zone_share"] = i.dead_zone_share;
+  json["boundary"] = i.boundary;
+  json["version"] = kVersion;
+  json["warnings"] = i.warnings;
+  json["complete"] = true;
+  return to_text(json);
+}
+
+std::string inspect_text(const Inspection& i) {
+  const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part.element);
+  const bool infinite = i.design.part.extent == geometry::Extent::infinite;
+  const char* per_period = infinite ? " per period" : "";
+  std::string text = fmt::format("{}\n", short_name(i.design));
+  text += fmt::format("  elements            {} full, {} partial{}\n", i.elements_full, i.elements_partial, per_period);
+  text += fmt::format("  element depth       {} mm\n", fixed(i.element_depth_mm, 6));
+  text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
+  text += fmt::format("  full elements       {} % of it\n", fixed(100.0 * i.full_element_share, 3));
+  text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
+  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), shortest(i.design.wavelength_nm));
+  text += fmt::format("  total reflection    {}\n",
+                      i.tir_limit_deg ? fmt::format("up to {} degrees {}", fixed(*i.tir_limit_deg, 2),
+                                                    is_rtp ? "across the roof edge" : "at every azimuth")
+                                      : std::string("none at normal incidence"));
+  text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_share, 3));
+  text += fmt::format("  boundary            {}\n", i.boundary);
+  return text;
+}
+
+}  // namespace retrace::studies

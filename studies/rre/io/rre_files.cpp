@@ -1,0 +1,90 @@
+#include "studies/rre/io/rre_files.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/json_text.h"
+#include "core/number_format.h"
+#include "core/version.h"
+#include "studies/design/design_json.h"
+
+namespace retrace::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using raytrace::kAccountCount;
+using raytrace::kAccountNames;
+
+Json ledger_json(const raytrace::Ledger& ledger) {
+  Json json = Json::object();
+  for (std::size_t k = 0; k < kAccountCount; ++k) json[std::string(kAccountNames[k])] = ledger.power[k];
+  return json;
+}
+
+bool has_several_cones(const RreResult& result) {
+  for (const Design& design : result.designs)
+    if (design.acceptance_half_angle_deg.size() > 1) return true;
+  return false;
+}
+
+}  // namespace
+
+std::string rre_json(const RreResult& result) {
+  Json json = {{"schema", "retrace.rre/1"}, {"engine", result.engine}, {"engine_requested", result.engine_requested}};
+  json["designs"] = Json::array();
+  for (const Design& design : result.designs) json["designs"].push_back(to_json(design));
+  json["seed"] = result.seed;
+  json["points"] = Json::array();
+  for (const RrePoint& p : result.points)
+    json["points"].push_back({{"design", p.design},
+                              {"incidence_deg", p.incidence_deg},
+                              {"azimuth_deg", p.azimuth_deg},
+                              {"wavelength_nm", p.wavelength_nm},
+                              {"acceptance_half_angle_deg", p.acceptance_half_angle_deg},
+                              {"rre", p.rre},
+                              {"std_error", p.std_error},
+                              {"ledger", ledger_json(p.ledger)}});
+  json["elapsed_s"] = result.elapsed_s;
+  json["rays"] = result.rays;
+  json["version"] = kVersion;
+  json["warnings"] = result.warnings;
+  json["complete"] = result.complete;
+  return to_text(json);
+}
+
+std::string rre_csv(const RreResult& result) {
+  std::string csv = "design,incidence_deg,azimuth_deg,wavelength_nm,acceptance_half_angle_deg,rre,std_error";
+  for (const auto name : kAccountNames) csv += fmt::format(",{}", name);
+  csv += '\n';
+  for (const RrePoint& p : result.points) {
+    csv += std::to_string(p.design);
+    for (const double value : {p.incidence_deg, p.azimuth_deg, p.wavelength_nm, p.acceptance_half_angle_deg, p.rre, p.std_error})
+      csv += ',' + shortest(value);
+    for (const double power : p.ledger.power) csv += ',' + shortest(power);
+    csv += '\n';
+  }
+  return csv;
+}
+
+std::string rre_table(const RreResult& result) {
+  const bool several_designs = result.designs.size() > 1;
+  const bool several_cones = has_several_cones(result);
+  std::string table;
+  if (several_designs)
+    for (std::size_t d = 0; d < result.designs.size(); ++d)
+      table += fmt::format("design {}: {}\n", d, short_name(result.designs[d]));
+  if (several_designs) table += "design  ";
+  table += "incidence_deg  azimuth_deg  ";
+  if (several_cones) table += "acceptance_deg  ";
+  table += "    RRE_%  +-_%\n";
+  for (const RrePoint& p : result.points) {
+    if (several_designs) table += fmt::format("{:>6}  ", p.design);
+    table += fmt::format("{:>13}  {:>11}  ", shortest(p.incidence_deg), shortest(p.azimuth_deg));
+    if (several_cones) table += fmt::format("{:>14}  ", shortest(p.acceptance_half_angle_deg));
+    table += fmt::format("{:>9}  {}\n", fixed(100.0 * p.rre, 4), fixed(100.0 * p.std_error, 4));
+  }
+  return table;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/ledger.h"
+#include "studies/design/design.h"
+
+namespace retrace::studies {
+
+/// Which tracer is asked for. `exact` and `cell` are part of the contract but not served by this version.
+enum class Engine { automatic, exact, montecarlo, cell, embree };
+
+/// \throw InputError listing the engines for a name that is none of them
+Engine engine_from_name(std::string_view name);
+std::string_view engine_name(Engine engine);
+
+/// What is asked: retroreflective efficiency over a grid of directions.
+struct RreRequest {
+  std::vector<double> incidence_deg = {0.0};  ///< each in (-90, 90)
+  std::vector<double> azimuth_deg = {0.0};
+  Engine engine = Engine::automatic;
+  std::optional<std::uint64_t> rays;  ///< per point; else until target_error is reached
+  double target_error = 1e-4;         ///< standard error of RRE as a fraction
+  double cutoff = 1e-10;              ///< least power followed, as a share of the incident
+  std::uint32_t seed = 1;
+};
+
+struct RrePoint {
+  std::size_t design = 0;
+  double incidence_deg = 0.0;
+  double azimuth_deg = 0.0;
+  double wavelength_nm = 0.0;
+  double acceptance_half_angle_deg = 0.0;
+  double rre = 0.0;
+  double std_error = 0.0;
+  raytrace::Ledger ledger;
+};
+
+struct RreResult {
+  std::vector<Design> designs;
+  std::string engine = "embree";  ///< that ran
+  std::string engine_requested;
+  std::uint32_t seed = 1;
+  std::vector<RrePoint> points;  ///< in the order design, wavelength, azimuth, incidence, acceptance
+  std::uint64_t rays = 0;
+  double elapsed_s = 0.0;
+  std::vector<std::string> warnings;
+  bool complete = true;
+};
+
+/// A checked request, ready to run: everything that can be wrong with the input has been found once this exists.
+class RreStudy {
+ public:
+  /// \throw InputError for an engine that this version lacks, a direction out of range, an unknown material
+  RreStudy(std::vector<Design> designs, RreRequest request);
+  ~RreStudy();
+
+  /// RRE of every design at every direction. \throw BudgetError if power was lost
+  RreResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
+
+ private:
+  struct Prepared;
+  std::unique_ptr<Prepared> prepared_;
+};
+
+}  // namespace retrace::studies
