@@ -244,7 +244,7 @@ Design read_design(const fs::path& file, std::span<const std::string> overrides)
   if (file != "-") return parse_design(read_text(file), file.string(), overrides);
   const std::string name = "standard input";
   Design design = parse_design(read_stream(std::cin, name), name, overrides);
-  design.source = "-";
+  design.source = file.string();
   return design;
 }
 

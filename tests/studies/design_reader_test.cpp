@@ -78,7 +78,7 @@ Design set(const std::vector<std::string>& overrides) {
 /// A design of one element kind: `element` and `array` hold the lines of these tables, separated by "; ".
 std::string design_of(std::string element, std::string array) {
   const auto in_lines = [](std::string text) {
-    for (std::size_t at; (at = text.find("; ")) != std::string::npos;) text.replace(at, 2, "\n");
+    for (std::size_t at; (at = text.find("; ")) != std::string::npos;) text.replace(at, 2, 1, '\n');
     return text + "\n";
   };
   return "[element]\n" + in_lines(element) + "[array]\n" + in_lines(array) + "[body]\nthickness_mm = 1\n";
