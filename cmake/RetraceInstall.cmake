@@ -3,6 +3,7 @@
 file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/share")
 file(CREATE_LINK "${PROJECT_SOURCE_DIR}/data" "${PROJECT_BINARY_DIR}/share/retrace" SYMBOLIC)
 
+install(TARGETS retrace RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 # Not CMAKE_INSTALL_DATADIR, which may be moved: the program looks for this folder relative to itself.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/" DESTINATION share/retrace)
 install(FILES "${PROJECT_SOURCE_DIR}/docs/man/retrace.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
