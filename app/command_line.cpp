@@ -1,8 +1,11 @@
 #include "app/command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
+#include <charconv>
+#include <limits>
 
 #include "app/output.h"
 #include "core/error.h"
@@ -11,13 +14,48 @@
 namespace retrace::app {
 namespace {
 
+/// Whole numbers in decimal: CLI11 alone would read 010 as eight.
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+  const auto check = [low, high](const std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_number =
+        error == std::errc{} && end == text.data() + text.size() && (text.size() == 1 || text.front() != '0');
+    if (is_number && value >= low && value <= high) return {};
+    return fmt::format("must be a whole number from {} to {}, got {}", low, high, text);
+  };
+  return {check, "", "WHOLE"};
+}
+
+CLI::Validator real_number() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc{} && end == text.data() + text.size()) return {};
+    return fmt::format("must be a number, got {}", text);
+  };
+  return {check, "", "REAL"};
+}
+
+/// An empty name is what an unset variable of the shell leaves: better refused than taken for no name.
+CLI::Validator not_empty() {
+  return {[](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "", "NAME"};
+}
+
 void add_common(CLI::App& app, CommonOptions& common) {
-  app.add_option("--json", common.json, "write the result as JSON to FILE; - is standard output")->type_name("FILE");
-  app.add_option("-o,--out", common.out, "write the result's files to folder DIR (init: to file FILE)")->type_name("DIR");
+  app.add_option("--json", common.json, "write the result as JSON to FILE; - is standard output")
+      ->type_name("FILE")
+      ->check(not_empty());
+  app.add_option("-o,--out", common.out, "write the result's files to folder DIR (init: to file FILE)")
+      ->type_name("DIR")
+      ->check(not_empty());
   app.add_option("--threads", common.threads, "threads to use [all cores the process may use]")
       ->type_name("N")
-      ->check(CLI::Range(1U, 4096U));
-  app.add_option("--seed", common.seed, "seed of the random numbers")->type_name("S")->capture_default_str();
+      ->check(whole_number(1, 4096));
+  app.add_option("--seed", common.seed, "seed of the random numbers")
+      ->type_name("S")
+      ->capture_default_str()
+      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
   app.add_option("--set", common.overrides, "override a key of the design, such as element.base_mm=0.4")
       ->type_name("KEY=VALUE")
       ->take_all()
@@ -29,7 +67,7 @@ void add_common(CLI::App& app, CommonOptions& common) {
 
 void add_rre(CLI::App& app, RreOptions& rre) {
   CLI::App* command = app.add_subcommand("rre", "retroreflective efficiency against angle");
-  command->add_option("DESIGN", rre.designs, "design files; - is standard input")->required();
+  command->add_option("DESIGN", rre.designs, "design files; - is standard input")->required()->check(not_empty());
   command->add_option("--incidence", rre.incidence, "incidence angles in degrees: a,b,c and start:stop:step")
       ->type_name("LIST")
       ->capture_default_str();
@@ -39,16 +77,30 @@ void add_rre(CLI::App& app, RreOptions& rre) {
   command->add_option("--engine", rre.engine, "auto, montecarlo or embree (exact, cell: not in this version)")
       ->type_name("ENGINE")
       ->capture_default_str();
-  auto* samples = command->add_option("--samples", rre.samples, "rays for each point [until the target error is reached]")
-                      ->type_name("N")
-                      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 36));
+  auto* samples =
+      command->add_option("--samples", rre.samples, "rays for each point [until the target error is reached]")
+          ->type_name("N")
+          ->check(whole_number(1, std::uint64_t{1} << 36));
   command->add_option("--target-error", rre.target_error, "standard error of RRE to reach, as a fraction")
       ->type_name("E")
       ->capture_default_str()
+      ->check(real_number())
       ->excludes(samples);
   command->add_option("--cutoff", rre.cutoff, "least power that is followed, as a share of the incident power")
       ->type_name("W")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(real_number());
+}
+
+/// What to say if a command or what it needs is missing: a word that nobody knows explains it better.
+std::string missing(const CLI::App& app, const std::string& otherwise) {
+  const std::vector<std::string> unknown = app.remaining(true);
+  for (const std::string& word : unknown)
+    if (word.starts_with('-')) return "unknown option " + word;
+  if (!app.get_subcommands().empty()) return otherwise;
+  const std::string commands = "rre, inspect, init and list";
+  return unknown.empty() ? "a command is required: there are " + commands
+                         : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
 
 /// CLI11 words its errors over several lines at times.
@@ -70,15 +122,17 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_rre(app, line.rre);
   app.add_subcommand("inspect", "what a design is: counts, areas, depth, limits of total reflection")
       ->add_option("DESIGN", line.design, "design file; - is standard input")
-      ->required();
+      ->required()
+      ->check(not_empty());
   app.add_subcommand("init", "a commented design file to start from")
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
       ->required();
   app.add_subcommand("list", "what is shipped")->add_option("WHAT", line.what, "materials")->required();
   for (CLI::App* command : app.get_subcommands({})) {
     command->fallthrough();
-    command->footer("Options of every command, before or after it: --json FILE, -o/--out DIR, --threads N [all cores],\n"
-                    "--seed S [1], --set KEY=VALUE (repeatable), --quiet, --version, --help");
+    command->footer(
+        "Options of every command, before or after it: --json FILE, -o/--out DIR, --threads N [all cores],\n"
+        "--seed S [1], --set KEY=VALUE (repeatable), --quiet, --version, --help");
   }
   try {
     app.parse(argc, argv);
@@ -88,6 +142,8 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   } catch (const CLI::CallForVersion&) {
     print(std::string("retrace ") + kVersion + "\n");
     return std::nullopt;
+  } catch (const CLI::RequiredError& error) {
+    throw InputError(missing(app, one_line(error.what())) + "; see retrace --help");
   } catch (const CLI::ParseError& error) {
     throw InputError(one_line(error.what()) + "; see retrace --help");
   }

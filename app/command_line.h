@@ -5,13 +5,12 @@
 #include <string>
 #include <vector>
 
-
 namespace retrace::app {
 
 /// Options that every command has.
 struct CommonOptions {
-  std::string json;              ///< file for the JSON document; "-" is standard output; empty: none
-  std::string out;               ///< output folder; empty: none
+  std::string json;  ///< file for the JSON document; "-" is standard output; empty: none
+  std::string out;   ///< output folder; empty: none
   std::optional<unsigned> threads;
   std::uint32_t seed = 1;
   std::vector<std::string> overrides;  ///< --set key=value

@@ -2,13 +2,12 @@
 
 #include "app/command_line.h"
 #include "core/error.h"
-#include "core/progress.h"
 
 namespace retrace::app {
 
 // One function a command. Each returns the exit code or throws retrace::Error.
 
-ExitCode run_rre_command(const CommandLine& line, const Cancellation& cancel);
+ExitCode run_rre_command(const CommandLine& line);
 ExitCode run_inspect_command(const CommandLine& line);
 ExitCode run_init_command(const CommandLine& line);
 ExitCode run_list_command(const CommandLine& line);

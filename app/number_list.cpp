@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <unordered_set>
 
 #include "core/error.h"
 
 namespace retrace::app {
 namespace {
 
-constexpr double kMostValues = 1e5;
+constexpr std::size_t kMostValues = 100000;
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -57,7 +58,8 @@ class ListReader {
     if (step == 0.0) fail(fmt::format("the step of a range must not be 0, got \"{}\"", item));
     const double steps = (stop - start) / step;
     if (steps < 0.0) fail(fmt::format("the range runs away from its stop, got \"{}\"", item));
-    if (steps > kMostValues) fail(fmt::format("a range may have at most 100000 values, got \"{}\"", item));
+    if (steps > static_cast<double>(kMostValues))
+      fail(fmt::format("a range may have at most {} values, got \"{}\"", kMostValues, item));
     // The stop belongs to the range although start + i * step may miss it by rounding.
     const auto last = static_cast<long>(std::floor(steps + 1e-9 * std::max(1.0, steps)));
     for (long i = 0; i <= last; ++i) {
@@ -69,10 +71,13 @@ class ListReader {
 
   void add(double value) {
     if (value == 0.0) value = 0.0;  // -0 is 0
-    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+    if (!seen_.insert(value).second) return;
+    if (values.size() == kMostValues) fail(fmt::format("a list may have at most {} values", kMostValues));
+    values.push_back(value);
   }
 
   const std::string& option_;
+  std::unordered_set<double> seen_;
 };
 
 }  // namespace

@@ -6,9 +6,9 @@
 
 namespace retrace::app {
 
-/// Reads a LIST: `a,b,c` mixed with `start:stop:step`, stop included; values are start + i * step, duplicates are dropped.
-/// \param option name for messages \throw InputError for an empty list, text that is no finite number, a range that runs
-/// the wrong way or has more than 100,000 values
+/// Reads a LIST: `a,b,c` mixed with `start:stop:step`, stop included; values are start + i * step, duplicates are
+/// dropped. \param option name for messages \throw InputError for an empty list, text that is no finite number, a range
+/// that runs the wrong way, or more than 100,000 values
 std::vector<double> read_number_list(std::string_view text, const std::string& option);
 
 }  // namespace retrace::app

@@ -20,8 +20,12 @@ void prepare_outputs(const CommonOptions& options) {
   if (!options.json.empty() && options.json != "-") {
     const fs::path folder = fs::absolute(options.json).parent_path();
     if (fs::is_directory(options.json)) throw OutputError(options.json + ": cannot be written: it is a folder");
-    if (!fs::is_directory(folder)) throw OutputError(options.json + ": cannot be written: there is no such folder");
-    if (::access(folder.c_str(), W_OK) != 0) throw OutputError(options.json + ": cannot be written: no permission");
+    const auto parent = [](const std::string& path) { return fs::absolute(path).lexically_normal().parent_path(); };
+    const bool to_be_made = !options.out.empty() && parent(options.json) == parent(options.out + "/");
+    if (!fs::is_directory(folder) && !to_be_made)
+      throw OutputError(options.json + ": cannot be written: there is no such folder");
+    if (!to_be_made && ::access(folder.c_str(), W_OK) != 0)
+      throw OutputError(options.json + ": cannot be written: no permission");
   }
   if (!options.out.empty()) make_output_folder(options.out);
 }

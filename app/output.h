@@ -22,8 +22,8 @@ struct OutputFile {
 /// \throw OutputError
 void prepare_outputs(const CommonOptions& options);
 
-/// Writes the JSON document and the files where the options want them, and the text to standard output if neither `--quiet`
-/// nor `--json -` forbids it. \throw OutputError
+/// Writes the JSON document and the files where the options want them, and the text to standard output if neither
+/// `--quiet` nor `--json -` forbids it. \throw OutputError
 void write_outputs(const CommonOptions& options, std::string_view json, const std::vector<OutputFile>& files,
                    std::string_view text);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
@@ -46,15 +47,17 @@ std::vector<studies::Design> designs_of(const CommandLine& line) {
 
 }  // namespace
 
-ExitCode run_rre_command(const CommandLine& line, const Cancellation& cancel) {
+ExitCode run_rre_command(const CommandLine& line) {
   studies::RreRequest request = request_of(line);
   const studies::RreStudy study(designs_of(line), std::move(request));
+  const OrderlyInterrupt interrupt;
   prepare_outputs(line.common);
 
   studies::RreResult result;
   {
     ProgressBar bar("tracing", !line.common.quiet);
-    raytrace::run_with_threads(line.common.threads.value_or(0), [&] { result = study.run(&bar, &cancel); });
+    raytrace::run_with_threads(line.common.threads.value_or(0),
+                               [&] { result = study.run(&bar, &interrupt.cancellation()); });
   }
   const std::string json = studies::rre_json(result);
   std::vector<OutputFile> files;
@@ -68,7 +71,7 @@ ExitCode run_rre_command(const CommandLine& line, const Cancellation& cancel) {
   write_outputs(line.common, json, files, studies::rre_table(result));
   print_warnings(line.common, result.warnings);
   if (!result.complete) {
-    fmt::print(stderr, "retrace: interrupted; what is written holds the {} finished points\n", result.points.size());
+    fmt::print(stderr, "retrace: interrupted; finished points: {}\n", result.points.size());
     return ExitCode::interrupted;
   }
   return ExitCode::done;

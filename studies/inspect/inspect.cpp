@@ -55,7 +55,7 @@ std::string boundary_finding(const geometry::PartSpec& spec, double element_mm) 
   const geometry::Part part = geometry::build_part(part_to_check(spec, element_mm, is_whole));
   if (part.placements.size() != 1) return "not checked: the elements differ too much in size from their array";
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
-  const std::string finding = report.ok() ? "closed, free of self-intersections"
+  const std::string finding = report.ok()              ? "closed, free of self-intersections"
                               : report.self_intersects ? "crosses itself"
                                                        : "not closed";
   return is_whole ? finding : finding + " (checked on a smaller array of the same elements)";

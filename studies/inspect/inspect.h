@@ -16,12 +16,12 @@ struct Inspection {
   std::int64_t elements_full = 0;
   std::int64_t elements_partial = 0;
   double element_depth_mm = 0.0;
-  double facet_area_mm2 = 0.0;    ///< of all retro facets, partial elements included
+  double facet_area_mm2 = 0.0;  ///< of all retro facets, partial elements included
   double entrance_area_mm2 = 0.0;
   double full_element_share = 0.0;  ///< of the entrance area
   double refractive_index = 1.0;
-  /// Largest incidence up to which the retroreflected light is totally reflected at every facet: across the roof edge for
-  /// an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence.
+  /// Largest incidence up to which the retroreflected light is totally reflected at every facet: across the roof edge
+  /// for an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence.
   std::optional<double> tir_limit_deg;
   double dead_zone_share = 0.0;  ///< of the facet area that edge rounding takes
   std::string boundary;          ///< what the check of the boundary found

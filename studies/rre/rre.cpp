@@ -16,15 +16,16 @@ namespace retrace::studies {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, Engine>, 5> kEngines = {{{"auto", Engine::automatic},
-                                                                        {"exact", Engine::exact},
-                                                                        {"montecarlo", Engine::montecarlo},
-                                                                        {"cell", Engine::cell},
-                                                                        {"embree", Engine::embree}}};
+                                                                          {"exact", Engine::exact},
+                                                                          {"montecarlo", Engine::montecarlo},
+                                                                          {"cell", Engine::cell},
+                                                                          {"embree", Engine::embree}}};
 
 void check(const RreRequest& request) {
   if (request.engine == Engine::exact || request.engine == Engine::cell)
-    throw InputError({"", 0, "--engine"}, fmt::format("{} is not available in this version; there are auto, montecarlo, embree",
-                                                      engine_name(request.engine)));
+    throw InputError({"", 0, "--engine"},
+                     fmt::format("{} is not available in this version; there are auto, montecarlo, embree",
+                                 engine_name(request.engine)));
   for (const double t : request.incidence_deg)
     if (!(std::abs(t) < 90.0))
       throw InputError({"", 0, "--incidence"}, fmt::format("must lie between -90 and 90 degrees, got {}", shortest(t)));

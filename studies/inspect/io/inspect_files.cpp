@@ -8,6 +8,7 @@
 #include "core/number_format.h"
 #include "core/version.h"
 #include "studies/design/design_json.h"
+#include "studies/design/message_text.h"
 
 namespace retrace::studies {
 
@@ -34,13 +35,14 @@ std::string inspect_text(const Inspection& i) {
   const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part.element);
   const bool infinite = i.design.part.extent == geometry::Extent::infinite;
   const char* per_period = infinite ? " per period" : "";
-  std::string text = fmt::format("{}\n", short_name(i.design));
+  std::string text = fmt::format("{}\n", printable(short_name(i.design)));
   text += fmt::format("  elements            {} full, {} partial{}\n", i.elements_full, i.elements_partial, per_period);
   text += fmt::format("  element depth       {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
   text += fmt::format("  full elements       {} % of it\n", fixed(100.0 * i.full_element_share, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
-  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), shortest(i.design.wavelength_nm));
+  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5),
+                      shortest(i.design.wavelength_nm));
   text += fmt::format("  total reflection    {}\n",
                       i.tir_limit_deg ? fmt::format("up to {} degrees {}", fixed(*i.tir_limit_deg, 2),
                                                     is_rtp ? "across the roof edge" : "at every azimuth")

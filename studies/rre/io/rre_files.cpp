@@ -8,6 +8,7 @@
 #include "core/number_format.h"
 #include "core/version.h"
 #include "studies/design/design_json.h"
+#include "studies/design/message_text.h"
 
 namespace retrace::studies {
 namespace {
@@ -59,7 +60,8 @@ std::string rre_csv(const RreResult& result) {
   csv += '\n';
   for (const RrePoint& p : result.points) {
     csv += std::to_string(p.design);
-    for (const double value : {p.incidence_deg, p.azimuth_deg, p.wavelength_nm, p.acceptance_half_angle_deg, p.rre, p.std_error})
+    for (const double value :
+         {p.incidence_deg, p.azimuth_deg, p.wavelength_nm, p.acceptance_half_angle_deg, p.rre, p.std_error})
       csv += ',' + shortest(value);
     for (const double power : p.ledger.power) csv += ',' + shortest(power);
     csv += '\n';
@@ -73,7 +75,7 @@ std::string rre_table(const RreResult& result) {
   std::string table;
   if (several_designs)
     for (std::size_t d = 0; d < result.designs.size(); ++d)
-      table += fmt::format("design {}: {}\n", d, short_name(result.designs[d]));
+      table += fmt::format("design {}: {}\n", d, printable(short_name(result.designs[d])));
   if (several_designs) table += "design  ";
   table += "incidence_deg  azimuth_deg  ";
   if (several_cones) table += "acceptance_deg  ";
