@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.h"
@@ -22,6 +23,9 @@ Json ledger_json(const raytrace::Ledger& ledger) {
   for (std::size_t k = 0; k < kAccountCount; ++k) json[std::string(kAccountNames[k])] = ledger.power[k];
   return json;
 }
+
+/// Empty where the JSON leaves the key out.
+std::string csv_number(double value) { return std::isfinite(value) ? shortest(value) : std::string(); }
 
 bool has_several_cones(const RreResult& result) {
   for (const Design& design : result.designs)
@@ -62,8 +66,8 @@ std::string rre_csv(const RreResult& result) {
     csv += std::to_string(p.design);
     for (const double value :
          {p.incidence_deg, p.azimuth_deg, p.wavelength_nm, p.acceptance_half_angle_deg, p.rre, p.std_error})
-      csv += ',' + shortest(value);
-    for (const double power : p.ledger.power) csv += ',' + shortest(power);
+      csv += ',' + csv_number(value);
+    for (const double power : p.ledger.power) csv += ',' + csv_number(power);
     csv += '\n';
   }
   return csv;

@@ -1,0 +1,249 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/app/program.h"
+
+// What is refused, and how: one line that says where, exit code 2, nothing written. And what cannot be written: 3.
+
+namespace retrace::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A valid design, so that cases can speak of line numbers.
+const std::vector<std::string> kLines = {
+    "[element]",                 // 1
+    "kind = \"rtp\"",            // 2
+    "base_mm = 0.5",             // 3
+    "width_mm = 0.5",            // 4
+    "apex_angle_deg = 90",       // 5
+    "[array]",                   // 6
+    "arrangement = \"offset\"",  // 7
+    "x_length_mm = 10",          // 8
+    "y_length_mm = 10",          // 9
+    "[body]",                    // 10
+    "thickness_mm = 2.0",        // 11
+    "refractive_index = 1.49",   // 12
+};
+
+std::string design_with(std::size_t number, const std::string& line) {
+  std::string text;
+  for (std::size_t k = 0; k < kLines.size(); ++k) text += (k + 1 == number ? line : kLines[k]) + "\n";
+  return text;
+}
+
+void expect_one_line(const Outcome& outcome, int code, const std::string& begin) {
+  EXPECT_EQ(outcome.code, code);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err << "should begin: " << begin;
+}
+
+struct BadLine {
+  std::size_t number;
+  std::string line;
+  std::string where;
+};
+
+TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
+  const std::vector<BadLine> cases = {
+      {3, "base_mn = 0.5", "d.toml:3: element.base_mn: "},                             // unknown key
+      {10, "[bodi]", "d.toml:10: bodi: "},                                             // unknown table
+      {3, "base_mm = \"0.5\"", "d.toml:3: element.base_mm: "},                         // wrong type
+      {7, "arrangement = 3", "d.toml:7: array.arrangement: "},                         //
+      {3, "", "d.toml:1: element.base_mm: missing"},                                   // missing key
+      {11, "", "d.toml:10: body.thickness_mm: missing"},                               //
+      {9, "", "d.toml:6: array.y_length_mm: missing"},                                 //
+      {3, "base_mm = 0", "d.toml:3: element.base_mm: "},                               // size zero
+      {3, "base_mm = -0.5", "d.toml:3: element.base_mm: "},                            // negative
+      {11, "thickness_mm = -1", "d.toml:11: body.thickness_mm: "},                     //
+      {3, "base_mm = inf", "d.toml:3: element.base_mm: "},                             // not finite
+      {4, "width_mm = nan", "d.toml:4: element.width_mm: "},                           //
+      {8, "x_length_mm = -inf", "d.toml:8: array.x_length_mm: "},                      //
+      {5, "apex_angle_deg = 59.9", "d.toml:5: element.apex_angle_deg: "},              // outside 60..120
+      {5, "apex_angle_deg = 120.1", "d.toml:5: element.apex_angle_deg: "},             //
+      {12, "refractive_index = 0.99", "d.toml:12: body.refractive_index: "},           // n < 1
+      {8, "x_length_mm = 0.4", "d.toml:8: array.x_length_mm: "},                       // smaller than an element
+      {9, "y_length_mm = 0.4", "d.toml:9: array.y_length_mm: "},                       //
+      {12, "material = \"Glas\"", "d.toml:12: body.material: "},                       // unknown material
+      {7, "arrangement = \"honeycomb\"", "d.toml:7: array.arrangement: "},             // of another kind
+      {2, "kind = \"prism\"", "d.toml:2: element.kind: "},                             //
+      {4, "this is no TOML", "d.toml:4: not valid TOML"},                              //
+      {4, "base_mm = 1", "d.toml:4: "},                                                // twice the same key
+      {12, "[surface]\nroughness_sq_nm = 5", "d.toml:13: surface.roughness_sq_nm: "},  // not in this version
+  };
+  for (const BadLine& bad : cases)
+    for (const std::string command : {"rre", "inspect"}) {
+      SCOPED_TRACE(command + ", line " + std::to_string(bad.number) + ": " + bad.line);
+      const TemporaryFolder folder;
+      folder.write("d.toml", design_with(bad.number, bad.line));
+      expect_one_line(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"}), 2, bad.where);
+      EXPECT_EQ(folder.names(), Arguments{"d.toml"});
+    }
+}
+
+TEST(BadInput, ErrorsOfStandardInputAndOverridesSayWhere) {
+  const TemporaryFolder folder;
+  expect_one_line(retrace(folder, {"rre", "-", "-o", "out"}, design_with(3, "base_mm = -1")), 2,
+                  "standard input:3: element.base_mm: ");
+  expect_one_line(retrace(folder, {"rre", "-", "-o", "out", "--set", "element.base_mm=-2"}, design_with(0, "")), 2,
+                  "--set element.base_mm=-2: ");
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(BadInput, OneBadDesignOfSeveralStopsAllOfThem) {
+  const TemporaryFolder folder;
+  folder.write("bad.toml", design_with(3, "base_mm = 0"));
+  expect_one_line(retrace(folder, {"rre", example("rtp_brick_2mm.toml"), "bad.toml", "-o", "out"}), 2, "bad.toml:3: ");
+  EXPECT_EQ(folder.names(), Arguments{"bad.toml"});
+}
+
+TEST(BadInput, FilesThatCannotBeReadAreRefused) {
+  for (const std::string command : {"rre", "inspect"}) {
+    SCOPED_TRACE(command);
+    const TemporaryFolder folder;
+    folder.write("empty.toml", "");
+    folder.write("binary.toml", std::string("\x89PNG\r\n\x1a\n\0\0\xff", 11));
+    fs::create_directory(folder.path() / "folder.toml");
+    const Arguments before = folder.names();
+    expect_one_line(retrace(folder, {command, "missing.toml", "-o", "out"}), 2, "missing.toml: cannot be read");
+    expect_one_line(retrace(folder, {command, "folder.toml", "-o", "out"}), 2, "folder.toml: cannot be read");
+    expect_one_line(retrace(folder, {command, "empty.toml/d.toml", "-o", "out"}), 2,
+                    "empty.toml/d.toml: cannot be read");
+    expect_one_line(retrace(folder, {command, "empty.toml", "-o", "out"}), 2, "empty.toml: element.kind: missing");
+    expect_one_line(retrace(folder, {command, "binary.toml", "-o", "out"}), 2, "binary.toml:1: not valid TOML");
+    expect_one_line(retrace(folder, {command, "two\nlines.toml", "-o", "out"}), 2, "two lines.toml: cannot be read");
+    expect_one_line(retrace(folder, {command, "", "-o", "out"}), 2, "DESIGN: must not be empty");
+    EXPECT_EQ(folder.names(), before);
+  }
+}
+
+struct BadArguments {
+  Arguments arguments;
+  std::string message;
+};
+
+TEST(BadInput, WrongOptionsAreRefused) {
+  const std::vector<BadArguments> cases = {
+      {{"--engine", "magic"}, "--engine: must be auto, exact, montecarlo, cell or embree, got magic"},
+      {{"--engine", ""}, "--engine: "},
+      {{"--engine", "exact"}, "--engine: exact is not available in this version"},
+      {{"--engine", "cell"}, "--engine: cell is not available in this version"},
+      {{"--incidence=5:1:1"}, "--incidence: the range runs away"},
+      {{"--incidence", ""}, "--incidence: the list is empty"},
+      {{"--azimuth", ""}, "--azimuth: the list is empty"},
+      {{"--incidence", "90"}, "--incidence: must lie between -90 and 90 degrees, got 90"},
+      {{"--incidence=0,-90"}, "--incidence: must lie between -90 and 90 degrees, got -90"},
+      {{"--threads", "0"}, "--threads: must be a whole number from 1 to 4096, got 0"},
+      {{"--threads", "two"}, "--threads: must be a whole number"},
+      {{"--samples", "0"}, "--samples: must be a whole number from 1 "},
+      {{"--samples", "-1"}, "--samples: must be a whole number from 1 "},
+      {{"--samples", "1e6"}, "--samples: must be a whole number from 1 "},
+      {{"--target-error", "0"}, "--target-error: must lie between 0 and 1, got 0"},
+      {{"--target-error", "-1e-4"}, "--target-error: must lie between"},
+      {{"--target-error", "nan"}, "--target-error: must lie between"},
+      {{"--target-error", "small"}, "--target-error: must be a number, got small"},
+      {{"--target-error=1e-3", "--samples=64"}, "--samples excludes --target-error"},
+      {{"--cutoff", "-1"}, "--cutoff: must lie between 0 (included) and 1, got -1"},
+      {{"--cutoff", "1"}, "--cutoff: must lie between"},
+      {{"--seed", "lucky"}, "--seed: must be a whole number from 0 to 4294967295, got lucky"},
+      {{"--seed", "-1"}, "--seed: must be"},
+      {{"--seed", "1.5"}, "--seed: must be"},
+      {{"--seed", "010"}, "--seed: must be"},
+      {{"--seed", "4294967296"}, "--seed: must be"},
+      {{"--set", "element.base_mm"}, "--set element.base_mm: must be of the form KEY=VALUE"},
+      {{"--set", "element.bas=1"}, "--set element.bas=1: element.bas: unknown key"},
+      {{"--frobnicate"}, "The following argument was not expected: --frobnicate"},
+      {{"--samples"}, "--samples: "},
+      {{"--json", ""}, "--json: must not be empty"},
+      {{"--out", ""}, "--out: must not be empty"},
+  };
+  for (const BadArguments& bad : cases) {
+    SCOPED_TRACE(bad.message);
+    const TemporaryFolder folder;
+    Arguments arguments = {"rre", example("rtp_single_0p45mm.toml")};
+    arguments.insert(arguments.end(), bad.arguments.begin(), bad.arguments.end());
+    if (bad.arguments.front() != "--out") arguments.insert(arguments.begin(), {"-o", "out"});
+    expect_one_line(retrace(folder, arguments), 2, bad.message);
+    EXPECT_TRUE(folder.names().empty());
+  }
+}
+
+TEST(BadInput, SeedMayBeAnyOfThem) {
+  const TemporaryFolder folder;
+  for (const char* seed : {"0", "4294967295"})
+    EXPECT_EQ(std::to_string(retrace_json(folder, {"rre", example("rtp_single_0p45mm.toml"), "--samples=32", "--seed",
+                                                   seed})["seed"]
+                                 .get<std::uint64_t>()),
+              seed);
+}
+
+TEST(BadInput, WordsThatAreNoCommandAreRefused) {
+  const TemporaryFolder folder;
+  expect_one_line(retrace(folder, {}), 2, "a command is required");
+  expect_one_line(retrace(folder, {"trace", "d.toml", "-o", "out"}), 2, "unknown command trace");
+  expect_one_line(retrace(folder, {"--bogus"}), 2, "unknown option --bogus");
+  expect_one_line(retrace(folder, {"rre", "--bogus"}), 2, "unknown option --bogus");
+  expect_one_line(retrace(folder, {"rre", "-o", "out"}), 2, "DESIGN is required");
+  expect_one_line(retrace(folder, {"rre", "-", "-", "-o", "out"}), 2, "standard input can be read as one design only");
+  expect_one_line(retrace(folder, {"inspect", "a.toml", "b.toml"}), 2,
+                  "The following argument was not expected: b.toml");
+  expect_one_line(retrace(folder, {"init", "prism", "-o", "out"}), 2, "KIND must be one of");
+  expect_one_line(retrace(folder, {"init", "-o", "out"}), 2, "KIND is required");
+  expect_one_line(retrace(folder, {"init", "rtp", "--set", "element.base_mm=1", "-o", "out"}), 2, "--set: ");
+  expect_one_line(retrace(folder, {"list", "planets", "-o", "out"}), 2, "list: ");
+  expect_one_line(retrace(folder, {"list"}), 2, "WHAT is required");
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(BadOutput, FolderThatCannotBeMadeEndsWith3) {
+  const TemporaryFolder folder;
+  folder.write("way", "in the way");
+  for (const Arguments& run : {Arguments{"rre", example("rtp_single_0p45mm.toml"), "--samples=64"},
+                               Arguments{"inspect", example("rtp_single_0p45mm.toml")}, Arguments{"list", "materials"}})
+    for (const std::string out : {"way", "way/below"}) {
+      Arguments arguments = run;
+      arguments.insert(arguments.end(), {"-o", out, "--json", "r.json"});
+      expect_one_line(retrace(folder, arguments), 3, out + ": the output folder cannot be made");
+    }
+  EXPECT_EQ(folder.names(), Arguments{"way"});
+  EXPECT_EQ(folder.read("way"), "in the way");
+}
+
+TEST(BadOutput, JsonThatCannotBeWrittenEndsWith3AndMakesNoFolder) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "folder");
+  const Arguments run = {"rre", example("rtp_single_0p45mm.toml"), "--samples=64", "--quiet", "-o", "out", "--json"};
+  for (const std::string json : {"missing/r.json", "folder"}) {
+    Arguments arguments = run;
+    arguments.push_back(json);
+    expect_one_line(retrace(folder, arguments), 3, json + ": cannot be written");
+    EXPECT_EQ(folder.names(), Arguments{"folder"});
+  }
+  expect_one_line(retrace(folder, {"list", "materials", "--json", "/dev/full"}), 3, "/dev/full: cannot be written");
+}
+
+TEST(BadOutput, ResultFileBehindAFolderEndsWith3AndLeavesNoTemporaryFile) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "out/rre.csv");
+  expect_one_line(retrace(folder, {"rre", example("rtp_single_0p45mm.toml"), "--samples=64", "-o", "out"}), 3,
+                  "out/rre.csv: cannot be written");
+  for (const std::string& name : folder.names()) EXPECT_EQ(name.find(".tmp"), std::string::npos) << name;
+}
+
+TEST(BadOutput, FullStandardOutputEndsWith3) {
+  const TemporaryFolder folder;
+  for (const Arguments& run : {Arguments{"rre", example("rtp_single_0p45mm.toml"), "--samples=64"},
+                               Arguments{"rre", example("rtp_single_0p45mm.toml"), "--samples=64", "--json", "-"},
+                               Arguments{"inspect", example("rtp_single_0p45mm.toml")}, Arguments{"init", "rtp"},
+                               Arguments{"list", "materials"}, Arguments{"--help"}, Arguments{"--version"}}) {
+    const Outcome outcome = retrace(folder, run, "", "/dev/full");
+    EXPECT_EQ(outcome.code, 3) << run.front();
+    EXPECT_EQ(outcome.err, "retrace: standard output: cannot be written\n");
+  }
+}
+
+}  // namespace
+}  // namespace retrace::test

@@ -1,0 +1,225 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "tests/app/program.h"
+
+// inspect, init, list, help, and what an interrupt does.
+
+namespace retrace::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Brick rows of n x n elements on 10 mm x 10 mm.
+std::string brick(int n, const std::string& shifted_rows) {
+  const std::string size = std::to_string(10.0 / n);
+  return "[element]\nkind = \"rtp\"\nbase_mm = " + size + "\nwidth_mm = " + size +
+         "\n[array]\narrangement = \"offset\"\nshifted_rows = \"" + shifted_rows +
+         "\"\nx_length_mm = 10\ny_length_mm = 10\n[body]\nthickness_mm = 2\nrefractive_index = 1.4917\n";
+}
+
+std::string infinite_cubes(const std::string& kind, double index) {
+  return "[element]\nkind = \"" + kind + "\"\naperture_mm = " + std::to_string(2.0 * std::sqrt(2.0 / 3.0)) +
+         "\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = 1\nrefractive_index = " + std::to_string(index) +
+         "\n";
+}
+
+Json inspect(const std::string& design) {
+  const TemporaryFolder folder;
+  return retrace_json(folder, {"inspect", "-"}, design);
+}
+
+TEST(Inspect, CountsAndMeasuresBrickRows) {
+  const Json json = inspect(brick(25, "even"));
+  for (const char* key :
+       {"schema", "version", "warnings", "complete", "elements_full", "elements_partial", "element_depth_mm",
+        "facet_area_mm2", "entrance_area_mm2", "tir_limit_deg", "dead_zone_share"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_EQ(json["schema"], "retrace.inspect/1");
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["elements_full"], 613) << "n n - floor(n / 2)";
+  EXPECT_EQ(json["elements_partial"], 24) << "two at each of the twelve shifted rows";
+  EXPECT_NEAR(json["element_depth_mm"].get<double>(), 0.2, 1e-12);
+  EXPECT_NEAR(json["entrance_area_mm2"].get<double>(), 100.0, 1e-9);
+  EXPECT_NEAR(json["facet_area_mm2"].get<double>(), 100.0 * std::sqrt(2.0), 1e-6) << "facets at 45 degrees";
+  EXPECT_NEAR(json["tir_limit_deg"].get<double>(), 4.33, 0.005);
+  EXPECT_EQ(json["dead_zone_share"], 0);
+}
+
+TEST(Inspect, OddRowsShiftedGiveTheCountOfThePaper) {
+  const Json json = inspect(brick(5, "odd"));
+  EXPECT_EQ(json["elements_full"], 22);
+  EXPECT_EQ(json["elements_partial"], 6);
+  EXPECT_EQ(json["warnings"].size(), 1U) << "elements that the border cuts";
+}
+
+TEST(Inspect, CubeCornersHaveTheLimitsOfTheirIndex) {
+  for (const std::string kind : {"hexagonal_icc", "triangular_icc"}) {
+    EXPECT_NEAR(inspect(infinite_cubes(kind, 1.4906))["tir_limit_deg"].get<double>(), 19.0, 0.05) << kind;
+    EXPECT_NEAR(inspect(infinite_cubes(kind, 1.585))["tir_limit_deg"].get<double>(), 25.3, 0.05) << kind;
+    EXPECT_NEAR(inspect(infinite_cubes(kind, 1.4607))["tir_limit_deg"].get<double>(), 17.0, 0.05) << kind;
+  }
+  EXPECT_NEAR(inspect(infinite_cubes("hexagonal_icc", 1.5))["element_depth_mm"].get<double>(), 2.0 / std::sqrt(3.0),
+              1e-5);
+  EXPECT_NEAR(inspect(infinite_cubes("triangular_icc", 1.5))["element_depth_mm"].get<double>(), 1.0 / std::sqrt(3.0),
+              1e-5);
+}
+
+TEST(Inspect, LimitIsLeftOutWhereThereIsNone) {
+  const Json json = inspect(infinite_cubes("hexagonal_icc", 1.2));
+  EXPECT_FALSE(json.contains("tir_limit_deg"));
+  EXPECT_EQ(json["warnings"].size(), 1U);
+}
+
+TEST(Inspect, TextSaysTheSameAsTheJson) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"inspect", "-"}, brick(25, "even"));
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* part : {"613 full, 24 partial", "0.200000 mm", "100.0000 mm2", "1.49170 at 587.56 nm",
+                           "up to 4.33 degrees across the roof edge", "closed, free of self-intersections"})
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\n" << outcome.out;
+  EXPECT_EQ(outcome.out.find("nan"), std::string::npos);
+  EXPECT_TRUE(outcome.err.starts_with("warning: ")) << outcome.err;
+  EXPECT_TRUE(folder.names().empty());
+  const Outcome quiet = retrace(folder, {"inspect", "-", "--quiet"}, brick(25, "even"));
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+TEST(Inspect, OutHoldsTheDocument) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"inspect", "-", "--json", "-", "-o", "result"}, brick(5, "odd"));
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(folder.names(), (Arguments{"result", "result/inspect.json"}));
+  EXPECT_EQ(folder.read("result/inspect.json"), outcome.out);
+}
+
+TEST(Init, EveryKindCanBeInspectedAndTracedAsItIs) {
+  for (const std::string kind : {"rtp", "hexagonal_icc", "triangular_icc"}) {
+    const TemporaryFolder folder;
+    const Outcome printed = retrace(folder, {"init", kind});
+    EXPECT_EQ(printed.code, 0) << printed.err;
+    EXPECT_EQ(retrace_json(folder, {"inspect", "-"}, printed.out)["design"]["element"]["kind"], kind);
+    EXPECT_EQ(retrace_json(folder, {"rre", "-", "--samples=64"}, printed.out)["complete"], true);
+    EXPECT_TRUE(folder.names().empty());
+    EXPECT_EQ(retrace(folder, {"init", kind, "--out", "new.toml"}).code, 0);
+    EXPECT_EQ(folder.read("new.toml"), printed.out);
+  }
+}
+
+TEST(Init, DoesNotOverwrite) {
+  const TemporaryFolder folder;
+  folder.write("mine.toml", "months of work");
+  const Outcome outcome = retrace(folder, {"init", "rtp", "-o", "mine.toml"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.err, "retrace: mine.toml: is there already; not overwritten\n");
+  EXPECT_EQ(folder.read("mine.toml"), "months of work");
+}
+
+TEST(Init, JsonHoldsTheTemplate) {
+  const TemporaryFolder folder;
+  const Json json = retrace_json(folder, {"init", "rtp"});
+  for (const char* key : {"schema", "version", "warnings", "complete"}) EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_EQ(json["text"], retrace(folder, {"init", "rtp"}).out);
+}
+
+TEST(List, MaterialsAsTextAndJson) {
+  const TemporaryFolder folder;
+  const Outcome text = retrace(folder, {"list", "materials"});
+  EXPECT_EQ(text.code, 0);
+  const Json json = retrace_json(folder, {"list", "materials"});
+  EXPECT_EQ(json["schema"], "retrace.materials/1");
+  for (const char* key : {"version", "warnings", "complete"}) EXPECT_TRUE(json.contains(key)) << key;
+  ASSERT_GE(json["materials"].size(), 4U);
+  EXPECT_EQ(lines_of(text.out).size(), json["materials"].size() + 1);
+  for (const Json& material : json["materials"]) {
+    const std::string name = material["name"];
+    EXPECT_NE(text.out.find("\n" + name + " "), std::string::npos) << name;
+    EXPECT_FALSE(material["source"].get<std::string>().empty()) << name;
+    EXPECT_GE(material["refractive_index"].get<double>(), 1.0) << name;
+  }
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(Help, ShowsEveryOptionWithItsDefault) {
+  const TemporaryFolder folder;
+  const std::string common = retrace(folder, {"--help"}).out;
+  for (const char* option : {"--json FILE", "-o,--out DIR", "--threads N", "--seed S=1", "--set KEY=VALUE", "--quiet",
+                             "--version", "-h,--help", "rre", "inspect", "init", "list"})
+    EXPECT_NE(common.find(option), std::string::npos) << option;
+  for (const Arguments& run : {Arguments{"rre", "--help"}, Arguments{"--help", "rre"}, Arguments{"rre", "-h"}}) {
+    const Outcome rre = retrace(folder, run);
+    EXPECT_EQ(rre.code, 0);
+    if (run.front() != "rre") continue;
+    for (const char* option : {"--incidence LIST=0", "--azimuth LIST=0", "--engine ENGINE=auto", "--samples N",
+                               "--target-error E=0.0001", "--cutoff W=1e-10", "--threads N", "--seed S [1]"})
+      EXPECT_NE(rre.out.find(option), std::string::npos) << option;
+  }
+  for (const Arguments& run : {Arguments{"--version"}, Arguments{"rre", "--version"}}) {
+    const Outcome version = retrace(folder, run);
+    EXPECT_EQ(version.code, 0);
+    EXPECT_TRUE(version.out.starts_with("retrace ")) << version.out;
+    EXPECT_EQ(lines_of(version.out).size(), 1U);
+  }
+}
+
+TEST(Interrupt, WritesTheFinishedPointsAndEndsWith130) {
+  const std::string design = example("rtp_brick_2mm.toml");
+  Arguments arguments = {RETRACE_PROGRAM, "rre", design, "--samples=65536", "--incidence=-80:80:0.01", "-o", "r"};
+  // Far longer than any wait below; the wait grows until a slow machine has finished a point.
+  for (auto wait = 1s;; wait *= 2) {
+    ASSERT_LE(wait, 64s) << "no point was finished";
+    const TemporaryFolder folder;
+    Child child(folder.path(), arguments);
+    std::this_thread::sleep_for(wait);
+    child.interrupt();
+    const Outcome outcome = child.wait();
+    ASSERT_EQ(outcome.code, 130) << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("retrace: interrupted")) << outcome.err;
+    EXPECT_EQ(folder.names(), (Arguments{"r", "r/rre.csv", "r/rre.json", "r/rre.png", "r/rre.svg"}));
+    const Json json = folder.json("r/rre.json");
+    EXPECT_EQ(json["complete"], false);
+    const std::size_t finished = json["points"].size();
+    EXPECT_EQ(lines_of(folder.read("r/rre.csv")).size(), finished + 1);
+    ASSERT_LT(finished, 16001U);
+    if (finished == 0) continue;
+
+    // Only whole points: the last one is what an undisturbed run says of its direction.
+    const Json& last = json["points"][finished - 1];
+    const std::string incidence = "--incidence=" + last["incidence_deg"].dump();
+    const Json whole = retrace_json(folder, {"rre", design, "--samples=65536", incidence});
+    EXPECT_EQ(whole["points"][0], last);
+    EXPECT_EQ(json["rays"], 65536 * finished);
+    return;
+  }
+}
+
+TEST(Interrupt, BeforeAPointIsFinishedWritesAValidDocumentWithoutPoints) {
+  const TemporaryFolder folder;
+  Child child(folder.path(), {RETRACE_PROGRAM, "rre", example("tail_lamp_100cm2.toml"), "--incidence=25",
+                              "--samples=4294967296", "--json", "-", "-o", "r"});
+  std::this_thread::sleep_for(3s);
+  child.interrupt();
+  const Outcome outcome = child.wait();
+  EXPECT_EQ(outcome.code, 130);
+  const Json json = Json::parse(outcome.out, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << outcome.out << outcome.err;
+  EXPECT_EQ(json["complete"], false);
+  EXPECT_TRUE(json["points"].empty());
+  EXPECT_EQ(folder.names(), (Arguments{"r", "r/rre.csv", "r/rre.json", "r/rre.png", "r/rre.svg"}));
+}
+
+TEST(Interrupt, WhileWaitingForStandardInputEndsAtOnce) {
+  const TemporaryFolder folder;
+  Child child(folder.path(), {RETRACE_PROGRAM, "rre", "-", "-o", "r"}, "", Input::silent);
+  std::this_thread::sleep_for(1s);
+  child.interrupt();
+  EXPECT_EQ(child.wait().code, 130);
+  EXPECT_TRUE(folder.names().empty());
+}
+
+}  // namespace
+}  // namespace retrace::test

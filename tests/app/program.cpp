@@ -1,0 +1,139 @@
+#include "tests/app/program.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+
+namespace retrace::test {
+namespace fs = std::filesystem;
+namespace {
+
+std::string content(std::FILE* file) {
+  std::string text;
+  std::rewind(file);
+  for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) text += static_cast<char>(c);
+  return text;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "retrace_app_XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+void TemporaryFolder::write(const std::string& name, const std::string& text) const {
+  std::ofstream stream(path_ / name, std::ios::binary);
+  stream << text << std::flush;
+  if (!stream) throw std::runtime_error("cannot write " + name);
+}
+
+std::string TemporaryFolder::read(const std::string& name) const {
+  return read_text(path_ / name);
+}
+
+std::vector<std::string> TemporaryFolder::names() const {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(path_))
+    names.push_back(entry.path().lexically_relative(path_).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Child::Child(const fs::path& folder, const Arguments& arguments, const std::string& input, Input kind,
+             const std::string& out)
+    : in_(std::tmpfile(), std::fclose),
+      out_(out.empty() ? std::tmpfile() : std::fopen(out.c_str(), "w"), std::fclose),
+      err_(std::tmpfile(), std::fclose) {
+  if (!in_ || !out_ || !err_) throw std::runtime_error("no temporary file");
+  std::fputs(input.c_str(), in_.get());
+  std::rewind(in_.get());
+  int pipe_ends[2] = {::fileno(in_.get()), -1};
+  if (kind == Input::silent && ::pipe2(pipe_ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+  silent_pipe_ = pipe_ends[1];
+
+  std::vector<char*> words;
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  process_ = ::fork();
+  if (process_ == 0) {
+    ::dup2(pipe_ends[0], STDIN_FILENO);
+    ::dup2(::fileno(out_.get()), STDOUT_FILENO);
+    ::dup2(::fileno(err_.get()), STDERR_FILENO);
+    if (::chdir(folder.c_str()) == 0) ::execv(words[0], words.data());
+    ::_exit(127);
+  }
+  if (kind == Input::silent) ::close(pipe_ends[0]);
+  if (process_ < 0) throw std::runtime_error("no child process");
+}
+
+Child::~Child() {
+  if (process_ > 0) {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  if (silent_pipe_ >= 0) ::close(silent_pipe_);
+}
+
+void Child::interrupt() const {
+  ::kill(process_, SIGINT);
+}
+
+Outcome Child::wait() {
+  int status = 0;
+  ::waitpid(process_, &status, 0);
+  process_ = -1;
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(out_.get()), content(err_.get())};
+}
+
+Outcome retrace(const TemporaryFolder& folder, Arguments arguments, const std::string& input, const std::string& out) {
+  arguments.insert(arguments.begin(), RETRACE_PROGRAM);
+  return Child(folder.path(), arguments, input, Input::text, out).wait();
+}
+
+Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std::string& input) {
+  arguments.insert(arguments.end(), {"--json", "-"});
+  const Outcome outcome = retrace(folder, arguments, input);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return Json::parse(outcome.out, nullptr, false);
+}
+
+std::string example(const std::string& name) {
+  return std::string(RETRACE_SOURCE_DIR) + "/examples/" + name;
+}
+
+std::string read_text(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw std::runtime_error("cannot read " + file.string());
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string without_elapsed(const std::string& json) {
+  const std::string text = std::regex_replace(json, std::regex("\"elapsed_s\": [^,\n]*"), "");
+  EXPECT_NE(text, json) << "no elapsed_s";
+  return text;
+}
+
+}  // namespace retrace::test

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace retrace::test {
+
+using Arguments = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
+
+/// What a program left behind. `code` is its exit code, or -n if signal n ended it.
+struct Outcome {
+  int code = 0;
+  std::string out;
+  std::string err;
+};
+
+/// A folder of its own, removed with everything in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  void write(const std::string& name, const std::string& text) const;
+  std::string read(const std::string& name) const;
+  Json json(const std::string& name) const { return Json::parse(read(name)); }
+  /// Everything in it, hidden files and files of folders included, sorted.
+  std::vector<std::string> names() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Where standard input comes from.
+enum class Input {
+  text,   ///< what was given
+  silent  ///< a pipe that stays open and says nothing
+};
+
+/// A program that runs as a child process, without a shell between. The first argument is the program.
+class Child {
+ public:
+  /// \param out file to be its standard output; empty: it is caught
+  Child(const std::filesystem::path& folder, const Arguments& arguments, const std::string& input = {},
+        Input kind = Input::text, const std::string& out = {});
+  ~Child();
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  void interrupt() const;
+  Outcome wait();
+
+ private:
+  using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+  File in_;
+  File out_;
+  File err_;
+  int silent_pipe_ = -1;  ///< the end that would be written to
+  pid_t process_ = -1;
+};
+
+/// Runs retrace in `folder`. \param input text on standard input \param out file to be its standard output
+Outcome retrace(const TemporaryFolder& folder, Arguments arguments, const std::string& input = {},
+                const std::string& out = {});
+
+/// The same, for a run that must say it is done and complain of nothing: the JSON that `--json -` prints.
+Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std::string& input = {});
+
+/// A file of examples/.
+std::string example(const std::string& name);
+std::string read_text(const std::filesystem::path& file);
+std::vector<std::string> lines_of(const std::string& text);
+
+/// A result without its line or member on elapsed time, the only thing that may differ from run to run.
+std::string without_elapsed(const std::string& json);
+
+}  // namespace retrace::test

@@ -1,0 +1,11 @@
+# The program as users meet it: run as a child process, judged by what it prints, writes and returns.
+retrace_test(app_test
+  SOURCES
+    app/bad_input_test.cpp
+    app/commands_test.cpp
+    app/number_list_test.cpp
+    app/program.cpp
+    app/readme_test.cpp
+    app/rre_test.cpp
+  LIBRARIES retrace::core nlohmann_json::nlohmann_json)
+add_dependencies(app_test retrace)

@@ -1,0 +1,132 @@
+#include "core/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <set>
+
+#include "core/error.h"
+
+// The tests may run as root, whom permissions do not bind: failures are made by other means.
+
+namespace retrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicFile : public testing::Test {
+ protected:
+  AtomicFile() {
+    std::string name = (fs::temp_directory_path() / "retrace_core_XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~AtomicFile() override { fs::remove_all(folder_); }
+
+  std::set<std::string> names() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
+    return names;
+  }
+
+  static std::string complaint(const fs::path& path, std::string_view content) {
+    try {
+      write_file_atomically(path, content);
+      return {};
+    } catch (const OutputError& error) {
+      return error.what();
+    }
+  }
+
+  fs::path folder_;
+};
+
+/// While one exists, no file may grow beyond `bytes`: a full disk, more or less.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST_F(AtomicFile, WritesAndReplacesAndLeavesNothingElse) {
+  const fs::path file = folder_ / "a.txt";
+  write_file_atomically(file, "first, and longer");
+  EXPECT_EQ(read_file(file), "first, and longer");
+  write_file_atomically(file, std::string("second\0\n", 8));
+  EXPECT_EQ(read_file(file), std::string("second\0\n", 8));
+  EXPECT_EQ(names(), std::set<std::string>{"a.txt"});
+}
+
+TEST_F(AtomicFile, FailureHalfWayLeavesTheOldFileAsItWas) {
+  const fs::path file = folder_ / "a.txt";
+  write_file_atomically(file, "old");
+  std::string error;
+  {
+    const FileSizeLimit limit(1000);
+    error = complaint(file, std::string(5000, 'x'));
+  }
+  EXPECT_TRUE(error.starts_with(file.string() + ": cannot be written")) << error;
+  EXPECT_EQ(read_file(file), "old");
+  EXPECT_EQ(names(), std::set<std::string>{"a.txt"}) << "no half file may stay";
+}
+
+TEST_F(AtomicFile, FolderInTheWayOrMissingIsRefused) {
+  fs::create_directory(folder_ / "a.txt");
+  EXPECT_NE(complaint(folder_ / "a.txt", "x").find("it is a folder"), std::string::npos);
+  EXPECT_NE(complaint(folder_ / "no/b.txt", "x").find("cannot be written"), std::string::npos);
+  EXPECT_EQ(names(), std::set<std::string>{"a.txt"});
+}
+
+TEST_F(AtomicFile, DevicesAreWrittenThrough) {
+  EXPECT_EQ(complaint("/dev/null", "x"), "");
+  EXPECT_EQ(complaint("/dev/full", "x"), "/dev/full: cannot be written");
+  EXPECT_TRUE(fs::is_character_file("/dev/null")) << "the device must not be replaced by a file";
+}
+
+TEST_F(AtomicFile, SymbolicLinkStaysAndWhatItPointsToIsReplaced) {
+  write_file_atomically(folder_ / "target", "old");
+  fs::create_symlink("target", folder_ / "link");
+  write_file_atomically(folder_ / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(read_file(folder_ / "target"), "new");
+}
+
+TEST_F(AtomicFile, OutputFolderIsMadeWithItsParents) {
+  make_output_folder(folder_ / "a/b/c");
+  EXPECT_TRUE(fs::is_directory(folder_ / "a/b/c"));
+  make_output_folder(folder_ / "a/b/c");
+  make_output_folder(folder_ / "d/");
+  EXPECT_TRUE(fs::is_directory(folder_ / "d"));
+}
+
+TEST_F(AtomicFile, OutputFolderBehindAFileIsRefused) {
+  write_file_atomically(folder_ / "file", "x");
+  EXPECT_THROW(make_output_folder(folder_ / "file"), OutputError);
+  EXPECT_THROW(make_output_folder(folder_ / "file/below"), OutputError);
+  EXPECT_EQ(read_file(folder_ / "file"), "x");
+}
+
+TEST_F(AtomicFile, OnlyFilesAreRead) {
+  EXPECT_THROW(read_file(folder_), InputError);
+  EXPECT_THROW(read_file(folder_ / "missing"), InputError);
+  write_file_atomically(folder_ / "empty", "");
+  EXPECT_EQ(read_file(folder_ / "empty"), "");
+}
+
+}  // namespace
+}  // namespace retrace

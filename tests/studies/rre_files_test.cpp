@@ -1,0 +1,127 @@
+#include "studies/rre/io/rre_files.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/version.h"
+
+namespace retrace::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using raytrace::kAccountCount;
+using raytrace::kAccountNames;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// A result with numbers that no short text holds, and others that one does.
+RreResult some_result() {
+  RreResult result;
+  result.designs.resize(2);
+  result.designs[0].source = "a.toml";
+  result.designs[1].source = "b.toml";
+  result.designs[1].title = "B, \"the\" \x1b[1m\nsecond";
+  result.engine_requested = "auto";
+  result.seed = 4294967295;
+  result.rays = std::uint64_t{1} << 60;
+  result.elapsed_s = 1.5;
+  result.warnings = {"b.toml: a \"warning\""};
+  for (std::size_t d = 0; d < 2; ++d) {
+    RrePoint point{d, -10.0, 0.1 + 0.2, 587.56, 0.5, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(), {}};
+    for (std::size_t k = 0; k < kAccountCount; ++k) point.ledger.power[k] = 1e-3 * static_cast<double>(k) + 1e-17;
+    result.points.push_back(point);
+  }
+  return result;
+}
+
+TEST(RreFiles, JsonHoldsTheResultExactly) {
+  const RreResult result = some_result();
+  const Json json = Json::parse(rre_json(result));
+  EXPECT_EQ(json["schema"], "retrace.rre/1");
+  EXPECT_EQ(json["engine"], "embree");
+  EXPECT_EQ(json["engine_requested"], "auto");
+  EXPECT_EQ(json["seed"], 4294967295U);
+  EXPECT_EQ(json["rays"], std::uint64_t{1} << 60);
+  EXPECT_EQ(json["version"], kVersion);
+  EXPECT_EQ(json["warnings"], Json(result.warnings));
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["designs"][1]["source"], "b.toml");
+  EXPECT_EQ(json["designs"][1]["title"], result.designs[1].title);
+  ASSERT_EQ(json["points"].size(), 2U);
+  for (std::size_t d = 0; d < 2; ++d) {
+    const Json& point = json["points"][d];
+    EXPECT_EQ(point["design"], d);
+    EXPECT_EQ(point["incidence_deg"].get<double>(), -10.0);
+    EXPECT_EQ(point["azimuth_deg"].get<double>(), 0.1 + 0.2);
+    EXPECT_EQ(point["wavelength_nm"].get<double>(), 587.56);
+    EXPECT_EQ(point["acceptance_half_angle_deg"].get<double>(), 0.5);
+    EXPECT_EQ(point["rre"].get<double>(), 1.0 / 3.0);
+    EXPECT_EQ(point["std_error"].get<double>(), std::numeric_limits<double>::denorm_min());
+    ASSERT_EQ(point["ledger"].size(), kAccountCount);
+    for (std::size_t k = 0; k < kAccountCount; ++k)
+      EXPECT_EQ(point["ledger"][std::string(kAccountNames[k])].get<double>(), result.points[d].ledger.power[k]);
+  }
+}
+
+TEST(RreFiles, InterruptedResultSaysSo) {
+  RreResult result = some_result();
+  result.complete = false;
+  result.points.clear();
+  const Json json = Json::parse(rre_json(result));
+  EXPECT_EQ(json["complete"], false);
+  EXPECT_EQ(json["points"], Json::array());
+  EXPECT_EQ(lines_of(rre_csv(result)).size(), 1U) << "the header stays";
+  EXPECT_EQ(lines_of(rre_table(result)).back().find("nan"), std::string::npos);
+}
+
+TEST(RreFiles, NumbersThatAreNoneAreLeftOut) {
+  RreResult result = some_result();
+  result.points[0].std_error = std::numeric_limits<double>::quiet_NaN();
+  result.points[1].std_error = std::numeric_limits<double>::infinity();
+  const Json json = Json::parse(rre_json(result));
+  for (const Json& point : json["points"]) {
+    EXPECT_FALSE(point.contains("std_error"));
+    EXPECT_TRUE(point.contains("rre"));
+  }
+  const std::string csv = rre_csv(result);
+  EXPECT_EQ(csv.find("nan"), std::string::npos) << csv;
+  EXPECT_EQ(csv.find("inf,"), std::string::npos) << csv;
+}
+
+TEST(RreFiles, CsvHeaderIsTheKeysOfTheJson) {
+  const RreResult result = some_result();
+  const Json point = Json::parse(rre_json(result))["points"][0];
+  std::string header;
+  for (const auto& [key, value] : point.items())
+    if (key != "ledger") header += (header.empty() ? "" : ",") + key;
+  for (const auto& [key, value] : point["ledger"].items()) header += "," + key;
+  const std::vector<std::string> lines = lines_of(rre_csv(result));
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0], header);
+  EXPECT_TRUE(lines[1].starts_with("0,-10,0.30000000000000004,587.56,0.5,0.3333333333333333,5e-324,")) << lines[1];
+  EXPECT_TRUE(lines[2].starts_with("1,-10,")) << lines[2];
+}
+
+TEST(RreFiles, TableNamesDesignsAndConesOnlyWhereThereAreSeveral) {
+  RreResult result = some_result();
+  const std::string both = rre_table(result);
+  EXPECT_NE(both.find("design 1: B, \"the\" \\x1b[1m\\nsecond\n"), std::string::npos) << both;
+  EXPECT_NE(both.find("33.3333"), std::string::npos) << both;
+  EXPECT_EQ(both.find("acceptance"), std::string::npos) << both;
+  result.designs.resize(1);
+  result.points.resize(1);
+  EXPECT_EQ(rre_table(result).find("design"), std::string::npos);
+  result.designs[0].acceptance_half_angle_deg = {0.5, 1.0};
+  EXPECT_NE(rre_table(result).find("acceptance_deg"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace retrace::studies
