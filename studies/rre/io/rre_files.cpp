@@ -25,7 +25,9 @@ Json ledger_json(const raytrace::Ledger& ledger) {
 }
 
 /// Empty where the JSON leaves the key out.
-std::string csv_number(double value) { return std::isfinite(value) ? shortest(value) : std::string(); }
+std::string csv_number(double value) {
+  return std::isfinite(value) ? shortest(value) : std::string();
+}
 
 bool has_several_cones(const RreResult& result) {
   for (const Design& design : result.designs)
