@@ -10,6 +10,8 @@ template <class... Handlers>
 struct Overloaded : Handlers... {
   using Handlers::operator()...;
 };
+template <class... Handlers>
+Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
 /// Point at `angle_deg` on the circle of the cell's rim.
 Vec2 rim_point(const Vec2& centre, double radius_mm, double angle_deg) {

@@ -9,6 +9,11 @@ FresnelCoefficients fresnel(double index_ratio, double cos_incidence) {
   const double ci = std::clamp(cos_incidence, 0.0, 1.0);
   const double sin2_refracted = index_ratio * index_ratio * (1.0 - ci * ci);
   FresnelCoefficients f;
+  if (ci == 0.0) {  // at grazing incidence everything is reflected, whatever the ratio
+    f.r_s = f.r_p = -1.0;
+    f.total_reflection = true;
+    return f;
+  }
   if (sin2_refracted >= 1.0) {
     f.total_reflection = true;
     const std::complex<double> ct(0.0, std::sqrt(sin2_refracted - 1.0));

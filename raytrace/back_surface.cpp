@@ -160,10 +160,18 @@ bool BackSurface::is_near_edge(FacetRef facet, const Vec3& point, const Vec3& di
   return exact_.margin(facet, point) * std::abs(exact_.facet(facet).normal.dot(direction)) < edge_band_mm_;
 }
 
-std::optional<SurfaceHit> BackSurface::exact_first_hit(const SurfaceRay& ray) const {
-  auto hit = exact_.first_hit(ray);
+std::optional<SurfaceHit> BackSurface::marked(std::optional<SurfaceHit> hit, const SurfaceRay& ray) const {
   if (hit) hit->near_edge = is_near_edge(hit->facet, ray.origin + hit->t * ray.direction, ray.direction);
   return hit;
+}
+
+std::optional<SurfaceHit> BackSurface::exact_first_hit(const SurfaceRay& ray) const {
+  return marked(exact_.first_hit(ray), ray);
+}
+
+std::optional<SurfaceHit> BackSurface::certain_first_hit(const SurfaceRay& ray) const {
+  const auto hit = exact_.first_hit(ray);
+  return marked(hit ? hit : exact_.first_hit_of_widened(ray), ray);
 }
 
 std::optional<SurfaceHit> BackSurface::first_hit(const SurfaceRay& ray) const {

@@ -26,10 +26,14 @@ class BackSurface {
   /// The same in double precision alone.
   std::optional<SurfaceHit> exact_first_hit(const SurfaceRay& ray) const;
 
+  /// For a ray that must meet the surface: exactly if it does, else with facets slightly widened.
+  std::optional<SurfaceHit> certain_first_hit(const SurfaceRay& ray) const;
+
   const ExactSurface::Facet& facet(FacetRef ref) const { return exact_.facet(ref); }
 
  private:
   struct Embree;
+  std::optional<SurfaceHit> marked(std::optional<SurfaceHit> hit, const SurfaceRay& ray) const;
   bool is_near_edge(FacetRef facet, const Vec3& point, const Vec3& direction) const;
 
   ExactSurface exact_;

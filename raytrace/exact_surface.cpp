@@ -7,10 +7,10 @@
 namespace retrace::raytrace {
 namespace {
 
-// Relative to the element's size: rounding of doubles at large coordinates stays below the first; the second catches rays
-// through what rounding may have left open where pieces of the surface meet.
+// Relative to the element's size: rounding of doubles at large coordinates stays below the first; what it may leave open
+// where pieces of the surface meet stays below the second.
 constexpr double kTolerance = 1e-10;
-constexpr double kRelaxedTolerance = 1e-6;
+constexpr double kWideTolerance = 1e-6;
 
 Vec3 lifted(const Vec2& p) { return {p.x(), p.y(), 0.0}; }
 
@@ -85,12 +85,14 @@ double ExactSurface::local_margin(const Patch& patch, const Facet& facet, const 
 }
 
 std::optional<SurfaceHit> ExactSurface::first_hit(const SurfaceRay& ray) const {
-  auto hit = first_hit(ray, kTolerance * size_mm_);
-  if (!hit) hit = first_hit(ray, kRelaxedTolerance * size_mm_);
-  return hit;
+  return first_within(ray, kTolerance * size_mm_);
 }
 
-std::optional<SurfaceHit> ExactSurface::first_hit(const SurfaceRay& ray, double tolerance_mm) const {
+std::optional<SurfaceHit> ExactSurface::first_hit_of_widened(const SurfaceRay& ray) const {
+  return first_within(ray, kWideTolerance * size_mm_);
+}
+
+std::optional<SurfaceHit> ExactSurface::first_within(const SurfaceRay& ray, double tolerance_mm) const {
   SurfaceHit best;
   best.t = ray.t_max;
   for (std::uint32_t p = 0; p < placements_.size(); ++p) {

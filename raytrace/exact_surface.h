@@ -41,6 +41,10 @@ class ExactSurface {
   /// outside. Nothing beyond `t_max`.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
+  /// The same with facets a little larger than they are: for a ray that cannot have missed the surface but did, through
+  /// what rounding left open between two pieces of it.
+  std::optional<SurfaceHit> first_hit_of_widened(const SurfaceRay& ray) const;
+
   const std::vector<geometry::Placement>& placements() const { return placements_; }
 
  private:
@@ -54,7 +58,7 @@ class ExactSurface {
 
   static Patch compile(const geometry::SurfacePatch& source);
   double local_margin(const Patch& patch, const Facet& facet, const Vec3& local) const;
-  std::optional<SurfaceHit> first_hit(const SurfaceRay& ray, double tolerance_mm) const;
+  std::optional<SurfaceHit> first_within(const SurfaceRay& ray, double tolerance_mm) const;
   void search_cell(const SurfaceRay& ray, std::uint32_t placement, const geometry::PatchCell& cell, double tolerance_mm,
                    SurfaceHit& best) const;
 

@@ -52,8 +52,8 @@ struct Task {
 Tally trace_task(const PathSetup& setup, const EntranceSampler& entrance, std::uint32_t seed, const Task& task) {
   const FlushDenormals flush;
   Tally tally(setup.cone_chord2.size());
-  const auto scramble = philox({seed, kScrambleStream}, task.replicate, 0);
-  const SobolSquare square(scramble[0], scramble[1]);
+  const auto words = philox({seed, kScrambleStream}, task.replicate, 0);
+  const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
   PathWalker walker(setup, tally);
   for (std::uint32_t ray = task.first; ray < task.last; ++ray)
     walker.trace(entrance(square(ray)), {seed, kChoiceStream}, task.replicate, ray);

@@ -148,6 +148,11 @@ std::optional<SurfaceHit> PathWalker::search_exactly(const State& state, double 
   return setup_.surface.exact_first_hit({state.position, state.direction, state.source, state.inside, true, t_max});
 }
 
+/// For a ray that must meet the surface: it would leave the part's bounds otherwise.
+std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const {
+  return setup_.surface.certain_first_hit({state.position, state.direction, state.source, state.inside, true, kInfinity});
+}
+
 /// Inside a finite part: the nearest of entrance, sides and back surface.
 PathWalker::Step PathWalker::step_inside(State& state) const {
   Step step;
@@ -177,16 +182,18 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
   }
   if (skipped < limit) {
     auto hit = search(state, limit - skipped);
-    // A side reached below z = 0 may be where a ray slipped between two pieces of the surface.
     const double end_z = state.position.z() + (limit - skipped) * state.direction.z();
-    if (!hit && (step.end == End::miss || (step.end == End::side && end_z < 0.0)))
+    if (!hit && (step.end == End::miss || end_z < -setup_.depth_mm - setup_.clearance_mm)) {
+      step.end = End::miss;
+      hit = search_certainly(state);
+    } else if (!hit && step.end == End::side && end_z < 0.0) {
+      // Below z = 0 a side may be reached where a ray slipped between two pieces of the surface.
       hit = search_exactly(state, limit - skipped);
+    }
     if (hit) {
       step.end = End::facet;
       step.hit = *hit;
       limit = skipped + hit->t;
-    } else if (step.end == End::side && end_z < -setup_.depth_mm - setup_.clearance_mm) {
-      step.end = End::miss;
     }
   } else {
     skipped = 0.0;
@@ -221,14 +228,15 @@ PathWalker::Step PathWalker::step_inside_periodic(State& state) const {
     const double up = dz > 0.0 ? (setup_.clearance_mm - state.position.z()) / dz : kInfinity;
     const double limit = std::min(up, distance_to_tile_border(state));
     auto hit = search(state, limit);
-    if (!hit && state.position.z() + limit * dz < -setup_.depth_mm) hit = search_exactly(state, kInfinity);
+    const bool falls_through = state.position.z() + limit * dz < -setup_.depth_mm - setup_.clearance_mm;
+    if (!hit && falls_through) hit = search_certainly(state);
     if (hit) {
       move(hit->t);
       step.end = End::facet;
       step.hit = *hit;
       return step;
     }
-    if (state.position.z() + limit * dz < -setup_.depth_mm) return step;
+    if (falls_through) return step;
     move(limit);
     if (up > limit) wrap(state);
   }
@@ -243,7 +251,7 @@ PathWalker::Step PathWalker::step_outside(State& state) const {
   if (!hit && state.direction.z() > 0.0 &&
       is_over_part(state.position - state.position.z() / state.direction.z() * state.direction)) {
     // It would rise through the plate: no such ray can have missed the surface.
-    hit = search_exactly(state, kInfinity);
+    hit = search_certainly(state);
     if (!hit) return step;
   }
   step.end = hit ? End::facet : End::escape;
@@ -263,7 +271,7 @@ PathWalker::Step PathWalker::step_outside_periodic(State& state) const {
     const double border = distance_to_tile_border(state);
     const double limit = std::min({down, up, border});
     auto hit = search(state, limit);
-    if (!hit && limit == up) hit = search_exactly(state, kInfinity);
+    if (!hit && limit == up) hit = search_certainly(state);
     if (hit) {
       state.position += hit->t * state.direction;
       step.end = End::facet;

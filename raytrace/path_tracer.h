@@ -18,7 +18,7 @@ namespace retrace::raytrace {
 struct PathPolicy {
   double cutoff = 1e-10;             ///< power below which a path ends in `truncated`
   double split_power = 1e-3;         ///< both branches of an interface are followed while each carries at least this
-  std::uint32_t max_events = 20000;  ///< hits on one path before it ends in `truncated`
+  std::uint32_t max_events = 1'000'000;  ///< hits on one path before it ends in `truncated`
 };
 
 /// Sums of power over paths. What leaves through the entrance face is kept by acceptance cone, so that one run serves
@@ -104,6 +104,7 @@ class PathWalker {
   Step step_outside_periodic(State& state) const;
   std::optional<SurfaceHit> search(const State& state, double t_max) const;
   std::optional<SurfaceHit> search_exactly(const State& state, double t_max) const;
+  std::optional<SurfaceHit> search_certainly(const State& state) const;
   double distance_to_tile_border(const State& state) const;
   void wrap(State& state) const;
   bool is_over_part(const Vec3& position) const;

@@ -6,15 +6,16 @@
 namespace retrace::raytrace {
 
 /// Owen-scrambled Sobol points in the unit square: any 2^k consecutive aligned points are stratified, and each scramble
-/// (each seed) is an independent unbiased estimator. Sobol 1967; hashed nested uniform scrambling after Laine and Karras
-/// 2011, Burley 2020 (JCGT 9, 4).
+/// (each pair of keys) is an independent unbiased estimator whose errors are nearly normal (Sobol 1967; Owen 1995; Loh
+/// 2003). The scramble is the full nested one: every digit is flipped by a hash of the digits above it. Cheaper affine or
+/// few-bit scrambles have heavy tails, and 32 replicates then claim errors that are too small.
 class SobolSquare {
  public:
-  SobolSquare(std::uint32_t seed_x, std::uint32_t seed_y) : seed_x_(seed_x), seed_y_(seed_y) {}
+  SobolSquare(std::uint64_t key_x, std::uint64_t key_y) : key_x_(key_x), key_y_(key_y) {}
 
   /// Point `index` of the sequence, each coordinate in [0, 1).
   std::array<double, 2> operator()(std::uint32_t index) const {
-    return {scrambled(reversed(index), seed_x_), scrambled(second_dimension(index), seed_y_)};
+    return {scrambled(reversed(index), key_x_), scrambled(second_dimension(index), key_y_)};
   }
 
  private:
@@ -34,19 +35,26 @@ class SobolSquare {
     return result;
   }
 
-  // Every bit is flipped by a hash of the bits above it: even multipliers carry upwards only, hence the reversals.
-  static double scrambled(std::uint32_t v, std::uint32_t seed) {
-    std::uint32_t x = reversed(v);
-    x ^= x * 0x3d20adeaU;
-    x += seed;
-    x *= (seed >> 16) | 1U;
-    x ^= x * 0x05526c56U;
-    x ^= x * 0x53a22864U;
-    return static_cast<double>(reversed(x)) * 0x1p-32;
+  /// A well-mixed bit of (key, node): the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+  static constexpr std::uint32_t flip(std::uint64_t key, std::uint32_t node) {
+    std::uint64_t z = key + 0x9e3779b97f4a7c15U * node;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+    return static_cast<std::uint32_t>(z >> 63);
   }
 
-  std::uint32_t seed_x_;
-  std::uint32_t seed_y_;
+  static constexpr double scrambled(std::uint32_t digits, std::uint64_t key) {
+    std::uint32_t flips = 0;
+    std::uint32_t node = 1;  // the digits above, after a leading 1
+    for (int level = 31; level >= 0; --level) {
+      flips |= flip(key, node) << level;
+      node = (node << 1) | ((digits >> level) & 1U);
+    }
+    return static_cast<double>(digits ^ flips) * 0x1p-32;
+  }
+
+  std::uint64_t key_x_;
+  std::uint64_t key_y_;
 };
 
 }  // namespace retrace::raytrace

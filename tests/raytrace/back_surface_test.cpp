@@ -1,0 +1,109 @@
+// Embree's choice of facet, corrected, against a search in double precision alone.
+#include "raytrace/back_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "tests/support/designs.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+Vec3 random_direction(std::mt19937_64& generator) {
+  std::normal_distribution<double> normal;
+  return Vec3(normal(generator), normal(generator), normal(generator)).normalized();
+}
+
+/// Rays from inside the plate downwards, then on from where they hit, to either side.
+void compare_searches(const PartSpec& spec, int count) {
+  const Part part = build_part(spec);
+  const Rectangle box = bounding_box(part.outline);
+  const Vec2 centre = 0.5 * (box.lower + box.upper);
+  const BackSurface surface(part, centre);
+  std::mt19937_64 generator(3);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int hits = 0;
+  for (int k = 0; k < count; ++k) {
+    SurfaceRay ray;
+    ray.origin.head<2>() = box.lower - centre + box.size().cwiseProduct(Vec2(unit(generator), unit(generator)));
+    ray.origin.z() = 0.01;
+    ray.direction = random_direction(generator);
+    ray.direction.z() = -std::abs(ray.direction.z()) - 0.3;
+    ray.direction.normalize();
+    for (int bounce = 0; bounce < 4; ++bounce) {
+      const auto fast = surface.first_hit(ray);
+      const auto exact = surface.exact_first_hit(ray);
+      ASSERT_EQ(fast.has_value(), exact.has_value()) << "ray " << k << " bounce " << bounce;
+      if (!fast) break;
+      ++hits;
+      ASSERT_NEAR(fast->t, exact->t, 1e-9);
+      const Vec3 normal = surface.facet(fast->facet).normal;
+      ray.origin += fast->t * ray.direction;
+      ray.source = fast->facet;
+      ray.starts_near_edge = fast->near_edge;
+      ray.inside = unit(generator) < 0.7;
+      // Any direction on the chosen side of the facet just hit.
+      ray.direction = random_direction(generator);
+      const double out = ray.direction.dot(normal);
+      if ((out > 0.0) == ray.inside) ray.direction -= 2.0 * out * normal;
+    }
+  }
+  EXPECT_GT(hits, count);
+}
+
+TEST(BackSurface, BrickRows) {
+  compare_searches(finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 3.0, 3.0, 0.5), 20000);
+}
+TEST(BackSurface, Checker) {
+  PartSpec spec = finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 3.3, 3.3, 0.5);
+  spec.x_gap_mm = 0.1;
+  compare_searches(spec, 20000);
+}
+TEST(BackSurface, Honeycomb) {
+  compare_searches(finite(HexagonalCube{1.0}, Arrangement::honeycomb, 5.0, 5.0, 0.5), 20000);
+}
+TEST(BackSurface, Triangular) {
+  compare_searches(finite(TriangularCube{1.0}, Arrangement::triangular, 5.0, 5.0, 0.5), 20000);
+}
+TEST(BackSurface, InstancedPieces) {
+  const PartSpec spec = finite(HexagonalCube{0.5}, Arrangement::honeycomb, 40.0, 40.0, 0.5);
+  ASSERT_GT(build_part(spec).placements.size(), 1U);
+  compare_searches(spec, 2000);
+}
+
+// A ray that leaves its facet at any angle, however flat, does not meet that facet again.
+TEST(BackSurface, NoSelfHit) {
+  const Part part = build_part(single(HexagonalCube{1.0}, 0.5));
+  const BackSurface surface(part, Vec2::Zero());
+  std::mt19937_64 generator(5);
+  int hits = 0;
+  for (int k = 0; k < 20000; ++k) {
+    SurfaceRay ray;
+    ray.origin = Vec3(0.5, 0.43, 0.001);
+    ray.direction = random_direction(generator);
+    ray.direction.z() = -std::abs(ray.direction.z()) - 0.5;
+    ray.direction.normalize();
+    const auto hit = surface.first_hit(ray);
+    if (!hit) continue;  // out through a side
+    ++hits;
+    const Vec3 normal = surface.facet(hit->facet).normal;
+    ray.origin += hit->t * ray.direction;
+    ray.source = hit->facet;
+    ray.starts_near_edge = hit->near_edge;
+    const Vec3 along = normal.unitOrthogonal();
+    for (const double lift : {1e-3, 1e-6, 1e-9, 1e-12}) {
+      ray.direction = (along - lift * normal).normalized();
+      const auto next = surface.first_hit(ray);
+      EXPECT_FALSE(next && next->facet == ray.source);
+    }
+  }
+  EXPECT_GT(hits, 10000);
+}
+
+}  // namespace
+}  // namespace retrace::testing

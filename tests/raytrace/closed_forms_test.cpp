@@ -1,0 +1,216 @@
+// The tracer against closed forms, derived in docs/theory.
+#include "tests/support/closed_forms.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "materials/fresnel.h"
+#include "tests/support/designs.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+/// |difference| <= z std_error + truncated + 1e-9.
+void expect_within(const ConeResult& result, double expected, double z, const std::string& what) {
+  const double bound = z * result.std_error + result.ledger[Account::truncated] + 1e-9;
+  EXPECT_LE(std::abs(result.rre - expected), bound)
+      << what << ": got " << result.rre << " +- " << result.std_error << ", expected " << expected;
+}
+
+// Hamilton et al. 2017, Table 1: printed to 0.01 %; and the closed form f + (1-f) 2R/(1+R) for full elements' share f.
+TEST(ClosedForms, ArraySizeStudy) {
+  const double fresnel = materials::reflectance(1.0 / kPmma, 1.0);
+  std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/tests/data/rtp_array_rre.csv");
+  ASSERT_TRUE(file) << "tests/data/rtp_array_rre.csv is missing";
+  std::string line;
+  int rows = 0;
+  while (std::getline(file, line)) {
+    if (line.empty() || line[0] == '#' || line[0] == 'b') continue;
+    std::istringstream cells(line);
+    double base = 0, width = 0, full = 0, facets = 0, printed = 0;
+    char comma = 0;
+    cells >> base >> comma >> width >> comma >> full >> comma >> facets >> comma >> printed;
+    ASSERT_FALSE(cells.fail()) << line;
+    PartSpec spec = finite(RtpElement{base, width, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
+    spec.shifted_rows = RowParity::odd;
+    const Part part = build_part(spec);
+    EXPECT_EQ(part.elements_full, static_cast<std::int64_t>(full));
+    EXPECT_NEAR(part.retro_facet_area_mm2, facets, 5e-3);
+    const MonteCarloResult result = MonteCarlo(part).trace(pmma(), from(0.0), {0.5}, rays(1U << 20), {});
+    EXPECT_NEAR(100.0 * result.cones[0].rre, printed, 0.05) << "base " << base;
+    const double share = full * base * width / 100.0;
+    expect_within(result.cones[0], share + (1.0 - share) * 2.0 * fresnel / (1.0 + fresnel), student_bound(5),
+                  "base " + std::to_string(base));
+    ++rows;
+  }
+  EXPECT_EQ(rows, 5);
+}
+
+TEST(ClosedForms, SinglePrismIsEvenInTheAngle) {
+  const Part part = build_part(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
+  const MonteCarlo tracer(part);
+  const std::vector<double> angles = {1, 2, 3, 4, 5, 10, 15, 20, 25, 30, 35, 40};
+  const double z = student_bound(angles.size());
+  for (const double t : angles) {
+    // Different seeds: the two sides are independent estimates.
+    const ConeResult right = tracer.trace(pmma(), from(t), {0.5}, rays(1U << 17, 1), {}).cones[0];
+    const ConeResult left = tracer.trace(pmma(), from(-t), {0.5}, rays(1U << 17, 2), {}).cones[0];
+    EXPECT_LE(std::abs(right.rre - left.rre), z * std::hypot(right.std_error, left.std_error) + 1e-9) << t;
+    EXPECT_GT(right.rre, 0.0);
+  }
+}
+
+// sin t = n sin(45 deg - asin(1/n)): below it both facets reflect totally, above it one transmits.
+TEST(ClosedForms, KneeOfTotalReflection) {
+  const Part part = build_part(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
+  const MonteCarlo tracer(part);
+  const double knee = std::asin(kPmma * std::sin(45.0 * kDeg - std::asin(1.0 / kPmma))) / kDeg;
+  EXPECT_NEAR(knee, 4.33, 5e-3);
+  for (const double side : {-1.0, 1.0}) {
+    const auto transmitted = [&](double t) {
+      return tracer.trace(pmma(), from(side * t), {0.5}, rays(1U << 14), {}).cones[0].ledger[Account::transmitted];
+    };
+    EXPECT_EQ(transmitted(knee - 1e-6), 0.0);
+    EXPECT_GT(transmitted(knee + 1e-6), 1e-4);
+  }
+}
+
+struct Grid {
+  std::vector<double> incidence;
+  std::vector<double> azimuth;
+};
+
+Grid cube_grid() {
+  Grid grid;
+  for (double t = 0.0; t <= 60.0; t += 5.0) grid.incidence.push_back(t);
+  for (double p = 0.0; p < 360.0; p += 15.0) grid.azimuth.push_back(p);
+  return grid;
+}
+
+template <class Expected>
+void check_ideal_array(const PartSpec& spec, const Expected& expected) {
+  const Part part = build_part(spec);
+  const MonteCarlo tracer(part);
+  const Grid grid = cube_grid();
+  const double z = student_bound(grid.incidence.size() * grid.azimuth.size());
+  for (const double t : grid.incidence)
+    for (const double p : grid.azimuth) {
+      const MonteCarloResult result = tracer.trace(ideal(), from(t, p), {0.01}, rays(1U << 15), {});
+      expect_within(result.cones[0], expected(t, p, kPmma), z, "incidence " + std::to_string(t) + " azimuth " + std::to_string(p));
+      EXPECT_EQ(result.misses, 0U);
+    }
+}
+
+TEST(ClosedForms, EffectiveApertureOfAHoneycomb) {
+  check_ideal_array(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0), honeycomb_rre);
+}
+
+TEST(ClosedForms, EffectiveApertureOfATriangularArray) {
+  check_ideal_array(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0), triangular_rre);
+}
+
+// Published brute-force figures for real PMMA arrays, good to 5e-3: full Fresnel, polarisation, acceptance 0.5 degrees,
+// thickness 1 mm; means over azimuths for cube corners.
+struct RealCase {
+  const char* name;
+  PartSpec spec;
+  std::vector<double> azimuth_deg;
+  std::array<double, 10> rre;
+};
+
+class RealArrays : public ::testing::TestWithParam<int> {};
+
+TEST_P(RealArrays, MeetBruteForce) {
+  const std::array<double, 10> incidence = {0, 2.5, 5, 10, 15, 20, 22.5, 25, 30, 40};
+  const std::array<RealCase, 3> cases = {
+      RealCase{"rtp", infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0), {0.0},
+               {1.000, 0.899, 0.422, 0.122, 0.067, 0.057, 0.049, 0.035, 0.026, 0.019}},
+      RealCase{"full cube", infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0),
+               {3.75, 11.25, 18.75, 26.25, 33.75, 41.25, 48.75, 56.25},
+               {1.000, 0.882, 0.843, 0.759, 0.679, 0.523, 0.371, 0.280, 0.169, 0.068}},
+      RealCase{"triangle", infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0),
+               {3.75, 11.25, 18.75, 26.25},
+               {0.919, 0.649, 0.624, 0.630, 0.614, 0.497, 0.368, 0.282, 0.178, 0.080}}};
+  const RealCase& real = cases[static_cast<std::size_t>(GetParam())];
+  const Part part = build_part(real.spec);
+  const MonteCarlo tracer(part);
+  for (std::size_t k = 0; k < incidence.size(); ++k) {
+    double mean = 0.0;
+    for (const double azimuth : real.azimuth_deg)
+      mean += tracer.trace(pmma(), from(incidence[k], azimuth), {0.5}, rays(1U << 16), {}).cones[0].rre /
+              static_cast<double>(real.azimuth_deg.size());
+    EXPECT_NEAR(mean, real.rre[k], 5e-3) << real.name << " at " << incidence[k];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, RealArrays, ::testing::Values(0, 1, 2));
+
+// Every path through a right-angled prism at normal incidence is 2 thickness + base long.
+TEST(ClosedForms, AbsorptionFollowsThePathLength) {
+  const Part part = build_part(single(RtpElement{0.6, 0.4, 90.0}, 0.7));
+  Optics optics = ideal();
+  optics.absorption_per_mm = 0.3;
+  const MonteCarloResult result = MonteCarlo(part).trace(optics, from(0.0), {0.5}, rays(4096), {});
+  EXPECT_NEAR(result.cones[0].rre, std::exp(-0.3 * (2.0 * 0.7 + 0.6)), 1e-12);
+  EXPECT_NEAR(result.cones[0].ledger[Account::absorbed], 1.0 - result.cones[0].rre, 1e-12);
+}
+
+// A lossless mirror array keeps nothing: what enters leaves through the entrance.
+TEST(ClosedForms, ClosedLosslessBoxReturnsEverything) {
+  for (const PartSpec& spec : {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0),
+                               infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0),
+                               infinite(TriangularCube{1.0}, Arrangement::triangular, 1.0)}) {
+    const Part part = build_part(spec);
+    const MonteCarlo tracer(part);
+    for (const double t : {0.0, 13.0, 47.0, 80.0}) {
+      const Ledger ledger = tracer.trace(ideal(), from(t, 17.0), {0.5}, rays(1U << 13), {}).cones[0].ledger;
+      EXPECT_NEAR(ledger[Account::retroreflected] + ledger[Account::returned_elsewhere], 1.0, 1e-12);
+    }
+  }
+}
+
+// With real entrance and mirrors behind, what does not reflect at first must come back in the end.
+TEST(ClosedForms, MirrorsBehindARealFaceReturnEverything) {
+  const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0));
+  Optics optics = pmma();
+  optics.mirror_facets = true;
+  const Ledger ledger = MonteCarlo(part).trace(optics, from(35.0, 20.0), {0.5}, rays(1U << 14), {}).cones[0].ledger;
+  EXPECT_NEAR(ledger[Account::front_specular], materials::reflectance(1.0 / kPmma, std::cos(35.0 * kDeg)), 1e-9);
+  EXPECT_NEAR(ledger[Account::retroreflected] + ledger[Account::returned_elsewhere] + ledger[Account::front_specular] +
+                  ledger[Account::truncated],
+              1.0, 1e-9);
+}
+
+// An RTP groove along its roof is a plain mirror: nothing comes back at an angle.
+TEST(ClosedForms, AlignedGrooveAlongItsRoofIsAMirror) {
+  const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0));
+  const MonteCarloResult result = MonteCarlo(part).trace(pmma(), from(36.0, 90.0), {0.5}, rays(1U << 15), {});
+  EXPECT_LT(result.cones[0].rre, 1e-9);
+}
+
+// The end walls of a brick array make cube corners with the facets: about 0.2 comes back at 36 degrees along the roof.
+TEST(ClosedForms, BrickRowsSendLightBackAlongTheRoof) {
+  const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0));
+  const MonteCarloResult result = MonteCarlo(part).trace(pmma(), from(36.0, 270.0), {0.5}, rays(1U << 17), {});
+  EXPECT_NEAR(result.cones[0].rre, 0.2, 0.02);
+}
+
+// A wider cone never holds less, and one run serves all cones.
+TEST(ClosedForms, RreAgainstAcceptance) {
+  const Part part = build_part(single(HexagonalCube{1.0}, 0.5));
+  const MonteCarlo tracer(part);
+  const MonteCarloResult all = tracer.trace(pmma(), from(12.0, 40.0), {0.5, 10.0, 30.0, 89.0}, rays(1U << 14), {});
+  for (std::size_t k = 1; k < all.cones.size(); ++k) EXPECT_GE(all.cones[k].rre, all.cones[k - 1].rre);
+  const MonteCarloResult one = tracer.trace(pmma(), from(12.0, 40.0), {30.0}, rays(1U << 14), {});
+  EXPECT_NEAR(one.cones[0].rre, all.cones[2].rre, 1e-12);
+}
+
+}  // namespace
+}  // namespace retrace::testing

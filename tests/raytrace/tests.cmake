@@ -1,0 +1,10 @@
+retrace_test(raytrace_test
+  SOURCES
+    ${CMAKE_CURRENT_LIST_DIR}/back_surface_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/closed_forms_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/reference_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/robustness_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/sampling_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
+  LIBRARIES retrace::raytrace Boost::headers)

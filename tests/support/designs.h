@@ -1,0 +1,66 @@
+#pragma once
+
+#include "geometry/part.h"
+#include "raytrace/monte_carlo.h"
+
+namespace retrace::testing {
+
+/// Index of PMMA that the closed forms of the array-size study use.
+inline constexpr double kPmma = 1.4917;
+/// Cube corners of edge 1 mm.
+inline constexpr double kCubeAperture = 1.6329931618554521;
+
+inline geometry::PartSpec finite(geometry::Element element, geometry::Arrangement arrangement, double x_mm, double y_mm,
+                                 double thickness_mm) {
+  geometry::PartSpec spec;
+  spec.element = element;
+  spec.arrangement = arrangement;
+  spec.x_length_mm = x_mm;
+  spec.y_length_mm = y_mm;
+  spec.thickness_mm = thickness_mm;
+  return spec;
+}
+
+inline geometry::PartSpec infinite(geometry::Element element, geometry::Arrangement arrangement, double thickness_mm) {
+  geometry::PartSpec spec;
+  spec.element = element;
+  spec.arrangement = arrangement;
+  spec.extent = geometry::Extent::infinite;
+  spec.thickness_mm = thickness_mm;
+  return spec;
+}
+
+inline geometry::PartSpec single(geometry::Element element, double thickness_mm) {
+  geometry::PartSpec spec;
+  spec.element = element;
+  spec.arrangement = geometry::Arrangement::single;
+  spec.thickness_mm = thickness_mm;
+  return spec;
+}
+
+inline raytrace::Optics pmma() {
+  raytrace::Optics optics;
+  optics.index = kPmma;
+  return optics;
+}
+
+/// Mirror facets under a lossless face: what theory without Fresnel describes.
+inline raytrace::Optics ideal() {
+  raytrace::Optics optics = pmma();
+  optics.mirror_facets = true;
+  optics.lossless_entrance = true;
+  return optics;
+}
+
+inline raytrace::Illumination from(double incidence_deg, double azimuth_deg = 0.0) {
+  return {Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg)};
+}
+
+inline raytrace::Sampling rays(std::uint64_t count, std::uint32_t seed = 1) {
+  raytrace::Sampling sampling;
+  sampling.rays = count;
+  sampling.seed = seed;
+  return sampling;
+}
+
+}  // namespace retrace::testing

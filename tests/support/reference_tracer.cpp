@@ -1,0 +1,219 @@
+#include "tests/support/reference_tracer.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <random>
+#include <vector>
+
+namespace retrace::testing {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+using Vec3c = Eigen::Vector3cd;
+using Complex = std::complex<double>;
+using geometry::FacetRole;
+using raytrace::Account;
+using raytrace::Ledger;
+
+constexpr double kLeastDistance = 1e-9;
+constexpr double kLeastPower = 1e-5;
+constexpr int kBatches = 32;
+
+struct Ray {
+  Vec3 origin;
+  Vec3 direction;
+  std::array<Vec3c, 2> field;  ///< of two orthogonal incoherent inputs
+  double flux = 1.0;           ///< power of unit field strength
+  bool inside = false;
+  bool entered = false;
+  FacetRole left_through = FacetRole::entrance;
+
+  double power() const { return 0.5 * flux * (field[0].squaredNorm() + field[1].squaredNorm()); }
+};
+
+struct Triangle {
+  Vec3 a, ab, ac, normal;
+  FacetRole role;
+};
+
+class Reference {
+ public:
+  Reference(const geometry::Part& part, const raytrace::Optics& optics, const Vec3& to_source, double cone_rad)
+      : optics_(optics), to_source_(to_source), cone_rad_(cone_rad) {
+    const geometry::BoundaryMesh mesh = geometry::closed_boundary(part);
+    for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+      const auto& t = mesh.triangles[k];
+      const Vec3 a = mesh.vertices[t[0]];
+      const Vec3 ab = mesh.vertices[t[1]] - a;
+      const Vec3 ac = mesh.vertices[t[2]] - a;
+      triangles_.push_back({a, ab, ac, ab.cross(ac).normalized(), mesh.roles[k]});
+    }
+  }
+
+  Ledger trace(const Vec3& entry) {
+    ledger_ = Ledger{};
+    Ray ray;
+    ray.direction = -to_source_;
+    ray.origin = entry + to_source_;
+    const Vec3 first = ray.direction.unitOrthogonal();
+    ray.field = {first.cast<Complex>(), ray.direction.cross(first).cast<Complex>()};
+    follow(ray);
+    return ledger_;
+  }
+
+ private:
+  const Triangle* nearest(const Ray& ray, double& t_hit) const {
+    const Triangle* hit = nullptr;
+    t_hit = INFINITY;
+    for (const Triangle& tri : triangles_) {
+      const Vec3 p = ray.direction.cross(tri.ac);
+      const double det = tri.ab.dot(p);
+      if (det == 0.0) continue;
+      const Vec3 s = ray.origin - tri.a;
+      const double u = s.dot(p) / det;
+      const Vec3 q = s.cross(tri.ab);
+      const double v = ray.direction.dot(q) / det;
+      const double t = tri.ac.dot(q) / det;
+      if (u < 0.0 || v < 0.0 || u + v > 1.0 || t < kLeastDistance || t >= t_hit) continue;
+      t_hit = t;
+      hit = &tri;
+    }
+    return hit;
+  }
+
+  void follow(Ray ray) {
+    if (ray.power() < kLeastPower) {
+      ledger_[Account::truncated] += ray.power();
+      return;
+    }
+    double t = 0.0;
+    const Triangle* hit = nearest(ray, t);
+    if (hit == nullptr) {
+      book_exit(ray);
+      return;
+    }
+    if (ray.inside && optics_.absorption_per_mm > 0.0) {
+      const double kept = std::exp(-optics_.absorption_per_mm * t);
+      ledger_[Account::absorbed] += ray.power() * (1.0 - kept);
+      ray.flux *= kept;
+    }
+    ray.origin += t * ray.direction;
+    interface(ray, *hit);
+  }
+
+  void interface(const Ray& ray, const Triangle& hit) {
+    const Vec3 n = hit.normal.dot(ray.direction) > 0.0 ? Vec3(-hit.normal) : hit.normal;
+    const double n1 = ray.inside ? optics_.index : 1.0;
+    const double n2 = ray.inside ? 1.0 : optics_.index;
+    const double ci = -n.dot(ray.direction);
+    const double sin_t = n1 / n2 * std::sqrt(std::max(0.0, 1.0 - ci * ci));
+    const Complex ct = std::sqrt(Complex(1.0 - sin_t * sin_t, 0.0));
+    const Complex r_s = (n1 * ci - n2 * ct) / (n1 * ci + n2 * ct);
+    const Complex r_p = (n2 * ci - n1 * ct) / (n2 * ci + n1 * ct);
+    Vec3 s = n.cross(ray.direction);
+    s = s.norm() > 1e-9 ? s.normalized() : ray.direction.unitOrthogonal();
+
+    Ray mirrored = ray;
+    mirrored.direction = (ray.direction + 2.0 * ci * n).normalized();
+    mirrored.field = recombined(ray, mirrored.direction, s, r_s, r_p);
+    // The first surface is met from outside at the entrance, before anything has entered.
+    follow(mirrored);
+    if (sin_t >= 1.0) return;
+
+    Ray through = ray;
+    through.direction = (n1 / n2 * ray.direction + (n1 / n2 * ci - ct.real()) * n).normalized();
+    through.field = recombined(ray, through.direction, s, 2.0 * n1 * ci / (n1 * ci + n2 * ct),
+                               2.0 * n1 * ci / (n2 * ci + n1 * ct));
+    through.flux *= n2 * ct.real() / (n1 * ci);
+    through.inside = !ray.inside;
+    through.entered = true;
+    if (ray.inside) through.left_through = hit.role;
+    follow(through);
+  }
+
+  /// Field after an interface: s stays, p turns with the direction.
+  static std::array<Vec3c, 2> recombined(const Ray& ray, const Vec3& direction, const Vec3& s, Complex c_s, Complex c_p) {
+    const Vec3 p_in = s.cross(ray.direction);
+    const Vec3 p_out = s.cross(direction);
+    std::array<Vec3c, 2> field;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Complex along_s = s.cast<Complex>().dot(ray.field[k]);
+      const Complex along_p = p_in.cast<Complex>().dot(ray.field[k]);
+      field[k] = c_s * along_s * s.cast<Complex>() + c_p * along_p * p_out.cast<Complex>();
+    }
+    return field;
+  }
+
+  void book_exit(const Ray& ray) {
+    if (ray.inside) {
+      ledger_[Account::lost] += ray.power();
+      return;
+    }
+    const double angle = std::atan2(ray.direction.cross(to_source_).norm(), ray.direction.dot(to_source_));
+    const bool in_cone = angle <= cone_rad_ * (1.0 + 1e-9);
+    if (!ray.entered) {
+      ledger_[in_cone ? Account::retroreflected : Account::front_specular] += ray.power();
+    } else if (ray.left_through == FacetRole::entrance) {
+      ledger_[in_cone ? Account::retroreflected : Account::returned_elsewhere] += ray.power();
+    } else {
+      const bool side = ray.left_through == FacetRole::side || ray.left_through == FacetRole::border_wall;
+      ledger_[side ? Account::side_exit : Account::transmitted] += ray.power();
+    }
+  }
+
+  raytrace::Optics optics_;
+  Vec3 to_source_;
+  double cone_rad_;
+  std::vector<Triangle> triangles_;
+  Ledger ledger_;
+};
+
+/// A point of a convex polygon, by rejection from its bounding box.
+geometry::Vec2 random_point(const geometry::Polygon& outline, std::mt19937_64& generator) {
+  const geometry::Rectangle box = geometry::bounding_box(outline);
+  std::uniform_real_distribution<double> x(box.lower.x(), box.upper.x());
+  std::uniform_real_distribution<double> y(box.lower.y(), box.upper.y());
+  for (;;) {
+    const geometry::Vec2 p(x(generator), y(generator));
+    bool inside = true;
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const geometry::Vec2 along = outline[(k + 1) % outline.size()] - outline[k];
+      const geometry::Vec2 to = p - outline[k];
+      inside = inside && along.x() * to.y() - along.y() * to.x() > 0.0;
+    }
+    if (inside) return p;
+  }
+}
+
+}  // namespace
+
+ReferenceResult reference_trace(const geometry::Part& part, const raytrace::Optics& optics,
+                                const raytrace::Illumination& illumination, double cone_half_angle_deg,
+                                std::uint64_t rays, std::uint64_t seed) {
+  const double t = illumination.incidence.rad();
+  const double p = illumination.azimuth.rad();
+  Reference reference(part, optics, Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)),
+                      Angle::from_deg(cone_half_angle_deg).rad());
+  std::mt19937_64 generator(seed);
+  std::array<Ledger, kBatches> batches{};
+  const std::uint64_t per_batch = rays / kBatches;
+  for (Ledger& batch : batches)
+    for (std::uint64_t k = 0; k < per_batch; ++k) {
+      const geometry::Vec2 at = random_point(part.outline, generator);
+      const Ledger one = reference.trace({at.x(), at.y(), part.thickness_mm});
+      for (std::size_t a = 0; a < raytrace::kAccountCount; ++a)
+        batch.power[a] += one.power[a] / static_cast<double>(per_batch);
+    }
+  ReferenceResult result;
+  for (std::size_t a = 0; a < raytrace::kAccountCount; ++a) {
+    double squares = 0.0;
+    for (const Ledger& batch : batches) result.mean.power[a] += batch.power[a] / kBatches;
+    for (const Ledger& batch : batches) squares += std::pow(batch.power[a] - result.mean.power[a], 2.0);
+    result.std_error[a] = std::sqrt(squares / (kBatches * (kBatches - 1.0)));
+  }
+  return result;
+}
+
+}  // namespace retrace::testing

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <cstddef>
+
+namespace retrace::testing {
+
+/// Error probability of one of `comparisons` two-sided tests whose family is wrong in 1 % of runs (Sidak 1967).
+inline double sidak_level(std::size_t comparisons, double family_level = 0.01) {
+  return -std::expm1(std::log1p(-family_level) / static_cast<double>(comparisons));
+}
+
+/// How many standard errors, estimated from `replicates`, a true value may lie off (Student's t, Sidak-corrected).
+inline double student_bound(std::size_t comparisons, std::size_t replicates = 32) {
+  const boost::math::students_t distribution(static_cast<double>(replicates - 1));
+  return boost::math::quantile(boost::math::complement(distribution, 0.5 * sidak_level(comparisons)));
+}
+
+/// The same for errors known exactly, or from very many samples.
+inline double normal_bound(std::size_t comparisons) {
+  return boost::math::quantile(boost::math::complement(boost::math::normal(), 0.5 * sidak_level(comparisons)));
+}
+
+}  // namespace retrace::testing
