@@ -15,7 +15,9 @@ namespace retrace {
 namespace fs = std::filesystem;
 namespace {
 
-std::string reason(int error_number) { return std::generic_category().message(error_number); }
+std::string reason(int error_number) {
+  return std::generic_category().message(error_number);
+}
 
 /// Owns a file under a temporary name until it is moved into place; otherwise removes it.
 class TemporaryFile {

@@ -10,8 +10,8 @@ namespace retrace {
 /// and moved into place. \throw OutputError naming the path and the reason; `path` is then as it was.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// Makes `folder` and its parents where they are missing. \throw OutputError if that cannot be done or if it is no folder
-/// that can be written to.
+/// Makes `folder` and its parents where they are missing. \throw OutputError if that cannot be done or if it is no
+/// folder that can be written to.
 void make_output_folder(const std::filesystem::path& folder);
 
 /// The whole content of a file. \throw InputError if it cannot be opened or read; folders are refused.

@@ -17,7 +17,8 @@ fs::path data_directory() {
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path folder = program.parent_path().parent_path() / "share" / "retrace";
   if (error || !fs::is_directory(folder))
-    throw InputError("the data folder " + folder.string() + " is missing; set RETRACE_DATA_DIR to retrace's data folder");
+    throw InputError("the data folder " + folder.string() +
+                     " is missing; set RETRACE_DATA_DIR to retrace's data folder");
   return folder;
 }
 

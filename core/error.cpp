@@ -7,7 +7,8 @@ namespace {
 
 std::string located(const InputLocation& where, std::string_view text) {
   std::string message;
-  if (!where.file.empty()) message += where.line > 0 ? fmt::format("{}:{}: ", where.file, where.line) : where.file + ": ";
+  if (!where.file.empty())
+    message += where.line > 0 ? fmt::format("{}:{}: ", where.file, where.line) : where.file + ": ";
   if (!where.key.empty()) message += where.key + ": ";
   message += text;
   return message;

@@ -11,7 +11,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool is_written(const Json& value) { return !value.is_number_float() || std::isfinite(value.get<double>()); }
+bool is_written(const Json& value) {
+  return !value.is_number_float() || std::isfinite(value.get<double>());
+}
 
 bool is_flat(const Json& value) {
   return std::all_of(value.begin(), value.end(), [](const Json& v) { return !v.is_structured() || v.empty(); });

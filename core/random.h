@@ -15,11 +15,13 @@ struct RandomKey {
 
 /// Four independent 32-bit words for counter (a, b, c, d) under `key`.
 inline r123::Philox4x32::ctr_type philox(RandomKey key, std::uint32_t a, std::uint32_t b, std::uint32_t c = 0,
-                                       std::uint32_t d = 0) {
+                                         std::uint32_t d = 0) {
   return r123::Philox4x32()({{a, b, c, d}}, {{key.seed, key.stream}});
 }
 
 /// Uniform in [0, 1): 0, 2^-32, ..., 1 - 2^-32.
-inline double unit_interval(std::uint32_t word) { return static_cast<double>(word) * 0x1p-32; }
+inline double unit_interval(std::uint32_t word) {
+  return static_cast<double>(word) * 0x1p-32;
+}
 
 }  // namespace retrace

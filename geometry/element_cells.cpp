@@ -23,9 +23,11 @@ double rtp_depth(const RtpElement& e) {
   return 0.5 * e.base_mm / std::tan(0.5 * e.apex_angle_deg * std::numbers::pi / 180.0);
 }
 
-// A cube of edge a: its rim circle has radius R = a sqrt(2/3); the far ends of the dihedral edges rise a/sqrt(3) above the
-// apex, the remaining corners of the full cube twice that.
-double rise_of_dihedral_edge(double aperture_mm) { return 0.5 * aperture_mm / std::numbers::sqrt2; }
+// A cube of edge a: its rim circle has radius R = a sqrt(2/3); the far ends of the dihedral edges rise a/sqrt(3) above
+// the apex, the remaining corners of the full cube twice that.
+double rise_of_dihedral_edge(double aperture_mm) {
+  return 0.5 * aperture_mm / std::numbers::sqrt2;
+}
 
 /// The plane over the xy plane through the apex (at `centre`, `apex_height`) that contains the two dihedral edges at
 /// `angle_deg` and `angle_deg` + 120, each rising by `rise` over the radius R.
@@ -96,11 +98,11 @@ double element_depth_mm(const Element& element) {
 }
 
 Polygon aperture_outline(const Element& element) {
-  Polygon outline = std::visit(
-      Overloaded{[](const RtpElement& e) { return rtp_cell(e, Vec2::Zero()).outline; },
-                 [](const HexagonalCube& e) { return hexagonal_cube_cell(e, Vec2::Zero()).outline; },
-                 [](const TriangularCube& e) { return triangular_cube_cell(e, Vec2::Zero()).outline; }},
-      element);
+  Polygon outline =
+      std::visit(Overloaded{[](const RtpElement& e) { return rtp_cell(e, Vec2::Zero()).outline; },
+                            [](const HexagonalCube& e) { return hexagonal_cube_cell(e, Vec2::Zero()).outline; },
+                            [](const TriangularCube& e) { return triangular_cube_cell(e, Vec2::Zero()).outline; }},
+                 element);
   const Vec2 corner = bounding_box(outline).lower;
   for (Vec2& p : outline) p -= corner;
   return outline;

@@ -20,13 +20,13 @@ void add_element(Lattice& lattice, Cell cell) {
 }
 
 /// One prism and the land that separates it from the next in x and y.
-void add_prism_with_gaps(Lattice& lattice, const RtpElement& element, const Vec2& gap, const Vec2& corner, bool turned) {
+void add_prism_with_gaps(Lattice& lattice, const RtpElement& element, const Vec2& gap, const Vec2& corner,
+                         bool turned) {
   const Vec2 size(element.base_mm, element.width_mm);
   add_element(lattice, rtp_cell(element, corner, turned));
   if (gap.x() > 0.0)
     lattice.cells.push_back(flat_land({corner + Vec2(size.x(), 0.0), corner + Vec2(size.x() + gap.x(), size.y())}));
-  if (gap.y() > 0.0)
-    lattice.cells.push_back(flat_land({corner + Vec2(0.0, size.y()), corner + size + gap}));
+  if (gap.y() > 0.0) lattice.cells.push_back(flat_land({corner + Vec2(0.0, size.y()), corner + size + gap}));
 }
 
 Lattice rtp_lattice(const PartSpec& spec, const RtpElement& element, bool rows_are_shifted) {

@@ -62,9 +62,9 @@ double element_depth_mm(const Element& element);
 /// The outline of one element's aperture, its bounding box starting at the origin.
 Polygon aperture_outline(const Element& element);
 
-/// The periodic tiling that an arrangement repeats. For RTP arrays the lower left corner of an element in row 1, unshifted,
-/// is at the origin; for cube corners the apex of an unturned cell is. `rows_are_shifted` is false for a single row.
-/// \pre the arrangement fits the element and is not `single`.
+/// The periodic tiling that an arrangement repeats. For RTP arrays the lower left corner of an element in row 1,
+/// unshifted, is at the origin; for cube corners the apex of an unturned cell is. `rows_are_shifted` is false for a
+/// single row. \pre the arrangement fits the element and is not `single`.
 Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted);
 
 }  // namespace retrace::geometry

@@ -104,7 +104,8 @@ IndexRange indices_over(const Layout& layout) {
     range.lower[k] = static_cast<std::int64_t>(
         std::floor((layout.extent.lower[axis] - layout.anchor[axis] - reach.upper[axis]) / period));
     range.upper[k] = static_cast<std::int64_t>(
-                         std::ceil((layout.extent.upper[axis] - layout.anchor[axis] - reach.lower[axis]) / period)) + 1;
+                         std::ceil((layout.extent.upper[axis] - layout.anchor[axis] - reach.lower[axis]) / period)) +
+                     1;
   }
   return range;
 }
@@ -139,7 +140,8 @@ void add_cell(std::vector<Tile>& tiles, const Layout& layout, const Rectangle& e
 }
 
 /// The tiles of a range of the lattice and of one more cell all round, local to the range's lower corner.
-std::vector<Tile> tiles_of(const Layout& layout, const IndexRange& range, const Rectangle& extent, const Rectangle& block) {
+std::vector<Tile> tiles_of(const Layout& layout, const IndexRange& range, const Rectangle& extent,
+                           const Rectangle& block) {
   std::vector<Tile> tiles;
   std::uint32_t number = 0;
   for (std::int64_t j = range.lower[1] - 1; j <= range.upper[1]; ++j) {
@@ -157,7 +159,9 @@ bool any_owned(const std::vector<Tile>& tiles) {
   return std::any_of(tiles.begin(), tiles.end(), [](const Tile& t) { return t.owned; });
 }
 
-Rectangle relative_to(const Rectangle& r, const Vec2& corner) { return {r.lower - corner, r.upper - corner}; }
+Rectangle relative_to(const Rectangle& r, const Vec2& corner) {
+  return {r.lower - corner, r.upper - corner};
+}
 
 /// Tells pieces of the array apart by where the borders cross them. Borders beyond the neighbourhood do not matter.
 using PieceKey = std::array<std::int64_t, 10>;
@@ -265,7 +269,9 @@ void build_infinite(Part& part) {
   part.elements_full = layout.lattice.elements_per_period;
 }
 
-double element_size(const Element& element) { return bounding_box(aperture_outline(element)).size().minCoeff(); }
+double element_size(const Element& element) {
+  return bounding_box(aperture_outline(element)).size().minCoeff();
+}
 
 void measure(Part& part) {
   for (const Placement& placement : part.placements)

@@ -16,12 +16,12 @@ struct Placement {
   Vec2 offset_mm = Vec2::Zero();
 };
 
-/// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below z = 0
-/// the elements. A finite part is the prism over a convex outline, open at the bottom only where the back surface ends it;
-/// an infinite one repeats with a rectangular period.
+/// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below z =
+/// 0 the elements. A finite part is the prism over a convex outline, open at the bottom only where the back surface
+/// ends it; an infinite one repeats with a rectangular period.
 ///
-/// The back surface is stored as few distinct patches and many placements, so that a large array costs the memory of its
-/// different pieces (interior, borders, corners).
+/// The back surface is stored as few distinct patches and many placements, so that a large array costs the memory of
+/// its different pieces (interior, borders, corners).
 struct Part {
   PartSpec spec;
   double thickness_mm = 0.0;
@@ -29,10 +29,10 @@ struct Part {
   double size_mm = 0.0;  ///< of an element in plan, the scale for tolerances
   std::vector<SurfacePatch> patches;
   std::vector<Placement> placements;
-  Polygon outline;                  ///< finite parts; counter-clockwise
-  std::optional<Vec2> period_mm;    ///< infinite parts: the surface covers [-margin, 1 + margin] periods in x and y
-  int periods_beyond = 0;           ///< that margin
-  std::int64_t elements_full = 0;   ///< finite: whole elements; infinite: elements per period
+  Polygon outline;                 ///< finite parts; counter-clockwise
+  std::optional<Vec2> period_mm;   ///< infinite parts: the surface covers [-margin, 1 + margin] periods in x and y
+  int periods_beyond = 0;          ///< that margin
+  std::int64_t elements_full = 0;  ///< finite: whole elements; infinite: elements per period
   std::int64_t elements_partial = 0;
   double entrance_area_mm2 = 0.0;     ///< infinite: of one period
   double retro_facet_area_mm2 = 0.0;  ///< infinite: of one period

@@ -24,8 +24,8 @@ Polygon to_polygon(const Rectangle& rectangle);
 Rectangle bounding_box(const Polygon& polygon);
 
 /// The part of a convex polygon inside a rectangle. Vertices within `tolerance_mm` of a border count as on it and stay
-/// where they are, so that an edge that coincides with the border up to rounding is neither moved nor doubled. Empty when
-/// nothing wider than the tolerance is left.
+/// where they are, so that an edge that coincides with the border up to rounding is neither moved nor doubled. Empty
+/// when nothing wider than the tolerance is left.
 Polygon clip(const Polygon& polygon, const Rectangle& rectangle, double tolerance_mm);
 
 /// True if every vertex lies in the rectangle widened by `tolerance_mm`.

@@ -138,13 +138,14 @@ class PatchBuilder {
     }
   }
 
-  /// The face between heights bottom and top over the edge from -> to, the solid on the left; `ring` gets every vertex on
-  /// its outline, `corners` only the corners.
+  /// The face between heights bottom and top over the edge from -> to, the solid on the left; `ring` gets every vertex
+  /// on its outline, `corners` only the corners.
   struct Strip {
     Ring ring;
     Ring corners;
   };
-  Strip strip(std::uint32_t from, std::uint32_t to, double bottom_from, double bottom_to, double top_from, double top_to) {
+  Strip strip(std::uint32_t from, std::uint32_t to, double bottom_from, double bottom_to, double top_from,
+              double top_to) {
     Strip s;
     const auto add = [&](std::uint32_t id, bool corner) {
       if (!s.ring.empty() && (s.ring.back() == id || s.ring.front() == id)) return;

@@ -37,8 +37,8 @@ struct PatchCell {
   Vec3 upper = Vec3::Zero();
 };
 
-/// A welded piece of the part's back surface, everything below the plate but the outer walls, in coordinates local to the
-/// piece. Triangles of neighbouring facets share whole edges (no T-junctions).
+/// A welded piece of the part's back surface, everything below the plate but the outer walls, in coordinates local to
+/// the piece. Triangles of neighbouring facets share whole edges (no T-junctions).
 struct SurfacePatch {
   std::vector<Vec3> vertices;
   std::vector<PatchFacet> facets;
@@ -53,9 +53,9 @@ struct SurfacePatch {
   std::vector<std::array<std::uint32_t, 2>> border_rim;
 };
 
-/// Welds tiles into a surface and raises the vertical walls where neighbouring tiles differ in height. A wall belongs to
-/// the deeper of its two tiles. Walls on the border of `block` (the area the array fills) get role border_wall, others
-/// inner_gable. \param size_mm the size of an element, for tolerances
+/// Welds tiles into a surface and raises the vertical walls where neighbouring tiles differ in height. A wall belongs
+/// to the deeper of its two tiles. Walls on the border of `block` (the area the array fills) get role border_wall,
+/// others inner_gable. \param size_mm the size of an element, for tolerances
 SurfacePatch build_patch(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm);
 
 }  // namespace retrace::geometry

@@ -17,7 +17,9 @@ std::int64_t cell_of(double coordinate, double cell_mm) {
 
 }  // namespace
 
-VertexIndex::Key VertexIndex::key(double x, double y) const { return cell_key(cell_of(x, cell_mm_), cell_of(y, cell_mm_)); }
+VertexIndex::Key VertexIndex::key(double x, double y) const {
+  return cell_key(cell_of(x, cell_mm_), cell_of(y, cell_mm_));
+}
 
 std::uint32_t VertexIndex::add(const Vec2& point) {
   // A point near a grid line may have its twin in the next cell: look at the four corners of its tolerance box.

@@ -9,7 +9,9 @@
 namespace retrace::materials {
 namespace {
 
-double index_at(const ConstantIndex& d, double) { return d.n; }
+double index_at(const ConstantIndex& d, double) {
+  return d.n;
+}
 
 double index_at(const PowerSeries& d, double w_um) {
   double n2 = 0.0;

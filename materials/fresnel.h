@@ -6,9 +6,10 @@ namespace retrace::materials {
 
 /// Amplitude coefficients of a plane interface between transparent media, for the s and p components of the field.
 ///
-/// Basis: s = d x n normalised, p = d x s, with d the direction of the wave concerned (incident, reflected or refracted);
-/// at normal incidence r_p = -r_s. Time dependence exp(-i w t). Transmission amplitudes are scaled so that their squares
-/// are shares of power: r^2 + t^2 = 1 for each component. Born and Wolf, Principles of Optics, 7th ed., 1.5.
+/// Basis: s = d x n normalised, p = d x s, with d the direction of the wave concerned (incident, reflected or
+/// refracted); at normal incidence r_p = -r_s. Time dependence exp(-i w t). Transmission amplitudes are scaled so that
+/// their squares are shares of power: r^2 + t^2 = 1 for each component. Born and Wolf, Principles of Optics, 7th
+/// ed., 1.5.
 struct FresnelCoefficients {
   std::complex<double> r_s;
   std::complex<double> r_p;

@@ -97,8 +97,18 @@ struct BackSurface::Embree {
     for (std::uint32_t k = 0; k < placements.size(); ++k) {
       RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
       rtcSetGeometryInstancedScene(instance, patch_scenes[placements[k].patch]);
-      const std::array<float, 12> matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1, static_cast<float>(placements[k].offset_mm.x()),
-                                            static_cast<float>(placements[k].offset_mm.y()), 0};
+      const std::array<float, 12> matrix = {1,
+                                            0,
+                                            0,
+                                            0,
+                                            1,
+                                            0,
+                                            0,
+                                            0,
+                                            1,
+                                            static_cast<float>(placements[k].offset_mm.x()),
+                                            static_cast<float>(placements[k].offset_mm.y()),
+                                            0};
       rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
       rtcCommitGeometry(instance);
       rtcAttachGeometryByID(scene, instance, k);
@@ -181,7 +191,8 @@ std::optional<SurfaceHit> BackSurface::first_hit(const SurfaceRay& ray) const {
   const double towards = exact_.facet(named).normal.dot(ray.direction);
   if (ray.inside ? towards <= 0.0 : towards >= 0.0) return exact_first_hit(ray);
   const SurfaceHit hit{named, exact_.distance(named, ray.origin, ray.direction), false};
-  if (hit.t < 0.0 || is_near_edge(named, ray.origin + hit.t * ray.direction, ray.direction)) return exact_first_hit(ray);
+  if (hit.t < 0.0 || is_near_edge(named, ray.origin + hit.t * ray.direction, ray.direction))
+    return exact_first_hit(ray);
   if (hit.t > ray.t_max) return std::nullopt;
   return hit;
 }

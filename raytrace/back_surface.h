@@ -9,9 +9,9 @@
 
 namespace retrace::raytrace {
 
-/// The part's back surface, ready for rays. Embree says which facet a ray meets; the plane in double precision says where.
-/// Where single precision might name the wrong one - near edges, or when what it names does not fit the ray - the answer
-/// comes from double precision alone. Safe to use from many threads.
+/// The part's back surface, ready for rays. Embree says which facet a ray meets; the plane in double precision says
+/// where. Where single precision might name the wrong one - near edges, or when what it names does not fit the ray -
+/// the answer comes from double precision alone. Safe to use from many threads.
 class BackSurface {
  public:
   /// \param centre_mm point of the plane that becomes the origin of rays: keeps single-precision coordinates small

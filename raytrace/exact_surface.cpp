@@ -7,12 +7,14 @@
 namespace retrace::raytrace {
 namespace {
 
-// Relative to the element's size: rounding of doubles at large coordinates stays below the first; what it may leave open
-// where pieces of the surface meet stays below the second.
+// Relative to the element's size: rounding of doubles at large coordinates stays below the first; what it may leave
+// open where pieces of the surface meet stays below the second.
 constexpr double kTolerance = 1e-10;
 constexpr double kWideTolerance = 1e-6;
 
-Vec3 lifted(const Vec2& p) { return {p.x(), p.y(), 0.0}; }
+Vec3 lifted(const Vec2& p) {
+  return {p.x(), p.y(), 0.0};
+}
 
 /// True if the ray passes the box, widened by `pad_mm`, somewhere in -pad..t_max.
 bool meets_box(const Vec3& origin, const Vec3& direction, const Vec3& lower, const Vec3& upper, double pad_mm,

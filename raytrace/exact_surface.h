@@ -27,9 +27,7 @@ class ExactSurface {
   /// \param centre_mm point of the plane that becomes the origin of rays
   ExactSurface(const geometry::Part& part, const Vec2& centre_mm);
 
-  const Facet& facet(FacetRef ref) const {
-    return patches_[placements_[ref.placement].patch].facets[ref.facet];
-  }
+  const Facet& facet(FacetRef ref) const { return patches_[placements_[ref.placement].patch].facets[ref.facet]; }
 
   /// Distance along the ray to the facet's plane.
   double distance(FacetRef ref, const Vec3& origin, const Vec3& direction) const;
@@ -37,8 +35,8 @@ class ExactSurface {
   /// How far inside its outline a point of the facet's plane lies; negative outside.
   double margin(FacetRef ref, const Vec3& point) const;
 
-  /// The first facet that the ray meets from its own side: one that it leaves the part through if inside, enters through if
-  /// outside. Nothing beyond `t_max`.
+  /// The first facet that the ray meets from its own side: one that it leaves the part through if inside, enters
+  /// through if outside. Nothing beyond `t_max`.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
   /// The same with facets a little larger than they are: for a ray that cannot have missed the surface but did, through

@@ -11,11 +11,11 @@ namespace retrace::raytrace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// The polarisation state of a ray of unpolarised origin: the Jones matrix from two orthogonal incoherent input fields to
-/// the components along s and p = direction x s. Amplitudes are scaled so that squares are power.
+/// The polarisation state of a ray of unpolarised origin: the Jones matrix from two orthogonal incoherent input fields
+/// to the components along s and p = direction x s. Amplitudes are scaled so that squares are power.
 ///
-/// Averaging reflectances of s and p at every interface would be wrong after the second one: the first interface polarises,
-/// and the next has another plane of incidence.
+/// Averaging reflectances of s and p at every interface would be wrong after the second one: the first interface
+/// polarises, and the next has another plane of incidence.
 struct Field {
   std::complex<double> s_of[2] = {1.0, 0.0};
   std::complex<double> p_of[2] = {0.0, 1.0};
@@ -31,7 +31,8 @@ struct Field {
     for (auto& c : p_of) c *= amplitude;
   }
 
-  /// Describes the same field of a ray along `direction` with the s axis normal to the plane of incidence at an interface.
+  /// Describes the same field of a ray along `direction` with the s axis normal to the plane of incidence at an
+  /// interface.
   void turn_to(const Vec3& direction, const Vec3& normal) {
     const Vec3 across = direction.cross(normal);
     const double norm2 = across.squaredNorm();

@@ -23,8 +23,8 @@ inline constexpr std::size_t kAccountCount = 9;
 
 /// The accounts' names in files, in the order of the enumeration.
 inline constexpr std::array<std::string_view, kAccountCount> kAccountNames = {
-    "retroreflected", "front_specular", "scattered_out", "returned_elsewhere", "side_exit",
-    "transmitted",    "absorbed",       "truncated",     "lost"};
+    "retroreflected", "front_specular", "scattered_out", "returned_elsewhere", "side_exit", "transmitted",
+    "absorbed",       "truncated",      "lost"};
 
 /// Power by account, as a share of the incident power.
 struct Ledger {

@@ -112,9 +112,10 @@ double largest_error(const MonteCarloResult& result) {
 void check_lost(const MonteCarloResult& result) {
   for (const ConeResult& cone : result.cones)
     if (cone.ledger[Account::lost] > kLostLimit)
-      throw BudgetError(fmt::format("{} of {} rays missed every face from inside the part ({} of the power): this is a defect "
-                                    "of retrace, please report the design",
-                                    result.misses, result.rays, cone.ledger[Account::lost]));
+      throw BudgetError(
+          fmt::format("{} of {} rays missed every face from inside the part ({} of the power): this is a defect "
+                      "of retrace, please report the design",
+                      result.misses, result.rays, cone.ledger[Account::lost]));
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ namespace retrace::raytrace {
 /// How long a Monte-Carlo run goes on.
 struct Sampling {
   std::uint32_t seed = 1;
-  std::optional<std::uint64_t> rays;   ///< traced exactly (rounded up to whole replicates); else until the target
-  double target_error = 1e-4;          ///< standard error of RRE to reach, > 0
-  std::uint64_t max_rays = 1U << 26;   ///< limit on the way there
+  std::optional<std::uint64_t> rays;  ///< traced exactly (rounded up to whole replicates); else until the target
+  double target_error = 1e-4;         ///< standard error of RRE to reach, > 0
+  std::uint64_t max_rays = 1U << 26;  ///< limit on the way there
 };
 
 /// RRE and ledger for one acceptance cone.
@@ -39,8 +39,8 @@ struct MonteCarloResult {
   bool complete = true;  ///< false if it was cancelled: the figures are then of what was traced, none if rays is 0
 };
 
-/// Monte-Carlo estimates of where light goes, by Owen-scrambled Sobol points over the entrance face. The result depends on
-/// the seed and the question alone, not on the number of threads.
+/// Monte-Carlo estimates of where light goes, by Owen-scrambled Sobol points over the entrance face. The result depends
+/// on the seed and the question alone, not on the number of threads.
 class MonteCarlo {
  public:
   /// Independent scrambles: the estimate is their mean, its standard error comes from their spread.
@@ -52,7 +52,8 @@ class MonteCarlo {
   /// Traces in the calling thread's TBB arena.
   /// \throw BudgetError if power is lost: a ray missed every face from inside
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
-                         const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr) const;
+                         const Sampling& sampling, const PathPolicy& policy,
+                         const Cancellation* cancel = nullptr) const;
 
  private:
   struct Scene;

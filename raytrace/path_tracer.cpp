@@ -128,12 +128,18 @@ bool PathWalker::advance(State& state) {
     state.field.scale(std::sqrt(kept));
   }
   switch (step.end) {
-    case End::facet: return meet_facet(state, step.hit);
-    case End::entrance: return meet_entrance(state);
-    case End::side: return meet_side(state, setup_.sides[step.side].normal);
-    case End::escape: return escape(state);
-    case End::trapped: return finish(state, Account::truncated);
-    case End::miss: break;
+    case End::facet:
+      return meet_facet(state, step.hit);
+    case End::entrance:
+      return meet_entrance(state);
+    case End::side:
+      return meet_side(state, setup_.sides[step.side].normal);
+    case End::escape:
+      return escape(state);
+    case End::trapped:
+      return finish(state, Account::truncated);
+    case End::miss:
+      break;
   }
   ++tally_.misses;
   return finish(state, Account::lost);
@@ -150,7 +156,8 @@ std::optional<SurfaceHit> PathWalker::search_exactly(const State& state, double 
 
 /// For a ray that must meet the surface: it would leave the part's bounds otherwise.
 std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const {
-  return setup_.surface.certain_first_hit({state.position, state.direction, state.source, state.inside, true, kInfinity});
+  return setup_.surface.certain_first_hit(
+      {state.position, state.direction, state.source, state.inside, true, kInfinity});
 }
 
 /// Inside a finite part: the nearest of entrance, sides and back surface.
@@ -411,6 +418,8 @@ bool PathWalker::finish(const State& state, Account account) {
   return false;
 }
 
-bool PathWalker::escape(const State& state) { return finish(state, account_of_exit(state.left_through)); }
+bool PathWalker::escape(const State& state) {
+  return finish(state, account_of_exit(state.left_through));
+}
 
 }  // namespace retrace::raytrace

@@ -16,8 +16,8 @@ namespace retrace::raytrace {
 
 /// How paths are followed.
 struct PathPolicy {
-  double cutoff = 1e-10;             ///< power below which a path ends in `truncated`
-  double split_power = 1e-3;         ///< both branches of an interface are followed while each carries at least this
+  double cutoff = 1e-10;      ///< power below which a path ends in `truncated`
+  double split_power = 1e-3;  ///< both branches of an interface are followed while each carries at least this
   std::uint32_t max_events = 1'000'000;  ///< hits on one path before it ends in `truncated`
 };
 
@@ -55,8 +55,8 @@ struct PathSetup {
   PathPolicy policy;
   double thickness_mm = 0.0;
   double depth_mm = 0.0;
-  double clearance_mm = 0.0;  ///< height above z = 0 from which the back surface is looked for
-  std::vector<Side> sides;    ///< empty for an infinite part
+  double clearance_mm = 0.0;         ///< height above z = 0 from which the back surface is looked for
+  std::vector<Side> sides;           ///< empty for an infinite part
   Vec2 period_mm = Vec2::Zero();     ///< infinite part
   Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the piece of surface that stands for it
   Vec3 to_source = Vec3::UnitZ();
@@ -65,8 +65,8 @@ struct PathSetup {
   bool infinite() const { return sides.empty(); }
 };
 
-/// Follows light through a part: refraction and reflection at every interface with polarisation, both branches where both
-/// matter, one chosen at random with the whole power where not. One walker serves one thread.
+/// Follows light through a part: refraction and reflection at every interface with polarisation, both branches where
+/// both matter, one chosen at random with the whole power where not. One walker serves one thread.
 class PathWalker {
  public:
   PathWalker(const PathSetup& setup, Tally& tally) : setup_(setup), tally_(tally) {}

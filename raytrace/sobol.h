@@ -7,8 +7,8 @@ namespace retrace::raytrace {
 
 /// Owen-scrambled Sobol points in the unit square: any 2^k consecutive aligned points are stratified, and each scramble
 /// (each pair of keys) is an independent unbiased estimator whose errors are nearly normal (Sobol 1967; Owen 1995; Loh
-/// 2003). The scramble is the full nested one: every digit is flipped by a hash of the digits above it. Cheaper affine or
-/// few-bit scrambles have heavy tails, and 32 replicates then claim errors that are too small.
+/// 2003). The scramble is the full nested one: every digit is flipped by a hash of the digits above it. Cheaper affine
+/// or few-bit scrambles have heavy tails, and 32 replicates then claim errors that are too small.
 class SobolSquare {
  public:
   SobolSquare(std::uint64_t key_x, std::uint64_t key_y) : key_x_(key_x), key_y_(key_y) {}

@@ -19,13 +19,14 @@ struct FacetRef {
   friend bool operator==(const FacetRef&, const FacetRef&) = default;
 };
 
-/// A ray towards the back surface. It never hits the facet it starts from: that one is excluded by name, not by distance.
+/// A ray towards the back surface. It never hits the facet it starts from: that one is excluded by name, not by
+/// distance.
 struct SurfaceRay {
   Vec3 origin = Vec3::Zero();
   Vec3 direction = Vec3::UnitZ();
   FacetRef source;
-  bool inside = true;              ///< in the part's material
-  bool starts_near_edge = false;   ///< the origin is too near an edge of its facet for single precision
+  bool inside = true;             ///< in the part's material
+  bool starts_near_edge = false;  ///< the origin is too near an edge of its facet for single precision
   double t_max = std::numeric_limits<double>::infinity();
 };
 

@@ -47,7 +47,8 @@ double coordinate(const RrePoint& p, Axis axis) {
 std::string label(const RreResult& result, const RrePoint& p, const Variation& v, Axis axis) {
   std::vector<std::string> parts;
   if (v.designs.size() > 1) parts.push_back(short_name(result.designs[p.design]));
-  if (v.azimuths.size() > 1 && axis != Axis::azimuth) parts.push_back(fmt::format("azimuth {}°", shortest(p.azimuth_deg)));
+  if (v.azimuths.size() > 1 && axis != Axis::azimuth)
+    parts.push_back(fmt::format("azimuth {}°", shortest(p.azimuth_deg)));
   if (v.cones.size() > 1 && axis != Axis::cone)
     parts.push_back(fmt::format("acceptance {}°", shortest(p.acceptance_half_angle_deg)));
   return fmt::format("{}", fmt::join(parts, ", "));
@@ -61,7 +62,9 @@ LinePlot rre_plot(const RreResult& result) {
   LinePlot plot;
   plot.title = result.designs.size() == 1 ? short_name(result.designs.front()) : "Retroreflective efficiency";
   plot.y_label = "Retroreflective efficiency (%)";
-  plot.x_label = axis == Axis::azimuth ? "Azimuth (°)" : axis == Axis::cone ? "Acceptance half angle (°)" : "Incidence angle (°)";
+  plot.x_label = axis == Axis::azimuth ? "Azimuth (°)"
+                 : axis == Axis::cone  ? "Acceptance half angle (°)"
+                                       : "Incidence angle (°)";
   for (const RrePoint& p : result.points) {
     const std::string name = label(result, p, v, axis);
     auto it = plot.series.begin();

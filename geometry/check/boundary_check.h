@@ -6,10 +6,10 @@ namespace retrace::geometry {
 
 /// What CGAL finds of a boundary mesh.
 struct BoundaryReport {
-  bool is_manifold = false;        ///< every edge belongs to two triangles, consistently oriented
+  bool is_manifold = false;  ///< every edge belongs to two triangles, consistently oriented
   bool is_closed = false;
   bool self_intersects = true;
-  bool bounds_a_volume = false;    ///< closed, free of self-intersections, normals outward
+  bool bounds_a_volume = false;  ///< closed, free of self-intersections, normals outward
   double volume_mm3 = 0.0;
 
   bool ok() const { return is_manifold && is_closed && !self_intersects && bounds_a_volume; }

@@ -104,14 +104,17 @@ MaterialLibrary MaterialLibrary::read(const std::filesystem::path& file) {
   return library;
 }
 
-MaterialLibrary MaterialLibrary::shipped() { return read(data_directory() / "materials.toml"); }
+MaterialLibrary MaterialLibrary::shipped() {
+  return read(data_directory() / "materials.toml");
+}
 
 const Material& MaterialLibrary::find(std::string_view name, const InputLocation& where) const {
   for (const Material& m : materials_)
     if (m.name == name) return m;
   std::vector<std::string> names;
   for (const Material& m : materials_) names.push_back(m.name);
-  throw InputError(where, fmt::format("no material of that name, got \"{}\"; there are {}", name, fmt::join(names, ", ")));
+  throw InputError(where,
+                   fmt::format("no material of that name, got \"{}\"; there are {}", name, fmt::join(names, ", ")));
 }
 
 }  // namespace retrace::materials

@@ -58,7 +58,8 @@ TEST(Part, SingleElementsAreClosed) {
   PartSpec spec;
   spec.arrangement = Arrangement::single;
   spec.thickness_mm = 0.5;
-  for (const Element element : {Element(RtpElement{0.45, 0.45, 90.0}), Element(HexagonalCube{1.6}), Element(TriangularCube{1.6})}) {
+  for (const Element element :
+       {Element(RtpElement{0.45, 0.45, 90.0}), Element(HexagonalCube{1.6}), Element(TriangularCube{1.6})}) {
     spec.element = element;
     expect_valid(spec);
   }
@@ -95,7 +96,8 @@ TEST(Part, CubeCornerArraysAreClosed) {
   }
 }
 
-// Counts printed in Hamilton et al. 2017, Table 1 (first row shifted) and Milliken 2017, section 2.7 (second row shifted).
+// Counts printed in Hamilton et al. 2017, Table 1 (first row shifted) and Milliken 2017, section 2.7 (second row
+// shifted).
 TEST(Part, CountsOfTheSeeds) {
   const auto full = [](double base, RowParity parity, double length = 10.0) {
     PartSpec spec = rtp_array(base, base, length, Arrangement::offset);

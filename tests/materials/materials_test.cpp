@@ -13,7 +13,9 @@
 namespace retrace::materials {
 namespace {
 
-MaterialLibrary shipped() { return MaterialLibrary::read(std::string(RETRACE_SOURCE_DIR) + "/data/materials.toml"); }
+MaterialLibrary shipped() {
+  return MaterialLibrary::read(std::string(RETRACE_SOURCE_DIR) + "/data/materials.toml");
+}
 
 // Published indices at the d line.
 TEST(Dispersion, IndexAtTheDLine) {
@@ -38,7 +40,8 @@ TEST(Dispersion, AirAgreesWithEdlen) {
 TEST(Dispersion, IsNormalInTheVisible) {
   const MaterialLibrary library = shipped();
   for (const char* name : {"PMMA", "PMMA-Kasarova", "PMMA-Sultanova"})
-    EXPECT_GT(refractive_index(library.find(name).dispersion, 486.1), refractive_index(library.find(name).dispersion, 656.3));
+    EXPECT_GT(refractive_index(library.find(name).dispersion, 486.1),
+              refractive_index(library.find(name).dispersion, 656.3));
 }
 
 TEST(Dispersion, NoRealIndexIsAnError) {
@@ -70,7 +73,8 @@ TEST(MaterialLibrary, BadFilesAreRefusedWithTheirLine) {
     return message;
   };
   EXPECT_NE(read("[[material]]\nname = 3\n").find(":2: material.name: must be a text"), std::string::npos);
-  EXPECT_NE(read("[[material]]\nname = \"x\"\ndescription = \"y\"\nformula = \"z\"\n").find(":4: material.formula"), std::string::npos);
+  EXPECT_NE(read("[[material]]\nname = \"x\"\ndescription = \"y\"\nformula = \"z\"\n").find(":4: material.formula"),
+            std::string::npos);
   EXPECT_NE(read("material = 1\n").find("must hold [[material]]"), std::string::npos);
   EXPECT_NE(read("[\n").find(":1: "), std::string::npos);
 }
@@ -116,7 +120,8 @@ TEST(Fresnel, PhaseOfTotalReflection) {
     const double phase = std::arg(-f.r_p / f.r_s);
     const double s2 = std::sin(t) * std::sin(t);
     const double expected = 2.0 * std::atan(std::cos(t) * std::sqrt(s2 - 1.0 / (n * n)) / s2);
-    EXPECT_NEAR(std::abs(std::remainder(std::abs(phase) - (std::numbers::pi - expected), 2.0 * std::numbers::pi)), 0.0, 1e-12);
+    EXPECT_NEAR(std::abs(std::remainder(std::abs(phase) - (std::numbers::pi - expected), 2.0 * std::numbers::pi)), 0.0,
+                1e-12);
   }
 }
 

@@ -103,7 +103,8 @@ void check_ideal_array(const PartSpec& spec, const Expected& expected) {
   for (const double t : grid.incidence)
     for (const double p : grid.azimuth) {
       const MonteCarloResult result = tracer.trace(ideal(), from(t, p), {0.01}, rays(1U << 15), {});
-      expect_within(result.cones[0], expected(t, p, kPmma), z, "incidence " + std::to_string(t) + " azimuth " + std::to_string(p));
+      expect_within(result.cones[0], expected(t, p, kPmma), z,
+                    "incidence " + std::to_string(t) + " azimuth " + std::to_string(p));
       EXPECT_EQ(result.misses, 0U);
     }
 }
@@ -130,12 +131,16 @@ class RealArrays : public ::testing::TestWithParam<int> {};
 TEST_P(RealArrays, MeetBruteForce) {
   const std::array<double, 10> incidence = {0, 2.5, 5, 10, 15, 20, 22.5, 25, 30, 40};
   const std::array<RealCase, 3> cases = {
-      RealCase{"rtp", infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0), {0.0},
+      RealCase{"rtp",
+               infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0),
+               {0.0},
                {1.000, 0.899, 0.422, 0.122, 0.067, 0.057, 0.049, 0.035, 0.026, 0.019}},
-      RealCase{"full cube", infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0),
+      RealCase{"full cube",
+               infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0),
                {3.75, 11.25, 18.75, 26.25, 33.75, 41.25, 48.75, 56.25},
                {1.000, 0.882, 0.843, 0.759, 0.679, 0.523, 0.371, 0.280, 0.169, 0.068}},
-      RealCase{"triangle", infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0),
+      RealCase{"triangle",
+               infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0),
                {3.75, 11.25, 18.75, 26.25},
                {0.919, 0.649, 0.624, 0.630, 0.614, 0.497, 0.368, 0.282, 0.178, 0.080}}};
   const RealCase& real = cases[static_cast<std::size_t>(GetParam())];

@@ -29,15 +29,16 @@ std::vector<Case> cases() {
   spaced.x_offset_mm = 0.1;
   PartSpec omitted = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.9, 1.7, 0.3);
   omitted.partial_elements = PartialElements::omit;
-  return {{"single prism across", single(prism, 0.3), 3.0, 0.0, 1.4917, 0.0},
-          {"single prism askew", single(prism, 0.3), 33.0, 25.0, 1.4917, 0.1},
-          {"single hexagon", single(HexagonalCube{1.0}, 0.4), 24.0, 70.0, 1.4917, 0.0},
-          {"single triangle", single(TriangularCube{1.0}, 0.4), 18.0, 200.0, 1.585, 0.0},
-          {"bricks along the roof", bricks, 36.0, 270.0, 1.4917, 0.0},
-          {"bricks askew, low index", bricks, 50.0, 110.0, 1.3, 0.0},
-          {"spaced checker", spaced, 12.0, 40.0, 1.4917, 0.05},
-          {"honeycomb, partial omitted", omitted, 28.0, 15.0, 1.4917, 0.0},
-          {"triangular, cut", finite(TriangularCube{1.0}, Arrangement::triangular, 2.0, 1.6, 0.2), 40.0, 300.0, 1.8, 0.0}};
+  return {
+      {"single prism across", single(prism, 0.3), 3.0, 0.0, 1.4917, 0.0},
+      {"single prism askew", single(prism, 0.3), 33.0, 25.0, 1.4917, 0.1},
+      {"single hexagon", single(HexagonalCube{1.0}, 0.4), 24.0, 70.0, 1.4917, 0.0},
+      {"single triangle", single(TriangularCube{1.0}, 0.4), 18.0, 200.0, 1.585, 0.0},
+      {"bricks along the roof", bricks, 36.0, 270.0, 1.4917, 0.0},
+      {"bricks askew, low index", bricks, 50.0, 110.0, 1.3, 0.0},
+      {"spaced checker", spaced, 12.0, 40.0, 1.4917, 0.05},
+      {"honeycomb, partial omitted", omitted, 28.0, 15.0, 1.4917, 0.0},
+      {"triangular, cut", finite(TriangularCube{1.0}, Arrangement::triangular, 2.0, 1.6, 0.2), 40.0, 300.0, 1.8, 0.0}};
 }
 
 class AgainstReference : public ::testing::TestWithParam<std::size_t> {};

@@ -24,7 +24,8 @@ std::vector<Kind> kinds() {
   const HexagonalCube hexagon{0.8};
   const TriangularCube triangle{0.8};
   return {{"rtp", finite(prism, Arrangement::offset, 8.0, 8.0, 1.0), infinite(prism, Arrangement::offset, 1.0)},
-          {"hexagonal", finite(hexagon, Arrangement::honeycomb, 8.0, 8.0, 1.0), infinite(hexagon, Arrangement::honeycomb, 1.0)},
+          {"hexagonal", finite(hexagon, Arrangement::honeycomb, 8.0, 8.0, 1.0),
+           infinite(hexagon, Arrangement::honeycomb, 1.0)},
           {"triangular", finite(triangle, Arrangement::triangular, 8.0, 8.0, 1.0),
            infinite(triangle, Arrangement::triangular, 1.0)}};
 }
@@ -71,9 +72,10 @@ TEST(Robustness, FarFromTheOrigin) {
 
 TEST(Robustness, ElementsFarFromTheMiddleOfALargeArray) {
   // Infinite against 200 mm wide with many pieces: the border's share is known to be below the difference allowed.
-  for (const auto& [element, arrangement] : {std::pair<Element, Arrangement>{HexagonalCube{0.8}, Arrangement::honeycomb},
-                                             {TriangularCube{0.8}, Arrangement::triangular},
-                                             {RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned}}) {
+  for (const auto& [element, arrangement] :
+       {std::pair<Element, Arrangement>{HexagonalCube{0.8}, Arrangement::honeycomb},
+        {TriangularCube{0.8}, Arrangement::triangular},
+        {RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned}}) {
     const Part large = build_part(finite(element, arrangement, 200.0, 200.0, 0.5));
     const Part endless = build_part(infinite(element, arrangement, 0.5));
     const ConeResult a = MonteCarlo(large).trace(ideal(), from(10.0, 20.0), {0.5}, rays(1U << 19), {}).cones[0];
@@ -86,7 +88,8 @@ TEST(Robustness, ElementsFarFromTheMiddleOfALargeArray) {
 
 bool same_bytes(const MonteCarloResult& a, const MonteCarloResult& b) {
   return a.segments == b.segments && a.rays == b.rays &&
-         std::memcmp(a.cones[0].ledger.power.data(), b.cones[0].ledger.power.data(), sizeof(a.cones[0].ledger.power)) == 0 &&
+         std::memcmp(a.cones[0].ledger.power.data(), b.cones[0].ledger.power.data(), sizeof(a.cones[0].ledger.power)) ==
+             0 &&
          std::memcmp(&a.cones[0].std_error, &b.cones[0].std_error, sizeof(double)) == 0;
 }
 

@@ -41,7 +41,8 @@ TEST(SobolSquare, ScramblesAreUnbiased) {
     double sum_x = 0.0, sum_y = 0.0, sum_xy = 0.0, sum_xx = 0.0;
     for (std::uint32_t s = 0; s < kScrambles; ++s) {
       const auto words = philox({17, 1}, s, 0);
-      const auto u = SobolSquare((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3])(index);
+      const auto u =
+          SobolSquare((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3])(index);
       sum_x += u[0] - 0.5;
       sum_y += u[1] - 0.5;
       sum_xy += (u[0] - 0.5) * (u[1] - 0.5);
@@ -58,7 +59,8 @@ TEST(SobolSquare, ScramblesAreUnbiased) {
 
 // Equal areas of the entrance get equal shares of the points.
 TEST(EntranceSampler, IsEvenOverTheFace) {
-  for (const Element element : {Element(RtpElement{0.7, 0.4, 90.0}), Element(HexagonalCube{1.0}), Element(TriangularCube{1.0})}) {
+  for (const Element element :
+       {Element(RtpElement{0.7, 0.4, 90.0}), Element(HexagonalCube{1.0}), Element(TriangularCube{1.0})}) {
     const Part part = build_part(single(element, 0.5));
     const EntranceSampler sampler(part);
     Vec2 mean = Vec2::Zero();
@@ -97,16 +99,17 @@ TEST(StandardError, IsTrue) {
   const Part hexagon = build_part(single(HexagonalCube{1.0}, 0.5));
   const double hexagon_rre =
       MonteCarlo(hexagon).trace(pmma(), from(20.0, 10.0), {0.5}, rays(1U << 22, 999), {}).cones[0].rre;
-  const std::vector<Truth> truths = {
-      {bricks, pmma(), from(0.0), share + (1.0 - share) * 2.0 * r / (1.0 + r)},
-      {single(HexagonalCube{1.0}, 0.5), pmma(), from(20.0, 10.0), hexagon_rre}};
+  const std::vector<Truth> truths = {{bricks, pmma(), from(0.0), share + (1.0 - share) * 2.0 * r / (1.0 + r)},
+                                     {single(HexagonalCube{1.0}, 0.5), pmma(), from(20.0, 10.0), hexagon_rre}};
   for (const Truth& truth : truths) {
     const Part part = build_part(truth.spec);
     const MonteCarlo tracer(part);
     int covered = 0;
+    const double t95 = student_bound_of(0.05, MonteCarlo::kReplicates);
     for (std::uint32_t seed = 1; seed <= 200; ++seed) {
-      const ConeResult result = tracer.trace(truth.optics, truth.illumination, {0.5}, rays(1U << 13, seed), {}).cones[0];
-      if (std::abs(result.rre - truth.rre) <= 1.96 * result.std_error) ++covered;
+      const ConeResult result =
+          tracer.trace(truth.optics, truth.illumination, {0.5}, rays(1U << 13, seed), {}).cones[0];
+      if (std::abs(result.rre - truth.rre) <= t95 * result.std_error) ++covered;
     }
     EXPECT_GE(covered, 180);
     EXPECT_LE(covered, 198);

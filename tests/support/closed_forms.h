@@ -10,8 +10,8 @@ namespace retrace::testing {
 
 inline constexpr double kDeg = std::numbers::pi / 180.0;
 
-/// Direction cosines inside a cube corner (axis -z, one dihedral edge over +x) to its three edges, for light that comes from
-/// (incidence, azimuth) outside and is refracted by a flat face of index n.
+/// Direction cosines inside a cube corner (axis -z, one dihedral edge over +x) to its three edges, for light that comes
+/// from (incidence, azimuth) outside and is refracted by a flat face of index n.
 inline std::array<double, 3> edge_cosines(double incidence_deg, double azimuth_deg, double n) {
   const double inner = std::asin(std::sin(incidence_deg * kDeg) / n);
   const double p = azimuth_deg * kDeg;
@@ -27,8 +27,9 @@ inline std::array<double, 3> edge_cosines(double incidence_deg, double azimuth_d
   return cosines;
 }
 
-/// Share of the aperture of a triangular cube corner that sends light back: projected active area for unit legs over the
-/// projected aperture sqrt(3)/2. Eckhardt, Appl. Opt. 10, 1559 (1971); derived in docs/theory/effective_aperture.md.
+/// Share of the aperture of a triangular cube corner that sends light back: projected active area for unit legs over
+/// the projected aperture sqrt(3)/2. Eckhardt, Appl. Opt. 10, 1559 (1971); derived in
+/// docs/theory/effective_aperture.md.
 inline double triangular_share(const std::array<double, 3>& cosines, double cos_inner) {
   const auto [l, m, k] = cosines;
   if (l <= 0.0) return 0.0;

@@ -124,8 +124,8 @@ class Reference {
 
     Ray through = ray;
     through.direction = (n1 / n2 * ray.direction + (n1 / n2 * ci - ct.real()) * n).normalized();
-    through.field = recombined(ray, through.direction, s, 2.0 * n1 * ci / (n1 * ci + n2 * ct),
-                               2.0 * n1 * ci / (n2 * ci + n1 * ct));
+    through.field =
+        recombined(ray, through.direction, s, 2.0 * n1 * ci / (n1 * ci + n2 * ct), 2.0 * n1 * ci / (n2 * ci + n1 * ct));
     through.flux *= n2 * ct.real() / (n1 * ci);
     through.inside = !ray.inside;
     through.entered = true;
@@ -134,7 +134,8 @@ class Reference {
   }
 
   /// Field after an interface: s stays, p turns with the direction.
-  static std::array<Vec3c, 2> recombined(const Ray& ray, const Vec3& direction, const Vec3& s, Complex c_s, Complex c_p) {
+  static std::array<Vec3c, 2> recombined(const Ray& ray, const Vec3& direction, const Vec3& s, Complex c_s,
+                                         Complex c_p) {
     const Vec3 p_in = s.cross(ray.direction);
     const Vec3 p_out = s.cross(direction);
     std::array<Vec3c, 2> field;

@@ -14,9 +14,9 @@ struct ReferenceResult {
   std::array<double, raytrace::kAccountCount> std_error{};
 };
 
-/// An independent engine for small finite parts: plain random rays against every triangle of the closed boundary in double
-/// precision, with complex field vectors in space and every branch followed. Shares with the program's tracer nothing but
-/// the boundary and the account names. Slow on purpose.
+/// An independent engine for small finite parts: plain random rays against every triangle of the closed boundary in
+/// double precision, with complex field vectors in space and every branch followed. Shares with the program's tracer
+/// nothing but the boundary and the account names. Slow on purpose.
 ReferenceResult reference_trace(const geometry::Part& part, const raytrace::Optics& optics,
                                 const raytrace::Illumination& illumination, double cone_half_angle_deg,
                                 std::uint64_t rays, std::uint64_t seed);
