@@ -29,9 +29,8 @@ void ProgressBar::at(double share) {
   drawn_ = true;
   const auto full = static_cast<int>(std::lround(share * kWidth));
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-  const double left_s = share > 0.0 ? elapsed_s * (1.0 - share) / share : 0.0;
-  fmt::print(stderr, "\r\033[K{} [{:=>{}}{:>{}}] {:3.0f} %  {:.0f} s left", what_, "", full, "", kWidth - full,
-             100.0 * share, left_s);
+  fmt::print(stderr, "\r\033[K{} [{:=>{}}{:>{}}] {:3.0f} %", what_, "", full, "", kWidth - full, 100.0 * share);
+  if (share > 0.0) fmt::print(stderr, "  {:.0f} s left", elapsed_s * (1.0 - share) / share);
   std::fflush(stderr);
 }
 

@@ -74,8 +74,9 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
     if (!stream) throw OutputError(path.string() + ": cannot be written");
     return;
   }
-  // Through a symbolic link the file it points to is replaced, not the link.
-  const fs::path target = fs::is_symlink(path, ignored) ? fs::canonical(path) : path;
+  // Through a symbolic link the file it points to is replaced or made, not the link.
+  const fs::path target =
+      fs::is_symlink(path, ignored) ? fs::weakly_canonical(path.parent_path() / fs::read_symlink(path)) : path;
   TemporaryFile file(target);
   file.write(content, target);
   file.move_to(target);

@@ -21,6 +21,10 @@ namespace {
 constexpr std::uint32_t kReplicates = MonteCarlo::kReplicates;
 // Rays of a replicate that one task traces: small enough to share out, large enough to hide the cost of a task.
 constexpr std::uint32_t kRaysPerTask = 2048;
+// Rays of a replicate between two collections of the tasks' tallies: bounds their memory.
+constexpr std::uint32_t kRaysPerSlice = 64 * kRaysPerTask;
+// The Sobol sequence has 2^32 points; one is kept back so that counters do not wrap.
+constexpr std::uint32_t kMostRaysPerReplicate = UINT32_MAX - kRaysPerSlice;
 // Rays of a replicate before its error is looked at for the first time.
 constexpr std::uint32_t kFirstRound = 1024;
 // Power that may be missing before the run counts as unsound.
@@ -60,48 +64,36 @@ Tally trace_task(const PathSetup& setup, const EntranceSampler& entrance, std::u
   return tally;
 }
 
-/// What the replicates have collected so far, and what that says.
-class Collection {
- public:
-  explicit Collection(std::size_t cones) : replicates_(kReplicates, Tally(cones)) {}
-
-  void add(std::uint32_t replicate, const Tally& tally) { replicates_[replicate].add(tally); }
-  void set_rays_per_replicate(std::uint32_t rays) { rays_ = rays; }
-
-  MonteCarloResult result(const std::vector<double>& cones_deg) const {
-    MonteCarloResult result;
-    result.rays = std::uint64_t{rays_} * kReplicates;
-    for (const Tally& tally : replicates_) {
-      result.segments += tally.segments;
-      result.misses += tally.misses;
-    }
-    for (std::size_t cone = 0; cone < cones_deg.size() && rays_ > 0; ++cone)
-      result.cones.push_back(cone_result(cones_deg[cone], cone));
-    return result;
+ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double half_angle_deg, std::size_t cone) {
+  ConeResult result;
+  result.half_angle_deg = half_angle_deg;
+  std::vector<double> rre;
+  for (const Tally& tally : replicates) {
+    const Ledger ledger = tally.ledger(cone);
+    rre.push_back(ledger[Account::retroreflected] / rays);
+    for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays / kReplicates;
   }
+  result.rre = result.ledger[Account::retroreflected];
+  double squares = 0.0;
+  for (const double r : rre) squares += (r - result.rre) * (r - result.rre);
+  result.std_error = std::sqrt(squares / (kReplicates - 1.0) / kReplicates);
+  // Replicates that agree to rounding say the same.
+  if (result.std_error < 1e-15) result.std_error = 0.0;
+  return result;
+}
 
- private:
-  ConeResult cone_result(double half_angle_deg, std::size_t cone) const {
-    ConeResult result;
-    result.half_angle_deg = half_angle_deg;
-    std::vector<double> rre;
-    for (const Tally& tally : replicates_) {
-      const Ledger ledger = tally.ledger(cone);
-      rre.push_back(ledger[Account::retroreflected] / rays_);
-      for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays_ / kReplicates;
-    }
-    result.rre = result.ledger[Account::retroreflected];
-    double squares = 0.0;
-    for (const double r : rre) squares += (r - result.rre) * (r - result.rre);
-    result.std_error = std::sqrt(squares / (kReplicates - 1.0) / kReplicates);
-    // Replicates that agree to rounding say the same.
-    if (result.std_error < 1e-15) result.std_error = 0.0;
-    return result;
+MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t rays_per_replicate,
+                           const std::vector<double>& cones_deg) {
+  MonteCarloResult result;
+  result.rays = std::uint64_t{rays_per_replicate} * kReplicates;
+  for (const Tally& tally : replicates) {
+    result.segments += tally.segments;
+    result.misses += tally.misses;
   }
-
-  std::vector<Tally> replicates_;
-  std::uint32_t rays_ = 0;
-};
+  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone)
+    result.cones.push_back(cone_result(replicates, rays_per_replicate, cones_deg[cone], cone));
+  return result;
+}
 
 double largest_error(const MonteCarloResult& result) {
   double largest = 0.0;
@@ -131,42 +123,46 @@ struct MonteCarlo::Scene {
 MonteCarlo::MonteCarlo(const geometry::Part& part) : scene_(std::make_unique<Scene>(part)) {}
 MonteCarlo::~MonteCarlo() = default;
 
+bool MonteCarlo::trace_range(const PathSetup& setup, std::uint32_t seed, std::uint32_t from, std::uint32_t until,
+                             std::vector<Tally>& replicates, const Cancellation* cancel) const {
+  const auto cancelled = [&] { return cancel != nullptr && cancel->requested(); };
+  for (std::uint32_t slice = from; slice < until;) {
+    const std::uint32_t slice_end = until - slice > kRaysPerSlice ? slice + kRaysPerSlice : until;
+    std::vector<Task> tasks;
+    for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate)
+      for (std::uint32_t first = slice; first < slice_end; first += kRaysPerTask)
+        tasks.push_back({replicate, first, std::min(slice_end, first + kRaysPerTask)});
+    std::vector<std::optional<Tally>> tallies(tasks.size());
+    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t k) {
+      if (!cancelled()) tallies[k] = trace_task(setup, scene_->entrance, seed, tasks[k]);
+    });
+    if (std::any_of(tallies.begin(), tallies.end(), [](const auto& t) { return !t.has_value(); })) return false;
+    // Added up in the order of the tasks, whichever thread did them.
+    for (std::size_t k = 0; k < tasks.size(); ++k) replicates[tasks[k].replicate].add(*tallies[k]);
+    slice = slice_end;
+  }
+  return true;
+}
+
 MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& illumination,
                                    const std::vector<double>& cones_deg, const Sampling& sampling,
                                    const PathPolicy& policy, const Cancellation* cancel) const {
   const PathSetup setup(scene_->part, scene_->surface, scene_->entrance.centre_mm(), optics, illumination, cones_deg,
                         policy);
-  const auto cancelled = [&] { return cancel != nullptr && cancel->requested(); };
-  const auto per_replicate = [](std::uint64_t rays) {
-    const std::uint64_t each = (rays + kReplicates - 1) / kReplicates;
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(each, UINT32_MAX));
-  };
-  const std::uint32_t goal = per_replicate(sampling.rays.value_or(sampling.max_rays));
-  Collection collection(cones_deg.size());
+  const std::uint64_t rays = sampling.rays.value_or(sampling.max_rays);
+  const auto goal = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>((rays + kReplicates - 1) / kReplicates, kMostRaysPerReplicate));
+  std::vector<Tally> replicates(kReplicates, Tally(cones_deg.size()));
   MonteCarloResult result;
-
   for (std::uint32_t done = 0; done < goal;) {
     // Doubling keeps every round's points the first 2^k of their sequence, where they are best stratified.
     const std::uint32_t until = done == 0 ? std::min(goal, kFirstRound) : (done > goal / 2 ? goal : 2 * done);
-    std::vector<Task> tasks;
-    for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate)
-      for (std::uint32_t first = done; first < until;) {
-        const std::uint32_t last = until - first > kRaysPerTask ? first + kRaysPerTask : until;
-        tasks.push_back({replicate, first, last});
-        first = last;
-      }
-    std::vector<std::optional<Tally>> tallies(tasks.size());
-    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t k) {
-      if (!cancelled()) tallies[k] = trace_task(setup, scene_->entrance, sampling.seed, tasks[k]);
-    });
-    if (std::any_of(tallies.begin(), tallies.end(), [](const auto& t) { return !t.has_value(); })) {
+    if (!trace_range(setup, sampling.seed, done, until, replicates, cancel)) {
       result.complete = false;
       return result;  // what the rounds before gave
     }
-    for (std::size_t k = 0; k < tasks.size(); ++k) collection.add(tasks[k].replicate, *tallies[k]);
     done = until;
-    collection.set_rays_per_replicate(done);
-    result = collection.result(cones_deg);
+    result = result_of(replicates, done, cones_deg);
     check_lost(result);
     if (!sampling.rays && largest_error(result) <= sampling.target_error) return result;
   }

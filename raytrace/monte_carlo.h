@@ -57,6 +57,11 @@ class MonteCarlo {
 
  private:
   struct Scene;
+
+  /// Adds rays from..until-1 of every replicate to its tally. False if cancelled: the tallies are then of no use.
+  bool trace_range(const PathSetup& setup, std::uint32_t seed, std::uint32_t from, std::uint32_t until,
+                   std::vector<Tally>& replicates, const Cancellation* cancel) const;
+
   std::unique_ptr<Scene> scene_;
 };
 

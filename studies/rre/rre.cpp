@@ -96,6 +96,7 @@ RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
 
   const double total = static_cast<double>(designs.size() * request.azimuth_deg.size() * request.incidence_deg.size());
   double done = 0.0;
+  if (progress != nullptr) progress->at(0.0);
   for (std::size_t d = 0; d < designs.size() && result.complete; ++d) {
     const raytrace::MonteCarlo tracer(models[d].part);
     for (std::size_t a = 0; a < request.azimuth_deg.size() && result.complete; ++a) {
