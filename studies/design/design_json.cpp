@@ -14,12 +14,18 @@ using namespace geometry;
 
 const char* name_of(Arrangement arrangement) {
   switch (arrangement) {
-    case Arrangement::single: return "single";
-    case Arrangement::aligned: return "aligned";
-    case Arrangement::offset: return "offset";
-    case Arrangement::checker: return "checker";
-    case Arrangement::honeycomb: return "honeycomb";
-    case Arrangement::triangular: return "triangular";
+    case Arrangement::single:
+      return "single";
+    case Arrangement::aligned:
+      return "aligned";
+    case Arrangement::offset:
+      return "offset";
+    case Arrangement::checker:
+      return "checker";
+    case Arrangement::honeycomb:
+      return "honeycomb";
+    case Arrangement::triangular:
+      return "triangular";
   }
   return "";
 }
@@ -29,7 +35,9 @@ struct ElementJson {
     return {{"kind", "rtp"}, {"base_mm", e.base_mm}, {"width_mm", e.width_mm}, {"apex_angle_deg", e.apex_angle_deg}};
   }
   Json operator()(const HexagonalCube& e) const { return {{"kind", "hexagonal_icc"}, {"aperture_mm", e.aperture_mm}}; }
-  Json operator()(const TriangularCube& e) const { return {{"kind", "triangular_icc"}, {"aperture_mm", e.aperture_mm}}; }
+  Json operator()(const TriangularCube& e) const {
+    return {{"kind", "triangular_icc"}, {"aperture_mm", e.aperture_mm}};
+  }
 };
 
 Json array_json(const PartSpec& part) {
@@ -58,8 +66,12 @@ struct ElementName {
   std::string operator()(const RtpElement& e) const {
     return fmt::format("RTP {} x {} mm", shortest(e.base_mm), shortest(e.width_mm));
   }
-  std::string operator()(const HexagonalCube& e) const { return fmt::format("hexagonal ICC {} mm", fixed(e.aperture_mm, 3)); }
-  std::string operator()(const TriangularCube& e) const { return fmt::format("triangular ICC {} mm", fixed(e.aperture_mm, 3)); }
+  std::string operator()(const HexagonalCube& e) const {
+    return fmt::format("hexagonal ICC {} mm", fixed(e.aperture_mm, 3));
+  }
+  std::string operator()(const TriangularCube& e) const {
+    return fmt::format("triangular ICC {} mm", fixed(e.aperture_mm, 3));
+  }
 };
 
 }  // namespace

@@ -21,8 +21,8 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
                                    design.source, material.name, material.valid_from_nm, material.valid_to_nm,
                                    design.wavelength_nm));
   if (!(optics.index >= 1.0))
-    throw InputError(design.material_location, fmt::format("the index of {} at {} nm must be >= 1, got {}", material.name,
-                                                           design.wavelength_nm, optics.index));
+    throw InputError(design.material_location, fmt::format("the index of {} at {} nm must be >= 1, got {}",
+                                                           material.name, design.wavelength_nm, optics.index));
   return optics;
 }
 
