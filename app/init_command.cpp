@@ -28,7 +28,7 @@ ExitCode run_init_command(const CommandLine& line) {
   // Somebody's design may be there: starting afresh is not worth losing it.
   if (!out.empty() && fs::symlink_status(out).type() != fs::file_type::not_found)
     throw OutputError(out + ": is there already; not overwritten");
-  prepare_outputs(outputs);
+  prepare_outputs(outputs, {});
   if (!out.empty()) write_file_atomically(out, text);
   // Without --out the template is the result itself, which --quiet does not take away.
   outputs.quiet = line.common.quiet && !out.empty();

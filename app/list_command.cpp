@@ -40,7 +40,7 @@ ExitCode run_list_command(const CommandLine& line) {
   json["version"] = kVersion;
   json["warnings"] = nlohmann::ordered_json::array();
   json["complete"] = true;
-  prepare_outputs(line.common);
+  prepare_outputs(line.common, {{}, "materials.json", {}});
   write_outputs(line.common, to_text(json), {{"materials.json", to_text(json)}}, text);
   return ExitCode::done;
 }

@@ -1,8 +1,8 @@
-#include <fmt/format.h>
+#include <fcntl.h>
+#include <unistd.h>
 
-#include <algorithm>
+#include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
@@ -10,6 +10,7 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/output.h"
 
 namespace {
 
@@ -24,16 +25,24 @@ ExitCode run(int argc, const char* const* argv) {
   return app::run_list_command(*line);
 }
 
-int fail(ExitCode code, std::string text) {
-  // An error is one line, whatever a file is called.
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  fmt::print(stderr, "retrace: {}\n", text);
+int fail(ExitCode code, const std::string& text) {
+  app::say("retrace: " + text);
   return static_cast<int>(code);
+}
+
+/// With standard error closed, the next file that is opened would get its number, and our warnings with it.
+void keep_standard_error_apart() {
+  if (::fcntl(STDERR_FILENO, F_GETFD) != -1 || errno != EBADF) return;
+  const int nowhere = ::open("/dev/null", O_WRONLY);
+  if (nowhere < 0 || nowhere == STDERR_FILENO) return;
+  ::dup2(nowhere, STDERR_FILENO);
+  ::close(nowhere);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_standard_error_apart();
   app::install_interrupt_handlers();
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an output that cannot be written
   try {

@@ -3,20 +3,56 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "studies/design/message_text.h"
 
 namespace retrace::app {
 namespace fs = std::filesystem;
+namespace {
+
+/// Whether both name one file, which need not exist yet.
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  const auto resolved = [&](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(path, error), error).lexically_normal();
+  };
+  const fs::path first = resolved(a);
+  return !first.empty() && first == resolved(b) && !error;
+}
+
+void refuse_overlaps(const CommonOptions& options, const FileNames& names) {
+  const bool has_json = !options.json.empty() && options.json != "-";
+  const auto refuse_design = [&](const std::string& option, const fs::path& output) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(output, ignored)) return;
+    for (const std::string& design : names.designs)
+      if (design != "-" && is_same_file(output, design))
+        throw InputError({"", 0, option}, output.string() + " is a design that is read; it would be overwritten");
+  };
+  if (has_json) refuse_design("--json", options.json);
+  if (options.out.empty()) return;
+  for (const std::string& name : names.others) {
+    const fs::path output = fs::path(options.out) / name;
+    refuse_design("--out", output);
+    if (has_json && is_same_file(options.json, output))
+      throw InputError({"", 0, "--json"}, options.json + " is a file that --out writes; give another name");
+  }
+  if (!names.document.empty()) refuse_design("--out", fs::path(options.out) / names.document);
+}
+
+}  // namespace
 
 void print(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw OutputError("standard output: cannot be written");
 }
 
-void prepare_outputs(const CommonOptions& options) {
+void prepare_outputs(const CommonOptions& options, const FileNames& names) {
+  refuse_overlaps(options, names);
   if (!options.json.empty() && options.json != "-") {
     const fs::path folder = fs::absolute(options.json).parent_path();
     if (fs::is_directory(options.json)) throw OutputError(options.json + ": cannot be written: it is a folder");
@@ -47,9 +83,17 @@ void write_outputs(const CommonOptions& options, std::string_view json, const st
   if (!options.quiet) print(std::string(text) + remarks);
 }
 
+void say(std::string_view text) {
+  std::string line(text);
+  // An error is one line, whatever a file is called.
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  line = studies::printable(line, std::string::npos) + "\n";
+  std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
 void print_warnings(const CommonOptions& options, const std::vector<std::string>& warnings) {
   if (options.quiet) return;
-  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : warnings) say("warning: " + warning);
 }
 
 }  // namespace retrace::app

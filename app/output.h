@@ -18,14 +18,24 @@ struct OutputFile {
   std::string content;
 };
 
-/// Refuses, before any work is done, outputs that cannot be written; makes the output folder.
-/// \throw OutputError
-void prepare_outputs(const CommonOptions& options);
+/// What a command reads and writes, to be kept apart.
+struct FileNames {
+  std::vector<std::string> designs;  ///< that it reads
+  std::string document;              ///< file in the output folder that holds the same as --json
+  std::vector<std::string> others;   ///< further files in the output folder
+};
+
+/// Refuses, before any work is done, outputs that would replace a design or each other and outputs that cannot be
+/// written; makes the output folder. \throw InputError, OutputError
+void prepare_outputs(const CommonOptions& options, const FileNames& names);
 
 /// Writes the JSON document and the files where the options want them, and the text to standard output if neither
 /// `--quiet` nor `--json -` forbids it. \throw OutputError
 void write_outputs(const CommonOptions& options, std::string_view json, const std::vector<OutputFile>& files,
                    std::string_view text);
+
+/// One line on standard error, free of control characters. That nobody can read it is no reason to stop.
+void say(std::string_view text);
 
 /// Warnings on standard error, one line each, unless `--quiet`.
 void print_warnings(const CommonOptions& options, const std::vector<std::string>& warnings);

@@ -51,7 +51,7 @@ ExitCode run_rre_command(const CommandLine& line) {
   studies::RreRequest request = request_of(line);
   const studies::RreStudy study(designs_of(line), std::move(request));
   const OrderlyInterrupt interrupt;
-  prepare_outputs(line.common);
+  prepare_outputs(line.common, {line.rre.designs, "rre.json", {"rre.csv", "rre.svg", "rre.png"}});
 
   studies::RreResult result;
   {
@@ -71,7 +71,7 @@ ExitCode run_rre_command(const CommandLine& line) {
   write_outputs(line.common, json, files, studies::rre_table(result));
   print_warnings(line.common, result.warnings);
   if (!result.complete) {
-    fmt::print(stderr, "retrace: interrupted; finished points: {}\n", result.points.size());
+    say(fmt::format("retrace: interrupted; finished points: {}", result.points.size()));
     return ExitCode::interrupted;
   }
   return ExitCode::done;

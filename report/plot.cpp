@@ -74,6 +74,10 @@ std::size_t drawn_points(const Series& series) {
   return count;
 }
 
+bool has_markers(const Series& series) {
+  return drawn_points(series) <= kMostMarkers;
+}
+
 /// The ranges of both axes.
 std::pair<Range, Range> axis_ranges(const LinePlot& plot) {
   std::vector<double> xs;
@@ -104,6 +108,7 @@ struct LegendEntry {
   double width = 0.0;
   Look look;
   bool is_sample = true;  ///< false: text alone
+  bool has_markers = true;
 };
 
 enum class LegendPlace { none, row, column };
@@ -142,12 +147,12 @@ std::vector<LegendEntry> legend_entries(const LinePlot& plot, const Canvas& canv
         canvas.fitted(plot.series[i].label, kLegendFont, kLegendTextWidth, 1, Ellipsis::middle);
     std::string text = lines.empty() ? std::string() : std::move(lines.front());
     const double width = canvas.text_width(text, kLegendFont);
-    entries.push_back({std::move(text), width, look_of(i), true});
+    entries.push_back({std::move(text), width, look_of(i), true, has_markers(plot.series[i])});
   }
   if (left_out > 0) {
     std::string text = fmt::format("and {} more", left_out);
     const double width = canvas.text_width(text, kLegendFont);
-    entries.push_back({std::move(text), width, {}, false});
+    entries.push_back({std::move(text), width, {}, false, false});
   }
   return entries;
 }
@@ -266,7 +271,7 @@ void draw_legend(Canvas& canvas, const Layout& layout) {
   for (const LegendEntry& entry : layout.legend) {
     if (entry.is_sample) {
       canvas.line({at, {at.x + kLegendKey, at.y}}, {entry.look.colour, 2.0, entry.look.dashes});
-      canvas.marker({at.x + 0.5 * kLegendKey, at.y}, entry.look.marker, 3.4, entry.look.colour);
+      if (entry.has_markers) canvas.marker({at.x + 0.5 * kLegendKey, at.y}, entry.look.marker, 3.4, entry.look.colour);
     }
     canvas.text({at.x + kLegendKey + kLegendGap, at.y + 0.36 * kLegendFont.size}, entry.text, kLegendFont, kText,
                 Align::left);
@@ -319,7 +324,7 @@ void draw_series(Canvas& canvas, const Layout& layout, const Series& series, con
   }
   canvas.end_clip();
 
-  if (drawn_points(series) > kMostMarkers) return;
+  if (!has_markers(series)) return;
   const double radius = marker_radius(series, layout);
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!is_drawn(series, i)) continue;

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "core/number_format.h"
 #include "studies/design/design_json.h"
@@ -44,14 +48,30 @@ double coordinate(const RrePoint& p, Axis axis) {
   return axis == Axis::cone ? p.acceptance_half_angle_deg : p.incidence_deg;
 }
 
+/// Designs that go by the same name, such as two made from one template, are told apart by their place.
+std::string design_label(const RreResult& result, std::size_t design) {
+  const std::string name = short_name(result.designs[design]);
+  const auto has_name = [&](const studies::Design& other) { return short_name(other) == name; };
+  const bool is_only_one = std::count_if(result.designs.begin(), result.designs.end(), has_name) < 2;
+  return is_only_one ? name : fmt::format("{} (design {})", name, design);
+}
+
 std::string label(const RreResult& result, const RrePoint& p, const Variation& v, Axis axis) {
   std::vector<std::string> parts;
-  if (v.designs.size() > 1) parts.push_back(short_name(result.designs[p.design]));
+  if (v.designs.size() > 1) parts.push_back(design_label(result, p.design));
   if (v.azimuths.size() > 1 && axis != Axis::azimuth)
     parts.push_back(fmt::format("azimuth {}°", shortest(p.azimuth_deg)));
   if (v.cones.size() > 1 && axis != Axis::cone)
     parts.push_back(fmt::format("acceptance {}°", shortest(p.acceptance_half_angle_deg)));
   return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// What the points of one curve have in common.
+using CurveKey = std::tuple<std::size_t, double, double, double>;
+
+CurveKey curve_of(const RrePoint& p, Axis axis) {
+  return {p.design, axis == Axis::incidence ? 0.0 : p.incidence_deg, axis == Axis::azimuth ? 0.0 : p.azimuth_deg,
+          axis == Axis::cone ? 0.0 : p.acceptance_half_angle_deg};
 }
 
 }  // namespace
@@ -65,14 +85,21 @@ LinePlot rre_plot(const RreResult& result) {
   plot.x_label = axis == Axis::azimuth ? "Azimuth (°)"
                  : axis == Axis::cone  ? "Acceptance half angle (°)"
                                        : "Incidence angle (°)";
-  for (const RrePoint& p : result.points) {
-    const std::string name = label(result, p, v, axis);
-    auto it = plot.series.begin();
-    while (it != plot.series.end() && it->label != name) ++it;
-    if (it == plot.series.end()) it = plot.series.insert(it, Series{name, {}, {}, {}});
-    it->x.push_back(coordinate(p, axis));
-    it->y.push_back(100.0 * p.rre);
-    it->y_error.push_back(100.0 * p.std_error);
+  // Angles may have been asked for in any order; a curve runs from left to right.
+  std::vector<const RrePoint*> points;
+  for (const RrePoint& p : result.points) points.push_back(&p);
+  std::map<CurveKey, std::size_t> series_of;
+  for (const RrePoint* p : points) {
+    const auto [it, is_new] = series_of.try_emplace(curve_of(*p, axis), plot.series.size());
+    if (is_new) plot.series.push_back(Series{label(result, *p, v, axis), {}, {}, {}});
+  }
+  std::stable_sort(points.begin(), points.end(),
+                   [&](const RrePoint* a, const RrePoint* b) { return coordinate(*a, axis) < coordinate(*b, axis); });
+  for (const RrePoint* p : points) {
+    Series& series = plot.series[series_of.at(curve_of(*p, axis))];
+    series.x.push_back(coordinate(*p, axis));
+    series.y.push_back(100.0 * p->rre);
+    series.y_error.push_back(100.0 * p->std_error);
   }
   return plot;
 }

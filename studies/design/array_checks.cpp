@@ -56,7 +56,7 @@ void check_count(const PartSpec& part, const TableReader& array, double cell_are
   const double y_free_mm = part.y_length_mm - 2.0 * part.y_offset_mm + part.y_gap_mm;
   const double count = x_free_mm * y_free_mm / cell_area_mm2;
   if (!(count <= kMostElements * (1.0 + kRelativeTolerance)))
-    array.fail("x_length_mm", fmt::format("the array would have {:.3g} elements, at most {:.0f} are allowed; make it "
+    array.fail("x_length_mm", fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed; make it "
                                           "smaller or its elements larger",
                                           count, kMostElements));
 }

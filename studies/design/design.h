@@ -26,6 +26,7 @@ struct Design {
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
   std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
   double wavelength_nm = 587.56;
+  InputLocation wavelength_location;                      ///< where it was given, for whoever finds no index there
   std::vector<double> acceptance_half_angle_deg = {0.5};  ///< ascending, each in (0, 90]
   Idealisation idealisation;
 };

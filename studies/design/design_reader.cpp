@@ -177,6 +177,7 @@ void read_body(TableReader& body, Design& design) {
 void read_light_and_detector(const DesignDocument& document, Design& design) {
   TableReader light(document, "light");
   design.wavelength_nm = light.number("wavelength_nm", kPositive).value_or(design.wavelength_nm);
+  design.wavelength_location = light.where("wavelength_nm");
   light.skip({"polarisation"});
   light.finish();
   TableReader detector(document, "detector");

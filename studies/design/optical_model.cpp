@@ -4,6 +4,18 @@
 
 namespace retrace::studies {
 
+namespace {
+
+double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air) {
+  try {
+    return materials::index_relative_to_air(material, air, design.wavelength_nm);
+  } catch (const InputError& error) {
+    throw InputError(design.wavelength_location, error.what());  // which knows the number but not where it was given
+  }
+}
+
+}  // namespace
+
 raytrace::Optics make_optics(const Design& design, const materials::MaterialLibrary& library,
                              std::vector<std::string>& warnings) {
   const materials::Material& material = library.find(design.material, design.material_location);
@@ -15,7 +27,7 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
     optics.index = *design.refractive_index;
     return optics;
   }
-  optics.index = materials::index_relative_to_air(material, library.air(), design.wavelength_nm);
+  optics.index = index_at_wavelength(design, material, library.air());
   if (!materials::is_valid_at(material, design.wavelength_nm))
     warnings.push_back(fmt::format("{}: the data of {} reach from {} to {} nm; its index at {} nm is extrapolated",
                                    design.source, material.name, material.valid_from_nm, material.valid_to_nm,

@@ -67,7 +67,10 @@ void TableReader::fail_missing(std::string_view key, std::string_view allowed) c
 }
 
 double TableReader::checked_number(std::string_view key, const toml::node& node, const Range& range) const {
-  const std::optional<double> value = node.is_number() ? node.value<double>() : std::nullopt;
+  std::optional<double> value = node.value<double>();
+  // An integer of more than 53 bits is still a number, to be judged by its range.
+  if (const auto* integer = node.as_integer()) value = static_cast<double>(integer->get());
+  if (!node.is_number()) value.reset();
   const auto refuse = [&](const std::string& allowed) -> InputError {
     return {document_.location(node, full_name(key)), fmt::format("must be {}, got {}", allowed, shown(node))};
   };

@@ -58,6 +58,7 @@ TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
       {9, "", "d.toml:6: array.y_length_mm: missing"},                                 //
       {3, "base_mm = 0", "d.toml:3: element.base_mm: "},                               // size zero
       {3, "base_mm = -0.5", "d.toml:3: element.base_mm: "},                            // negative
+      {12, "[light]\nwavelength_nm = 1e9", "d.toml:13: light.wavelength_nm: "},        // no index there
       {11, "thickness_mm = -1", "d.toml:11: body.thickness_mm: "},                     //
       {3, "base_mm = inf", "d.toml:3: element.base_mm: "},                             // not finite
       {4, "width_mm = nan", "d.toml:4: element.width_mm: "},                           //
@@ -115,6 +116,8 @@ TEST(BadInput, FilesThatCannotBeReadAreRefused) {
     expect_one_line(retrace(folder, {command, "empty.toml", "-o", "out"}), 2, "empty.toml: element.kind: missing");
     expect_one_line(retrace(folder, {command, "binary.toml", "-o", "out"}), 2, "binary.toml:1: not valid TOML");
     expect_one_line(retrace(folder, {command, "two\nlines.toml", "-o", "out"}), 2, "two lines.toml: cannot be read");
+    expect_one_line(retrace(folder, {command, "\x1b[31mred.toml", "-o", "out"}), 2,
+                    "\\x1b[31mred.toml: cannot be read");
     expect_one_line(retrace(folder, {command, "", "-o", "out"}), 2, "DESIGN: must not be empty");
     EXPECT_EQ(folder.names(), before);
   }
@@ -223,6 +226,31 @@ TEST(BadOutput, JsonThatCannotBeWrittenEndsWith3AndMakesNoFolder) {
     EXPECT_EQ(folder.names(), Arguments{"folder"});
   }
   expect_one_line(retrace(folder, {"list", "materials", "--json", "/dev/full"}), 3, "/dev/full: cannot be written");
+}
+
+TEST(BadOutput, NoOutputReplacesADesignOrAnotherOutput) {
+  const TemporaryFolder folder;
+  const std::string design = read_text(example("rtp_single_0p45mm.toml"));
+  folder.write("d.toml", design);
+  folder.write("rre.csv", design);
+  const Arguments before = folder.names();
+  const Arguments run = {"rre", "d.toml", "rre.csv", "--samples=64", "--quiet"};
+  const std::vector<BadArguments> cases = {
+      {{"--json", "d.toml"}, "--json: d.toml is a design"},
+      {{"--json", "./d.toml"}, "--json: ./d.toml is a design"},
+      {{"-o", "."}, "--out: ./rre.csv is a design"},
+      {{"-o", "out", "--json", "out/rre.csv"}, "--json: out/rre.csv is a file that --out writes"},
+      {{"-o", "out", "--json", "./out/rre.png"}, "--json: ./out/rre.png is a file that --out writes"},
+  };
+  for (const BadArguments& bad : cases) {
+    Arguments arguments = run;
+    arguments.insert(arguments.end(), bad.arguments.begin(), bad.arguments.end());
+    expect_one_line(retrace(folder, arguments), 2, bad.message);
+    EXPECT_EQ(folder.names(), before);
+    EXPECT_EQ(folder.read("d.toml"), design);
+    EXPECT_EQ(folder.read("rre.csv"), design);
+  }
+  expect_one_line(retrace(folder, {"inspect", "d.toml", "--json", "d.toml"}), 2, "--json: d.toml is a design");
 }
 
 TEST(BadOutput, ResultFileBehindAFolderEndsWith3AndLeavesNoTemporaryFile) {

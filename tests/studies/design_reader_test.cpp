@@ -209,6 +209,11 @@ TEST(DesignReader, NumbersOutOfRangeAreRefused) {
             "d.toml:12: light.wavelength_nm: must be > 0, got 0");
 }
 
+TEST(DesignReader, WholeNumbersOfAnySizeAreNumbers) {
+  EXPECT_EQ(complaint(with_line(3, "base_mm = 9223372036854775807")),
+            "d.toml:3: element.base_mm: must be >= 1e-06 and <= 1e+06, got 9223372036854775807");
+}
+
 TEST(DesignReader, ApexAngleIsFrom60To120) {
   const std::string range = "must be >= 60 and <= 120, got ";
   EXPECT_EQ(complaint(with_line(4, "width_mm = 0.5\napex_angle_deg = 59.9")),
