@@ -74,7 +74,7 @@ void add_rre(CLI::App& app, RreOptions& rre) {
   command->add_option("--azimuth", rre.azimuth, "azimuths of the source in degrees, likewise")
       ->type_name("LIST")
       ->capture_default_str();
-  command->add_option("--engine", rre.engine, "auto, montecarlo or embree (exact, cell: not in this version)")
+  command->add_option("--engine", rre.engine, "auto, montecarlo, embree or exact (cell: not in this version)")
       ->type_name("ENGINE")
       ->capture_default_str();
   auto* samples =
@@ -86,9 +86,12 @@ void add_rre(CLI::App& app, RreOptions& rre) {
       ->capture_default_str()
       ->check(real_number())
       ->excludes(samples);
-  command->add_option("--cutoff", rre.cutoff, "least power that is followed, as a share of the incident power")
+  command
+      ->add_option(
+          "--cutoff", rre.cutoff,
+          "least power that is followed, as a share of the incident power [1e-10; exact: what leaves less than "
+          "1e-10 truncated]")
       ->type_name("W")
-      ->capture_default_str()
       ->check(real_number());
 }
 

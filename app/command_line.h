@@ -24,7 +24,7 @@ struct RreOptions {
   std::string engine = "auto";
   std::optional<std::uint64_t> samples;
   double target_error = 1e-4;
-  double cutoff = 1e-10;
+  std::optional<double> cutoff;
 };
 
 /// What the user typed.

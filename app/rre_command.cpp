@@ -9,7 +9,7 @@
 #include "app/number_list.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
-#include "raytrace/monte_carlo.h"
+#include "raytrace/threads.h"
 #include "report/rre_plot.h"
 #include "studies/design/design_reader.h"
 #include "studies/rre/io/rre_files.h"
@@ -30,7 +30,7 @@ studies::RreRequest request_of(const CommandLine& line) {
   request.engine = studies::engine_from_name(line.rre.engine);
   request.rays = line.rre.samples;
   check_share(line.rre.target_error, false, "--target-error");
-  check_share(line.rre.cutoff, true, "--cutoff");
+  if (line.rre.cutoff) check_share(*line.rre.cutoff, true, "--cutoff");
   request.target_error = line.rre.target_error;
   request.cutoff = line.rre.cutoff;
   request.seed = line.common.seed;

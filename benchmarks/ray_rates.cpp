@@ -10,6 +10,7 @@
 #include "benchmarks/scenes.h"
 #include "raytrace/back_surface.h"
 #include "raytrace/monte_carlo.h"
+#include "raytrace/threads.h"
 
 namespace retrace::benchmarks {
 

@@ -5,6 +5,7 @@
 
 #include "benchmarks/scenes.h"
 #include "raytrace/monte_carlo.h"
+#include "raytrace/threads.h"
 
 namespace retrace::benchmarks {
 namespace {

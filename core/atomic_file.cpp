@@ -102,9 +102,12 @@ std::string read_file(const fs::path& path) {
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return refuse(reason(errno != 0 ? errno : ENOENT));
-  std::string content((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad()) return refuse("read error");
-  return content;
+  try {
+    // The buffer itself throws where reading fails, whatever the stream's exception mask.
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  } catch (const std::ios_base::failure&) {
+    return refuse("read error");
+  }
 }
 
 }  // namespace retrace

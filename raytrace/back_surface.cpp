@@ -43,7 +43,7 @@ void reject_source(const RTCFilterFunctionNArguments* args) {
 struct BackSurface::Embree {
   Embree(const geometry::Part& part, const std::vector<geometry::Placement>& placements) {
     device = rtcNewDevice(nullptr);
-    if (device == nullptr) throw std::runtime_error("Embree: no device");
+    if (device == nullptr) throw BudgetError("Embree cannot start: not enough memory or address space");
     rtcSetDeviceErrorFunction(device, throw_on_error, nullptr);
     for (const auto& patch : part.patches) facet_of_triangle.push_back(patch.triangle_facet);
     scene = new_scene();

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 #include <pmmintrin.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
@@ -14,6 +11,7 @@
 #include "raytrace/back_surface.h"
 #include "raytrace/entrance_sampler.h"
 #include "raytrace/sobol.h"
+#include "raytrace/threads.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -53,14 +51,19 @@ struct Task {
   std::uint32_t last = 0;
 };
 
-Tally trace_task(const PathSetup& setup, const EntranceSampler& entrance, std::uint32_t seed, const Task& task) {
+/// Nothing if cancelled.
+template <class Cancelled>
+std::optional<Tally> trace_task(const PathSetup& setup, const EntranceSampler& entrance, std::uint32_t seed,
+                                const Task& task, const Cancelled& cancelled) {
   const FlushDenormals flush;
   Tally tally(setup.cone_chord2.size());
   const auto words = philox({seed, kScrambleStream}, task.replicate, 0);
   const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
   PathWalker walker(setup, tally);
-  for (std::uint32_t ray = task.first; ray < task.last; ++ray)
+  for (std::uint32_t ray = task.first; ray < task.last; ++ray) {
+    if (cancelled()) return std::nullopt;
     walker.trace(entrance(square(ray)), {seed, kChoiceStream}, task.replicate, ray);
+  }
   return tally;
 }
 
@@ -133,8 +136,8 @@ bool MonteCarlo::trace_range(const PathSetup& setup, std::uint32_t seed, std::ui
       for (std::uint32_t first = slice; first < slice_end; first += kRaysPerTask)
         tasks.push_back({replicate, first, std::min(slice_end, first + kRaysPerTask)});
     std::vector<std::optional<Tally>> tallies(tasks.size());
-    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t k) {
-      if (!cancelled()) tallies[k] = trace_task(setup, scene_->entrance, seed, tasks[k]);
+    for_each_in_parallel(tasks.size(), [&](std::size_t k) {
+      tallies[k] = trace_task(setup, scene_->entrance, seed, tasks[k], cancelled);
     });
     if (std::any_of(tallies.begin(), tallies.end(), [](const auto& t) { return !t.has_value(); })) return false;
     // Added up in the order of the tasks, whichever thread did them.
@@ -168,17 +171,6 @@ MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& ill
   }
   result.reached_target = sampling.rays.has_value();
   return result;
-}
-
-void run_with_threads(unsigned threads, const std::function<void()>& work) {
-  if (threads == 0) {
-    work();
-    return;
-  }
-  // TBB's own limit is the number of cores; asking for more is allowed.
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-  tbb::task_arena arena(static_cast<int>(threads));
-  arena.execute(work);
 }
 
 }  // namespace retrace::raytrace

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -64,8 +63,5 @@ class MonteCarlo {
 
   std::unique_ptr<Scene> scene_;
 };
-
-/// Runs `work` with at most `threads` threads (0: all that the process may use).
-void run_with_threads(unsigned threads, const std::function<void()>& work);
 
 }  // namespace retrace::raytrace

@@ -12,68 +12,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Pieces of an infinite surface that one straight line may cross before it counts as trapped.
 constexpr int kMaxWraps = 1000;
 
-/// The direction after refraction at a plane whose unit normal `against` faces the ray.
-Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted) {
-  return (ratio * direction + (ratio * cos_incidence - cos_refracted) * against).normalized();
-}
-
-Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
-  return (direction - 2.0 * normal.dot(direction) * normal).normalized();
-}
-
-materials::FresnelCoefficients perfect_mirror() {
-  materials::FresnelCoefficients f;
-  f.r_s = -1.0;
-  f.r_p = 1.0;
-  f.total_reflection = true;
-  return f;
-}
-
-Account account_of_exit(FacetRole role) {
-  const bool is_side = role == FacetRole::side || role == FacetRole::border_wall;
-  return is_side ? Account::side_exit : Account::transmitted;
-}
-
 }  // namespace
-
-void Tally::add(const Tally& more) {
-  for (std::size_t k = 0; k < returned.size(); ++k) returned[k] += more.returned[k];
-  for (std::size_t k = 0; k < front.size(); ++k) front[k] += more.front[k];
-  for (std::size_t k = 0; k < kAccountCount; ++k) other.power[k] += more.other.power[k];
-  segments += more.segments;
-  misses += more.misses;
-}
-
-Ledger Tally::ledger(std::size_t cone) const {
-  Ledger ledger = other;
-  for (std::size_t k = 0; k < returned.size(); ++k) {
-    ledger[k <= cone ? Account::retroreflected : Account::returned_elsewhere] += returned[k];
-    ledger[k <= cone ? Account::retroreflected : Account::front_specular] += front[k];
-  }
-  return ledger;
-}
 
 PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const Vec2& centre_mm, const Optics& how,
                      const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& paths)
-    : surface(back),
-      optics(how),
+    : LightSetup(part, centre_mm, how, illumination, cones_deg),
+      surface(back),
       policy(paths),
-      thickness_mm(part.thickness_mm),
-      depth_mm(part.element_depth_mm),
       clearance_mm(std::min(0.01 * part.element_depth_mm, 0.5 * part.thickness_mm)) {
-  const double t = illumination.incidence.rad();
-  const double p = illumination.azimuth.rad();
-  to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
-  for (const double half_angle_deg : cones_deg) {
-    const double chord = 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad());
-    cone_chord2.push_back(chord * chord * (1.0 + 1e-9));  // the cone's edge belongs to it, rounding or not
-  }
-  for (std::size_t k = 0; k < part.outline.size(); ++k) {
-    const Vec2 a = part.outline[k] - centre_mm;
-    const Vec2 along = (part.outline[(k + 1) % part.outline.size()] - part.outline[k]).normalized();
-    const Vec3 normal(along.y(), -along.x(), 0.0);
-    sides.push_back({normal, normal.head<2>().dot(a)});
-  }
   if (part.period_mm) {
     period_mm = *part.period_mm;
     // The cells of the outermost periods do not fill them to the edge.
@@ -99,15 +45,13 @@ void PathWalker::enter(const Vec2& entry_mm) {
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
   state.direction = -setup_.to_source;
-  state.field.s_axis = state.direction.cross(state.direction.cross(Vec3::UnitX())).normalized();
-  if (!state.field.s_axis.allFinite()) state.field.s_axis = Vec3::UnitY();
-  state.field.turn_to(state.direction, Vec3::UnitZ());
+  state.field = setup_.incident_field();
 
   const double ratio = 1.0 / setup_.optics.index;
   const double cos_incidence = setup_.to_source.z();
   const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
   if (!setup_.optics.lossless_entrance) {
-    book_by_cone(tally_.front, mirrored(state.direction, Vec3::UnitZ()), state.field.reflected(f).power());
+    tally_.front[setup_.cone_of(mirrored(state.direction, Vec3::UnitZ()))] += state.field.reflected(f).power();
     state.field = state.field.transmitted(f);
   }
   state.direction = refracted(state.direction, Vec3::UnitZ(), ratio, cos_incidence, f.cos_refracted);
@@ -331,14 +275,14 @@ bool PathWalker::meet_entrance(State& state) {
     if (f.total_reflection)
       tally_.returned.back() += state.field.power();
     else
-      book_by_cone(tally_.returned, out, state.field.power());
+      tally_.returned[setup_.cone_of(out)] += state.field.power();
     return false;
   }
   state.field.turn_to(state.direction, down);
   Field reflected = state.field.reflected(f);
   Field transmitted = state.field.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
-  if (branch != Branch::reflected) book_by_cone(tally_.returned, out, transmitted.power());
+  if (branch != Branch::reflected) tally_.returned[setup_.cone_of(out)] += transmitted.power();
   state.field = reflected;
   state.direction = mirrored(state.direction, down);
   state.source = {};
@@ -404,13 +348,6 @@ PathWalker::Branch PathWalker::choose(Field& reflected, Field& transmitted) {
   const bool take_reflected = u * (r + t) < r;
   (take_reflected ? reflected : transmitted).scale(std::sqrt((r + t) / (take_reflected ? r : t)));
   return take_reflected ? Branch::reflected : Branch::transmitted;
-}
-
-void PathWalker::book_by_cone(std::vector<double>& by_cone, const Vec3& direction, double power) const {
-  const double chord2 = (direction - setup_.to_source).squaredNorm();
-  std::size_t k = 0;
-  while (k < setup_.cone_chord2.size() && chord2 > setup_.cone_chord2[k]) ++k;
-  by_cone[k] += power;
 }
 
 bool PathWalker::finish(const State& state, Account account) {

@@ -5,11 +5,14 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "raytrace/beam_tracer.h"
 #include "raytrace/monte_carlo.h"
+#include "raytrace/threads.h"
 #include "studies/design/optical_model.h"
 
 namespace retrace::studies {
@@ -22,25 +25,12 @@ constexpr std::array<std::pair<std::string_view, Engine>, 5> kEngines = {{{"auto
                                                                           {"embree", Engine::embree}}};
 
 void check(const RreRequest& request) {
-  if (request.engine == Engine::exact || request.engine == Engine::cell)
+  if (request.engine == Engine::cell)
     throw InputError({"", 0, "--engine"},
-                     fmt::format("{} is not available in this version; there are auto, montecarlo, embree",
-                                 engine_name(request.engine)));
+                     "cell is not available in this version; there are auto, exact, montecarlo, embree");
   for (const double t : request.incidence_deg)
     if (!(std::abs(t) < 90.0))
       throw InputError({"", 0, "--incidence"}, fmt::format("must lie between -90 and 90 degrees, got {}", shortest(t)));
-}
-
-void append(RreResult& result, const raytrace::MonteCarloResult& traced, const RrePoint& at) {
-  for (const raytrace::ConeResult& cone : traced.cones) {
-    RrePoint point = at;
-    point.acceptance_half_angle_deg = cone.half_angle_deg;
-    point.rre = cone.rre;
-    point.std_error = cone.std_error;
-    point.ledger = cone.ledger;
-    result.points.push_back(point);
-  }
-  result.rays += traced.rays;
 }
 
 std::string missed_target(const Design& design, const RrePoint& at, const RreRequest& request) {
@@ -78,40 +68,135 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
 
 RreStudy::~RreStudy() = default;
 
-RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
-  const auto start = std::chrono::steady_clock::now();
-  const auto& [designs, request, models] = *prepared_;
-  RreResult result;
-  result.designs = designs;
-  result.engine_requested = engine_name(request.engine);
-  result.seed = request.seed;
-  for (const OpticalModel& model : models)
-    result.warnings.insert(result.warnings.end(), model.warnings.begin(), model.warnings.end());
+namespace {
+
+/// One direction of one design, and what was found there.
+struct Direction {
+  RrePoint at;
+  std::vector<RrePoint> points;  ///< one a cone; empty until traced
+};
+
+std::vector<Direction> directions_of(const std::vector<Design>& designs, const RreRequest& request) {
+  std::vector<Direction> directions;
+  for (std::size_t d = 0; d < designs.size(); ++d)
+    for (const double azimuth : request.azimuth_deg)
+      for (const double incidence : request.incidence_deg) {
+        RrePoint at;
+        at.design = d;
+        at.incidence_deg = incidence;
+        at.azimuth_deg = azimuth;
+        at.wavelength_nm = designs[d].wavelength_nm;
+        directions.push_back({at, {}});
+      }
+  return directions;
+}
+
+raytrace::Illumination illumination_of(const RrePoint& at) {
+  return {Angle::from_deg(at.incidence_deg), Angle::from_deg(at.azimuth_deg)};
+}
+
+/// Reports the share of finished directions, whichever thread finishes one.
+class Counter {
+ public:
+  Counter(Progress* progress, std::size_t total) : progress_(progress), total_(static_cast<double>(total)) {
+    if (progress_ != nullptr) progress_->at(0.0);
+  }
+  void finished() {
+    const std::lock_guard lock(mutex_);
+    if (progress_ != nullptr) progress_->at(++done_ / total_);
+  }
+
+ private:
+  Progress* progress_;
+  double total_;
+  double done_ = 0.0;
+  std::mutex mutex_;
+};
+
+/// Directions one after the other, each on all threads.
+void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+                          const RreRequest& request, std::vector<Direction>& directions, Counter& counter,
+                          const Cancellation* cancel, RreResult& result) {
   raytrace::Sampling sampling;
   sampling.seed = request.seed;
   sampling.rays = request.rays;
   sampling.target_error = request.target_error;
   raytrace::PathPolicy policy;
-  policy.cutoff = request.cutoff;
-
-  const double total = static_cast<double>(designs.size() * request.azimuth_deg.size() * request.incidence_deg.size());
-  double done = 0.0;
-  if (progress != nullptr) progress->at(0.0);
-  for (std::size_t d = 0; d < designs.size() && result.complete; ++d) {
-    const raytrace::MonteCarlo tracer(models[d].part);
-    for (std::size_t a = 0; a < request.azimuth_deg.size() && result.complete; ++a) {
-      for (const double incidence : request.incidence_deg) {
-        const RrePoint at{d, incidence, request.azimuth_deg[a], designs[d].wavelength_nm, 0.0, 0.0, 0.0, {}};
-        const raytrace::MonteCarloResult traced =
-            tracer.trace(models[d].optics, {Angle::from_deg(incidence), Angle::from_deg(at.azimuth_deg)},
-                         designs[d].acceptance_half_angle_deg, sampling, policy, cancel);
-        result.complete = traced.complete;
-        if (!result.complete) break;  // an unfinished point is no point
-        append(result, traced, at);
-        if (!traced.reached_target) result.warnings.push_back(missed_target(designs[d], at, request));
-        if (progress != nullptr) progress->at(++done / total);
-      }
+  policy.cutoff = request.cutoff.value_or(policy.cutoff);
+  std::optional<raytrace::MonteCarlo> tracer;
+  std::size_t traced_design = designs.size();
+  for (Direction& direction : directions) {
+    const RrePoint& at = direction.at;
+    if (at.design != traced_design) tracer.emplace(models[at.design].part);
+    traced_design = at.design;
+    const raytrace::MonteCarloResult traced =
+        tracer->trace(models[at.design].optics, illumination_of(at), designs[at.design].acceptance_half_angle_deg,
+                      sampling, policy, cancel);
+    if (!traced.complete) return;  // an unfinished point is no point
+    for (const raytrace::ConeResult& cone : traced.cones) {
+      RrePoint point = at;
+      point.acceptance_half_angle_deg = cone.half_angle_deg;
+      point.rre = cone.rre;
+      point.std_error = cone.std_error;
+      point.ledger = cone.ledger;
+      direction.points.push_back(point);
     }
+    result.rays += traced.rays;
+    if (!traced.reached_target) result.warnings.push_back(missed_target(designs[at.design], at, request));
+    counter.finished();
+  }
+}
+
+/// Several directions at a time, each on one thread.
+void trace_exactly(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+                   const RreRequest& request, std::vector<Direction>& directions, Counter& counter,
+                   const Cancellation* cancel) {
+  raytrace::BeamPolicy policy;
+  policy.cutoff = request.cutoff;
+  std::vector<raytrace::BeamTracer> tracers;
+  for (const OpticalModel& model : models) tracers.emplace_back(model.part);
+  raytrace::for_each_in_parallel(directions.size(), [&](std::size_t k) {
+    const RrePoint& at = directions[k].at;
+    const std::vector<double>& cones = designs[at.design].acceptance_half_angle_deg;
+    const raytrace::BeamResult traced =
+        tracers[at.design].trace(models[at.design].optics, illumination_of(at), cones, policy, cancel);
+    if (!traced.complete) return;
+    for (std::size_t cone = 0; cone < cones.size(); ++cone) {
+      RrePoint point = at;
+      point.acceptance_half_angle_deg = cones[cone];
+      point.ledger = traced.ledgers[cone];
+      point.rre = point.ledger[raytrace::Account::retroreflected];
+      point.beams = traced.beams;
+      point.depth = traced.depth;
+      directions[k].points.push_back(point);
+    }
+    counter.finished();
+  });
+}
+
+}  // namespace
+
+RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
+  const auto start = std::chrono::steady_clock::now();
+  const auto& [designs, request, models] = *prepared_;
+  const bool exact = request.engine == Engine::exact;
+  RreResult result;
+  result.designs = designs;
+  result.engine = exact ? "exact" : "embree";
+  result.engine_requested = engine_name(request.engine);
+  result.seed = request.seed;
+  for (const OpticalModel& model : models)
+    result.warnings.insert(result.warnings.end(), model.warnings.begin(), model.warnings.end());
+
+  std::vector<Direction> directions = directions_of(designs, request);
+  Counter counter(progress, directions.size());
+  if (exact)
+    trace_exactly(designs, models, request, directions, counter, cancel);
+  else
+    trace_by_monte_carlo(designs, models, request, directions, counter, cancel, result);
+  for (const Direction& direction : directions) {
+    result.complete = result.complete && !direction.points.empty();
+    result.points.insert(result.points.end(), direction.points.begin(), direction.points.end());
   }
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -13,7 +13,8 @@
 
 namespace retrace::studies {
 
-/// Which tracer is asked for. `exact` and `cell` are part of the contract but not served by this version.
+/// Which tracer is asked for. `automatic` and `montecarlo` choose Embree; `cell` is part of the contract but not served
+/// by this version.
 enum class Engine { automatic, exact, montecarlo, cell, embree };
 
 /// \throw InputError listing the engines for a name that is none of them
@@ -27,7 +28,9 @@ struct RreRequest {
   Engine engine = Engine::automatic;
   std::optional<std::uint64_t> rays;  ///< per point; else until target_error is reached
   double target_error = 1e-4;         ///< standard error of RRE as a fraction
-  double cutoff = 1e-10;              ///< least power followed, as a share of the incident
+  /// Least power followed, as a share of the incident. By default 1e-10 (Monte Carlo), or as little as it takes to
+  /// leave less than 1e-10 in `truncated` (exact).
+  std::optional<double> cutoff;
   std::uint32_t seed = 1;
 };
 
@@ -40,6 +43,8 @@ struct RrePoint {
   double rre = 0.0;
   double std_error = 0.0;
   raytrace::Ledger ledger;
+  std::uint64_t beams = 0;  ///< exact engine: followed for this point
+  std::uint32_t depth = 0;  ///< exact engine: interfaces on the longest path
 };
 
 struct RreResult {
@@ -61,7 +66,7 @@ class RreStudy {
   RreStudy(std::vector<Design> designs, RreRequest request);
   ~RreStudy();
 
-  /// RRE of every design at every direction. \throw BudgetError if power was lost
+  /// RRE of every design at every direction. \throw BudgetError if power was lost, or too many beams are needed
   RreResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
  private:

@@ -132,7 +132,7 @@ TEST(BadInput, WrongOptionsAreRefused) {
   const std::vector<BadArguments> cases = {
       {{"--engine", "magic"}, "--engine: must be auto, exact, montecarlo, cell or embree, got magic"},
       {{"--engine", ""}, "--engine: "},
-      {{"--engine", "exact"}, "--engine: exact is not available in this version"},
+      {{"--engine", "cell"}, "--engine: cell is not available in this version"},
       {{"--engine", "cell"}, "--engine: cell is not available in this version"},
       {{"--incidence=5:1:1"}, "--incidence: the range runs away"},
       {{"--incidence", ""}, "--incidence: the list is empty"},

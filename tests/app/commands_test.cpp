@@ -155,7 +155,7 @@ TEST(Help, ShowsEveryOptionWithItsDefault) {
     EXPECT_EQ(rre.code, 0);
     if (run.front() != "rre") continue;
     for (const char* option : {"--incidence LIST=0", "--azimuth LIST=0", "--engine ENGINE=auto", "--samples N",
-                               "--target-error E=0.0001", "--cutoff W=1e-10", "--threads N", "--seed S [1]"})
+                               "--target-error E=0.0001", "--cutoff W", "[1e-10;", "--threads N", "--seed S [1]"})
       EXPECT_NE(rre.out.find(option), std::string::npos) << option;
   }
   for (const Arguments& run : {Arguments{"--version"}, Arguments{"rre", "--version"}}) {

@@ -128,6 +128,42 @@ TEST(Rre, EngineThatWasAskedForIsNamed) {
   }
 }
 
+TEST(Rre, ExactEngineHasNoNoise) {
+  const TemporaryFolder folder;
+  const Arguments run = {"rre", kDesign, "--engine", "exact", "--incidence=0,3", "--json", "-"};
+  const Outcome outcome = retrace(folder, run);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json["engine"], "exact");
+  EXPECT_EQ(json["engine_requested"], "exact");
+  for (const Json& point : json["points"]) {
+    EXPECT_EQ(point["std_error"], 0.0);
+    EXPECT_GT(point["beams"], 0);
+    EXPECT_GT(point["depth"], 0);
+    EXPECT_LT(point["ledger"]["truncated"], 1e-10);
+  }
+  // 22 of 25 elements are whole; a cut one sends back 2R/(1+R) (docs/theory/closed_forms.md, 1).
+  const double r = std::pow(0.4917 / 2.4917, 2.0);
+  EXPECT_NEAR(json["points"][0]["rre"].get<double>(), 0.88 + 0.12 * 2.0 * r / (1.0 + r), 1e-9);
+  Arguments threads = run;
+  threads.insert(threads.end(), {"--threads", "1"});
+  Json other = Json::parse(retrace(folder, threads).out);
+  other["elapsed_s"] = json["elapsed_s"];
+  EXPECT_EQ(other, json);
+}
+
+TEST(Rre, CutoffOfTheExactEngineIsBooked) {
+  const TemporaryFolder folder;
+  const Outcome coarse = retrace(folder, {"rre", example("triangular_infinite.toml"), "--engine=exact",
+                                          "--incidence=20", "--azimuth=3.75", "--cutoff=1e-6", "--json", "-"});
+  ASSERT_EQ(coarse.code, 0) << coarse.err;
+  const Json ledger = Json::parse(coarse.out)["points"][0]["ledger"];
+  EXPECT_GT(ledger["truncated"], 1e-6);
+  double sum = 0.0;
+  for (const auto& [name, power] : ledger.items()) sum += power.get<double>();
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+}
+
 TEST(Rre, PointsComeByDesignThenAzimuthThenIncidence) {
   const TemporaryFolder folder;
   const Json json =

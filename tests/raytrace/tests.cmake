@@ -1,6 +1,7 @@
 retrace_test(raytrace_test
   SOURCES
     ${CMAKE_CURRENT_LIST_DIR}/back_surface_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/beam_tracer_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/closed_forms_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/reference_test.cpp

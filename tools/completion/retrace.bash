@@ -54,7 +54,7 @@ _retrace() {
       return
       ;;
     --engine)
-      _retrace_words "$word" 'auto montecarlo embree'
+      _retrace_words "$word" 'auto exact montecarlo embree'
       return
       ;;
     --set)

@@ -43,7 +43,7 @@ std::string rre_json(const RreResult& result) {
   for (const Design& design : result.designs) json["designs"].push_back(to_json(design));
   json["seed"] = result.seed;
   json["points"] = Json::array();
-  for (const RrePoint& p : result.points)
+  for (const RrePoint& p : result.points) {
     json["points"].push_back({{"design", p.design},
                               {"incidence_deg", p.incidence_deg},
                               {"azimuth_deg", p.azimuth_deg},
@@ -52,6 +52,10 @@ std::string rre_json(const RreResult& result) {
                               {"rre", p.rre},
                               {"std_error", p.std_error},
                               {"ledger", ledger_json(p.ledger)}});
+    if (result.engine != "exact") continue;
+    json["points"].back()["beams"] = p.beams;
+    json["points"].back()["depth"] = p.depth;
+  }
   json["elapsed_s"] = result.elapsed_s;
   json["rays"] = result.rays;
   json["version"] = kVersion;

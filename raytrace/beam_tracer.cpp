@@ -1,0 +1,514 @@
+#include "raytrace/beam_tracer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/error.h"
+#include "raytrace/beam.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::FacetRole;
+using geometry::PatchCell;
+using geometry::PatchFacet;
+using geometry::SurfacePatch;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Pieces of a cross-section smaller than this share of an element's area are rounding: booked, not followed.
+constexpr double kLeastAreaShare = 1e-15;
+// Corners of a cross-section nearer than this share of an element are one.
+constexpr double kMergeShare = 1e-11;
+// Planes seen at a flatter angle than this have no cross-section.
+constexpr double kGrazing = 1e-12;
+// A level beam is followed this many elements at a time, and so often.
+constexpr double kReachInElements = 4.0;
+constexpr std::uint32_t kMaxLevelSteps = 1000;
+// The cut-off starts here and falls tenfold until little enough is left behind.
+constexpr double kFirstCutoff = 1e-6;
+constexpr double kLastCutoff = 1e-25;
+
+/// A rectangle across a beam or in the plan of the part.
+struct Box {
+  Vec2 lower = Vec2::Constant(kInfinity);
+  Vec2 upper = Vec2::Constant(-kInfinity);
+
+  void include(const Vec2& p) {
+    lower = lower.cwiseMin(p);
+    upper = upper.cwiseMax(p);
+  }
+  bool overlaps(const Box& other) const {
+    return (lower.array() < other.upper.array()).all() && (other.lower.array() < upper.array()).all();
+  }
+};
+
+template <class Points>
+Box box_of(const Points& points) {
+  Box box;
+  for (const Vec2& p : points) box.include(p);
+  return box;
+}
+
+/// A facet that stands in a beam.
+struct Candidate {
+  Plane plane;
+  FacetRole role = FacetRole::retro_facet;
+  Distance distance;
+  FlatPolygon piece;  ///< as far as it stands in the beam, hidden or not
+  Box box;
+};
+
+/// How far ahead of a beam facets are looked for.
+struct Horizon {
+  double t = 0.0;        ///< from each corner of the cross-section
+  bool limited = false;  ///< the beam may meet facets beyond
+};
+
+class BeamWalk {
+ public:
+  BeamWalk(const geometry::Part& part, const CellIndex& cells, const LightSetup& setup, const BeamPolicy& policy)
+      : part_(part),
+        cells_(cells),
+        setup_(setup),
+        policy_(policy),
+        tally_(setup.cone_chord2.size()),
+        least_area_(kLeastAreaShare * part.size_mm * part.size_mm),
+        merge_mm_(kMergeShare * part.size_mm) {}
+
+  void enter(const geometry::Polygon& entrance, const Vec2& centre_mm);
+  /// False if cancelled.
+  bool run(const Cancellation* cancel);
+
+  const Tally& tally() const { return tally_; }
+  std::uint64_t beams() const { return beams_; }
+  std::uint32_t depth() const { return depth_; }
+
+ private:
+  double power_of(const Beam& beam) const {
+    return beam.share * beam.field.power() *
+           mean_transmission(beam.corners, beam.path_length, setup_.optics.absorption_per_mm);
+  }
+  void enter_in_pieces(const Beam& whole);
+  void advance(const Beam& beam);
+  Horizon horizon_of(const Beam& beam) const;
+  std::pair<double, double> distances_to_hull(const Beam& beam) const;
+  void find_candidates(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon);
+  void consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Box& box, const Plane* far,
+                const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift);
+  FlatPolygons visible_pieces(std::size_t k) const;
+  void pass_by(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share, const Horizon& horizon);
+  void leave_hull(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share);
+  static Beam at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share);
+  Beam arrived(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane);
+  void meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
+                  double share);
+  void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
+                 bool is_entrance);
+  void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Field& field, bool inside);
+  /// Light of a beam that found no facet for want of digits. Signed: pieces may overlap by rounding as well.
+  void book_rest(const Beam& beam, double share) {
+    tally_.other[Account::truncated] += share / beam.share * power_of(beam);
+  }
+  [[noreturn]] void fail_on_budget() const;
+
+  const geometry::Part& part_;
+  const CellIndex& cells_;
+  const LightSetup& setup_;
+  const BeamPolicy& policy_;
+  Tally tally_;
+  std::vector<Beam> pending_;
+  std::vector<Beam> deferred_;  ///< below the cut-off
+  double deferred_power_ = 0.0;
+  std::vector<Candidate> candidates_;  ///< of the beam at hand
+  double least_area_;
+  double merge_mm_;
+  std::uint64_t beams_ = 0;
+  std::uint32_t depth_ = 0;
+};
+
+void BeamWalk::enter(const geometry::Polygon& entrance, const Vec2& centre_mm) {
+  Field field = setup_.incident_field();
+  const double ratio = 1.0 / setup_.optics.index;
+  const double cos_incidence = setup_.to_source.z();
+  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
+  const Vec3 incident = -setup_.to_source;
+  if (!setup_.optics.lossless_entrance) {
+    tally_.front[setup_.cone_of(mirrored(incident, Vec3::UnitZ()))] += field.reflected(f).power();
+    field = field.transmitted(f);
+  }
+  Beam whole;
+  whole.direction = refracted(incident, Vec3::UnitZ(), ratio, cos_incidence, f.cos_refracted);
+  whole.field = field;
+  whole.start = {-Vec3::UnitZ(), -setup_.thickness_mm};
+  whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
+  for (const auto& p : entrance)
+    whole.corners.push_back({p.x() - centre_mm.x(), p.y() - centre_mm.y(), setup_.thickness_mm});
+  if (setup_.infinite())
+    pending_.push_back(whole);
+  else
+    enter_in_pieces(whole);
+}
+
+/// A large entrance in pieces of an element, so that each meets few facets.
+void BeamWalk::enter_in_pieces(const Beam& whole) {
+  Vec2 step = Vec2::Constant(part_.size_mm);
+  if (const auto* rtp = std::get_if<geometry::RtpElement>(&part_.spec.element))
+    step = Vec2(rtp->base_mm + part_.spec.x_gap_mm, rtp->width_mm + part_.spec.y_gap_mm);
+  const Frame from_above(-Vec3::UnitZ());
+  const double whole_area = area(flattened(whole.corners, from_above, merge_mm_));
+  Box box;
+  for (const Vec3& p : whole.corners) box.include(p.head<2>());
+  double entered = 0.0;
+  for (double y = box.lower.y(); y < box.upper.y() - 1e-9 * step.y(); y += step.y()) {
+    const Corners row = cut(cut(whole.corners, {Vec3::UnitY(), y}), {-Vec3::UnitY(), -(y + step.y())});
+    for (double x = box.lower.x(); x < box.upper.x() - 1e-9 * step.x(); x += step.x()) {
+      Beam piece = whole;
+      piece.corners = cut(cut(row, {Vec3::UnitX(), x}), {-Vec3::UnitX(), -(x + step.x())});
+      if (piece.corners.empty()) continue;
+      piece.share = area(flattened(piece.corners, from_above, merge_mm_)) / whole_area;
+      if (piece.share <= 0.0) continue;
+      entered += piece.share;
+      pending_.push_back(std::move(piece));
+    }
+  }
+  book_rest(whole, 1.0 - entered);
+}
+
+bool BeamWalk::run(const Cancellation* cancel) {
+  double cutoff = policy_.cutoff.value_or(kFirstCutoff);
+  for (;;) {
+    while (!pending_.empty()) {
+      if (cancel != nullptr && cancel->requested()) return false;
+      const Beam beam = std::move(pending_.back());
+      pending_.pop_back();
+      const double power = power_of(beam);
+      if (power < cutoff) {
+        deferred_power_ += power;
+        deferred_.push_back(beam);
+        continue;
+      }
+      if (++beams_ > policy_.max_beams) fail_on_budget();
+      advance(beam);
+    }
+    if (policy_.cutoff || deferred_power_ <= policy_.truncated_goal || cutoff < kLastCutoff) break;
+    cutoff *= 0.1;
+    pending_.swap(deferred_);
+    deferred_power_ = 0.0;
+  }
+  tally_.other[Account::truncated] += deferred_power_;
+  return true;
+}
+
+void BeamWalk::advance(const Beam& beam) {
+  depth_ = std::max(depth_, beam.depth);
+  const Frame frame(beam.direction);
+  const FlatPolygon whole = flattened(beam.corners, frame, merge_mm_);
+  const double whole_area = area(whole);
+  if (whole_area <= least_area_) {
+    book_rest(beam, beam.share);
+    return;
+  }
+  const Horizon horizon = horizon_of(beam);
+  find_candidates(beam, frame, whole, horizon);
+  double used = 0.0;
+  const auto share_of = [&](const FlatPolygon& piece) {
+    const double share = beam.share * area(piece) / whole_area;
+    used += share;
+    return share;
+  };
+  FlatPolygons rest;
+  rest.push_back(whole);
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    for (const FlatPolygon& piece : visible_pieces(k)) meet_facet(beam, frame, candidates_[k], piece, share_of(piece));
+    FlatPolygons left;
+    for (const FlatPolygon& piece : rest) subtract(piece, candidates_[k].piece, least_area_, merge_mm_, left);
+    rest = std::move(left);
+  }
+  for (const FlatPolygon& piece : rest) pass_by(beam, frame, piece, share_of(piece), horizon);
+  book_rest(beam, beam.share - used);
+}
+
+/// To where the whole beam has left the layer of the elements, -depth <= z <= 0.
+Horizon BeamWalk::horizon_of(const Beam& beam) const {
+  double low = kInfinity;
+  double high = -kInfinity;
+  for (const Vec3& p : beam.corners) {
+    low = std::min(low, p.z());
+    high = std::max(high, p.z());
+  }
+  const double dz = beam.direction.z();
+  const double slack = 1e-6 * part_.size_mm;
+  if (dz >= 0.0 && low >= -slack) return {};
+  double first = 0.0;  // when the last of the beam has come into the layer
+  double last = kInfinity;
+  if (dz > 0.0) last = -low / dz;
+  if (dz < 0.0) {
+    first = std::max(0.0, high / -dz);
+    last = (high + setup_.depth_mm + slack) / -dz;
+  }
+  const double reach = first + kReachInElements * part_.size_mm;
+  if (last <= reach) return {last, false};
+  if (setup_.infinite()) return {reach, true};
+  // A finite part ends: what leaves it within reach must be looked for to the end, for its exit is not a facet's.
+  const auto [first_exit, last_exit] = distances_to_hull(beam);
+  return reach < first_exit ? Horizon{reach, true} : Horizon{std::min(last, last_exit), false};
+}
+
+/// The least and the greatest way of a beam's corners to the sides and, if it rises, the entrance.
+std::pair<double, double> BeamWalk::distances_to_hull(const Beam& beam) const {
+  double least = kInfinity;
+  double greatest = 0.0;
+  for (const Vec3& p : beam.corners) {
+    double t = beam.direction.z() > 0.0 ? (setup_.thickness_mm - p.z()) / beam.direction.z() : kInfinity;
+    for (const auto& side : setup_.sides) {
+      const double towards = side.normal.dot(beam.direction);
+      if (towards > kGrazing) t = std::min(t, (side.offset_mm - side.normal.dot(p)) / towards);
+    }
+    least = std::min(least, t);
+    greatest = std::max(greatest, t);
+  }
+  return {least, greatest};
+}
+
+void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon) {
+  candidates_.clear();
+  if (horizon.t <= 0.0) return;
+  Box plan;
+  double nearest = kInfinity;
+  for (const Vec3& p : beam.corners) {
+    const bool falls_in = p.z() > 0.0 && beam.direction.z() < 0.0;
+    const double from = falls_in ? std::min(horizon.t, p.z() / -beam.direction.z()) : 0.0;
+    plan.include((p + from * beam.direction).head<2>());
+    plan.include((p + horizon.t * beam.direction).head<2>());
+    nearest = std::min(nearest, beam.direction.dot(p));
+  }
+  // Beyond the horizon facets may be hidden by others that were not looked for.
+  const Plane far{-beam.direction, -(nearest + horizon.t)};
+  const Box box = box_of(whole);
+  cells_.visit(plan.lower, plan.upper, [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset) {
+    for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
+      consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f],
+               Vec3(offset.x(), offset.y(), 0.0));
+  });
+}
+
+void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Box& box,
+                        const Plane* far, const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift) {
+  const double towards = facet.normal.dot(beam.direction);
+  if (beam.inside ? towards <= kGrazing : towards >= -kGrazing) return;
+  Corners corners;
+  Box own;
+  bool all_ahead = true;
+  for (std::uint32_t c = 0; c < facet.corner_count; ++c) {
+    corners.push_back(patch.vertices[patch.corners[facet.first_corner + c]] + shift);
+    own.include(frame.across(corners.back()));
+    all_ahead = all_ahead && beam.start.height(corners.back()) >= 0.0;
+  }
+  if (!own.overlaps(box)) return;
+  if (!all_ahead) corners = cut(corners, beam.start);
+  if (far != nullptr) corners = cut(corners, *far);
+  if (corners.empty()) return;
+  const Plane plane{facet.normal, facet.offset_mm + facet.normal.dot(shift)};
+  FlatPolygon piece = intersection(flattened(corners, frame, merge_mm_), whole, merge_mm_);
+  if (piece.size() < 3 || area(piece) <= least_area_) return;
+  const Box piece_box = box_of(piece);
+  candidates_.push_back({plane, facet.role, Distance(frame, plane), std::move(piece), piece_box});
+}
+
+/// What of a candidate's piece no nearer candidate covers.
+FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
+  const Candidate& own = candidates_[k];
+  FlatPolygons visible;
+  visible.push_back(own.piece);
+  for (std::size_t j = 0; j < candidates_.size() && !visible.empty(); ++j) {
+    const Candidate& other = candidates_[j];
+    if (j == k || !own.box.overlaps(other.box)) continue;
+    const FlatPolygon common = intersection(own.piece, other.piece, merge_mm_);
+    if (common.size() < 3 || area(common) <= least_area_) continue;
+    const Vec2 at = middle(common);
+    const double behind = own.distance.at(at) - other.distance.at(at);
+    // Of two at the same distance the first counts.
+    if (behind < 0.0 || (behind == 0.0 && k < j)) continue;
+    FlatPolygons left;
+    for (const FlatPolygon& piece : visible) subtract(piece, other.piece, least_area_, merge_mm_, left);
+    visible = std::move(left);
+  }
+  return visible;
+}
+
+/// A piece of a beam that no facet within the horizon stands in the way of.
+void BeamWalk::pass_by(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
+                       const Horizon& horizon) {
+  if (horizon.limited) {
+    double nearest = kInfinity;
+    for (const Vec3& p : from.corners) nearest = std::min(nearest, frame.w.dot(p));
+    const Plane there{frame.w, nearest + horizon.t};
+    Beam beam = arrived(from, frame, piece, share, there);
+    beam.start = there;
+    beam.depth = from.depth;
+    beam.level_steps = from.level_steps + 1;
+    if (beam.level_steps < kMaxLevelSteps)
+      pending_.push_back(std::move(beam));
+    else
+      tally_.other[Account::truncated] += power_of(beam);
+    return;
+  }
+  if (from.inside) {
+    leave_hull(from, frame, piece, share);
+    return;
+  }
+  const bool rises_through_plate = setup_.infinite() && from.direction.z() > 0.0;
+  const double power = power_of(at_start(from, frame, piece, share));
+  tally_.other[rises_through_plate ? Account::truncated : account_of_exit(from.left_through)] += power;
+}
+
+/// Out through the nearest of entrance and sides: each takes the part of the piece to which it is nearest.
+void BeamWalk::leave_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) {
+  struct Exit {
+    Plane plane;
+    Distance distance;
+    bool is_entrance = false;
+  };
+  boost::container::small_vector<Exit, 8> exits;
+  const auto offer = [&](const Plane& plane, bool is_entrance) {
+    if (plane.normal.dot(from.direction) > kGrazing) exits.push_back({plane, Distance(frame, plane), is_entrance});
+  };
+  offer({Vec3::UnitZ(), setup_.thickness_mm}, true);
+  for (const auto& side : setup_.sides) offer({side.normal, side.offset_mm}, false);
+
+  const double whole = area(piece);
+  double used = 0.0;
+  for (std::size_t k = 0; k < exits.size(); ++k) {
+    FlatPolygon own = piece;
+    for (std::size_t j = 0; j < exits.size() && !own.empty(); ++j) {
+      if (j == k) continue;
+      const Vec2 slope = exits[k].distance.slope - exits[j].distance.slope;
+      own = clipped(own, {slope.x(), slope.y(), exits[j].distance.constant - exits[k].distance.constant}, merge_mm_);
+    }
+    if (own.empty() || area(own) <= least_area_) continue;
+    const double part = share * area(own) / whole;
+    used += part;
+    meet_hull(from, frame, own, part, exits[k].plane, exits[k].is_entrance);
+  }
+  book_rest(from, share - used);
+}
+
+/// A piece of a beam where the beam starts.
+Beam BeamWalk::at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) {
+  Beam beam = from;
+  beam.share = share;
+  const Plane start{from.start.normal, from.start.normal.dot(from.corners[0])};
+  beam.corners = lifted(piece, frame, Distance(frame, start));
+  return beam;
+}
+
+/// A piece of a beam where it meets a plane, with what the material took on the way booked.
+Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
+                       const Plane& plane) {
+  Beam beam = from;
+  beam.share = share;
+  beam.depth = from.depth + 1;
+  beam.level_steps = 0;
+  beam.corners = lifted(piece, frame, Distance(frame, plane));
+  if (from.inside && setup_.optics.absorption_per_mm > 0.0)
+    tally_.other[Account::absorbed] += power_of(at_start(from, frame, piece, share)) - power_of(beam);
+  return beam;
+}
+
+/// Sends light on from an interface. \param ahead the plane's normal on the side it goes to
+void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Field& field,
+                    bool inside) {
+  beam.path_length = beam.path_length.continued(plane, direction, inside ? 1.0 : 0.0);
+  beam.start = {ahead, ahead.dot(plane.normal) * plane.offset_mm};
+  beam.direction = direction;
+  beam.field = field;
+  beam.inside = inside;
+  pending_.push_back(std::move(beam));
+}
+
+void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
+                          double share) {
+  Beam beam = arrived(from, frame, piece, share, candidate.plane);
+  const bool is_mirror = setup_.optics.mirror_facets && candidate.role == FacetRole::retro_facet;
+  const Vec3 against = from.inside ? Vec3(-candidate.plane.normal) : candidate.plane.normal;
+  const double ratio = from.inside ? setup_.optics.index : 1.0 / setup_.optics.index;
+  const double cos_incidence = -against.dot(from.direction);
+  const materials::FresnelCoefficients f = is_mirror ? perfect_mirror() : materials::fresnel(ratio, cos_incidence);
+  beam.field.turn_to(from.direction, against);
+  if (!f.total_reflection) {
+    Beam through = beam;
+    if (from.inside) through.left_through = candidate.role;
+    send(std::move(through), candidate.plane, -against,
+         refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), beam.field.transmitted(f),
+         !from.inside);
+  }
+  const Field reflected = beam.field.reflected(f);
+  send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), reflected, from.inside);
+}
+
+void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
+                         const Plane& plane, bool is_entrance) {
+  Beam beam = arrived(from, frame, piece, share, plane);
+  const Vec3 against = -plane.normal;
+  const double cos_incidence = plane.normal.dot(from.direction);
+  const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, cos_incidence);
+  const Vec3 out = refracted(from.direction, against, setup_.optics.index, cos_incidence, f.cos_refracted);
+  if (is_entrance && setup_.optics.lossless_entrance) {
+    tally_.returned[f.total_reflection ? setup_.cone_chord2.size() : setup_.cone_of(out)] += power_of(beam);
+    return;
+  }
+  beam.field.turn_to(from.direction, against);
+  if (!f.total_reflection) {
+    Beam through = beam;
+    through.field = beam.field.transmitted(f);
+    double& account =
+        is_entrance ? tally_.returned[setup_.cone_of(out)] : tally_.other[account_of_exit(FacetRole::side)];
+    account += power_of(through);
+  }
+  const Field reflected = beam.field.reflected(f);
+  send(std::move(beam), plane, against, mirrored(from.direction, against), reflected, true);
+}
+
+void BeamWalk::fail_on_budget() const {
+  double open = deferred_power_;
+  for (const Beam& beam : pending_) open += power_of(beam);
+  throw BudgetError(
+      fmt::format("the budget of {} beams ran out with {:.3g} of the power not accounted for; a larger "
+                  "--cutoff follows fewer beams",
+                  policy_.max_beams, open));
+}
+
+geometry::Polygon entrance_of(const geometry::Part& part) {
+  if (part.period_mm) return geometry::to_polygon({Vec2::Zero(), *part.period_mm});
+  return part.outline;
+}
+
+Vec2 centre_of(const geometry::Part& part) {
+  const geometry::Rectangle box = geometry::bounding_box(entrance_of(part));
+  return 0.5 * (box.lower + box.upper);
+}
+
+}  // namespace
+
+BeamTracer::BeamTracer(const geometry::Part& part)
+    : part_(part), centre_mm_(centre_of(part)), cells_(part, centre_mm_) {}
+
+BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illumination,
+                             const std::vector<double>& cones_deg, const BeamPolicy& policy,
+                             const Cancellation* cancel) const {
+  const LightSetup setup(part_, centre_mm_, optics, illumination, cones_deg);
+  BeamWalk walk(part_, cells_, setup, policy);
+  walk.enter(entrance_of(part_), centre_mm_);
+  BeamResult result;
+  result.complete = walk.run(cancel);
+  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone) result.ledgers.push_back(walk.tally().ledger(cone));
+  result.beams = walk.beams();
+  result.depth = walk.depth();
+  return result;
+}
+
+}  // namespace retrace::raytrace

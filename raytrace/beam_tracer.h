@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/progress.h"
+#include "geometry/part.h"
+#include "raytrace/cell_index.h"
+#include "raytrace/light_setup.h"
+
+namespace retrace::raytrace {
+
+/// How far beams are followed.
+struct BeamPolicy {
+  /// Least power of a beam that is followed. Without one it starts at 1e-6 and falls until less than `truncated_goal`
+  /// is left behind.
+  std::optional<double> cutoff;
+  double truncated_goal = 1e-10;
+  std::uint64_t max_beams = 20'000'000;
+};
+
+struct BeamResult {
+  std::vector<Ledger> ledgers;  ///< by cone, in the order given
+  std::uint64_t beams = 0;
+  std::uint32_t depth = 0;  ///< interfaces on the longest path
+  bool complete = true;     ///< false if it was cancelled; the ledgers are then of no use
+};
+
+/// Follows parallel beams of polygonal cross-section from facet to facet: plane smooth facets turn one beam into
+/// finitely many, so nothing is sampled. What is cut off or falls between polygons by rounding is booked in
+/// `truncated`. A value shared by all threads.
+class BeamTracer {
+ public:
+  /// \pre `part` outlives the tracer
+  explicit BeamTracer(const geometry::Part& part);
+
+  /// \throw BudgetError if `max_beams` is reached; the message says what was accounted for
+  BeamResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
+                   const BeamPolicy& policy, const Cancellation* cancel = nullptr) const;
+
+ private:
+  const geometry::Part& part_;
+  Vec2 centre_mm_;
+  CellIndex cells_;
+};
+
+}  // namespace retrace::raytrace

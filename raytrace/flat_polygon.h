@@ -1,0 +1,98 @@
+#pragma once
+
+#include <boost/container/small_vector.hpp>
+#include <utility>
+#include <vector>
+
+#include "geometry/vec.h"
+
+namespace retrace::raytrace {
+
+/// A convex polygon across a beam, counter-clockwise; small ones need no allocation.
+using FlatPolygon = boost::container::small_vector<geometry::Vec2, 12>;
+using FlatPolygons = std::vector<FlatPolygon>;
+
+/// The half plane a x + b y <= c.
+struct HalfPlane {
+  double a = 0.0;
+  double b = 0.0;
+  double c = 0.0;
+
+  double excess(const geometry::Vec2& p) const { return a * p.x() + b * p.y() - c; }
+};
+
+inline double area(const FlatPolygon& polygon) {
+  double twice = 0.0;
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    const geometry::Vec2 p = polygon[i - 1] - polygon[0];
+    const geometry::Vec2 q = polygon[i] - polygon[0];
+    twice += p.x() * q.y() - p.y() * q.x();
+  }
+  return 0.5 * twice;
+}
+
+inline geometry::Vec2 middle(const FlatPolygon& polygon) {
+  geometry::Vec2 sum = geometry::Vec2::Zero();
+  for (const auto& p : polygon) sum += p;
+  return sum / static_cast<double>(polygon.size());
+}
+
+/// Adds a corner unless it is the last one again. Corners nearer than `merge_mm` are one: the edge between them would
+/// have a direction made of rounding, and cutting along it would be anywhere.
+inline void add_corner(FlatPolygon& polygon, const geometry::Vec2& p, double merge_mm) {
+  if (polygon.empty() || (p - polygon.back()).squaredNorm() > merge_mm * merge_mm) polygon.push_back(p);
+}
+
+/// Ends a polygon made by add_corner(); one without area is empty.
+inline void close(FlatPolygon& polygon, double merge_mm) {
+  while (polygon.size() > 1 && (polygon.front() - polygon.back()).squaredNorm() <= merge_mm * merge_mm)
+    polygon.pop_back();
+  if (polygon.size() < 3) polygon.clear();
+}
+
+/// The part of a polygon in a half plane; empty if none.
+inline FlatPolygon clipped(const FlatPolygon& polygon, const HalfPlane& half, double merge_mm) {
+  FlatPolygon kept;
+  const std::size_t n = polygon.size();
+  double before = n > 0 ? half.excess(polygon[n - 1]) : 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const geometry::Vec2& p = polygon[i];
+    const double here = half.excess(p);
+    if ((before < 0.0 && here > 0.0) || (before > 0.0 && here < 0.0)) {
+      const geometry::Vec2& q = polygon[i == 0 ? n - 1 : i - 1];
+      add_corner(kept, q + (p - q) * (before / (before - here)), merge_mm);
+    }
+    if (here <= 0.0) add_corner(kept, p, merge_mm);
+    before = here;
+  }
+  close(kept, merge_mm);
+  return kept;
+}
+
+/// The half plane to the left of the edge from p to q.
+inline HalfPlane left_of(const geometry::Vec2& p, const geometry::Vec2& q) {
+  const double a = q.y() - p.y();
+  const double b = p.x() - q.x();
+  return {a, b, a * p.x() + b * p.y()};
+}
+
+inline FlatPolygon intersection(const FlatPolygon& a, const FlatPolygon& b, double merge_mm) {
+  FlatPolygon result = a;
+  for (std::size_t i = 0; i < b.size() && !result.empty(); ++i)
+    result = clipped(result, left_of(b[i], b[(i + 1) % b.size()]), merge_mm);
+  return result;
+}
+
+/// Adds to `out` what `b` leaves of `a`, as convex pieces larger than `least_area`.
+template <class Polygons>
+void subtract(const FlatPolygon& a, const FlatPolygon& b, double least_area, double merge_mm, Polygons& out) {
+  FlatPolygon rest = a;
+  for (std::size_t i = 0; i < b.size() && !rest.empty(); ++i) {
+    const HalfPlane inner = left_of(b[i], b[(i + 1) % b.size()]);
+    FlatPolygon outer = clipped(rest, {-inner.a, -inner.b, -inner.c}, merge_mm);
+    if (outer.size() >= 3 && area(outer) > least_area) out.push_back(std::move(outer));
+    rest = clipped(rest, inner, merge_mm);
+  }
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,80 @@
+#include "raytrace/light_setup.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace retrace::raytrace {
+
+/// The direction after refraction at a plane whose unit normal `against` faces the ray.
+Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted) {
+  return (ratio * direction + (ratio * cos_incidence - cos_refracted) * against).normalized();
+}
+
+Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
+  return (direction - 2.0 * normal.dot(direction) * normal).normalized();
+}
+
+materials::FresnelCoefficients perfect_mirror() {
+  materials::FresnelCoefficients f;
+  f.r_s = -1.0;
+  f.r_p = 1.0;
+  f.total_reflection = true;
+  return f;
+}
+
+Account account_of_exit(geometry::FacetRole role) {
+  const bool is_side = role == geometry::FacetRole::side || role == geometry::FacetRole::border_wall;
+  return is_side ? Account::side_exit : Account::transmitted;
+}
+
+void Tally::add(const Tally& more) {
+  for (std::size_t k = 0; k < returned.size(); ++k) returned[k] += more.returned[k];
+  for (std::size_t k = 0; k < front.size(); ++k) front[k] += more.front[k];
+  for (std::size_t k = 0; k < kAccountCount; ++k) other.power[k] += more.other.power[k];
+  segments += more.segments;
+  misses += more.misses;
+}
+
+Ledger Tally::ledger(std::size_t cone) const {
+  Ledger ledger = other;
+  for (std::size_t k = 0; k < returned.size(); ++k) {
+    ledger[k <= cone ? Account::retroreflected : Account::returned_elsewhere] += returned[k];
+    ledger[k <= cone ? Account::retroreflected : Account::front_specular] += front[k];
+  }
+  return ledger;
+}
+
+LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const Optics& how,
+                       const Illumination& illumination, const std::vector<double>& cones_deg)
+    : optics(how), thickness_mm(part.thickness_mm), depth_mm(part.element_depth_mm) {
+  const double t = illumination.incidence.rad();
+  const double p = illumination.azimuth.rad();
+  to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+  for (const double half_angle_deg : cones_deg) {
+    const double chord = 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad());
+    cone_chord2.push_back(chord * chord * (1.0 + 1e-9));  // the cone's edge belongs to it, rounding or not
+  }
+  for (std::size_t k = 0; k < part.outline.size(); ++k) {
+    const Vec2 a = part.outline[k] - centre_mm;
+    const Vec2 along = (part.outline[(k + 1) % part.outline.size()] - part.outline[k]).normalized();
+    const Vec3 normal(along.y(), -along.x(), 0.0);
+    sides.push_back({normal, normal.head<2>().dot(a)});
+  }
+}
+
+std::size_t LightSetup::cone_of(const Vec3& direction) const {
+  const double chord2 = (direction - to_source).squaredNorm();
+  std::size_t k = 0;
+  while (k < cone_chord2.size() && chord2 > cone_chord2[k]) ++k;
+  return k;
+}
+
+Field LightSetup::incident_field() const {
+  Field field;
+  const Vec3 direction = -to_source;
+  field.s_axis = direction.cross(direction.cross(Vec3::UnitX())).normalized();
+  field.turn_to(direction, Vec3::UnitZ());
+  return field;
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/part.h"
+#include "raytrace/field.h"
+#include "raytrace/ledger.h"
+#include "raytrace/optics.h"
+
+namespace retrace::raytrace {
+
+/// One part, lit from one direction: what every tracer needs to know of it. Positions are relative to the centre of the
+/// entrance face in x and y.
+struct LightSetup {
+  /// A side of the part: a vertical plane.
+  struct Side {
+    Vec3 normal = Vec3::UnitX();  ///< out of the part
+    double offset_mm = 0.0;
+  };
+
+  /// \param cones_deg half angles of the acceptance cones, ascending, each > 0
+  LightSetup(const geometry::Part& part, const Vec2& centre_mm, const Optics& optics, const Illumination& illumination,
+             const std::vector<double>& cones_deg);
+
+  Optics optics;
+  double thickness_mm = 0.0;
+  double depth_mm = 0.0;
+  std::vector<Side> sides;  ///< empty for an infinite part
+  Vec3 to_source = Vec3::UnitZ();
+  std::vector<double> cone_chord2;  ///< squared distance of unit vectors at each cone's edge from the one to the source
+
+  bool infinite() const { return sides.empty(); }
+
+  /// The narrowest cone that holds a direction; their number if none does.
+  std::size_t cone_of(const Vec3& direction) const;
+
+  /// The light before the entrance face, its s axis normal to the plane of incidence.
+  Field incident_field() const;
+};
+
+/// Sums of power over paths or beams. What leaves through the entrance face is kept by acceptance cone, so that one run
+/// serves several cones.
+struct Tally {
+  explicit Tally(std::size_t cone_count = 0) : returned(cone_count + 1, 0.0), front(cone_count + 1, 0.0) {}
+
+  std::vector<double> returned;  ///< through the entrance, by the narrowest cone that holds it; last: outside all
+  std::vector<double> front;     ///< first-surface reflection, likewise
+  Ledger other;                  ///< the remaining accounts
+  std::uint64_t segments = 0;    ///< straight pieces traced
+  std::uint64_t misses = 0;      ///< rays that missed every face although the part or its surface surrounds them
+
+  void add(const Tally& more);
+  /// The ledger for one cone, in units of the tally. \param cone index into the cones of the set-up
+  Ledger ledger(std::size_t cone) const;
+};
+
+/// Where light is booked that left the part for good through a face of this role. \pre not the entrance
+Account account_of_exit(geometry::FacetRole role);
+
+/// Amplitudes of a perfect mirror.
+materials::FresnelCoefficients perfect_mirror();
+
+/// The direction after refraction at a plane whose unit normal `against` faces the ray. \param ratio index before over
+/// after
+Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted);
+
+/// The direction after reflection at a plane.
+Vec3 mirrored(const Vec3& direction, const Vec3& normal);
+
+}  // namespace retrace::raytrace

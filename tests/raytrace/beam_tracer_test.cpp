@@ -1,0 +1,204 @@
+// The exact engine: closed forms to rounding, symmetries, and the Monte-Carlo tracer.
+#include "raytrace/beam_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "core/error.h"
+#include "materials/fresnel.h"
+#include "raytrace/beam.h"
+#include "tests/support/closed_forms.h"
+#include "tests/support/designs.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+BeamPolicy leaving(double truncated) {
+  BeamPolicy policy;
+  policy.truncated_goal = truncated;
+  return policy;
+}
+
+Ledger beams(const Part& part, const Optics& optics, const Illumination& illumination, double cone_deg,
+             double truncated = 1e-10) {
+  return BeamTracer(part).trace(optics, illumination, {cone_deg}, leaving(truncated)).ledgers[0];
+}
+
+TEST(BeamTracer, ArraySizeStudyExactly) {
+  const double fresnel = materials::reflectance(1.0 / kPmma, 1.0);
+  for (const double base : {10.0, 5.0, 2.0, 1.0, 0.5}) {
+    PartSpec spec = finite(RtpElement{base, base, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
+    spec.shifted_rows = RowParity::odd;
+    const Part part = build_part(spec);
+    const double full = static_cast<double>(part.elements_full) * base * base / 100.0;
+    const Ledger ledger = beams(part, pmma(), from(0.0), 0.5);
+    EXPECT_NEAR(ledger[Account::retroreflected], full + (1.0 - full) * 2.0 * fresnel / (1.0 + fresnel), 1e-9);
+    EXPECT_NEAR(ledger.total(), 1.0, 1e-12);
+  }
+}
+
+TEST(BeamTracer, EffectiveAperturesExactly) {
+  const Part honeycomb = build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0));
+  const Part triangular = build_part(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0));
+  const BeamTracer honeycomb_tracer(honeycomb);
+  const BeamTracer triangular_tracer(triangular);
+  for (double t = 0.0; t <= 75.0; t += 5.0)
+    for (double p = 0.0; p < 360.0; p += 18.7) {
+      const auto rre = [&](const BeamTracer& tracer) {
+        return tracer.trace(ideal(), from(t, p), {0.01}, {}).ledgers[0][Account::retroreflected];
+      };
+      EXPECT_NEAR(rre(honeycomb_tracer), honeycomb_rre(t, p, kPmma), 1e-9) << t << ", " << p;
+      EXPECT_NEAR(rre(triangular_tracer), triangular_rre(t, p, kPmma), 1e-9) << t << ", " << p;
+    }
+}
+
+TEST(BeamTracer, KneeOfTotalReflection) {
+  const Part part = build_part(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
+  const double knee = std::asin(kPmma * std::sin(45.0 * kDeg - std::asin(1.0 / kPmma))) / kDeg;
+  EXPECT_EQ(beams(part, pmma(), from(knee - 1e-9), 0.5)[Account::transmitted], 0.0);
+  EXPECT_GT(beams(part, pmma(), from(knee + 1e-9), 0.5)[Account::transmitted], 1e-6);
+}
+
+TEST(BeamTracer, AbsorptionIsExact) {
+  const Part part = build_part(single(RtpElement{0.6, 0.4, 90.0}, 0.7));
+  Optics optics = ideal();
+  optics.absorption_per_mm = 0.3;
+  const Ledger ledger = beams(part, optics, from(0.0), 0.5);
+  EXPECT_NEAR(ledger[Account::retroreflected], std::exp(-0.3 * (2.0 * 0.7 + 0.6)), 1e-13);
+  EXPECT_NEAR(ledger.total(), 1.0, 1e-12);
+}
+
+// Honeycomb: threefold and a mirror; triangular array: sixfold, since every second cell is turned.
+TEST(BeamTracer, Symmetries) {
+  const Part honeycomb = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7));
+  const Part triangular = build_part(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7));
+  const auto rre = [](const Part& part, double p) {
+    // The same beams are cut off in symmetric directions.
+    BeamPolicy policy;
+    policy.cutoff = 1e-5;
+    return BeamTracer(part).trace(pmma(), from(33.0, p), {0.5}, policy).ledgers[0];
+  };
+  for (const double p : {7.0, 25.0, 50.0}) {
+    const Ledger at = rre(honeycomb, p);
+    for (const double same : {p + 120.0, p + 240.0, -p}) {
+      const Ledger other = rre(honeycomb, same);
+      const double cut = std::abs(at[Account::truncated]) + std::abs(other[Account::truncated]);
+      EXPECT_NEAR(other[Account::retroreflected], at[Account::retroreflected], cut + 1e-9) << same;
+    }
+    const Ledger turned = rre(triangular, p);
+    for (int k = 1; k < 6; ++k) {
+      const Ledger other = rre(triangular, p + 60.0 * k);
+      const double cut = std::abs(turned[Account::truncated]) + std::abs(other[Account::truncated]);
+      EXPECT_NEAR(other[Account::retroreflected], turned[Account::retroreflected], cut + 1e-9) << k;
+    }
+  }
+}
+
+struct RandomCase {
+  PartSpec spec;
+  Optics optics;
+  Illumination illumination;
+};
+
+RandomCase random_case(std::mt19937& generator) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const auto between = [&](double low, double high) { return low + (high - low) * unit(generator); };
+  const auto chance = [&](double p) { return unit(generator) < p; };
+  RandomCase c;
+  const double size = between(0.4, 1.4);
+  switch (static_cast<int>(between(0.0, 3.0))) {
+    case 0:
+      c.spec.element = RtpElement{size, between(0.4, 1.4), between(88.0, 92.0)};
+      c.spec.arrangement = chance(0.5) ? Arrangement::aligned : Arrangement::offset;
+      c.spec.x_gap_mm = chance(0.3) ? 0.1 : 0.0;
+      break;
+    case 1:
+      c.spec.element = HexagonalCube{size};
+      c.spec.arrangement = Arrangement::honeycomb;
+      break;
+    default:
+      c.spec.element = TriangularCube{size};
+      c.spec.arrangement = Arrangement::triangular;
+  }
+  c.spec.thickness_mm = between(0.1, 1.1);
+  if (chance(0.2)) {
+    c.spec.arrangement = Arrangement::single;
+    c.spec.x_gap_mm = 0.0;
+  } else if (chance(0.5)) {
+    c.spec.extent = Extent::infinite;
+  } else {
+    c.spec.x_length_mm = between(3.3, 4.3);
+    c.spec.y_length_mm = between(3.5, 4.5);
+    if (chance(0.3)) c.spec.partial_elements = PartialElements::omit;
+  }
+  c.optics.index = between(1.3, 1.9);
+  if (chance(0.3)) c.optics.absorption_per_mm = between(0.0, 0.3);
+  c.illumination = from(between(0.0, 75.0), between(0.0, 360.0));
+  return c;
+}
+
+// Two engines that share the geometry and Fresnel's formulas and nothing else.
+TEST(BeamTracer, AgreesWithMonteCarlo) {
+  std::mt19937 generator(11);
+  constexpr int kCases = 100;
+  const double t95 = student_bound_of(0.05, MonteCarlo::kReplicates);
+  int within = 0;
+  for (int k = 0; k < kCases; ++k) {
+    const RandomCase c = random_case(generator);
+    const Part part = build_part(c.spec);
+    // 1e-4 is below the Monte Carlo's own error in nearly all of them.
+    const Ledger exact = beams(part, c.optics, c.illumination, 2.0, 2e-4);
+    const MonteCarloResult traced = MonteCarlo(part).trace(c.optics, c.illumination, {2.0}, rays(1U << 14), {});
+    EXPECT_NEAR(exact.total(), 1.0, 1e-9) << k;
+    EXPECT_GT(exact[Account::truncated], -1e-9) << k;
+    const double difference = std::abs(exact[Account::retroreflected] - traced.cones[0].rre);
+    if (difference <= t95 * traced.cones[0].std_error + exact[Account::truncated] + 1e-9) ++within;
+  }
+  EXPECT_GE(within, 88);
+}
+
+TEST(BeamTracer, RunsOutOfItsBudgetAloud) {
+  const Part part = build_part(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7));
+  BeamPolicy policy;
+  policy.max_beams = 1000;
+  try {
+    BeamTracer(part).trace(pmma(), from(20.0, 10.0), {0.5}, policy);
+    FAIL();
+  } catch (const BudgetError& error) {
+    EXPECT_NE(std::string(error.what()).find("not accounted for"), std::string::npos);
+  }
+}
+
+// The mean of exp(-x) over a triangle against a fine subdivision, from none to strong absorption.
+TEST(MeanTransmission, IsTheIntegral) {
+  const Corners corners = {Vec3(0.1, 0.0, 0.0), Vec3(1.0, 0.2, 0.3), Vec3(0.4, 0.9, -0.2), Vec3(0.0, 0.5, -0.2)};
+  const PathLength length{2.0, Vec3(1.0, -0.5, 0.3)};
+  for (const double a : {0.0, 1e-6, 0.1, 1.0, 10.0, 100.0}) {
+    double sum = 0.0;
+    double whole = 0.0;
+    constexpr int kSteps = 400;
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+      const Vec3 u = corners[k - 1] - corners[0];
+      const Vec3 v = corners[k] - corners[0];
+      for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; i + j < kSteps; ++j)
+          for (const double third : {1.0 / 3.0, 2.0 / 3.0}) {
+            if (third > 0.5 && i + j + 1 >= kSteps) continue;
+            const Vec3 p = corners[0] + (i + third) / kSteps * u + (j + third) / kSteps * v;
+            sum += u.cross(v).norm() * std::exp(-a * length.at(p));
+            whole += u.cross(v).norm();
+          }
+    }
+    EXPECT_NEAR(mean_transmission(corners, length, a) / (sum / whole), 1.0, 1e-3 * std::min(1.0, a * a / 100.0) + 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace retrace::testing
