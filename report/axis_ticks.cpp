@@ -32,6 +32,11 @@ struct NiceStep {
     if (mantissa == 2) return {5, exponent};
     return {1, exponent + 1};
   }
+  NiceStep previous() const {
+    if (mantissa == 5) return {2, exponent};
+    if (mantissa == 2) return {1, exponent};
+    return {5, exponent - 1};
+  }
 };
 
 /// The smallest nice step that divides `span` into at most `most` intervals.
@@ -97,7 +102,9 @@ Range drawable(Range range) {
 
 Ticks make_ticks(Range range, int most) {
   range = drawable(range);
-  const NiceStep step = nice_step(range.span(), most);
+  NiceStep step = nice_step(range.span(), most);
+  // A step wider than the range might leave it without any tick.
+  if (step.times(1.0) > range.span()) step = step.previous();
   Ticks ticks;
   ticks.step = step.times(1.0);
   const double first = std::ceil(range.low / ticks.step - kOnTick);

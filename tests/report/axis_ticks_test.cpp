@@ -55,6 +55,11 @@ TEST(MakeTicks, SurvivesWhatCannotBeDrawn) {
   }
 }
 
+TEST(MakeTicks, NarrowRangeBetweenCoarseTicksHasOne) {
+  EXPECT_FALSE(make_ticks({-949.0, -908.0}, 2).positions.empty());
+  EXPECT_FALSE(make_ticks({-949e-9, -908e-9}, 2).positions.empty());
+}
+
 TEST(MakeTicks, AreFewRisingNiceAndInsideForAnyRange) {
   const bool holds = rc::check([] {
     const double magnitude = std::pow(10.0, *rc::gen::inRange(-9, 10));
