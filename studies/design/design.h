@@ -29,6 +29,9 @@ struct Design {
   InputLocation wavelength_location;                      ///< where it was given, for whoever finds no index there
   std::vector<double> acceptance_half_angle_deg = {0.5};  ///< ascending, each in (0, 90]
   Idealisation idealisation;
+
+  /// What messages call the source.
+  std::string source_name() const { return source == "-" ? "standard input" : source; }
 };
 
 }  // namespace retrace::studies

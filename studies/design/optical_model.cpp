@@ -30,7 +30,7 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
   optics.index = index_at_wavelength(design, material, library.air());
   if (!materials::is_valid_at(material, design.wavelength_nm))
     warnings.push_back(fmt::format("{}: the data of {} reach from {} to {} nm; its index at {} nm is extrapolated",
-                                   design.source, material.name, material.valid_from_nm, material.valid_to_nm,
+                                   design.source_name(), material.name, material.valid_from_nm, material.valid_to_nm,
                                    design.wavelength_nm));
   if (!(optics.index >= 1.0))
     throw InputError(design.material_location, fmt::format("the index of {} at {} nm must be >= 1, got {}",

@@ -64,11 +64,11 @@ std::string boundary_finding(const geometry::PartSpec& spec, double element_mm) 
 void add_warnings(Inspection& result, const geometry::Part& part) {
   if (!result.tir_limit_deg && !result.design.idealisation.mirror_facets)
     result.warnings.push_back(fmt::format("{}: no total reflection at the facets at normal incidence (n = {:.4f})",
-                                          result.design.source, result.refractive_index));
+                                          result.design.source_name(), result.refractive_index));
   if (part.elements_partial > 0 && part.spec.partial_elements == geometry::PartialElements::cut)
     result.warnings.push_back(
         fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
-                    result.design.source, part.elements_partial));
+                    result.design.source_name(), part.elements_partial));
 }
 
 }  // namespace

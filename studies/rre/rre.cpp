@@ -34,8 +34,9 @@ void check(const RreRequest& request) {
 }
 
 std::string missed_target(const Design& design, const RrePoint& at, const RreRequest& request) {
-  return fmt::format("{}: the standard error at incidence {}, azimuth {} is above the target of {}", design.source,
-                     shortest(at.incidence_deg), shortest(at.azimuth_deg), shortest(request.target_error));
+  return fmt::format("{}: the standard error at incidence {}, azimuth {} is above the target of {}",
+                     design.source_name(), shortest(at.incidence_deg), shortest(at.azimuth_deg),
+                     shortest(request.target_error));
 }
 
 }  // namespace
