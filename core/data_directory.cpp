@@ -15,7 +15,7 @@ fs::path data_directory() {
   }
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path folder = program.parent_path().parent_path() / "share" / "retrace";
+  fs::path folder = program.parent_path().parent_path() / "share" / "retrace";
   if (error || !fs::is_directory(folder))
     throw InputError("the data folder " + folder.string() +
                      " is missing; set RETRACE_DATA_DIR to retrace's data folder");

@@ -212,7 +212,7 @@ void Canvas::line(const std::vector<Point>& points, const Stroke& stroke) {
 void Canvas::marker(Point centre, Marker shape, double radius, Colour colour) {
   cairo_t* const context = hidden_->context.get();
   // Sizes by which the shapes look alike in weight.
-  const auto polygon = [&](std::vector<Point> corners) {
+  const auto polygon = [&](const std::vector<Point>& corners) {
     for (const Point corner : corners)
       cairo_line_to(context, centre.x + radius * corner.x, centre.y + radius * corner.y);
     cairo_close_path(context);
