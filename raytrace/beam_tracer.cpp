@@ -131,18 +131,11 @@ class BeamWalk {
 };
 
 void BeamWalk::enter(const geometry::Polygon& entrance, const Vec2& centre_mm) {
-  Field field = setup_.incident_field();
-  const double ratio = 1.0 / setup_.optics.index;
-  const double cos_incidence = setup_.to_source.z();
-  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
-  const Vec3 incident = -setup_.to_source;
-  if (!setup_.optics.lossless_entrance) {
-    tally_.front[setup_.cone_of(mirrored(incident, Vec3::UnitZ()))] += field.reflected(f).power();
-    field = field.transmitted(f);
-  }
+  const LightSetup::Entry& entry = setup_.entry;
+  tally_.front[entry.front_cone] += entry.front_power;
   Beam whole;
-  whole.direction = refracted(incident, Vec3::UnitZ(), ratio, cos_incidence, f.cos_refracted);
-  whole.field = field;
+  whole.direction = entry.direction;
+  whole.field = entry.field;
   whole.start = {-Vec3::UnitZ(), -setup_.thickness_mm};
   whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
   for (const auto& p : entrance)

@@ -60,6 +60,7 @@ LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const 
     const Vec3 normal(along.y(), -along.x(), 0.0);
     sides.push_back({normal, normal.head<2>().dot(a)});
   }
+  entry = enter();
 }
 
 std::size_t LightSetup::cone_of(const Vec3& direction) const {
@@ -69,12 +70,19 @@ std::size_t LightSetup::cone_of(const Vec3& direction) const {
   return k;
 }
 
-Field LightSetup::incident_field() const {
+LightSetup::Entry LightSetup::enter() const {
+  const Vec3 incident = -to_source;
+  const double ratio = 1.0 / optics.index;
+  const materials::FresnelCoefficients f = materials::fresnel(ratio, to_source.z());
   Field field;
-  const Vec3 direction = -to_source;
-  field.s_axis = direction.cross(direction.cross(Vec3::UnitX())).normalized();
-  field.turn_to(direction, Vec3::UnitZ());
-  return field;
+  field.s_axis = incident.cross(incident.cross(Vec3::UnitX())).normalized();
+  field.turn_to(incident, Vec3::UnitZ());
+  Entry entered;
+  entered.direction = refracted(incident, Vec3::UnitZ(), ratio, to_source.z(), f.cos_refracted);
+  entered.front_cone = cone_of(mirrored(incident, Vec3::UnitZ()));
+  entered.front_power = optics.lossless_entrance ? 0.0 : field.reflected(f).power();
+  entered.field = optics.lossless_entrance ? field : field.transmitted(f);
+  return entered;
 }
 
 }  // namespace retrace::raytrace

@@ -35,8 +35,17 @@ struct LightSetup {
   /// The narrowest cone that holds a direction; their number if none does.
   std::size_t cone_of(const Vec3& direction) const;
 
-  /// The light before the entrance face, its s axis normal to the plane of incidence.
-  Field incident_field() const;
+  /// What the entrance face makes of the incident light.
+  struct Entry {
+    Vec3 direction = -Vec3::UnitZ();  ///< of what enters
+    Field field;
+    std::size_t front_cone = 0;  ///< that holds what is reflected
+    double front_power = 0.0;
+  };
+  Entry entry;
+
+ private:
+  Entry enter() const;
 };
 
 /// Sums of power over paths or beams. What leaves through the entrance face is kept by acceptance cone, so that one run

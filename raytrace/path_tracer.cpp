@@ -42,19 +42,12 @@ void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replic
 }
 
 void PathWalker::enter(const Vec2& entry_mm) {
+  const LightSetup::Entry& entry = setup_.entry;
+  tally_.front[entry.front_cone] += entry.front_power;
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
-  state.direction = -setup_.to_source;
-  state.field = setup_.incident_field();
-
-  const double ratio = 1.0 / setup_.optics.index;
-  const double cos_incidence = setup_.to_source.z();
-  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
-  if (!setup_.optics.lossless_entrance) {
-    tally_.front[setup_.cone_of(mirrored(state.direction, Vec3::UnitZ()))] += state.field.reflected(f).power();
-    state.field = state.field.transmitted(f);
-  }
-  state.direction = refracted(state.direction, Vec3::UnitZ(), ratio, cos_incidence, f.cos_refracted);
+  state.direction = entry.direction;
+  state.field = entry.field;
   pending_.push_back(state);
 }
 
