@@ -9,14 +9,6 @@
 #include <thread>
 
 namespace retrace::raytrace {
-namespace {
-
-// ThreadSanitizer cannot see how TBB, which is built without it, hands work out and back. These say it in our own code,
-// so that it finds what is really shared.
-std::atomic<unsigned> handed_out{0};
-std::atomic<unsigned> handed_back{0};
-
-}  // namespace
 
 void run_with_threads(unsigned threads, const std::function<void()>& work) {
   if (threads == 0) {
@@ -31,13 +23,16 @@ void run_with_threads(unsigned threads, const std::function<void()>& work) {
 }
 
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
-  const auto handed_work = [&](std::size_t k) {
+  // ThreadSanitizer cannot see how TBB, which is built without it, hands work out and back. Two atomics say it in our
+  // own code, so that it finds what is really shared.
+  std::atomic<unsigned> handed_out{0};
+  std::atomic<unsigned> handed_back{0};
+  handed_out.fetch_add(1, std::memory_order_release);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
     static_cast<void>(handed_out.load(std::memory_order_acquire));
     work(k);
     handed_back.fetch_add(1, std::memory_order_release);
-  };
-  handed_out.fetch_add(1, std::memory_order_release);
-  tbb::parallel_for(std::size_t{0}, count, handed_work);
+  });
   static_cast<void>(handed_back.load(std::memory_order_acquire));
 }
 
