@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -114,6 +115,21 @@ class Counter {
   std::mutex mutex_;
 };
 
+/// Says so if a cut-off took more than shows in a table.
+void warn_of_truncation(RreResult& result) {
+  constexpr double kShows = 1e-6;
+  const auto truncated = [](const RrePoint& p) { return p.ledger[raytrace::Account::truncated]; };
+  const auto worst =
+      std::max_element(result.points.begin(), result.points.end(),
+                       [&](const RrePoint& a, const RrePoint& b) { return truncated(a) < truncated(b); });
+  if (worst == result.points.end() || truncated(*worst) <= kShows) return;
+  result.warnings.push_back(fmt::format(
+      "{}: {:.2g} % of the power is cut off at incidence {}, azimuth {}, and RRE up to that much too low; a smaller "
+      "--cutoff follows more",
+      result.designs[worst->design].source_name(), 100.0 * truncated(*worst), shortest(worst->incidence_deg),
+      shortest(worst->azimuth_deg)));
+}
+
 /// Directions one after the other, each on all threads.
 void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                           const RreRequest& request, std::vector<Direction>& directions, Counter& counter,
@@ -199,6 +215,7 @@ RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
     result.complete = result.complete && !direction.points.empty();
     result.points.insert(result.points.end(), direction.points.begin(), direction.points.end());
   }
+  warn_of_truncation(result);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -157,7 +157,11 @@ TEST(Rre, CutoffOfTheExactEngineIsBooked) {
   const Outcome coarse = retrace(folder, {"rre", example("triangular_infinite.toml"), "--engine=exact",
                                           "--incidence=20", "--azimuth=3.75", "--cutoff=1e-6", "--json", "-"});
   ASSERT_EQ(coarse.code, 0) << coarse.err;
-  const Json ledger = Json::parse(coarse.out)["points"][0]["ledger"];
+  const Json json = Json::parse(coarse.out);
+  ASSERT_EQ(json["warnings"].size(), 1U);
+  EXPECT_NE(json["warnings"][0].get<std::string>().find("% of the power is cut off at incidence 20, azimuth 3.75"),
+            std::string::npos);
+  const Json& ledger = json["points"][0]["ledger"];
   EXPECT_GT(ledger["truncated"], 1e-6);
   double sum = 0.0;
   for (const auto& [name, power] : ledger.items()) sum += power.get<double>();
