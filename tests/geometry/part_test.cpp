@@ -98,7 +98,7 @@ TEST(Part, CubeCornerArraysAreClosed) {
 
 // Counts printed in Hamilton et al. 2017, Table 1 (first row shifted) and Milliken 2017, section 2.7 (second row
 // shifted).
-TEST(Part, CountsOfTheSeeds) {
+TEST(Part, CountsOfThePapers) {
   const auto full = [](double base, RowParity parity, double length = 10.0) {
     PartSpec spec = rtp_array(base, base, length, Arrangement::offset);
     spec.shifted_rows = parity;
