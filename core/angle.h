@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <numbers>
 
 namespace retrace {
@@ -14,12 +13,6 @@ class Angle {
 
   constexpr double rad() const { return rad_; }
   constexpr double deg() const { return rad_ * (180.0 / std::numbers::pi); }
-
-  friend constexpr Angle operator-(Angle a) { return Angle(-a.rad_); }
-  friend constexpr Angle operator+(Angle a, Angle b) { return Angle(a.rad_ + b.rad_); }
-  friend constexpr Angle operator-(Angle a, Angle b) { return Angle(a.rad_ - b.rad_); }
-  friend constexpr Angle operator*(double k, Angle a) { return Angle(k * a.rad_); }
-  friend constexpr auto operator<=>(Angle, Angle) = default;
 
  private:
   explicit constexpr Angle(double rad) : rad_(rad) {}

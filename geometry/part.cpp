@@ -120,7 +120,6 @@ void add_cell(std::vector<Tile>& tiles, const Layout& layout, const Rectangle& e
     Tile tile;
     tile.cell = number;
     tile.owned = owned;
-    tile.facet_of_element = static_cast<std::uint8_t>(k);
     if (cell.is_element && !omitted) {
       tile.plane = cell.facets[k].plane;
       tile.plane.height_mm -= tile.plane.slope.dot(shift);
@@ -245,7 +244,6 @@ void build_single(Part& part, const Vec2& origin) {
     tile.outline = moved(cell.facets[k].outline, shift);
     tile.plane = cell.facets[k].plane;
     tile.plane.height_mm -= tile.plane.slope.dot(shift);
-    tile.facet_of_element = static_cast<std::uint8_t>(k);
     tiles.push_back(std::move(tile));
   }
   part.patches.push_back(build_patch(tiles, bounding_box(outline), part.size_mm));

@@ -192,7 +192,6 @@ class PatchBuilder {
     const Tile& tile = tiles_[t];
     PatchFacet facet;
     facet.role = tile.role;
-    facet.facet_of_element = tile.facet_of_element;
     const Vec3 downward(tile.plane.slope.x(), tile.plane.slope.y(), -1.0);
     facet.normal = downward.normalized();
     facet.offset_mm = -tile.plane.height_mm / downward.norm();

@@ -14,9 +14,8 @@ struct Tile {
   Polygon outline;
   HeightPlane plane;
   FacetRole role = FacetRole::retro_facet;
-  std::uint8_t facet_of_element = 0;  ///< number of the facet in its element, in the contract's order
-  std::uint32_t cell = 0;             ///< tiles of one cell are adjacent in the input
-  bool owned = true;                  ///< false: only a neighbour that shapes walls and welds
+  std::uint32_t cell = 0;  ///< tiles of one cell are adjacent in the input
+  bool owned = true;       ///< false: only a neighbour that shapes walls and welds
 };
 
 /// One plane convex face of the back surface.
@@ -26,7 +25,6 @@ struct PatchFacet {
   std::uint32_t first_corner = 0;
   std::uint32_t corner_count = 0;
   FacetRole role = FacetRole::retro_facet;
-  std::uint8_t facet_of_element = 0;
 };
 
 /// The consecutive facets of one cell and the box round them.

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "raytrace/beam.h"
+#include "raytrace/entrance_sampler.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -480,15 +481,10 @@ geometry::Polygon entrance_of(const geometry::Part& part) {
   return part.outline;
 }
 
-Vec2 centre_of(const geometry::Part& part) {
-  const geometry::Rectangle box = geometry::bounding_box(entrance_of(part));
-  return 0.5 * (box.lower + box.upper);
-}
-
 }  // namespace
 
 BeamTracer::BeamTracer(const geometry::Part& part)
-    : part_(part), centre_mm_(centre_of(part)), cells_(part, centre_mm_) {}
+    : part_(part), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {}
 
 BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illumination,
                              const std::vector<double>& cones_deg, const BeamPolicy& policy,
