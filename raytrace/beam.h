@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "geometry/lattice.h"
-#include "raytrace/field.h"
 #include "raytrace/flat_polygon.h"
+#include "raytrace/light.h"
 
 namespace retrace::raytrace {
 
@@ -40,7 +40,7 @@ struct PathLength {
 struct Beam {
   Corners corners;  ///< of the cross-section, on the plane it starts from
   Vec3 direction = Vec3::UnitZ();
-  Field field;             ///< before absorption
+  Light light;             ///< before absorption
   double share = 1.0;      ///< of the entrance's cross-section
   PathLength path_length;  ///< in the material
   Plane start;             ///< the beam lies where start.height(p) >= 0

@@ -89,10 +89,11 @@ class BeamWalk {
   std::uint32_t depth() const { return depth_; }
 
  private:
-  double power_of(const Beam& beam) const {
-    return beam.share * beam.field.power() *
-           mean_transmission(beam.corners, beam.path_length, setup_.optics.absorption_per_mm);
+  /// Share of the power of its light that a beam brings here: by its area, less what was absorbed.
+  double transmission_of(const Beam& beam) const {
+    return beam.share * mean_transmission(beam.corners, beam.path_length, setup_.optics.absorption_per_mm);
   }
+  double power_of(const Beam& beam) const { return transmission_of(beam) * beam.light.power(); }
   void enter_in_pieces(const Beam& whole);
   void advance(const Beam& beam);
   Horizon horizon_of(const Beam& beam) const;
@@ -109,7 +110,7 @@ class BeamWalk {
                   double share);
   void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
                  bool is_entrance);
-  void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Field& field, bool inside);
+  void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Light& light, bool inside);
   /// Light of a beam that found no facet for want of digits. Signed: pieces may overlap by rounding as well.
   void book_rest(const Beam& beam, double share) {
     tally_.other[Account::truncated] += share / beam.share * power_of(beam);
@@ -133,10 +134,10 @@ class BeamWalk {
 
 void BeamWalk::enter(const geometry::Polygon& entrance, const Vec2& centre_mm) {
   const LightSetup::Entry& entry = setup_.entry;
-  tally_.front[entry.front_cone] += entry.front_power;
+  tally_.front[entry.front_cone] += entry.front;
   Beam whole;
   whole.direction = entry.direction;
-  whole.field = entry.field;
+  whole.light = entry.light;
   whole.start = {-Vec3::UnitZ(), -setup_.thickness_mm};
   whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
   for (const auto& p : entrance)
@@ -414,12 +415,12 @@ Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& 
 }
 
 /// Sends light on from an interface. \param ahead the plane's normal on the side it goes to
-void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Field& field,
+void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Light& light,
                     bool inside) {
   beam.path_length = beam.path_length.continued(plane, direction, inside ? 1.0 : 0.0);
   beam.start = {ahead, ahead.dot(plane.normal) * plane.offset_mm};
   beam.direction = direction;
-  beam.field = field;
+  beam.light = light;
   beam.inside = inside;
   pending_.push_back(std::move(beam));
 }
@@ -432,15 +433,15 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   const double ratio = from.inside ? setup_.optics.index : 1.0 / setup_.optics.index;
   const double cos_incidence = -against.dot(from.direction);
   const materials::FresnelCoefficients f = is_mirror ? perfect_mirror() : materials::fresnel(ratio, cos_incidence);
-  beam.field.turn_to(from.direction, against);
+  beam.light.turn_to(from.direction, against);
   if (!f.total_reflection) {
     Beam through = beam;
     if (from.inside) through.left_through = candidate.role;
     send(std::move(through), candidate.plane, -against,
-         refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), beam.field.transmitted(f),
+         refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), beam.light.transmitted(f),
          !from.inside);
   }
-  const Field reflected = beam.field.reflected(f);
+  const Light reflected = beam.light.reflected(f);
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), reflected, from.inside);
 }
 
@@ -451,19 +452,23 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
   const double cos_incidence = plane.normal.dot(from.direction);
   const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, cos_incidence);
   const Vec3 out = refracted(from.direction, against, setup_.optics.index, cos_incidence, f.cos_refracted);
+  beam.light.turn_to(from.direction, against);
   if (is_entrance && setup_.optics.lossless_entrance) {
-    tally_.returned[f.total_reflection ? setup_.cone_chord2.size() : setup_.cone_of(out)] += power_of(beam);
+    // Under total reflection its axes are of no account: it has ended.
+    if (f.total_reflection)
+      tally_.returned.back() += transmission_of(beam) * beam.light.stokes;
+    else
+      tally_.returned[setup_.cone_of(out)] += transmission_of(beam) * seen_from_above(beam.light, out);
     return;
   }
-  beam.field.turn_to(from.direction, against);
   if (!f.total_reflection) {
-    Beam through = beam;
-    through.field = beam.field.transmitted(f);
-    double& account =
-        is_entrance ? tally_.returned[setup_.cone_of(out)] : tally_.other[account_of_exit(FacetRole::side)];
-    account += power_of(through);
+    const Light through = beam.light.transmitted(f);
+    if (is_entrance)
+      tally_.returned[setup_.cone_of(out)] += transmission_of(beam) * seen_from_above(through, out);
+    else
+      tally_.other[account_of_exit(FacetRole::side)] += transmission_of(beam) * through.power();
   }
-  const Field reflected = beam.field.reflected(f);
+  const Light reflected = beam.light.reflected(f);
   send(std::move(beam), plane, against, mirrored(from.direction, against), reflected, true);
 }
 
@@ -494,7 +499,10 @@ BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illuminat
   walk.enter(entrance_of(part_), centre_mm_);
   BeamResult result;
   result.complete = walk.run(cancel);
-  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone) result.ledgers.push_back(walk.tally().ledger(cone));
+  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone) {
+    result.ledgers.push_back(walk.tally().ledger(cone));
+    result.stokes.push_back(walk.tally().retroreflected(cone));
+  }
   result.beams = walk.beams();
   result.depth = walk.depth();
   return result;

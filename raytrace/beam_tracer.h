@@ -22,6 +22,7 @@ struct BeamPolicy {
 
 struct BeamResult {
   std::vector<Ledger> ledgers;  ///< by cone, in the order given
+  std::vector<Stokes> stokes;   ///< of what is retroreflected, by cone, along source_axis()
   std::uint64_t beams = 0;
   std::uint32_t depth = 0;  ///< interfaces on the longest path
   bool complete = true;     ///< false if it was cancelled; the ledgers are then of no use

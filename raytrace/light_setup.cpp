@@ -22,6 +22,15 @@ materials::FresnelCoefficients perfect_mirror() {
   return f;
 }
 
+Vec3 source_axis(const Vec3& direction) {
+  return direction.cross(Vec3::UnitX()).cross(direction).normalized();
+}
+
+Stokes seen_from_above(Light light, const Vec3& direction) {
+  light.turn_to_axis(direction, source_axis(direction));
+  return light.stokes;
+}
+
 Account account_of_exit(geometry::FacetRole role) {
   const bool is_side = role == geometry::FacetRole::side || role == geometry::FacetRole::border_wall;
   return is_side ? Account::side_exit : Account::transmitted;
@@ -38,10 +47,19 @@ void Tally::add(const Tally& more) {
 Ledger Tally::ledger(std::size_t cone) const {
   Ledger ledger = other;
   for (std::size_t k = 0; k < returned.size(); ++k) {
-    ledger[k <= cone ? Account::retroreflected : Account::returned_elsewhere] += returned[k];
-    ledger[k <= cone ? Account::retroreflected : Account::front_specular] += front[k];
+    ledger[k <= cone ? Account::retroreflected : Account::returned_elsewhere] += returned[k].i;
+    ledger[k <= cone ? Account::retroreflected : Account::front_specular] += front[k].i;
   }
   return ledger;
+}
+
+Stokes Tally::retroreflected(std::size_t cone) const {
+  Stokes sum;
+  for (std::size_t k = 0; k <= cone; ++k) {
+    sum += returned[k];
+    sum += front[k];
+  }
+  return sum;
 }
 
 LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const Optics& how,
@@ -60,7 +78,7 @@ LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const 
     const Vec3 normal(along.y(), -along.x(), 0.0);
     sides.push_back({normal, normal.head<2>().dot(a)});
   }
-  entry = enter();
+  entry = enter(illumination.stokes);
 }
 
 std::size_t LightSetup::cone_of(const Vec3& direction) const {
@@ -70,18 +88,21 @@ std::size_t LightSetup::cone_of(const Vec3& direction) const {
   return k;
 }
 
-LightSetup::Entry LightSetup::enter() const {
+LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
   const Vec3 incident = -to_source;
   const double ratio = 1.0 / optics.index;
   const materials::FresnelCoefficients f = materials::fresnel(ratio, to_source.z());
-  Field field;
-  field.s_axis = incident.cross(incident.cross(Vec3::UnitX())).normalized();
-  field.turn_to(incident, Vec3::UnitZ());
+  Light light;
+  light.stokes = stokes;
+  light.stokes.u = -stokes.u;  // p = direction x s is the second axis of the source reversed
+  light.s_axis = source_axis(to_source);
+  light.turn_to(incident, Vec3::UnitZ());
   Entry entered;
   entered.direction = refracted(incident, Vec3::UnitZ(), ratio, to_source.z(), f.cos_refracted);
-  entered.front_cone = cone_of(mirrored(incident, Vec3::UnitZ()));
-  entered.front_power = optics.lossless_entrance ? 0.0 : field.reflected(f).power();
-  entered.field = optics.lossless_entrance ? field : field.transmitted(f);
+  const Vec3 front_direction = mirrored(incident, Vec3::UnitZ());
+  entered.front_cone = cone_of(front_direction);
+  if (!optics.lossless_entrance) entered.front = seen_from_above(light.reflected(f), front_direction);
+  entered.light = optics.lossless_entrance ? light : light.transmitted(f);
   return entered;
 }
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "geometry/part.h"
-#include "raytrace/field.h"
 #include "raytrace/ledger.h"
+#include "raytrace/light.h"
 #include "raytrace/optics.h"
 
 namespace retrace::raytrace {
@@ -38,23 +38,23 @@ struct LightSetup {
   /// What the entrance face makes of the incident light.
   struct Entry {
     Vec3 direction = -Vec3::UnitZ();  ///< of what enters
-    Field field;
+    Light light;
     std::size_t front_cone = 0;  ///< that holds what is reflected
-    double front_power = 0.0;
+    Stokes front;                ///< of what is reflected, along source_axis()
   };
   Entry entry;
 
  private:
-  Entry enter() const;
+  Entry enter(const Stokes& stokes) const;
 };
 
 /// Sums of power over paths or beams. What leaves through the entrance face is kept by acceptance cone, so that one run
 /// serves several cones.
 struct Tally {
-  explicit Tally(std::size_t cone_count = 0) : returned(cone_count + 1, 0.0), front(cone_count + 1, 0.0) {}
+  explicit Tally(std::size_t cone_count = 0) : returned(cone_count + 1), front(cone_count + 1) {}
 
-  std::vector<double> returned;  ///< through the entrance, by the narrowest cone that holds it; last: outside all
-  std::vector<double> front;     ///< first-surface reflection, likewise
+  std::vector<Stokes> returned;  ///< through the entrance, by the narrowest cone that holds it; last: outside all
+  std::vector<Stokes> front;     ///< first-surface reflection, likewise
   Ledger other;                  ///< the remaining accounts
   std::uint64_t segments = 0;    ///< straight pieces traced
   std::uint64_t misses = 0;      ///< rays that missed every face although the part or its surface surrounds them
@@ -62,7 +62,17 @@ struct Tally {
   void add(const Tally& more);
   /// The ledger for one cone, in units of the tally. \param cone index into the cones of the set-up
   Ledger ledger(std::size_t cone) const;
+  /// Of what is retroreflected into one cone.
+  Stokes retroreflected(std::size_t cone) const;
 };
+
+/// The first axis of the Stokes parameters of light that comes from or goes into a direction above the part: +x, seen
+/// across it. The second is `direction` x it, so that both are those of someone at the source.
+/// \pre direction not along x
+Vec3 source_axis(const Vec3& direction);
+
+/// Stokes parameters of light that leaves the entrance face, along source_axis().
+Stokes seen_from_above(Light light, const Vec3& direction);
 
 /// Where light is booked that left the part for good through a face of this role. \pre not the entrance
 Account account_of_exit(geometry::FacetRole role);

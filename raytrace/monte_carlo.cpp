@@ -74,6 +74,7 @@ ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double
   for (const Tally& tally : replicates) {
     const Ledger ledger = tally.ledger(cone);
     rre.push_back(ledger[Account::retroreflected] / rays);
+    result.stokes += 1.0 / (rays * kReplicates) * tally.retroreflected(cone);
     for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays / kReplicates;
   }
   result.rre = result.ledger[Account::retroreflected];

@@ -26,6 +26,7 @@ struct ConeResult {
   double half_angle_deg = 0.0;
   double rre = 0.0;
   double std_error = 0.0;  ///< from the spread of independent replicates
+  Stokes stokes;           ///< of what is retroreflected, along source_axis()
   Ledger ledger;
 };
 

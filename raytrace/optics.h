@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/angle.h"
+#include "raytrace/stokes.h"
 
 namespace retrace::raytrace {
 
@@ -17,6 +18,7 @@ struct Optics {
 struct Illumination {
   Angle incidence;
   Angle azimuth;
+  Stokes stokes = kUnpolarised;  ///< of power 1, along source_axis()
 };
 
 }  // namespace retrace::raytrace

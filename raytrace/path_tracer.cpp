@@ -43,17 +43,17 @@ void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replic
 
 void PathWalker::enter(const Vec2& entry_mm) {
   const LightSetup::Entry& entry = setup_.entry;
-  tally_.front[entry.front_cone] += entry.front_power;
+  tally_.front[entry.front_cone] += entry.front;
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
   state.direction = entry.direction;
-  state.field = entry.field;
+  state.light = entry.light;
   pending_.push_back(state);
 }
 
 /// Takes a path to the next interface and past it. False when the path has ended.
 bool PathWalker::advance(State& state) {
-  const double power = state.field.power();
+  const double power = state.light.power();
   if (power < setup_.policy.cutoff || state.events++ >= setup_.policy.max_events)
     return finish(state, Account::truncated);
   ++tally_.segments;
@@ -62,7 +62,7 @@ bool PathWalker::advance(State& state) {
   if (state.inside && setup_.optics.absorption_per_mm > 0.0 && step.end != End::miss) {
     const double kept = std::exp(-setup_.optics.absorption_per_mm * step.length_mm);
     tally_.other[Account::absorbed] += power * (1.0 - kept);
-    state.field.scale(std::sqrt(kept));
+    state.light.scale(kept);
   }
   switch (step.end) {
     case End::facet:
@@ -264,19 +264,19 @@ bool PathWalker::meet_entrance(State& state) {
   const double cos_incidence = state.direction.z();
   const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, cos_incidence);
   const Vec3 out = refracted(state.direction, down, setup_.optics.index, cos_incidence, f.cos_refracted);
+  state.light.turn_to(state.direction, down);
   if (setup_.optics.lossless_entrance) {
     if (f.total_reflection)
-      tally_.returned.back() += state.field.power();
+      tally_.returned.back() += state.light.stokes;  // its axes are of no account: it has ended
     else
-      tally_.returned[setup_.cone_of(out)] += state.field.power();
+      tally_.returned[setup_.cone_of(out)] += seen_from_above(state.light, out);
     return false;
   }
-  state.field.turn_to(state.direction, down);
-  Field reflected = state.field.reflected(f);
-  Field transmitted = state.field.transmitted(f);
+  Light reflected = state.light.reflected(f);
+  Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
-  if (branch != Branch::reflected) tally_.returned[setup_.cone_of(out)] += transmitted.power();
-  state.field = reflected;
+  if (branch != Branch::reflected) tally_.returned[setup_.cone_of(out)] += seen_from_above(transmitted, out);
+  state.light = reflected;
   state.direction = mirrored(state.direction, down);
   state.source = {};
   state.near_edge = false;
@@ -285,13 +285,13 @@ bool PathWalker::meet_entrance(State& state) {
 
 bool PathWalker::meet_side(State& state, const Vec3& normal) {
   const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, normal.dot(state.direction));
-  state.field.turn_to(state.direction, normal);
-  Field reflected = state.field.reflected(f);
-  Field transmitted = state.field.transmitted(f);
+  state.light.turn_to(state.direction, normal);
+  Light reflected = state.light.reflected(f);
+  Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
   // The part is the prism over a convex outline: what leaves through a side does not come back.
   if (branch != Branch::reflected) tally_.other[Account::side_exit] += transmitted.power();
-  state.field = reflected;
+  state.light = reflected;
   state.direction = mirrored(state.direction, normal);
   state.source = {};
   // Where a side meets the back surface, single precision may not tell on which side of the edge the ray starts.
@@ -309,13 +309,13 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
 
   state.source = hit.facet;
   state.near_edge = hit.near_edge;
-  state.field.turn_to(state.direction, against);
-  Field reflected = state.field.reflected(f);
-  Field transmitted = state.field.transmitted(f);
+  state.light.turn_to(state.direction, against);
+  Light reflected = state.light.reflected(f);
+  Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
   if (branch != Branch::reflected) {
     State through = state;
-    through.field = transmitted;
+    through.light = transmitted;
     through.direction = refracted(state.direction, against, ratio, cos_incidence, f.cos_refracted);
     through.inside = !state.inside;
     if (state.inside) through.left_through = facet.role;
@@ -325,13 +325,13 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
     }
     pending_.push_back(through);
   }
-  state.field = reflected;
+  state.light = reflected;
   state.direction = mirrored(state.direction, against);
   return true;
 }
 
 /// Both branches while both matter, else one at random that takes the power of both: nothing is lost or made.
-PathWalker::Branch PathWalker::choose(Field& reflected, Field& transmitted) {
+PathWalker::Branch PathWalker::choose(Light& reflected, Light& transmitted) {
   const double r = reflected.power();
   const double t = transmitted.power();
   if (t <= 0.0) return Branch::reflected;
@@ -339,12 +339,12 @@ PathWalker::Branch PathWalker::choose(Field& reflected, Field& transmitted) {
   if (std::min(r, t) >= setup_.policy.split_power) return Branch::both;
   const double u = unit_interval(philox(key_, replicate_, sample_, choices_++)[0]);
   const bool take_reflected = u * (r + t) < r;
-  (take_reflected ? reflected : transmitted).scale(std::sqrt((r + t) / (take_reflected ? r : t)));
+  (take_reflected ? reflected : transmitted).scale((r + t) / (take_reflected ? r : t));
   return take_reflected ? Branch::reflected : Branch::transmitted;
 }
 
 bool PathWalker::finish(const State& state, Account account) {
-  tally_.other[account] += state.field.power();
+  tally_.other[account] += state.light.power();
   return false;
 }
 

@@ -44,7 +44,7 @@ class PathWalker {
   struct State {
     Vec3 position = Vec3::Zero();
     Vec3 direction = Vec3::UnitZ();
-    Field field;
+    Light light;
     FacetRef source;  ///< facet that the path has just left
     bool near_edge = false;
     bool inside = true;
@@ -77,7 +77,7 @@ class PathWalker {
   bool meet_entrance(State& state);
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
-  Branch choose(Field& reflected, Field& transmitted);
+  Branch choose(Light& reflected, Light& transmitted);
   bool finish(const State& state, Account account);
   bool escape(const State& state);
 
