@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "geometry/part_spec.h"
+#include "raytrace/stokes.h"
 
 namespace retrace::studies {
 
@@ -26,7 +27,9 @@ struct Design {
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
   std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
   double wavelength_nm = 587.56;
-  InputLocation wavelength_location;                      ///< where it was given, for whoever finds no index there
+  InputLocation wavelength_location;  ///< where it was given, for whoever finds no index there
+  /// Of the incident light, along the axes of raytrace::source_axis(); i = 1.
+  raytrace::Stokes polarisation = raytrace::kUnpolarised;
   std::vector<double> acceptance_half_angle_deg = {0.5};  ///< ascending, each in (0, 90]
   Idealisation idealisation;
 

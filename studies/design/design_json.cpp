@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "core/number_format.h"
@@ -62,6 +63,15 @@ Json array_json(const PartSpec& part) {
   return array;
 }
 
+/// The word that the design file has for it, or [i, q, u, v].
+Json polarisation_json(const raytrace::Stokes& stokes) {
+  const std::array<double, 4> values = stokes.values();
+  if (values == raytrace::kUnpolarised.values()) return "unpolarised";
+  if (values == std::array{1.0, 0.0, 0.0, 1.0}) return "right_circular";
+  if (values == std::array{1.0, 0.0, 0.0, -1.0}) return "left_circular";
+  return values;
+}
+
 struct ElementName {
   std::string operator()(const RtpElement& e) const {
     return fmt::format("RTP {} x {} mm", shortest(e.base_mm), shortest(e.width_mm));
@@ -85,7 +95,7 @@ nlohmann::ordered_json to_json(const Design& design) {
   json["element"] = std::visit(ElementJson{}, design.part.element);
   json["array"] = array_json(design.part);
   json["body"] = body;
-  json["light"] = {{"wavelength_nm", design.wavelength_nm}, {"polarisation", "unpolarised"}};
+  json["light"] = {{"wavelength_nm", design.wavelength_nm}, {"polarisation", polarisation_json(design.polarisation)}};
   json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};
   json["idealisation"] = {{"facets", design.idealisation.mirror_facets ? "mirror" : "real"},
                           {"entrance", design.idealisation.lossless_entrance ? "lossless" : "real"}};

@@ -60,7 +60,7 @@ constexpr std::array kBodyKeys = {KeyRule{"thickness_mm"},
                                   KeyRule{"absorption_per_mm"},
                                   KeyRule{"back_index", OnlyNumber{1.0}},
                                   KeyRule{"facet_coating", OnlyWord{"none"}}};
-constexpr std::array kLightKeys = {KeyRule{"wavelength_nm"}, KeyRule{"polarisation", OnlyWord{"unpolarised"}},
+constexpr std::array kLightKeys = {KeyRule{"wavelength_nm"}, KeyRule{"polarisation"}, KeyRule{"polarisation_angle_deg"},
                                    KeyRule{"spectrum", NotAvailable{}}};
 constexpr std::array kDetectorKeys = {KeyRule{"acceptance_half_angle_deg"}};
 constexpr std::array kSurfaceKeys = {KeyRule{"model", OnlyWord{"smooth"}},

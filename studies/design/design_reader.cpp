@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <system_error>
 #include <vector>
 
+#include "core/angle.h"
 #include "core/atomic_file.h"
+#include "core/number_format.h"
 #include "studies/design/array_checks.h"
 #include "studies/design/design_keys.h"
 #include "studies/design/message_text.h"
@@ -25,6 +28,7 @@ using geometry::PartialElements;
 using geometry::PartSpec;
 using geometry::RowParity;
 
+enum class Polarisation { unpolarised, linear, right_circular, left_circular };
 enum class Kind { rtp, hexagonal_icc, triangular_icc };
 
 constexpr std::string_view kSchema = "retrace.design/1";
@@ -44,12 +48,17 @@ constexpr std::array kRowParities = {Choice<RowParity>{"even", RowParity::even},
                                      Choice<RowParity>{"odd", RowParity::odd}};
 constexpr std::array kPartialElements = {Choice<PartialElements>{"cut", PartialElements::cut},
                                          Choice<PartialElements>{"omit", PartialElements::omit}};
+constexpr std::array kPolarisations = {Choice<Polarisation>{"unpolarised", Polarisation::unpolarised},
+                                       Choice<Polarisation>{"linear", Polarisation::linear},
+                                       Choice<Polarisation>{"right_circular", Polarisation::right_circular},
+                                       Choice<Polarisation>{"left_circular", Polarisation::left_circular}};
 constexpr std::array kFacetModels = {Choice<bool>{"real", false}, Choice<bool>{"mirror", true}};
 constexpr std::array kEntranceModels = {Choice<bool>{"real", false}, Choice<bool>{"lossless", true}};
 
 constexpr Range kApexAngle{.low = 60.0, .high = 120.0};
 constexpr Range kOverlap{.low = 0.0, .high = 100.0, .high_included = false};
 constexpr Range kRefractiveIndex{.low = 1.0};
+constexpr Range kPolarisationAngle{.low = -360.0, .high = 360.0};
 constexpr Range kAcceptance{.low = 0.0, .low_included = false, .high = 90.0};
 /// From one nanometre to one kilometre: beyond that, differences of coordinates have too few digits.
 constexpr Range kSaneSize{.low = 1e-6, .high = 1e6};
@@ -174,11 +183,49 @@ void read_body(TableReader& body, Design& design) {
   body.finish();
 }
 
+/// `[i, q, u, v]` in the unit of i.
+raytrace::Stokes read_stokes(TableReader& light, std::string_view key, std::size_t size) {
+  if (size != 4) light.fail(key, fmt::format("must be a list of four Stokes parameters, got a list of {}", size));
+  const std::vector<double> given = *light.numbers(key, Range{});
+  const raytrace::Stokes stokes{1.0, given[1] / given[0], given[2] / given[0], given[3] / given[0]};
+  constexpr double rounding = 1e-12;
+  const double degree2 = stokes.q * stokes.q + stokes.u * stokes.u + stokes.v * stokes.v;
+  if (!(given[0] > 0.0 && degree2 <= 1.0 + rounding))
+    light.fail(key, fmt::format("must be [i, q, u, v] with i > 0 and q^2 + u^2 + v^2 <= i^2, got [{}, {}, {}, {}]",
+                                shortest(given[0]), shortest(given[1]), shortest(given[2]), shortest(given[3])));
+  return stokes;
+}
+
+raytrace::Stokes read_polarisation(TableReader& light) {
+  constexpr std::string_view key = "polarisation";
+  const std::optional<std::size_t> list_size = light.list_size(key);
+  const Polarisation kind = list_size ? Polarisation::unpolarised
+                                      : light.choice(key, all(kPolarisations), " or a list of four Stokes parameters")
+                                            .value_or(Polarisation::unpolarised);
+  if (kind != Polarisation::linear)
+    light.refuse({"polarisation_angle_deg"}, "only allowed for polarisation = \"linear\"");
+  if (list_size) return read_stokes(light, key, *list_size);
+  switch (kind) {
+    case Polarisation::unpolarised:
+      break;
+    case Polarisation::linear: {
+      const double angle =
+          Angle::from_deg(light.number("polarisation_angle_deg", kPolarisationAngle).value_or(0.0)).rad();
+      return {1.0, std::cos(2.0 * angle), std::sin(2.0 * angle), 0.0};
+    }
+    case Polarisation::right_circular:
+      return {1.0, 0.0, 0.0, 1.0};
+    case Polarisation::left_circular:
+      return {1.0, 0.0, 0.0, -1.0};
+  }
+  return raytrace::kUnpolarised;
+}
+
 void read_light_and_detector(const DesignDocument& document, Design& design) {
   TableReader light(document, "light");
   design.wavelength_nm = light.number("wavelength_nm", kPositive).value_or(design.wavelength_nm);
   design.wavelength_location = light.where("wavelength_nm");
-  light.skip({"polarisation"});
+  design.polarisation = read_polarisation(light);
   light.finish();
   TableReader detector(document, "detector");
   std::vector<double> angles_deg =

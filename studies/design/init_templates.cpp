@@ -79,7 +79,7 @@ material = "PMMA"                 # `retrace list materials` shows what there is
 
 [light]
 wavelength_nm = 587.56
-# polarisation = "unpolarised"
+# polarisation = "unpolarised"    # "linear" (polarisation_angle_deg), "right_circular", "left_circular", [i, q, u, v]
 
 [detector]
 acceptance_half_angle_deg = 0.5   # in air; a list such as [0.2, 0.5, 1] gives RRE against acceptance

@@ -104,10 +104,19 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key, co
   return values;
 }
 
+std::optional<std::size_t> TableReader::list_size(std::string_view key) const {
+  const toml::node* const node = find(key);
+  return node != nullptr && node->is_array() ? std::optional(node->as_array()->size()) : std::nullopt;
+}
+
 std::optional<std::string> TableReader::text(std::string_view key) {
+  return text_or(key, "");
+}
+
+std::optional<std::string> TableReader::text_or(std::string_view key, std::string_view or_else) {
   const toml::node* const node = take(key);
   if (node == nullptr) return std::nullopt;
-  if (!node->is_string()) fail(key, fmt::format("must be a string, got {}", shown(*node)));
+  if (!node->is_string()) fail(key, fmt::format("must be a string{}, got {}", or_else, shown(*node)));
   return node->as_string()->get();
 }
 
@@ -115,12 +124,13 @@ std::string TableReader::choice_text(std::span<const std::string_view> names) {
   return (names.size() > 1 ? "one of " : "") + alternatives(names);
 }
 
-std::optional<std::size_t> TableReader::choice_index(std::string_view key, std::span<const std::string_view> names) {
-  const std::optional<std::string> given = text(key);
+std::optional<std::size_t> TableReader::choice_index(std::string_view key, std::span<const std::string_view> names,
+                                                     std::string_view or_else) {
+  const std::optional<std::string> given = text_or(key, or_else);
   if (!given) return std::nullopt;
   const auto found = std::find(names.begin(), names.end(), *given);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  std::string message = fmt::format("must be {}, got {}", choice_text(names), in_quotes(*given));
+  std::string message = fmt::format("must be {}{}, got {}", choice_text(names), or_else, in_quotes(*given));
   const std::string_view meant = closest(*given, names);
   if (!meant.empty() && names.size() > 1) message += fmt::format("; did you mean {}?", in_quotes(meant));
   fail(key, message);

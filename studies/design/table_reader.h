@@ -55,12 +55,16 @@ class TableReader {
   double required_number(std::string_view key, const Range& range);
   /// A number or a list of one or more numbers.
   std::optional<std::vector<double>> numbers(std::string_view key, const Range& range);
+  /// How many entries the list of that name has; nothing if the key has no list.
+  std::optional<std::size_t> list_size(std::string_view key) const;
   std::optional<std::string> text(std::string_view key);
 
+  /// \param or_else what the key may have instead of a word, for messages: " or a list of four numbers"
   template <class Value>
-  std::optional<Value> choice(std::string_view key, std::span<const Choice<Value>> choices) {
+  std::optional<Value> choice(std::string_view key, std::span<const Choice<Value>> choices,
+                              std::string_view or_else = {}) {
     const std::vector<std::string_view> names = names_of(choices);
-    const std::optional<std::size_t> index = choice_index(key, names);
+    const std::optional<std::size_t> index = choice_index(key, names, or_else);
     return index ? std::optional<Value>(choices[*index].value) : std::nullopt;
   }
   template <class Value>
@@ -83,7 +87,9 @@ class TableReader {
   const toml::node* take(std::string_view key);
   std::string full_name(std::string_view key) const;
   double checked_number(std::string_view key, const toml::node& node, const Range& range) const;
-  std::optional<std::size_t> choice_index(std::string_view key, std::span<const std::string_view> names);
+  std::optional<std::string> text_or(std::string_view key, std::string_view or_else);
+  std::optional<std::size_t> choice_index(std::string_view key, std::span<const std::string_view> names,
+                                          std::string_view or_else);
   [[noreturn]] void fail_missing(std::string_view key, std::string_view allowed) const;
   static std::string choice_text(std::span<const std::string_view> names);
 

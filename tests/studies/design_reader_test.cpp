@@ -4,6 +4,8 @@
 #include <rapidcheck.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -110,6 +112,7 @@ TEST(DesignReader, MinimalDesignHasTheDefaults) {
   EXPECT_FALSE(design.refractive_index);
   EXPECT_FALSE(design.absorption_per_mm);
   EXPECT_EQ(design.wavelength_nm, 587.56);
+  EXPECT_EQ(design.polarisation.values(), raytrace::kUnpolarised.values());
   EXPECT_EQ(design.acceptance_half_angle_deg, std::vector<double>{0.5});
   EXPECT_FALSE(design.idealisation.mirror_facets);
   EXPECT_FALSE(design.idealisation.lossless_entrance);
@@ -151,7 +154,8 @@ back_index = 1
 facet_coating = "none"
 [light]
 wavelength_nm = 633
-polarisation = "unpolarised"
+polarisation = "linear"
+polarisation_angle_deg = 30
 [detector]
 acceptance_half_angle_deg = [1, 0.2, 0.5, 0.2]
 [surface]
@@ -180,6 +184,7 @@ entrance = "lossless"
   EXPECT_EQ(design.refractive_index, 1.58);
   EXPECT_EQ(design.absorption_per_mm, 0.001);
   EXPECT_EQ(design.wavelength_nm, 633.0);
+  EXPECT_NEAR(design.polarisation.q, 0.5, 1e-15);
   EXPECT_EQ(design.acceptance_half_angle_deg, (std::vector<double>{0.2, 0.5, 1.0}));
   EXPECT_TRUE(design.idealisation.mirror_facets);
   EXPECT_TRUE(design.idealisation.lossless_entrance);
@@ -236,6 +241,57 @@ TEST(DesignReader, AcceptanceIsANumberOrAListWithin90Degrees) {
   EXPECT_EQ(refused("[]"), where + "must be a number or a list of at least one number, got an empty list");
   EXPECT_EQ(refused("\"a\""), where + "must be a number or a list of numbers, got \"a\"");
   EXPECT_EQ(refused("90"), "");
+}
+
+TEST(DesignReader, PolarisationIsAWordOrStokesParameters) {
+  const auto stokes = [](const std::vector<std::string>& overrides) { return set(overrides).polarisation.values(); };
+  using Values = std::array<double, 4>;
+  EXPECT_EQ(stokes({"light.polarisation=unpolarised"}), (Values{1, 0, 0, 0}));
+  EXPECT_EQ(stokes({"light.polarisation=linear"}), (Values{1, 1, 0, 0}));
+  EXPECT_EQ(stokes({"light.polarisation=right_circular"}), (Values{1, 0, 0, 1}));
+  EXPECT_EQ(stokes({"light.polarisation=left_circular"}), (Values{1, 0, 0, -1}));
+  EXPECT_EQ(stokes({"light.polarisation=[1, 0, 0, 0]"}), (Values{1, 0, 0, 0}));
+  EXPECT_EQ(stokes({"light.polarisation=[2, 1, -0.5, 0.25]"}), (Values{1, 0.5, -0.25, 0.125}));
+  EXPECT_EQ(stokes({"light.polarisation=[1, 0.6, 0.8, 0]"}), (Values{1, 0.6, 0.8, 0}));
+  const auto expect_linear = [&](const std::string& angle, double q, double u) {
+    const Values values = stokes({"light.polarisation=linear", "light.polarisation_angle_deg=" + angle});
+    EXPECT_EQ(values[0], 1.0);
+    EXPECT_NEAR(values[1], q, 1e-15);
+    EXPECT_NEAR(values[2], u, 1e-15);
+    EXPECT_EQ(values[3], 0.0);
+  };
+  expect_linear("45", 0.0, 1.0);
+  expect_linear("90", -1.0, 0.0);
+  expect_linear("-30", 0.5, -0.5 * std::sqrt(3.0));
+  expect_linear("360", 1.0, 0.0);
+}
+
+TEST(DesignReader, WhatIsNoPolarisationIsRefused) {
+  const auto refused = [](const std::string& value) {
+    return complaint(with_line(11, "[light]\npolarisation = " + value));
+  };
+  const std::string where = "d.toml:12: light.polarisation: ";
+  const std::string words =
+      "must be one of \"unpolarised\", \"linear\", \"right_circular\" or \"left_circular\" or a list of four Stokes "
+      "parameters, got ";
+  EXPECT_EQ(refused("\"liner\""), where + words + "\"liner\"; did you mean \"linear\"?");
+  EXPECT_EQ(refused("1"), where + "must be a string or a list of four Stokes parameters, got 1");
+  EXPECT_EQ(refused("[1, 0, 0]"), where + "must be a list of four Stokes parameters, got a list of 3");
+  EXPECT_EQ(refused("[]"), where + "must be a list of four Stokes parameters, got a list of 0");
+  EXPECT_EQ(refused("[1, 0, 0, \"x\"]"), where + "must be a number, got \"x\"");
+  EXPECT_EQ(refused("[1, 0, 0, inf]"), where + "must be a finite number, got inf");
+  const std::string stokes = where + "must be [i, q, u, v] with i > 0 and q^2 + u^2 + v^2 <= i^2, got ";
+  EXPECT_EQ(refused("[0, 0, 0, 0]"), stokes + "[0, 0, 0, 0]");
+  EXPECT_EQ(refused("[-1, 0, 0, 1]"), stokes + "[-1, 0, 0, 1]");
+  EXPECT_EQ(refused("[1, 0.8, 0, 0.7]"), stokes + "[1, 0.8, 0, 0.7]");
+  EXPECT_EQ(refused("\"linear\"\npolarisation_angle_deg = 361"),
+            "d.toml:13: light.polarisation_angle_deg: must be >= -360 and <= 360, got 361");
+  const std::string alone =
+      "--set light.polarisation_angle_deg=0: light.polarisation_angle_deg: only allowed for polarisation = \"linear\", "
+      "got 0";
+  EXPECT_EQ(set_complaint({"light.polarisation_angle_deg=0"}), alone);
+  EXPECT_EQ(set_complaint({"light.polarisation=left_circular", "light.polarisation_angle_deg=0"}), alone);
+  EXPECT_EQ(set_complaint({"light.polarisation=[1, 1, 0, 0]", "light.polarisation_angle_deg=0"}), alone);
 }
 
 TEST(DesignReader, WrongTypesAreRefused) {
@@ -410,8 +466,6 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
             "--set body.back_index=1.33: body.back_index" + no + ", which takes only 1, got 1.33");
   EXPECT_EQ(refused("body.facet_coating=aluminium"), "--set body.facet_coating=aluminium: body.facet_coating" + no +
                                                          ", which takes only \"none\", got \"aluminium\"");
-  EXPECT_EQ(refused("light.polarisation=linear"), "--set light.polarisation=linear: light.polarisation" + no +
-                                                      ", which takes only \"unpolarised\", got \"linear\"");
   EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")),
             "d.toml:11: part" + no + ", which takes only [element] and [array]");
   EXPECT_EQ(refused("surface.model=abg"),

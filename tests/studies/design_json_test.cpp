@@ -1,0 +1,32 @@
+#include "studies/design/design_json.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "studies/design/design_reader.h"
+#include "studies/design/init_templates.h"
+
+namespace retrace::studies {
+namespace {
+
+nlohmann::ordered_json quoted(const std::string& kind, const std::vector<std::string>& overrides) {
+  return to_json(parse_design(design_template(kind), "d.toml", overrides));
+}
+
+TEST(DesignJson, PolarisationIsAWordOrStokesParameters) {
+  const auto polarisation = [](const std::vector<std::string>& overrides) {
+    return quoted("rtp", overrides)["light"]["polarisation"].dump();
+  };
+  EXPECT_EQ(polarisation({}), "\"unpolarised\"");
+  EXPECT_EQ(polarisation({"light.polarisation=[2, 0, 0, 0]"}), "\"unpolarised\"");
+  EXPECT_EQ(polarisation({"light.polarisation=right_circular"}), "\"right_circular\"");
+  EXPECT_EQ(polarisation({"light.polarisation=left_circular"}), "\"left_circular\"");
+  EXPECT_EQ(polarisation({"light.polarisation=linear"}), "[1.0,1.0,0.0,0.0]");
+  EXPECT_EQ(polarisation({"light.polarisation=[2, 0, 1, 0]"}), "[1.0,0.0,0.5,0.0]");
+}
+
+}  // namespace
+}  // namespace retrace::studies
