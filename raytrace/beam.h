@@ -36,6 +36,20 @@ struct PathLength {
   }
 };
 
+/// The point of the entrance face that the light at a place came in through: affine in the place, for the same reason.
+struct EntryPoint {
+  Vec2 constant_mm = Vec2::Zero();
+  Eigen::Matrix<double, 2, 3> slope = Eigen::Matrix<double, 2, 3>::Zero();
+
+  Vec2 of(const Vec3& p) const { return constant_mm + slope * p; }
+
+  /// Beyond an interface: equal on its plane, constant along the new direction.
+  EntryPoint continued(const Plane& plane, const Vec3& direction) const {
+    const Vec2 across = -(slope * direction) / plane.normal.dot(direction);
+    return {constant_mm - across * plane.offset_mm, slope + across * plane.normal.transpose()};
+  }
+};
+
 /// Light of one direction and polarisation through a polygon.
 struct Beam {
   Corners corners;  ///< of the cross-section, on the plane it starts from
@@ -43,6 +57,7 @@ struct Beam {
   Light light;             ///< before absorption
   double share = 1.0;      ///< of the entrance's cross-section
   PathLength path_length;  ///< in the material
+  EntryPoint entry;        ///< where it came in
   Plane start;             ///< the beam lies where start.height(p) >= 0
   bool inside = true;
   geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through

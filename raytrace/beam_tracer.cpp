@@ -71,16 +71,19 @@ struct Horizon {
 
 class BeamWalk {
  public:
-  BeamWalk(const geometry::Part& part, const CellIndex& cells, const LightSetup& setup, const BeamPolicy& policy)
+  BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
+           const BeamPolicy& policy, const BeamObserver& observer)
       : part_(part),
+        centre_mm_(centre_mm),
         cells_(cells),
         setup_(setup),
         policy_(policy),
+        observer_(observer),
         tally_(setup.cone_chord2.size()),
         least_area_(kLeastAreaShare * part.size_mm * part.size_mm),
         merge_mm_(kMergeShare * part.size_mm) {}
 
-  void enter(const geometry::Polygon& entrance, const Vec2& centre_mm);
+  void enter(const geometry::Polygon& entrance);
   /// False if cancelled.
   bool run(const Cancellation* cancel);
 
@@ -115,12 +118,16 @@ class BeamWalk {
   void book_rest(const Beam& beam, double share) {
     tally_.other[Account::truncated] += share / beam.share * power_of(beam);
   }
+  void leave_through_entrance(const Beam& beam, const Light& light, const Vec3& direction);
+  void observe_front() const;
   [[noreturn]] void fail_on_budget() const;
 
   const geometry::Part& part_;
+  const Vec2& centre_mm_;
   const CellIndex& cells_;
   const LightSetup& setup_;
   const BeamPolicy& policy_;
+  const BeamObserver& observer_;
   Tally tally_;
   std::vector<Beam> pending_;
   std::vector<Beam> deferred_;  ///< below the cut-off
@@ -132,16 +139,20 @@ class BeamWalk {
   std::uint32_t depth_ = 0;
 };
 
-void BeamWalk::enter(const geometry::Polygon& entrance, const Vec2& centre_mm) {
+void BeamWalk::enter(const geometry::Polygon& entrance) {
   const LightSetup::Entry& entry = setup_.entry;
   tally_.front[entry.front_cone] += entry.front;
+  if (observer_ && entry.front.i > 0.0) observe_front();
   Beam whole;
   whole.direction = entry.direction;
   whole.light = entry.light;
   whole.start = {-Vec3::UnitZ(), -setup_.thickness_mm};
   whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
+  whole.entry.constant_mm = centre_mm_;
+  whole.entry.slope.leftCols<2>().setIdentity();
+  whole.entry = whole.entry.continued(whole.start, whole.direction);
   for (const auto& p : entrance)
-    whole.corners.push_back({p.x() - centre_mm.x(), p.y() - centre_mm.y(), setup_.thickness_mm});
+    whole.corners.push_back({p.x() - centre_mm_.x(), p.y() - centre_mm_.y(), setup_.thickness_mm});
   if (setup_.infinite())
     pending_.push_back(whole);
   else
@@ -418,6 +429,7 @@ Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& 
 void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Light& light,
                     bool inside) {
   beam.path_length = beam.path_length.continued(plane, direction, inside ? 1.0 : 0.0);
+  beam.entry = beam.entry.continued(plane, direction);
   beam.start = {ahead, ahead.dot(plane.normal) * plane.offset_mm};
   beam.direction = direction;
   beam.light = light;
@@ -454,22 +466,48 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
   const Vec3 out = refracted(from.direction, against, setup_.optics.index, cos_incidence, f.cos_refracted);
   beam.light.turn_to(from.direction, against);
   if (is_entrance && setup_.optics.lossless_entrance) {
-    // Under total reflection its axes are of no account: it has ended.
     if (f.total_reflection)
-      tally_.returned.back() += transmission_of(beam) * beam.light.stokes;
+      tally_.returned.back().i += power_of(beam);
     else
-      tally_.returned[setup_.cone_of(out)] += transmission_of(beam) * seen_from_above(beam.light, out);
+      leave_through_entrance(beam, beam.light, out);
     return;
   }
   if (!f.total_reflection) {
     const Light through = beam.light.transmitted(f);
     if (is_entrance)
-      tally_.returned[setup_.cone_of(out)] += transmission_of(beam) * seen_from_above(through, out);
+      leave_through_entrance(beam, through, out);
     else
       tally_.other[account_of_exit(FacetRole::side)] += transmission_of(beam) * through.power();
   }
   const Light reflected = beam.light.reflected(f);
   send(std::move(beam), plane, against, mirrored(from.direction, against), reflected, true);
+}
+
+/// \param direction in air
+void BeamWalk::leave_through_entrance(const Beam& beam, const Light& light, const Vec3& direction) {
+  const double transmission = transmission_of(beam);
+  const std::size_t cone = setup_.cone_of(direction);
+  const Stokes stokes = transmission * seen_from_above(light, direction);
+  tally_.returned[cone] += stokes;
+  if (!observer_) return;
+  ReturnedBeam returned{direction, stokes, stokes.i / beam.share, beam.depth, cone, {}, {}};
+  for (const Vec3& p : beam.corners) {
+    returned.entered_mm.push_back(beam.entry.of(p));
+    returned.left_mm.push_back(p.head<2>() + centre_mm_);
+  }
+  // Light that is reflected an odd number of times sees its polygon turned over.
+  for (geometry::Polygon* polygon : {&returned.entered_mm, &returned.left_mm})
+    if (geometry::area(*polygon) < 0.0) std::reverse(polygon->begin(), polygon->end());
+  observer_(returned);
+}
+
+void BeamWalk::observe_front() const {
+  ReturnedBeam front;
+  front.direction = mirrored(-setup_.to_source, Vec3::UnitZ());
+  front.stokes = setup_.entry.front;
+  front.efficiency = front.stokes.i;
+  front.cone = setup_.entry.front_cone;
+  observer_(front);
 }
 
 void BeamWalk::fail_on_budget() const {
@@ -492,11 +530,11 @@ BeamTracer::BeamTracer(const geometry::Part& part)
     : part_(part), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {}
 
 BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illumination,
-                             const std::vector<double>& cones_deg, const BeamPolicy& policy,
-                             const Cancellation* cancel) const {
+                             const std::vector<double>& cones_deg, const BeamPolicy& policy, const Cancellation* cancel,
+                             const BeamObserver& observer) const {
   const LightSetup setup(part_, centre_mm_, optics, illumination, cones_deg);
-  BeamWalk walk(part_, cells_, setup, policy);
-  walk.enter(entrance_of(part_), centre_mm_);
+  BeamWalk walk(part_, centre_mm_, cells_, setup, policy, observer);
+  walk.enter(entrance_of(part_));
   BeamResult result;
   result.complete = walk.run(cancel);
   for (std::size_t cone = 0; cone < cones_deg.size(); ++cone) {

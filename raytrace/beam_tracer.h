@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -28,6 +29,22 @@ struct BeamResult {
   bool complete = true;     ///< false if it was cancelled; the ledgers are then of no use
 };
 
+/// A beam that leaves the part through the entrance face, or is reflected there from outside.
+struct ReturnedBeam {
+  Vec3 direction = Vec3::UnitZ();
+  Stokes stokes;            ///< of the whole beam, along source_axis()
+  double efficiency = 0.0;  ///< its power as a share of what fell on the region where it entered
+  std::uint32_t depth = 0;  ///< interfaces inside; 0: never entered
+  std::size_t cone = 0;     ///< the narrowest cone that holds it; their number if none does
+  /// Where it entered and where it leaves, convex, counter-clockwise, on the entrance face in the part frame. An
+  /// infinite part's light enters within the central period. Empty if it never entered.
+  geometry::Polygon entered_mm;
+  geometry::Polygon left_mm;
+};
+
+/// Called for every returned beam, as it is found.
+using BeamObserver = std::function<void(const ReturnedBeam&)>;
+
 /// Follows parallel beams of polygonal cross-section from facet to facet: plane smooth facets turn one beam into
 /// finitely many, so nothing is sampled. What is cut off or falls between polygons by rounding is booked in
 /// `truncated`. A value shared by all threads.
@@ -38,7 +55,8 @@ class BeamTracer {
 
   /// \throw BudgetError if `max_beams` is reached; the message says what was accounted for
   BeamResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
-                   const BeamPolicy& policy, const Cancellation* cancel = nullptr) const;
+                   const BeamPolicy& policy, const Cancellation* cancel = nullptr,
+                   const BeamObserver& observer = {}) const;
 
  private:
   const geometry::Part& part_;

@@ -267,7 +267,7 @@ bool PathWalker::meet_entrance(State& state) {
   state.light.turn_to(state.direction, down);
   if (setup_.optics.lossless_entrance) {
     if (f.total_reflection)
-      tally_.returned.back() += state.light.stokes;  // its axes are of no account: it has ended
+      tally_.returned.back().i += state.light.power();
     else
       tally_.returned[setup_.cone_of(out)] += seen_from_above(state.light, out);
     return false;
