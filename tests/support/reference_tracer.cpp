@@ -1,5 +1,6 @@
 #include "tests/support/reference_tracer.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -40,8 +41,9 @@ struct Triangle {
 
 class Reference {
  public:
-  Reference(const geometry::Part& part, const raytrace::Optics& optics, const Vec3& to_source, double cone_rad)
-      : optics_(optics), to_source_(to_source), cone_rad_(cone_rad) {
+  Reference(const geometry::Part& part, const raytrace::Optics& optics, const Vec3& to_source,
+            const raytrace::Stokes& stokes, double cone_rad, Polarisation polarisation)
+      : optics_(optics), to_source_(to_source), stokes_in_(stokes), cone_rad_(cone_rad), polarisation_(polarisation) {
     const geometry::BoundaryMesh mesh = geometry::closed_boundary(part);
     for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
       const auto& t = mesh.triangles[k];
@@ -54,16 +56,39 @@ class Reference {
 
   Ledger trace(const Vec3& entry) {
     ledger_ = Ledger{};
+    stokes_ = {};
     Ray ray;
     ray.direction = -to_source_;
     ray.origin = entry + to_source_;
-    const Vec3 first = ray.direction.unitOrthogonal();
-    ray.field = {first.cast<Complex>(), ray.direction.cross(first).cast<Complex>()};
+    ray.field = incident_fields();
     follow(ray);
     return ledger_;
   }
+  const std::array<double, 4>& stokes() const { return stokes_; }
 
  private:
+  /// +x seen from the source, and upwards from there.
+  static std::array<Vec3, 2> axes_of(const Vec3& to_source) {
+    const Vec3 first = (Vec3::UnitX() - to_source.x() * to_source).normalized();
+    return {first, to_source.cross(first)};
+  }
+
+  /// Two orthogonal incoherent fields that add to the incident light: the eigenvectors of its coherency matrix.
+  std::array<Vec3c, 2> incident_fields() const {
+    const auto& [i, q, u, v] = stokes_in_;
+    // Light that comes along -s: clockwise for whom it reaches is first to second for whom it leaves.
+    Eigen::Matrix2cd coherency;
+    coherency << Complex(i + q), Complex(u, -v), Complex(u, v), Complex(i - q);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd> solver(coherency);
+    const auto axes = axes_of(to_source_);
+    std::array<Vec3c, 2> fields;
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      const Eigen::Vector2cd a = std::sqrt(std::max(0.0, solver.eigenvalues()[k])) * solver.eigenvectors().col(k);
+      fields[static_cast<std::size_t>(k)] = a[0] * axes[0].cast<Complex>() + a[1] * axes[1].cast<Complex>();
+    }
+    return fields;
+  }
+
   const Triangle* nearest(const Ray& ray, double& t_hit) const {
     const Triangle* hit = nullptr;
     t_hit = INFINITY;
@@ -103,7 +128,12 @@ class Reference {
     interface(ray, *hit);
   }
 
-  void interface(const Ray& ray, const Triangle& hit) {
+  void interface(Ray ray, const Triangle& hit) {
+    if (polarisation_ == Polarisation::averaged) {
+      const double strength = std::sqrt(0.5 * (ray.field[0].squaredNorm() + ray.field[1].squaredNorm()));
+      const Vec3 first = ray.direction.unitOrthogonal();
+      ray.field = {strength * first.cast<Complex>(), strength * ray.direction.cross(first).cast<Complex>()};
+    }
     const Vec3 n = hit.normal.dot(ray.direction) > 0.0 ? Vec3(-hit.normal) : hit.normal;
     const double n1 = ray.inside ? optics_.index : 1.0;
     const double n2 = ray.inside ? 1.0 : optics_.index;
@@ -154,6 +184,7 @@ class Reference {
     }
     const double angle = std::atan2(ray.direction.cross(to_source_).norm(), ray.direction.dot(to_source_));
     const bool in_cone = angle <= cone_rad_ * (1.0 + 1e-9);
+    if (in_cone && (!ray.entered || ray.left_through == FacetRole::entrance)) add_stokes(ray);
     if (!ray.entered) {
       ledger_[in_cone ? Account::retroreflected : Account::front_specular] += ray.power();
     } else if (ray.left_through == FacetRole::entrance) {
@@ -164,9 +195,24 @@ class Reference {
     }
   }
 
+  void add_stokes(const Ray& ray) {
+    const auto axes = axes_of(ray.direction);
+    for (const Vec3c& field : ray.field) {
+      const Complex a = axes[0].cast<Complex>().dot(field);
+      const Complex b = axes[1].cast<Complex>().dot(field);
+      const Complex cross = a * std::conj(b);
+      const std::array<double, 4> one = {std::norm(a) + std::norm(b), std::norm(a) - std::norm(b), 2.0 * cross.real(),
+                                         2.0 * cross.imag()};
+      for (std::size_t k = 0; k < 4; ++k) stokes_[k] += 0.5 * ray.flux * one[k];
+    }
+  }
+
   raytrace::Optics optics_;
   Vec3 to_source_;
+  raytrace::Stokes stokes_in_;
   double cone_rad_;
+  Polarisation polarisation_;
+  std::array<double, 4> stokes_{};
   std::vector<Triangle> triangles_;
   Ledger ledger_;
 };
@@ -192,22 +238,30 @@ geometry::Vec2 random_point(const geometry::Polygon& outline, std::mt19937_64& g
 
 ReferenceResult reference_trace(const geometry::Part& part, const raytrace::Optics& optics,
                                 const raytrace::Illumination& illumination, double cone_half_angle_deg,
-                                std::uint64_t rays, std::uint64_t seed) {
+                                std::uint64_t rays, std::uint64_t seed, Polarisation polarisation) {
   const double t = illumination.incidence.rad();
   const double p = illumination.azimuth.rad();
   Reference reference(part, optics, Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)),
-                      Angle::from_deg(cone_half_angle_deg).rad());
+                      illumination.stokes, Angle::from_deg(cone_half_angle_deg).rad(), polarisation);
   std::mt19937_64 generator(seed);
   std::array<Ledger, kBatches> batches{};
+  std::array<std::array<double, 4>, kBatches> stokes{};
   const std::uint64_t per_batch = rays / kBatches;
-  for (Ledger& batch : batches)
+  for (std::size_t b = 0; b < kBatches; ++b)
     for (std::uint64_t k = 0; k < per_batch; ++k) {
       const geometry::Vec2 at = random_point(part.outline, generator);
       const Ledger one = reference.trace({at.x(), at.y(), part.thickness_mm});
       for (std::size_t a = 0; a < raytrace::kAccountCount; ++a)
-        batch.power[a] += one.power[a] / static_cast<double>(per_batch);
+        batches[b].power[a] += one.power[a] / static_cast<double>(per_batch);
+      for (std::size_t a = 0; a < 4; ++a) stokes[b][a] += reference.stokes()[a] / static_cast<double>(per_batch);
     }
   ReferenceResult result;
+  for (std::size_t a = 0; a < 4; ++a) {
+    double squares = 0.0;
+    for (const auto& batch : stokes) result.stokes[a] += batch[a] / kBatches;
+    for (const auto& batch : stokes) squares += std::pow(batch[a] - result.stokes[a], 2.0);
+    result.stokes_error[a] = std::sqrt(squares / (kBatches * (kBatches - 1.0)));
+  }
   for (std::size_t a = 0; a < raytrace::kAccountCount; ++a) {
     double squares = 0.0;
     for (const Ledger& batch : batches) result.mean.power[a] += batch.power[a] / kBatches;
