@@ -1,6 +1,7 @@
 // Polarised light in all engines: an independent engine with field vectors, Jones matrices of a cube corner, symmetry.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -106,6 +107,86 @@ TEST(Polarisation, ScalarAveragingIsWrong) {
   const double z = student_bound(2);
   EXPECT_NEAR(exact.power[retro], kept.mean.power[retro], z * kept.std_error[retro] + 2e-5);
   EXPECT_GT(averaged.mean.power[retro] - exact.power[retro], z * averaged.std_error[retro] + 2e-5);
+}
+
+using Jones = Eigen::Matrix2cd;
+
+/// Amplitudes (first, second) along the axes of the source: of light on its way down or up.
+Eigen::Matrix2d to_axes(const Vec3& direction, const Vec3& s_axis) {
+  const Vec3 first = source_axis(Vec3::UnitZ());
+  const Vec3 second = Vec3::UnitZ().cross(first);
+  const Vec3 p_axis = direction.cross(s_axis);
+  Eigen::Matrix2d turn;
+  turn << first.dot(s_axis), first.dot(p_axis), second.dot(s_axis), second.dot(p_axis);
+  return turn;
+}
+
+/// Jones matrix of three total reflections at the facets with inward normals n[0], n[1], n[2], from docs/theory: a
+/// retarder a0 + i (a3 sigma3 + a1 sigma1) from (s, p) of the first to those of the last reflection.
+Jones three_reflections(const std::array<Vec3, 3>& n, double index) {
+  const double sin2 = 2.0 / 3.0;
+  const double retardance = 2.0 * std::atan(std::sqrt((1.0 - sin2) * (sin2 - 1.0 / (index * index))) / sin2);
+  const double c = std::cos(0.5 * retardance);
+  const double s = std::sin(0.5 * retardance);
+  const double hand = n[0].cross(n[1]).dot(n[2]) > 0.0 ? 1.0 : -1.0;
+  const std::complex<double> i(0.0, 1.0);
+  const double a0 = c * std::cos(retardance) + 0.5 * s * std::sin(retardance);
+  const double a3 = c * std::sin(retardance) - 0.5 * s * std::cos(retardance);
+  const double a1 = -hand * 0.5 * std::numbers::sqrt3 * s;
+  Jones m;
+  m << a0 + i * a3, i * a1, i * a1, a0 - i * a3;
+  const Vec3 down = -Vec3::UnitZ();
+  const Vec3 last = Vec3::UnitZ() - 2.0 * n[2].z() * n[2];  // direction before the last reflection
+  const Eigen::Matrix2d in = to_axes(down, down.cross(n[0]).normalized());
+  const Eigen::Matrix2d out = to_axes(Vec3::UnitZ(), last.cross(n[2]).normalized());
+  return out * m * in.transpose();
+}
+
+/// The Stokes parameters that a Jones matrix makes of light from the source.
+std::array<double, 4> after(const Jones& jones, const Stokes& light) {
+  const std::complex<double> i(0.0, 1.0);
+  Jones coherency;  // right-handed light on its way down turns from the first axis to the second
+  coherency << 0.5 * (light.i + light.q), 0.5 * (light.u - i * light.v), 0.5 * (light.u + i * light.v),
+      0.5 * (light.i - light.q);
+  const Jones out = jones * coherency * jones.adjoint();
+  return {(out(0, 0) + out(1, 1)).real(), (out(0, 0) - out(1, 1)).real(), 2.0 * out(0, 1).real(),
+          2.0 * out(0, 1).imag()};
+}
+
+// Liu and Azzam, Appl. Opt. 36, 4553 (1997); Murphy and Goodrow, Opt. Eng. 52, 095102 (2013). Six sub-beams, one for
+// each order of the facets.
+TEST(Polarisation, SixSubBeamsOfASolidCubeCorner) {
+  const Part part = build_part(single(HexagonalCube{kCubeAperture}, 0.4));
+  const Vec2 centre = centroid(part.outline);
+  Optics optics = pmma();
+  optics.lossless_entrance = true;
+  std::array<Vec3, 3> edges;  // seen from the apex
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double a = 120.0 * static_cast<double>(k) * kDeg;
+    edges[k] = Vec3(std::sqrt(2.0 / 3.0) * std::cos(a), std::sqrt(2.0 / 3.0) * std::sin(a), std::sqrt(1.0 / 3.0));
+  }
+  for (const Stokes& light : {kUnpolarised, linear(0.0), linear(45.0), linear(77.0), Stokes{1.0, 0.0, 0.0, 1.0}}) {
+    std::array<double, 6> share{};
+    const auto compare = [&](const ReturnedBeam& beam) {
+      const Vec2 at = centroid(beam.entered_mm) - centre;
+      double angle_deg = std::atan2(at.y(), at.x()) / kDeg;
+      if (angle_deg < 0.0) angle_deg += 360.0;
+      const auto sextant = static_cast<std::size_t>(angle_deg / 60.0);
+      share[sextant] += beam.stokes.i;
+      // The facet between edges k and k + 1 is normal to the third; the next is the one beyond the nearer edge.
+      const std::size_t k = sextant / 2;
+      const std::size_t first = (k + 2) % 3;
+      const std::size_t second = sextant % 2 == 0 ? (k + 1) % 3 : k;
+      const Jones jones = three_reflections({edges[first], edges[second], edges[3 - first - second]}, kPmma);
+      const std::array<double, 4> expected = after(jones, light);
+      for (std::size_t s = 0; s < 4; ++s)
+        EXPECT_NEAR(beam.stokes.values()[s] / beam.stokes.i, expected[s], 1e-9) << "sextant " << sextant << ", " << s;
+    };
+    Illumination illumination;
+    illumination.stokes = light;
+    BeamTracer(part).trace(optics, illumination, {0.5}, {}, nullptr, compare);
+    for (const double s : share) EXPECT_NEAR(s, 1.0 / 6.0, 1e-9);
+  }
 }
 
 }  // namespace
