@@ -93,8 +93,8 @@ std::vector<Direction> directions_of(const std::vector<Design>& designs, const R
   return directions;
 }
 
-raytrace::Illumination illumination_of(const RrePoint& at) {
-  return {Angle::from_deg(at.incidence_deg), Angle::from_deg(at.azimuth_deg)};
+raytrace::Illumination illumination_of(const RrePoint& at, const Design& design) {
+  return {Angle::from_deg(at.incidence_deg), Angle::from_deg(at.azimuth_deg), design.polarisation};
 }
 
 /// Reports the share of finished directions, whichever thread finishes one.
@@ -147,14 +147,15 @@ void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<
     if (at.design != traced_design) tracer.emplace(models[at.design].part);
     traced_design = at.design;
     const raytrace::MonteCarloResult traced =
-        tracer->trace(models[at.design].optics, illumination_of(at), designs[at.design].acceptance_half_angle_deg,
-                      sampling, policy, cancel);
+        tracer->trace(models[at.design].optics, illumination_of(at, designs[at.design]),
+                      designs[at.design].acceptance_half_angle_deg, sampling, policy, cancel);
     if (!traced.complete) return;  // an unfinished point is no point
     for (const raytrace::ConeResult& cone : traced.cones) {
       RrePoint point = at;
       point.acceptance_half_angle_deg = cone.half_angle_deg;
       point.rre = cone.rre;
       point.std_error = cone.std_error;
+      point.stokes = cone.stokes;
       point.ledger = cone.ledger;
       direction.points.push_back(point);
     }
@@ -175,14 +176,15 @@ void trace_exactly(const std::vector<Design>& designs, const std::vector<Optical
   raytrace::for_each_in_parallel(directions.size(), [&](std::size_t k) {
     const RrePoint& at = directions[k].at;
     const std::vector<double>& cones = designs[at.design].acceptance_half_angle_deg;
-    const raytrace::BeamResult traced =
-        tracers[at.design].trace(models[at.design].optics, illumination_of(at), cones, policy, cancel);
+    const raytrace::BeamResult traced = tracers[at.design].trace(
+        models[at.design].optics, illumination_of(at, designs[at.design]), cones, policy, cancel);
     if (!traced.complete) return;
     for (std::size_t cone = 0; cone < cones.size(); ++cone) {
       RrePoint point = at;
       point.acceptance_half_angle_deg = cones[cone];
       point.ledger = traced.ledgers[cone];
       point.rre = point.ledger[raytrace::Account::retroreflected];
+      point.stokes = traced.stokes[cone];
       point.beams = traced.beams;
       point.depth = traced.depth;
       directions[k].points.push_back(point);

@@ -42,6 +42,7 @@ struct RrePoint {
   double acceptance_half_angle_deg = 0.0;
   double rre = 0.0;
   double std_error = 0.0;
+  raytrace::Stokes stokes;  ///< of what is retroreflected, along raytrace::source_axis()
   raytrace::Ledger ledger;
   std::uint64_t beams = 0;  ///< exact engine: followed for this point
   std::uint32_t depth = 0;  ///< exact engine: interfaces on the longest path

@@ -51,6 +51,7 @@ std::string rre_json(const RreResult& result) {
                               {"acceptance_half_angle_deg", p.acceptance_half_angle_deg},
                               {"rre", p.rre},
                               {"std_error", p.std_error},
+                              {"stokes", p.stokes.values()},
                               {"ledger", ledger_json(p.ledger)}});
     if (result.engine != "exact") continue;
     json["points"].back()["beams"] = p.beams;
