@@ -4,6 +4,7 @@ retrace_test(raytrace_test
     ${CMAKE_CURRENT_LIST_DIR}/beam_tracer_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/closed_forms_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/overlay_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/polarisation_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/reference_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/returned_beams_test.cpp
