@@ -56,13 +56,14 @@ BoundaryMesh closed_boundary(const Part& part) {
   const Vec2 middle = centroid(part.outline);
   const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.emplace_back(middle.x(), middle.y(), part.thickness_mm);
-  for (const auto& [from, to] : patch.border_rim) {
-    const std::uint32_t above_from = entrance.above(from);
-    const std::uint32_t above_to = entrance.above(to);
-    mesh.triangles.push_back({from, to, above_to});
-    mesh.triangles.push_back({from, above_to, above_from});
+  for (const auto& rim : patch.border_rim) {
+    const std::uint32_t above_from = entrance.above(rim.front());
+    const std::uint32_t above_to = entrance.above(rim.back());
+    std::vector<std::uint32_t> side = rim;
+    side.insert(side.end(), {above_to, above_from});
+    add_fan(mesh, side, FacetRole::side);
     mesh.triangles.push_back({hub, above_from, above_to});
-    mesh.roles.insert(mesh.roles.end(), {FacetRole::side, FacetRole::side, FacetRole::entrance});
+    mesh.roles.push_back(FacetRole::entrance);
   }
   return mesh;
 }

@@ -20,25 +20,26 @@ void add_element(Lattice& lattice, Cell cell) {
 }
 
 /// One prism and the land that separates it from the next in x and y.
-void add_prism_with_gaps(Lattice& lattice, const RtpElement& element, const Vec2& gap, const Vec2& corner,
-                         bool turned) {
+void add_prism_with_gaps(Lattice& lattice, const PartSpec& spec, const Vec2& corner, bool turned) {
+  const auto& element = std::get<RtpElement>(spec.element);
+  const Vec2 gap(spec.x_gap_mm, spec.y_gap_mm);
   const Vec2 size(element.base_mm, element.width_mm);
-  add_element(lattice, rtp_cell(element, corner, turned));
+  add_element(lattice, rtp_cell(element, spec.angle_errors, corner, turned));
   if (gap.x() > 0.0)
     lattice.cells.push_back(flat_land({corner + Vec2(size.x(), 0.0), corner + Vec2(size.x() + gap.x(), size.y())}));
   if (gap.y() > 0.0) lattice.cells.push_back(flat_land({corner + Vec2(0.0, size.y()), corner + size + gap}));
 }
 
-Lattice rtp_lattice(const PartSpec& spec, const RtpElement& element, bool rows_are_shifted) {
-  const Vec2 gap(spec.x_gap_mm, spec.y_gap_mm);
-  const Vec2 pitch = Vec2(element.base_mm, element.width_mm) + gap;
+Lattice rtp_lattice(const PartSpec& spec, bool rows_are_shifted) {
+  const auto& element = std::get<RtpElement>(spec.element);
+  const Vec2 pitch(element.base_mm + spec.x_gap_mm, element.width_mm + spec.y_gap_mm);
   Lattice lattice;
   lattice.period_mm = pitch;
   if (spec.arrangement == Arrangement::checker) {
     lattice.period_mm = 2.0 * pitch;
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i)
-        add_prism_with_gaps(lattice, element, gap, Vec2(i * pitch.x(), j * pitch.y()), (i + j) % 2 == 1);
+        add_prism_with_gaps(lattice, spec, Vec2(i * pitch.x(), j * pitch.y()), (i + j) % 2 == 1);
     return lattice;
   }
   if (spec.arrangement == Arrangement::offset && rows_are_shifted) {
@@ -46,43 +47,45 @@ Lattice rtp_lattice(const PartSpec& spec, const RtpElement& element, bool rows_a
     const double shift = 0.01 * spec.overlap_percent * element.base_mm;
     for (int row = 1; row <= 2; ++row) {
       const bool shifted = (row % 2 == 1) == (spec.shifted_rows == RowParity::odd);
-      add_prism_with_gaps(lattice, element, gap, Vec2(shifted ? shift : 0.0, (row - 1) * pitch.y()), false);
+      add_prism_with_gaps(lattice, spec, Vec2(shifted ? shift : 0.0, (row - 1) * pitch.y()), false);
     }
     return lattice;
   }
-  add_prism_with_gaps(lattice, element, gap, Vec2::Zero(), false);
+  add_prism_with_gaps(lattice, spec, Vec2::Zero(), false);
   return lattice;
 }
 
 // Hexagons with corners on +-x: rows of spacing sqrt(3) R along y, neighbouring columns 1.5 R apart and half a row up.
-Lattice honeycomb_lattice(const HexagonalCube& element) {
+Lattice honeycomb_lattice(const HexagonalCube& element, const AngleErrors& errors) {
   const double radius = 0.5 * element.aperture_mm;
   Lattice lattice;
   lattice.period_mm = radius * Vec2(3.0, std::numbers::sqrt3);
-  add_element(lattice, hexagonal_cube_cell(element, Vec2::Zero()));
-  add_element(lattice, hexagonal_cube_cell(element, 0.5 * lattice.period_mm));
+  add_element(lattice, hexagonal_cube_cell(element, errors, Vec2::Zero()));
+  add_element(lattice, hexagonal_cube_cell(element, errors, 0.5 * lattice.period_mm));
   return lattice;
 }
 
 // Every triangle shares its sides with three turned ones; the centres of neighbours are R apart.
-Lattice triangular_lattice(const TriangularCube& element) {
+Lattice triangular_lattice(const TriangularCube& element, const AngleErrors& errors) {
   const double radius = 0.5 * element.aperture_mm;
   Lattice lattice;
   lattice.period_mm = radius * Vec2(3.0, std::numbers::sqrt3);
   const Vec2 half = 0.5 * lattice.period_mm;
-  add_element(lattice, triangular_cube_cell(element, Vec2::Zero()));
-  add_element(lattice, triangular_cube_cell(element, half));
-  add_element(lattice, triangular_cube_cell(element, Vec2(-radius, 0.0), true));
-  add_element(lattice, triangular_cube_cell(element, half - Vec2(radius, 0.0), true));
+  add_element(lattice, triangular_cube_cell(element, errors, Vec2::Zero()));
+  add_element(lattice, triangular_cube_cell(element, errors, half));
+  add_element(lattice, triangular_cube_cell(element, errors, Vec2(-radius, 0.0), true));
+  add_element(lattice, triangular_cube_cell(element, errors, half - Vec2(radius, 0.0), true));
   return lattice;
 }
 
 }  // namespace
 
 Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted) {
-  if (const auto* hexagonal = std::get_if<HexagonalCube>(&spec.element)) return honeycomb_lattice(*hexagonal);
-  if (const auto* triangular = std::get_if<TriangularCube>(&spec.element)) return triangular_lattice(*triangular);
-  return rtp_lattice(spec, std::get<RtpElement>(spec.element), rows_are_shifted);
+  if (const auto* hexagonal = std::get_if<HexagonalCube>(&spec.element))
+    return honeycomb_lattice(*hexagonal, spec.angle_errors);
+  if (const auto* triangular = std::get_if<TriangularCube>(&spec.element))
+    return triangular_lattice(*triangular, spec.angle_errors);
+  return rtp_lattice(spec, rows_are_shifted);
 }
 
 }  // namespace retrace::geometry

@@ -48,16 +48,24 @@ struct Lattice {
 
 /// A right triangular prism with its lower left corner at `corner_mm`; `turned` by 90 degrees about z it has its roof
 /// edge along x (base = width then).
-Cell rtp_cell(const RtpElement& element, const Vec2& corner_mm, bool turned = false);
+Cell rtp_cell(const RtpElement& element, const AngleErrors& errors, const Vec2& corner_mm, bool turned = false);
 
-/// A full cube corner with its apex over `centre_mm` and its three highest rim points on z = 0.
-Cell hexagonal_cube_cell(const HexagonalCube& element, const Vec2& centre_mm);
+/// A full cube corner with its apex over `centre_mm` and, without errors, its three highest rim points on z = 0.
+Cell hexagonal_cube_cell(const HexagonalCube& element, const AngleErrors& errors, const Vec2& centre_mm);
 
-/// A triangular cube corner with its apex over `centre_mm` and its rim on z = 0; `turned` by 180 degrees about z.
-Cell triangular_cube_cell(const TriangularCube& element, const Vec2& centre_mm, bool turned = false);
+/// A triangular cube corner with its apex over `centre_mm` and, without errors, its rim on z = 0; `turned` by 180
+/// degrees about z, errors included.
+Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& errors, const Vec2& centre_mm,
+                          bool turned = false);
+
+/// One element, unturned, with its lower left corner (RTP) or its apex (cube corners) at the origin.
+Cell element_cell(const Element& element, const AngleErrors& errors = {});
 
 /// Depth of an element from z = 0 to its root or apex.
-double element_depth_mm(const Element& element);
+double element_depth_mm(const Element& element, const AngleErrors& errors = {});
+
+/// How far its errors lift the rim of an element above z = 0; 0 if they do not.
+double element_top_mm(const Element& element, const AngleErrors& errors);
 
 /// The outline of one element's aperture, its bounding box starting at the origin.
 Polygon aperture_outline(const Element& element);

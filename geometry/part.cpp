@@ -228,16 +228,8 @@ void count_elements(Part& part, const Layout& layout) {
 
 void build_single(Part& part, const Vec2& origin) {
   const Polygon outline = aperture_outline(part.spec.element);
-  const Vec2 corner = bounding_box(outline).lower;
-  Cell cell;
-  if (const auto* rtp = std::get_if<RtpElement>(&part.spec.element)) {
-    cell = rtp_cell(*rtp, corner);
-  } else {
-    cell = std::holds_alternative<HexagonalCube>(part.spec.element)
-               ? hexagonal_cube_cell(std::get<HexagonalCube>(part.spec.element), Vec2::Zero())
-               : triangular_cube_cell(std::get<TriangularCube>(part.spec.element), Vec2::Zero());
-  }
-  const Vec2 shift = corner - bounding_box(cell.outline).lower;
+  const Cell cell = element_cell(part.spec.element, part.spec.angle_errors);
+  const Vec2 shift = -bounding_box(cell.outline).lower;
   std::vector<Tile> tiles;
   for (std::size_t k = 0; k < cell.facets.size(); ++k) {
     Tile tile;
@@ -299,7 +291,8 @@ Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
   Part part;
   part.spec = spec;
   part.thickness_mm = spec.thickness_mm;
-  part.element_depth_mm = element_depth_mm(spec.element);
+  part.element_depth_mm = element_depth_mm(spec.element, spec.angle_errors);
+  part.top_mm = element_top_mm(spec.element, spec.angle_errors);
   part.size_mm = element_size(spec.element);
   if (spec.arrangement == Arrangement::single) {
     build_single(part, origin_mm);

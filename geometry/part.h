@@ -16,17 +16,18 @@ struct Placement {
   Vec2 offset_mm = Vec2::Zero();
 };
 
-/// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below z =
-/// 0 the elements. A finite part is the prism over a convex outline, open at the bottom only where the back surface
-/// ends it; an infinite one repeats with a rectangular period.
+/// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below it
+/// the elements, whose rims lie on z = 0 but for errors of angle. A finite part is the prism over a convex outline,
+/// open at the bottom only where the back surface ends it; an infinite one repeats with a rectangular period.
 ///
 /// The back surface is stored as few distinct patches and many placements, so that a large array costs the memory of
 /// its different pieces (interior, borders, corners).
 struct Part {
   PartSpec spec;
   double thickness_mm = 0.0;
-  double element_depth_mm = 0.0;
-  double size_mm = 0.0;  ///< of an element in plan, the scale for tolerances
+  double element_depth_mm = 0.0;  ///< the back surface lies in -element_depth_mm <= z <= top_mm
+  double top_mm = 0.0;            ///< highest point of the back surface; 0 for nominal facets
+  double size_mm = 0.0;           ///< of an element in plan, the scale for tolerances
   std::vector<SurfacePatch> patches;
   std::vector<Placement> placements;
   Polygon outline;                 ///< finite parts; counter-clockwise

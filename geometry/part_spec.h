@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <variant>
 
 namespace retrace::geometry {
@@ -23,6 +24,20 @@ struct TriangularCube {
 
 using Element = std::variant<RtpElement, HexagonalCube, TriangularCube>;
 
+/// By how much facets miss their nominal angles, in arc minutes. They turn about the root or apex, which stays in
+/// place, and the element's outline in plan stays nominal: its rims end above or below z = 0. Both kinds add up.
+struct AngleErrors {
+  /// Added to the angle between neighbouring facets, half of it by either; positive opens it. RTP: the first alone, the
+  /// same as a larger apex angle. Cube corner: at the dihedral edges at 0, 120 and 240 degrees.
+  std::array<double, 3> dihedral_error_arcmin{};
+  /// By how much each facet is turned open, towards the xy plane. RTP: the facets towards -x and +x. Cube corner: facet
+  /// k lies between the dihedral edges at 120 k and 120 (k + 1) degrees and turns about its horizontal line through the
+  /// apex.
+  std::array<double, 3> facet_tilt_arcmin{};
+
+  friend bool operator==(const AngleErrors&, const AngleErrors&) = default;
+};
+
 enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
 enum class Extent { finite, infinite };
 /// Which rows of an offset array are shifted; rows count from 1 at y = 0. A single row is never shifted.
@@ -31,9 +46,10 @@ enum class RowParity { even, odd };
 enum class PartialElements { cut, omit };
 
 /// What a designer says of a part: one element kind, how it is repeated, and the plate it stands on.
-/// Lengths in mm in the part frame (z up to the light, rims on z = 0).
+/// Lengths in mm in the part frame (z up to the light, nominal rims on z = 0).
 struct PartSpec {
   Element element;
+  AngleErrors angle_errors;
   Arrangement arrangement = Arrangement::aligned;
   Extent extent = Extent::finite;
   RowParity shifted_rows = RowParity::even;
@@ -45,7 +61,7 @@ struct PartSpec {
   double x_offset_mm = 0.0;  ///< flat margin kept free on both borders
   double y_offset_mm = 0.0;
   double overlap_percent = 50.0;  ///< shift of alternate rows of `offset`, in percent of the base
-  double thickness_mm = 0.0;      ///< plate between the entrance face and the rims; > 0
+  double thickness_mm = 0.0;      ///< plate between the entrance face and z = 0; > element_top_mm()
 };
 
 }  // namespace retrace::geometry

@@ -89,14 +89,17 @@ class PatchBuilder {
   }
 
   double height(std::uint32_t tile, std::uint32_t vertex) const { return tiles_[tile].plane.at(index_[vertex]); }
+  /// Beyond the border stands what z = 0 is for the walls there.
+  double height(const std::optional<std::uint32_t>& tile, std::uint32_t vertex) const {
+    return tile ? height(*tile, vertex) : 0.0;
+  }
 
   /// Where the profiles of two neighbours cross, the wall changes sides: a vertex belongs there.
   bool add_crossings() {
     bool added = false;
     for (const SharedEdge& e : edges_) {
-      if (!e.left || !e.right) continue;
-      const double da = height(*e.left, e.from) - height(*e.right, e.from);
-      const double db = height(*e.left, e.to) - height(*e.right, e.to);
+      const double da = height(e.left, e.from) - height(e.right, e.from);
+      const double db = height(e.left, e.to) - height(e.right, e.to);
       if (std::min(da, db) > -tolerance_mm_ || std::max(da, db) < tolerance_mm_) continue;
       index_.add(index_[e.from] + (index_[e.to] - index_[e.from]) * (da / (da - db)));
       added = true;
@@ -114,14 +117,16 @@ class PatchBuilder {
     return id;
   }
 
+  /// Where the plate's side begins over a tile on the border.
+  double rim_height(std::uint32_t tile, std::uint32_t vertex) const { return std::max(0.0, height(tile, vertex)); }
+
   void collect_heights() {
     columns_.resize(index_.size());
     for (std::uint32_t t = 0; t < tiles_.size(); ++t)
       for (const std::uint32_t v : rings_[t]) vertex_at(v, height(t, v));
     for (const SharedEdge& e : edges_) {
       if (e.left && e.right) continue;
-      vertex_at(e.from, 0.0);
-      vertex_at(e.to, 0.0);
+      for (const std::uint32_t v : {e.from, e.to}) vertex_at(v, rim_height(e.left ? *e.left : *e.right, v));
     }
     for (auto& column : columns_) std::sort(column.begin(), column.end());
   }
@@ -258,8 +263,17 @@ class PatchBuilder {
       if (!tiles_[tile].owned) continue;
       const std::uint32_t from = e.left ? e.from : e.to;
       const std::uint32_t to = e.left ? e.to : e.from;
-      patch_.border_rim.push_back({vertex_at(from, 0.0), vertex_at(to, 0.0)});
-      Strip s = strip(from, to, height(tile, from), height(tile, to), 0.0, 0.0);
+      const double rim_from = rim_height(tile, from);
+      const double rim_to = rim_height(tile, to);
+      Ring rim;
+      const auto& before = columns_[from];
+      for (auto it = before.rbegin(); it != before.rend() && it->first > rim_from + tolerance_mm_; ++it)
+        rim.push_back(it->second);
+      rim.insert(rim.end(), {vertex_at(from, rim_from), vertex_at(to, rim_to)});
+      for (const auto& [z, id] : columns_[to])
+        if (z > rim_to + tolerance_mm_) rim.push_back(id);
+      patch_.border_rim.push_back(std::move(rim));
+      Strip s = strip(from, to, height(tile, from), height(tile, to), rim_from, rim_to);
       if (s.corners.size() >= 3) patch_.border_walls.push_back(std::move(s.ring));
     }
   }

@@ -45,10 +45,11 @@ struct SurfacePatch {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_facet;
 
-  /// Where the surface ends: the walls that close it up to z = 0 there, and the edges of the rim they end in, with the
-  /// part on the left seen from +z.
+  /// Where the surface ends: the walls that close it up to z = 0 where it lies below, and the lower borders of the
+  /// plate's sides, with the part on the left seen from +z. A side begins on z = 0 or where the surface ends above it,
+  /// and its ends are the highest vertices over their place.
   std::vector<std::vector<std::uint32_t>> border_walls;
-  std::vector<std::array<std::uint32_t, 2>> border_rim;
+  std::vector<std::vector<std::uint32_t>> border_rim;
 };
 
 /// Welds tiles into a surface and raises the vertical walls where neighbouring tiles differ in height. A wall belongs

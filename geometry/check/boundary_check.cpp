@@ -6,14 +6,30 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
-#include <CGAL/boost/graph/helpers.h>
 
+#include <algorithm>
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace retrace::geometry {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+namespace {
+
+bool passes_edges_both_ways(const BoundaryMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+      balance[{low, high}] += t[k] == low ? 1 : -1;
+    }
+  return std::all_of(balance.begin(), balance.end(), [](const auto& entry) { return entry.second == 0; });
+}
+
+}  // namespace
 
 BoundaryReport check_boundary(const BoundaryMesh& mesh) {
   std::vector<Kernel::Point_3> points;
@@ -24,11 +40,11 @@ BoundaryReport check_boundary(const BoundaryMesh& mesh) {
   for (const auto& t : mesh.triangles) polygons.push_back({t[0], t[1], t[2]});
 
   BoundaryReport report;
+  report.is_closed = passes_edges_both_ways(mesh);
   report.is_manifold = pmp::is_polygon_soup_a_polygon_mesh(polygons);
   if (!report.is_manifold) return report;
   CGAL::Surface_mesh<Kernel::Point_3> surface;
   pmp::polygon_soup_to_polygon_mesh(points, polygons, surface);
-  report.is_closed = CGAL::is_closed(surface);
   report.self_intersects = pmp::does_self_intersect(surface);
   if (!report.is_closed || report.self_intersects) return report;
   report.bounds_a_volume = pmp::does_bound_a_volume(surface);

@@ -6,8 +6,8 @@ namespace retrace::geometry {
 
 /// What CGAL finds of a boundary mesh.
 struct BoundaryReport {
-  bool is_manifold = false;  ///< every edge belongs to two triangles, consistently oriented
-  bool is_closed = false;
+  bool is_closed = false;    ///< every edge is passed as often in one direction as in the other
+  bool is_manifold = false;  ///< no edge belongs to more than two triangles; what follows is found only then
   bool self_intersects = true;
   bool bounds_a_volume = false;  ///< closed, free of self-intersections, normals outward
   double volume_mm3 = 0.0;

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "geometry/check/boundary_check.h"
+#include "tests/geometry/part_checks.h"
 
 namespace retrace::geometry {
 namespace {
@@ -28,30 +28,6 @@ PartSpec cube_array(Element element, Arrangement arrangement, double length) {
   spec.y_length_mm = 0.8 * length;
   spec.thickness_mm = 0.5;
   return spec;
-}
-
-void expect_valid(const PartSpec& spec) {
-  const Part part = build_part(spec);
-  const BoundaryReport report = check_boundary(closed_boundary(part));
-  EXPECT_TRUE(report.is_manifold);
-  EXPECT_TRUE(report.is_closed);
-  EXPECT_FALSE(report.self_intersects);
-  EXPECT_TRUE(report.bounds_a_volume);
-  // The boundary's volume is that of the plate and of what the back surface encloses below z = 0.
-  double below = 0.0;
-  for (const SurfacePatch& patch : part.patches) {
-    for (const PatchFacet& facet : patch.facets) {
-      const double plan_area = facet_area(patch, facet) * -facet.normal.z();
-      Vec3 middle = Vec3::Zero();
-      for (std::uint32_t k = 0; k < facet.corner_count; ++k)
-        middle += patch.vertices[patch.corners[facet.first_corner + k]] / facet.corner_count;
-      // Exact for triangles and parallelograms; the cut ones are left to the closedness test.
-      below -= plan_area * middle.z();
-    }
-  }
-  if (part.elements_partial == 0) {
-    EXPECT_NEAR(report.volume_mm3, part.entrance_area_mm2 * part.thickness_mm + below, 1e-9);
-  }
 }
 
 TEST(Part, SingleElementsAreClosed) {
