@@ -238,7 +238,7 @@ void BeamWalk::advance(const Beam& beam) {
   book_rest(beam, beam.share - used);
 }
 
-/// To where the whole beam has left the layer of the elements, -depth <= z <= 0.
+/// To where the whole beam has left the layer of the elements, -depth <= z <= top.
 Horizon BeamWalk::horizon_of(const Beam& beam) const {
   double low = kInfinity;
   double high = -kInfinity;
@@ -248,12 +248,12 @@ Horizon BeamWalk::horizon_of(const Beam& beam) const {
   }
   const double dz = beam.direction.z();
   const double slack = 1e-6 * part_.size_mm;
-  if (dz >= 0.0 && low >= -slack) return {};
+  if (dz >= 0.0 && low >= setup_.top_mm - slack) return {};
   double first = 0.0;  // when the last of the beam has come into the layer
   double last = kInfinity;
-  if (dz > 0.0) last = -low / dz;
+  if (dz > 0.0) last = (setup_.top_mm - low) / dz;
   if (dz < 0.0) {
-    first = std::max(0.0, high / -dz);
+    first = std::max(0.0, (high - setup_.top_mm) / -dz);
     last = (high + setup_.depth_mm + slack) / -dz;
   }
   const double reach = first + kReachInElements * part_.size_mm;
@@ -286,8 +286,9 @@ void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatP
   Box plan;
   double nearest = kInfinity;
   for (const Vec3& p : beam.corners) {
-    const bool falls_in = p.z() > 0.0 && beam.direction.z() < 0.0;
-    const double from = falls_in ? std::min(horizon.t, p.z() / -beam.direction.z()) : 0.0;
+    const double above = p.z() - setup_.top_mm;
+    const bool falls_in = above > 0.0 && beam.direction.z() < 0.0;
+    const double from = falls_in ? std::min(horizon.t, above / -beam.direction.z()) : 0.0;
     plan.include((p + from * beam.direction).head<2>());
     plan.include((p + horizon.t * beam.direction).head<2>());
     nearest = std::min(nearest, beam.direction.dot(p));

@@ -64,7 +64,7 @@ Stokes Tally::retroreflected(std::size_t cone) const {
 
 LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const Optics& how,
                        const Illumination& illumination, const std::vector<double>& cones_deg)
-    : optics(how), thickness_mm(part.thickness_mm), depth_mm(part.element_depth_mm) {
+    : optics(how), thickness_mm(part.thickness_mm), depth_mm(part.element_depth_mm), top_mm(part.top_mm) {
   const double t = illumination.incidence.rad();
   const double p = illumination.azimuth.rad();
   to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();

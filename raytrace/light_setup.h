@@ -25,7 +25,8 @@ struct LightSetup {
 
   Optics optics;
   double thickness_mm = 0.0;
-  double depth_mm = 0.0;
+  double depth_mm = 0.0;  ///< the back surface lies in -depth_mm <= z <= top_mm
+  double top_mm = 0.0;
   std::vector<Side> sides;  ///< empty for an infinite part
   Vec3 to_source = Vec3::UnitZ();
   std::vector<double> cone_chord2;  ///< squared distance of unit vectors at each cone's edge from the one to the source

@@ -19,7 +19,7 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
     : LightSetup(part, centre_mm, how, illumination, cones_deg),
       surface(back),
       policy(paths),
-      clearance_mm(std::min(0.01 * part.element_depth_mm, 0.5 * part.thickness_mm)) {
+      clearance_mm(part.top_mm + std::min(0.01 * part.element_depth_mm, 0.5 * (part.thickness_mm - part.top_mm))) {
   if (part.period_mm) {
     period_mm = *part.period_mm;
     // The cells of the outermost periods do not fill them to the edge.
@@ -130,8 +130,8 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
     if (!hit && (step.end == End::miss || end_z < -setup_.depth_mm - setup_.clearance_mm)) {
       step.end = End::miss;
       hit = search_certainly(state);
-    } else if (!hit && step.end == End::side && end_z < 0.0) {
-      // Below z = 0 a side may be reached where a ray slipped between two pieces of the surface.
+    } else if (!hit && step.end == End::side && end_z < setup_.top_mm) {
+      // Below the highest rim a side may be reached where a ray slipped between two pieces of the surface.
       hit = search_exactly(state, limit - skipped);
     }
     if (hit) {
@@ -193,7 +193,7 @@ PathWalker::Step PathWalker::step_outside(State& state) const {
   Step step;
   auto hit = search(state, kInfinity);
   if (!hit && state.direction.z() > 0.0 &&
-      is_over_part(state.position - state.position.z() / state.direction.z() * state.direction)) {
+      is_over_part(state.position + (setup_.top_mm - state.position.z()) / state.direction.z() * state.direction)) {
     // It would rise through the plate: no such ray can have missed the surface.
     hit = search_certainly(state);
     if (!hit) return step;

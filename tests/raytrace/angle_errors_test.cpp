@@ -1,0 +1,155 @@
+// Facets that miss their nominal angles: where light goes then, and that none of it is lost between cells whose rims
+// differ in height.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "raytrace/beam_tracer.h"
+#include "tests/support/designs.h"
+#include "tests/support/reference_tracer.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+constexpr double kArcmin = std::numbers::pi / 180.0 / 60.0;
+
+PartSpec with(PartSpec spec, const AngleErrors& errors) {
+  spec.angle_errors = errors;
+  return spec;
+}
+
+struct Case {
+  std::string name;
+  PartSpec spec;
+};
+
+/// Errors so large that rims stand well above and below z = 0; last an array of many patches.
+std::vector<Case> cases() {
+  const RtpElement prism{0.5, 0.5, 90.0};
+  PartSpec spaced = finite(prism, Arrangement::checker, 2.2, 2.0, 0.3);
+  spaced.x_gap_mm = spaced.y_gap_mm = 0.1;
+  spaced.x_offset_mm = 0.1;
+  PartSpec omitted = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 3.1, 2.7, 0.3);
+  omitted.partial_elements = PartialElements::omit;
+  const AngleErrors twist{{}, {-300.0, 300.0, 0.0}};
+  const AngleErrors unlike{{60.0, -90.0, 20.0}, {50.0, 0.0, -70.0}};
+  const AngleErrors closed{{-80.0, -80.0, -80.0}, {}};
+  return {{"single prism", with(single(prism, 0.3), twist)},
+          {"single cube", with(single(HexagonalCube{1.0}, 0.3), closed)},
+          {"single triangle", with(single(TriangularCube{1.0}, 0.3), unlike)},
+          {"prisms", with(finite(prism, Arrangement::aligned, 1.6, 1.5, 0.3), twist)},
+          {"bricks", with(finite(prism, Arrangement::offset, 1.5, 1.5, 0.3), twist)},
+          {"spaced checker", with(spaced, twist)},
+          {"honeycomb", with(finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.1, 1.9, 0.3), unlike)},
+          {"honeycomb, partial omitted", with(omitted, closed)},
+          {"triangular", with(finite(TriangularCube{1.0}, Arrangement::triangular, 2.1, 1.9, 0.3), unlike)},
+          {"infinite prisms", with(infinite(prism, Arrangement::aligned, 0.3), twist)},
+          {"infinite checker", with(infinite(prism, Arrangement::checker, 0.3), twist)},
+          {"infinite honeycomb", with(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.3), unlike)},
+          {"infinite triangular", with(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.3), unlike)},
+          {"bricks in pieces", with(finite(prism, Arrangement::offset, 40.0, 40.0, 0.3), twist)}};
+}
+
+class WithAngleErrors : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(WithAngleErrors, NothingIsLost) {
+  const Case c = cases()[GetParam()];
+  const Part part = build_part(c.spec);
+  ASSERT_GT(part.top_mm, 1e-3);
+  const MonteCarlo tracer(part);
+  for (const Optics& optics : {pmma(), ideal()})
+    for (const double t : {0.0, 20.0, 60.0, 85.0})
+      for (const double p : {0.0, 70.0, 190.0}) {
+        const MonteCarloResult result = tracer.trace(optics, from(t, p), {0.5}, rays(1024), {});
+        const Ledger& ledger = result.cones[0].ledger;
+        EXPECT_NEAR(ledger.total(), 1.0, 1e-9) << c.name << " at " << t << ", " << p;
+        EXPECT_EQ(ledger[Account::lost], 0.0) << c.name << " at " << t << ", " << p;
+        EXPECT_EQ(result.misses, 0U) << c.name << " at " << t << ", " << p;
+      }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, WithAngleErrors, ::testing::Range(std::size_t{0}, cases().size()));
+
+class EnginesWithAngleErrors : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(EnginesWithAngleErrors, Agree) {
+  const Case c = cases()[GetParam()];
+  const Part part = build_part(c.spec);
+  BeamPolicy policy;
+  policy.cutoff = 1e-6;
+  for (const double azimuth_deg : {0.0, 40.0}) {
+    const Illumination light = from(30.0, azimuth_deg);
+    const Ledger exact = BeamTracer(part).trace(pmma(), light, {8.0}, policy).ledgers[0];
+    const Ledger traced = MonteCarlo(part).trace(pmma(), light, {8.0}, rays(1U << 16), {}).cones[0].ledger;
+    EXPECT_NEAR(exact.total(), 1.0, 1e-9);
+    for (std::size_t a = 0; a < kAccountCount; ++a)
+      EXPECT_NEAR(exact.power[a], traced.power[a], exact[Account::truncated] + 2e-3)
+          << c.name << ": " << kAccountNames[a];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, EnginesWithAngleErrors, ::testing::Range(std::size_t{0}, cases().size() - 1));
+
+TEST(AngleErrors, AgreeWithTheReference) {
+  const std::vector<Case> all = cases();
+  const double cone_deg = 8.0;
+  for (const std::size_t k : {std::size_t{4}, std::size_t{8}}) {
+    const Part part = build_part(all[k].spec);
+    const ReferenceResult reference = reference_trace(part, pmma(), from(20.0, 70.0), cone_deg, 8000, 7);
+    const MonteCarloResult traced = MonteCarlo(part).trace(pmma(), from(20.0, 70.0), {cone_deg}, rays(1U << 19), {});
+    const double z = student_bound(2 * kAccountCount);
+    const double slack = reference.mean[Account::truncated] + 1e-3;
+    for (std::size_t a = 0; a < kAccountCount; ++a) {
+      if (a == static_cast<std::size_t>(Account::truncated)) continue;
+      EXPECT_NEAR(traced.cones[0].ledger.power[a], reference.mean.power[a], z * reference.std_error[a] + slack)
+          << all[k].name << ": " << kAccountNames[a];
+    }
+  }
+}
+
+// Six beams, each 4 sqrt(2/3) n times the error from the source (Chandler, J. Opt. Soc. Am. 50, 1203 (1960)).
+TEST(AngleErrors, EqualDihedralErrorsSendSixBeamsBack) {
+  for (const double arcmin : {0.5, -0.5}) {
+    const Part part = build_part(with(single(HexagonalCube{kCubeAperture}, 1.0), {{arcmin, arcmin, arcmin}, {}}));
+    std::vector<double> azimuths_deg;
+    const BeamObserver note = [&](const ReturnedBeam& beam) {
+      if (beam.stokes.i < 1e-2 || beam.depth != 4) return;
+      const double deviation = std::asin(beam.direction.head<2>().norm());
+      EXPECT_NEAR(deviation, 4.0 * std::sqrt(2.0 / 3.0) * kPmma * std::abs(arcmin) * kArcmin, 1e-3 * deviation);
+      azimuths_deg.push_back(std::atan2(beam.direction.y(), beam.direction.x()) * 180.0 / std::numbers::pi);
+    };
+    BeamTracer(part).trace(ideal(), from(0.0), {0.5}, {}, nullptr, note);
+    std::sort(azimuths_deg.begin(), azimuths_deg.end());
+    const auto alike = [](double a, double b) { return b - a < 0.01; };
+    azimuths_deg.erase(std::unique(azimuths_deg.begin(), azimuths_deg.end(), alike), azimuths_deg.end());
+    ASSERT_EQ(azimuths_deg.size(), 6U);
+    for (std::size_t k = 1; k < 6; ++k) EXPECT_NEAR(azimuths_deg[k] - azimuths_deg[k - 1], 60.0, 0.1);
+  }
+}
+
+// Two reflections turn light by twice the angle between the facets: 2 n times the apex error in air.
+TEST(AngleErrors, ApexErrorSplitsTheReturnOfAPrism) {
+  const double arcmin = 3.0;
+  const Part part = build_part(with(single(RtpElement{1.0, 1.0, 90.0}, 1.0), {{}, {2.0, 1.0, 0.0}}));
+  std::vector<double> deviations;
+  const BeamObserver note = [&](const ReturnedBeam& beam) {
+    if (beam.stokes.i > 1e-2 && beam.depth == 3) deviations.push_back(std::asin(beam.direction.x()));
+  };
+  BeamTracer(part).trace(ideal(), from(0.0), {0.5}, {}, nullptr, note);
+  std::sort(deviations.begin(), deviations.end());
+  ASSERT_EQ(deviations.size(), 2U);
+  EXPECT_NEAR(deviations[0], -2.0 * kPmma * arcmin * kArcmin, 1e-8);
+  EXPECT_NEAR(deviations[1], 2.0 * kPmma * arcmin * kArcmin, 1e-8);
+}
+
+}  // namespace
+}  // namespace retrace::testing
