@@ -72,6 +72,13 @@ Json polarisation_json(const raytrace::Stokes& stokes) {
   return values;
 }
 
+Json surface_json(const PartSpec& part) {
+  const auto& [dihedral, tilt] = part.angle_errors;
+  if (std::holds_alternative<RtpElement>(part.element))
+    return {{"dihedral_error_arcmin", dihedral[0]}, {"facet_tilt_arcmin", {tilt[0], tilt[1]}}};
+  return {{"dihedral_error_arcmin", dihedral}, {"facet_tilt_arcmin", tilt}};
+}
+
 struct ElementName {
   std::string operator()(const RtpElement& e) const {
     return fmt::format("RTP {} x {} mm", shortest(e.base_mm), shortest(e.width_mm));
@@ -97,6 +104,7 @@ nlohmann::ordered_json to_json(const Design& design) {
   json["body"] = body;
   json["light"] = {{"wavelength_nm", design.wavelength_nm}, {"polarisation", polarisation_json(design.polarisation)}};
   json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};
+  json["surface"] = surface_json(design.part);
   json["idealisation"] = {{"facets", design.idealisation.mirror_facets ? "mirror" : "real"},
                           {"entrance", design.idealisation.lossless_entrance ? "lossless" : "real"}};
   return json;

@@ -72,8 +72,8 @@ constexpr std::array kSurfaceKeys = {KeyRule{"model", OnlyWord{"smooth"}},
                                      KeyRule{"rim_radius_um", OnlyNumber{0.0}},
                                      KeyRule{"root_chamfer_um", OnlyNumber{0.0}},
                                      KeyRule{"walls", OnlyWord{"smooth"}},
-                                     KeyRule{"dihedral_error_arcmin", OnlyNumber{0.0}},
-                                     KeyRule{"facet_tilt_arcmin", OnlyNumber{0.0}},
+                                     KeyRule{"dihedral_error_arcmin"},
+                                     KeyRule{"facet_tilt_arcmin"},
                                      KeyRule{"angle_error_sigma_arcmin", OnlyNumber{0.0}}};
 constexpr std::array kIdealisationKeys = {KeyRule{"facets"}, KeyRule{"entrance"}};
 constexpr std::array kPartKeys = {KeyRule{"mesh", NotAvailable{}}, KeyRule{"facets", NotAvailable{}}};

@@ -13,6 +13,7 @@
 #include "core/angle.h"
 #include "core/atomic_file.h"
 #include "core/number_format.h"
+#include "geometry/lattice.h"
 #include "studies/design/array_checks.h"
 #include "studies/design/design_keys.h"
 #include "studies/design/message_text.h"
@@ -56,6 +57,7 @@ constexpr std::array kFacetModels = {Choice<bool>{"real", false}, Choice<bool>{"
 constexpr std::array kEntranceModels = {Choice<bool>{"real", false}, Choice<bool>{"lossless", true}};
 
 constexpr Range kApexAngle{.low = 60.0, .high = 120.0};
+constexpr Range kAngleError{.low = -300.0, .high = 300.0};
 constexpr Range kOverlap{.low = 0.0, .high = 100.0, .high_included = false};
 constexpr Range kRefractiveIndex{.low = 1.0};
 constexpr Range kPolarisationAngle{.low = -360.0, .high = 360.0};
@@ -159,6 +161,49 @@ void read_array(TableReader& array, PartSpec& part, Kind kind) {
   read_rows(array, part);
 }
 
+void read_dihedral_error(TableReader& surface, PartSpec& part) {
+  constexpr std::string_view key = "dihedral_error_arcmin";
+  std::array<double, 3>& errors = part.angle_errors.dihedral_error_arcmin;
+  if (std::holds_alternative<geometry::RtpElement>(part.element)) {
+    errors[0] = surface.number(key, kAngleError).value_or(0.0);
+    return;
+  }
+  const std::vector<double> given = surface.numbers(key, kAngleError).value_or(std::vector{0.0});
+  if (given.size() != 1 && given.size() != 3)
+    surface.fail(key, fmt::format("must be a number or a list of three, one for each dihedral edge, got a list of {}",
+                                  given.size()));
+  for (std::size_t k = 0; k < 3; ++k) errors[k] = given[given.size() == 1 ? 0 : k];
+}
+
+void read_facet_tilt(TableReader& surface, PartSpec& part) {
+  constexpr std::string_view key = "facet_tilt_arcmin";
+  const std::size_t facets = std::holds_alternative<geometry::RtpElement>(part.element) ? 2 : 3;
+  const std::vector<double> given = surface.numbers(key, kAngleError).value_or(std::vector{0.0});
+  const std::optional<std::size_t> size = surface.list_size(key);
+  if (size ? *size != facets : given[0] != 0.0)
+    surface.fail(key, fmt::format("must be a list of {}, one for each facet, or 0, got {}", facets,
+                                  size ? fmt::format("a list of {}", *size) : shortest(given[0])));
+  if (size) std::copy(given.begin(), given.end(), part.angle_errors.facet_tilt_arcmin.begin());
+}
+
+/// What the retro facets are like.
+void read_surface(const DesignDocument& document, PartSpec& part) {
+  TableReader surface(document, "surface");
+  surface.skip({"model", "roughness_sq_nm", "correlation_length_um", "waviness_sq_nm", "waviness_length_um",
+                "root_radius_um", "rim_radius_um", "root_chamfer_um", "walls", "angle_error_sigma_arcmin"});
+  read_dihedral_error(surface, part);
+  read_facet_tilt(surface, part);
+  surface.finish();
+  const auto* rtp = std::get_if<geometry::RtpElement>(&part.element);
+  if (rtp == nullptr) return;
+  const auto& [dihedral, tilt] = part.angle_errors;
+  const double apex_deg = rtp->apex_angle_deg + (dihedral[0] + tilt[0] + tilt[1]) / 60.0;
+  if (!kApexAngle.contains(apex_deg))
+    surface.fail(
+        surface.has("dihedral_error_arcmin") ? "dihedral_error_arcmin" : "facet_tilt_arcmin",
+        fmt::format("the apex angle with its errors must be {}, got {}", kApexAngle.text(), shortest(apex_deg)));
+}
+
 PartSpec read_part(const DesignDocument& document) {
   TableReader element(document, "element");
   TableReader array(document, "array");
@@ -169,11 +214,17 @@ PartSpec read_part(const DesignDocument& document) {
   element.finish();
   array.finish();
   check_array(part, array, element);
+  read_surface(document, part);
   return part;
 }
 
 void read_body(TableReader& body, Design& design) {
   design.part.thickness_mm = read_size(body, "thickness_mm");
+  const double top_mm = geometry::element_top_mm(design.part.element, design.part.angle_errors);
+  const double least_mm = top_mm > 0.0 ? top_mm + kSaneSize.low : 0.0;
+  if (design.part.thickness_mm < least_mm)
+    body.fail("thickness_mm", fmt::format("must be >= {} to cover rims that errors of angle lift to {}, got {}",
+                                          shortest(least_mm), shortest(top_mm), shortest(design.part.thickness_mm)));
   design.material_location = body.where("material");
   design.material = body.text("material").value_or(design.material);
   if (design.material.empty()) body.fail("material", "must name a material, such as \"PMMA\", got \"\"");

@@ -86,6 +86,8 @@ acceptance_half_angle_deg = 0.5   # in air; a list such as [0.2, 0.5, 1] gives R
 
 [surface]
 model = "smooth"                  # the retroreflecting facets
+# dihedral_error_arcmin = 0       # opens the angle between facets; cube corners: one value or three
+# facet_tilt_arcmin = 0           # or a list with one value for each facet
 
 # [idealisation]                  # for checks against theory
 # facets = "real"                 # "mirror": facets reflect everything at every angle

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/angle.h"
 #include "geometry/check/boundary_check.h"
@@ -15,17 +17,23 @@ namespace {
 // Boundaries of more elements than this are checked on a smaller part of the same kind: CGAL needs seconds beyond.
 constexpr double kElementsToCheck = 1000.0;
 
-/// The incidence inside at which the facet that is hit at the flattest angle stops to reflect totally.
-double inner_limit_rad(const geometry::Element& element, double index) {
-  const double critical = std::asin(1.0 / index);
-  if (const auto* rtp = std::get_if<geometry::RtpElement>(&element)) {
-    // In the plane across the roof the angles of incidence on the two facets add up to the apex angle.
-    const double apex = Angle::from_deg(rtp->apex_angle_deg).rad();
-    const double first = Angle::from_deg(90.0).rad() - 0.5 * apex;
-    return std::min(first, apex - first) - critical;
-  }
-  // A cube corner's facets stand at acos(1/sqrt 3) to its axis, and reflections keep the direction's angles to them.
-  return std::acos(1.0 / std::sqrt(3.0)) - critical;
+/// The incidence inside at which the facet that is hit most squarely stops to reflect totally.
+double inner_limit_rad(const geometry::PartSpec& part, double index) {
+  std::vector<geometry::Vec3> normals;
+  for (const geometry::CellFacet& facet : geometry::element_cell(part.element, part.angle_errors).facets)
+    normals.push_back(geometry::Vec3(facet.plane.slope.x(), facet.plane.slope.y(), -1.0).normalized());
+  std::vector<std::size_t> order(normals.size());
+  std::iota(order.begin(), order.end(), 0U);
+  double least = Angle::from_deg(90.0).rad();
+  do {
+    // Light meets a facet after others as it would meet their mirror image of it on its straight way.
+    Eigen::Matrix3d image = Eigen::Matrix3d::Identity();
+    for (const std::size_t k : order) {
+      least = std::min(least, std::acos(std::abs((image * normals[k]).z())));
+      image = image * (Eigen::Matrix3d::Identity() - 2.0 * normals[k] * normals[k].transpose());
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return least - std::asin(1.0 / index);
 }
 
 /// A finite part of the same elements that CGAL checks quickly: the design itself if it is small.
@@ -55,9 +63,11 @@ std::string boundary_finding(const geometry::PartSpec& spec, double element_mm) 
   const geometry::Part part = geometry::build_part(part_to_check(spec, element_mm, is_whole));
   if (part.placements.size() != 1) return "not checked: the elements differ too much in size from their array";
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
-  const std::string finding = report.ok()              ? "closed, free of self-intersections"
-                              : report.self_intersects ? "crosses itself"
-                                                       : "not closed";
+  // Errors of angle may leave neighbours at such heights that the part touches itself where more than three cells meet.
+  const std::string finding = report.ok()           ? "closed, free of self-intersections"
+                              : !report.is_closed   ? "not closed"
+                              : !report.is_manifold ? "closed, touches itself along edges"
+                                                    : "crosses itself";
   return is_whole ? finding : finding + " (checked on a smaller array of the same elements)";
 }
 
@@ -73,8 +83,8 @@ void add_warnings(Inspection& result, const geometry::Part& part) {
 
 }  // namespace
 
-std::optional<double> tir_limit_deg(const geometry::Element& element, double index) {
-  const double inside = inner_limit_rad(element, index);
+std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index) {
+  const double inside = inner_limit_rad(part, index);
   if (!(inside >= 0.0)) return std::nullopt;
   const double sine = index * std::sin(inside);
   return sine >= 1.0 ? 90.0 : Angle::from_rad(std::asin(sine)).deg();
@@ -93,7 +103,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   const double aperture = geometry::area(geometry::aperture_outline(design.part.element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   result.refractive_index = model.optics.index;
-  result.tir_limit_deg = tir_limit_deg(design.part.element, model.optics.index);
+  result.tir_limit_deg = tir_limit_deg(design.part, model.optics.index);
   result.boundary = boundary_finding(design.part, part.size_mm);
   result.warnings = model.warnings;
   add_warnings(result, part);

@@ -28,8 +28,8 @@ struct Inspection {
   std::vector<std::string> warnings;
 };
 
-/// Largest incidence of total reflection for an element of this index; closed form. \pre index >= 1
-std::optional<double> tir_limit_deg(const geometry::Element& element, double index);
+/// Largest incidence of total reflection for a part's elements at this index; closed form. \pre index >= 1
+std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index);
 
 /// \throw InputError as make_model()
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library);

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <thread>
 
 #include "tests/app/program.h"
@@ -66,6 +67,26 @@ TEST(Inspect, CubeCornersHaveTheLimitsOfTheirIndex) {
               1e-5);
   EXPECT_NEAR(inspect(infinite_cubes("triangular_icc", 1.5))["element_depth_mm"].get<double>(), 1.0 / std::sqrt(3.0),
               1e-5);
+}
+
+TEST(Inspect, DihedralErrorOfAPrismIsItsApexAngle) {
+  const Json error = inspect(brick(5, "odd") + "[surface]\ndihedral_error_arcmin = 30\n");
+  const std::string plain = brick(5, "odd");
+  const std::size_t array = plain.find("[array]");
+  const Json apex = inspect(plain.substr(0, array) + "apex_angle_deg = 90.5\n" + plain.substr(array));
+  for (const char* key : {"element_depth_mm", "facet_area_mm2", "tir_limit_deg"})
+    EXPECT_NEAR(error[key].get<double>(), apex[key].get<double>(), 1e-12) << key;
+  // The first facet is met at 44.75 degrees, which is 0.25 less than without.
+  const double inside = std::asin(std::sin(apex["tir_limit_deg"].get<double>() * std::numbers::pi / 180.0) / 1.4917);
+  EXPECT_NEAR(inside, 44.75 * std::numbers::pi / 180.0 - std::asin(1.0 / 1.4917), 1e-9);
+}
+
+TEST(Inspect, SaysHowUnlikeErrorsCloseTheBoundary) {
+  const std::string unlike = "[surface]\ndihedral_error_arcmin = [1, -2, 3]\n";
+  EXPECT_EQ(inspect(infinite_cubes("hexagonal_icc", 1.5) + unlike)["boundary"],
+            "closed, free of self-intersections (checked on a smaller array of the same elements)");
+  EXPECT_EQ(inspect(infinite_cubes("triangular_icc", 1.5) + unlike)["boundary"],
+            "closed, touches itself along edges (checked on a smaller array of the same elements)");
 }
 
 TEST(Inspect, LimitIsLeftOutWhereThereIsNone) {

@@ -28,5 +28,15 @@ TEST(DesignJson, PolarisationIsAWordOrStokesParameters) {
   EXPECT_EQ(polarisation({"light.polarisation=[2, 0, 1, 0]"}), "[1.0,0.0,0.5,0.0]");
 }
 
+TEST(DesignJson, AngleErrorsAreQuotedByKind) {
+  const auto surface = [](const std::string& kind, const std::vector<std::string>& overrides) {
+    return quoted(kind, overrides)["surface"].dump();
+  };
+  EXPECT_EQ(surface("rtp", {"surface.dihedral_error_arcmin=2", "surface.facet_tilt_arcmin=[0.5, -1]"}),
+            R"({"dihedral_error_arcmin":2.0,"facet_tilt_arcmin":[0.5,-1.0]})");
+  EXPECT_EQ(surface("hexagonal_icc", {"surface.dihedral_error_arcmin=2"}),
+            R"({"dihedral_error_arcmin":[2.0,2.0,2.0],"facet_tilt_arcmin":[0.0,0.0,0.0]})");
+}
+
 }  // namespace
 }  // namespace retrace::studies

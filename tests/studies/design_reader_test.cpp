@@ -20,6 +20,7 @@ namespace retrace::studies {
 namespace {
 
 namespace fs = std::filesystem;
+using geometry::AngleErrors;
 using geometry::Arrangement;
 using geometry::Extent;
 using geometry::HexagonalCube;
@@ -107,6 +108,7 @@ TEST(DesignReader, MinimalDesignHasTheDefaults) {
   EXPECT_EQ(design.part.x_gap_mm, 0.0);
   EXPECT_EQ(design.part.y_offset_mm, 0.0);
   EXPECT_EQ(design.part.overlap_percent, 50.0);
+  EXPECT_EQ(design.part.angle_errors, AngleErrors{});
   EXPECT_EQ(design.part.thickness_mm, 2.0);
   EXPECT_EQ(design.material, "PMMA");
   EXPECT_FALSE(design.refractive_index);
@@ -162,7 +164,8 @@ acceptance_half_angle_deg = [1, 0.2, 0.5, 0.2]
 model = "smooth"
 roughness_sq_nm = 0
 walls = "smooth"
-facet_tilt_arcmin = [0, 0.0]
+dihedral_error_arcmin = -0.5
+facet_tilt_arcmin = [1, 2.5]
 [idealisation]
 facets = "mirror"
 entrance = "lossless"
@@ -185,6 +188,7 @@ entrance = "lossless"
   EXPECT_EQ(design.absorption_per_mm, 0.001);
   EXPECT_EQ(design.wavelength_nm, 633.0);
   EXPECT_NEAR(design.polarisation.q, 0.5, 1e-15);
+  EXPECT_EQ(design.part.angle_errors, (AngleErrors{{-0.5, 0.0, 0.0}, {1.0, 2.5, 0.0}}));
   EXPECT_EQ(design.acceptance_half_angle_deg, (std::vector<double>{0.2, 0.5, 1.0}));
   EXPECT_TRUE(design.idealisation.mirror_facets);
   EXPECT_TRUE(design.idealisation.lossless_entrance);
@@ -473,16 +477,69 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
   for (const std::string key :
        {"element.cant_deg", "element.cant_azimuth_deg", "surface.roughness_sq_nm", "surface.correlation_length_um",
         "surface.waviness_sq_nm", "surface.waviness_length_um", "surface.root_radius_um", "surface.rim_radius_um",
-        "surface.root_chamfer_um", "surface.dihedral_error_arcmin", "surface.facet_tilt_arcmin",
-        "surface.angle_error_sigma_arcmin"}) {
+        "surface.root_chamfer_um", "surface.angle_error_sigma_arcmin"}) {
     EXPECT_EQ(refused(key + "=2"), "--set " + key + "=2: " + key + no + ", which takes only 0, got 2");
     EXPECT_EQ(refused(key + "=0"), "");
   }
-  EXPECT_EQ(refused("surface.dihedral_error_arcmin=[0, 1, 0]"),
-            "--set surface.dihedral_error_arcmin=[0, 1, 0]: surface.dihedral_error_arcmin" + no +
-                ", which takes only 0, got a list");
   EXPECT_EQ(refused("surface.roughness_sq_nm=rough"),
             "--set surface.roughness_sq_nm=rough: surface.roughness_sq_nm: must be a number, got \"rough\"");
+}
+
+TEST(DesignReader, AngleErrorsAreReadForEveryKind) {
+  const auto errors = [](const std::string& element, const std::vector<std::string>& overrides) {
+    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part.angle_errors;
+  };
+  EXPECT_EQ(errors(kRtp, {"surface.dihedral_error_arcmin=2"}), (AngleErrors{{2.0, 0.0, 0.0}, {}}));
+  EXPECT_EQ(errors(kRtp, {"surface.facet_tilt_arcmin=[2, -300]"}), (AngleErrors{{}, {2.0, -300.0, 0.0}}));
+  for (const std::string& cube : {kHexagonal, kTriangular}) {
+    EXPECT_EQ(errors(cube, {"surface.dihedral_error_arcmin=-2"}), (AngleErrors{{-2.0, -2.0, -2.0}, {}}));
+    EXPECT_EQ(errors(cube, {"surface.dihedral_error_arcmin=[3]"}), (AngleErrors{{3.0, 3.0, 3.0}, {}}));
+    EXPECT_EQ(errors(cube, {"surface.dihedral_error_arcmin=[1, -2, 0.5]", "surface.facet_tilt_arcmin=[4, 5, 6]"}),
+              (AngleErrors{{1.0, -2.0, 0.5}, {4.0, 5.0, 6.0}}));
+    EXPECT_EQ(errors(cube, {"surface.facet_tilt_arcmin=0"}), AngleErrors{});
+  }
+}
+
+TEST(DesignReader, AngleErrorsThatDoNotFitAreRefused) {
+  const auto refused = [](const std::string& element, const std::string& line) {
+    return complaint(design_of(element, "extent = \"infinite\"") + "[surface]\n" + line);
+  };
+  const std::string dihedral = ": surface.dihedral_error_arcmin: ";
+  const std::string tilt = ": surface.facet_tilt_arcmin: ";
+  EXPECT_EQ(refused(kRtp, "dihedral_error_arcmin = [1, 2, 3]"),
+            "d.toml:10" + dihedral + "must be a number, got a list");
+  EXPECT_EQ(refused(kRtp, "dihedral_error_arcmin = 301"),
+            "d.toml:10" + dihedral + "must be >= -300 and <= 300, got 301");
+  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = [1, -301, 0]"),
+            "d.toml:9" + dihedral + "must be >= -300 and <= 300, got -301");
+  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = [1, 2]"),
+            "d.toml:9" + dihedral + "must be a number or a list of three, one for each dihedral edge, got a list of 2");
+  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = \"1\""),
+            "d.toml:9" + dihedral + "must be a number or a list of numbers, got \"1\"");
+  EXPECT_EQ(refused(kRtp, "facet_tilt_arcmin = [1, 2, 3]"),
+            "d.toml:10" + tilt + "must be a list of 2, one for each facet, or 0, got a list of 3");
+  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = [1, 2]"),
+            "d.toml:9" + tilt + "must be a list of 3, one for each facet, or 0, got a list of 2");
+  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = 1"),
+            "d.toml:9" + tilt + "must be a list of 3, one for each facet, or 0, got 1");
+  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = [1, nan, 2]"),
+            "d.toml:9" + tilt + "must be a finite number, got nan");
+  EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 119", "facet_tilt_arcmin = [30, 31]"),
+            "d.toml:11" + tilt + "the apex angle with its errors must be >= 60 and <= 120, got 120.01666666666667");
+  EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 61", "facet_tilt_arcmin = [-30, -30]\ndihedral_error_arcmin = -60"),
+            "d.toml:12" + dihedral + "the apex angle with its errors must be >= 60 and <= 120, got 59");
+  EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 120", "facet_tilt_arcmin = [7, -7]"), "");
+  EXPECT_EQ(
+      set_complaint({"surface.facet_tilt_arcmin=[1]"}),
+      "--set surface.facet_tilt_arcmin=[1]" + tilt + "must be a list of 2, one for each facet, or 0, got a list of 1");
+}
+
+TEST(DesignReader, PlateMustBeThickerThanRimsStand) {
+  const std::vector<std::string> errors = {"surface.facet_tilt_arcmin=[-60, 60]"};
+  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 0.001"), errors).substr(0, 46),
+            "d.toml:10: body.thickness_mm: must be >= 0.008");
+  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 0.01"), errors), "");
+  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 1e-6")), "");
 }
 
 TEST(DesignReader, TextThatIsNotTomlIsRefusedWithItsLine) {
