@@ -15,7 +15,13 @@ bool is_written(const Json& value) {
   return !value.is_number_float() || std::isfinite(value.get<double>());
 }
 
+/// Numbers, and arrays of numbers in any depth, such as coordinates.
+bool is_numeric(const Json& value) {
+  return value.is_number() || (value.is_array() && std::all_of(value.begin(), value.end(), is_numeric));
+}
+
 bool is_flat(const Json& value) {
+  if (value.is_array() && is_numeric(value)) return true;
   return std::all_of(value.begin(), value.end(), [](const Json& v) { return !v.is_structured() || v.empty(); });
 }
 

@@ -18,6 +18,12 @@ TEST(JsonText, KeysKeepTheirOrderAndFlatObjectsStandOnOneLine) {
   EXPECT_EQ(to_text(Json{{"list", Json::array()}}), "{\"list\": []}\n");
 }
 
+TEST(JsonText, CoordinatesStandOnOneLine) {
+  const Json ring = Json::array({Json::array({0, 0.5}), Json::array({1, 2})});
+  EXPECT_EQ(to_text(Json{{"rings", Json::array({ring, ring})}}),
+            "{\n  \"rings\": [[[0, 0.5], [1, 2]], [[0, 0.5], [1, 2]]]\n}\n");
+}
+
 TEST(JsonText, NaNAndInfinityAreLeftOut) {
   const Json json = {{"a", Limits::quiet_NaN()}, {"b", 1.5}, {"c", Limits::infinity()}, {"d", -Limits::infinity()}};
   EXPECT_EQ(to_text(json), "{\"b\": 1.5}\n");
