@@ -93,6 +93,10 @@ void add_rre(CLI::App& app, RreOptions& rre) {
           "1e-10 truncated]")
       ->type_name("W")
       ->check(real_number());
+  command->add_flag("--footprint", rre.footprint,
+                    "which regions of the entrance face send light back, as polygons (--engine exact, --out)");
+  command->add_flag("--far-field", rre.far_field,
+                    "the directions in which light leaves the entrance face (--engine exact, --out)");
 }
 
 /// What to say if a command or what it needs is missing: a word that nobody knows explains it better.

@@ -107,6 +107,11 @@ struct Canvas::Hidden {
   std::unique_ptr<cairo_surface_t, Release> surface;
   std::unique_ptr<cairo_t, Release> context;
 
+  void add(const std::vector<Point>& polygon) const {
+    cairo_new_sub_path(context.get());
+    for (const Point p : polygon) cairo_line_to(context.get(), p.x, p.y);
+    cairo_close_path(context.get());
+  }
   void set(Colour colour) const { cairo_set_source_rgb(context.get(), colour.red, colour.green, colour.blue); }
   void set(Font font) const {
     cairo_select_font_face(context.get(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
@@ -209,6 +214,36 @@ void Canvas::line(const std::vector<Point>& points, const Stroke& stroke) {
   cairo_stroke(context);
 }
 
+void Canvas::fill(const std::vector<std::vector<Point>>& polygons, Colour colour, double swell, double opacity) {
+  cairo_t* const context = hidden_->context.get();
+  cairo_set_source_rgba(context, colour.red, colour.green, colour.blue, opacity);
+  cairo_new_path(context);
+  for (const auto& polygon : polygons) hidden_->add(polygon);
+  if (swell <= 0.0) {
+    cairo_fill(context);
+    return;
+  }
+  cairo_fill_preserve(context);
+  cairo_set_dash(context, nullptr, 0, 0.0);
+  cairo_set_line_width(context, 2.0 * swell);
+  cairo_stroke(context);
+}
+
+void Canvas::hatch(const std::vector<Point>& polygon, double spacing, const Stroke& stroke) {
+  if (polygon.empty()) return;
+  Point lower = polygon[0];
+  Point upper = polygon[0];
+  for (const Point p : polygon) {
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
+  }
+  clip(polygon);
+  const double height = upper.y - lower.y;
+  for (double x = lower.x - height + spacing; x < upper.x; x += spacing)
+    line({{x, upper.y}, {x + height, lower.y}}, stroke);
+  end_clip();
+}
+
 void Canvas::marker(Point centre, Marker shape, double radius, Colour colour) {
   cairo_t* const context = hidden_->context.get();
   // Sizes by which the shapes look alike in weight.
@@ -261,6 +296,14 @@ void Canvas::clip(Point corner, Size size) {
   cairo_save(hidden_->context.get());
   cairo_rectangle(hidden_->context.get(), corner.x, corner.y, size.width, size.height);
   cairo_clip(hidden_->context.get());
+}
+
+void Canvas::clip(const std::vector<Point>& polygon) {
+  cairo_t* const context = hidden_->context.get();
+  cairo_save(context);
+  cairo_new_path(context);
+  hidden_->add(polygon);
+  cairo_clip(context);
 }
 
 void Canvas::end_clip() {

@@ -63,11 +63,17 @@ class Canvas {
 
   void fill_rectangle(Point corner, Size size, Colour colour);
   void line(const std::vector<Point>& points, const Stroke& stroke);
+  /// All polygons at once, so that none of the background shows between neighbours. \param swell by how much their
+  /// edges are moved out, to overlap with those of another colour \param opacity 0..1
+  void fill(const std::vector<std::vector<Point>>& polygons, Colour colour, double swell = 0.0, double opacity = 1.0);
+  /// Parallel lines that rise to the right, all over a polygon.
+  void hatch(const std::vector<Point>& polygon, double spacing, const Stroke& stroke);
   void marker(Point centre, Marker shape, double radius, Colour colour);
   /// `baseline` is the point of the text's baseline that `align` names; `upwards` turns the text by 90 degrees to the
   /// left.
   void text(Point baseline, std::string_view text, Font font, Colour colour, Align align, bool upwards = false);
   void clip(Point corner, Size size);
+  void clip(const std::vector<Point>& polygon);
   void end_clip();
 
   /// Ends the drawing and returns the file's bytes.

@@ -29,6 +29,8 @@ void check(const RreRequest& request) {
   if (request.engine == Engine::cell)
     throw InputError({"", 0, "--engine"},
                      "cell is not available in this version; there are auto, exact, montecarlo, embree");
+  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"}, {request.far_field, "--far-field"}})
+    if (asked && request.engine != Engine::exact) throw InputError({"", 0, option}, "needs --engine exact");
   for (const double t : request.incidence_deg)
     if (!(std::abs(t) < 90.0))
       throw InputError({"", 0, "--incidence"}, fmt::format("must lie between -90 and 90 degrees, got {}", shortest(t)));
@@ -76,6 +78,8 @@ namespace {
 struct Direction {
   RrePoint at;
   std::vector<RrePoint> points;  ///< one a cone; empty until traced
+  std::optional<Footprint> footprint;
+  std::optional<FarField> far_field;
 };
 
 std::vector<Direction> directions_of(const std::vector<Design>& designs, const RreRequest& request) {
@@ -88,7 +92,7 @@ std::vector<Direction> directions_of(const std::vector<Design>& designs, const R
         at.incidence_deg = incidence;
         at.azimuth_deg = azimuth;
         at.wavelength_nm = designs[d].wavelength_nm;
-        directions.push_back({at, {}});
+        directions.push_back({at, {}, {}, {}});
       }
   return directions;
 }
@@ -165,6 +169,32 @@ void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<
   }
 }
 
+/// Gathers the returned beams of one direction, as far as they were asked for.
+class Collector {
+ public:
+  Collector(const RreRequest& request, const OpticalModel& model, std::size_t cones,
+            const raytrace::Illumination& illumination) {
+    if (request.footprint) footprint_.emplace(model.part, cones);
+    if (request.far_field) far_field_.emplace(illumination);
+  }
+
+  raytrace::BeamObserver observer() {
+    if (!footprint_ && !far_field_) return {};
+    return [this](const raytrace::ReturnedBeam& beam) {
+      if (footprint_) footprint_->add(beam);
+      if (far_field_) far_field_->add(beam);
+    };
+  }
+  void finish(Direction& direction) const {
+    if (footprint_) direction.footprint = footprint_->finish();
+    if (far_field_) direction.far_field = far_field_->finish();
+  }
+
+ private:
+  std::optional<FootprintBuilder> footprint_;
+  std::optional<FarFieldBuilder> far_field_;
+};
+
 /// Several directions at a time, each on one thread.
 void trace_exactly(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                    const RreRequest& request, std::vector<Direction>& directions, Counter& counter,
@@ -176,9 +206,12 @@ void trace_exactly(const std::vector<Design>& designs, const std::vector<Optical
   raytrace::for_each_in_parallel(directions.size(), [&](std::size_t k) {
     const RrePoint& at = directions[k].at;
     const std::vector<double>& cones = designs[at.design].acceptance_half_angle_deg;
-    const raytrace::BeamResult traced = tracers[at.design].trace(
-        models[at.design].optics, illumination_of(at, designs[at.design]), cones, policy, cancel);
+    const raytrace::Illumination illumination = illumination_of(at, designs[at.design]);
+    Collector collector(request, models[at.design], cones.size(), illumination);
+    const raytrace::BeamResult traced =
+        tracers[at.design].trace(models[at.design].optics, illumination, cones, policy, cancel, collector.observer());
     if (!traced.complete) return;
+    collector.finish(directions[k]);
     for (std::size_t cone = 0; cone < cones.size(); ++cone) {
       RrePoint point = at;
       point.acceptance_half_angle_deg = cones[cone];
@@ -213,10 +246,15 @@ RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
     trace_exactly(designs, models, request, directions, counter, cancel);
   else
     trace_by_monte_carlo(designs, models, request, directions, counter, cancel, result);
-  for (const Direction& direction : directions) {
+  for (Direction& direction : directions) {
     result.complete = result.complete && !direction.points.empty();
     result.points.insert(result.points.end(), direction.points.begin(), direction.points.end());
+    if (!direction.points.empty() && (direction.footprint || direction.far_field))
+      result.returned.push_back(
+          {direction.points.back(), std::move(direction.footprint), std::move(direction.far_field)});
   }
+  if (request.footprint)
+    for (const OpticalModel& model : models) result.faces.push_back(entrance_face_of(model.part));
   warn_of_truncation(result);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

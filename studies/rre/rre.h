@@ -10,6 +10,8 @@
 #include "core/progress.h"
 #include "raytrace/ledger.h"
 #include "studies/design/design.h"
+#include "studies/rre/far_field.h"
+#include "studies/rre/footprint.h"
 
 namespace retrace::studies {
 
@@ -32,6 +34,8 @@ struct RreRequest {
   /// leave less than 1e-10 in `truncated` (exact).
   std::optional<double> cutoff;
   std::uint32_t seed = 1;
+  bool footprint = false;  ///< exact engine: which regions of the entrance face send light back
+  bool far_field = false;  ///< exact engine: the directions in which light leaves the entrance face
 };
 
 struct RrePoint {
@@ -48,12 +52,21 @@ struct RrePoint {
   std::uint32_t depth = 0;  ///< exact engine: interfaces on the longest path
 };
 
+/// What was asked for beyond RRE, for one direction.
+struct ReturnedLight {
+  RrePoint at;  ///< of the widest acceptance cone
+  std::optional<Footprint> footprint;
+  std::optional<FarField> far_field;
+};
+
 struct RreResult {
   std::vector<Design> designs;
   std::string engine = "embree";  ///< that ran
   std::string engine_requested;
   std::uint32_t seed = 1;
-  std::vector<RrePoint> points;  ///< in the order design, wavelength, azimuth, incidence, acceptance
+  std::vector<RrePoint> points;         ///< in the order design, wavelength, azimuth, incidence, acceptance
+  std::vector<ReturnedLight> returned;  ///< one a direction, in the same order, if a footprint or far field was asked
+  std::vector<EntranceFace> faces;      ///< one a design, if a footprint was asked
   std::uint64_t rays = 0;
   double elapsed_s = 0.0;
   std::vector<std::string> warnings;

@@ -6,6 +6,7 @@ retrace_test(app_test
     app/number_list_test.cpp
     app/program.cpp
     app/readme_test.cpp
+    app/returned_light_test.cpp
     app/rre_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 add_dependencies(app_test retrace)

@@ -1,0 +1,387 @@
+#include "report/map_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "report/axis_ticks.h"
+#include "report/canvas.h"
+
+namespace retrace::report {
+namespace {
+
+using geometry::Polygon;
+using geometry::Rectangle;
+using geometry::Vec2;
+
+constexpr Colour kWhite{1.0, 1.0, 1.0};
+constexpr Colour kAxis{0.35, 0.35, 0.35};
+constexpr Colour kText{0.13, 0.13, 0.13};
+constexpr Colour kFaint{0.42, 0.42, 0.42};
+constexpr Colour kRest{0.945, 0.945, 0.945};
+constexpr Colour kHatch{0.80, 0.80, 0.80};
+constexpr Colour kLine{0.55, 0.55, 0.55};  ///< seen on the palest and the darkest region
+
+// YlGnBu of ColorBrewer (Harrower and Brewer 2003): sequential in lightness, safe with any kind of colour vision.
+constexpr std::array<Colour, 9> kScale = {{{1.000, 1.000, 0.851},
+                                           {0.929, 0.973, 0.694},
+                                           {0.780, 0.914, 0.706},
+                                           {0.498, 0.804, 0.733},
+                                           {0.255, 0.714, 0.769},
+                                           {0.114, 0.569, 0.753},
+                                           {0.133, 0.369, 0.659},
+                                           {0.145, 0.204, 0.580},
+                                           {0.031, 0.114, 0.345}}};
+constexpr int kColourSteps = 200;
+
+constexpr Font kTitleFont{16.0, true};
+constexpr Font kPanelFont{12.5, true};
+constexpr Font kRemarkFont{11.0, false};
+constexpr Font kLabelFont{13.0, false};
+constexpr Font kTickFont{11.0, false};
+
+constexpr double kMargin = 22.0;
+constexpr double kTickLength = 4.0;
+constexpr double kPlanLeft = 40.0;  ///< in its cell: room for the labels of the axis
+constexpr double kBarWidth = 16.0;
+constexpr double kHatchSpacing = 6.0;
+/// Smoothed edges of neighbours would leave some of what is below.
+constexpr double kSwell = 0.15;
+/// What of its neighbours a periodic outline is shown with, in periods.
+constexpr double kSurroundings = 0.3;
+constexpr double kSurroundingsVeil = 0.62;
+/// Thin lines need this much room each.
+constexpr double kLeastCell = 3.0;
+
+Colour colour_at(double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kScale.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(at), kScale.size() - 2);
+  const double t = at - static_cast<double>(k);
+  const Colour& a = kScale[k];
+  const Colour& b = kScale[k + 1];
+  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
+}
+
+/// What of the plane a panel shows.
+Rectangle shown_by(const MapPanel& panel) {
+  if (panel.outline.empty()) return {Vec2::Zero(), Vec2::Ones()};
+  Rectangle box = geometry::bounding_box(panel.outline);
+  if (!panel.is_periodic) return box;
+  // As much on all sides, so that neither side of an oblong period looks cut short.
+  const Vec2 around = Vec2::Constant(kSurroundings * box.size().minCoeff());
+  return {box.lower - around, box.upper + around};
+}
+
+/// Measures that all panels share.
+struct Layout {
+  std::size_t columns = 1;
+  std::size_t rows = 1;
+  Size box;           ///< of the largest plan
+  Size cell;          ///< of a panel with its texts
+  double head = 0.0;  ///< of a cell, for its texts
+  double left = 0.0;
+  double top = 0.0;
+  std::vector<std::string> title;
+  Range values;
+  Ticks value_ticks;
+  double bar_left = 0.0;
+  double bar_top = 0.0;
+  double bar_height = 0.0;
+  Size figure;
+};
+
+double plan_width(std::size_t panels) {
+  if (panels == 1) return 460.0;
+  if (panels <= 4) return 320.0;
+  return panels <= 9 ? 240.0 : 180.0;
+}
+
+std::size_t columns_for(std::size_t panels) {
+  if (panels <= 3) return std::max<std::size_t>(1, panels);
+  if (panels == 4) return 2;
+  return panels <= 9 ? 3 : panels <= 16 ? 4 : 6;
+}
+
+Range value_range(const MapPlot& plot) {
+  double most = 0.0;
+  for (const MapPanel& panel : plot.panels)
+    for (const MapRegion& region : panel.regions) most = std::max(most, region.value);
+  if (most > 0.5 * plot.full_value || most <= 0.0) return {0.0, plot.full_value};
+  return rounded_range({0.0, most}, {0.0, most}, 5);
+}
+
+/// Height of plan boxes of this width: that of the tallest plan, within reason.
+double plan_height(const MapPlot& plot, double width) {
+  double aspect = 0.0;
+  for (const MapPanel& panel : plot.panels) {
+    const Vec2 size = shown_by(panel).size();
+    aspect = std::max(aspect, size.y() / size.x());
+  }
+  return width * std::clamp(plot.panels.empty() ? 1.0 : aspect, 0.12, 1.25);
+}
+
+Layout lay_out(const MapPlot& plot, const Canvas& canvas) {
+  Layout layout;
+  const std::size_t count = plot.panels.size();
+  layout.columns = columns_for(count);
+  layout.rows = std::max<std::size_t>(1, (count + layout.columns - 1) / layout.columns);
+  layout.box.width = plan_width(count);
+  layout.box.height = plan_height(plot, layout.box.width);
+  std::size_t remarks = 0;
+  for (const MapPanel& panel : plot.panels) remarks = std::max(remarks, panel.remarks.size());
+  layout.head = kPanelFont.size + 11.0 + (kRemarkFont.size + 5.0) * static_cast<double>(remarks);
+  layout.cell = {layout.box.width + 58.0, layout.box.height + layout.head + kTickLength + kTickFont.size + 26.0};
+  layout.values = value_range(plot);
+  layout.value_ticks = make_ticks(layout.values, 5);
+  layout.left = kMargin + kLabelFont.size + 4.0;
+
+  const double grid_width = layout.cell.width * static_cast<double>(layout.columns);
+  const double grid_height = layout.cell.height * static_cast<double>(layout.rows);
+  double label_width = 0.0;
+  for (const std::string& label : layout.value_ticks.labels)
+    label_width = std::max(label_width, canvas.text_width(label, kTickFont));
+  layout.bar_left = layout.left + grid_width + 14.0;
+  layout.figure.width = std::ceil(
+      layout.bar_left + kBarWidth + kTickLength + 6.0 +
+      std::max(label_width + 8.0 + kLabelFont.size, canvas.text_width(plot.rest_label, kTickFont) - kTickLength) +
+      kMargin);
+  layout.title = canvas.fitted(plot.title, kTitleFont, layout.figure.width - 2.0 * kMargin, 2, Ellipsis::end);
+  layout.top = kMargin + 1.3 * kTitleFont.size * static_cast<double>(layout.title.size()) + 4.0;
+  layout.bar_height = std::min(320.0, std::max(150.0, layout.box.height) - 34.0);
+  layout.bar_top = layout.top + layout.head;
+  const double bar_bottom = layout.bar_top + layout.bar_height + 34.0;
+  layout.figure.height = std::ceil(std::max(layout.top + grid_height + kLabelFont.size - 4.0, bar_bottom) + kMargin);
+  return layout;
+}
+
+/// Where the plane lies on the canvas.
+struct Plan {
+  AxisScale x;
+  AxisScale y;
+
+  Point at(const Vec2& p) const { return {x.at(p.x()), y.at(p.y())}; }
+  std::vector<Point> at(const Polygon& polygon, const Vec2& moved = Vec2::Zero()) const {
+    std::vector<Point> points;
+    for (const Vec2& p : polygon) points.push_back(at(Vec2(p + moved)));
+    return points;
+  }
+  Point corner() const { return {x.first, y.last}; }
+  Size size() const { return {x.last - x.first, y.first - y.last}; }
+};
+
+/// The plan of a panel, in the middle of its box and to scale.
+Plan plan_of(const MapPanel& panel, const Layout& layout, Point box_corner) {
+  const Rectangle shown = shown_by(panel);
+  const double scale = std::min(layout.box.width / shown.size().x(), layout.box.height / shown.size().y());
+  const Size size{scale * shown.size().x(), scale * shown.size().y()};
+  const double left = box_corner.x + 0.5 * (layout.box.width - size.width);
+  const double top = box_corner.y + 0.5 * (layout.box.height - size.height);
+  return {{{shown.lower.x(), shown.upper.x()}, left, left + size.width},
+          {{shown.lower.y(), shown.upper.y()}, top + size.height, top}};
+}
+
+/// Where copies of a periodic panel stand; the central one alone if it is not.
+std::vector<Vec2> copies_of(const MapPanel& panel) {
+  if (!panel.is_periodic) return {Vec2::Zero()};
+  const Vec2 period = geometry::bounding_box(panel.outline).size();
+  const Vec2 shown = shown_by(panel).size();
+  const int beyond_x = static_cast<int>(std::ceil(0.5 * (shown.x() / period.x() - 1.0)));
+  const int beyond_y = static_cast<int>(std::ceil(0.5 * (shown.y() / period.y() - 1.0)));
+  std::vector<Vec2> copies;
+  for (int j = -beyond_y; j <= beyond_y; ++j)
+    for (int i = -beyond_x; i <= beyond_x; ++i) copies.emplace_back(i * period.x(), j * period.y());
+  return copies;
+}
+
+/// Whether the box round some points, moved, reaches into what the panel shows.
+template <class Points>
+bool is_shown(const MapPanel& panel, const Points& points, const Vec2& moved) {
+  const Rectangle shown = shown_by(panel);
+  Vec2 lower = points[0];
+  Vec2 upper = points[0];
+  for (const Vec2& p : points) {
+    lower = lower.cwiseMin(p);
+    upper = upper.cwiseMax(p);
+  }
+  return ((lower + moved).array() <= shown.upper.array()).all() &&
+         ((upper + moved).array() >= shown.lower.array()).all();
+}
+
+using Paths = std::vector<std::vector<Point>>;
+
+/// Regions by the step of the colour scale, so that those of one colour are filled as one.
+void draw_regions(Canvas& canvas, const MapPanel& panel, const Plan& plan, const Range& values) {
+  std::map<int, Paths> by_colour;
+  for (const Vec2& copy : copies_of(panel))
+    for (const MapRegion& region : panel.regions) {
+      if (region.outline.empty() || !is_shown(panel, region.outline, copy)) continue;
+      const double share = std::clamp((region.value - values.low) / values.span(), 0.0, 1.0);
+      by_colour[static_cast<int>(std::lround(share * kColourSteps))].push_back(plan.at(region.outline, copy));
+    }
+  for (const auto& [step, paths] : by_colour)
+    canvas.fill(paths, colour_at(static_cast<double>(step) / kColourSteps), kSwell);
+}
+
+void draw_lines(Canvas& canvas, const MapPanel& panel, const Plan& plan) {
+  const std::size_t count = panel.lines.size() + panel.fine_lines.size();
+  const double room = std::sqrt(plan.size().width * plan.size().height / static_cast<double>(count));
+  if (count == 0 || room < kLeastCell) return;
+  const double width = std::clamp(0.03 * room, 0.3, 1.0);
+  for (const auto& [lines, stroke] : {std::pair{&panel.fine_lines, Stroke{kLine, 0.5 * width, {}}},
+                                      std::pair{&panel.lines, Stroke{kLine, width, {}}}})
+    for (const Vec2& copy : copies_of(panel))
+      for (const MapLine& line : *lines)
+        if (is_shown(panel, line, copy)) canvas.line({plan.at(line[0] + copy), plan.at(line[1] + copy)}, stroke);
+}
+
+/// Makes what lies round the central period pale.
+void veil_surroundings(Canvas& canvas, const Plan& plan, const std::vector<Point>& outline) {
+  const Point corner = plan.corner();
+  const Size size = plan.size();
+  const double left = outline[0].x;
+  const double right = outline[2].x;
+  const double bottom = outline[0].y;
+  const double top = outline[2].y;
+  const auto rectangle = [](double x0, double y0, double x1, double y1) {
+    return std::vector<Point>{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+  };
+  const double end_x = corner.x + size.width;
+  const double end_y = corner.y + size.height;
+  canvas.fill({rectangle(corner.x, corner.y, end_x, top), rectangle(corner.x, bottom, end_x, end_y),
+               rectangle(corner.x, top, left, bottom), rectangle(right, top, end_x, bottom)},
+              kWhite, 0.0, kSurroundingsVeil);
+}
+
+void draw_plan(Canvas& canvas, const MapPanel& panel, const Plan& plan, const Range& values) {
+  if (panel.outline.empty()) return;
+  const std::vector<Point> outline = plan.at(panel.outline);
+  const std::vector<Point> frame = panel.is_periodic ? plan.at(geometry::to_polygon(shown_by(panel))) : outline;
+  canvas.fill({frame}, kRest);
+  canvas.hatch(frame, kHatchSpacing, {kHatch, 0.8, {}});
+  canvas.clip(frame);
+  draw_regions(canvas, panel, plan, values);
+  draw_lines(canvas, panel, plan);
+  if (panel.is_periodic) veil_surroundings(canvas, plan, outline);
+  canvas.end_clip();
+  std::vector<Point> border = outline;
+  border.push_back(border.front());
+  canvas.line(border, {kAxis, 1.3, panel.is_periodic ? std::vector<double>{6.0, 3.0} : std::vector<double>{}});
+}
+
+void draw_axes(Canvas& canvas, const Plan& plan) {
+  const Stroke axis{kAxis, 1.0, {}};
+  const double left = plan.corner().x - 6.0;
+  const double bottom = plan.corner().y + plan.size().height + 6.0;
+  canvas.line({{plan.x.first, bottom}, {plan.x.last, bottom}}, axis);
+  canvas.line({{left, plan.y.first}, {left, plan.y.last}}, axis);
+  const auto most = [](double length, double each) { return std::max(1, static_cast<int>(length / each)); };
+  const Ticks xs = make_ticks(plan.x.values, most(plan.size().width, 48.0));
+  for (std::size_t k = 0; k < xs.positions.size(); ++k) {
+    const double x = plan.x.at(xs.positions[k]);
+    canvas.line({{x, bottom}, {x, bottom + kTickLength}}, axis);
+    canvas.text({x, bottom + kTickLength + 3.0 + kTickFont.size}, xs.labels[k], kTickFont, kText, Align::centre);
+  }
+  const Ticks ys = make_ticks(plan.y.values, most(plan.size().height, 34.0));
+  for (std::size_t k = 0; k < ys.positions.size(); ++k) {
+    const double y = plan.y.at(ys.positions[k]);
+    canvas.line({{left - kTickLength, y}, {left, y}}, axis);
+    canvas.text({left - kTickLength - 3.0, y + 0.36 * kTickFont.size}, ys.labels[k], kTickFont, kText, Align::right);
+  }
+}
+
+void draw_panel(Canvas& canvas, const MapPanel& panel, const Layout& layout, Point cell_corner) {
+  const double middle = cell_corner.x + kPlanLeft + 0.5 * layout.box.width;
+  const Plan plan = plan_of(panel, layout, {cell_corner.x + kPlanLeft, cell_corner.y + layout.head});
+  double baseline = plan.corner().y - 9.0;
+  const auto line_above = [&](const std::string& text, Font font, Colour colour) {
+    for (const std::string& shown : canvas.fitted(text, font, layout.cell.width - 8.0, 1, Ellipsis::middle))
+      canvas.text({middle, baseline}, shown, font, colour, Align::centre);
+    baseline -= font.size + 5.0;
+  };
+  for (auto remark = panel.remarks.rbegin(); remark != panel.remarks.rend(); ++remark)
+    line_above(*remark, kRemarkFont, kFaint);
+  line_above(panel.title, kPanelFont, kText);
+  draw_plan(canvas, panel, plan, layout.values);
+  draw_axes(canvas, plan);
+}
+
+void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const Layout& layout) {
+  const double right = layout.bar_left + kBarWidth;
+  const double bottom = layout.bar_top + layout.bar_height;
+  const double step = layout.bar_height / kColourSteps;
+  for (int k = 0; k < kColourSteps; ++k)  // each a little taller than its step, to leave no gap
+    canvas.fill_rectangle({layout.bar_left, layout.bar_top + k * step},
+                          {kBarWidth, k + 1 < kColourSteps ? 1.5 * step : step},
+                          colour_at(1.0 - (k + 0.5) / kColourSteps));
+  const AxisScale scale{layout.values, bottom, layout.bar_top};
+  const auto frame = [&](double top, double height) {
+    canvas.line({{layout.bar_left, top},
+                 {right, top},
+                 {right, top + height},
+                 {layout.bar_left, top + height},
+                 {layout.bar_left, top}},
+                {kAxis, 0.9, {}});
+  };
+  frame(layout.bar_top, layout.bar_height);
+  double widest = 0.0;
+  for (std::size_t k = 0; k < layout.value_ticks.positions.size(); ++k) {
+    const double y = scale.at(layout.value_ticks.positions[k]);
+    const std::string& label = layout.value_ticks.labels[k];
+    canvas.line({{right, y}, {right + kTickLength, y}}, {kAxis, 0.9, {}});
+    canvas.text({right + kTickLength + 4.0, y + 0.36 * kTickFont.size}, label, kTickFont, kText, Align::left);
+    widest = std::max(widest, canvas.text_width(label, kTickFont));
+  }
+  canvas.text({right + kTickLength + 4.0 + widest + 6.0 + kLabelFont.size, layout.bar_top + 0.5 * layout.bar_height},
+              plot.value_label, kLabelFont, kText, Align::centre, true);
+
+  const double top = bottom + 18.0;
+  const std::vector<Point> swatch = {
+      {layout.bar_left, top}, {right, top}, {right, top + kBarWidth}, {layout.bar_left, top + kBarWidth}};
+  canvas.fill({swatch}, kRest);
+  canvas.hatch(swatch, kHatchSpacing, {kHatch, 0.8, {}});
+  frame(top, kBarWidth);
+  canvas.text({right + 6.0, top + 0.5 * kBarWidth + 0.36 * kTickFont.size}, plot.rest_label, kTickFont, kText,
+              Align::left);
+}
+
+std::string render(const MapPlot& plot, Canvas::Format format, double scale) {
+  const Layout layout = lay_out(plot, Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0));
+  Canvas canvas(format, layout.figure, scale);
+  canvas.fill_rectangle({0.0, 0.0}, layout.figure, kWhite);
+  double baseline = kMargin + kTitleFont.size;
+  for (const std::string& line : layout.title) {
+    canvas.text({0.5 * layout.figure.width, baseline}, line, kTitleFont, kText, Align::centre);
+    baseline += 1.3 * kTitleFont.size;
+  }
+  for (std::size_t k = 0; k < plot.panels.size(); ++k) {
+    const Point corner{layout.left + layout.cell.width * static_cast<double>(k % layout.columns),
+                       layout.top + layout.cell.height * static_cast<double>(k / layout.columns)};
+    draw_panel(canvas, plot.panels[k], layout, corner);
+  }
+  const double grid_width = layout.cell.width * static_cast<double>(layout.columns);
+  const double grid_height = layout.cell.height * static_cast<double>(layout.rows);
+  canvas.text({layout.left + 0.5 * (grid_width + 22.0), layout.top + grid_height + kLabelFont.size - 8.0},
+              fmt::format("x ({})", plot.axis_unit), kLabelFont, kText, Align::centre);
+  canvas.text({kMargin + kLabelFont.size - 4.0, layout.top + 0.5 * grid_height}, fmt::format("y ({})", plot.axis_unit),
+              kLabelFont, kText, Align::centre, true);
+  draw_colour_bar(canvas, plot, layout);
+  return canvas.finish();
+}
+
+}  // namespace
+
+std::string render_svg(const MapPlot& plot) {
+  return render(plot, Canvas::Format::svg, 1.0);
+}
+
+std::string render_png(const MapPlot& plot, double scale) {
+  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
+  return render(plot, Canvas::Format::png, scale);
+}
+
+}  // namespace retrace::report

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "geometry/polygon.h"
+
+namespace retrace::report {
+
+/// A region with one value all over it.
+struct MapRegion {
+  geometry::Polygon outline;
+  double value = 0.0;
+};
+
+using MapLine = std::array<geometry::Vec2, 2>;
+
+/// A plan, drawn to scale.
+struct MapPanel {
+  std::string title;
+  std::vector<std::string> remarks;  ///< lines under the title
+  geometry::Polygon outline;
+  bool is_periodic = false;         ///< the outline repeats as a rectangle: its surroundings are drawn paler
+  std::vector<MapLine> lines;       ///< left out where they would lie too close
+  std::vector<MapLine> fine_lines;  ///< likewise
+  std::vector<MapRegion> regions;   ///< what they leave free of the outline is hatched
+};
+
+/// Plans side by side, with one colour scale. Texts are UTF-8; what does not fit is shortened by an ellipsis.
+struct MapPlot {
+  std::string title;
+  std::string axis_unit;    ///< "mm": the axes are "x (mm)" and "y (mm)"
+  std::string value_label;  ///< of the colour bar, which starts at 0
+  std::string rest_label;   ///< what a hatched place is
+  double full_value = 1.0;  ///< the upper end of the colour bar if a value exceeds its half
+  std::vector<MapPanel> panels;
+};
+
+/// The plot as an SVG document. The same plot gives the same bytes. \throw OutputError if it cannot be drawn.
+std::string render_svg(const MapPlot& plot);
+
+/// The plot as a PNG file, `scale` pixels to the drawing unit of the SVG.
+/// \pre 0 < scale <= 16 \throw as render_svg(); std::invalid_argument for a scale out of range.
+std::string render_png(const MapPlot& plot, double scale = 2.0);
+
+}  // namespace retrace::report

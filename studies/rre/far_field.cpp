@@ -1,0 +1,67 @@
+#include "studies/rre/far_field.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Vec3;
+
+bool is_before(const FarFieldSpot& a, const FarFieldSpot& b) {
+  if (a.stokes.i != b.stokes.i) return a.stokes.i > b.stokes.i;
+  if (a.deviation.rad() != b.deviation.rad()) return a.deviation.rad() < b.deviation.rad();
+  return a.orientation.rad() < b.orientation.rad();
+}
+
+}  // namespace
+
+FarFieldBuilder::FarFieldBuilder(const raytrace::Illumination& illumination) : places_(FarField::kOneDirection_rad) {
+  const double t = illumination.incidence.rad();
+  const double p = illumination.azimuth.rad();
+  const Vec3 to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+  spots_.push_back({to_source, {}, std::numeric_limits<std::uint32_t>::max()});
+  places_.insert(to_source, 0);
+}
+
+void FarFieldBuilder::add(const raytrace::ReturnedBeam& beam) {
+  std::size_t index = spots_.size();
+  places_.visit(beam.direction, [&](std::size_t known) { index = std::min(index, known); });
+  if (index == spots_.size()) {
+    spots_.push_back({beam.direction, {}, beam.depth});
+    places_.insert(beam.direction, index);
+  }
+  spots_[index].stokes += beam.stokes;
+  spots_[index].least_depth = std::min(spots_[index].least_depth, beam.depth);
+}
+
+FarFieldSpot FarFieldBuilder::seen_from_source(const Spot& spot) const {
+  FarFieldSpot seen{{}, {}, spot.stokes, spot.least_depth};
+  const Vec3& to_source = spots_.front().direction;
+  if (&spot == &spots_.front()) return seen;
+  seen.deviation = Angle::from_rad(std::atan2(spot.direction.cross(to_source).norm(), spot.direction.dot(to_source)));
+  const Vec3 first = raytrace::source_axis(to_source);
+  const Vec3 second = to_source.cross(first);
+  const double turn = std::atan2(spot.direction.dot(second), spot.direction.dot(first));
+  // Rounding must not choose between -180 and 180 degrees.
+  seen.orientation = Angle::from_rad(turn < 1e-9 - std::numbers::pi ? turn + 2.0 * std::numbers::pi : turn);
+  return seen;
+}
+
+FarField FarFieldBuilder::finish() const {
+  FarField field;
+  for (const Spot& spot : spots_) {
+    field.total_power += spot.stokes.i;
+    if (spot.stokes.i < FarField::kLeastPower)
+      field.other_power += spot.stokes.i;
+    else
+      field.spots.push_back(seen_from_source(spot));
+  }
+  std::sort(field.spots.begin(), field.spots.end(), is_before);
+  return field;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,273 @@
+// Footprints and far fields of whole studies, against closed forms and the ledger.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "raytrace/threads.h"
+#include "studies/rre/io/far_field_files.h"
+#include "studies/rre/io/footprint_files.h"
+#include "studies/rre/rre.h"
+#include "tests/support/closed_forms.h"
+#include "tests/support/designs.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace testing;
+using geometry::Arrangement;
+using Json = nlohmann::ordered_json;
+
+Design design_of(const geometry::PartSpec& part, bool is_ideal = false) {
+  Design design;
+  design.part = part;
+  design.refractive_index = kPmma;
+  design.idealisation = {is_ideal, is_ideal};
+  return design;
+}
+
+RreResult run(const Design& design, std::vector<double> incidence_deg, std::vector<double> azimuth_deg = {0.0},
+              std::optional<double> cutoff = {}) {
+  RreRequest request;
+  request.incidence_deg = std::move(incidence_deg);
+  request.azimuth_deg = std::move(azimuth_deg);
+  request.engine = Engine::exact;
+  request.cutoff = cutoff;
+  request.footprint = true;
+  request.far_field = true;
+  return RreStudy({design}, request).run();
+}
+
+double area_above(const Footprint& footprint, double efficiency) {
+  double area = 0.0;
+  for (const ActiveRegion& region : footprint.regions)
+    if (region.efficiency > efficiency) area += geometry::area(region.outline_mm);
+  return area;
+}
+
+geometry::PartSpec honeycomb() {
+  return infinite(geometry::HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0);
+}
+
+geometry::PartSpec bricks() {
+  geometry::PartSpec spec = finite(geometry::RtpElement{2.0, 2.0, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
+  spec.shifted_rows = geometry::RowParity::odd;
+  return spec;
+}
+
+// Mirror cubes under a lossless face: each active point sends everything back, and they fill the effective aperture.
+TEST(Footprint, OfIdealCubesIsTheEffectiveAperture) {
+  const RreResult result = run(design_of(honeycomb(), true), {0.0, 12.0, 25.0, 40.0}, {0.0, 25.0});
+  ASSERT_EQ(result.returned.size(), 8U);
+  for (const ReturnedLight& light : result.returned) {
+    const double expected = honeycomb_rre(light.at.incidence_deg, light.at.azimuth_deg, kPmma);
+    EXPECT_NEAR(light.footprint->active_share(), expected, 1e-9);
+    EXPECT_NEAR(light.footprint->rre_shown(), expected, 1e-9);
+    for (const ActiveRegion& region : light.footprint->regions) EXPECT_NEAR(region.efficiency, 1.0, 1e-9);
+  }
+}
+
+TEST(Footprint, OfPrismsAtNormalIncidenceIsTheWholeFace) {
+  for (const geometry::PartSpec& spec : {single(geometry::RtpElement{0.45, 0.45, 90.0}, 0.5),
+                                         infinite(geometry::RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 0.6)}) {
+    const Footprint footprint = *run(design_of(spec), {0.0}).returned.at(0).footprint;
+    EXPECT_NEAR(footprint.active_share(), 1.0, 1e-9);
+    EXPECT_EQ(footprint.regions.size(), 1U) << "neighbours of one efficiency are joined";
+  }
+}
+
+// docs/theory/closed_forms.md, 1: a full element sends back all that enters; half an element what its border wall
+// reflects, the entrance and the wall being parallel faces.
+TEST(Footprint, ShowsTheHalvesOfABrickArray) {
+  const Footprint footprint = *run(design_of(bricks()), {0.0}).returned.at(0).footprint;
+  const double r = std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0);
+  EXPECT_NEAR(area_above(footprint, 0.5) / footprint.entrance_area_mm2, 0.88, 1e-9);
+  for (const ActiveRegion& region : footprint.regions) {
+    const bool is_full = region.efficiency > 0.5;
+    const double expected = is_full ? 1.0 - r : 2.0 * r / (1.0 + r) - r;
+    EXPECT_NEAR(region.efficiency, expected, 1e-2 * expected) << "paths below the least efficiency are left out";
+  }
+}
+
+// A little off the normal what the border walls send back leaves the cone: the halves are the dead spots.
+TEST(Footprint, HalvesAreDeadOffTheNormal) {
+  const double t = 1.0;
+  const Footprint footprint = *run(design_of(bricks()), {t}).returned.at(0).footprint;
+  // Where light that enters at the middle of a half comes to the elements.
+  const double shift = 3.0 * std::tan(std::asin(std::sin(t * kDeg) / kPmma));
+  const auto covers = [&](double x, double y) {
+    for (const ActiveRegion& region : footprint.regions) {
+      const geometry::Rectangle box = geometry::bounding_box(region.outline_mm);
+      if (x > box.lower.x() && x < box.upper.x() && y > box.lower.y() && y < box.upper.y()) return true;
+    }
+    return false;
+  };
+  for (const double y : {1.0, 5.0, 9.0}) {
+    EXPECT_FALSE(covers(0.5 + shift, y));
+    EXPECT_FALSE(covers(9.5 + shift, y));
+    EXPECT_TRUE(covers(4.5 + shift, y));
+  }
+  EXPECT_LE(footprint.active_share(), 0.88);
+  EXPECT_GT(footprint.active_share(), 0.85);
+}
+
+TEST(Footprint, AddsUpToWhatIsReturnedAndStaysOnTheFace) {
+  const geometry::PartSpec triangles = infinite(geometry::TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0);
+  for (const geometry::PartSpec& spec : {bricks(), triangles}) {
+    const RreResult result = run(design_of(spec), {4.0, 15.0}, {10.0}, 1e-6);
+    for (const ReturnedLight& light : result.returned) {
+      const Footprint& footprint = *light.footprint;
+      EXPECT_LE(footprint.rre_shown(), light.at.rre + 1e-9);
+      EXPECT_NEAR(footprint.rre_shown(), light.at.rre, 5e-3);
+      const geometry::Rectangle face = geometry::bounding_box(result.faces.at(0).outline_mm);
+      double sum = 0.0;
+      for (const ActiveRegion& region : footprint.regions) {
+        EXPECT_TRUE(geometry::contains(face, region.outline_mm, 1e-9));
+        sum += geometry::area(region.outline_mm);
+      }
+      EXPECT_NEAR(sum, footprint.active_area_mm2, 1e-8);
+    }
+  }
+}
+
+TEST(EntranceFace, HasTheRimsAndRootsOfItsElements) {
+  const geometry::Part prism = geometry::build_part(single(geometry::RtpElement{2.0, 1.0, 90.0}, 0.5));
+  const EntranceFace face = entrance_face_of(prism);
+  EXPECT_FALSE(face.is_periodic);
+  EXPECT_EQ(face.outline_mm.size(), 4U);
+  EXPECT_EQ(face.rims_mm.size(), 6U);
+  ASSERT_EQ(face.roots_mm.size(), 1U);
+  EXPECT_NEAR(face.roots_mm[0][0].x(), 1.0, 1e-12);
+  EXPECT_TRUE(entrance_face_of(geometry::build_part(honeycomb())).is_periodic);
+}
+
+TEST(FootprintFiles, AreClosedRingsAndOneEntryADirection) {
+  const RreResult result = run(design_of(bricks()), {0.0, 1.0});
+  const Json json = Json::parse(footprint_json(result));
+  EXPECT_EQ(json["schema"], "retrace.footprint/1");
+  EXPECT_EQ(json["type"], "FeatureCollection");
+  EXPECT_EQ(json["complete"], true);
+  ASSERT_EQ(json["regions"].size(), 2U);
+  std::vector<double> area(2), power(2);
+  for (const Json& feature : json["features"]) {
+    EXPECT_EQ(feature["geometry"]["type"], "Polygon");
+    const Json& ring = feature["geometry"]["coordinates"][0];
+    EXPECT_EQ(ring.front(), ring.back());
+    geometry::Polygon outline;
+    for (std::size_t k = 0; k + 1 < ring.size(); ++k) outline.emplace_back(ring[k][0], ring[k][1]);
+    const std::size_t k = feature["properties"]["incidence_deg"] == 0.0 ? 0 : 1;
+    area[k] += geometry::area(outline);
+    power[k] += geometry::area(outline) * feature["properties"]["efficiency"].get<double>();
+    EXPECT_EQ(feature["properties"]["acceptance_half_angle_deg"], 0.5);
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(json["regions"][k]["active_area_mm2"].get<double>(), area[k], 1e-9);
+    EXPECT_NEAR(json["regions"][k]["rre_shown"].get<double>(), power[k] / 100.0, 1e-12);
+    EXPECT_EQ(json["regions"][k]["entrance_area_mm2"], 100.0);
+  }
+}
+
+// Everything that leaves the entrance face is in the table, at any incidence.
+TEST(FarField, AddsUpToTheLedger) {
+  const RreResult result = run(design_of(bricks()), {0.0, 7.0, 30.0}, {0.0, 35.0}, 1e-6);
+  ASSERT_EQ(result.returned.size(), 6U);
+  for (const ReturnedLight& light : result.returned) {
+    const FarField& field = *light.far_field;
+    const raytrace::Ledger& ledger = light.at.ledger;
+    using raytrace::Account;
+    EXPECT_NEAR(field.total_power,
+                ledger[Account::retroreflected] + ledger[Account::returned_elsewhere] + ledger[Account::front_specular],
+                1e-12);
+    double sum = field.other_power;
+    double in_cone = 0.0;
+    for (std::size_t k = 0; k < field.spots.size(); ++k) {
+      const FarFieldSpot& spot = field.spots[k];
+      sum += spot.stokes.i;
+      if (spot.deviation.deg() <= 0.5) in_cone += spot.stokes.i;
+      EXPECT_GE(field.spots[k > 0 ? k - 1 : 0].stokes.i, spot.stokes.i);
+      EXPECT_LE(std::hypot(spot.stokes.q, spot.stokes.u, spot.stokes.v), spot.stokes.i * (1.0 + 1e-9));
+    }
+    EXPECT_NEAR(sum, field.total_power, 1e-12);
+    EXPECT_NEAR(in_cone, light.at.rre, 1e-9);
+  }
+}
+
+// The face alone sends light to the mirror direction: twice the incidence away, on the far side of the normal.
+TEST(FarField, KnowsWhereTheFaceReflectsTo) {
+  const double t = 10.0;
+  const RreResult result = run(design_of(bricks()), {t}, {90.0});
+  for (const FarFieldSpot& spot : result.returned.at(0).far_field->spots) {
+    if (spot.least_depth != 0) continue;
+    EXPECT_NEAR(spot.deviation.deg(), 2.0 * t, 1e-9);
+    // The source lies over +y; its first axis is +x, the second points away from +y.
+    EXPECT_NEAR(std::abs(spot.orientation.deg()), 90.0, 1e-9);
+  }
+}
+
+// A prism of another angle: all light that two facets turn is deviated by 2 n (A - 90 deg) and more, to either side.
+TEST(FarField, OfAWrongPrismAngleHasTwoSpots) {
+  const double error_deg = 0.1;
+  const RreResult result =
+      run(design_of(infinite(geometry::RtpElement{0.5, 0.5, 90.0 + error_deg}, Arrangement::aligned, 0.5)), {0.0});
+  const FarField& field = *result.returned.at(0).far_field;
+  ASSERT_GE(field.spots.size(), 2U);
+  const double expected = std::asin(kPmma * std::sin(2.0 * error_deg * kDeg)) / kDeg;
+  double orientations = 0.0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(field.spots[k].deviation.deg(), expected, 1e-9);
+    EXPECT_GT(field.spots[k].stokes.i, 0.4);
+    orientations += field.spots[k].orientation.deg();
+  }
+  EXPECT_NEAR(orientations, 180.0, 1e-6) << "0 and 180 degrees";
+}
+
+TEST(FarFieldFiles, CsvAndJsonHoldTheSame) {
+  const RreResult result = run(design_of(bricks()), {0.0, 7.0});
+  const Json json = Json::parse(far_field_json(result));
+  EXPECT_EQ(json["schema"], "retrace.far_field/1");
+  ASSERT_EQ(json["directions"].size(), 2U);
+  std::string csv =
+      "design,incidence_deg,azimuth_deg,wavelength_nm,deviation_arcmin,deviation_azimuth_deg,power,s1,s2,s3,depth_"
+      "min\n";
+  for (const Json& direction : json["directions"]) {
+    EXPECT_GE(direction["total_power"].get<double>(), direction["other_power"].get<double>());
+    for (const Json& spot : direction["spots"]) {
+      for (const char* key : {"design", "incidence_deg", "azimuth_deg", "wavelength_nm"})
+        csv += direction[key].dump() + ',';
+      std::string rest;
+      for (const auto& [key, value] : spot.items()) rest += (rest.empty() ? "" : ",") + key;
+      EXPECT_EQ(rest, "deviation_arcmin,deviation_azimuth_deg,power,s1,s2,s3,depth_min");
+      csv += '\n';
+    }
+  }
+  const std::string written = far_field_csv(result);
+  EXPECT_EQ(std::count(written.begin(), written.end(), '\n'), std::count(csv.begin(), csv.end(), '\n'));
+  EXPECT_TRUE(written.starts_with(csv.substr(0, csv.find('\n') + 1)));
+}
+
+TEST(ReturnedLight, IsTheSameAtAnyNumberOfThreads) {
+  const auto written = [&](unsigned threads) {
+    RreResult result;
+    raytrace::run_with_threads(threads, [&] { result = run(design_of(honeycomb()), {0.0, 8.0, 15.0}, {20.0}, 1e-5); });
+    return footprint_json(result) + far_field_json(result) + far_field_csv(result);
+  };
+  EXPECT_EQ(written(1), written(2));
+}
+
+TEST(ReturnedLight, NeedsTheExactEngine) {
+  RreRequest request;
+  request.engine = Engine::montecarlo;
+  request.footprint = true;
+  EXPECT_THROW(RreStudy({design_of(bricks())}, request), InputError);
+}
+
+TEST(ReturnedLight, IsNotGatheredUnasked) {
+  RreRequest request;
+  request.engine = Engine::exact;
+  const RreResult result = RreStudy({design_of(bricks())}, request).run();
+  EXPECT_TRUE(result.returned.empty());
+  EXPECT_TRUE(result.faces.empty());
+}
+
+}  // namespace
+}  // namespace retrace::studies
