@@ -67,7 +67,7 @@ _retrace() {
 
   if [[ $word == -* ]]; then
     case $command in
-      rre) _retrace_words "$word" "$common --incidence --azimuth --engine --samples --target-error --cutoff" ;;
+      rre) _retrace_words "$word" "$common --incidence --azimuth --engine --samples --target-error --cutoff --footprint --far-field" ;;
       *) _retrace_words "$word" "$common" ;;
     esac
     return
