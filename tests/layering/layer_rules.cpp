@@ -33,7 +33,8 @@ const std::map<std::string, Names>& folders() {
 
 /// What a room of studies/ may see of the others. Rooms that come later are listed here first.
 const std::map<std::string, Names>& study_rooms() {
-  static const std::map<std::string, Names> rooms = {{"design", {}}, {"rre", {"design"}}, {"inspect", {"design"}}};
+  static const std::map<std::string, Names> rooms = {
+      {"design", {}}, {"rre", {"design"}}, {"inspect", {"design"}}, {"metrology", {}}};
   return rooms;
 }
 
@@ -83,6 +84,8 @@ const std::vector<Library>& libraries() {
       {"toml++", "toml++/", "studies/design/ or an io/ room",
        [](const std::string& path) { return path.starts_with("studies/design/") || in_io_room(path); }},
       {"CLI11", "CLI/", "app/", [](const std::string& path) { return path.starts_with("app/"); }},
+      {"FFTW", "fftw3", "a .cpp file of surface_models/",
+       [](const std::string& path) { return path.starts_with("surface_models/") && !is_header(path); }},
       {"cairo", "cairo", "a .cpp file of report/",
        [](const std::string& path) { return path.starts_with("report/") && !is_header(path); }}};
   return all;

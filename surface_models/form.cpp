@@ -1,0 +1,77 @@
+#include "surface_models/form.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace retrace::surface_models {
+namespace {
+
+/// Legendre polynomials P_0..P_degree at the `count` points of an axis scaled to -1..1: nearly orthogonal on the grid,
+/// so that the normal equations keep their accuracy.
+Eigen::MatrixXd legendre(std::size_t count, int degree) {
+  Eigen::MatrixXd p(static_cast<Eigen::Index>(count), degree + 1);
+  for (Eigen::Index i = 0; i < p.rows(); ++i) {
+    const double t = count > 1 ? 2.0 * static_cast<double>(i) / static_cast<double>(count - 1) - 1.0 : 0.0;
+    p(i, 0) = 1.0;
+    if (degree > 0) p(i, 1) = t;
+    for (int n = 2; n <= degree; ++n) p(i, n) = ((2.0 * n - 1.0) * t * p(i, n - 1) - (n - 1.0) * p(i, n - 2)) / n;
+  }
+  return p;
+}
+
+/// The products P_a(x) P_b(y), a + b <= degree, over the grid.
+class Basis {
+ public:
+  Basis(const HeightMap& map, int degree)
+      : x_(legendre(map.columns, degree)), y_(legendre(map.rows, map.is_profile() ? 0 : degree)) {
+    for (int b = 0; b < y_.cols(); ++b)
+      for (int a = 0; a + b <= degree; ++a) powers_.push_back({a, b});
+  }
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(powers_.size()); }
+
+  void at(std::size_t column, std::size_t row, Eigen::VectorXd& values) const {
+    const auto i = static_cast<Eigen::Index>(column);
+    const auto j = static_cast<Eigen::Index>(row);
+    for (std::size_t k = 0; k < powers_.size(); ++k)
+      values[static_cast<Eigen::Index>(k)] = x_(i, powers_[k].first) * y_(j, powers_[k].second);
+  }
+
+ private:
+  Eigen::MatrixXd x_;
+  Eigen::MatrixXd y_;
+  std::vector<std::pair<int, int>> powers_;
+};
+
+Eigen::VectorXd fitted_coefficients(const HeightMap& map, const Basis& basis) {
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(basis.size(), basis.size());
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(basis.size());
+  Eigen::VectorXd values(basis.size());
+  for (std::size_t row = 0; row < map.rows; ++row)
+    for (std::size_t column = 0; column < map.columns; ++column) {
+      const double z = map.at(column, row);
+      if (!std::isfinite(z)) continue;
+      basis.at(column, row, values);
+      normal.selfadjointView<Eigen::Lower>().rankUpdate(values);
+      right += z * values;
+    }
+  const Eigen::MatrixXd full = normal.selfadjointView<Eigen::Lower>();
+  return full.completeOrthogonalDecomposition().solve(right);
+}
+
+}  // namespace
+
+HeightMap without_form(const HeightMap& map, int degree) {
+  const Basis basis(map, degree);
+  const Eigen::VectorXd coefficients = fitted_coefficients(map, basis);
+  HeightMap residual = map;
+  Eigen::VectorXd values(basis.size());
+  for (std::size_t row = 0; row < map.rows; ++row)
+    for (std::size_t column = 0; column < map.columns; ++column) {
+      basis.at(column, row, values);
+      residual.at(column, row) -= coefficients.dot(values);
+    }
+  return residual;
+}
+
+}  // namespace retrace::surface_models

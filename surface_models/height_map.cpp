@@ -1,0 +1,31 @@
+#include "surface_models/height_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::surface_models {
+
+HeightMap with_heights(const HeightMap& grid, std::vector<double> heights_nm) {
+  return {grid.columns, grid.rows, grid.x_pixel_um, grid.y_pixel_um, std::move(heights_nm)};
+}
+
+std::size_t measured_points(const HeightMap& map) {
+  return static_cast<std::size_t>(
+      std::count_if(map.heights_nm.begin(), map.heights_nm.end(), [](double z) { return std::isfinite(z); }));
+}
+
+HeightMap cropped(const HeightMap& map, double x_um, double y_um) {
+  const auto points = [](double length_um, double pixel_um) {
+    return static_cast<std::size_t>(std::ceil(length_um / pixel_um));
+  };
+  const std::size_t left = points(x_um, map.x_pixel_um);
+  const std::size_t top = map.is_profile() ? 0 : points(y_um, map.y_pixel_um);
+  HeightMap inner{map.columns - 2 * left, map.rows - 2 * top, map.x_pixel_um, map.y_pixel_um, {}};
+  inner.heights_nm.reserve(inner.columns * inner.rows);
+  for (std::size_t row = top; row < top + inner.rows; ++row)
+    for (std::size_t column = left; column < left + inner.columns; ++column)
+      inner.heights_nm.push_back(map.at(column, row));
+  return inner;
+}
+
+}  // namespace retrace::surface_models

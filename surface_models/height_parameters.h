@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace retrace::surface_models {
+
+/// Height parameters of ISO 25178-2 (of ISO 21920-2 for a profile), of deviations from the mean height.
+struct HeightParameters {
+  double sa_nm = 0.0;  ///< arithmetical mean height
+  double sq_nm = 0.0;  ///< root mean square height
+  double sz_nm = 0.0;  ///< maximum height: highest minus lowest point
+  double ssk = 0.0;    ///< skewness; 0 for a surface without height, as for a symmetric one
+  double sku = 0.0;    ///< kurtosis; 3 for Gaussian heights, 0 for a surface without height
+};
+
+/// The parameters of the finite values of `heights_nm`. \pre there is one
+HeightParameters height_parameters(std::span<const double> heights_nm);
+
+/// Repeated measurements of one quantity.
+struct Summary {
+  std::size_t count = 0;
+  double mean = 0.0;
+  double standard_deviation = 0.0;  ///< of one measurement (n - 1); 0 for a single one
+  double median = 0.0;
+};
+
+/// Summary of the finite values; all zero if there is none.
+Summary summarise(std::span<const double> values);
+
+}  // namespace retrace::surface_models

@@ -1,0 +1,103 @@
+#include "surface_models/scatter/phase_lobe.h"
+
+#include <array>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <numbers>
+
+#include "surface_models/scatter/phase.h"
+
+namespace retrace::surface_models {
+
+std::optional<PhaseLobe> PhaseLobe::make(const ScatterEvent& event, Lobe lobe, double sq_nm) {
+  const auto specular = specular_direction(event, Vec3::UnitZ(), lobe);
+  if (!specular) return std::nullopt;
+  PhaseLobe made;
+  made.specular_ = *specular;
+  made.cos_in_ = event.cos_in();
+  const double wave_number = 2.0 * std::numbers::pi * sq_nm / event.wavelength_nm;
+  made.phase_per_cos_in_ = wave_number * event.index_from;
+  made.phase_per_cos_out_ = lobe == Lobe::reflection ? wave_number * event.index_from : -wave_number * event.index_to;
+  const double at_edge = made.phase_per_cos_in_ * made.cos_in_;
+  const double at_normal = at_edge + made.phase_per_cos_out_;
+  made.highest_ = std::max(at_edge * at_edge, at_normal * at_normal);
+  made.lowest_ = at_edge * at_normal <= 0.0 ? 0.0 : std::min(at_edge * at_edge, at_normal * at_normal);
+  return made;
+}
+
+double PhaseLobe::specular_share() const {
+  return specular_share_of_phase(std::sqrt(variance(specular_beta())));
+}
+
+double PhaseLobe::scattered_share() const {
+  return scattered_share_of_phase(std::sqrt(variance(specular_beta())));
+}
+
+double PhaseLobe::variance(const Vec2& beta) const {
+  const double cos_out = std::sqrt(std::max(0.0, 1.0 - beta.squaredNorm()));
+  const double phase = phase_per_cos_in_ * cos_in_ + phase_per_cos_out_ * cos_out;
+  return phase * phase;
+}
+
+double PhaseLobe::order_probability(int order, double variance) {
+  if (variance <= 0.0) return order == 0 ? 1.0 : 0.0;
+  // Boost's lgamma, as std::lgamma writes to a global variable.
+  return std::exp(order * std::log(variance) - variance - boost::math::lgamma(order + 1.0));
+}
+
+/// Beyond it Poisson's probabilities add less than 1e-16.
+int PhaseLobe::last_order(double variance) {
+  return static_cast<int>(variance + 10.0 * std::sqrt(variance)) + 16;
+}
+
+double PhaseLobe::envelope(int order) const {
+  return order_probability(order, std::clamp(static_cast<double>(order), lowest_, highest_));
+}
+
+double PhaseLobe::envelope_sum() const {
+  double sum = 0.0;
+  for (int m = 1; m <= last_order(highest_); ++m) sum += envelope(m);
+  return sum;
+}
+
+int PhaseLobe::pick_order(double cumulative) const {
+  const int last = last_order(highest_);
+  for (int m = 1; m < last; ++m) {
+    cumulative -= envelope(m);
+    if (cumulative < 0.0) return m;
+  }
+  return last;
+}
+
+double integrate_over_disc(const Vec2& centre, double width, const std::function<double(const Vec2&)>& f) {
+  using boost::math::quadrature::gauss_kronrod;
+  constexpr unsigned kDepth = 6;
+  constexpr double kTolerance = 1e-8;
+  const double offset = centre.norm();
+  const Vec2 axis = offset > 0.0 ? Vec2(centre / offset) : Vec2(Vec2::UnitX());
+  const Vec2 across(-axis.y(), axis.x());
+  const auto ring = [&](double r) {
+    // Points at angle phi from the outward axis lie inside where cos phi <= limit.
+    const double limit = offset > 0.0 && r > 0.0 ? (1.0 - r * r - offset * offset) / (2.0 * r * offset) : 1.0;
+    if (limit <= -1.0) return 0.0;
+    const double first = std::acos(std::min(limit, 1.0));
+    const auto both_sides = [&](double phi) {
+      const Vec2 along = centre + r * std::cos(phi) * axis;
+      const Vec2 aside = r * std::sin(phi) * across;
+      return f(along + aside) + f(along - aside);
+    };
+    return r * gauss_kronrod<double, 15>::integrate(both_sides, first, std::numbers::pi, kDepth, kTolerance);
+  };
+  // The edge of the disc makes a kink in the radius; the rest of the borders only help the adaptive rule.
+  std::array<double, 6> borders = {0.0, 3.0 * width, 10.0 * width, 40.0 * width, 1.0 - offset, 1.0 + offset};
+  std::sort(borders.begin(), borders.end());
+  double sum = 0.0;
+  for (std::size_t k = 1; k < borders.size(); ++k) {
+    const double end = std::min(borders[k], 1.0 + offset);
+    if (end > borders[k - 1])
+      sum += gauss_kronrod<double, 15>::integrate(ring, borders[k - 1], end, kDepth, kTolerance);
+  }
+  return sum;
+}
+
+}  // namespace retrace::surface_models

@@ -1,0 +1,84 @@
+#include "surface_models/scatter/scatter_model.h"
+
+namespace retrace::surface_models {
+namespace {
+
+/// The frame of a facet: z is its normal, x and y those of the mean surface, turned with it.
+class FacetFrame {
+ public:
+  explicit FacetFrame(const Facet& facet) : is_tilted_(facet.is_tilted) {
+    if (is_tilted_) facet_from_mean_ = Eigen::Quaterniond::FromTwoVectors(facet.normal, Vec3::UnitZ());
+  }
+  Vec3 to_facet(const Vec3& v) const { return is_tilted_ ? facet_from_mean_ * v : v; }
+  Vec3 to_mean(const Vec3& v) const { return is_tilted_ ? facet_from_mean_.conjugate() * v : v; }
+  ScatterEvent to_facet(ScatterEvent event) const {
+    event.direction_in = to_facet(event.direction_in);
+    return event;
+  }
+
+ private:
+  bool is_tilted_;
+  Eigen::Quaterniond facet_from_mean_ = Eigen::Quaterniond::Identity();
+};
+
+/// Density of scattered directions per unit of the facet's direction cosines squared.
+template <class Model>
+double density(const Model& model, const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& direction) {
+  const FacetFrame frame(facet);
+  const Vec3 seen = frame.to_facet(direction);
+  if (!is_on_side(seen, lobe)) return 0.0;
+  return model.scattered_density(frame.to_facet(event), facet, lobe, seen.head<2>());
+}
+
+}  // namespace
+
+Facet sample_facet(const ScatterModel& model, const ScatterEvent& event, RandomStream& random) {
+  return std::visit([&](const auto& m) { return m.sample_facet(event, random); }, model);
+}
+
+std::optional<ScatterSample> sample(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                    RandomStream& random) {
+  const auto specular = specular_direction(event, facet.normal, lobe);
+  if (!specular) return std::nullopt;
+  return std::visit(
+      [&](const auto& m) -> std::optional<ScatterSample> {
+        ScatterSample drawn{*specular, *specular, 1.0, true};
+        const FacetFrame frame(facet);
+        if (const auto beta = m.sample_scattered(frame.to_facet(event), facet, lobe, random)) {
+          drawn.direction = frame.to_mean(direction_of(*beta, lobe));
+          drawn.is_specular = false;
+        }
+        if (!is_on_side(drawn.direction, lobe)) return std::nullopt;
+        if (facet.is_tilted) drawn.weight = m.unmasked_share(drawn.direction);
+        return drawn;
+      },
+      model);
+}
+
+double specular_share(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe) {
+  if (!specular_direction(event, facet.normal, lobe)) return 0.0;
+  return std::visit([&](const auto& m) { return m.specular_share(FacetFrame(facet).to_facet(event), facet, lobe); },
+                    model);
+}
+
+double evaluate(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                const Vec3& direction) {
+  if (!is_on_side(direction, lobe)) return 0.0;
+  return std::visit(
+      [&](const auto& m) {
+        const double unmasked = facet.is_tilted ? m.unmasked_share(direction) : 1.0;
+        return unmasked * density(m, event, facet, lobe, direction);
+      },
+      model);
+}
+
+double pdf(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& direction) {
+  const double cos_out = std::abs(direction.dot(facet.normal));
+  return std::visit([&](const auto& m) { return cos_out * density(m, event, facet, lobe, direction); }, model);
+}
+
+std::vector<std::string> warnings(const ScatterModel& model, double index, double wavelength_nm) {
+  return std::visit([&](const auto& m) { return m.warnings(index, wavelength_nm); }, model);
+}
+
+}  // namespace retrace::surface_models

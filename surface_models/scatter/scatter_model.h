@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "surface_models/scatter/abg.h"
+#include "surface_models/scatter/harvey_shack.h"
+#include "surface_models/scatter/height_map_scatter.h"
+#include "surface_models/scatter/microfacet.h"
+#include "surface_models/scatter/smooth.h"
+
+namespace retrace::surface_models {
+
+/// What a texture does to light. Copies are cheap; all functions are const, safe to call from any thread and, but where
+/// they say so, free of allocation.
+///
+/// One event in the tracer:
+///
+///     const Facet facet = sample_facet(model, event, random);
+///     const auto f = materials::fresnel(event.index_from / event.index_to, -event.direction_in.dot(facet.normal));
+///     // ... reflected and transmitted Stokes parameters at the facet, for both lobes or for one that is chosen
+///     const auto out = sample(model, event, facet, Lobe::reflection, random);
+///     // ... scale by out->weight; turn the polarisation as specular_direction turns into direction
+using ScatterModel = std::variant<Smooth, HarveyShack, Abg, Microfacet, HeightMapScatter>;
+
+/// Draws the piece of the surface that the light meets.
+Facet sample_facet(const ScatterModel& model, const ScatterEvent& event, RandomStream& random);
+
+/// Draws where a facet sends the light of a lobe. Nothing under total reflection in transmission, and where the
+/// direction runs to the wrong side of the mean surface: that light is lost.
+std::optional<ScatterSample> sample(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                    RandomStream& random);
+
+/// Share of a lobe's power that leaves in the facet's specular direction, masking aside; 0 without such a direction.
+double specular_share(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe);
+
+/// BSDF of the scattered light of a lobe given the facet, per sr, without Fresnel's factor and the specular light; its
+/// cosine is that to the facet's normal. By quadrature in some models: for tests and tables.
+double evaluate(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                const Vec3& direction);
+
+/// Density with which sample() draws `direction` as scattered light, per sr.
+double pdf(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& direction);
+
+/// What lies outside the range in which the model holds, one sentence each. Allocates.
+/// \param index of the denser side
+std::vector<std::string> warnings(const ScatterModel& model, double index, double wavelength_nm);
+
+}  // namespace retrace::surface_models

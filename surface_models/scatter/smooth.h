@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "surface_models/scatter/random_stream.h"
+#include "surface_models/scatter/scatter_event.h"
+
+namespace retrace::surface_models {
+
+/// An ideal plane: all light is specular.
+class Smooth {
+ public:
+  Facet sample_facet(const ScatterEvent&, RandomStream&) const { return {}; }
+  double specular_share(const ScatterEvent&, const Facet&, Lobe) const { return 1.0; }
+  std::optional<Vec2> sample_scattered(const ScatterEvent&, const Facet&, Lobe, RandomStream&) const { return {}; }
+  double scattered_density(const ScatterEvent&, const Facet&, Lobe, const Vec2&) const { return 0.0; }
+  double unmasked_share(const Vec3&) const { return 1.0; }
+  std::vector<std::string> warnings(double, double) const { return {}; }
+};
+
+}  // namespace retrace::surface_models

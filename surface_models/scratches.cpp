@@ -1,0 +1,109 @@
+#include "surface_models/scratches.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace retrace::surface_models {
+namespace {
+
+constexpr std::size_t kStretches = 16;
+constexpr double kSameSide = 0.75;
+constexpr double kDeviations = 5.0;
+/// From the median absolute deviation to the standard deviation of Gaussian values.
+constexpr double kGaussianMad = 1.4826;
+constexpr std::size_t kLeastLines = 16;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// One line of the map: its mean height and those of its stretches, NaN where nothing was measured.
+struct Line {
+  double mean_nm = kMissing;
+  std::array<double, kStretches> stretches_nm{};
+};
+
+Line line_of(const HeightMap& map, Axis along, std::size_t index) {
+  const std::size_t points = along == Axis::x ? map.columns : map.rows;
+  std::array<double, kStretches> sum{};
+  std::array<double, kStretches> count{};
+  for (std::size_t i = 0; i < points; ++i) {
+    const double z = along == Axis::x ? map.at(i, index) : map.at(index, i);
+    if (!std::isfinite(z)) continue;
+    sum[i * kStretches / points] += z;
+    count[i * kStretches / points] += 1.0;
+  }
+  Line line;
+  double all = 0.0;
+  double measured = 0.0;
+  for (std::size_t s = 0; s < kStretches; ++s) {
+    line.stretches_nm[s] = count[s] > 0.0 ? sum[s] / count[s] : kMissing;
+    all += sum[s];
+    measured += count[s];
+  }
+  if (2.0 * measured >= static_cast<double>(points)) line.mean_nm = all / measured;
+  return line;
+}
+
+/// Whether the line lies on the side of its mean in most of its stretches.
+bool is_consistent(const Line& line, double middle_nm) {
+  const double side = line.mean_nm < middle_nm ? -1.0 : 1.0;
+  double same = 0.0;
+  double measured = 0.0;
+  for (const double z : line.stretches_nm) {
+    if (!std::isfinite(z)) continue;
+    measured += 1.0;
+    // Half of the line's own depth: a few deep places do not make a scratch.
+    if (side * (z - middle_nm) > 0.5 * side * (line.mean_nm - middle_nm)) same += 1.0;
+  }
+  return same >= kSameSide * measured;
+}
+
+}  // namespace
+
+std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along) {
+  const std::size_t count = along == Axis::x ? roughness.rows : roughness.columns;
+  if (roughness.is_profile() || count < kLeastLines) return {};
+  const double pixel_um = along == Axis::x ? roughness.y_pixel_um : roughness.x_pixel_um;
+  std::vector<Line> lines;
+  std::vector<double> means;
+  for (std::size_t i = 0; i < count; ++i) {
+    lines.push_back(line_of(roughness, along, i));
+    if (std::isfinite(lines.back().mean_nm)) means.push_back(lines.back().mean_nm);
+  }
+  if (means.size() < kLeastLines) return {};
+  const double middle = median(means);
+  for (double& mean : means) mean = std::abs(mean - middle);
+  const double limit = kDeviations * kGaussianMad * median(means);
+
+  std::vector<Scratch> scratches;
+  const auto depth = [&](std::size_t i) { return middle - lines[i].mean_nm; };
+  for (std::size_t i = 0; i < count;) {
+    const auto stands_out = [&](std::size_t k) {
+      return std::isfinite(lines[k].mean_nm) && std::abs(depth(k)) > limit && is_consistent(lines[k], middle);
+    };
+    if (!stands_out(i)) {
+      ++i;
+      continue;
+    }
+    // One scratch takes all neighbouring lines that stand out to its side.
+    std::size_t deepest = i;
+    std::size_t end = i;
+    for (; end < count && stands_out(end) && (depth(end) > 0.0) == (depth(i) > 0.0); ++end)
+      if (std::abs(depth(end)) > std::abs(depth(deepest))) deepest = end;
+    const auto within = [&](std::size_t k) { return depth(k) / depth(deepest) >= 0.5; };
+    std::size_t low = deepest;
+    std::size_t high = deepest;
+    while (low > 0 && within(low - 1)) --low;
+    while (high + 1 < count && within(high + 1)) ++high;
+    scratches.push_back({along, static_cast<double>(deepest) * pixel_um, depth(deepest),
+                         static_cast<double>(high - low + 1) * pixel_um});
+    i = std::max(end, high + 1);
+  }
+  return scratches;
+}
+
+}  // namespace retrace::surface_models

@@ -1,0 +1,187 @@
+#include "surface_models/spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "surface_models/fft.h"
+
+namespace retrace::surface_models {
+namespace {
+
+constexpr double kMmPerUm = 1e-3;
+constexpr std::size_t kLeastPoints = 8;
+/// A peak's density over the median of its surroundings: bins of pure noise are distributed exponentially and pass
+/// 12 / ln 2 medians once in 3e7.
+constexpr double kPeakHeight = 25.0;
+constexpr double kLeastPeakPower = 0.01;
+/// The bins that the main lobe of a Hann window fills to each side, and those whose median is the surroundings.
+constexpr std::size_t kLobe = 2;
+constexpr std::size_t kSurroundings = 12;
+
+/// Hann window in its periodic form, without its zero.
+std::vector<double> hann(std::size_t points) {
+  std::vector<double> w(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    const double s = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(points));
+    w[i] = s * s;
+  }
+  return w;
+}
+
+/// Puts `at(i)` about its weighted mean and times the window into the field, missing points as 0.
+/// \return the sum of squares of the weights of what is measured, 0 if that is less than half of the points
+template <class At>
+double put_windowed(std::span<double> field, const std::vector<double>& window, At at) {
+  double sum = 0.0;
+  double weight = 0.0;
+  double squares = 0.0;
+  std::size_t measured = 0;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double z = at(i);
+    if (!std::isfinite(z)) continue;
+    ++measured;
+    sum += window[i] * z;
+    weight += window[i];
+    squares += window[i] * window[i];
+  }
+  if (2 * measured < window.size()) return 0.0;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double z = at(i);
+    field[i] = std::isfinite(z) ? window[i] * (z - sum / weight) : 0.0;
+  }
+  return squares;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The median density around bin k, its own lobe left out.
+double surroundings(const std::vector<double>& density, std::size_t k) {
+  std::vector<double> around;
+  const std::size_t low = k > kSurroundings + kLobe ? k - kSurroundings - kLobe : 0;
+  const std::size_t high = std::min(density.size(), k + kSurroundings + kLobe + 1);
+  for (std::size_t i = low; i < high; ++i)
+    if (i + kLobe < k || i > k + kLobe) around.push_back(density[i]);
+  return around.empty() ? 0.0 : median(std::move(around));
+}
+
+bool is_highest_in_its_lobe(const std::vector<double>& density, std::size_t k) {
+  for (std::size_t i = k > kLobe ? k - kLobe : 0; i < std::min(density.size(), k + kLobe + 1); ++i)
+    if (density[i] > density[k] || (density[i] == density[k] && i < k)) return false;
+  return true;
+}
+
+/// Where between the bins a line lies: under a Hann window the amplitudes a, b of its two highest bins obey
+/// offset = (2 b - a) / (a + b) (Grandke, IEEE Trans. Instrum. Meas. 32, 350, 1983).
+double offset_of(const std::vector<double>& density, std::size_t k) {
+  const double below = k > 0 ? density[k - 1] : 0.0;
+  const double above = k + 1 < density.size() ? density[k + 1] : 0.0;
+  const double ratio = std::sqrt(std::max(below, above) / density[k]);
+  const double offset = std::clamp((2.0 * ratio - 1.0) / (1.0 + ratio), 0.0, 0.5);
+  return above >= below ? offset : -offset;
+}
+
+}  // namespace
+
+Spectrum line_spectrum(const HeightMap& map, Axis axis) {
+  const bool along_x = axis == Axis::x;
+  const std::size_t points = along_x ? map.columns : map.rows;
+  const std::size_t lines = along_x ? map.rows : map.columns;
+  const double pixel_mm = (along_x ? map.x_pixel_um : map.y_pixel_um) * kMmPerUm;
+  if (points < kLeastPoints) return {};
+
+  const std::vector<double> window = hann(points);
+  RealFft fft(1, points);
+  std::vector<double> sum(fft.spectrum_columns(), 0.0);
+  std::size_t used = 0;
+  for (std::size_t line = 0; line < lines; ++line) {
+    const double squares =
+        put_windowed(fft.field(), window, [&](std::size_t i) { return along_x ? map.at(i, line) : map.at(line, i); });
+    if (squares == 0.0) continue;
+    fft.forward();
+    ++used;
+    for (std::size_t k = 1; k < sum.size(); ++k) sum[k] += std::norm(fft.spectrum()[k]) * pixel_mm / squares;
+  }
+  Spectrum spectrum;
+  if (used == 0) return spectrum;
+  for (std::size_t k = 1; k < sum.size(); ++k) {
+    spectrum.frequency_per_mm.push_back(static_cast<double>(k) / (static_cast<double>(points) * pixel_mm));
+    // Both signs of the frequency in one, but for the highest of an even number of points, which is its own mirror.
+    const double sides = 2 * k == points ? 1.0 : 2.0;
+    spectrum.density.push_back(sides * sum[k] / static_cast<double>(used));
+  }
+  return spectrum;
+}
+
+Spectrum radial_spectrum(const HeightMap& map) {
+  if (std::min(map.columns, map.rows) < kLeastPoints) return {};
+  const std::vector<double> wx = hann(map.columns);
+  const std::vector<double> wy = hann(map.rows);
+  std::vector<double> window;
+  window.reserve(map.heights_nm.size());
+  for (const double y : wy)
+    for (const double x : wx) window.push_back(x * y);
+  RealFft fft(map.rows, map.columns);
+  const double squares = put_windowed(fft.field(), window, [&](std::size_t i) { return map.heights_nm[i]; });
+  if (squares == 0.0) return {};
+  fft.forward();
+
+  const double dx_mm = map.x_pixel_um * kMmPerUm;
+  const double dy_mm = map.y_pixel_um * kMmPerUm;
+  const double fx = 1.0 / (static_cast<double>(map.columns) * dx_mm);
+  const double fy = 1.0 / (static_cast<double>(map.rows) * dy_mm);
+  const double ring = std::min(fx, fy);
+  // Beyond the lower of the two highest frequencies rings are no longer whole.
+  const auto rings = static_cast<std::size_t>(0.5 / std::max(dx_mm, dy_mm) / ring);
+  std::vector<double> sum(rings + 1, 0.0);
+  std::vector<double> count(rings + 1, 0.0);
+  for (std::size_t j = 0; j < fft.rows(); ++j)
+    for (std::size_t k = 0; k < fft.spectrum_columns(); ++k) {
+      const double v = static_cast<double>(std::min(j, fft.rows() - j)) * fy;
+      const auto r = static_cast<std::size_t>(std::lround(std::hypot(static_cast<double>(k) * fx, v) / ring));
+      if (r > rings) continue;
+      sum[r] += std::norm(fft.spectrum()[j * fft.spectrum_columns() + k]) * dx_mm * dy_mm / squares;
+      count[r] += 1.0;
+    }
+  Spectrum spectrum;
+  for (std::size_t r = 1; r <= rings; ++r) {
+    spectrum.frequency_per_mm.push_back(static_cast<double>(r) * ring);
+    spectrum.density.push_back(sum[r] / count[r]);
+  }
+  return spectrum;
+}
+
+std::vector<SpectralPeak> peaks_of(const Spectrum& spectrum, Axis axis) {
+  std::vector<SpectralPeak> peaks;
+  if (spectrum.density.empty()) return peaks;
+  const double step = spectrum.frequency_per_mm.front();
+  for (std::size_t k = 0; k < spectrum.density.size(); ++k) {
+    const double floor = surroundings(spectrum.density, k);
+    if (!is_highest_in_its_lobe(spectrum.density, k) || !(spectrum.density[k] > kPeakHeight * floor)) continue;
+    double power = 0.0;
+    for (std::size_t i = k > kLobe ? k - kLobe : 0; i < std::min(spectrum.density.size(), k + kLobe + 1); ++i)
+      power += std::max(0.0, spectrum.density[i] - floor) * step;
+    const double frequency = spectrum.frequency_per_mm[k] + offset_of(spectrum.density, k) * step;
+    peaks.push_back({axis, frequency, std::sqrt(power)});
+  }
+  return peaks;
+}
+
+std::vector<SpectralPeak> dominant_peaks(const HeightMap& map) {
+  std::vector<SpectralPeak> peaks;
+  for (const Axis axis : {Axis::x, Axis::y})
+    for (const SpectralPeak& peak : peaks_of(line_spectrum(map, axis), axis)) peaks.push_back(peak);
+  std::stable_sort(peaks.begin(), peaks.end(),
+                   [](const SpectralPeak& a, const SpectralPeak& b) { return a.sq_nm > b.sq_nm; });
+  std::erase_if(peaks, [&](const SpectralPeak& peak) {
+    return peak.sq_nm * peak.sq_nm < kLeastPeakPower * peaks.front().sq_nm * peaks.front().sq_nm;
+  });
+  if (peaks.size() > kMostPeaks) peaks.resize(kMostPeaks);
+  return peaks;
+}
+
+}  // namespace retrace::surface_models

@@ -1,0 +1,131 @@
+// Gwyddion's libraries compute the same quantities of the same surfaces. Its lengths and heights are in metres.
+
+#include <gtest/gtest.h>
+#include <libprocess/gwyprocess.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "surface_models/autocorrelation.h"
+#include "surface_models/form.h"
+#include "surface_models/gaussian_filter.h"
+#include "surface_models/height_parameters.h"
+#include "surface_models/spectrum.h"
+#include "tests/support/synthetic_surface.h"
+
+namespace retrace::surface_models {
+namespace {
+
+struct Release {
+  void operator()(void* object) const { g_object_unref(object); }
+};
+using Field = std::unique_ptr<GwyDataField, Release>;
+using Line = std::unique_ptr<GwyDataLine, Release>;
+
+Field field_of(const HeightMap& map) {
+  Field field(gwy_data_field_new(static_cast<gint>(map.columns), static_cast<gint>(map.rows),
+                                 static_cast<double>(map.columns) * map.x_pixel_um * 1e-6,
+                                 static_cast<double>(map.rows) * map.y_pixel_um * 1e-6, TRUE));
+  gdouble* const data = gwy_data_field_get_data(field.get());
+  std::transform(map.heights_nm.begin(), map.heights_nm.end(), data, [](double z) { return z * 1e-9; });
+  return field;
+}
+
+/// Roughness with a wave, a plane and heights that are not symmetric.
+HeightMap skewed_surface() {
+  HeightMap map = testing::gaussian_surface(384, 300, 9.0, 4.0, 8);
+  for (double& z : map.heights_nm) z += 0.02 * z * z;
+  testing::add_wave(map, 15.0, 1.0 / 120.0, 1.0 / 300.0, 0.3);
+  testing::add_plane(map, 40.0, 300.0, -200.0);
+  return map;
+}
+
+TEST(Gwyddion, AgreesOnHeightParametersOfALevelledSurface) {
+  const HeightMap map = skewed_surface();
+  const Field field = field_of(map);
+  gdouble a = 0.0;
+  gdouble bx = 0.0;
+  gdouble by = 0.0;
+  gwy_data_field_fit_plane(field.get(), &a, &bx, &by);
+  gwy_data_field_plane_level(field.get(), a, bx, by);
+  gdouble mean = 0.0;
+  gdouble ra = 0.0;
+  gdouble rms = 0.0;
+  gdouble skew = 0.0;
+  gdouble excess_kurtosis = 0.0;
+  gwy_data_field_get_stats(field.get(), &mean, &ra, &rms, &skew, &excess_kurtosis);
+
+  const HeightMap levelled = without_form(map, 1);
+  const HeightParameters p = height_parameters(levelled.heights_nm);
+  EXPECT_NEAR(p.sa_nm, ra * 1e9, 1e-9 * p.sa_nm);
+  EXPECT_NEAR(p.sq_nm, rms * 1e9, 1e-9 * p.sq_nm);
+  EXPECT_NEAR(p.ssk, skew, 1e-9);
+  EXPECT_NEAR(p.sku, excess_kurtosis + 3.0, 1e-9);
+  EXPECT_NEAR(p.sz_nm, (gwy_data_field_get_max(field.get()) - gwy_data_field_get_min(field.get())) * 1e9, 1e-8);
+  const gdouble* const heights = gwy_data_field_get_data_const(field.get());
+  for (std::size_t i = 0; i < levelled.heights_nm.size(); i += 97)
+    EXPECT_NEAR(levelled.heights_nm[i], heights[i] * 1e9, 1e-7);
+}
+
+TEST(Gwyddion, AgreesOnTheGaussianFilterInside) {
+  const HeightMap map = without_form(skewed_surface(), 1);
+  constexpr double kCutoff = 40.0;
+  const Field field = field_of(map);
+  // exp(-pi x^2 / (a L)^2) has the standard deviation a L / sqrt(2 pi).
+  const double sigma = kCutoff * std::sqrt(std::numbers::ln2 / std::numbers::pi / (2.0 * std::numbers::pi));
+  gwy_data_field_row_gaussian(field.get(), sigma);
+  gwy_data_field_column_gaussian(field.get(), sigma);
+  const gdouble* const smooth = gwy_data_field_get_data_const(field.get());
+  const Split split = gaussian_split(map, kCutoff);
+  for (std::size_t row = 40; row + 40 < map.rows; row += 11)
+    for (std::size_t column = 40; column + 40 < map.columns; column += 13)
+      EXPECT_NEAR(split.waviness.at(column, row), smooth[row * map.columns + column] * 1e9, 1e-3);
+}
+
+TEST(Gwyddion, AgreesOnSpectraAlongBothAxes) {
+  // Gwyddion scales each line back to its variance before the window, so long waves, of which a line holds only one,
+  // would come out differently.
+  HeightMap map = testing::gaussian_surface(384, 300, 9.0, 3.0, 8);
+  testing::add_wave(map, 5.0, 1.0 / 16.0, 1.0 / 12.0, 0.3);
+  const Field field = field_of(map);
+  for (const Axis axis : {Axis::x, Axis::y}) {
+    const Line line(gwy_data_line_new(1, 1.0, FALSE));
+    gwy_data_field_psdf(field.get(), line.get(),
+                        axis == Axis::x ? GWY_ORIENTATION_HORIZONTAL : GWY_ORIENTATION_VERTICAL,
+                        GWY_INTERPOLATION_LINEAR, GWY_WINDOWING_HANN, -1);
+    const Spectrum spectrum = line_spectrum(map, axis);
+    // Gwyddion's density starts at the first harmonic as well. It is two-sided, in m^3 over the angular frequency 2 pi
+    // f.
+    constexpr double kOneSided = 2.0;
+    constexpr double kNm2MmPerM3 = 1e21;
+    double ours = 0.0;
+    double theirs = 0.0;
+    for (gint k = 4; k < 120; ++k) {
+      ours += spectrum.density[static_cast<std::size_t>(k)];
+      theirs += kOneSided * 2.0 * std::numbers::pi * kNm2MmPerM3 * gwy_data_line_get_val(line.get(), k);
+    }
+    EXPECT_NEAR(ours / theirs, 1.0, 0.02) << (axis == Axis::x ? "x" : "y");
+  }
+}
+
+TEST(Gwyddion, AgreesOnTheAutocorrelation) {
+  const HeightMap map = testing::gaussian_surface(384, 300, 9.0, 6.0, 18);
+  const Field field = field_of(map);
+  gwy_data_field_add(field.get(), -gwy_data_field_get_avg(field.get()));
+  const Field acf(gwy_data_field_new(1, 1, 1.0, 1.0, FALSE));
+  gwy_data_field_area_2dacf(field.get(), acf.get(), 0, 0, static_cast<gint>(map.columns), static_cast<gint>(map.rows),
+                            20, 20);
+  // Distance 0 lies in the middle.
+  const gint middle_x = gwy_data_field_get_xres(acf.get()) / 2;
+  const gint middle_y = gwy_data_field_get_yres(acf.get()) / 2;
+  const Autocorrelation r = autocorrelation(map, 30.0);
+  for (gint dy = -15; dy <= 15; dy += 3)
+    for (gint dx = 0; dx <= 15; dx += 3)
+      EXPECT_NEAR(r.at(static_cast<std::size_t>(dx), dy),
+                  gwy_data_field_get_val(acf.get(), middle_x + dx, middle_y + dy) * 1e18, 1e-9 * r.variance_nm2())
+          << dx << " " << dy;
+}
+
+}  // namespace
+}  // namespace retrace::surface_models

@@ -1,0 +1,156 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "surface_models/scatter/scatter_model.h"
+
+namespace retrace::testing {
+
+using namespace surface_models;
+
+inline constexpr double kIndex = 1.4917;
+inline constexpr double kRadians = std::numbers::pi / 180.0;
+
+/// Light in a plane of incidence askew to the axes.
+inline ScatterEvent event_at(double incidence_deg, double index_from, double index_to, double wavelength_nm = 550.0) {
+  const double t = incidence_deg * kRadians, p = 0.4;
+  ScatterEvent event;
+  event.direction_in = {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), -std::cos(t)};
+  event.index_from = index_from;
+  event.index_to = index_to;
+  event.wavelength_nm = wavelength_nm;
+  event.inside_material = index_from > index_to;
+  return event;
+}
+inline ScatterEvent inside(double incidence_deg, double wavelength_nm = 550.0) {
+  return event_at(incidence_deg, kIndex, 1.0, wavelength_nm);
+}
+inline ScatterEvent outside(double incidence_deg, double wavelength_nm = 550.0) {
+  return event_at(incidence_deg, 1.0, kIndex, wavelength_nm);
+}
+
+inline RandomStream stream(std::uint32_t seed, std::uint32_t sample) {
+  return {{seed, 77}, sample, 0, 0};
+}
+
+/// Density of directions per unit of direction cosines squared.
+using Density = std::function<double(const Vec2&)>;
+/// One draw; nothing for what the density leaves out.
+using Draw = std::function<std::optional<Vec2>(RandomStream&)>;
+
+/// Sectors of rings about the specular direction, and the rest.
+class Rings {
+ public:
+  static constexpr int kSectors = 8;
+
+  Rings(const Vec2& centre, double width) : centre_(centre) {
+    for (const double r : {0.0, 0.3, 0.6, 0.9, 1.2, 1.6, 2.0, 2.5, 3.2, 4.5, 7.0}) edges_.push_back(r * width);
+  }
+  std::size_t size() const { return (edges_.size() - 1) * kSectors; }
+
+  /// size() where `beta` is in none.
+  std::size_t bin_of(const Vec2& beta) const {
+    const Vec2 shift = beta - centre_;
+    const auto edge = std::upper_bound(edges_.begin(), edges_.end(), shift.norm());
+    if (edge == edges_.end()) return size();
+    const double turn = std::atan2(shift.y(), shift.x()) / (2.0 * std::numbers::pi);
+    const int sector = static_cast<int>((turn < 0.0 ? turn + 1.0 : turn) * kSectors) % kSectors;
+    return static_cast<std::size_t>(edge - edges_.begin() - 1) * kSectors + static_cast<std::size_t>(sector);
+  }
+
+  double integral(std::size_t bin, const Density& density) const {
+    using boost::math::quadrature::gauss;
+    const double first = 2.0 * std::numbers::pi / kSectors * static_cast<double>(bin % kSectors);
+    const double from = edges_[bin / kSectors], to = edges_[bin / kSectors + 1];
+    return gauss<double, 30>::integrate(
+        [&](double angle) {
+          const Vec2 along(std::cos(angle), std::sin(angle));
+          const double inward = centre_.dot(along);
+          const double border = -inward + std::sqrt(1.0 - centre_.squaredNorm() + inward * inward);
+          if (border <= from) return 0.0;
+          return gauss<double, 20>::integrate([&](double r) { return r * density(centre_ + r * along); }, from,
+                                              std::min(to, border));
+        },
+        first, first + 2.0 * std::numbers::pi / kSectors);
+  }
+
+ private:
+  Vec2 centre_;
+  std::vector<double> edges_;
+};
+
+/// Probability of a chi-square at least as large, if the draws follow the density. Bins with fewer than ten expected
+/// draws are put together with the rest.
+inline double chi_square_p(const Rings& rings, const Density& density, const Draw& draw, std::uint32_t seed,
+                           std::uint32_t draws = 200000) {
+  std::vector<double> expected(rings.size() + 1, 0.0), seen(rings.size() + 1, 0.0);
+  double inside_rings = 0.0;
+  for (std::size_t bin = 0; bin < rings.size(); ++bin) {
+    expected[bin] = draws * rings.integral(bin, density);
+    inside_rings += expected[bin];
+  }
+  expected.back() = draws - inside_rings;
+  for (std::uint32_t k = 0; k < draws; ++k) {
+    RandomStream random = stream(seed, k);
+    const auto beta = draw(random);
+    seen[beta ? rings.bin_of(*beta) : rings.size()] += 1.0;
+  }
+  double chi2 = 0.0, rest_expected = expected.back(), rest_seen = seen.back();
+  int bins = 0;
+  for (std::size_t bin = 0; bin < rings.size(); ++bin) {
+    if (expected[bin] < 10.0) {
+      rest_expected += expected[bin];
+      rest_seen += seen[bin];
+      continue;
+    }
+    chi2 += (seen[bin] - expected[bin]) * (seen[bin] - expected[bin]) / expected[bin];
+    ++bins;
+  }
+  EXPECT_GE(bins, 20);
+  if (rest_expected < 10.0) {
+    EXPECT_LT(rest_seen, 40.0);
+    --bins;
+  } else {
+    chi2 += (rest_seen - rest_expected) * (rest_seen - rest_expected) / rest_expected;
+  }
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(bins), chi2));
+}
+
+/// Integral over the unit disc in polar coordinates about its centre: nothing in common with the library's rule.
+inline double disc_integral(const Density& density, int rings = 600, int sectors = 600) {
+  double sum = 0.0;
+  for (int k = 0; k < rings; ++k) {
+    const double t = 0.5 * std::numbers::pi * (k + 0.5) / rings;
+    for (int j = 0; j < sectors; ++j) {
+      const double p = 2.0 * std::numbers::pi * (j + 0.5) / sectors;
+      sum += std::sin(t) * std::cos(t) * density(std::sin(t) * Vec2(std::cos(p), std::sin(p)));
+    }
+  }
+  return sum * 0.5 * std::numbers::pi / rings * 2.0 * std::numbers::pi / sectors;
+}
+
+inline Draw draw_of(const ScatterModel& model, const ScatterEvent& event, Lobe lobe) {
+  return [=](RandomStream& random) -> std::optional<Vec2> {
+    const auto drawn = sample(model, event, Facet{}, lobe, random);
+    if (!drawn || drawn->is_specular) return std::nullopt;
+    return Vec2(drawn->direction.head<2>());
+  };
+}
+
+/// The quick form of a density that the model gives by quadrature: its shape, scaled at one direction.
+template <class Model>
+Density scaled_density(const Model& model, const ScatterEvent& event, Lobe lobe) {
+  const Vec2 at = specular_direction(event, Vec3::UnitZ(), lobe)->template head<2>() * 0.99;
+  const double scale = model.scattered_density(event, {}, lobe, at) / model.unscaled_density(event, {}, lobe, at);
+  return [=](const Vec2& beta) { return scale * model.unscaled_density(event, {}, lobe, beta); };
+}
+
+}  // namespace retrace::testing

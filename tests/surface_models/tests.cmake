@@ -1,0 +1,14 @@
+retrace_test(texture_test
+  SOURCES
+    ${CMAKE_CURRENT_LIST_DIR}/edge_fit_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/filter_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/height_parameters_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/spectrum_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/texture_model_test.cpp
+  LIBRARIES retrace::texture)
+
+# Gwyddion's libraries as a second opinion.
+retrace_test(gwyddion_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/gwyddion_test.cpp
+  LIBRARIES retrace::texture "${RETRACE_GWYPROCESS_LIBRARY}" "${RETRACE_GWYDDION_LIBRARY}" PkgConfig::GOBJECT)
+target_include_directories(gwyddion_test SYSTEM PRIVATE "${RETRACE_GWYDDION_INCLUDE_DIR}")
