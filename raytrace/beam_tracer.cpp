@@ -22,6 +22,8 @@ using geometry::SurfacePatch;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Pieces of a cross-section smaller than this share of an element's area are rounding: booked, not followed.
 constexpr double kLeastAreaShare = 1e-15;
+// Pieces are joined if their union is convex but for this share of an element's area.
+constexpr double kJoinShare = 1e-13;
 // Corners of a cross-section nearer than this share of an element are one.
 constexpr double kMergeShare = 1e-11;
 // Planes seen at a flatter angle than this have no cross-section.
@@ -61,6 +63,7 @@ struct Candidate {
   Distance distance;
   FlatPolygon piece;  ///< as far as it stands in the beam, hidden or not
   Box box;
+  bool is_met = false;  ///< its light has been sent on
 };
 
 /// How far ahead of a beam facets are looked for.
@@ -81,6 +84,7 @@ class BeamWalk {
         observer_(observer),
         tally_(setup.cone_chord2.size()),
         least_area_(kLeastAreaShare * part.size_mm * part.size_mm),
+        join_area_(kJoinShare * part.size_mm * part.size_mm),
         merge_mm_(kMergeShare * part.size_mm) {}
 
   void enter(const geometry::Polygon& entrance);
@@ -105,6 +109,7 @@ class BeamWalk {
   void consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Box& box, const Plane* far,
                 const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift);
   FlatPolygons visible_pieces(std::size_t k) const;
+  FlatPolygons visible_on_plane_of(std::size_t k);
   void pass_by(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share, const Horizon& horizon);
   void leave_hull(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share);
   static Beam at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share);
@@ -134,6 +139,7 @@ class BeamWalk {
   double deferred_power_ = 0.0;
   std::vector<Candidate> candidates_;  ///< of the beam at hand
   double least_area_;
+  double join_area_;
   double merge_mm_;
   std::uint64_t beams_ = 0;
   std::uint32_t depth_ = 0;
@@ -229,11 +235,13 @@ void BeamWalk::advance(const Beam& beam) {
   FlatPolygons rest;
   rest.push_back(whole);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    for (const FlatPolygon& piece : visible_pieces(k)) meet_facet(beam, frame, candidates_[k], piece, share_of(piece));
+    for (const FlatPolygon& piece : visible_on_plane_of(k))
+      meet_facet(beam, frame, candidates_[k], piece, share_of(piece));
     FlatPolygons left;
     for (const FlatPolygon& piece : rest) subtract(piece, candidates_[k].piece, least_area_, merge_mm_, left);
     rest = std::move(left);
   }
+  join_convex(rest, join_area_);
   for (const FlatPolygon& piece : rest) pass_by(beam, frame, piece, share_of(piece), horizon);
   book_rest(beam, beam.share - used);
 }
@@ -320,10 +328,12 @@ void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon&
   if (far != nullptr) corners = cut(corners, *far);
   if (corners.empty()) return;
   const Plane plane{facet.normal, facet.offset_mm + facet.normal.dot(shift)};
-  FlatPolygon piece = intersection(flattened(corners, frame, merge_mm_), whole, merge_mm_);
+  const FlatPolygon seen = flattened(corners, frame, merge_mm_);
+  if (seen.size() < 3) return;
+  FlatPolygon piece = intersection(whole, seen, merge_mm_);
   if (piece.size() < 3 || area(piece) <= least_area_) return;
   const Box piece_box = box_of(piece);
-  candidates_.push_back({plane, facet.role, Distance(frame, plane), std::move(piece), piece_box});
+  candidates_.push_back({plane, facet.role, Distance(frame, plane), std::move(piece), piece_box, false});
 }
 
 /// What of a candidate's piece no nearer candidate covers.
@@ -344,6 +354,25 @@ FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
     for (const FlatPolygon& piece : visible) subtract(piece, other.piece, least_area_, merge_mm_, left);
     visible = std::move(left);
   }
+  return visible;
+}
+
+/// The same for all candidates in one plane: facets of neighbouring elements that continue each other do not divide a
+/// beam. Empty if they have been met with an earlier one.
+FlatPolygons BeamWalk::visible_on_plane_of(std::size_t k) {
+  FlatPolygons visible;
+  if (candidates_[k].is_met) return visible;
+  const Plane plane = candidates_[k].plane;
+  const FacetRole role = candidates_[k].role;
+  for (std::size_t j = k; j < candidates_.size(); ++j) {
+    Candidate& other = candidates_[j];
+    const bool is_one_plane = other.role == role && other.plane.normal.isApprox(plane.normal, 1e-14) &&
+                              std::abs(other.plane.offset_mm - plane.offset_mm) <= merge_mm_;
+    if (other.is_met || !is_one_plane) continue;
+    other.is_met = true;
+    for (FlatPolygon& piece : visible_pieces(j)) visible.push_back(std::move(piece));
+  }
+  join_convex(visible, join_area_);
   return visible;
 }
 

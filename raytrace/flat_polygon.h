@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <boost/container/small_vector.hpp>
 #include <utility>
 #include <vector>
@@ -50,23 +51,32 @@ inline void close(FlatPolygon& polygon, double merge_mm) {
   if (polygon.size() < 3) polygon.clear();
 }
 
-/// The part of a polygon in a half plane; empty if none.
-inline FlatPolygon clipped(const FlatPolygon& polygon, const HalfPlane& half, double merge_mm) {
-  FlatPolygon kept;
+/// Cuts a polygon back to a half plane; empty if nothing is in it.
+inline void clip(FlatPolygon& polygon, const HalfPlane& half, double merge_mm) {
   const std::size_t n = polygon.size();
-  double before = n > 0 ? half.excess(polygon[n - 1]) : 0.0;
+  boost::container::small_vector<double, 16> excess(n, boost::container::default_init);
+  double least = 0.0;
+  double greatest = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    const geometry::Vec2& p = polygon[i];
-    const double here = half.excess(p);
-    if ((before < 0.0 && here > 0.0) || (before > 0.0 && here < 0.0)) {
-      const geometry::Vec2& q = polygon[i == 0 ? n - 1 : i - 1];
-      add_corner(kept, q + (p - q) * (before / (before - here)), merge_mm);
-    }
-    if (here <= 0.0) add_corner(kept, p, merge_mm);
-    before = here;
+    excess[i] = half.excess(polygon[i]);
+    least = std::min(least, excess[i]);
+    greatest = std::max(greatest, excess[i]);
+  }
+  if (greatest <= 0.0) return;
+  FlatPolygon kept;
+  for (std::size_t i = 0, j = n - 1; least < 0.0 && i < n; j = i++) {
+    if ((excess[j] < 0.0 && excess[i] > 0.0) || (excess[j] > 0.0 && excess[i] < 0.0))
+      add_corner(kept, polygon[j] + (polygon[i] - polygon[j]) * (excess[j] / (excess[j] - excess[i])), merge_mm);
+    if (excess[i] <= 0.0) add_corner(kept, polygon[i], merge_mm);
   }
   close(kept, merge_mm);
-  return kept;
+  polygon = std::move(kept);
+}
+
+/// The part of a polygon in a half plane; empty if none.
+inline FlatPolygon clipped(FlatPolygon polygon, const HalfPlane& half, double merge_mm) {
+  clip(polygon, half, merge_mm);
+  return polygon;
 }
 
 /// The half plane to the left of the edge from p to q.
@@ -79,9 +89,12 @@ inline HalfPlane left_of(const geometry::Vec2& p, const geometry::Vec2& q) {
 inline FlatPolygon intersection(const FlatPolygon& a, const FlatPolygon& b, double merge_mm) {
   FlatPolygon result = a;
   for (std::size_t i = 0; i < b.size() && !result.empty(); ++i)
-    result = clipped(result, left_of(b[i], b[(i + 1) % b.size()]), merge_mm);
+    clip(result, left_of(b[i], b[(i + 1) % b.size()]), merge_mm);
   return result;
 }
+
+/// Joins polygons whose union is convex, to within `least_area`. \pre they do not overlap
+void join_convex(FlatPolygons& polygons, double least_area);
 
 /// Adds to `out` what `b` leaves of `a`, as convex pieces larger than `least_area`.
 template <class Polygons>
@@ -91,7 +104,7 @@ void subtract(const FlatPolygon& a, const FlatPolygon& b, double least_area, dou
     const HalfPlane inner = left_of(b[i], b[(i + 1) % b.size()]);
     FlatPolygon outer = clipped(rest, {-inner.a, -inner.b, -inner.c}, merge_mm);
     if (outer.size() >= 3 && area(outer) > least_area) out.push_back(std::move(outer));
-    rest = clipped(rest, inner, merge_mm);
+    clip(rest, inner, merge_mm);
   }
 }
 
