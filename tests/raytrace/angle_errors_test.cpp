@@ -136,6 +136,31 @@ TEST(AngleErrors, EqualDihedralErrorsSendSixBeamsBack) {
   }
 }
 
+// One angle alone: two beams on opposite sides, half as far.
+TEST(AngleErrors, OneDihedralErrorSendsTwoBeamsBack) {
+  for (const std::size_t edge : {0U, 1U, 2U}) {
+    AngleErrors errors;
+    errors.dihedral_error_arcmin[edge] = 0.5;
+    double power[2] = {0.0, 0.0};
+    Vec2 spot[2];
+    const BeamObserver note = [&](const ReturnedBeam& beam) {
+      if (beam.depth != 4) return;
+      const Vec2 at = beam.direction.head<2>();
+      const std::size_t k = power[0] > 0.0 && (at - spot[0]).norm() > 1e-6 ? 1 : 0;
+      spot[k] = at;
+      power[k] += beam.stokes.i;
+    };
+    const Part part = build_part(with(single(HexagonalCube{kCubeAperture}, 1.0), errors));
+    BeamTracer(part).trace(ideal(), from(0.0), {0.5}, {}, nullptr, note);
+    const double expected = 2.0 * std::sqrt(2.0 / 3.0) * kPmma * 0.5 * kArcmin;
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_NEAR(spot[k].norm(), expected, 1e-3 * expected);
+      EXPECT_NEAR(power[k], 0.5, 1e-3);
+    }
+    EXPECT_NEAR((spot[0] + spot[1]).norm(), 0.0, 1e-3 * expected);
+  }
+}
+
 // Two reflections turn light by twice the angle between the facets: 2 n times the apex error in air.
 TEST(AngleErrors, ApexErrorSplitsTheReturnOfAPrism) {
   const double arcmin = 3.0;
