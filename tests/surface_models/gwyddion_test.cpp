@@ -1,16 +1,20 @@
 // Gwyddion's libraries compute the same quantities of the same surfaces. Its lengths and heights are in metres.
 
 #include <gtest/gtest.h>
+#include <libgwyddion/gwycontainer.h>
+#include <libgwyddion/gwyserializable.h>
 #include <libprocess/gwyprocess.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "core/error.h"
 #include "surface_models/autocorrelation.h"
 #include "surface_models/form.h"
 #include "surface_models/gaussian_filter.h"
 #include "surface_models/height_parameters.h"
+#include "surface_models/io/height_map_reader.h"
 #include "surface_models/spectrum.h"
 #include "tests/support/synthetic_surface.h"
 
@@ -125,6 +129,41 @@ TEST(Gwyddion, AgreesOnTheAutocorrelation) {
       EXPECT_NEAR(r.at(static_cast<std::size_t>(dx), dy),
                   gwy_data_field_get_val(acf.get(), middle_x + dx, middle_y + dy) * 1e18, 1e-9 * r.variance_nm2())
           << dx << " " << dy;
+}
+
+TEST(Gwyddion, WritesFilesThatAreReadBack) {
+  const HeightMap map = testing::gaussian_surface(40, 30, 9.0, 4.0, 8);
+  const std::unique_ptr<GwyContainer, Release> container(gwy_container_new());
+  for (const char* name : {"/2/data", "/5/data"}) {
+    const Field field = field_of(map);
+    if (name[1] == '5') gwy_data_field_multiply(field.get(), 2.0);
+    for (GwySIUnit* unit : {gwy_data_field_get_si_unit_xy(field.get()), gwy_data_field_get_si_unit_z(field.get())})
+      gwy_si_unit_set_from_string(unit, "m");
+    gwy_container_set_object(container.get(), g_quark_from_string(name), field.get());
+  }
+  gwy_container_set_const_string(container.get(), g_quark_from_string("/2/data/title"),
+                                 reinterpret_cast<const guchar*>("Height"));
+  gwy_container_set_boolean(container.get(), g_quark_from_string("/2/data/visible"), TRUE);
+  GByteArray* const bytes = gwy_serializable_serialize(G_OBJECT(container.get()), nullptr);
+  const std::string content = "GWYP" + std::string(reinterpret_cast<const char*>(bytes->data), bytes->len);
+  g_byte_array_free(bytes, TRUE);
+
+  const HeightMapFile first = parse_height_map(content, "two.gwy", {});
+  EXPECT_EQ(first.map.columns, 40U);
+  EXPECT_EQ(first.map.rows, 30U);
+  EXPECT_NEAR(first.map.x_pixel_um, 1.0, 1e-12);
+  EXPECT_EQ(first.warnings.size(), 1U) << "which channel was taken";
+  HeightMapOptions options;
+  options.channel = 5;
+  const HeightMapFile second = parse_height_map(content, "two.gwy", options);
+  EXPECT_TRUE(second.warnings.empty());
+  for (std::size_t i = 0; i < map.heights_nm.size(); ++i) {
+    EXPECT_NEAR(first.map.heights_nm[i], map.heights_nm[i], 1e-12);
+    EXPECT_NEAR(second.map.heights_nm[i], 2.0 * map.heights_nm[i], 1e-12);
+  }
+  // Wherever the file is cut, an error says so.
+  for (std::size_t length = 4; length < content.size(); length += 7)
+    EXPECT_THROW(parse_height_map(content.substr(0, length), "cut.gwy", {}), InputError) << length;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@ retrace_test(texture_test
   SOURCES
     ${CMAKE_CURRENT_LIST_DIR}/edge_fit_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/filter_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/height_map_reader_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/height_parameters_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/spectrum_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/texture_model_test.cpp

@@ -1,0 +1,65 @@
+#pragma once
+
+// Private to surface_models/io/: little-endian values from bytes, whatever the byte order of this machine.
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "surface_models/io/raw_map.h"
+
+namespace retrace::surface_models {
+
+/// Reads from the start of `bytes` on. Every function throws InputError where the bytes end too early.
+class ByteReader {
+ public:
+  /// \param start where `bytes` begin in the file, for messages
+  ByteReader(const Source& source, std::string_view bytes, std::size_t start)
+      : source_(&source), rest_(bytes), at_(start) {}
+
+  bool is_at_end() const { return rest_.empty(); }
+  std::size_t at() const { return at_; }
+  std::size_t left() const { return rest_.size(); }
+
+  std::string_view take(std::uint64_t count) {
+    if (count > rest_.size())
+      source_->fail(0, fmt::format("the file is cut short: {} bytes are wanted at byte {}, {} are left", count, at_,
+                                   rest_.size()));
+    const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(count));
+    rest_.remove_prefix(taken.size());
+    at_ += taken.size();
+    return taken;
+  }
+  std::uint32_t u32() { return static_cast<std::uint32_t>(unsigned_of(take(4))); }
+  std::uint64_t u64() { return unsigned_of(take(8)); }
+  double f32() { return static_cast<double>(std::bit_cast<float>(u32())); }
+  double f64() { return std::bit_cast<double>(u64()); }
+  /// A text that ends with a zero byte.
+  std::string_view text() {
+    const std::size_t end = rest_.find('\0');
+    if (end == std::string_view::npos)
+      source_->fail(0, fmt::format("the file is cut short: a text at byte {} has no end", at_));
+    return take(end + 1).substr(0, end);
+  }
+  /// A reader of the next `count` bytes, which this one passes over.
+  ByteReader part(std::uint64_t count) {
+    const std::size_t start = at_;
+    return {*source_, take(count), start};
+  }
+
+ private:
+  static std::uint64_t unsigned_of(std::string_view bytes) {
+    std::uint64_t value = 0;
+    for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+    return value;
+  }
+
+  const Source* source_;
+  std::string_view rest_;
+  std::size_t at_;
+};
+
+}  // namespace retrace::surface_models

@@ -1,0 +1,76 @@
+#include "surface_models/io/raw_map.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace retrace::surface_models {
+
+void Source::fail(int line, std::string_view text) const {
+  throw InputError({name, line, ""}, text);
+}
+
+std::optional<double> nm_per(std::string_view unit) {
+  if (unit == "m") return 1e9;
+  if (unit == "mm") return 1e6;
+  // The micro sign and the Greek letter in UTF-8, and the sign in Latin-1, which instruments write as well.
+  if (unit == "um" || unit == "\xc2\xb5m" || unit == "\xce\xbcm" || unit == "\xb5m") return 1e3;
+  if (unit == "nm") return 1.0;
+  if (unit == "pm") return 1e-3;
+  return std::nullopt;
+}
+
+std::optional<double> number_in(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kMostShown = 40;
+  std::string shown = "\"";
+  for (const char c : text.substr(0, kMostShown)) {
+    const auto byte = static_cast<unsigned char>(c);
+    shown += byte >= 0x20 && byte < 0x7f ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
+  }
+  return shown + (text.size() > kMostShown ? "...\"" : "\"");
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\r";
+  const std::size_t first = text.find_first_not_of(blank);
+  return first == std::string_view::npos ? std::string_view{}
+                                         : text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+void check_size(const Source& source, int line, double columns, double rows) {
+  const bool is_whole = columns == std::floor(columns) && rows == std::floor(rows);
+  if (!is_whole || columns < 1.0 || rows < 1.0 || columns * rows > static_cast<double>(kMostPoints))
+    source.fail(line, fmt::format("a map must have 1 to {} points in whole columns and rows, got {} x {}", kMostPoints,
+                                  columns, rows));
+}
+
+std::optional<std::string_view> Lines::next() {
+  if (ended_) return std::nullopt;
+  const std::size_t end = rest_.find('\n');
+  std::string_view line = rest_.substr(0, end);
+  ended_ = end == std::string_view::npos;
+  rest_ = ended_ ? std::string_view{} : rest_.substr(end + 1);
+  ++number_;
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+}  // namespace retrace::surface_models

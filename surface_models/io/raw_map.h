@@ -1,0 +1,71 @@
+#pragma once
+
+// Private to surface_models/io/: what the readers of single formats share.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surface_models/io/height_map_reader.h"
+
+namespace retrace::surface_models {
+
+/// A file that is read.
+struct Source {
+  std::string_view content;
+  const std::string& name;
+  const HeightMapOptions& options;
+
+  /// \param line 0 where lines mean nothing
+  [[noreturn]] void fail(int line, std::string_view text) const;
+};
+
+/// What a file says. Lengths that it gives without a unit are in the unit of `HeightMapOptions::lateral_unit`.
+struct RawMap {
+  std::string format;
+  std::size_t columns = 0;
+  std::size_t rows = 0;
+  std::optional<double> x_pixel_um;
+  std::optional<double> y_pixel_um;
+  std::optional<double> nm_per_unit;  ///< of the heights
+  std::vector<double> heights;        ///< columns * rows; NaN where missing
+  std::vector<std::string> warnings;
+};
+
+/// How many nanometres a unit has: m, mm, um (also with the Greek letter), nm, pm. Nothing for another word.
+std::optional<double> nm_per(std::string_view unit);
+/// The units as messages name them.
+inline constexpr std::string_view kUnits = "m, mm, um, nm or pm";
+
+/// A finite number with a decimal point; nothing for other text.
+std::optional<double> number_in(std::string_view text);
+/// Text between quotes, fit for a one-line message and no longer than a word may be.
+std::string in_quotes(std::string_view text);
+std::string_view trimmed(std::string_view text);
+std::string lower_case(std::string_view text);
+
+/// Refuses sizes that no map has. \param line where they are given, 0 if unknown
+void check_size(const Source& source, int line, double columns, double rows);
+
+/// Takes a text line by line, without its end (LF or CR LF).
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+  std::optional<std::string_view> next();
+  int number() const { return number_; }  ///< of the line that next() gave last
+  std::string_view rest() const { return rest_; }
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+  bool ended_ = false;
+};
+
+RawMap parse_text_grid(const Source& source);
+RawMap parse_sdf(const Source& source);
+RawMap parse_gsf(const Source& source);
+RawMap parse_gwy(const Source& source);
+
+}  // namespace retrace::surface_models

@@ -1,0 +1,8 @@
+// Gwyddion's native files: what follows the first four bytes.
+
+#include "tests/fuzz/height_map_fuzz.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  retrace::fuzz::read_height_map("GWYP", data, size, "fuzz.gwy");
+  return 0;
+}

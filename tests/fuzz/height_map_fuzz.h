@@ -1,0 +1,37 @@
+#pragma once
+
+// Whatever a file holds, a reader of height maps either returns a map that keeps its promises or throws an InputError
+// of one line.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "core/error.h"
+#include "surface_models/io/height_map_reader.h"
+
+namespace retrace::fuzz {
+
+/// \param begin with which each content starts, so that this reader gets it
+/// \param name whose end may choose the format
+inline void read_height_map(const std::string& begin, const std::uint8_t* data, std::size_t size,
+                            const std::string& name) {
+  const std::string content = begin + std::string(data, data + size);
+  try {
+    const surface_models::HeightMap map = surface_models::parse_height_map(content, name, {}).map;
+    const bool is_sound =
+        map.columns >= surface_models::kLeastColumns && map.rows >= 1 &&
+        map.columns * map.rows == map.heights_nm.size() && map.x_pixel_um > 0.0 && map.y_pixel_um > 0.0 &&
+        std::none_of(map.heights_nm.begin(), map.heights_nm.end(), [](double z) { return std::isinf(z); });
+    if (!is_sound) std::abort();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+  }
+}
+
+}  // namespace retrace::fuzz

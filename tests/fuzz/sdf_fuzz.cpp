@@ -1,0 +1,8 @@
+// Surface data files: what follows the first word.
+
+#include "tests/fuzz/height_map_fuzz.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  retrace::fuzz::read_height_map("aISO-1.0", data, size, "fuzz.sdf");
+  return 0;
+}

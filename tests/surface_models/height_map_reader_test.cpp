@@ -1,0 +1,229 @@
+#include "surface_models/io/height_map_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+
+namespace retrace::surface_models {
+namespace {
+
+constexpr double kNaN = kMissing;
+
+void expect_heights(const HeightMap& map, const std::vector<double>& expected) {
+  ASSERT_EQ(map.heights_nm.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(std::isnan(map.heights_nm[i]), std::isnan(expected[i])) << i;
+    if (std::isnan(expected[i])) continue;
+    EXPECT_DOUBLE_EQ(map.heights_nm[i], expected[i]) << i;
+  }
+}
+
+std::string message_of(const std::string& content, const std::string& name = "m.txt",
+                       const HeightMapOptions& options = {}) {
+  try {
+    parse_height_map(content, name, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+const std::vector<double> kTwoRows = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, kNaN, 13, 14, 15, 16};
+
+std::string little_endian(std::uint32_t value) {
+  std::string bytes;
+  for (int i = 0; i < 4; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xff);
+  return bytes;
+}
+
+std::string gsf(const std::string& keys, std::size_t count) {
+  std::string content = "Gwyddion Simple Field 1.0\n" + keys;
+  content += std::string(4 - content.size() % 4, '\0');
+  for (std::size_t i = 0; i < count; ++i)
+    content += little_endian(std::bit_cast<std::uint32_t>(i == 11 ? std::nanf("") : 1e-9F * static_cast<float>(i + 1)));
+  return content;
+}
+
+TEST(TextGrid, TakesEverySeparatorAndMissingWord) {
+  for (const std::string text :
+       {"# pixel_um = 0.5\n# height_unit = nm\n1 2 3 4 5 6 7 8\n9 10 11 nan 13 14 15 16\n",
+        "pixel_um 0.5\nheight_unit nm\n1,2,3,4,5,6,7,8\n9,10,11,,13,14,15,16",
+        "# a comment\r\npixel_um: 0.5\r\nheight_unit: nm\r\n1;2;3;4;5;6;7;8;\r\n9;10;11;BAD;13;14;15;16;\r\n",
+        "\xef\xbb\xbf#pixel_um=0.5\n#height_unit=um\n0.001\t2e-3\t0.003\t0.004 +0.005 6E-3 0.007 0.008\n\n"
+        "0.009 0.01 0.011 *** 0.013 0.014 0.015 0.016\n",
+        "ncols 8\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0.5\nlateral_unit um\nheight_unit nm\nNODATA_value "
+        "-9999\n"
+        "1 2 3 4 5 6 7 8\n9 10 11 -9999 13 14 15 16\n",
+        "# Channel: Height\n# Width: 4.0 \xc2\xb5m\n# Height: 1.0 \xc2\xb5m\n# Value units: m\n"
+        "1e-9 2e-9 3e-9 4e-9 5e-9 6e-9 7e-9 8e-9\n9e-9 10e-9 11e-9 NaN 13e-9 14e-9 15e-9 16e-9\n"}) {
+    SCOPED_TRACE(text);
+    const HeightMapFile file = parse_height_map(text, "m.txt", {});
+    EXPECT_EQ(file.map.columns, 8U);
+    EXPECT_EQ(file.map.rows, 2U);
+    EXPECT_DOUBLE_EQ(file.map.x_pixel_um, 0.5);
+    EXPECT_DOUBLE_EQ(file.map.y_pixel_um, 0.5);
+    EXPECT_TRUE(file.warnings.empty());
+    expect_heights(file.map, kTwoRows);
+  }
+}
+
+TEST(TextGrid, OptionsGoBeforeTheFile) {
+  HeightMapOptions options;
+  options.x_pixel_um = 2.0;
+  options.y_pixel_um = 3.0;
+  options.height_unit = "um";
+  const HeightMapFile bare = parse_height_map("1 2 3 4 5 6 7 8\n1 2 3 4 5 6 7 8\n", "m.csv", options);
+  EXPECT_EQ(bare.map.x_pixel_um, 2.0);
+  EXPECT_EQ(bare.map.y_pixel_um, 3.0);
+  EXPECT_EQ(bare.map.at(7, 1), 8000.0);
+  EXPECT_TRUE(bare.warnings.empty());
+  const HeightMapFile said =
+      parse_height_map("pixel_um 1\nheight_unit nm\n1 2 3 4 5 6 7 8\n1 2 3 4 5 6 7 8\n", "m.csv", options);
+  EXPECT_EQ(said.map.x_pixel_um, 2.0);
+  EXPECT_EQ(said.warnings.size(), 3U);
+}
+
+TEST(TextGrid, OneRowOrColumnIsAProfile) {
+  for (const std::string text : {"pixel_um 0.25\nheight_unit nm\n1 2 3 4 5 6 7 8\n",
+                                 "y_pixel_um 0.25\nheight_unit nm\n1\n2\n3\n4\n5\n6\n7\n8\n"}) {
+    const HeightMap map = parse_height_map(text, "p.txt", {}).map;
+    EXPECT_TRUE(map.is_profile());
+    EXPECT_EQ(map.x_pixel_um, 0.25);
+    expect_heights(map, {1, 2, 3, 4, 5, 6, 7, 8});
+  }
+}
+
+TEST(PointList, FindsTheGrid) {
+  std::string text = "# lateral_unit = mm\n# height_unit = nm\n";
+  for (int i = 15; i >= 0; --i)
+    if (i != 11)
+      text += std::to_string(0.5 + 0.002 * (i % 8)) + " " + std::to_string(-0.003 * (i / 8)) + " " +
+              std::to_string(i + 1) + "\n";
+  const HeightMap map = parse_height_map(text, "cloud.XYZ", {}).map;
+  EXPECT_EQ(map.columns, 8U);
+  EXPECT_NEAR(map.x_pixel_um, 2.0, 1e-9);
+  EXPECT_NEAR(map.y_pixel_um, 3.0, 1e-9);
+  // y falls with the row that was written, so the rows come turned round.
+  expect_heights(map, {9, 10, 11, kNaN, 13, 14, 15, 16, 1, 2, 3, 4, 5, 6, 7, 8});
+  const HeightMap profile =
+      parse_height_map(
+          "columns = xz\nlateral_unit = um\nheight_unit = um\n3 1\n1 1\n2 1\n5 1\n4 1\n6 1\n9 2\n7 NaN\n8 1\n", "p.txt",
+          {})
+          .map;
+  EXPECT_TRUE(profile.is_profile());
+  expect_heights(profile, {1000, 1000, 1000, 1000, 1000, 1000, kNaN, 1000, 2000});
+}
+
+TEST(Sdf, IsRead) {
+  for (const std::string version : {"aISO-1.0", "aBCR-1.0"}) {
+    const HeightMapFile file = parse_height_map(
+        version +
+            "\nManufacID = lab\nCreateDate = 010120200000\nModDate = 010120200000\nNumPoints = 8\nNumProfiles = 2\n"
+            "Xscale = 1.5E-6\nYscale = 2.5E-6\nZscale = 1.0E-9\nZresolution = -1\nCompression = 0\nDataType = 7\n"
+            "CheckType = 0\n*\n1 2 3 4 5 6 7 8\n9 10 11 BAD\n13 14 15 16\n*\ntrailer\n",
+        "m.sdf", {});
+    EXPECT_NEAR(file.map.x_pixel_um, 1.5, 1e-12);
+    EXPECT_NEAR(file.map.y_pixel_um, 2.5, 1e-12);
+    expect_heights(file.map, kTwoRows);
+  }
+}
+
+TEST(Gsf, IsRead) {
+  const HeightMapFile file = parse_height_map(
+      gsf("XRes = 8\nYRes = 2\nXReal = 4e-6\nYReal = 2e-6\nXYUnits = m\nZUnits = m\nTitle = t\n", 16), "m.gsf", {});
+  EXPECT_NEAR(file.map.x_pixel_um, 0.5, 1e-12);
+  EXPECT_NEAR(file.map.y_pixel_um, 1.0, 1e-12);
+  for (std::size_t i = 0; i < 16; ++i) {
+    if (i == 11) {
+      EXPECT_TRUE(std::isnan(file.map.heights_nm[i]));
+    } else {
+      EXPECT_NEAR(file.map.heights_nm[i], static_cast<double>(i + 1), 1e-5);
+    }
+  }
+}
+
+TEST(BadHeightMap, SaysWhereAndWhatIsAllowed) {
+  const std::string head = "pixel_um 1\nheight_unit nm\n";
+  const std::string row = "1 2 3 4 5 6 7 8\n";
+  const std::string sdf_head = "aISO-1.0\nNumPoints = 8\nNumProfiles = 1\nXscale = 1e-6\nZscale = 1e-9\n";
+  const std::string gsf_head = "XRes = 8\nYRes = 2\nXReal = 4e-6\nYReal = 2e-6\nXYUnits = m\nZUnits = m\n";
+  struct Case {
+    std::string content;
+    std::string begin;
+    std::string name = "m.txt";
+  };
+  const std::vector<Case> cases = {
+      {"", "m.txt: the file is empty"},
+      {"# nothing\n", "m.txt: there are no heights"},
+      {row + row, "m.txt: the spacing along x is not known: give x_pixel_um"},
+      {"x_pixel_um 1\n" + row + row, "m.txt: the spacing along y is not known"},
+      {"pixel_um 1\n" + row, "m.txt: the unit of heights is not known"},
+      {head + "nan nan nan nan nan nan nan nan\n", "m.txt: at least 8 points must be measured, got 0 of 8"},
+      {head + row + "1 2 3\n", "m.txt:4: every row must have the 8 values of the first (line 3), got 3"},
+      {head + "1 2 3 4\n", "m.txt: a map must have at least 8 points along x, got 4"},
+      {head + "1 2 3 4 five 6 7 8\n", "m.txt:3: a height must be a number with a decimal point, or NaN, got \"five\""},
+      {head + "1;2,5;3;4;5;6;7;8\n", "m.txt:3: a height must be"},
+      {head + "1 2 3 4 5 6 7 inf\n", "m.txt:3: a height must be"},
+      {head + "1 2 3 4 5 6 7 1e300\n", "m.txt: heights must lie within 1 km"},
+      {"pixel_um 0\n", "m.txt:1: pixel_um: must be > 0"},
+      {"pixel_um -1\n", "m.txt:1: pixel_um: must be > 0"},
+      {"pixel_um wide\n", "m.txt:1: pixel_um: must be a number"},
+      {"pixel_um 1e9\nheight_unit nm\n" + row, "m.txt: the spacing along x must be from 1e-6 to 1e6 um"},
+      {"height_unit inch\n", "m.txt:1: height_unit: must be m, mm, um, nm or pm, got \"inch\""},
+      {"spacing 1\n", "m.txt:1: must be heights or a header key (pixel_um,"},
+      {"ncols 8\nnrows 3\n" + head + row, "m.txt:5: the header promises 8 columns and 3 rows, there are 8 and 1"},
+      {"Hello, world\n", "m.txt:1: must be heights or a header key"},
+      {std::string("\x89PNG\r\n\x1a\n\0\0", 10), "m.txt: the format is not known; allowed is a text grid,"},
+      {"PK\x03\x04...", "m.txt: X3P and other zip archives are not read; allowed is"},
+      {"bISO-1.0", "m.txt: SDF in binary form is not read"},
+      {"columns = xyz\n" + row, "m.txt:2: a list of points must have 3 values in a line, got 8"},
+      {"1 2 3\n4 5 6\n", "m.xyz: the unit of x and y is not known", "m.xyz"},
+      {"lateral_unit um\nheight_unit um\n0 0 1\n1 0 1\n3 0 1\n", "m.xyz: the values of x must be evenly spaced",
+       "m.xyz"},
+      {"lateral_unit um\nheight_unit um\n0 0 1\n1 0 1\n1 0 1\n", "m.xyz: point 3 lies where another one does", "m.xyz"},
+      {sdf_head, "m.txt:6: the file ends in its header"},
+      {sdf_head + "*\n1 2 3\n", "m.txt:8: the file ends after 3 of 8 heights"},
+      {sdf_head + "*\n1 2 3 4 5 6 7 8 9\n", "m.txt:7: there are more than the 8 heights"},
+      {sdf_head + "*\n1 2 x\n", "m.txt:7: a height must be a number or BAD, got \"x\""},
+      {sdf_head + "Compression = 1\n*\n", "m.txt:6: compression: must be 0"},
+      {"aISO-1.0\nNumPoints = 1e9\nNumProfiles = 1e9\nXscale = 1e-6\nYscale = 1\nZscale = 1e-9\n*\n",
+       "m.txt:2: a map must have 1 to 25000000 points"},
+      {"aISO-1.0\nNumPoints = 8\n*\n", "m.txt: numprofiles: missing from the header"},
+      {gsf(gsf_head, 15), "m.txt: the file is cut short: 8 x 2 heights want 64 bytes"},
+      {gsf(gsf_head, 17), "m.txt: there are 4 bytes after the last of 8 x 2 heights"},
+      {gsf("XRes = 100000\nYRes = 100000\n", 0), "m.txt:2: a map must have 1 to 25000000 points"},
+      {gsf("YRes = 2\n", 0), "m.txt: a map must have 1 to 25000000 points"},
+      {gsf("XRes = 8\nYRes = 2\nZUnits = m\n", 16), "m.txt: the spacing along x is not known"},
+      {gsf("XRes = 8\nYRes = 2\nZUnits = V\n", 16), "m.txt:4: ZUnits: must be m, mm, um, nm or pm, got \"V\""},
+      {"Gwyddion Simple Field 1.0\nXRes = 8\n", "m.txt: the file is cut short"},
+      {"GWYP", "m.txt: the file is cut short"},
+      {"GWYO....", "m.txt: Gwyddion files before version 2 are not read"},
+      {"GWYPGwyContainer" + std::string(5, '\0'), "m.txt: the file holds no channel"},
+      {"GWYPGwyContainer" + std::string(1, '\0') + little_endian(4) + "a" + std::string(1, '\0') + "zz",
+       "m.txt: a component before byte 24 has the unknown type"},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.begin);
+    const std::string message = message_of(c.content, c.name);
+    EXPECT_TRUE(message.starts_with(c.begin)) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(BadHeightMap, OptionsAreCheckedToo) {
+  HeightMapOptions options;
+  options.height_unit = "inch";
+  EXPECT_EQ(message_of("pixel_um 1\n1 2 3 4 5 6 7 8\n", "m.txt", options),
+            "--height-unit: must be m, mm, um, nm or pm, got \"inch\"");
+  options.height_unit = "nm";
+  options.lateral_unit = "ell";
+  EXPECT_EQ(message_of("pixel_um 1\n1 2 3 4 5 6 7 8\n", "m.txt", options),
+            "--lateral-unit: must be m, mm, um, nm or pm, got \"ell\"");
+}
+
+}  // namespace
+}  // namespace retrace::surface_models
