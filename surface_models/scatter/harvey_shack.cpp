@@ -1,6 +1,5 @@
 #include "surface_models/scatter/harvey_shack.h"
 
-#include <boost/math/distributions/binomial.hpp>
 #include <numbers>
 
 #include "core/error.h"
@@ -101,11 +100,16 @@ double HarveyShack::shift_density(const Band& band, int order, double shift2) {
     return std::exp(-0.5 * shift2 / variance) / (2.0 * kPi * variance);
   };
   if (band.roughness_share == 1.0) return gaussian(order * band.roughness_variance);
-  const boost::math::binomial_distribution<double> rough_of(order, band.roughness_share);
+  if (band.roughness_share == 0.0) return gaussian(order * band.waviness_variance);
+  // Each of them is one of the roughness with the probability of its share: binomial.
+  const double log_rough = std::log(band.roughness_share), log_wavy = std::log1p(-band.roughness_share);
   double sum = 0.0;
-  for (int rough = 0; rough <= order; ++rough)
-    if (const double share = boost::math::pdf(rough_of, rough); share > 0.0)
-      sum += share * gaussian(rough * band.roughness_variance + (order - rough) * band.waviness_variance);
+  for (int rough = 0; rough <= order; ++rough) {
+    const int wavy = order - rough;
+    const double probability = std::exp(log_factorial(order) - log_factorial(rough) - log_factorial(wavy) +
+                                        rough * log_rough + wavy * log_wavy);
+    sum += probability * gaussian(rough * band.roughness_variance + wavy * band.waviness_variance);
+  }
   return sum;
 }
 

@@ -102,6 +102,40 @@ struct HeightMapScatter::Texture {
   double steepest = 0.0;
   double rms_slope = 0.0;
 
+  void set_spectrum(const HeightMap& levelled) {
+    rows = levelled.rows;
+    columns = levelled.columns;
+    pixel_um = {levelled.x_pixel_um, levelled.y_pixel_um};
+    frequency_step_per_um = {1.0 / (static_cast<double>(columns) * pixel_um.x()),
+                             1.0 / (static_cast<double>(rows) * pixel_um.y())};
+    shares = variance_shares(levelled);
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t c = 0; c < columns; ++c) {
+        const Vec2 steps(static_cast<double>(signed_index(c, columns)), static_cast<double>(signed_index(r, rows)));
+        const double share = shares[r * columns + c];
+        if (share > 0.0) cells.push_back({steps.cwiseProduct(frequency_step_per_um), share});
+      }
+    std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
+      return a.frequency_per_um.squaredNorm() < b.frequency_per_um.squaredNorm();
+    });
+    Cumulative sum;
+    for (const Cell& cell : cells) {
+      sum.share += cell.share;
+      sum.moment += cell.share * cell.frequency_per_um * cell.frequency_per_um.transpose();
+      cumulative.push_back(sum);
+    }
+  }
+
+  void set_facets(std::vector<Vec2> found) {
+    facet_gradients = std::move(found);
+    double squares = 0.0;
+    for (const Vec2& gradient : facet_gradients) {
+      squares += gradient.squaredNorm();
+      steepest = std::max(steepest, gradient.norm());
+    }
+    if (!facet_gradients.empty()) rms_slope = std::sqrt(squares / static_cast<double>(facet_gradients.size()));
+  }
+
   double share_at(const Vec2& frequency_per_um) const {
     const double column = std::round(frequency_per_um.x() / frequency_step_per_um.x());
     const double row = std::round(frequency_per_um.y() / frequency_step_per_um.y());
@@ -188,38 +222,10 @@ HeightMapScatter::HeightMapScatter(const HeightMap& map, double wavelength_nm) {
   const HeightMap levelled = without_form(map, 1);
   const HeightParameters heights = height_parameters(levelled.heights_nm);
   auto texture = std::make_shared<Texture>();
-  texture->rows = map.rows;
-  texture->columns = map.columns;
-  texture->pixel_um = {map.x_pixel_um, map.y_pixel_um};
-  texture->frequency_step_per_um = {1.0 / (static_cast<double>(map.columns) * map.x_pixel_um),
-                                    1.0 / (static_cast<double>(map.rows) * map.y_pixel_um)};
   texture->sq_nm = heights.sq_nm;
   texture->kurtosis = heights.sku;
-  texture->shares = variance_shares(levelled);
-  for (std::size_t r = 0; r < map.rows; ++r)
-    for (std::size_t c = 0; c < map.columns; ++c)
-      if (const double share = texture->shares[r * map.columns + c]; share > 0.0)
-        texture->cells.push_back(
-            {Vec2(static_cast<double>(signed_index(c, map.columns)), static_cast<double>(signed_index(r, map.rows)))
-                 .cwiseProduct(texture->frequency_step_per_um),
-             share});
-  std::stable_sort(texture->cells.begin(), texture->cells.end(), [](const Cell& a, const Cell& b) {
-    return a.frequency_per_um.squaredNorm() < b.frequency_per_um.squaredNorm();
-  });
-  Cumulative sum;
-  for (const Cell& cell : texture->cells) {
-    sum.share += cell.share;
-    sum.moment += cell.share * cell.frequency_per_um * cell.frequency_per_um.transpose();
-    texture->cumulative.push_back(sum);
-  }
-  texture->facet_gradients = gradients(levelled, 1e-3 * wavelength_nm);
-  double squares = 0.0;
-  for (const Vec2& gradient : texture->facet_gradients) {
-    squares += gradient.squaredNorm();
-    texture->steepest = std::max(texture->steepest, gradient.norm());
-  }
-  if (!texture->facet_gradients.empty())
-    texture->rms_slope = std::sqrt(squares / static_cast<double>(texture->facet_gradients.size()));
+  texture->set_spectrum(levelled);
+  texture->set_facets(gradients(levelled, 1e-3 * wavelength_nm));
   texture_ = std::move(texture);
 }
 

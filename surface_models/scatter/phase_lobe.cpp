@@ -9,6 +9,17 @@
 
 namespace retrace::surface_models {
 
+double log_factorial(int order) {
+  // Boost's lgamma, as std::lgamma writes to a global variable.
+  static const std::array<double, 128> table = [] {
+    std::array<double, 128> made{};
+    for (std::size_t k = 1; k < made.size(); ++k) made[k] = boost::math::lgamma(static_cast<double>(k) + 1.0);
+    return made;
+  }();
+  const auto index = static_cast<std::size_t>(order);
+  return index < table.size() ? table[index] : boost::math::lgamma(order + 1.0);
+}
+
 std::optional<PhaseLobe> PhaseLobe::make(const ScatterEvent& event, Lobe lobe, double sq_nm) {
   const auto specular = specular_direction(event, Vec3::UnitZ(), lobe);
   if (!specular) return std::nullopt;
@@ -41,11 +52,13 @@ double PhaseLobe::variance(const Vec2& beta) const {
 
 double PhaseLobe::order_probability(int order, double variance) {
   if (variance <= 0.0) return order == 0 ? 1.0 : 0.0;
-  // Boost's lgamma, as std::lgamma writes to a global variable.
-  return std::exp(order * std::log(variance) - variance - boost::math::lgamma(order + 1.0));
+  return std::exp(order * std::log(variance) - variance - log_factorial(order));
 }
 
-/// Beyond it Poisson's probabilities add less than 1e-16.
+int PhaseLobe::first_order(double variance) {
+  return std::max(0, static_cast<int>(variance - 10.0 * std::sqrt(variance)) - 16);
+}
+
 int PhaseLobe::last_order(double variance) {
   return static_cast<int>(variance + 10.0 * std::sqrt(variance)) + 16;
 }
@@ -56,7 +69,11 @@ double PhaseLobe::envelope(int order) const {
 
 double PhaseLobe::envelope_sum() const {
   double sum = 0.0;
-  for (int m = 1; m <= last_order(highest_); ++m) sum += envelope(m);
+  for (int m = 1; m <= last_order(highest_); ++m) {
+    const double term = envelope(m);
+    sum += term;
+    if (m > highest_ && term < 1e-17 * sum) break;
+  }
   return sum;
 }
 
@@ -71,8 +88,8 @@ int PhaseLobe::pick_order(double cumulative) const {
 
 double integrate_over_disc(const Vec2& centre, double width, const std::function<double(const Vec2&)>& f) {
   using boost::math::quadrature::gauss_kronrod;
-  constexpr unsigned kDepth = 6;
-  constexpr double kTolerance = 1e-8;
+  constexpr unsigned kDepth = 5;
+  constexpr double kTolerance = 1e-7;
   const double offset = centre.norm();
   const Vec2 axis = offset > 0.0 ? Vec2(centre / offset) : Vec2(Vec2::UnitX());
   const Vec2 across(-axis.y(), axis.x());
@@ -93,9 +110,11 @@ double integrate_over_disc(const Vec2& centre, double width, const std::function
   std::sort(borders.begin(), borders.end());
   double sum = 0.0;
   for (std::size_t k = 1; k < borders.size(); ++k) {
-    const double end = std::min(borders[k], 1.0 + offset);
-    if (end > borders[k - 1])
-      sum += gauss_kronrod<double, 15>::integrate(ring, borders[k - 1], end, kDepth, kTolerance);
+    const double begin = borders[k - 1], end = std::min(borders[k], 1.0 + offset);
+    if (end <= begin) continue;
+    const double rough = gauss_kronrod<double, 15>::integrate(ring, begin, end, 0);
+    // Far out there may be next to nothing, which is not worth a relative accuracy of its own.
+    sum += rough < 1e-12 * sum ? rough : gauss_kronrod<double, 15>::integrate(ring, begin, end, kDepth, kTolerance);
   }
   return sum;
 }

@@ -65,7 +65,8 @@ double SlopeDistribution::visible_share(const Vec3& direction) const {
   const double tan = tangent(direction);
   if (tan * width_ == 0.0) return 1.0;
   const double a = 1.0 / (width_ * tan);
-  if (shape_ == SlopeShape::beckmann) return 2.0 / (1.0 + std::erf(a) + std::exp(-a * a) / (a * std::sqrt(kPi)));
+  if (shape_ == SlopeShape::beckmann)
+    return std::min(1.0, 2.0 / (1.0 + std::erf(a) + std::exp(-a * a) / (a * std::sqrt(kPi))));
   return 2.0 / (1.0 + std::sqrt(1.0 + 1.0 / (a * a)));
 }
 

@@ -1,5 +1,6 @@
 // What a texture does to light: samplers against their densities, energy, reciprocity, closed forms.
-#include <numeric>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/special_functions/bessel.hpp>
 
 #include "core/error.h"
 #include "materials/fresnel.h"
@@ -113,14 +114,14 @@ TEST(HarveyShack, TransmissionHasThePhaseOfTheDifferenceOfPaths) {
 TEST(HarveyShack, FineRoughnessIsNotRelevant) {
   const double coarse = specular_share(HarveyShack({20.0, 1.0, 0.0, 0.0}), inside(45.0), {}, Lobe::reflection);
   const double fine = specular_share(HarveyShack({20.0, 0.02, 0.0, 0.0}), inside(45.0), {}, Lobe::reflection);
-  EXPECT_GT(fine, 0.995);
+  EXPECT_GT(fine, 0.99);
   EXPECT_LT(coarse, 0.8);
 }
 
 // First-order perturbation theory of smooth surfaces, Rayleigh-Rice without its polarisation factor: the BRDF is
 // (2 pi n / w)^2 (cos t_i + cos t_s)^2 PSD / (w / n)^2 for small heights.
 TEST(HarveyShack, SmallRoughnessScattersAsThePsd) {
-  const double sq_um = 1e-3, length_um = 1.0, wave_um = 0.55 / kIndex;
+  const double sq_um = 1e-5, length_um = 1.0, wave_um = 0.55 / kIndex;
   const ScatterEvent event = inside(30.0);
   const HarveyShack model({1e3 * sq_um, length_um, 0.0, 0.0});
   const Vec2 beta(0.3, -0.1);
@@ -129,7 +130,42 @@ TEST(HarveyShack, SmallRoughnessScattersAsThePsd) {
   const double psd = sq_um * sq_um * pi * length_um * length_um * std::exp(-pi * pi * length_um * length_um * f2);
   const double cosines = std::cos(30.0 * kRadians) + std::sqrt(1.0 - beta.squaredNorm());
   const double expected = std::pow(2.0 * pi / wave_um * cosines, 2) * psd / (wave_um * wave_um);
-  EXPECT_NEAR(model.unscaled_density(event, {}, Lobe::reflection, beta) / expected, 1.0, 2e-3);
+  EXPECT_NEAR(model.unscaled_density(event, {}, Lobe::reflection, beta) / expected, 1.0, 1e-4);
+}
+
+// The series against what it expands: the Fourier transform of the surface transfer function less its specular part,
+// over distances in wavelengths (Krywonos et al. 2011).
+TEST(HarveyShack, DensityIsTheTransformOfTheSurfaceTransferFunction) {
+  const double pi = std::numbers::pi;
+  for (const Roughness& r : {Roughness{60.0, 1.2, 0.0, 0.0}, Roughness{25.0, 1.2, 40.0, 12.0}})
+    for (const Case& c : cases()) {
+      const double n_out = c.event.index_of(c.lobe), wave_um = 0.55 / n_out;
+      const double waviness_correlation_um = r.waviness_length_um / pi;
+      const Vec2 specular = specular_direction(c.event, Vec3::UnitZ(), c.lobe)->head<2>();
+      for (const double shift : {0.0, 0.02, 0.1}) {
+        const Vec2 beta = specular * (1.0 - shift);
+        const double moved = (beta - specular).norm();
+        const double out = std::sqrt(1.0 - beta.squaredNorm()) * n_out;
+        const double cosines = c.event.index_from * c.event.cos_in() + (c.lobe == Lobe::reflection ? out : -out);
+        const double k2 = std::pow(2.0 * pi / 550.0 * cosines, 2);
+        const double rough = k2 * r.sq_nm * r.sq_nm, wavy = k2 * r.waviness_sq_nm * r.waviness_sq_nm;
+        const auto transfer_less_specular = [&](double d_um) {
+          const double x = d_um / r.correlation_length_um;
+          double correlated = rough * std::exp(-x * x);
+          if (wavy > 0.0) correlated += wavy * std::exp(-std::pow(d_um / waviness_correlation_um, 2));
+          return std::exp(-rough - wavy) * std::expm1(correlated);
+        };
+        const double transform = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+            [&](double d_um) {
+              return d_um * transfer_less_specular(d_um) *
+                     boost::math::cyl_bessel_j(0, 2.0 * pi * d_um * moved / wave_um);
+            },
+            0.0, 8.0 * std::max(r.correlation_length_um, waviness_correlation_um), 10, 1e-12);
+        const double expected = 2.0 * pi / (wave_um * wave_um) * transform;
+        const double peak = HarveyShack(r).unscaled_density(c.event, {}, c.lobe, specular);
+        EXPECT_NEAR(HarveyShack(r).unscaled_density(c.event, {}, c.lobe, beta), expected, 1e-6 * peak) << c.name;
+      }
+    }
 }
 
 TEST(HarveyShack, IsReciprocalBeforeScaling) {
@@ -147,6 +183,7 @@ TEST(HarveyShack, IsReciprocalBeforeScaling) {
         const double back = model.unscaled_density(backward, {}, Lobe::reflection, -down.head<2>());
         EXPECT_NEAR(there, back, 1e-9 * there);
 
+        if (r.correlation_length_um == 0.6) continue;  // shorter than two wavelengths in air
         ScatterEvent out = inside(0.0), in = outside(0.0);
         out.direction_in = down;
         const Vec3 left = direction_of(Vec2(b, -0.1), Lobe::transmission);
@@ -306,8 +343,8 @@ TEST(Microfacet, WeightIsBsdfTimesCosineOverPdf) {
     }
 }
 
-// With Fresnel's factors at the facet, reflection and transmission together keep at most all light, and nearly all of
-// it where slopes are small.
+// With Fresnel's factors at the facet, reflection and transmission together keep at most all light; what they lack was
+// masked: little for moderate Gaussian slopes.
 TEST(Microfacet, EnergyOfBothLobes) {
   for (const auto& [shape, rms_slope] : kMicrofacets) {
     if (rms_slope < 0.1) continue;  // too narrow for the plain rule of the test; its weights are 1
@@ -323,7 +360,8 @@ TEST(Microfacet, EnergyOfBothLobes) {
           return (lobe == Lobe::reflection ? r : 1.0 - r) * model.bsdf_per_sr(event, lobe, direction);
         });
       EXPECT_LT(sum, 1.0 + 1e-3);
-      EXPECT_GT(sum, rms_slope < 0.5 && event.cos_in() > 0.5 ? 0.9 : 0.4);
+      const bool is_moderate = shape == SlopeShape::beckmann && rms_slope < 0.5 && event.cos_in() > 0.5;
+      EXPECT_GT(sum, is_moderate ? 0.85 : 0.4);
     }
   }
 }

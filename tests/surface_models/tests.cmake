@@ -13,3 +13,9 @@ retrace_test(gwyddion_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/gwyddion_test.cpp
   LIBRARIES retrace::texture "${RETRACE_GWYPROCESS_LIBRARY}" "${RETRACE_GWYDDION_LIBRARY}" PkgConfig::GOBJECT)
 target_include_directories(gwyddion_test SYSTEM PRIVATE "${RETRACE_GWYDDION_INCLUDE_DIR}")
+
+retrace_test(scatter_test
+  SOURCES
+    ${CMAKE_CURRENT_LIST_DIR}/height_map_scatter_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp
+  LIBRARIES retrace::scatter retrace::materials Boost::headers)

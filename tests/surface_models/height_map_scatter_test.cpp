@@ -1,0 +1,241 @@
+// Scatter from measured maps: closed forms, diffraction by their own spectrum, facets.
+#include "surface_models/scatter/height_map_scatter.h"
+
+#include "core/error.h"
+#include "surface_models/fft.h"
+#include "surface_models/scatter/phase.h"
+#include "tests/support/statistics.h"
+#include "tests/surface_models/scatter_checks.h"
+
+namespace retrace::testing {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+HeightMap flat(std::size_t points, double pixel_um) {
+  HeightMap map;
+  map.columns = map.rows = points;
+  map.x_pixel_um = map.y_pixel_um = pixel_um;
+  map.heights_nm.assign(points * points, 0.0);
+  return map;
+}
+
+/// Gaussian heights with Gaussian autocorrelation along both axes; Sq as given exactly.
+HeightMap random_map(std::size_t points, double pixel_um, double sq_nm, double x_length_um, double y_length_um) {
+  HeightMap map = flat(points, pixel_um);
+  RealFft fft(points, points);
+  RandomStream random = stream(20, 0);
+  for (double& z : fft.field()) z = normal_pair(random).x();
+  fft.forward();
+  const double step = 1.0 / (static_cast<double>(points) * pixel_um);
+  for (std::size_t r = 0; r < points; ++r)
+    for (std::size_t c = 0; c < fft.spectrum_columns(); ++c) {
+      const double fx = step * static_cast<double>(c);
+      const double fy =
+          step * (2 * r > points ? static_cast<double>(r) - static_cast<double>(points) : static_cast<double>(r));
+      const double x = kPi * x_length_um * fx, y = kPi * y_length_um * fy;
+      fft.spectrum()[r * fft.spectrum_columns() + c] *= std::exp(-0.5 * (x * x + y * y));
+    }
+  fft.spectrum()[0] = 0.0;
+  fft.inverse();
+  map.heights_nm.assign(fft.field().begin(), fft.field().end());
+  const double scale = sq_nm / HeightMapScatter(map, 550.0).sq_nm();
+  for (double& z : map.heights_nm) z *= scale;
+  return map;
+}
+
+/// Waves along x with a whole number of periods.
+HeightMap sine_map(std::size_t points, double pixel_um, double sq_nm, double length_um) {
+  HeightMap map = flat(points, pixel_um);
+  for (std::size_t r = 0; r < points; ++r)
+    for (std::size_t c = 0; c < points; ++c)
+      map.at(c, r) =
+          std::sqrt(2.0) * sq_nm * std::cos(2.0 * kPi * (static_cast<double>(c) + 0.5) * pixel_um / length_um);
+  return map;
+}
+
+TEST(HeightMapScatter, SpecularShareIsTheClosedForm) {
+  constexpr std::uint32_t kDraws = 100000;
+  std::uint32_t seed = 500;
+  for (const double sq_nm : {5.0, 10.0, 20.0, 40.0})
+    for (const double t_deg : {0.0, 45.0, 54.74, 75.0}) {
+      const HeightMapScatter model(random_map(64, 0.5, sq_nm, 3.0, 3.0), 550.0);
+      const ScatterEvent event = inside(t_deg);
+      const double p = std::exp(-std::pow(4.0 * kPi * kIndex * sq_nm * std::cos(t_deg * kRadians) / 550.0, 2));
+      EXPECT_NEAR(specular_share(model, event, {}, Lobe::reflection), p, 1e-9);
+      double specular = 0.0;
+      ++seed;
+      for (std::uint32_t k = 0; k < kDraws; ++k) {
+        RandomStream random = stream(seed, k);
+        const auto drawn = sample(model, event, {}, Lobe::reflection, random);
+        ASSERT_TRUE(drawn);
+        EXPECT_EQ(drawn->weight, 1.0);
+        specular += drawn->is_specular ? 1.0 : 0.0;
+      }
+      EXPECT_NEAR(specular / kDraws, p, normal_bound(16) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-9)
+          << sq_nm << " nm, " << t_deg << " deg";
+    }
+}
+
+// The specular share of Gaussian heights is what the diffraction integral over the map itself gives.
+TEST(HeightMapScatter, SpecularShareIsTheMeanPhaseOfTheMap) {
+  const HeightMap map = random_map(512, 0.5, 30.0, 2.0, 2.0);
+  std::complex<double> mean = 0.0;
+  const double per_nm = 4.0 * kPi * kIndex * std::cos(45.0 * kRadians) / 550.0;
+  for (const double z : map.heights_nm) mean += std::polar(1.0, per_nm * z);
+  mean /= static_cast<double>(map.heights_nm.size());
+  EXPECT_NEAR(specular_share(HeightMapScatter(map, 550.0), inside(45.0), {}, Lobe::reflection), std::norm(mean), 0.01);
+}
+
+TEST(HeightMapScatter, SamplesFollowTheDensity) {
+  // Correlation lengths differ, so that x and y cannot be mixed up; one case is cut by the horizon.
+  const HeightMapScatter model(random_map(32, 0.4, 40.0, 2.0, 1.0), 550.0);
+  const std::vector<std::pair<ScatterEvent, Lobe>> cases = {{inside(30.0), Lobe::reflection},
+                                                            {inside(80.0), Lobe::reflection},
+                                                            {outside(40.0), Lobe::reflection},
+                                                            {outside(40.0), Lobe::transmission}};
+  std::uint32_t seed = 600;
+  for (const auto& [event, lobe] : cases) {
+    const double wave_um = 0.55 / event.index_of(lobe);
+    // Bins as cells of the spectrum: there the density has steps.
+    const double step = wave_um / (32 * 0.4);
+    const Vec2 centre = specular_direction(event, Vec3::UnitZ(), lobe)->head<2>();
+    const Density density = scaled_density(model, event, lobe);
+    constexpr int kHalf = 6, kSide = 2 * kHalf + 1;
+    std::vector<double> expected(kSide * kSide + 1, 0.0), seen(kSide * kSide + 1, 0.0);
+    constexpr std::uint32_t kDraws = 200000;
+    using boost::math::quadrature::gauss;
+    double sum = 0.0;
+    for (int j = 0; j < kSide * kSide; ++j) {
+      const double x = centre.x() + step * (j % kSide - kHalf), y = centre.y() + step * (j / kSide - kHalf);
+      const auto column = [&](double at_x) {
+        return gauss<double, 7>::integrate(
+            [&](double at_y) {
+              return density({at_x, at_y});
+            },
+            y - 0.4999999 * step, y + 0.4999999 * step);
+      };
+      const Vec2 corner(std::abs(x) + step, std::abs(y) + step);
+      if (corner.norm() < 1.0)
+        expected[static_cast<std::size_t>(j)] =
+            kDraws * gauss<double, 7>::integrate(column, x - 0.4999999 * step, x + 0.4999999 * step);
+      sum += expected[static_cast<std::size_t>(j)];
+    }
+    expected.back() = kDraws - sum;
+    const Draw draw = draw_of(model, event, lobe);
+    ++seed;
+    for (std::uint32_t k = 0; k < kDraws; ++k) {
+      RandomStream random = stream(seed, k);
+      const auto beta = draw(random);
+      std::size_t bin = kSide * kSide;
+      if (beta) {
+        const int x = static_cast<int>(std::lround((beta->x() - centre.x()) / step)) + kHalf;
+        const int y = static_cast<int>(std::lround((beta->y() - centre.y()) / step)) + kHalf;
+        if (x >= 0 && x < kSide && y >= 0 && y < kSide) {
+          const auto found = static_cast<std::size_t>(y * kSide + x);
+          if (expected[found] >= 10.0) bin = found;
+        }
+      }
+      seen[bin] += 1.0;
+    }
+    double chi2 = 0.0, rest = expected.back();
+    int bins = 0;
+    for (std::size_t j = 0; j + 1 < expected.size(); ++j) {
+      if (expected[j] < 10.0) {
+        rest += expected[j];
+        continue;
+      }
+      chi2 += (seen[j] - expected[j]) * (seen[j] - expected[j]) / expected[j];
+      ++bins;
+    }
+    chi2 += (seen.back() - rest) * (seen.back() - rest) / rest;
+    EXPECT_GE(bins, 20);
+    EXPECT_GT(boost::math::cdf(boost::math::complement(boost::math::chi_squared(bins), chi2)),
+              sidak_level(cases.size()));
+  }
+}
+
+// A low sine is a grating: first orders at w / (n L), and none of the light along y.
+TEST(HeightMapScatter, LowWavesDiffract) {
+  const HeightMapScatter model(sine_map(64, 0.5, 5.0, 4.0), 550.0);
+  ScatterEvent event = inside(0.0);
+  double scattered = 0.0, x2 = 0.0, y2 = 0.0;
+  for (std::uint32_t k = 0; k < 200000; ++k) {
+    RandomStream random = stream(21, k);
+    const auto drawn = sample(model, event, sample_facet(model, event, random), Lobe::reflection, random);
+    ASSERT_TRUE(drawn);
+    if (drawn->is_specular) continue;
+    scattered += 1.0;
+    x2 += drawn->direction.x() * drawn->direction.x();
+    y2 += drawn->direction.y() * drawn->direction.y();
+  }
+  EXPECT_GT(scattered, 4000.0);
+  EXPECT_NEAR(std::sqrt(x2 / scattered) / (0.55 / kIndex / 4.0), 1.0, 0.03);
+  EXPECT_LT(std::sqrt(y2 / scattered), 0.25 * std::sqrt(x2 / scattered));
+}
+
+// A high one reflects by its slopes, sqrt(2) 2 pi Sq / L at most, along x alone.
+TEST(HeightMapScatter, HighWavesReflectByTheirSlopes) {
+  const double sq_nm = 300.0, length_um = 32.0;
+  const HeightMapScatter model(sine_map(512, 0.25, sq_nm, length_um), 550.0);
+  const ScatterEvent event = inside(0.0);
+  double squares = 0.0, largest = 0.0;
+  constexpr std::uint32_t kDraws = 100000;
+  for (std::uint32_t k = 0; k < kDraws; ++k) {
+    RandomStream random = stream(22, k);
+    const Facet facet = sample_facet(model, event, random);
+    ASSERT_TRUE(facet.is_tilted);
+    const Vec2 slope = facet.normal.head<2>() / facet.normal.z();
+    EXPECT_NEAR(slope.y(), 0.0, 1e-12);
+    squares += slope.squaredNorm();
+    largest = std::max(largest, slope.norm());
+  }
+  const double rms = 2.0 * kPi * 1e-3 * sq_nm / length_um;
+  EXPECT_NEAR(std::sqrt(squares / kDraws) / rms, 1.0, 0.01);
+  EXPECT_NEAR(largest / (std::sqrt(2.0) * rms), 1.0, 0.01);
+}
+
+// A saw-tooth has gentle slopes one way and steep ones the other: its facets, seen from both sides of the surface.
+TEST(HeightMapScatter, FacetsHaveTheMapsOrientation) {
+  HeightMap map = flat(64, 1.0);
+  for (std::size_t r = 0; r < 64; ++r)
+    for (std::size_t c = 0; c < 64; ++c) {
+      const double phase = static_cast<double>(c % 16);
+      map.at(c, r) = 100.0 * (phase < 12.0 ? phase : 3.0 * (16.0 - phase));
+    }
+  const HeightMapScatter model(map, 550.0);
+  const auto rising = [&](bool inside_material) {
+    ScatterEvent event = inside_material ? inside(0.0) : outside(0.0);
+    double towards_minus_x = 0.0;
+    for (std::uint32_t k = 0; k < 10000; ++k) {
+      RandomStream random = stream(23, k);
+      towards_minus_x += sample_facet(model, event, random).normal.x() < -1e-3 ? 1.0 : 0.0;
+    }
+    return towards_minus_x / 10000.0;
+  };
+  EXPECT_GT(rising(false), 0.65);  // heights rise along x over 3/4 of a period: normals out of the material lean back
+  EXPECT_LT(rising(true), 0.35);
+}
+
+TEST(HeightMapScatter, FlatMapsAndMissingPoints) {
+  RandomStream random = stream(24, 0);
+  HeightMap map = flat(16, 1.0);
+  map.at(3, 4) = kMissing;
+  const HeightMapScatter model(map, 550.0);
+  const auto drawn = sample(model, inside(30.0), sample_facet(model, inside(30.0), random), Lobe::reflection, random);
+  ASSERT_TRUE(drawn);
+  EXPECT_TRUE(drawn->is_specular);
+  EXPECT_EQ(specular_share(model, inside(30.0), {}, Lobe::reflection), 1.0);
+  EXPECT_THROW(HeightMapScatter(flat(7, 1.0), 550.0), InputError);
+  map.heights_nm.assign(256, kMissing);
+  EXPECT_THROW(HeightMapScatter(map, 550.0), InputError);
+}
+
+TEST(HeightMapScatter, Warns) {
+  EXPECT_TRUE(warnings(HeightMapScatter(random_map(128, 0.15, 20.0, 1.5, 1.5), 550.0), kIndex, 550.0).empty());
+  const auto coarse = warnings(HeightMapScatter(sine_map(64, 1.29, 20.0, 40.0), 550.0), kIndex, 550.0);
+  EXPECT_EQ(coarse.size(), 2U);  // sampling, and the kurtosis of a sine
+}
+
+}  // namespace
+}  // namespace retrace::testing
