@@ -99,13 +99,43 @@ void add_rre(CLI::App& app, RreOptions& rre) {
                     "the directions in which light leaves the entrance face (--engine exact, --out)");
 }
 
+void add_metrology(CLI::App& app, MetrologyOptions& metrology) {
+  CLI::App* command = app.add_subcommand("metrology", "roughness, waviness and edge radius of a measured surface");
+  command->add_option("FILE", metrology.file, "height map or profile: text, SDF, GSF or GWY")
+      ->required()
+      ->check(not_empty());
+  command->add_option("--form", metrology.form, "form to remove: none, plane or poly2 to poly8")
+      ->type_name("FORM")
+      ->capture_default_str();
+  command
+      ->add_option("--cutoff-um", metrology.cutoff_um, "cut-off of the Gaussian filter between roughness and waviness")
+      ->type_name("L")
+      ->capture_default_str()
+      ->check(real_number());
+  command->add_option("--pixel-um", metrology.pixel_um, "spacing of the points, or PX,PY [what the file says]")
+      ->type_name("P");
+  command
+      ->add_option("--height-unit", metrology.height_unit, "of the heights: m, mm, um, nm or pm [what the file says]")
+      ->type_name("UNIT");
+  command
+      ->add_option("--lateral-unit", metrology.lateral_unit, "of lengths without a unit, likewise [what the file says]")
+      ->type_name("UNIT");
+  command->add_option("--channel", metrology.channel, "channel of a GWY file [the first]")
+      ->type_name("N")
+      ->check(whole_number(0, 999999));
+  command->add_option("--feed-mm-per-min", metrology.feed_mm_per_min, "feed of the cut, for waves in Hz")
+      ->type_name("F")
+      ->check(real_number());
+  command->add_flag("--edge", metrology.edge, "rows are profiles across an edge: fit its radius and chamfer");
+}
+
 /// What to say if a command or what it needs is missing: a word that nobody knows explains it better.
 std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::vector<std::string> unknown = app.remaining(true);
   for (const std::string& word : unknown)
     if (word.starts_with('-')) return "unknown option " + word;
   if (!app.get_subcommands().empty()) return otherwise;
-  const std::string commands = "rre, inspect, init and list";
+  const std::string commands = "rre, inspect, metrology, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -131,6 +161,7 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
       ->add_option("DESIGN", line.design, "design file; - is standard input")
       ->required()
       ->check(not_empty());
+  add_metrology(app, line.metrology);
   app.add_subcommand("init", "a commented design file to start from")
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
       ->required();

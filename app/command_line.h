@@ -29,11 +29,24 @@ struct RreOptions {
   bool far_field = false;
 };
 
+struct MetrologyOptions {
+  std::string file;
+  std::string form = "plane";
+  double cutoff_um = 80.0;
+  std::optional<std::string> pixel_um;  ///< one number, or two with a comma between
+  std::optional<std::string> height_unit;
+  std::optional<std::string> lateral_unit;
+  std::optional<std::size_t> channel;
+  std::optional<double> feed_mm_per_min;
+  bool edge = false;
+};
+
 /// What the user typed.
 struct CommandLine {
   std::string command;
   CommonOptions common;
   RreOptions rre;
+  MetrologyOptions metrology;
   std::string design;  ///< inspect
   std::string kind;    ///< init
   std::string what;    ///< list

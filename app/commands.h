@@ -9,6 +9,7 @@ namespace retrace::app {
 
 ExitCode run_rre_command(const CommandLine& line);
 ExitCode run_inspect_command(const CommandLine& line);
+ExitCode run_metrology_command(const CommandLine& line);
 ExitCode run_init_command(const CommandLine& line);
 ExitCode run_list_command(const CommandLine& line);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <numbers>
 
 #include "core/error.h"
@@ -80,6 +81,22 @@ std::string without_surface_ids(std::string svg) {
     if (end == std::string::npos) break;
     svg.erase(at, end + 1 - at);
   }
+  return svg;
+}
+
+/// Pictures are numbered likewise, and referred to: they are numbered again from 1.
+std::string with_own_image_ids(std::string svg) {
+  std::vector<std::string> known;
+  for (const std::string_view mark : {" id=\"image", "\"#image"})
+    for (std::size_t at = svg.find(mark); at != std::string::npos; at = svg.find(mark, at + mark.size())) {
+      const std::size_t begin = at + mark.size();
+      const std::size_t end = svg.find('"', begin);
+      if (end == std::string::npos) break;
+      const std::string number = svg.substr(begin, end - begin);
+      auto place = std::find(known.begin(), known.end(), number);
+      if (place == known.end()) place = known.insert(known.end(), number);
+      svg.replace(begin, end - begin, std::to_string(place - known.begin() + 1));
+    }
   return svg;
 }
 
@@ -203,6 +220,29 @@ void Canvas::fill_rectangle(Point corner, Size size, Colour colour) {
   cairo_fill(hidden_->context.get());
 }
 
+void Canvas::image(Point corner, Size size, std::size_t columns, const std::vector<Colour>& colours) {
+  cairo_t* const context = hidden_->context.get();
+  const std::size_t rows = colours.size() / columns;
+  const std::unique_ptr<cairo_surface_t, Release> pixels(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(columns), static_cast<int>(rows)));
+  check(cairo_surface_status(pixels.get()));
+  const auto byte = [](double share) { return static_cast<std::uint32_t>(std::lround(255.0 * share)); };
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(pixels.get()));
+  unsigned char* const data = cairo_image_surface_get_data(pixels.get());
+  for (std::size_t i = 0; i < rows * columns; ++i) {
+    const std::uint32_t pixel = byte(colours[i].red) << 16 | byte(colours[i].green) << 8 | byte(colours[i].blue);
+    std::memcpy(data + i / columns * stride + i % columns * sizeof pixel, &pixel, sizeof pixel);
+  }
+  cairo_surface_mark_dirty(pixels.get());
+  cairo_save(context);
+  cairo_translate(context, corner.x, corner.y);
+  cairo_scale(context, size.width / static_cast<double>(columns), size.height / static_cast<double>(rows));
+  cairo_set_source_surface(context, pixels.get(), 0.0, 0.0);
+  cairo_pattern_set_filter(cairo_get_source(context), CAIRO_FILTER_NEAREST);
+  cairo_paint(context);
+  cairo_restore(context);
+}
+
 void Canvas::line(const std::vector<Point>& points, const Stroke& stroke) {
   cairo_t* const context = hidden_->context.get();
   hidden_->set(stroke.colour);
@@ -318,7 +358,8 @@ std::string Canvas::finish() {
     check(cairo_surface_write_to_png_stream(hidden.surface.get(), append, &hidden.bytes));
   cairo_surface_finish(hidden.surface.get());
   check(cairo_surface_status(hidden.surface.get()));
-  return hidden.format == Format::svg ? without_surface_ids(std::move(hidden.bytes)) : std::move(hidden.bytes);
+  return hidden.format == Format::svg ? with_own_image_ids(without_surface_ids(std::move(hidden.bytes)))
+                                      : std::move(hidden.bytes);
 }
 
 }  // namespace retrace::report

@@ -2,6 +2,7 @@
 
 // Private to report/: the few drawing operations a plot needs, over cairo, which no other header names.
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -63,6 +64,9 @@ class Canvas {
 
   void fill_rectangle(Point corner, Size size, Colour colour);
   void line(const std::vector<Point>& points, const Stroke& stroke);
+  /// A picture of columns x colours.size() / columns pixels, its first row on top, stretched over a rectangle. Pixels
+  /// keep their edges. \pre columns >= 1, whole rows
+  void image(Point corner, Size size, std::size_t columns, const std::vector<Colour>& colours);
   /// All polygons at once, so that none of the background shows between neighbours. \param swell by how much their
   /// edges are moved out, to overlap with those of another colour \param opacity 0..1
   void fill(const std::vector<std::vector<Point>>& polygons, Colour colour, double swell = 0.0, double opacity = 1.0);

@@ -13,6 +13,8 @@ constexpr double kDeviations = 5.0;
 /// From the median absolute deviation to the standard deviation of Gaussian values.
 constexpr double kGaussianMad = 1.4826;
 constexpr std::size_t kLeastLines = 16;
+/// Lines to each side that a line is compared with, at least.
+constexpr double kLeastBeside = 4.0;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -49,42 +51,58 @@ Line line_of(const HeightMap& map, Axis along, std::size_t index) {
 }
 
 /// Whether the line lies on the side of its mean in most of its stretches.
-bool is_consistent(const Line& line, double middle_nm) {
-  const double side = line.mean_nm < middle_nm ? -1.0 : 1.0;
+bool is_consistent(const Line& line, double beside_nm) {
+  const double side = line.mean_nm < beside_nm ? -1.0 : 1.0;
   double same = 0.0;
   double measured = 0.0;
   for (const double z : line.stretches_nm) {
     if (!std::isfinite(z)) continue;
     measured += 1.0;
     // Half of the line's own depth: a few deep places do not make a scratch.
-    if (side * (z - middle_nm) > 0.5 * side * (line.mean_nm - middle_nm)) same += 1.0;
+    if (side * (z - beside_nm) > 0.5 * side * (line.mean_nm - beside_nm)) same += 1.0;
   }
   return same >= kSameSide * measured;
 }
 
+/// What each line is compared with: the mean of the medians of the lines before and after it, `near` to `far` lines
+/// away, in which slopes cancel. NaN where one of the two is missing.
+std::vector<double> beside(const std::vector<Line>& lines, std::size_t near, std::size_t far) {
+  const auto median_of = [&](std::size_t begin, std::size_t end) {
+    std::vector<double> means;
+    for (std::size_t k = begin; k < std::min(end, lines.size()); ++k)
+      if (std::isfinite(lines[k].mean_nm)) means.push_back(lines[k].mean_nm);
+    return means.empty() ? kMissing : median(std::move(means));
+  };
+  std::vector<double> result;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const double before = i < near ? kMissing : median_of(i > far ? i - far : 0, i - near + 1);
+    result.push_back(0.5 * (before + median_of(i + near, i + far + 1)));
+  }
+  return result;
+}
+
 }  // namespace
 
-std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along) {
+std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, double beside_um) {
   const std::size_t count = along == Axis::x ? roughness.rows : roughness.columns;
   if (roughness.is_profile() || count < kLeastLines) return {};
   const double pixel_um = along == Axis::x ? roughness.y_pixel_um : roughness.x_pixel_um;
   std::vector<Line> lines;
-  std::vector<double> means;
-  for (std::size_t i = 0; i < count; ++i) {
-    lines.push_back(line_of(roughness, along, i));
-    if (std::isfinite(lines.back().mean_nm)) means.push_back(lines.back().mean_nm);
-  }
-  if (means.size() < kLeastLines) return {};
-  const double middle = median(means);
-  for (double& mean : means) mean = std::abs(mean - middle);
-  const double limit = kDeviations * kGaussianMad * median(means);
+  for (std::size_t i = 0; i < count; ++i) lines.push_back(line_of(roughness, along, i));
+  const auto far = static_cast<std::size_t>(std::max(kLeastBeside, std::ceil(beside_um / pixel_um)));
+  const std::vector<double> middles = beside(lines, far / 2, far);
+  const auto depth = [&](std::size_t i) { return middles[i] - lines[i].mean_nm; };
+  std::vector<double> deviations;
+  for (std::size_t i = 0; i < count; ++i)
+    if (std::isfinite(depth(i))) deviations.push_back(std::abs(depth(i)));
+  if (deviations.size() < kLeastLines) return {};
+  const double limit = kDeviations * kGaussianMad * median(std::move(deviations));
 
   std::vector<Scratch> scratches;
-  const auto depth = [&](std::size_t i) { return middle - lines[i].mean_nm; };
+  const auto stands_out = [&](std::size_t i) {
+    return std::abs(depth(i)) > limit && is_consistent(lines[i], middles[i]);
+  };
   for (std::size_t i = 0; i < count;) {
-    const auto stands_out = [&](std::size_t k) {
-      return std::isfinite(lines[k].mean_nm) && std::abs(depth(k)) > limit && is_consistent(lines[k], middle);
-    };
     if (!stands_out(i)) {
       ++i;
       continue;
@@ -98,7 +116,7 @@ std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along) {
     std::size_t low = deepest;
     std::size_t high = deepest;
     while (low > 0 && within(low - 1)) --low;
-    while (high + 1 < count && within(high + 1)) ++high;
+    while (high + 1 < count && within(high + 1)) ++high;  // NaN, outside of what is compared, ends it too
     scratches.push_back({along, static_cast<double>(deepest) * pixel_um, depth(deepest),
                          static_cast<double>(high - low + 1) * pixel_um});
     i = std::max(end, high + 1);

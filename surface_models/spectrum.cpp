@@ -11,9 +11,11 @@ namespace {
 
 constexpr double kMmPerUm = 1e-3;
 constexpr std::size_t kLeastPoints = 8;
-/// A peak's density over the median of its surroundings: bins of pure noise are distributed exponentially and pass
-/// 12 / ln 2 medians once in 3e7.
-constexpr double kPeakHeight = 25.0;
+/// A peak's density over the median of its surroundings, and above it in median deviations. Bins of one line of noise
+/// are distributed exponentially and reach 35 deviations once in 2e7; the mean of many lines scatters less, and weaker
+/// peaks show in it.
+constexpr double kPeakHeight = 3.0;
+constexpr double kPeakDeviations = 35.0;
 constexpr double kLeastPeakPower = 0.01;
 /// The bins that the main lobe of a Hann window fills to each side, and those whose median is the surroundings.
 constexpr std::size_t kLobe = 2;
@@ -59,14 +61,30 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// The median density around bin k, its own lobe left out.
-double surroundings(const std::vector<double>& density, std::size_t k) {
-  std::vector<double> around;
+/// The densities around a bin, its own lobe left out, about the line through the medians of both sides.
+struct Surroundings {
+  double middle = 0.0;     ///< at the bin
+  double deviation = 0.0;  ///< median deviation from the line
+};
+
+Surroundings surroundings(const std::vector<double>& density, std::size_t k) {
   const std::size_t low = k > kSurroundings + kLobe ? k - kSurroundings - kLobe : 0;
   const std::size_t high = std::min(density.size(), k + kSurroundings + kLobe + 1);
+  std::vector<double> below;
+  std::vector<double> above;
+  for (std::size_t i = low; i + kLobe < k; ++i) below.push_back(density[i]);
+  for (std::size_t i = k + kLobe + 1; i < high; ++i) above.push_back(density[i]);
+  if (below.empty() && above.empty()) return {};
+  const double left = median(below.empty() ? above : below);
+  const double right = median(above.empty() ? below : above);
+  // A side's median stands for its middle.
+  const double slope = (right - left) / static_cast<double>(kSurroundings + 2 * kLobe + 1);
+  const double middle = 0.5 * (left + right);
+  std::vector<double> deviations;
   for (std::size_t i = low; i < high; ++i)
-    if (i + kLobe < k || i > k + kLobe) around.push_back(density[i]);
-  return around.empty() ? 0.0 : median(std::move(around));
+    if (i + kLobe < k || i > k + kLobe)
+      deviations.push_back(std::abs(density[i] - middle - slope * (static_cast<double>(i) - static_cast<double>(k))));
+  return {middle, median(std::move(deviations))};
 }
 
 bool is_highest_in_its_lobe(const std::vector<double>& density, std::size_t k) {
@@ -77,10 +95,11 @@ bool is_highest_in_its_lobe(const std::vector<double>& density, std::size_t k) {
 
 /// Where between the bins a line lies: under a Hann window the amplitudes a, b of its two highest bins obey
 /// offset = (2 b - a) / (a + b) (Grandke, IEEE Trans. Instrum. Meas. 32, 350, 1983).
-double offset_of(const std::vector<double>& density, std::size_t k) {
-  const double below = k > 0 ? density[k - 1] : 0.0;
-  const double above = k + 1 < density.size() ? density[k + 1] : 0.0;
-  const double ratio = std::sqrt(std::max(below, above) / density[k]);
+double offset_of(const std::vector<double>& density, std::size_t k, double floor) {
+  const auto line = [&](std::size_t i) { return std::max(0.0, density[i] - floor); };
+  const double below = k > 0 ? line(k - 1) : 0.0;
+  const double above = k + 1 < density.size() ? line(k + 1) : 0.0;
+  const double ratio = std::sqrt(std::max(below, above) / line(k));
   const double offset = std::clamp((2.0 * ratio - 1.0) / (1.0 + ratio), 0.0, 0.5);
   return above >= below ? offset : -offset;
 }
@@ -160,12 +179,13 @@ std::vector<SpectralPeak> peaks_of(const Spectrum& spectrum, Axis axis) {
   if (spectrum.density.empty()) return peaks;
   const double step = spectrum.frequency_per_mm.front();
   for (std::size_t k = 0; k < spectrum.density.size(); ++k) {
-    const double floor = surroundings(spectrum.density, k);
-    if (!is_highest_in_its_lobe(spectrum.density, k) || !(spectrum.density[k] > kPeakHeight * floor)) continue;
+    if (!is_highest_in_its_lobe(spectrum.density, k)) continue;
+    const auto [floor, deviation] = surroundings(spectrum.density, k);
+    if (!(spectrum.density[k] > std::max(kPeakHeight * floor, floor + kPeakDeviations * deviation))) continue;
     double power = 0.0;
     for (std::size_t i = k > kLobe ? k - kLobe : 0; i < std::min(spectrum.density.size(), k + kLobe + 1); ++i)
       power += std::max(0.0, spectrum.density[i] - floor) * step;
-    const double frequency = spectrum.frequency_per_mm[k] + offset_of(spectrum.density, k) * step;
+    const double frequency = spectrum.frequency_per_mm[k] + offset_of(spectrum.density, k, floor) * step;
     peaks.push_back({axis, frequency, std::sqrt(power)});
   }
   return peaks;

@@ -33,8 +33,9 @@ struct SpectralPeak {
 /// Most peaks that dominant_peaks() returns.
 inline constexpr std::size_t kMostPeaks = 8;
 
-/// The lines along x and y that rise above `kPeakHeight` times the median density around them and hold at least 1 % of
-/// the power of the strongest, strongest first; frequencies are interpolated between the bins.
+/// The lines along x and y that rise above the densities around them (three times their median, and by 35 of their
+/// median deviations) and hold at least 1 % of the power of the strongest, strongest first; frequencies are
+/// interpolated between the bins.
 std::vector<SpectralPeak> dominant_peaks(const HeightMap& map);
 
 /// The same for one spectrum of line_spectrum().

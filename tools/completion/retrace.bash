@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect init list'
+  local commands='rre inspect metrology init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -57,17 +57,30 @@ _retrace() {
       _retrace_words "$word" 'auto exact montecarlo embree'
       return
       ;;
+    --form)
+      _retrace_words "$word" 'none plane poly2 poly3 poly4 poly5 poly6 poly7 poly8'
+      return
+      ;;
+    --height-unit | --lateral-unit)
+      _retrace_words "$word" 'm mm um nm pm'
+      return
+      ;;
     --set)
       compopt -o nospace 2>/dev/null
       _retrace_words "$word" 'element. array. body. light. detector. idealisation.'
       return
       ;;
     --threads | --seed | --incidence | --azimuth | --samples | --target-error | --cutoff) return ;;
+    --cutoff-um | --pixel-um | --channel | --feed-mm-per-min) return ;;
   esac
 
   if [[ $word == -* ]]; then
     case $command in
       rre) _retrace_words "$word" "$common --incidence --azimuth --engine --samples --target-error --cutoff --footprint --far-field" ;;
+      metrology)
+        _retrace_words "$word" "$common --form --cutoff-um --pixel-um --height-unit --lateral-unit --channel \
+          --feed-mm-per-min --edge"
+        ;;
       *) _retrace_words "$word" "$common" ;;
     esac
     return
@@ -75,6 +88,7 @@ _retrace() {
   case $command in
     '') _retrace_words "$word" "$commands" ;;
     rre | inspect) _retrace_files "$word" .toml ;;
+    metrology) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
     list) _retrace_words "$word" 'materials' ;;
   esac

@@ -1,0 +1,301 @@
+#include "report/surface_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "report/axis_ticks.h"
+#include "report/canvas.h"
+
+namespace retrace::report {
+namespace {
+
+constexpr Colour kWhite{1.0, 1.0, 1.0};
+constexpr Colour kAxis{0.35, 0.35, 0.35};
+constexpr Colour kText{0.13, 0.13, 0.13};
+constexpr Colour kGrid{0.88, 0.88, 0.88};
+constexpr Colour kMissingColour{0.75, 0.75, 0.75};
+// Okabe and Ito (2008), as the other plots.
+constexpr std::array<Colour, 3> kCurves = {{{0.0, 0.447, 0.698}, {0.835, 0.369, 0.0}, {0.0, 0.620, 0.451}}};
+// Viridis (Smith and van der Walt 2015): even in lightness, safe with any kind of colour vision.
+constexpr std::array<Colour, 9> kScale = {{{0.267, 0.005, 0.329},
+                                           {0.279, 0.175, 0.483},
+                                           {0.230, 0.322, 0.546},
+                                           {0.173, 0.449, 0.558},
+                                           {0.128, 0.567, 0.551},
+                                           {0.158, 0.684, 0.502},
+                                           {0.369, 0.789, 0.383},
+                                           {0.678, 0.864, 0.190},
+                                           {0.993, 0.906, 0.144}}};
+
+constexpr Font kTitleFont{16.0, true};
+constexpr Font kPanelFont{12.5, true};
+constexpr Font kLabelFont{12.0, false};
+constexpr Font kTickFont{10.5, false};
+
+constexpr double kMargin = 22.0;
+constexpr Size kCell{430.0, 390.0};  ///< of one panel with its texts
+constexpr Size kPlotArea{290.0, 290.0};
+constexpr double kLeft = 62.0;  ///< of the plot area in its cell
+constexpr double kTop = 34.0;
+constexpr double kBarGap = 12.0;
+constexpr double kBarWidth = 14.0;
+constexpr std::size_t kMostPixels = 480;  ///< of a grid along an axis; finer ones are averaged
+/// Heights this many standard deviations off the mean have the colour of the end of the scale.
+constexpr double kColourReach = 3.0;
+
+Colour colour_at(double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kScale.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(at), kScale.size() - 2);
+  const double t = at - static_cast<double>(k);
+  const Colour& a = kScale[k];
+  const Colour& b = kScale[k + 1];
+  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
+}
+
+/// The values that the colours spread over.
+Range colour_range(const std::vector<double>& values) {
+  double sum = 0.0;
+  double squares = 0.0;
+  double count = 0.0;
+  for (const double v : values)
+    if (std::isfinite(v)) {
+      sum += v;
+      squares += v * v;
+      count += 1.0;
+    }
+  const Range all = extent_of(values).value_or(Range{0.0, 1.0});
+  if (count == 0.0) return drawable(all);
+  const double mean = sum / count;
+  const double deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
+  return drawable(
+      {std::max(all.low, mean - kColourReach * deviation), std::min(all.high, mean + kColourReach * deviation)});
+}
+
+/// A grid of at most kMostPixels along each axis, by averaging blocks.
+GridPanel reduced(const GridPanel& panel) {
+  const std::size_t sx = (panel.columns + kMostPixels - 1) / kMostPixels;
+  const std::size_t sy = (panel.rows + kMostPixels - 1) / kMostPixels;
+  GridPanel small = panel;
+  small.columns = (panel.columns + sx - 1) / sx;
+  small.rows = (panel.rows + sy - 1) / sy;
+  small.values.clear();
+  for (std::size_t row = 0; row < panel.rows; row += sy)
+    for (std::size_t column = 0; column < panel.columns; column += sx) {
+      double sum = 0.0;
+      double count = 0.0;
+      for (std::size_t j = row; j < std::min(panel.rows, row + sy); ++j)
+        for (std::size_t i = column; i < std::min(panel.columns, column + sx); ++i) {
+          const double v = panel.values[j * panel.columns + i];
+          if (!std::isfinite(v)) continue;
+          sum += v;
+          count += 1.0;
+        }
+      small.values.push_back(count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN());
+    }
+  return small;
+}
+
+/// Where a panel's axes lie.
+struct Area {
+  Point corner;
+  Size size;
+
+  double right() const { return corner.x + size.width; }
+  double bottom() const { return corner.y + size.height; }
+};
+
+void draw_frame(Canvas& canvas, const Area& area) {
+  canvas.line({area.corner,
+               {area.right(), area.corner.y},
+               {area.right(), area.bottom()},
+               {area.corner.x, area.bottom()},
+               area.corner},
+              {kAxis, 1.0, {}});
+}
+
+void draw_x_tick(Canvas& canvas, const Area& area, double x, std::string_view label) {
+  canvas.line({{x, area.bottom()}, {x, area.bottom() + 4.0}}, {kAxis, 1.0, {}});
+  canvas.text({x, area.bottom() + 6.0 + kTickFont.size}, label, kTickFont, kText, Align::centre);
+}
+
+void draw_y_tick(Canvas& canvas, const Area& area, double y, std::string_view label) {
+  canvas.line({{area.corner.x - 4.0, y}, {area.corner.x, y}}, {kAxis, 1.0, {}});
+  canvas.text({area.corner.x - 7.0, y + 0.36 * kTickFont.size}, label, kTickFont, kText, Align::right);
+}
+
+void draw_texts(Canvas& canvas, const Area& area, Point cell, std::string_view title, std::string_view x_label,
+                std::string_view y_label) {
+  const double middle = area.corner.x + 0.5 * area.size.width;
+  canvas.text({cell.x + kLeft, cell.y + 22.0}, title, kPanelFont, kText, Align::left);
+  canvas.text({middle, area.bottom() + 38.0}, x_label, kLabelFont, kText, Align::centre);
+  canvas.text({cell.x + 14.0, area.corner.y + 0.5 * area.size.height}, y_label, kLabelFont, kText, Align::centre, true);
+}
+
+void draw_bar(Canvas& canvas, const Area& area, Range range, std::string_view label) {
+  const double left = area.right() + kBarGap;
+  constexpr std::size_t kSteps = 128;
+  std::vector<Colour> colours;
+  for (std::size_t i = 0; i < kSteps; ++i)
+    colours.push_back(colour_at(1.0 - static_cast<double>(i) / static_cast<double>(kSteps - 1)));
+  canvas.image({left, area.corner.y}, {kBarWidth, area.size.height}, 1, colours);
+  draw_frame(canvas, {{left, area.corner.y}, {kBarWidth, area.size.height}});
+  const AxisScale scale{range, area.bottom(), area.corner.y};
+  const Ticks ticks = make_ticks(range, 5);
+  double widest = 0.0;
+  for (std::size_t i = 0; i < ticks.positions.size(); ++i) {
+    const double y = scale.at(ticks.positions[i]);
+    canvas.line({{left + kBarWidth, y}, {left + kBarWidth + 4.0, y}}, {kAxis, 1.0, {}});
+    canvas.text({left + kBarWidth + 7.0, y + 0.36 * kTickFont.size}, ticks.labels[i], kTickFont, kText, Align::left);
+    widest = std::max(widest, canvas.text_width(ticks.labels[i], kTickFont));
+  }
+  canvas.text({left + kBarWidth + widest + 22.0, area.corner.y + 0.5 * area.size.height}, label, kLabelFont, kText,
+              Align::centre, true);
+}
+
+void draw_linear_axes(Canvas& canvas, const Area& area, Range x_range, Range y_range, bool y_down) {
+  const AxisScale x{x_range, area.corner.x, area.right()};
+  const AxisScale y{y_range, y_down ? area.corner.y : area.bottom(), y_down ? area.bottom() : area.corner.y};
+  const Ticks x_ticks = make_ticks(x_range, 5);
+  const Ticks y_ticks = make_ticks(y_range, 5);
+  for (std::size_t i = 0; i < x_ticks.positions.size(); ++i)
+    draw_x_tick(canvas, area, x.at(x_ticks.positions[i]), x_ticks.labels[i]);
+  for (std::size_t i = 0; i < y_ticks.positions.size(); ++i)
+    draw_y_tick(canvas, area, y.at(y_ticks.positions[i]), y_ticks.labels[i]);
+}
+
+/// A profile: heights over x.
+void draw_profile(Canvas& canvas, const GridPanel& panel, Point cell) {
+  const Area area{{cell.x + kLeft, cell.y + kTop}, kPlotArea};
+  const Range heights = drawable(extent_of(panel.values).value_or(Range{0.0, 1.0}));
+  const AxisScale x{{0.0, panel.x_size_um}, area.corner.x, area.right()};
+  const AxisScale y{heights, area.bottom(), area.corner.y};
+  std::vector<Point> stretch;
+  const auto draw_stretch = [&] {
+    if (stretch.size() > 1) canvas.line(stretch, {kCurves[0], 1.0, {}});
+    stretch.clear();
+  };
+  for (std::size_t i = 0; i < panel.values.size(); ++i) {
+    const double at = (static_cast<double>(i) + 0.5) * panel.x_size_um / static_cast<double>(panel.columns);
+    if (std::isfinite(panel.values[i]))
+      stretch.push_back({x.at(at), y.at(panel.values[i])});
+    else
+      draw_stretch();
+  }
+  draw_stretch();
+  draw_frame(canvas, area);
+  draw_linear_axes(canvas, area, x.values, heights, false);
+  draw_texts(canvas, area, cell, panel.title, "x (µm)", panel.value_label);
+}
+
+void draw(Canvas& canvas, const GridPanel& panel, Point cell) {
+  if (panel.rows == 1) {
+    draw_profile(canvas, panel, cell);
+    return;
+  }
+  // To scale, within the plot area; a strip keeps a visible width.
+  const double scale = std::min(kPlotArea.width / panel.x_size_um, kPlotArea.height / panel.y_size_um);
+  const Size size{std::max(20.0, scale * panel.x_size_um), std::max(20.0, scale * panel.y_size_um)};
+  const Area area{{cell.x + kLeft, cell.y + kTop}, size};
+  const GridPanel small = reduced(panel);
+  const Range range = colour_range(small.values);
+  std::vector<Colour> colours;
+  for (const double v : small.values)
+    colours.push_back(std::isfinite(v) ? colour_at((v - range.low) / range.span()) : kMissingColour);
+  canvas.image(area.corner, area.size, small.columns, colours);
+  draw_frame(canvas, area);
+  draw_linear_axes(canvas, area, {0.0, panel.x_size_um}, {0.0, panel.y_size_um}, true);
+  draw_bar(canvas, area, range, panel.value_label);
+  draw_texts(canvas, area, cell, panel.title, "x (µm)", "y (µm)");
+}
+
+/// The decades that hold all positive values; at most `most` below the highest.
+Range decades(const LogPanel& panel, bool of_x, double most) {
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const LogCurve& curve : panel.curves)
+    for (const double v : of_x ? curve.x : curve.y) {
+      if (!(v > 0.0) || !std::isfinite(v)) continue;
+      range.low = std::min(range.low, std::log10(v));
+      range.high = std::max(range.high, std::log10(v));
+    }
+  if (!(range.low <= range.high)) return {0.0, 1.0};
+  range.low = std::max(range.low, range.high - most);
+  if (of_x) return drawable(range);
+  return drawable({std::floor(range.low), std::ceil(range.high)});
+}
+
+std::string power_of_ten(int exponent) {
+  if (exponent >= 0 && exponent <= 4) return fmt::format("{}", static_cast<int>(std::lround(std::pow(10.0, exponent))));
+  if (exponent < 0 && exponent >= -3) return fmt::format("{:.{}f}", std::pow(10.0, exponent), -exponent);
+  return fmt::format("1e{}", exponent);
+}
+
+void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
+  constexpr double kMostDecades = 12.0;
+  const Area area{{cell.x + kLeft, cell.y + kTop}, {kPlotArea.width + 60.0, kPlotArea.height}};
+  const AxisScale x{decades(panel, true, kMostDecades), area.corner.x, area.right()};
+  const AxisScale y{decades(panel, false, kMostDecades), area.bottom(), area.corner.y};
+  for (int e = static_cast<int>(std::ceil(x.values.low)); e <= static_cast<int>(std::floor(x.values.high)); ++e) {
+    canvas.line({{x.at(e), area.corner.y}, {x.at(e), area.bottom()}}, {kGrid, 0.9, {}});
+    draw_x_tick(canvas, area, x.at(e), power_of_ten(e));
+  }
+  const int y_step = y.values.span() > 7.0 ? 2 : 1;
+  for (int e = static_cast<int>(std::ceil(y.values.low)); e <= static_cast<int>(std::floor(y.values.high));
+       e += y_step) {
+    canvas.line({{area.corner.x, y.at(e)}, {area.right(), y.at(e)}}, {kGrid, 0.9, {}});
+    draw_y_tick(canvas, area, y.at(e), power_of_ten(e));
+  }
+  canvas.clip(area.corner, area.size);
+  for (std::size_t c = 0; c < panel.curves.size(); ++c) {
+    const LogCurve& curve = panel.curves[c];
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+      if (curve.x[i] > 0.0 && curve.y[i] > 0.0)
+        points.push_back({x.at(std::log10(curve.x[i])), y.at(std::log10(curve.y[i]))});
+    if (points.size() > 1) canvas.line(points, {kCurves[c % kCurves.size()], 1.2, {}});
+  }
+  canvas.end_clip();
+  draw_frame(canvas, area);
+  double right = area.right() - 10.0;
+  for (std::size_t c = panel.curves.size(); c-- > 0;) {
+    canvas.text({right, area.corner.y + 18.0}, panel.curves[c].label, kLabelFont, kText, Align::right);
+    right -= canvas.text_width(panel.curves[c].label, kLabelFont) + 8.0;
+    canvas.line({{right - 18.0, area.corner.y + 14.0}, {right, area.corner.y + 14.0}},
+                {kCurves[c % kCurves.size()], 2.0, {}});
+    right -= 34.0;
+  }
+  draw_texts(canvas, area, cell, panel.title, panel.x_label, panel.y_label);
+}
+
+std::string render(const SurfacePlot& plot, Canvas::Format format, double scale) {
+  const std::size_t rows = (plot.panels.size() + 1) / 2;
+  const Size size{2.0 * kCell.width + 2.0 * kMargin, static_cast<double>(rows) * kCell.height + 2.0 * kMargin + 24.0};
+  Canvas canvas(format, size, scale);
+  canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
+  const auto title = canvas.fitted(plot.title, kTitleFont, size.width - 2.0 * kMargin, 1, Ellipsis::middle);
+  if (!title.empty())
+    canvas.text({0.5 * size.width, kMargin + kTitleFont.size}, title.front(), kTitleFont, kText, Align::centre);
+  for (std::size_t i = 0; i < plot.panels.size(); ++i) {
+    const Point cell{kMargin + kCell.width * static_cast<double>(i % 2),
+                     kMargin + 24.0 + kCell.height * static_cast<double>(i / 2)};
+    std::visit([&](const auto& panel) { draw(canvas, panel, cell); }, plot.panels[i]);
+  }
+  return canvas.finish();
+}
+
+}  // namespace
+
+std::string render_svg(const SurfacePlot& plot) {
+  return render(plot, Canvas::Format::svg, 1.0);
+}
+
+std::string render_png(const SurfacePlot& plot, double scale) {
+  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
+  return render(plot, Canvas::Format::png, scale);
+}
+
+}  // namespace retrace::report

@@ -1,0 +1,156 @@
+#include "studies/metrology/metrology.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "surface_models/autocorrelation.h"
+#include "surface_models/form.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace surface_models;
+
+/// Rows of a map that an edge is fitted to; of more, evenly spread ones are taken. A fit takes some milliseconds.
+constexpr std::size_t kMostEdgeProfiles = 256;
+/// Fewer points to a cut-off do not sample the filter.
+constexpr double kLeastPointsPerCutoff = 2.0;
+constexpr double kMissingShareToTell = 0.05;
+constexpr double kLeastPointsPerLength = 2.0;
+/// How far a scratch is compared with what lies beside it, in cut-offs.
+constexpr double kBesideScratch = 0.25;
+
+void check(const MetrologyRequest& request, const HeightMap& map) {
+  if (!(request.cutoff_um > 0.0 && std::isfinite(request.cutoff_um)))
+    throw InputError({"", 0, "--cutoff-um"}, fmt::format("must be > 0, got {}", request.cutoff_um));
+  const double coarser = map.is_profile() ? map.x_pixel_um : std::max(map.x_pixel_um, map.y_pixel_um);
+  if (request.cutoff_um < kLeastPointsPerCutoff * coarser)
+    throw InputError({request.file, 0, "--cutoff-um"},
+                     fmt::format("must be at least twice the spacing of {} um, got {}", shortest(coarser),
+                                 shortest(request.cutoff_um)));
+  if (request.feed_mm_per_min && !(*request.feed_mm_per_min > 0.0 && std::isfinite(*request.feed_mm_per_min)))
+    throw InputError({"", 0, "--feed-mm-per-min"}, fmt::format("must be > 0, got {}", *request.feed_mm_per_min));
+}
+
+/// Every n-th row, so that at most kMostEdgeProfiles are left.
+HeightMap thinned(const HeightMap& map) {
+  const std::size_t stride = (map.rows + kMostEdgeProfiles - 1) / kMostEdgeProfiles;
+  HeightMap thin{map.columns, 0, map.x_pixel_um, map.y_pixel_um * static_cast<double>(stride), {}};
+  for (std::size_t row = 0; row < map.rows; row += stride, ++thin.rows)
+    for (std::size_t column = 0; column < map.columns; ++column) thin.heights_nm.push_back(map.at(column, row));
+  return thin;
+}
+
+/// Fits every row and puts the heights less the edge into the result.
+void measure_edge(MetrologyResult& result, const HeightMap& whole) {
+  const HeightMap map = thinned(whole);
+  if (map.rows < whole.rows)
+    result.warnings.push_back(fmt::format("the edge is fitted to {} of {} rows, evenly spread", map.rows, whole.rows));
+  std::vector<double> radius, chamfer, dihedral, radius_residual, chamfer_residual;
+  std::string refusal;
+  result.surface = map;
+  for (std::size_t row = 0; row < map.rows; ++row) {
+    const auto begin = map.heights_nm.begin() + static_cast<std::ptrdiff_t>(row * map.columns);
+    const auto out = result.surface.heights_nm.begin() + static_cast<std::ptrdiff_t>(row * map.columns);
+    try {
+      const EdgeFit fit = fit_edge({begin, begin + static_cast<std::ptrdiff_t>(map.columns)}, map.x_pixel_um);
+      radius.push_back(fit.radius_um);
+      chamfer.push_back(fit.chamfer_um);
+      dihedral.push_back(fit.dihedral_deg);
+      radius_residual.push_back(fit.radius_residual_nm);
+      chamfer_residual.push_back(fit.chamfer_residual_nm);
+      std::copy(fit.residual_nm.begin(), fit.residual_nm.end(), out);
+    } catch (const std::invalid_argument& error) {
+      refusal = error.what();
+      std::fill_n(out, map.columns, kMissing);
+    }
+  }
+  if (radius.empty()) throw InputError({result.request.file, 0, "--edge"}, refusal);
+  if (radius.size() < map.rows)
+    result.warnings.push_back(
+        fmt::format("{} of {} rows show no edge and are left out", map.rows - radius.size(), map.rows));
+  EdgeResult edge{summarise(radius),
+                  summarise(chamfer),
+                  summarise(dihedral),
+                  summarise(radius_residual).median,
+                  summarise(chamfer_residual).median,
+                  EdgeShape::radius};
+  if (edge.chamfer_residual_nm < edge.radius_residual_nm) edge.better = EdgeShape::chamfer;
+  result.edge = edge;
+}
+
+void warn(MetrologyResult& result, const HeightMap& map) {
+  const double missing = static_cast<double>(result.missing) / static_cast<double>(map.heights_nm.size());
+  if (missing > kMissingShareToTell)
+    result.warnings.push_back(fmt::format("{} % of the points are missing", fixed(100.0 * missing, 1)));
+  const double x_um = static_cast<double>(map.columns) * map.x_pixel_um;
+  const double y_um = map.is_profile() ? x_um : static_cast<double>(map.rows) * map.y_pixel_um;
+  if (result.request.cutoff_um > 0.5 * std::min(x_um, y_um))
+    result.warnings.push_back(fmt::format("the cut-off of {} um is longer than half of the map's shorter side of {} um",
+                                          shortest(result.request.cutoff_um), shortest(std::min(x_um, y_um))));
+  if (result.edge) return;  // what is left of an edge describes no facet
+  const auto& length = result.texture.correlation_length_um;
+  if (!length && result.of_roughness.sq_nm > 0.0)
+    result.warnings.push_back("the roughness has no correlation length within the cut-off");
+  if (length && *length < kLeastPointsPerLength * map.x_pixel_um)
+    result.warnings.push_back(fmt::format("the correlation length of {} um is not resolved by a spacing of {} um",
+                                          fixed(*length, 3), shortest(map.x_pixel_um)));
+}
+
+}  // namespace
+
+int form_degree_of(std::string_view name) {
+  if (name == "none") return 0;
+  for (int degree = 1; degree <= kMostFormDegree; ++degree)
+    if (name == form_name(degree)) return degree;
+  throw InputError({"", 0, "--form"},
+                   fmt::format("must be none, plane or poly2 to poly{}, got {}", kMostFormDegree, name));
+}
+
+std::string form_name(int degree) {
+  return degree == 0 ? "none" : degree == 1 ? "plane" : fmt::format("poly{}", degree);
+}
+
+double frequency_hz(double frequency_per_mm, double feed_mm_per_min) {
+  return frequency_per_mm * feed_mm_per_min / 60.0;
+}
+
+MetrologyResult measure_surface(const MetrologyRequest& request) {
+  HeightMapFile file = read_height_map(request.file, request.reading);
+  check(request, file.map);
+  MetrologyResult result;
+  result.request = request;
+  result.format = std::move(file.format);
+  result.warnings = std::move(file.warnings);
+  result.missing = file.map.heights_nm.size() - measured_points(file.map);
+  if (request.edge)
+    measure_edge(result, file.map);
+  else
+    result.surface = request.form_degree == 0 ? file.map : without_form(file.map, request.form_degree);
+
+  const HeightMap& surface = result.surface;
+  result.split = gaussian_split(surface, request.cutoff_um);
+  result.of_surface = height_parameters(surface.heights_nm);
+  result.of_roughness = height_parameters(result.split.roughness.heights_nm);
+  result.of_waviness = height_parameters(result.split.waviness.heights_nm);
+  result.along_x = line_spectrum(surface, Axis::x);
+  result.radial = radial_spectrum(surface);
+  if (!surface.is_profile()) result.along_y = line_spectrum(surface, Axis::y);
+  result.peaks = dominant_peaks(surface);
+  const Autocorrelation r = autocorrelation(result.split.roughness, request.cutoff_um);
+  result.x_correlation_length_um = correlation_length_um(r, Axis::x);
+  if (!surface.is_profile()) result.y_correlation_length_um = correlation_length_um(r, Axis::y);
+  result.texture = texture_model(result.split, request.cutoff_um);
+  for (const Axis along : {Axis::x, Axis::y})
+    for (const Scratch& scratch : find_scratches(result.split.roughness, along, kBesideScratch * request.cutoff_um))
+      result.scratches.push_back(scratch);
+  warn(result, surface);
+  return result;
+}
+
+}  // namespace retrace::studies
