@@ -1,26 +1,30 @@
 #include "raytrace/beam.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace retrace::raytrace {
 namespace {
 
+/// Mean of exp(-x) from a to b. \pre a <= b
+double mean_exp(double a, double b) {
+  const double width = b - a;
+  return width > 0.0 ? std::exp(-a) * -std::expm1(-width) / width : std::exp(-a);
+}
+
 /// Mean of exp(-x) over a triangle on which x is linear with the values given at its corners: twice the divided
-/// difference of exp(-x) (Hermite-Genocchi), as a series in complete homogeneous symmetric polynomials of the
-/// deviations from the mean.
+/// difference of exp(-x) (Hermite-Genocchi). Wide ones by the recursion of divided differences, which cancels little
+/// there; narrow ones as a series in complete homogeneous symmetric polynomials of the deviations from the mean.
 double mean_exp(double a, double b, double c) {
+  constexpr double kWide = 2.0;
+  std::array<double, 3> at = {a, b, c};
+  std::sort(at.begin(), at.end());
+  if (at[2] - at[0] > kWide) return 2.0 * (mean_exp(at[0], at[1]) - mean_exp(at[1], at[2])) / (at[2] - at[0]);
   const double middle = (a + b + c) / 3.0;
   const double x = a - middle;
   const double y = b - middle;
   const double z = c - middle;
-  if (std::max({std::abs(x), std::abs(y), std::abs(z)}) > 2.0) {
-    // Too wide for the series: halve every side. The middle triangle is the mean of the others' inner corners.
-    const double ab = 0.5 * (a + b);
-    const double bc = 0.5 * (b + c);
-    const double ca = 0.5 * (c + a);
-    return 0.25 * (mean_exp(a, ab, ca) + mean_exp(ab, b, bc) + mean_exp(ca, bc, c) + mean_exp(ab, bc, ca));
-  }
   const double e2 = x * y + y * z + z * x;
   const double e3 = x * y * z;
   double h[3] = {1.0, 0.0, -e2};  // h_k = e1 h_(k-1) - e2 h_(k-2) + e3 h_(k-3), e1 = 0

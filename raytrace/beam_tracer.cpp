@@ -34,6 +34,10 @@ constexpr std::uint32_t kMaxLevelSteps = 1000;
 // The cut-off starts here and falls tenfold until little enough is left behind.
 constexpr double kFirstCutoff = 1e-6;
 constexpr double kLastCutoff = 1e-25;
+// Beams that are kept for a lower cut-off: some 100 MB.
+constexpr std::size_t kMostDeferred = 200'000;
+// Power left behind falls at least about as the cut-off to this power.
+constexpr double kSlowestFall = 0.7;
 
 /// A rectangle across a beam or in the plan of the part.
 struct Box {
@@ -75,25 +79,28 @@ struct Horizon {
 class BeamWalk {
  public:
   BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
-           const BeamPolicy& policy, const BeamObserver& observer)
+           const BeamPolicy& policy, BeamObserver observer)
       : part_(part),
         centre_mm_(centre_mm),
         cells_(cells),
         setup_(setup),
         policy_(policy),
-        observer_(observer),
+        observer_(std::move(observer)),
         tally_(setup.cone_chord2.size()),
         least_area_(kLeastAreaShare * part.size_mm * part.size_mm),
         join_area_(kJoinShare * part.size_mm * part.size_mm),
         merge_mm_(kMergeShare * part.size_mm) {}
 
   void enter(const geometry::Polygon& entrance);
-  /// False if cancelled.
-  bool run(const Cancellation* cancel);
+  enum class Approach { falling, fixed };
+  enum class End { done, cancelled, cutoff_too_high };
+  /// Follows all beams above a cut-off that is fixed, or that falls until little enough is left behind.
+  End run(double cutoff, Approach approach, const Cancellation* cancel);
 
-  const Tally& tally() const { return tally_; }
+  BeamResult result(End end) const;
   std::uint64_t beams() const { return beams_; }
-  std::uint32_t depth() const { return depth_; }
+  double cutoff() const { return cutoff_; }
+  double left_behind() const { return deferred_power_; }
 
  private:
   /// Share of the power of its light that a beam brings here: by its area, less what was absorbed.
@@ -102,6 +109,7 @@ class BeamWalk {
   }
   double power_of(const Beam& beam) const { return transmission_of(beam) * beam.light.power(); }
   void enter_in_pieces(const Beam& whole);
+  void defer(const Beam& beam, double power);
   void advance(const Beam& beam);
   Horizon horizon_of(const Beam& beam) const;
   std::pair<double, double> distances_to_hull(const Beam& beam) const;
@@ -132,11 +140,12 @@ class BeamWalk {
   const CellIndex& cells_;
   const LightSetup& setup_;
   const BeamPolicy& policy_;
-  const BeamObserver& observer_;
+  BeamObserver observer_;
   Tally tally_;
   std::vector<Beam> pending_;
   std::vector<Beam> deferred_;  ///< below the cut-off
   double deferred_power_ = 0.0;
+  double cutoff_ = 0.0;
   std::vector<Candidate> candidates_;  ///< of the beam at hand
   double least_area_;
   double join_area_;
@@ -190,29 +199,49 @@ void BeamWalk::enter_in_pieces(const Beam& whole) {
   book_rest(whole, 1.0 - entered);
 }
 
-bool BeamWalk::run(const Cancellation* cancel) {
-  double cutoff = policy_.cutoff.value_or(kFirstCutoff);
+BeamWalk::End BeamWalk::run(double cutoff, Approach approach, const Cancellation* cancel) {
+  cutoff_ = cutoff;
   for (;;) {
     while (!pending_.empty()) {
-      if (cancel != nullptr && cancel->requested()) return false;
+      if (cancel != nullptr && cancel->requested()) return End::cancelled;
       const Beam beam = std::move(pending_.back());
       pending_.pop_back();
       const double power = power_of(beam);
-      if (power < cutoff) {
-        deferred_power_ += power;
-        deferred_.push_back(beam);
+      if (power < cutoff_) {
+        defer(beam, power);
         continue;
       }
       if (++beams_ > policy_.max_beams) fail_on_budget();
       advance(beam);
     }
-    if (policy_.cutoff || deferred_power_ <= policy_.truncated_goal || cutoff < kLastCutoff) break;
-    cutoff *= 0.1;
+    const bool is_enough = approach == Approach::fixed || deferred_power_ <= policy_.truncated_goal;
+    if (is_enough || cutoff_ < kLastCutoff) break;
+    if (deferred_.size() > kMostDeferred) return End::cutoff_too_high;
+    cutoff_ *= 0.1;
     pending_.swap(deferred_);
     deferred_power_ = 0.0;
   }
   tally_.other[Account::truncated] += deferred_power_;
-  return true;
+  return End::done;
+}
+
+BeamResult BeamWalk::result(End end) const {
+  BeamResult result;
+  for (std::size_t cone = 0; cone < setup_.cone_chord2.size(); ++cone) {
+    result.ledgers.push_back(tally_.ledger(cone));
+    result.stokes.push_back(tally_.retroreflected(cone));
+  }
+  result.beams = beams_;
+  result.depth = depth_;
+  result.cutoff = cutoff_;
+  result.complete = end == End::done;
+  return result;
+}
+
+/// Beams below the cut-off are kept for a lower one, unless they are so many that they are better found again.
+void BeamWalk::defer(const Beam& beam, double power) {
+  deferred_power_ += power;
+  if (deferred_.size() <= kMostDeferred) deferred_.push_back(beam);
 }
 
 void BeamWalk::advance(const Beam& beam) {
@@ -563,17 +592,28 @@ BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illuminat
                              const std::vector<double>& cones_deg, const BeamPolicy& policy, const Cancellation* cancel,
                              const BeamObserver& observer) const {
   const LightSetup setup(part_, centre_mm_, optics, illumination, cones_deg);
+  if (policy.cutoff) return follow(setup, policy, *policy.cutoff, cancel, observer);
+  const BeamResult result = find_cutoff(setup, policy, cancel);
+  return observer && result.complete ? follow(setup, policy, result.cutoff, cancel, observer) : result;
+}
+
+BeamResult BeamTracer::follow(const LightSetup& setup, const BeamPolicy& policy, double cutoff,
+                              const Cancellation* cancel, const BeamObserver& observer) const {
   BeamWalk walk(part_, centre_mm_, cells_, setup, policy, observer);
   walk.enter(entrance_of(part_));
-  BeamResult result;
-  result.complete = walk.run(cancel);
-  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone) {
-    result.ledgers.push_back(walk.tally().ledger(cone));
-    result.stokes.push_back(walk.tally().retroreflected(cone));
+  return walk.result(walk.run(cutoff, BeamWalk::Approach::fixed, cancel));
+}
+
+BeamResult BeamTracer::find_cutoff(const LightSetup& setup, BeamPolicy policy, const Cancellation* cancel) const {
+  for (double cutoff = kFirstCutoff;;) {
+    BeamWalk walk(part_, centre_mm_, cells_, setup, policy, {});
+    walk.enter(entrance_of(part_));
+    const auto end = walk.run(cutoff, BeamWalk::Approach::falling, cancel);
+    if (end != BeamWalk::End::cutoff_too_high) return walk.result(end);
+    policy.max_beams -= walk.beams();
+    const double fall = std::pow(policy.truncated_goal / walk.left_behind(), 1.0 / kSlowestFall);
+    cutoff = walk.cutoff() * std::clamp(fall, 1e-4, 0.1);
   }
-  result.beams = walk.beams();
-  result.depth = walk.depth();
-  return result;
 }
 
 }  // namespace retrace::raytrace

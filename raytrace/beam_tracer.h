@@ -18,7 +18,7 @@ struct BeamPolicy {
   /// is left behind.
   std::optional<double> cutoff;
   double truncated_goal = 1e-10;
-  std::uint64_t max_beams = 20'000'000;
+  std::uint64_t max_beams = 100'000'000;  ///< followed in all, while the cut-off is being found
 };
 
 struct BeamResult {
@@ -26,6 +26,7 @@ struct BeamResult {
   std::vector<Stokes> stokes;   ///< of what is retroreflected, by cone, along source_axis()
   std::uint64_t beams = 0;
   std::uint32_t depth = 0;  ///< interfaces on the longest path
+  double cutoff = 0.0;      ///< that was used in the end
   bool complete = true;     ///< false if it was cancelled; the ledgers are then of no use
 };
 
@@ -42,7 +43,8 @@ struct ReturnedBeam {
   geometry::Polygon left_mm;
 };
 
-/// Called for every returned beam, as it is found.
+/// Called for every returned beam, as it is found. With a cut-off that has to be found first, that takes a run of its
+/// own.
 using BeamObserver = std::function<void(const ReturnedBeam&)>;
 
 /// Follows parallel beams of polygonal cross-section from facet to facet: plane smooth facets turn one beam into
@@ -59,6 +61,10 @@ class BeamTracer {
                    const BeamObserver& observer = {}) const;
 
  private:
+  BeamResult follow(const LightSetup& setup, const BeamPolicy& policy, double cutoff, const Cancellation* cancel,
+                    const BeamObserver& observer) const;
+  BeamResult find_cutoff(const LightSetup& setup, BeamPolicy policy, const Cancellation* cancel) const;
+
   const geometry::Part& part_;
   Vec2 centre_mm_;
   CellIndex cells_;
