@@ -93,6 +93,7 @@ void add_rre(CLI::App& app, RreOptions& rre) {
           "1e-10 truncated]")
       ->type_name("W")
       ->check(real_number());
+  command->add_flag("--derivatives", rre.derivatives, "of RRE by the parameters of the design (--engine exact)");
   command->add_flag("--footprint", rre.footprint,
                     "which regions of the entrance face send light back, as polygons (--engine exact, --out)");
   command->add_flag("--far-field", rre.far_field,

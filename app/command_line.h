@@ -25,6 +25,7 @@ struct RreOptions {
   std::optional<std::uint64_t> samples;
   double target_error = 1e-4;
   std::optional<double> cutoff;
+  bool derivatives = false;
   bool footprint = false;
   bool far_field = false;
 };

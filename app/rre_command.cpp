@@ -13,6 +13,7 @@
 #include "report/footprint_plot.h"
 #include "report/rre_plot.h"
 #include "studies/design/design_reader.h"
+#include "studies/rre/io/derivative_files.h"
 #include "studies/rre/io/far_field_files.h"
 #include "studies/rre/io/footprint_files.h"
 #include "studies/rre/io/rre_files.h"
@@ -41,6 +42,7 @@ studies::RreRequest request_of(const CommandLine& line) {
   request.target_error = line.rre.target_error;
   request.cutoff = line.rre.cutoff;
   request.seed = line.common.seed;
+  request.derivatives = line.rre.derivatives;
   request.footprint = line.rre.footprint;
   request.far_field = line.rre.far_field;
   check_has_folder(line, request.footprint, "--footprint");
@@ -109,7 +111,7 @@ ExitCode run_rre_command(const CommandLine& line) {
   const std::string json = studies::rre_json(result);
   std::vector<OutputFile> files;
   if (!line.common.out.empty()) files = files_of(result, json, line.rre);
-  write_outputs(line.common, json, files, studies::rre_table(result));
+  write_outputs(line.common, json, files, studies::rre_table(result) + studies::derivative_table(result));
   print_warnings(line.common, result.warnings);
   if (!result.complete) {
     say(fmt::format("retrace: interrupted; finished points: {}", result.points.size()));

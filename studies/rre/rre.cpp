@@ -29,7 +29,9 @@ void check(const RreRequest& request) {
   if (request.engine == Engine::cell)
     throw InputError({"", 0, "--engine"},
                      "cell is not available in this version; there are auto, exact, montecarlo, embree");
-  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"}, {request.far_field, "--far-field"}})
+  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
+                                      {request.far_field, "--far-field"},
+                                      {request.derivatives, "--derivatives"}})
     if (asked && request.engine != Engine::exact) throw InputError({"", 0, option}, "needs --engine exact");
   for (const double t : request.incidence_deg)
     if (!(std::abs(t) < 90.0))
@@ -195,7 +197,15 @@ class Collector {
   std::optional<FarFieldBuilder> far_field_;
 };
 
-/// Several directions at a time, each on one thread.
+/// False if it was cancelled.
+bool add_derivatives(const TracedDirection& traced, const Cancellation* cancel, std::vector<RrePoint>& points) {
+  const auto by_cone = rre_derivatives(traced, cancel);
+  if (!by_cone) return false;
+  for (std::size_t cone = 0; cone < points.size(); ++cone) points[cone].derivatives = (*by_cone)[cone];
+  return true;
+}
+
+/// Several directions at a time, each on one thread but for its derivatives.
 void trace_exactly(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                    const RreRequest& request, std::vector<Direction>& directions, Counter& counter,
                    const Cancellation* cancel) {
@@ -221,6 +231,12 @@ void trace_exactly(const std::vector<Design>& designs, const std::vector<Optical
       point.beams = traced.beams;
       point.depth = traced.depth;
       directions[k].points.push_back(point);
+    }
+    if (request.derivatives &&
+        !add_derivatives({designs[at.design], models[at.design], tracers[at.design], illumination, policy, traced},
+                         cancel, directions[k].points)) {
+      directions[k].points.clear();
+      return;
     }
     counter.finished();
   });

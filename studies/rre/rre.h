@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "raytrace/ledger.h"
 #include "studies/design/design.h"
+#include "studies/rre/derivatives.h"
 #include "studies/rre/far_field.h"
 #include "studies/rre/footprint.h"
 
@@ -34,8 +35,9 @@ struct RreRequest {
   /// leave less than 1e-10 in `truncated` (exact).
   std::optional<double> cutoff;
   std::uint32_t seed = 1;
-  bool footprint = false;  ///< exact engine: which regions of the entrance face send light back
-  bool far_field = false;  ///< exact engine: the directions in which light leaves the entrance face
+  bool derivatives = false;  ///< exact engine: of RRE by the parameters of the design
+  bool footprint = false;    ///< exact engine: which regions of the entrance face send light back
+  bool far_field = false;    ///< exact engine: the directions in which light leaves the entrance face
 };
 
 struct RrePoint {
@@ -48,8 +50,9 @@ struct RrePoint {
   double std_error = 0.0;
   raytrace::Stokes stokes;  ///< of what is retroreflected, along raytrace::source_axis()
   raytrace::Ledger ledger;
-  std::uint64_t beams = 0;  ///< exact engine: followed for this point
-  std::uint32_t depth = 0;  ///< exact engine: interfaces on the longest path
+  std::uint64_t beams = 0;                      ///< exact engine: followed for this point
+  std::uint32_t depth = 0;                      ///< exact engine: interfaces on the longest path
+  std::vector<RreDerivative> derivatives = {};  ///< if they were asked for
 };
 
 /// What was asked for beyond RRE, for one direction.

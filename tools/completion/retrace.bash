@@ -76,7 +76,7 @@ _retrace() {
 
   if [[ $word == -* ]]; then
     case $command in
-      rre) _retrace_words "$word" "$common --incidence --azimuth --engine --samples --target-error --cutoff --footprint --far-field" ;;
+      rre) _retrace_words "$word" "$common --incidence --azimuth --engine --samples --target-error --cutoff --derivatives --footprint --far-field" ;;
       metrology)
         _retrace_words "$word" "$common --form --cutoff-um --pixel-um --height-unit --lateral-unit --channel \
           --feed-mm-per-min --edge"

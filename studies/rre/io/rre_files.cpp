@@ -10,6 +10,7 @@
 #include "core/version.h"
 #include "studies/design/design_json.h"
 #include "studies/design/message_text.h"
+#include "studies/rre/io/derivative_files.h"
 
 namespace retrace::studies {
 namespace {
@@ -56,6 +57,7 @@ std::string rre_json(const RreResult& result) {
     if (result.engine != "exact") continue;
     json["points"].back()["beams"] = p.beams;
     json["points"].back()["depth"] = p.depth;
+    if (!p.derivatives.empty()) json["points"].back()["derivatives"] = derivatives_json(p.derivatives);
   }
   json["elapsed_s"] = result.elapsed_s;
   json["rays"] = result.rays;

@@ -1,0 +1,297 @@
+#include "studies/rre/derivatives.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <variant>
+
+#include "core/error.h"
+#include "raytrace/threads.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::PartSpec;
+using geometry::RtpElement;
+using raytrace::Account;
+
+/// Rounding of the exact engine, beside what it truncates.
+constexpr double kRounding = 1e-12;
+constexpr double kArcminPerDeg = 60.0;
+
+double size_of(const geometry::Element& element) {
+  if (const auto* rtp = std::get_if<RtpElement>(&element)) return rtp->base_mm;
+  if (const auto* hexagonal = std::get_if<geometry::HexagonalCube>(&element)) return hexagonal->aperture_mm;
+  return std::get<geometry::TriangularCube>(element).aperture_mm;
+}
+
+geometry::Element resized(geometry::Element element, double size_mm) {
+  if (auto* rtp = std::get_if<RtpElement>(&element)) {
+    rtp->width_mm *= size_mm / rtp->base_mm;
+    rtp->base_mm = size_mm;
+  } else if (auto* hexagonal = std::get_if<geometry::HexagonalCube>(&element)) {
+    hexagonal->aperture_mm = size_mm;
+  } else {
+    std::get<geometry::TriangularCube>(element).aperture_mm = size_mm;
+  }
+  return element;
+}
+
+/// Of the three dihedral errors of a cube corner.
+double mean_dihedral_error_deg(const PartSpec& spec) {
+  const auto& errors = spec.angle_errors.dihedral_error_arcmin;
+  return (errors[0] + errors[1] + errors[2]) / (3.0 * kArcminPerDeg);
+}
+
+/// \pre the part has the parameter
+PartSpec changed(PartSpec spec, RreParameter parameter, double value) {
+  if (parameter == RreParameter::size_mm) spec.element = resized(spec.element, value);
+  if (parameter == RreParameter::apex_angle_deg) std::get<RtpElement>(spec.element).apex_angle_deg = value;
+  if (parameter == RreParameter::thickness_mm) spec.thickness_mm = value;
+  if (parameter == RreParameter::dihedral_error_deg) {
+    const double more_deg = value - mean_dihedral_error_deg(spec);
+    for (double& error : spec.angle_errors.dihedral_error_arcmin) error += kArcminPerDeg * more_deg;
+  }
+  return spec;
+}
+
+double value_of(const TracedDirection& at, RreParameter parameter) {
+  switch (parameter) {
+    case RreParameter::size_mm:
+      return size_of(at.design.part.element);
+    case RreParameter::apex_angle_deg:
+      return std::get<RtpElement>(at.design.part.element).apex_angle_deg;
+    case RreParameter::dihedral_error_deg:
+      return mean_dihedral_error_deg(at.design.part);
+    case RreParameter::refractive_index:
+      return at.model.optics.index;
+    case RreParameter::thickness_mm:
+      return at.design.part.thickness_mm;
+    case RreParameter::incidence_deg:
+      return at.illumination.incidence.deg();
+  }
+  return 0.0;
+}
+
+/// What one trace tells.
+struct Traced {
+  std::vector<double> rre;  ///< by cone
+  double truncated = 0.0;
+  double noise = 0.0;  ///< of all these, from one trace to the next
+
+  Sample rre_sample(std::size_t cone) const { return {rre[cone], noise}; }
+  Sample truncated_sample() const { return {truncated, noise}; }
+};
+
+/// At a fixed cut-off few beams at a time cross it, and each takes less than it along. Where the cut-off is sought for
+/// every trace all that is truncated may come and go.
+Traced summary_of(const raytrace::BeamResult& traced, const raytrace::BeamPolicy& policy) {
+  constexpr double kBeamsAtATime = 10.0;
+  Traced summary;
+  for (const raytrace::Ledger& ledger : traced.ledgers) summary.rre.push_back(ledger[Account::retroreflected]);
+  summary.truncated = traced.ledgers.front()[Account::truncated];
+  const double most = std::abs(summary.truncated);
+  summary.noise = (policy.cutoff ? std::min(most, kBeamsAtATime * *policy.cutoff) : most) + kRounding;
+  return summary;
+}
+
+/// First steps span what RRE is mostly smooth over, and more where much is cut off: noise counts by the step. The
+/// tableau copes where it is not smooth.
+DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
+  constexpr double kOpen = 1e-9;  // of an end that is not part of the range
+  constexpr double kLoud = 1e-9;
+  const double wider = std::clamp(std::cbrt(summary_of(at.traced, at.policy).noise / kLoud), 1.0, 4.0);
+  const double relative_step = 0.01 * wider;
+  const double value = value_of(at, parameter);
+  // An error of an angle turns light away by some three times as much: out of a narrow cone soon.
+  const double angle_step = std::min(0.05 * wider, 0.1 * at.design.acceptance_half_angle_deg.front());
+  switch (parameter) {
+    case RreParameter::size_mm:
+      return {relative_step * value, kOpen * value};
+    case RreParameter::apex_angle_deg:
+      return {angle_step, 60.0, 120.0};
+    case RreParameter::dihedral_error_deg:
+      return {angle_step};
+    case RreParameter::refractive_index:
+      return {relative_step, 1.0};
+    case RreParameter::thickness_mm:
+      return {relative_step * value, at.model.part.top_mm + kOpen * value};
+    case RreParameter::incidence_deg:
+      return {0.25 * wider, -90.0 + kOpen, 90.0 - kOpen};
+  }
+  return {};
+}
+
+/// Full and partial elements; nothing if there is no room for one.
+std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const PartSpec& spec) {
+  try {
+    const geometry::Part part = geometry::build_part(spec);
+    return std::pair{part.elements_full, part.elements_partial};
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Shortens the first step until the array holds the same elements at both its ends. False if there is no such step:
+/// RRE jumps here.
+bool keep_elements(const PartSpec& spec, double size_mm, DifferenceRange& range) {
+  constexpr int kHalvings = 10;
+  const auto here = count_elements(spec);
+  const auto same_at = [&](double size) { return count_elements(changed(spec, RreParameter::size_mm, size)) == here; };
+  for (int k = 0; k <= kHalvings; ++k, range.first_step *= 0.5)
+    if (same_at(size_mm - range.first_step) && same_at(size_mm + range.first_step)) return true;
+  return false;
+}
+
+/// The point's own, but for a budget in proportion to its beams: next to the normal of a part there may be a million
+/// times as many, and they are not to be followed dozens of times.
+raytrace::BeamPolicy policy_nearby(const TracedDirection& at) {
+  constexpr std::uint64_t kLeast = 200'000;
+  constexpr std::uint64_t kTimes = 20;
+  raytrace::BeamPolicy policy = at.policy;
+  policy.max_beams = std::min(policy.max_beams, std::max(kLeast, kTimes * at.traced.beams));
+  return policy;
+}
+
+struct Cancelled {};
+
+/// What is traced, as a function of one parameter. It is kept, as all cones come from one trace.
+class TraceByParameter {
+ public:
+  TraceByParameter(const TracedDirection& at, RreParameter parameter, const Cancellation* cancel)
+      : at_(at), policy_(policy_nearby(at)), parameter_(parameter), cancel_(cancel) {
+    known_[value_of(at, parameter)] = summary_of(at.traced, at.policy);
+  }
+
+  /// \throw BudgetError if too many beams are needed \throw InputError if there is no such part \throw Cancelled
+  const Traced& operator()(double value) {
+    auto known = known_.find(value);
+    if (known == known_.end()) known = known_.emplace(value, summary_of(trace(value), at_.policy)).first;
+    return known->second;
+  }
+
+ private:
+  raytrace::BeamResult trace(double value) const {
+    raytrace::Optics optics = at_.model.optics;
+    raytrace::Illumination illumination = at_.illumination;
+    if (parameter_ == RreParameter::incidence_deg)
+      illumination.incidence = Angle::from_deg(value);
+    else if (parameter_ == RreParameter::refractive_index)
+      optics.index = value;
+    else
+      return trace(build(changed(at_.design.part, parameter_, value)));
+    return trace(at_.tracer, optics, illumination);
+  }
+
+  static geometry::Part build(const PartSpec& spec) {
+    geometry::Part part = geometry::build_part(spec);
+    if (part.top_mm >= spec.thickness_mm) throw InputError("the rims reach the entrance face");
+    return part;
+  }
+
+  raytrace::BeamResult trace(const geometry::Part& part) const {
+    return trace(raytrace::BeamTracer(part), at_.model.optics, at_.illumination);
+  }
+
+  raytrace::BeamResult trace(const raytrace::BeamTracer& tracer, const raytrace::Optics& optics,
+                             const raytrace::Illumination& illumination) const {
+    raytrace::BeamResult traced =
+        tracer.trace(optics, illumination, at_.design.acceptance_half_angle_deg, policy_, cancel_);
+    if (!traced.complete) throw Cancelled{};
+    return traced;
+  }
+
+  const TracedDirection& at_;
+  raytrace::BeamPolicy policy_;
+  RreParameter parameter_;
+  const Cancellation* cancel_;
+  std::map<double, Traced> known_;
+};
+
+std::string why_not(const Derivative& derivative) {
+  if (derivative.converged()) return {};
+  constexpr double kShows = 0.2;  // noise makes differences of its own besides
+  return derivative.noise > kShows * derivative.error ? "what is cut off hides it" : "RRE has a kink or a jump here";
+}
+
+/// By cone.
+std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDirection& at,
+                                          const Cancellation* cancel) {
+  const std::size_t cones = at.design.acceptance_half_angle_deg.size();
+  const auto left_out = [&](const char* reason) {
+    return std::vector<RreDerivative>(cones, RreDerivative{parameter, {}, reason});
+  };
+  DifferenceRange range = range_of(at, parameter);
+  const double value = value_of(at, parameter);
+  if (parameter == RreParameter::size_mm && !keep_elements(at.design.part, value, range))
+    return left_out("the number of elements changes here");
+  TraceByParameter trace(at, parameter, cancel);
+  std::vector<RreDerivative> derivatives;
+  try {
+    // What a fixed cut-off leaves out changes as well, and all of it may be missing in RRE.
+    const double truncation =
+        at.policy.cutoff
+            ? std::abs(differentiate([&](double x) { return trace(x).truncated_sample(); }, value, range).value)
+            : 0.0;
+    for (std::size_t cone = 0; cone < cones; ++cone) {
+      Derivative found = differentiate([&](double x) { return trace(x).rre_sample(cone); }, value, range);
+      found.error += truncation;
+      found.noise += truncation;
+      derivatives.push_back({parameter, found, why_not(found)});
+    }
+  } catch (const BudgetError&) {
+    return left_out("far more beams are needed nearby");
+  } catch (const InputError&) {
+    return left_out("no part can be built nearby");
+  }
+  return derivatives;
+}
+
+}  // namespace
+
+std::string_view parameter_name(RreParameter parameter) {
+  switch (parameter) {
+    case RreParameter::size_mm:
+      return "size_mm";
+    case RreParameter::apex_angle_deg:
+      return "apex_angle_deg";
+    case RreParameter::dihedral_error_deg:
+      return "dihedral_error_deg";
+    case RreParameter::refractive_index:
+      return "refractive_index";
+    case RreParameter::thickness_mm:
+      return "thickness_mm";
+    case RreParameter::incidence_deg:
+      return "incidence_deg";
+  }
+  return "";
+}
+
+std::vector<RreParameter> parameters_of(const Design& design) {
+  const bool is_prism = std::holds_alternative<RtpElement>(design.part.element);
+  return {RreParameter::size_mm, is_prism ? RreParameter::apex_angle_deg : RreParameter::dihedral_error_deg,
+          RreParameter::refractive_index, RreParameter::thickness_mm, RreParameter::incidence_deg};
+}
+
+std::optional<std::vector<std::vector<RreDerivative>>> rre_derivatives(const TracedDirection& at,
+                                                                       const Cancellation* cancel) {
+  const std::vector<RreParameter> parameters = parameters_of(at.design);
+  std::vector<std::vector<RreDerivative>> by_parameter(parameters.size());
+  std::atomic<bool> cancelled{false};
+  raytrace::for_each_in_parallel(parameters.size(), [&](std::size_t k) {
+    try {
+      by_parameter[k] = derivatives_by(parameters[k], at, cancel);
+    } catch (const Cancelled&) {
+      cancelled = true;
+    }
+  });
+  if (cancelled) return std::nullopt;
+  std::vector<std::vector<RreDerivative>> by_cone(at.design.acceptance_half_angle_deg.size());
+  for (const std::vector<RreDerivative>& cones : by_parameter)
+    for (std::size_t cone = 0; cone < cones.size(); ++cone) by_cone[cone].push_back(cones[cone]);
+  return by_cone;
+}
+
+}  // namespace retrace::studies
