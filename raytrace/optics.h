@@ -2,6 +2,7 @@
 
 #include "core/angle.h"
 #include "raytrace/stokes.h"
+#include "surface_models/scatter/scatter_model.h"
 
 namespace retrace::raytrace {
 
@@ -11,6 +12,12 @@ struct Optics {
   double absorption_per_mm = 0.0;  ///< Napierian, for power
   bool mirror_facets = false;      ///< retro facets reflect everything
   bool lossless_entrance = false;  ///< entrance refracts with T = 1; light beyond the critical angle ends there
+  bool absorbing_walls = false;    ///< walls of elements and of the border let no light go on
+  surface_models::ScatterModel facet_scatter;  ///< what the texture of retro facets does
+  double wavelength_nm = 587.56;               ///< in vacuum; matters to scatter alone
+
+  /// Whether every beam stays a beam at every face.
+  bool is_smooth() const { return std::holds_alternative<surface_models::Smooth>(facet_scatter); }
 };
 
 /// Where the light comes from: the source lies in direction (sin t cos p, sin t sin p, cos t) of the part frame, with
