@@ -499,6 +499,11 @@ void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3
 void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
                           double share) {
   Beam beam = arrived(from, frame, piece, share, candidate.plane);
+  const bool is_wall = candidate.role == FacetRole::inner_gable || candidate.role == FacetRole::border_wall;
+  if (is_wall && setup_.optics.absorbing_walls) {
+    tally_.other[Account::absorbed] += power_of(beam);
+    return;
+  }
   const bool is_mirror = setup_.optics.mirror_facets && candidate.role == FacetRole::retro_facet;
   const Vec3 against = from.inside ? Vec3(-candidate.plane.normal) : candidate.plane.normal;
   const double ratio = from.inside ? setup_.optics.index : 1.0 / setup_.optics.index;

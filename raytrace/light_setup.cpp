@@ -38,6 +38,7 @@ Account account_of_exit(geometry::FacetRole role) {
 
 void Tally::add(const Tally& more) {
   for (std::size_t k = 0; k < returned.size(); ++k) returned[k] += more.returned[k];
+  for (std::size_t k = 0; k < scattered.size(); ++k) scattered[k] += more.scattered[k];
   for (std::size_t k = 0; k < front.size(); ++k) front[k] += more.front[k];
   for (std::size_t k = 0; k < kAccountCount; ++k) other.power[k] += more.other.power[k];
   segments += more.segments;
@@ -48,6 +49,7 @@ Ledger Tally::ledger(std::size_t cone) const {
   Ledger ledger = other;
   for (std::size_t k = 0; k < returned.size(); ++k) {
     ledger[k <= cone ? Account::retroreflected : Account::returned_elsewhere] += returned[k].i;
+    ledger[k <= cone ? Account::retroreflected : Account::scattered_out] += scattered[k].i;
     ledger[k <= cone ? Account::retroreflected : Account::front_specular] += front[k].i;
   }
   return ledger;
@@ -57,6 +59,7 @@ Stokes Tally::retroreflected(std::size_t cone) const {
   Stokes sum;
   for (std::size_t k = 0; k <= cone; ++k) {
     sum += returned[k];
+    sum += scattered[k];
     sum += front[k];
   }
   return sum;

@@ -52,13 +52,15 @@ struct LightSetup {
 /// Sums of power over paths or beams. What leaves through the entrance face is kept by acceptance cone, so that one run
 /// serves several cones.
 struct Tally {
-  explicit Tally(std::size_t cone_count = 0) : returned(cone_count + 1), front(cone_count + 1) {}
+  explicit Tally(std::size_t cone_count = 0)
+      : returned(cone_count + 1), scattered(cone_count + 1), front(cone_count + 1) {}
 
-  std::vector<Stokes> returned;  ///< through the entrance, by the narrowest cone that holds it; last: outside all
-  std::vector<Stokes> front;     ///< first-surface reflection, likewise
-  Ledger other;                  ///< the remaining accounts
-  std::uint64_t segments = 0;    ///< straight pieces traced
-  std::uint64_t misses = 0;      ///< rays that missed every face although the part or its surface surrounds them
+  std::vector<Stokes> returned;   ///< through the entrance, by the narrowest cone that holds it; last: outside all
+  std::vector<Stokes> scattered;  ///< the same for light with a non-specular event on its way
+  std::vector<Stokes> front;      ///< first-surface reflection, likewise
+  Ledger other;                   ///< the remaining accounts
+  std::uint64_t segments = 0;     ///< straight pieces traced
+  std::uint64_t misses = 0;       ///< rays that missed every face although the part or its surface surrounds them
 
   void add(const Tally& more);
   /// The ledger for one cone, in units of the tally. \param cone index into the cones of the set-up

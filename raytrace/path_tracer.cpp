@@ -265,17 +265,18 @@ bool PathWalker::meet_entrance(State& state) {
   const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, cos_incidence);
   const Vec3 out = refracted(state.direction, down, setup_.optics.index, cos_incidence, f.cos_refracted);
   state.light.turn_to(state.direction, down);
+  std::vector<Stokes>& returned = state.scattered ? tally_.scattered : tally_.returned;
   if (setup_.optics.lossless_entrance) {
     if (f.total_reflection)
-      tally_.returned.back().i += state.light.power();
+      returned.back().i += state.light.power();
     else
-      tally_.returned[setup_.cone_of(out)] += seen_from_above(state.light, out);
+      returned[setup_.cone_of(out)] += seen_from_above(state.light, out);
     return false;
   }
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
-  if (branch != Branch::reflected) tally_.returned[setup_.cone_of(out)] += seen_from_above(transmitted, out);
+  if (branch != Branch::reflected) returned[setup_.cone_of(out)] += seen_from_above(transmitted, out);
   state.light = reflected;
   state.direction = mirrored(state.direction, down);
   state.source = {};
@@ -301,11 +302,22 @@ bool PathWalker::meet_side(State& state, const Vec3& normal) {
 
 bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   const ExactSurface::Facet& facet = setup_.surface.facet(hit.facet);
-  const bool is_mirror = setup_.optics.mirror_facets && facet.role == FacetRole::retro_facet;
-  const Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
-  const double ratio = state.inside ? setup_.optics.index : 1.0 / setup_.optics.index;
+  const Optics& optics = setup_.optics;
+  const bool is_wall = facet.role == FacetRole::inner_gable || facet.role == FacetRole::border_wall;
+  if (is_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
+  const bool is_retro = facet.role == FacetRole::retro_facet;
+  const bool is_rough = is_retro && !optics.is_smooth();
+  const double ratio = state.inside ? optics.index : 1.0 / optics.index;
+  surface_models::RandomStream random(key_, replicate_, sample_, is_rough ? choices_++ : 0);
+  RoughEvent rough;
+  Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
+  if (is_rough) {
+    rough = rough_event(state, facet, random);
+    against = rough.world_from_local * rough.piece.normal;
+  }
   const double cos_incidence = -against.dot(state.direction);
-  const materials::FresnelCoefficients f = is_mirror ? perfect_mirror() : materials::fresnel(ratio, cos_incidence);
+  const materials::FresnelCoefficients f =
+      is_retro && optics.mirror_facets ? perfect_mirror() : materials::fresnel(ratio, cos_incidence);
 
   state.source = hit.facet;
   state.near_edge = hit.near_edge;
@@ -319,14 +331,47 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
     through.direction = refracted(state.direction, against, ratio, cos_incidence, f.cos_refracted);
     through.inside = !state.inside;
     if (state.inside) through.left_through = facet.role;
+    const bool goes_on = !is_rough || scatter(through, rough, surface_models::Lobe::transmission, random);
     if (branch == Branch::transmitted) {
       state = through;
-      return true;
+      return goes_on;
     }
-    pending_.push_back(through);
+    if (goes_on) pending_.push_back(through);
   }
   state.light = reflected;
   state.direction = mirrored(state.direction, against);
+  return !is_rough || scatter(state, rough, surface_models::Lobe::reflection, random);
+}
+
+/// The light in the frame of a facet: x along it and level, z against the light.
+PathWalker::RoughEvent PathWalker::rough_event(const State& state, const ExactSurface::Facet& facet,
+                                               surface_models::RandomStream& random) const {
+  RoughEvent rough;
+  const Vec3 z = state.inside ? Vec3(-facet.normal) : facet.normal;
+  const Vec3 x = facet.normal.cross(Vec3::UnitZ()).normalized();
+  rough.world_from_local << x, z.cross(x), z;
+  rough.event.direction_in = rough.world_from_local.transpose() * state.direction;
+  rough.event.index_from = state.inside ? setup_.optics.index : 1.0;
+  rough.event.index_to = state.inside ? 1.0 : setup_.optics.index;
+  rough.event.wavelength_nm = setup_.optics.wavelength_nm;
+  rough.event.inside_material = state.inside;
+  rough.piece = surface_models::sample_facet(setup_.optics.facet_scatter, rough.event, random);
+  return rough;
+}
+
+/// Turns a path that has left a textured facet as from a plane one. What the texture keeps is booked in `truncated`.
+bool PathWalker::scatter(State& state, const RoughEvent& rough, surface_models::Lobe lobe,
+                         surface_models::RandomStream& random) {
+  const auto out = surface_models::sample(setup_.optics.facet_scatter, rough.event, rough.piece, lobe, random);
+  if (!out) return finish(state, Account::truncated);
+  tally_.other[Account::truncated] += (1.0 - out->weight) * state.light.power();
+  state.light.scale(out->weight);
+  if (!out->is_specular) {
+    const Vec3 direction = (rough.world_from_local * out->direction).normalized();
+    state.light.s_axis = Eigen::Quaterniond::FromTwoVectors(state.direction, direction) * state.light.s_axis;
+    state.direction = direction;
+  }
+  state.scattered = state.scattered || !out->is_specular || rough.piece.is_tilted;
   return true;
 }
 

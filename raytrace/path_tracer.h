@@ -48,6 +48,7 @@ class PathWalker {
     FacetRef source;  ///< facet that the path has just left
     bool near_edge = false;
     bool inside = true;
+    bool scattered = false;                                               ///< a non-specular event lies behind it
     geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through
     std::uint32_t events = 0;
   };
@@ -57,6 +58,12 @@ class PathWalker {
     SurfaceHit hit;
     std::size_t side = 0;
     double length_mm = 0.0;
+  };
+  /// What a textured facet makes of one path.
+  struct RoughEvent {
+    Eigen::Matrix3d world_from_local;
+    surface_models::ScatterEvent event;
+    surface_models::Facet piece;
   };
   enum class Branch { reflected, transmitted, both };
 
@@ -77,6 +84,9 @@ class PathWalker {
   bool meet_entrance(State& state);
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
+  RoughEvent rough_event(const State& state, const ExactSurface::Facet& facet,
+                         surface_models::RandomStream& random) const;
+  bool scatter(State& state, const RoughEvent& rough, surface_models::Lobe lobe, surface_models::RandomStream& random);
   Branch choose(Light& reflected, Light& transmitted);
   bool finish(const State& state, Account account);
   bool escape(const State& state);

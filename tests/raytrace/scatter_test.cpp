@@ -1,0 +1,106 @@
+// Rough facets and absorbing walls in the tracers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "raytrace/beam_tracer.h"
+#include "raytrace/monte_carlo.h"
+#include "tests/support/designs.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+using surface_models::HarveyShack;
+
+Optics rough(Optics optics, double sq_nm, double correlation_length_um = 5.0) {
+  optics.facet_scatter = HarveyShack({sq_nm, correlation_length_um, 0.0, 0.0});
+  optics.wavelength_nm = 550.0;
+  return optics;
+}
+
+// A prism at incidence t meets facets at 45 degrees -+ t' inside: their specular shares multiply. The cone is too
+// narrow for what scatters.
+TEST(RoughFacets, SpecularSharesOfTwoFacetsMultiply) {
+  const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
+  Optics smooth = pmma();
+  smooth.lossless_entrance = true;
+  for (const double t_deg : {0.0, 4.0}) {
+    const double inside = std::asin(std::sin(t_deg * std::numbers::pi / 180.0) / kPmma);
+    const double all = BeamTracer(part).trace(smooth, from(t_deg), {0.001}, {}).ledgers[0][Account::retroreflected];
+    for (const double sq_nm : {5.0, 10.0, 20.0}) {
+      double phase2 = 0.0;
+      for (const double side : {-1.0, 1.0}) {
+        const double phase =
+            4.0 * std::numbers::pi * kPmma * sq_nm * std::cos(0.25 * std::numbers::pi + side * inside) / 550.0;
+        phase2 += phase * phase;
+      }
+      const ConeResult result =
+          MonteCarlo(part).trace(rough(smooth, sq_nm), from(t_deg), {0.001}, rays(1U << 17), {}).cones[0];
+      EXPECT_NEAR(result.rre, all * std::exp(-phase2), student_bound(6) * result.std_error + 1e-4) << sq_nm;
+      EXPECT_NEAR(result.ledger.total(), 1.0, 1e-9);
+      EXPECT_LT(result.ledger[Account::lost], 1e-12);
+      EXPECT_GT(result.ledger[Account::scattered_out], 0.0);
+    }
+  }
+}
+
+// As the roughness goes to zero so does its effect, in every kind of array; more of it never helps.
+TEST(RoughFacets, EffectGrowsFromNothing) {
+  for (const PartSpec& spec : {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5),
+                               finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.2, 2.0, 0.5),
+                               infinite(TriangularCube{1.0}, Arrangement::triangular, 0.5)}) {
+    const Part part = build_part(spec);
+    const MonteCarlo tracer(part);
+    const ConeResult smooth = tracer.trace(pmma(), from(3.0, 0.0), {0.5}, rays(1U << 16), {}).cones[0];
+    double before = smooth.rre;
+    for (const double sq_nm : {0.001, 5.0, 15.0, 40.0}) {
+      const ConeResult result = tracer.trace(rough(pmma(), sq_nm), from(3.0, 0.0), {0.5}, rays(1U << 16), {}).cones[0];
+      const double error = 4.0 * std::hypot(result.std_error, smooth.std_error);
+      if (sq_nm < 1.0) {
+        EXPECT_NEAR(result.rre, smooth.rre, error);
+      }
+      EXPECT_LT(result.rre, before + error) << sq_nm;
+      EXPECT_NEAR(result.ledger.total(), 1.0, 1e-6);
+      EXPECT_LT(result.ledger[Account::lost], 1e-9);
+      before = result.rre;
+    }
+    EXPECT_LT(before, 0.5 * smooth.rre);
+  }
+}
+
+TEST(RoughFacets, EveryModelClosesTheLedger) {
+  const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.5));
+  const std::vector<surface_models::ScatterModel> models = {
+      surface_models::Abg(1e-4, 1e-4, 1.5),
+      surface_models::Microfacet::of_waviness(surface_models::SlopeShape::beckmann, 300.0, 80.0),
+      HarveyShack({10.0, 2.0, 300.0, 80.0})};
+  for (const auto& model : models) {
+    Optics optics = pmma();
+    optics.facet_scatter = model;
+    const ConeResult result = MonteCarlo(part).trace(optics, from(15.0, 40.0), {0.5}, rays(1U << 14), {}).cones[0];
+    EXPECT_NEAR(result.ledger.total(), 1.0, 1e-6);
+    EXPECT_LT(result.ledger[Account::lost], 1e-9);
+    EXPECT_GT(result.ledger[Account::scattered_out], 1e-3);
+  }
+}
+
+// Absorbing walls take what would leave or be reflected there, alike in both engines.
+TEST(AbsorbingWalls, EnginesAgree) {
+  const Part part = build_part(finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 1.9, 1.4, 0.3));
+  Optics optics = pmma();
+  optics.absorbing_walls = true;
+  BeamPolicy policy;
+  policy.truncated_goal = 1e-6;
+  const Ledger exact = BeamTracer(part).trace(optics, from(20.0, 60.0), {0.5}, policy).ledgers[0];
+  const ConeResult sampled = MonteCarlo(part).trace(optics, from(20.0, 60.0), {0.5}, rays(1U << 17), {}).cones[0];
+  EXPECT_GT(exact[Account::absorbed], 0.01);
+  EXPECT_NEAR(exact.total(), 1.0, 1e-9);
+  for (std::size_t k = 0; k < kAccountCount; ++k) EXPECT_NEAR(exact.power[k], sampled.ledger.power[k], 1e-3);
+}
+
+}  // namespace
+}  // namespace retrace::testing
