@@ -74,7 +74,9 @@ void add_rre(CLI::App& app, RreOptions& rre) {
   command->add_option("--azimuth", rre.azimuth, "azimuths of the source in degrees, likewise")
       ->type_name("LIST")
       ->capture_default_str();
-  command->add_option("--engine", rre.engine, "auto, montecarlo, embree or exact (cell: not in this version)")
+  command
+      ->add_option("--engine", rre.engine,
+                   "exact, montecarlo, embree, or auto: exact where that is cheap (cell: not in this version)")
       ->type_name("ENGINE")
       ->capture_default_str();
   auto* samples =

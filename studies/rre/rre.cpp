@@ -25,6 +25,19 @@ constexpr std::array<std::pair<std::string_view, Engine>, 5> kEngines = {{{"auto
                                                                           {"cell", Engine::cell},
                                                                           {"embree", Engine::embree}}};
 
+// Beams of a direction up to which the choice is the exact engine: about a second.
+constexpr std::uint64_t kBeamsOfAutomatic = 1'000'000;
+
+/// Rays can only be asked of Monte Carlo.
+bool may_be_exact(const RreRequest& request) {
+  return request.engine == Engine::exact || (request.engine == Engine::automatic && !request.rays);
+}
+
+/// What only the exact engine can tell must not depend on how many beams that takes.
+bool must_be_exact(const RreRequest& request) {
+  return request.engine == Engine::exact || request.footprint || request.far_field || request.derivatives;
+}
+
 void check(const RreRequest& request) {
   if (request.engine == Engine::cell)
     throw InputError({"", 0, "--engine"},
@@ -32,7 +45,7 @@ void check(const RreRequest& request) {
   for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
                                       {request.far_field, "--far-field"},
                                       {request.derivatives, "--derivatives"}})
-    if (asked && request.engine != Engine::exact) throw InputError({"", 0, option}, "needs --engine exact");
+    if (asked && !may_be_exact(request)) throw InputError({"", 0, option}, "needs --engine exact");
   for (const double t : request.incidence_deg)
     if (!(std::abs(t) < 90.0))
       throw InputError({"", 0, "--incidence"}, fmt::format("must lie between -90 and 90 degrees, got {}", shortest(t)));
@@ -138,8 +151,9 @@ void warn_of_truncation(RreResult& result) {
 
 /// Directions one after the other, each on all threads.
 void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                          const RreRequest& request, std::vector<Direction>& directions, Counter& counter,
+                          const RreRequest& request, std::vector<Direction>& directions, Progress* progress,
                           const Cancellation* cancel, RreResult& result) {
+  Counter counter(progress, directions.size());
   raytrace::Sampling sampling;
   sampling.seed = request.seed;
   sampling.rays = request.rays;
@@ -207,10 +221,12 @@ bool add_derivatives(const TracedDirection& traced, const Cancellation* cancel, 
 
 /// Several directions at a time, each on one thread but for its derivatives.
 void trace_exactly(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                   const RreRequest& request, std::vector<Direction>& directions, Counter& counter,
+                   const RreRequest& request, std::vector<Direction>& directions, Progress* progress,
                    const Cancellation* cancel) {
+  Counter counter(progress, directions.size());
   raytrace::BeamPolicy policy;
   policy.cutoff = request.cutoff;
+  if (!must_be_exact(request)) policy.max_beams = kBeamsOfAutomatic;
   std::vector<raytrace::BeamTracer> tracers;
   for (const OpticalModel& model : models) tracers.emplace_back(model.part);
   raytrace::for_each_in_parallel(directions.size(), [&](std::size_t k) {
@@ -242,26 +258,37 @@ void trace_exactly(const std::vector<Design>& designs, const std::vector<Optical
   });
 }
 
+/// Leaves the directions as they were and returns false if the engine may be chosen and too many beams are needed.
+bool trace_exactly_if_cheap(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+                            const RreRequest& request, std::vector<Direction>& directions, Progress* progress,
+                            const Cancellation* cancel) {
+  if (!may_be_exact(request)) return false;
+  try {
+    trace_exactly(designs, models, request, directions, progress, cancel);
+    return true;
+  } catch (const BudgetError&) {
+    if (must_be_exact(request)) throw;
+    directions = directions_of(designs, request);
+    return false;
+  }
+}
+
 }  // namespace
 
 RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
   const auto start = std::chrono::steady_clock::now();
   const auto& [designs, request, models] = *prepared_;
-  const bool exact = request.engine == Engine::exact;
   RreResult result;
   result.designs = designs;
-  result.engine = exact ? "exact" : "embree";
   result.engine_requested = engine_name(request.engine);
   result.seed = request.seed;
   for (const OpticalModel& model : models)
     result.warnings.insert(result.warnings.end(), model.warnings.begin(), model.warnings.end());
 
   std::vector<Direction> directions = directions_of(designs, request);
-  Counter counter(progress, directions.size());
-  if (exact)
-    trace_exactly(designs, models, request, directions, counter, cancel);
-  else
-    trace_by_monte_carlo(designs, models, request, directions, counter, cancel, result);
+  const bool exact = trace_exactly_if_cheap(designs, models, request, directions, progress, cancel);
+  if (!exact) trace_by_monte_carlo(designs, models, request, directions, progress, cancel, result);
+  result.engine = exact ? "exact" : "embree";
   for (Direction& direction : directions) {
     result.complete = result.complete && !direction.points.empty();
     result.points.insert(result.points.end(), direction.points.begin(), direction.points.end());

@@ -16,8 +16,8 @@
 
 namespace retrace::studies {
 
-/// Which tracer is asked for. `automatic` and `montecarlo` choose Embree; `cell` is part of the contract but not served
-/// by this version.
+/// Which tracer is asked for. `automatic` is exact where that takes few beams at every direction asked for, else Monte
+/// Carlo; `montecarlo` chooses Embree; `cell` is part of the contract but not served by this version.
 enum class Engine { automatic, exact, montecarlo, cell, embree };
 
 /// \throw InputError listing the engines for a name that is none of them

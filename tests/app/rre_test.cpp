@@ -128,6 +128,20 @@ TEST(Rre, EngineThatWasAskedForIsNamed) {
   }
 }
 
+TEST(Rre, AutoIsExactWhereThatIsCheap) {
+  const TemporaryFolder folder;
+  const Json cheap = retrace_json(folder, {"rre", kDesign, "--incidence=0,3"});
+  EXPECT_EQ(cheap["engine_requested"], "auto");
+  EXPECT_EQ(cheap["engine"], "exact");
+  for (const Json& point : cheap["points"]) EXPECT_LT(point["ledger"]["truncated"].get<double>(), 1e-10);
+  // Cube corners at oblique incidence: one such direction decides for all.
+  const Json dear = retrace_json(folder, {"rre", RETRACE_SOURCE_DIR "/examples/honeycomb_infinite.toml",
+                                          "--incidence=0,20", "--azimuth=4", "--target-error=0.01"});
+  EXPECT_EQ(dear["engine"], "embree");
+  EXPECT_FALSE(dear["points"][0].contains("beams"));
+  EXPECT_EQ(dear["complete"], true);
+}
+
 TEST(Rre, ExactEngineHasNoNoise) {
   const TemporaryFolder folder;
   const Arguments run = {"rre", kDesign, "--engine", "exact", "--incidence=0,3", "--json", "-"};
