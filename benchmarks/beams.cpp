@@ -54,6 +54,7 @@ void beams_of_a_finite_array(benchmark::State& state) {
 BENCHMARK(beams_of_a_point)
     ->ArgNames({"kind", "incidence", "azimuth", "decades"})
     ->ArgsProduct({{0}, {0, 20, 40}, {0}, {6, 8, 10}})
+    ->ArgsProduct({{0}, {20, 40}, {25}, {3, 4, 5}})
     ->ArgsProduct({{1, 2}, {0, 10, 20}, {4}, {4, 5, 6}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(beams_of_a_finite_array)
