@@ -111,6 +111,7 @@ Cell cube_cell(Polygon outline, const Vec2& centre, double apex_height, const st
     return along == corner ? a : Vec2(a + (along - corner) * (outline[(k + 1) % outline.size()] - a));
   };
   Cell cell;
+  cell.at_mm = centre;
   for (std::size_t k = 0; k < 3; ++k) {
     CellFacet facet;
     facet.outline = {centre, point_at(ends[k])};
@@ -137,6 +138,8 @@ Cell rtp_cell(const RtpElement& element, const AngleErrors& errors, const Vec2& 
   const double root = corner[across] + 0.5 * size[across];
 
   Cell cell;
+  cell.at_mm = corner;
+  cell.turned = turned;
   cell.outline = to_polygon({corner, corner + size});
   for (const std::size_t k : {0U, 1U}) {
     const double side = k == 0 ? -1.0 : 1.0;
@@ -164,7 +167,17 @@ Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& erro
   std::array<Vec2, 3> slopes = cube_slopes(errors);
   if (turned)
     for (Vec2& slope : slopes) slope = -slope;
-  return cube_cell(std::move(outline), centre, -rise_of_dihedral_edge(element.aperture_mm), slopes);
+  Cell cell = cube_cell(std::move(outline), centre, -rise_of_dihedral_edge(element.aperture_mm), slopes);
+  cell.turned = turned;
+  return cell;
+}
+
+Cell element_in_place_of(const Cell& cell, const Element& element, const AngleErrors& errors) {
+  return std::visit(
+      Overloaded{[&](const RtpElement& e) { return rtp_cell(e, errors, cell.at_mm, cell.turned); },
+                 [&](const HexagonalCube& e) { return hexagonal_cube_cell(e, errors, cell.at_mm); },
+                 [&](const TriangularCube& e) { return triangular_cube_cell(e, errors, cell.at_mm, cell.turned); }},
+      element);
 }
 
 Cell element_cell(const Element& element, const AngleErrors& errors) {

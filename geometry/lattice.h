@@ -37,6 +37,8 @@ struct Cell {
   bool is_element = true;
   Polygon outline;
   std::vector<CellFacet> facets;
+  Vec2 at_mm = Vec2::Zero();  ///< an element's corner or centre
+  bool turned = false;
 };
 
 /// Cells that fill the plane without overlap when repeated with a rectangular period.
@@ -60,6 +62,9 @@ Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& erro
 
 /// One element, unturned, with its lower left corner (RTP) or its apex (cube corners) at the origin.
 Cell element_cell(const Element& element, const AngleErrors& errors = {});
+
+/// The element that stands in the place of `cell`, with its own errors. \pre cell.is_element
+Cell element_in_place_of(const Cell& cell, const Element& element, const AngleErrors& errors);
 
 /// Depth of an element from z = 0 to its root or apex.
 double element_depth_mm(const Element& element, const AngleErrors& errors = {});

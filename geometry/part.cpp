@@ -1,12 +1,15 @@
 #include "geometry/part.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "core/error.h"
+#include "core/random.h"
 
 namespace retrace::geometry {
 namespace {
@@ -26,7 +29,23 @@ struct Layout {
   Rectangle block;             ///< of the array; the rest of the extent is flat land
   PartialElements partial = PartialElements::cut;
   double tolerance_mm = 0.0;
+  PartSpec spec;
 };
+
+/// The errors of one element: those of all, and its own random tilts.
+AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std::uint32_t number) {
+  constexpr std::uint32_t kTiltStream = 3;
+  const auto words = philox({spec.random_tilts.seed, kTiltStream}, static_cast<std::uint32_t>(i),
+                            static_cast<std::uint32_t>(j), number);
+  // Box and Muller; the shift keeps 0 out of the logarithm.
+  const auto radius = [&](std::size_t k) { return std::sqrt(-2.0 * std::log(unit_interval(words[k]) + 0x1p-33)); };
+  const auto angle = [&](std::size_t k) { return 2.0 * std::numbers::pi * unit_interval(words[k]); };
+  const std::array<double, 3> normal = {radius(0) * std::cos(angle(1)), radius(0) * std::sin(angle(1)),
+                                        radius(2) * std::cos(angle(3))};
+  AngleErrors errors = spec.angle_errors;
+  for (std::size_t k = 0; k < 3; ++k) errors.facet_tilt_arcmin[k] += spec.random_tilts.sigma_arcmin * normal[k];
+  return errors;
+}
 
 double whole_count(double length, double offset, double gap, double pitch) {
   const double count = (length - 2.0 * offset + gap) / pitch;
@@ -147,8 +166,16 @@ std::vector<Tile> tiles_of(const Layout& layout, const IndexRange& range, const 
     for (std::int64_t i = range.lower[0] - 1; i <= range.upper[0]; ++i) {
       const bool owned = i >= range.lower[0] && i < range.upper[0] && j >= range.lower[1] && j < range.upper[1];
       const Vec2 index(static_cast<double>(i - range.lower[0]), static_cast<double>(j - range.lower[1]));
-      for (const Cell& cell : layout.lattice.cells)
-        add_cell(tiles, layout, extent, block, cell, index.cwiseProduct(layout.lattice.period_mm), number++, owned);
+      const Vec2 shift = index.cwiseProduct(layout.lattice.period_mm);
+      for (std::uint32_t c = 0; c < layout.lattice.cells.size(); ++c) {
+        const Cell& cell = layout.lattice.cells[c];
+        if (cell.is_element && layout.spec.random_tilts.sigma_arcmin > 0.0)
+          add_cell(tiles, layout, extent, block,
+                   element_in_place_of(cell, layout.spec.element, errors_of(layout.spec, i, j, c)), shift, number++,
+                   owned);
+        else
+          add_cell(tiles, layout, extent, block, cell, shift, number++, owned);
+      }
     }
   }
   return tiles;
@@ -197,6 +224,7 @@ void add_surface(Part& part, const Layout& layout, const Vec2& origin) {
           layout.anchor + Vec2(static_cast<double>(i), static_cast<double>(j)).cwiseProduct(layout.lattice.period_mm);
       const Rectangle extent = relative_to(layout.extent, corner);
       const Rectangle block = relative_to(layout.block, corner);
+      if (layout.spec.random_tilts.sigma_arcmin > 0.0) known.clear();  // no piece is like another
       const auto [it, is_new] = known.try_emplace(piece_key(layout, extent, block, range), 0U);
       if (is_new) {
         const std::vector<Tile> tiles = tiles_of(layout, range, extent, block);
@@ -228,7 +256,8 @@ void count_elements(Part& part, const Layout& layout) {
 
 void build_single(Part& part, const Vec2& origin) {
   const Polygon outline = aperture_outline(part.spec.element);
-  const Cell cell = element_cell(part.spec.element, part.spec.angle_errors);
+  const bool is_random = part.spec.random_tilts.sigma_arcmin > 0.0;
+  const Cell cell = element_cell(part.spec.element, is_random ? errors_of(part.spec, 0, 0, 0) : part.spec.angle_errors);
   const Vec2 shift = -bounding_box(cell.outline).lower;
   std::vector<Tile> tiles;
   for (std::size_t k = 0; k < cell.facets.size(); ++k) {
@@ -261,6 +290,22 @@ void build_infinite(Part& part) {
 
 double element_size(const Element& element) {
   return bounding_box(aperture_outline(element)).size().minCoeff();
+}
+
+/// Where the back surface lies if every element has errors of its own.
+void measure_layer(Part& part) {
+  double lowest = 0.0;
+  double highest = 0.0;
+  for (const SurfacePatch& patch : part.patches)
+    for (const Vec3& vertex : patch.vertices) {
+      lowest = std::min(lowest, vertex.z());
+      highest = std::max(highest, vertex.z());
+    }
+  part.element_depth_mm = -lowest;
+  part.top_mm = highest;
+  if (highest >= part.thickness_mm)
+    throw InputError(
+        fmt::format("body.thickness_mm must be above {} mm, the highest rim, got {}", highest, part.thickness_mm));
 }
 
 void measure(Part& part) {
@@ -299,12 +344,14 @@ Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
   } else if (spec.extent == Extent::infinite) {
     build_infinite(part);
   } else {
-    const Layout layout = finite_layout(spec, part.size_mm);
+    Layout layout = finite_layout(spec, part.size_mm);
+    layout.spec = spec;
     part.outline = moved(to_polygon(layout.extent), origin_mm);
     add_surface(part, layout, origin_mm);
     count_elements(part, layout);
     if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   }
+  if (spec.random_tilts.sigma_arcmin > 0.0) measure_layer(part);
   measure(part);
   return part;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <variant>
 
 namespace retrace::geometry {
@@ -34,8 +35,13 @@ struct AngleErrors {
   /// k lies between the dihedral edges at 120 k and 120 (k + 1) degrees and turns about its horizontal line through the
   /// apex.
   std::array<double, 3> facet_tilt_arcmin{};
-
   friend bool operator==(const AngleErrors&, const AngleErrors&) = default;
+};
+
+/// Tilts of single facets that vary from element to element.
+struct RandomTilts {
+  double sigma_arcmin = 0.0;  ///< standard deviation of every facet's own tilt, Gaussian and independent; >= 0
+  std::uint32_t seed = 1;
 };
 
 enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
@@ -50,6 +56,7 @@ enum class PartialElements { cut, omit };
 struct PartSpec {
   Element element;
   AngleErrors angle_errors;
+  RandomTilts random_tilts;  ///< finite parts only
   Arrangement arrangement = Arrangement::aligned;
   Extent extent = Extent::finite;
   RowParity shifted_rows = RowParity::even;

@@ -74,9 +74,14 @@ Json polarisation_json(const raytrace::Stokes& stokes) {
 
 Json surface_json(const PartSpec& part) {
   const auto& [dihedral, tilt] = part.angle_errors;
+  Json json = {{"dihedral_error_arcmin", dihedral}, {"facet_tilt_arcmin", tilt}};
   if (std::holds_alternative<RtpElement>(part.element))
-    return {{"dihedral_error_arcmin", dihedral[0]}, {"facet_tilt_arcmin", {tilt[0], tilt[1]}}};
-  return {{"dihedral_error_arcmin", dihedral}, {"facet_tilt_arcmin", tilt}};
+    json = {{"dihedral_error_arcmin", dihedral[0]}, {"facet_tilt_arcmin", {tilt[0], tilt[1]}}};
+  if (part.random_tilts.sigma_arcmin > 0.0) {
+    json["angle_error_sigma_arcmin"] = part.random_tilts.sigma_arcmin;
+    json["angle_error_seed"] = part.random_tilts.seed;
+  }
+  return json;
 }
 
 struct ElementName {

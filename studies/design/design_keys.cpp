@@ -74,7 +74,8 @@ constexpr std::array kSurfaceKeys = {KeyRule{"model", OnlyWord{"smooth"}},
                                      KeyRule{"walls", OnlyWord{"smooth"}},
                                      KeyRule{"dihedral_error_arcmin"},
                                      KeyRule{"facet_tilt_arcmin"},
-                                     KeyRule{"angle_error_sigma_arcmin", OnlyNumber{0.0}}};
+                                     KeyRule{"angle_error_sigma_arcmin"},
+                                     KeyRule{"angle_error_seed"}};
 constexpr std::array kIdealisationKeys = {KeyRule{"facets"}, KeyRule{"entrance"}};
 constexpr std::array kPartKeys = {KeyRule{"mesh", NotAvailable{}}, KeyRule{"facets", NotAvailable{}}};
 

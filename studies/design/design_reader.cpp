@@ -58,6 +58,8 @@ constexpr std::array kEntranceModels = {Choice<bool>{"real", false}, Choice<bool
 
 constexpr Range kApexAngle{.low = 60.0, .high = 120.0};
 constexpr Range kAngleError{.low = -300.0, .high = 300.0};
+constexpr Range kRandomTilt{.low = 0.0, .high = 60.0};
+constexpr Range kSeed{.low = 0.0, .high = 4294967295.0};
 constexpr Range kOverlap{.low = 0.0, .high = 100.0, .high_included = false};
 constexpr Range kRefractiveIndex{.low = 1.0};
 constexpr Range kPolarisationAngle{.low = -360.0, .high = 360.0};
@@ -186,13 +188,22 @@ void read_facet_tilt(TableReader& surface, PartSpec& part) {
   if (size) std::copy(given.begin(), given.end(), part.angle_errors.facet_tilt_arcmin.begin());
 }
 
+void read_random_tilts(TableReader& surface, PartSpec& part) {
+  constexpr std::string_view key = "angle_error_sigma_arcmin";
+  part.random_tilts.sigma_arcmin = surface.number(key, kRandomTilt).value_or(0.0);
+  part.random_tilts.seed = static_cast<std::uint32_t>(surface.number("angle_error_seed", kSeed).value_or(1.0));
+  if (part.random_tilts.sigma_arcmin > 0.0 && part.extent == Extent::infinite)
+    surface.fail(key, "must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
+}
+
 /// What the retro facets are like.
 void read_surface(const DesignDocument& document, PartSpec& part) {
   TableReader surface(document, "surface");
   surface.skip({"model", "roughness_sq_nm", "correlation_length_um", "waviness_sq_nm", "waviness_length_um",
-                "root_radius_um", "rim_radius_um", "root_chamfer_um", "walls", "angle_error_sigma_arcmin"});
+                "root_radius_um", "rim_radius_um", "root_chamfer_um", "walls"});
   read_dihedral_error(surface, part);
   read_facet_tilt(surface, part);
+  read_random_tilts(surface, part);
   surface.finish();
   const auto* rtp = std::get_if<geometry::RtpElement>(&part.element);
   if (rtp == nullptr) return;

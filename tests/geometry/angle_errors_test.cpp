@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "geometry/part.h"
 #include "tests/geometry/part_checks.h"
 
@@ -239,6 +240,13 @@ TEST(AngleErrors, CubeCornerArraysAreClosed) {
   }
 }
 
+void expect_volume(const Part& part, const BoundaryMesh& mesh) {
+  double volume = 0.0;
+  for (const auto& t : mesh.triangles)
+    volume += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6.0;
+  EXPECT_NEAR(volume, part.entrance_area_mm2 * part.thickness_mm + volume_below(part), 1e-9);
+}
+
 // Where six triangles meet, unlike errors put every second pair of opposite ones lower: the part touches itself there
 // along vertical lines, closed all the same.
 TEST(AngleErrors, TriangularArraysOfUnlikeErrorsTouchThemselves) {
@@ -249,10 +257,7 @@ TEST(AngleErrors, TriangularArraysOfUnlikeErrorsTouchThemselves) {
     const BoundaryReport report = check_boundary(mesh);
     EXPECT_TRUE(report.is_closed);
     EXPECT_FALSE(report.is_manifold);
-    double volume = 0.0;
-    for (const auto& t : mesh.triangles)
-      volume += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6.0;
-    EXPECT_NEAR(volume, part.entrance_area_mm2 * part.thickness_mm + volume_below(part), 1e-9);
+    expect_volume(part, mesh);
   }
 }
 
@@ -293,4 +298,79 @@ TEST(AngleErrors, InfiniteSurfacesHaveNoGaps) {
 }
 
 }  // namespace
+/// Inclinations of all facets, in arc minutes from 45 degrees.
+std::vector<double> tilts_of(const Part& part) {
+  std::vector<double> tilts;
+  for (const SurfacePatch& patch : part.patches)
+    for (const PatchFacet& facet : patch.facets)
+      if (facet.role == FacetRole::retro_facet)
+        tilts.push_back(60.0 * (45.0 - std::acos(-facet.normal.z()) * 180.0 / std::numbers::pi));
+  return tilts;
+}
+
+PartSpec random_prisms(double sigma_arcmin, std::uint32_t seed) {
+  PartSpec spec;
+  spec.element = RtpElement{0.5, 0.5, 90.0};
+  spec.x_length_mm = spec.y_length_mm = 10.0;
+  spec.thickness_mm = 1.0;
+  spec.random_tilts = {sigma_arcmin, seed};
+  return spec;
+}
+
+// 400 prisms of 2 facets: the standard deviation of 800 tilts is known to 2.5 %.
+TEST(RandomTilts, HaveTheDeviationAskedFor) {
+  const std::vector<double> tilts = tilts_of(build_part(random_prisms(2.0, 1)));
+  ASSERT_GE(tilts.size(), 800U);
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double t : tilts) {
+    sum += t;
+    squares += t * t;
+  }
+  const auto n = static_cast<double>(tilts.size());
+  EXPECT_NEAR(sum / n, 0.0, 4.0 * 2.0 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n), 2.0, 4.0 * 2.0 / std::sqrt(2.0 * n));
+}
+
+TEST(RandomTilts, DependOnTheSeedAlone) {
+  const std::vector<double> first = tilts_of(build_part(random_prisms(2.0, 1)));
+  EXPECT_EQ(tilts_of(build_part(random_prisms(2.0, 1))), first);
+  EXPECT_NE(tilts_of(build_part(random_prisms(2.0, 2))), first);
+}
+
+// Where four cells meet, opposite ones may be the lower: the part may touch itself there.
+TEST(RandomTilts, ArraysAreClosed) {
+  std::vector<PartSpec> specs(4, random_prisms(5.0, 3));
+  specs[1].arrangement = Arrangement::offset;
+  specs[2].arrangement = Arrangement::checker;
+  specs[3].element = HexagonalCube{0.7};
+  specs[3].arrangement = Arrangement::honeycomb;
+  for (PartSpec& spec : specs) {
+    spec.x_length_mm = spec.y_length_mm = 2.0;
+    for (const double gap_mm : {0.0, 0.1}) {
+      if (spec.arrangement != Arrangement::honeycomb) spec.x_gap_mm = spec.y_gap_mm = gap_mm;
+      const Part part = build_part(spec);
+      const BoundaryMesh mesh = closed_boundary(part);
+      EXPECT_TRUE(check_boundary(mesh).is_closed);
+      expect_volume(part, mesh);
+    }
+  }
+  PartSpec one = random_prisms(5.0, 3);
+  one.arrangement = Arrangement::single;
+  expect_valid(one);
+}
+
+TEST(RandomTilts, LayerHoldsTheSurface) {
+  const Part part = build_part(random_prisms(20.0, 4));
+  EXPECT_GT(part.top_mm, 0.0);
+  for (const SurfacePatch& patch : part.patches)
+    for (const Vec3& vertex : patch.vertices) {
+      EXPECT_LE(vertex.z(), part.top_mm);
+      EXPECT_GE(vertex.z(), -part.element_depth_mm);
+    }
+  PartSpec thin = random_prisms(20.0, 4);
+  thin.thickness_mm = 0.5 * part.top_mm;
+  EXPECT_THROW(build_part(thin), InputError);
+}
+
 }  // namespace retrace::geometry

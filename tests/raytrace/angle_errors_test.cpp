@@ -116,6 +116,28 @@ TEST(AngleErrors, AgreeWithTheReference) {
   }
 }
 
+// Random tilts: both engines agree, and the smaller the cone the more is missed.
+TEST(RandomTilts, EnginesAgree) {
+  for (PartSpec spec : {finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 2.1, 1.7, 0.4),
+                        finite(HexagonalCube{0.7}, Arrangement::honeycomb, 2.1, 1.7, 0.4)}) {
+    spec.random_tilts = {3.0, 5};
+    const Part part = build_part(spec);
+    BeamPolicy policy;
+    policy.truncated_goal = 1e-4;
+    const std::vector<double> cones_deg = {0.05, 0.2, 2.0};
+    const BeamResult exact = BeamTracer(part).trace(pmma(), from(2.0, 10.0), cones_deg, policy);
+    const MonteCarloResult sampled = MonteCarlo(part).trace(pmma(), from(2.0, 10.0), cones_deg, rays(1U << 17), {});
+    for (std::size_t k = 0; k < cones_deg.size(); ++k) {
+      const double rre = exact.ledgers[k][Account::retroreflected];
+      EXPECT_NEAR(rre, sampled.cones[k].rre, 4.0 * sampled.cones[k].std_error + 2e-4);
+      EXPECT_NEAR(exact.ledgers[k].total(), 1.0, 1e-9);
+      if (k > 0) {
+        EXPECT_GT(rre, exact.ledgers[k - 1][Account::retroreflected]);
+      }
+    }
+  }
+}
+
 // Six beams, each 4 sqrt(2/3) n times the error from the source (Chandler, J. Opt. Soc. Am. 50, 1203 (1960)).
 TEST(AngleErrors, EqualDihedralErrorsSendSixBeamsBack) {
   for (const double arcmin : {0.5, -0.5}) {

@@ -474,10 +474,9 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
             "d.toml:11: part" + no + ", which takes only [element] and [array]");
   EXPECT_EQ(refused("surface.model=abg"),
             "--set surface.model=abg: surface.model" + no + ", which takes only \"smooth\", got \"abg\"");
-  for (const std::string key :
-       {"element.cant_deg", "element.cant_azimuth_deg", "surface.roughness_sq_nm", "surface.correlation_length_um",
-        "surface.waviness_sq_nm", "surface.waviness_length_um", "surface.root_radius_um", "surface.rim_radius_um",
-        "surface.root_chamfer_um", "surface.angle_error_sigma_arcmin"}) {
+  for (const std::string key : {"element.cant_deg", "element.cant_azimuth_deg", "surface.roughness_sq_nm",
+                                "surface.correlation_length_um", "surface.waviness_sq_nm", "surface.waviness_length_um",
+                                "surface.root_radius_um", "surface.rim_radius_um", "surface.root_chamfer_um"}) {
     EXPECT_EQ(refused(key + "=2"), "--set " + key + "=2: " + key + no + ", which takes only 0, got 2");
     EXPECT_EQ(refused(key + "=0"), "");
   }
@@ -498,6 +497,18 @@ TEST(DesignReader, AngleErrorsAreReadForEveryKind) {
               (AngleErrors{{1.0, -2.0, 0.5}, {4.0, 5.0, 6.0}}));
     EXPECT_EQ(errors(cube, {"surface.facet_tilt_arcmin=0"}), AngleErrors{});
   }
+}
+
+TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
+  const std::string key = "surface.angle_error_sigma_arcmin";
+  const Design design = parse_design(design_of(kHexagonal, "x_length_mm = 10\ny_length_mm = 10"), "d",
+                                     std::vector<std::string>{key + "=1.5", "surface.angle_error_seed=7"});
+  EXPECT_EQ(design.part.random_tilts.sigma_arcmin, 1.5);
+  EXPECT_EQ(design.part.random_tilts.seed, 7U);
+  EXPECT_EQ(set_complaint({key + "=-1"}), "--set " + key + "=-1: " + key + ": must be >= 0 and <= 60, got -1");
+  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"") + "[surface]\nangle_error_sigma_arcmin = 1"),
+            "d.toml:10: " + key +
+                ": must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
 }
 
 TEST(DesignReader, AngleErrorsThatDoNotFitAreRefused) {
