@@ -78,14 +78,20 @@ Lattice triangular_lattice(const TriangularCube& element, const AngleErrors& err
   return lattice;
 }
 
-}  // namespace
-
-Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted) {
+Lattice sharp_lattice(const PartSpec& spec, bool rows_are_shifted) {
   if (const auto* hexagonal = std::get_if<HexagonalCube>(&spec.element))
     return honeycomb_lattice(*hexagonal, spec.angle_errors);
   if (const auto* triangular = std::get_if<TriangularCube>(&spec.element))
     return triangular_lattice(*triangular, spec.angle_errors);
   return rtp_lattice(spec, rows_are_shifted);
+}
+
+}  // namespace
+
+Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted) {
+  Lattice lattice = sharp_lattice(spec, rows_are_shifted);
+  for (Cell& cell : lattice.cells) cell = with_edges(cell, spec.edges);
+  return lattice;
 }
 
 }  // namespace retrace::geometry

@@ -30,6 +30,7 @@ struct HeightPlane {
 struct CellFacet {
   Polygon outline;
   HeightPlane plane;
+  bool is_edge = false;  ///< a strip of a rounded or chamfered edge
 };
 
 /// An element (its facets in the contract's order), or a piece of flat land (one facet on z = 0).
@@ -65,6 +66,12 @@ Cell element_cell(const Element& element, const AngleErrors& errors = {});
 
 /// The element that stands in the place of `cell`, with its own errors. \pre cell.is_element
 Cell element_in_place_of(const Cell& cell, const Element& element, const AngleErrors& errors);
+
+/// The element with its edges rounded or chamfered. \pre the arcs fit into the facets
+Cell with_edges(const Cell& cell, const EdgeShape& edges);
+
+/// Share of an element's plan that its edges take.
+double edge_share(const Cell& cell);
 
 /// Depth of an element from z = 0 to its root or apex.
 double element_depth_mm(const Element& element, const AngleErrors& errors = {});

@@ -171,8 +171,9 @@ std::vector<Tile> tiles_of(const Layout& layout, const IndexRange& range, const 
         const Cell& cell = layout.lattice.cells[c];
         if (cell.is_element && layout.spec.random_tilts.sigma_arcmin > 0.0)
           add_cell(tiles, layout, extent, block,
-                   element_in_place_of(cell, layout.spec.element, errors_of(layout.spec, i, j, c)), shift, number++,
-                   owned);
+                   with_edges(element_in_place_of(cell, layout.spec.element, errors_of(layout.spec, i, j, c)),
+                              layout.spec.edges),
+                   shift, number++, owned);
         else
           add_cell(tiles, layout, extent, block, cell, shift, number++, owned);
       }
@@ -257,7 +258,8 @@ void count_elements(Part& part, const Layout& layout) {
 void build_single(Part& part, const Vec2& origin) {
   const Polygon outline = aperture_outline(part.spec.element);
   const bool is_random = part.spec.random_tilts.sigma_arcmin > 0.0;
-  const Cell cell = element_cell(part.spec.element, is_random ? errors_of(part.spec, 0, 0, 0) : part.spec.angle_errors);
+  const AngleErrors errors = is_random ? errors_of(part.spec, 0, 0, 0) : part.spec.angle_errors;
+  const Cell cell = with_edges(element_cell(part.spec.element, errors), part.spec.edges);
   const Vec2 shift = -bounding_box(cell.outline).lower;
   std::vector<Tile> tiles;
   for (std::size_t k = 0; k < cell.facets.size(); ++k) {
@@ -292,7 +294,7 @@ double element_size(const Element& element) {
   return bounding_box(aperture_outline(element)).size().minCoeff();
 }
 
-/// Where the back surface lies if every element has errors of its own.
+/// Where the back surface lies if elements are not the nominal ones.
 void measure_layer(Part& part) {
   double lowest = 0.0;
   double highest = 0.0;
@@ -351,7 +353,7 @@ Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
     count_elements(part, layout);
     if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   }
-  if (spec.random_tilts.sigma_arcmin > 0.0) measure_layer(part);
+  if (spec.random_tilts.sigma_arcmin > 0.0 || spec.edges != EdgeShape{}) measure_layer(part);
   measure(part);
   return part;
 }

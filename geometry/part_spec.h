@@ -44,6 +44,16 @@ struct RandomTilts {
   std::uint32_t seed = 1;
 };
 
+/// What wear and the tool's tip make of edges, in mm across the facets of all elements; 0: sharp. Arcs are 16 chords
+/// with their corners on the circle, so that they take exactly the width of the arc.
+struct EdgeShape {
+  double root_radius_mm = 0.0;   ///< where facets of one element meet
+  double root_chamfer_mm = 0.0;  ///< width of a flat in their place; not both
+  double rim_radius_mm = 0.0;    ///< where facets of neighbouring prisms meet; RTP without gaps
+
+  friend bool operator==(const EdgeShape&, const EdgeShape&) = default;
+};
+
 enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
 enum class Extent { finite, infinite };
 /// Which rows of an offset array are shifted; rows count from 1 at y = 0. A single row is never shifted.
@@ -57,6 +67,7 @@ struct PartSpec {
   Element element;
   AngleErrors angle_errors;
   RandomTilts random_tilts;  ///< finite parts only
+  EdgeShape edges;
   Arrangement arrangement = Arrangement::aligned;
   Extent extent = Extent::finite;
   RowParity shifted_rows = RowParity::even;

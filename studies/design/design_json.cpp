@@ -81,6 +81,9 @@ Json surface_json(const PartSpec& part) {
     json["angle_error_sigma_arcmin"] = part.random_tilts.sigma_arcmin;
     json["angle_error_seed"] = part.random_tilts.seed;
   }
+  if (part.edges.root_radius_mm > 0.0) json["root_radius_um"] = 1e3 * part.edges.root_radius_mm;
+  if (part.edges.root_chamfer_mm > 0.0) json["root_chamfer_um"] = 1e3 * part.edges.root_chamfer_mm;
+  if (part.edges.rim_radius_mm > 0.0) json["rim_radius_um"] = 1e3 * part.edges.rim_radius_mm;
   return json;
 }
 

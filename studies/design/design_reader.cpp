@@ -196,14 +196,36 @@ void read_random_tilts(TableReader& surface, PartSpec& part) {
     surface.fail(key, "must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
 }
 
+/// How wide an edge may be: what it takes of a facet must leave some of it.
+double widest_edge_um(const PartSpec& part) {
+  const geometry::Cell cell = geometry::element_cell(part.element, part.angle_errors);
+  const geometry::Rectangle box = geometry::bounding_box(cell.outline);
+  const auto* rtp = std::get_if<geometry::RtpElement>(&part.element);
+  return 1e3 * (rtp != nullptr ? 0.25 * rtp->base_mm : 0.1 * box.size().minCoeff());
+}
+
+void read_edges(TableReader& surface, PartSpec& part) {
+  const Range range{.low = 0.0, .high = widest_edge_um(part)};
+  const auto read_um = [&](std::string_view key) { return surface.number(key, range).value_or(0.0); };
+  part.edges.root_radius_mm = 1e-3 * read_um("root_radius_um");
+  part.edges.root_chamfer_mm = 1e-3 * read_um("root_chamfer_um");
+  part.edges.rim_radius_mm = 1e-3 * read_um("rim_radius_um");
+  if (part.edges.root_radius_mm > 0.0 && part.edges.root_chamfer_mm > 0.0)
+    surface.fail("root_chamfer_um", "must be 0 where root_radius_um is given");
+  if (part.edges.rim_radius_mm <= 0.0) return;
+  if (!std::holds_alternative<geometry::RtpElement>(part.element))
+    surface.fail("rim_radius_um", "not available in this version for cube corners, which takes only 0");
+  if (part.x_gap_mm > 0.0) surface.fail("rim_radius_um", "must be 0 where x_gap_mm keeps the rims of neighbours apart");
+}
+
 /// What the retro facets are like.
 void read_surface(const DesignDocument& document, PartSpec& part) {
   TableReader surface(document, "surface");
-  surface.skip({"model", "roughness_sq_nm", "correlation_length_um", "waviness_sq_nm", "waviness_length_um",
-                "root_radius_um", "rim_radius_um", "root_chamfer_um", "walls"});
+  surface.skip({"model", "roughness_sq_nm", "correlation_length_um", "waviness_sq_nm", "waviness_length_um", "walls"});
   read_dihedral_error(surface, part);
   read_facet_tilt(surface, part);
   read_random_tilts(surface, part);
+  read_edges(surface, part);
   surface.finish();
   const auto* rtp = std::get_if<geometry::RtpElement>(&part.element);
   if (rtp == nullptr) return;

@@ -104,6 +104,8 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   result.refractive_index = model.optics.index;
   result.tir_limit_deg = tir_limit_deg(design.part, model.optics.index);
+  result.dead_zone_share = geometry::edge_share(
+      geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part.edges));
   result.boundary = boundary_finding(design.part, part.size_mm);
   result.warnings = model.warnings;
   add_warnings(result, part);

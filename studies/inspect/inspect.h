@@ -23,7 +23,7 @@ struct Inspection {
   /// Largest incidence up to which the retroreflected light is totally reflected at every facet: across the roof edge
   /// for an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence.
   std::optional<double> tir_limit_deg;
-  double dead_zone_share = 0.0;  ///< of the facet area that edge rounding takes
+  double dead_zone_share = 0.0;  ///< of an element's plan that rounded and chamfered edges take
   std::string boundary;          ///< what the check of the boundary found
   std::vector<std::string> warnings;
 };

@@ -4,6 +4,7 @@ retrace_test(raytrace_test
     ${CMAKE_CURRENT_LIST_DIR}/back_surface_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/beam_tracer_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/closed_forms_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/edges_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/overlay_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/polarisation_test.cpp
@@ -13,4 +14,4 @@ retrace_test(raytrace_test
     ${CMAKE_CURRENT_LIST_DIR}/sampling_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
-  LIBRARIES retrace::raytrace Boost::headers rapidcheck)
+  LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers rapidcheck)

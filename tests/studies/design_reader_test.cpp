@@ -474,9 +474,9 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
             "d.toml:11: part" + no + ", which takes only [element] and [array]");
   EXPECT_EQ(refused("surface.model=abg"),
             "--set surface.model=abg: surface.model" + no + ", which takes only \"smooth\", got \"abg\"");
-  for (const std::string key : {"element.cant_deg", "element.cant_azimuth_deg", "surface.roughness_sq_nm",
-                                "surface.correlation_length_um", "surface.waviness_sq_nm", "surface.waviness_length_um",
-                                "surface.root_radius_um", "surface.rim_radius_um", "surface.root_chamfer_um"}) {
+  for (const std::string key :
+       {"element.cant_deg", "element.cant_azimuth_deg", "surface.roughness_sq_nm", "surface.correlation_length_um",
+        "surface.waviness_sq_nm", "surface.waviness_length_um"}) {
     EXPECT_EQ(refused(key + "=2"), "--set " + key + "=2: " + key + no + ", which takes only 0, got 2");
     EXPECT_EQ(refused(key + "=0"), "");
   }
@@ -509,6 +509,20 @@ TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
   EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"") + "[surface]\nangle_error_sigma_arcmin = 1"),
             "d.toml:10: " + key +
                 ": must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
+}
+
+TEST(DesignReader, EdgesMustFitIntoTheFacets) {
+  const Design design = parse_design(design_of(kRtp, "extent = \"infinite\""), "d",
+                                     std::vector<std::string>{"surface.root_radius_um=5", "surface.rim_radius_um=2"});
+  EXPECT_EQ(design.part.edges, (geometry::EdgeShape{5e-3, 0.0, 2e-3}));
+  for (const std::string key : {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um"})
+    for (const std::string value : {"-1", "1e6"})
+      EXPECT_NE(set_complaint({key + "=" + value}).find(key + ": must be >= 0 and <= "), std::string::npos);
+  EXPECT_NE(set_complaint({"surface.root_radius_um=1", "surface.root_chamfer_um=1"}).find("root_chamfer_um: must be 0"),
+            std::string::npos);
+  EXPECT_NE(complaint(design_of(kHexagonal, "extent = \"infinite\"") + "[surface]\nrim_radius_um = 1")
+                .find("rim_radius_um: not available in this version for cube corners"),
+            std::string::npos);
 }
 
 TEST(DesignReader, AngleErrorsThatDoNotFitAreRefused) {
