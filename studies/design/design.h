@@ -17,6 +17,22 @@ struct Idealisation {
       false;  ///< entrance face refracts with T = 1 both ways; beyond the critical angle light ends
 };
 
+/// What the texture of the retro facets does to light, and whether walls absorb it.
+struct FacetTexture {
+  enum class Model { smooth, harvey_shack, abg, microfacet };
+  Model model = Model::smooth;
+  double roughness_sq_nm = 0.0;        ///< rms height
+  double correlation_length_um = 0.0;  ///< 1/e of a Gaussian autocorrelation
+  double waviness_sq_nm = 0.0;
+  double waviness_length_um = 0.0;  ///< period
+  double abg_a = 0.0;               ///< per sr; BSDF = A / (B + |dbeta|^g)
+  double abg_b = 0.0;
+  double abg_g = 0.0;
+  bool ggx = false;              ///< microfacets with longer tails of slopes than Gaussian
+  bool absorbing_walls = false;  ///< of elements and of the border
+  InputLocation location;        ///< where it was given, for whoever cannot trace it
+};
+
 /// Everything a design file says, checked and with its defaults filled in.
 struct Design {
   std::string source;  ///< file name as given, "-" for standard input
@@ -32,6 +48,7 @@ struct Design {
   raytrace::Stokes polarisation = raytrace::kUnpolarised;
   std::vector<double> acceptance_half_angle_deg = {0.5};  ///< ascending, each in (0, 90]
   Idealisation idealisation;
+  FacetTexture texture;
 
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }

@@ -72,7 +72,21 @@ Json polarisation_json(const raytrace::Stokes& stokes) {
   return values;
 }
 
-Json surface_json(const PartSpec& part) {
+void add_texture(Json& json, const FacetTexture& t) {
+  using Model = FacetTexture::Model;
+  if (t.absorbing_walls) json["walls"] = "absorbing";
+  if (t.model == Model::smooth) return;
+  json["model"] = t.model == Model::abg ? "abg" : (t.model == Model::microfacet ? "microfacet" : "harvey_shack");
+  if (t.model == Model::abg) json.update({{"abg_a", t.abg_a}, {"abg_b", t.abg_b}, {"abg_g", t.abg_g}});
+  if (t.model == Model::microfacet) json["slope_distribution"] = t.ggx ? "ggx" : "beckmann";
+  if (t.roughness_sq_nm > 0.0)
+    json.update({{"roughness_sq_nm", t.roughness_sq_nm}, {"correlation_length_um", t.correlation_length_um}});
+  if (t.waviness_sq_nm > 0.0)
+    json.update({{"waviness_sq_nm", t.waviness_sq_nm}, {"waviness_length_um", t.waviness_length_um}});
+}
+
+Json surface_json(const Design& design) {
+  const PartSpec& part = design.part;
   const auto& [dihedral, tilt] = part.angle_errors;
   Json json = {{"dihedral_error_arcmin", dihedral}, {"facet_tilt_arcmin", tilt}};
   if (std::holds_alternative<RtpElement>(part.element))
@@ -81,6 +95,7 @@ Json surface_json(const PartSpec& part) {
     json["angle_error_sigma_arcmin"] = part.random_tilts.sigma_arcmin;
     json["angle_error_seed"] = part.random_tilts.seed;
   }
+  add_texture(json, design.texture);
   if (part.edges.root_radius_mm > 0.0) json["root_radius_um"] = 1e3 * part.edges.root_radius_mm;
   if (part.edges.root_chamfer_mm > 0.0) json["root_chamfer_um"] = 1e3 * part.edges.root_chamfer_mm;
   if (part.edges.rim_radius_mm > 0.0) json["rim_radius_um"] = 1e3 * part.edges.rim_radius_mm;
@@ -112,7 +127,7 @@ nlohmann::ordered_json to_json(const Design& design) {
   json["body"] = body;
   json["light"] = {{"wavelength_nm", design.wavelength_nm}, {"polarisation", polarisation_json(design.polarisation)}};
   json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};
-  json["surface"] = surface_json(design.part);
+  json["surface"] = surface_json(design);
   json["idealisation"] = {{"facets", design.idealisation.mirror_facets ? "mirror" : "real"},
                           {"entrance", design.idealisation.lossless_entrance ? "lossless" : "real"}};
   return json;

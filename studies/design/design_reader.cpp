@@ -18,6 +18,7 @@
 #include "studies/design/design_keys.h"
 #include "studies/design/message_text.h"
 #include "studies/design/table_reader.h"
+#include "studies/design/texture_reader.h"
 
 namespace retrace::studies {
 namespace fs = std::filesystem;
@@ -219,22 +220,23 @@ void read_edges(TableReader& surface, PartSpec& part) {
 }
 
 /// What the retro facets are like.
-void read_surface(const DesignDocument& document, PartSpec& part) {
+FacetTexture read_surface(const DesignDocument& document, PartSpec& part) {
   TableReader surface(document, "surface");
-  surface.skip({"model", "roughness_sq_nm", "correlation_length_um", "waviness_sq_nm", "waviness_length_um", "walls"});
+  FacetTexture texture = read_texture(surface);
   read_dihedral_error(surface, part);
   read_facet_tilt(surface, part);
   read_random_tilts(surface, part);
   read_edges(surface, part);
   surface.finish();
   const auto* rtp = std::get_if<geometry::RtpElement>(&part.element);
-  if (rtp == nullptr) return;
+  if (rtp == nullptr) return texture;
   const auto& [dihedral, tilt] = part.angle_errors;
   const double apex_deg = rtp->apex_angle_deg + (dihedral[0] + tilt[0] + tilt[1]) / 60.0;
   if (!kApexAngle.contains(apex_deg))
     surface.fail(
         surface.has("dihedral_error_arcmin") ? "dihedral_error_arcmin" : "facet_tilt_arcmin",
         fmt::format("the apex angle with its errors must be {}, got {}", kApexAngle.text(), shortest(apex_deg)));
+  return texture;
 }
 
 PartSpec read_part(const DesignDocument& document) {
@@ -247,7 +249,6 @@ PartSpec read_part(const DesignDocument& document) {
   element.finish();
   array.finish();
   check_array(part, array, element);
-  read_surface(document, part);
   return part;
 }
 
@@ -365,6 +366,7 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   design.source = source_name;
   design.title = top.text("title").value_or("");
   design.part = read_part(document);
+  design.texture = read_surface(document, design.part);
   TableReader body(document, "body");
   read_body(body, design);
   read_light_and_detector(document, design);

@@ -14,6 +14,27 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
   }
 }
 
+surface_models::ScatterModel scatter_model(const FacetTexture& t) {
+  using Model = FacetTexture::Model;
+  const auto shape = t.ggx ? surface_models::SlopeShape::ggx : surface_models::SlopeShape::beckmann;
+  try {
+    switch (t.model) {
+      case Model::harvey_shack:
+        return surface_models::HarveyShack(
+            {t.roughness_sq_nm, t.correlation_length_um, t.waviness_sq_nm, t.waviness_length_um});
+      case Model::abg:
+        return surface_models::Abg(t.abg_a, t.abg_b, t.abg_g);
+      case Model::microfacet:
+        return surface_models::Microfacet::of_waviness(shape, t.waviness_sq_nm, t.waviness_length_um);
+      case Model::smooth:
+        break;
+    }
+    return surface_models::Smooth();
+  } catch (const InputError& error) {
+    throw InputError(t.location, error.what());  // which knows the values but not where they were given
+  }
+}
+
 }  // namespace
 
 raytrace::Optics make_optics(const Design& design, const materials::MaterialLibrary& library,
@@ -21,6 +42,9 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
   const materials::Material& material = library.find(design.material, design.material_location);
   raytrace::Optics optics;
   optics.mirror_facets = design.idealisation.mirror_facets;
+  optics.facet_scatter = scatter_model(design.texture);
+  optics.absorbing_walls = design.texture.absorbing_walls;
+  optics.wavelength_nm = design.wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
   optics.absorption_per_mm = design.absorption_per_mm.value_or(material.absorption_per_mm);
   if (design.refractive_index) {
@@ -41,6 +65,9 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library) {
   OpticalModel model;
   model.optics = make_optics(design, library, model.warnings);
+  for (const std::string& warning :
+       surface_models::warnings(model.optics.facet_scatter, model.optics.index, design.wavelength_nm))
+    model.warnings.push_back(fmt::format("{}: {}", design.source_name(), warning));
   model.part = geometry::build_part(design.part);
   return model;
 }

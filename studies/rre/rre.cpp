@@ -80,7 +80,13 @@ struct RreStudy::Prepared {
 RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(std::make_unique<Prepared>()) {
   check(request);
   const auto library = materials::MaterialLibrary::shipped();
-  for (const Design& design : designs) prepared_->models.push_back(make_model(design, library));
+  for (const Design& design : designs) {
+    prepared_->models.push_back(make_model(design, library));
+    if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
+      throw InputError(design.texture.location,
+                       "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "
+                       "--far-field and --derivatives");
+  }
   prepared_->designs = std::move(designs);
   prepared_->request = std::move(request);
 }
@@ -262,7 +268,8 @@ void trace_exactly(const std::vector<Design>& designs, const std::vector<Optical
 bool trace_exactly_if_cheap(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                             const RreRequest& request, std::vector<Direction>& directions, Progress* progress,
                             const Cancellation* cancel) {
-  if (!may_be_exact(request)) return false;
+  const bool all_smooth = std::all_of(models.begin(), models.end(), [](const auto& m) { return m.optics.is_smooth(); });
+  if (!may_be_exact(request) || !all_smooth) return false;
   try {
     trace_exactly(designs, models, request, directions, progress, cancel);
     return true;

@@ -49,31 +49,31 @@ struct BadLine {
 
 TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
   const std::vector<BadLine> cases = {
-      {3, "base_mn = 0.5", "d.toml:3: element.base_mn: "},                             // unknown key
-      {10, "[bodi]", "d.toml:10: bodi: "},                                             // unknown table
-      {3, "base_mm = \"0.5\"", "d.toml:3: element.base_mm: "},                         // wrong type
-      {7, "arrangement = 3", "d.toml:7: array.arrangement: "},                         //
-      {3, "", "d.toml:1: element.base_mm: missing"},                                   // missing key
-      {11, "", "d.toml:10: body.thickness_mm: missing"},                               //
-      {9, "", "d.toml:6: array.y_length_mm: missing"},                                 //
-      {3, "base_mm = 0", "d.toml:3: element.base_mm: "},                               // size zero
-      {3, "base_mm = -0.5", "d.toml:3: element.base_mm: "},                            // negative
-      {12, "[light]\nwavelength_nm = 1e9", "d.toml:13: light.wavelength_nm: "},        // no index there
-      {11, "thickness_mm = -1", "d.toml:11: body.thickness_mm: "},                     //
-      {3, "base_mm = inf", "d.toml:3: element.base_mm: "},                             // not finite
-      {4, "width_mm = nan", "d.toml:4: element.width_mm: "},                           //
-      {8, "x_length_mm = -inf", "d.toml:8: array.x_length_mm: "},                      //
-      {5, "apex_angle_deg = 59.9", "d.toml:5: element.apex_angle_deg: "},              // outside 60..120
-      {5, "apex_angle_deg = 120.1", "d.toml:5: element.apex_angle_deg: "},             //
-      {12, "refractive_index = 0.99", "d.toml:12: body.refractive_index: "},           // n < 1
-      {8, "x_length_mm = 0.4", "d.toml:8: array.x_length_mm: "},                       // smaller than an element
-      {9, "y_length_mm = 0.4", "d.toml:9: array.y_length_mm: "},                       //
-      {12, "material = \"Glas\"", "d.toml:12: body.material: "},                       // unknown material
-      {7, "arrangement = \"honeycomb\"", "d.toml:7: array.arrangement: "},             // of another kind
-      {2, "kind = \"prism\"", "d.toml:2: element.kind: "},                             //
-      {4, "this is no TOML", "d.toml:4: not valid TOML"},                              //
-      {4, "base_mm = 1", "d.toml:4: "},                                                // twice the same key
-      {12, "[surface]\nroughness_sq_nm = 5", "d.toml:13: surface.roughness_sq_nm: "},  // not in this version
+      {3, "base_mn = 0.5", "d.toml:3: element.base_mn: "},                       // unknown key
+      {10, "[bodi]", "d.toml:10: bodi: "},                                       // unknown table
+      {3, "base_mm = \"0.5\"", "d.toml:3: element.base_mm: "},                   // wrong type
+      {7, "arrangement = 3", "d.toml:7: array.arrangement: "},                   //
+      {3, "", "d.toml:1: element.base_mm: missing"},                             // missing key
+      {11, "", "d.toml:10: body.thickness_mm: missing"},                         //
+      {9, "", "d.toml:6: array.y_length_mm: missing"},                           //
+      {3, "base_mm = 0", "d.toml:3: element.base_mm: "},                         // size zero
+      {3, "base_mm = -0.5", "d.toml:3: element.base_mm: "},                      // negative
+      {12, "[light]\nwavelength_nm = 1e9", "d.toml:13: light.wavelength_nm: "},  // no index there
+      {11, "thickness_mm = -1", "d.toml:11: body.thickness_mm: "},               //
+      {3, "base_mm = inf", "d.toml:3: element.base_mm: "},                       // not finite
+      {4, "width_mm = nan", "d.toml:4: element.width_mm: "},                     //
+      {8, "x_length_mm = -inf", "d.toml:8: array.x_length_mm: "},                //
+      {5, "apex_angle_deg = 59.9", "d.toml:5: element.apex_angle_deg: "},        // outside 60..120
+      {5, "apex_angle_deg = 120.1", "d.toml:5: element.apex_angle_deg: "},       //
+      {12, "refractive_index = 0.99", "d.toml:12: body.refractive_index: "},     // n < 1
+      {8, "x_length_mm = 0.4", "d.toml:8: array.x_length_mm: "},                 // smaller than an element
+      {9, "y_length_mm = 0.4", "d.toml:9: array.y_length_mm: "},                 //
+      {12, "material = \"Glas\"", "d.toml:12: body.material: "},                 // unknown material
+      {7, "arrangement = \"honeycomb\"", "d.toml:7: array.arrangement: "},       // of another kind
+      {2, "kind = \"prism\"", "d.toml:2: element.kind: "},                       //
+      {4, "this is no TOML", "d.toml:4: not valid TOML"},                        //
+      {4, "base_mm = 1", "d.toml:4: "},                                          // twice the same key
+      {12, "[surface]\nroughness_sq_nm = 5", "d.toml:12: surface.correlation_length_um: "},
   };
   for (const BadLine& bad : cases)
     for (const std::string command : {"rre", "inspect"}) {

@@ -472,11 +472,8 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
                                                          ", which takes only \"none\", got \"aluminium\"");
   EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")),
             "d.toml:11: part" + no + ", which takes only [element] and [array]");
-  EXPECT_EQ(refused("surface.model=abg"),
-            "--set surface.model=abg: surface.model" + no + ", which takes only \"smooth\", got \"abg\"");
-  for (const std::string key :
-       {"element.cant_deg", "element.cant_azimuth_deg", "surface.roughness_sq_nm", "surface.correlation_length_um",
-        "surface.waviness_sq_nm", "surface.waviness_length_um"}) {
+  EXPECT_EQ(refused("surface.height_map=m.gsf"), "--set surface.height_map=m.gsf: surface.height_map" + no);
+  for (const std::string key : {"element.cant_deg", "element.cant_azimuth_deg"}) {
     EXPECT_EQ(refused(key + "=2"), "--set " + key + "=2: " + key + no + ", which takes only 0, got 2");
     EXPECT_EQ(refused(key + "=0"), "");
   }
@@ -509,6 +506,46 @@ TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
   EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"") + "[surface]\nangle_error_sigma_arcmin = 1"),
             "d.toml:10: " + key +
                 ": must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
+}
+
+TEST(DesignReader, TexturesOfFacetsAreRead) {
+  using Model = FacetTexture::Model;
+  const auto texture = [](const std::vector<std::string>& overrides) {
+    return parse_design(design_of(kRtp, "extent = \"infinite\""), "d", overrides).texture;
+  };
+  const FacetTexture rough = texture({"surface.roughness_sq_nm=5", "surface.correlation_length_um=2"});
+  EXPECT_EQ(rough.model, Model::harvey_shack) << "usual for a roughness";
+  EXPECT_EQ(rough.roughness_sq_nm, 5.0);
+  EXPECT_EQ(rough.correlation_length_um, 2.0);
+  EXPECT_EQ(texture({"surface.roughness_sq_nm=0"}).model, Model::smooth);
+  EXPECT_EQ(texture({"surface.model=harvey_shack"}).model, Model::smooth) << "0 is the smooth answer";
+  EXPECT_EQ(texture({"surface.model=abg", "surface.abg_a=1e-4", "surface.abg_b=1e-4", "surface.abg_g=2"}).model,
+            Model::abg);
+  const FacetTexture waves = texture({"surface.model=microfacet", "surface.waviness_sq_nm=300",
+                                      "surface.waviness_length_um=80", "surface.slope_distribution=ggx"});
+  EXPECT_EQ(waves.model, Model::microfacet);
+  EXPECT_TRUE(waves.ggx);
+  EXPECT_TRUE(texture({"surface.walls=absorbing"}).absorbing_walls);
+}
+
+TEST(DesignReader, TexturesThatSayTooLittleOrTooMuchAreRefused) {
+  const auto refused = [](const std::vector<std::string>& overrides) { return set_complaint(overrides); };
+  EXPECT_EQ(refused({"surface.roughness_sq_nm=5"}),
+            "d.toml: surface.correlation_length_um: must be > 0 where roughness_sq_nm is given, got 0");
+  EXPECT_EQ(refused({"surface.waviness_sq_nm=5"}),
+            "d.toml: surface.waviness_length_um: must be > 0 where waviness_sq_nm is given, got 0");
+  EXPECT_NE(refused({"surface.roughness_sq_nm=-1"}).find("must be >= 0 and <= 1e+05, got -1"), std::string::npos);
+  EXPECT_NE(refused({"surface.roughness_sq_nm=rough"}).find("must be a number, got \"rough\""), std::string::npos);
+  EXPECT_NE(refused({"surface.model=matt"}).find("surface.model: must be one of \"smooth\""), std::string::npos);
+  EXPECT_NE(refused({"surface.model=abg"}).find("surface.abg_a: missing"), std::string::npos);
+  EXPECT_NE(refused({"surface.abg_a=1"}).find("only allowed for model = \"abg\""), std::string::npos);
+  EXPECT_NE(refused({"surface.slope_distribution=ggx"}).find("only allowed for model = \"microfacet\""),
+            std::string::npos);
+  EXPECT_NE(refused({"surface.model=smooth", "surface.roughness_sq_nm=5", "surface.correlation_length_um=2"})
+                .find("surface.roughness_sq_nm: must be 0 for this model"),
+            std::string::npos);
+  EXPECT_NE(refused({"surface.walls=rough"}).find("surface.walls: must be one of \"smooth\" or \"absorbing\""),
+            std::string::npos);
 }
 
 TEST(DesignReader, EdgesMustFitIntoTheFacets) {
