@@ -125,7 +125,7 @@ class BeamWalk {
   void meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
                   double share);
   void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
-                 bool is_entrance);
+                 FacetRole role);
   void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Light& light, bool inside);
   /// Light of a beam that found no facet for want of digits. Signed: pieces may overlap by rounding as well.
   void book_rest(const Beam& beam, double share) {
@@ -436,17 +436,23 @@ void BeamWalk::leave_hull(const Beam& from, const Frame& frame, const FlatPolygo
   struct Exit {
     Plane plane;
     Distance distance;
-    bool is_entrance = false;
+    FacetRole role;
   };
   boost::container::small_vector<Exit, 8> exits;
-  const auto offer = [&](const Plane& plane, bool is_entrance) {
-    if (plane.normal.dot(from.direction) > kGrazing) exits.push_back({plane, Distance(frame, plane), is_entrance});
+  const auto offer = [&](const Plane& plane, FacetRole role) {
+    if (plane.normal.dot(from.direction) > kGrazing) exits.push_back({plane, Distance(frame, plane), role});
   };
-  offer({Vec3::UnitZ(), setup_.thickness_mm}, true);
-  for (const auto& side : setup_.sides) offer({side.normal, side.offset_mm}, false);
+  offer({Vec3::UnitZ(), setup_.thickness_mm}, FacetRole::entrance);
+  for (const auto& side : setup_.sides) offer({side.normal, side.offset_mm}, FacetRole::side);
 
   const double whole = area(piece);
   double used = 0.0;
+  const auto meet = [&](const Exit& exit, FacetRole role, const FlatPolygon& own) {
+    if (own.empty() || area(own) <= least_area_) return;
+    const double part = share * area(own) / whole;
+    used += part;
+    meet_hull(from, frame, own, part, exit.plane, role);
+  };
   for (std::size_t k = 0; k < exits.size(); ++k) {
     FlatPolygon own = piece;
     for (std::size_t j = 0; j < exits.size() && !own.empty(); ++j) {
@@ -454,10 +460,18 @@ void BeamWalk::leave_hull(const Beam& from, const Frame& frame, const FlatPolygo
       const Vec2 slope = exits[k].distance.slope - exits[j].distance.slope;
       own = clipped(own, {slope.x(), slope.y(), exits[j].distance.constant - exits[k].distance.constant}, merge_mm_);
     }
-    if (own.empty() || area(own) <= least_area_) continue;
-    const double part = share * area(own) / whole;
-    used += part;
-    meet_hull(from, frame, own, part, exits[k].plane, exits[k].is_entrance);
+    if (exits[k].role == FacetRole::side && setup_.optics.border_walls_differ()) {
+      // Below z = 0 the plane is that of border walls: z = up . p + start there, over the coordinates across the beam.
+      const Distance& distance = exits[k].distance;
+      const Vec2 up = Vec2(frame.u.z(), frame.v.z()) + frame.w.z() * distance.slope;
+      const double start = frame.w.z() * distance.constant;
+      if (up.norm() > kGrazing) {
+        meet(exits[k], FacetRole::border_wall, clipped(own, {up.x(), up.y(), -start}, merge_mm_));
+        meet(exits[k], FacetRole::side, clipped(own, {-up.x(), -up.y(), start}, merge_mm_));
+        continue;
+      }
+    }
+    meet(exits[k], exits[k].role, own);
   }
   book_rest(from, share - used);
 }
@@ -506,7 +520,7 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   }
   const bool is_mirror = setup_.optics.mirror_facets && candidate.role == FacetRole::retro_facet;
   const Vec3 against = from.inside ? Vec3(-candidate.plane.normal) : candidate.plane.normal;
-  const double ratio = from.inside ? setup_.optics.index : 1.0 / setup_.optics.index;
+  const double ratio = setup_.optics.ratio_at_back(from.inside);
   const double cos_incidence = -against.dot(from.direction);
   const materials::FresnelCoefficients f = is_mirror ? perfect_mirror() : materials::fresnel(ratio, cos_incidence);
   beam.light.turn_to(from.direction, against);
@@ -522,12 +536,18 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
 }
 
 void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
-                         const Plane& plane, bool is_entrance) {
+                         const Plane& plane, FacetRole role) {
   Beam beam = arrived(from, frame, piece, share, plane);
+  if (role == FacetRole::border_wall && setup_.optics.absorbing_walls) {
+    tally_.other[Account::absorbed] += power_of(beam);
+    return;
+  }
+  const bool is_entrance = role == FacetRole::entrance;
   const Vec3 against = -plane.normal;
   const double cos_incidence = plane.normal.dot(from.direction);
-  const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, cos_incidence);
-  const Vec3 out = refracted(from.direction, against, setup_.optics.index, cos_incidence, f.cos_refracted);
+  const double ratio = role == FacetRole::border_wall ? setup_.optics.ratio_at_back(true) : setup_.optics.index;
+  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
+  const Vec3 out = refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted);
   beam.light.turn_to(from.direction, against);
   if (is_entrance && setup_.optics.lossless_entrance) {
     if (f.total_reflection)
@@ -541,7 +561,7 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
     if (is_entrance)
       leave_through_entrance(beam, through, out);
     else
-      tally_.other[account_of_exit(FacetRole::side)] += transmission_of(beam) * through.power();
+      tally_.other[account_of_exit(role)] += transmission_of(beam) * through.power();
   }
   const Light reflected = beam.light.reflected(f);
   send(std::move(beam), plane, against, mirrored(from.direction, against), reflected, true);

@@ -285,7 +285,11 @@ bool PathWalker::meet_entrance(State& state) {
 }
 
 bool PathWalker::meet_side(State& state, const Vec3& normal) {
-  const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, normal.dot(state.direction));
+  const Optics& optics = setup_.optics;
+  const bool is_border_wall = state.position.z() < 0.0;
+  if (is_border_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
+  const materials::FresnelCoefficients f =
+      materials::fresnel(is_border_wall ? optics.ratio_at_back(true) : optics.index, normal.dot(state.direction));
   state.light.turn_to(state.direction, normal);
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
@@ -307,7 +311,7 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   if (is_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
   const bool is_retro = facet.role == FacetRole::retro_facet;
   const bool is_rough = is_retro && !optics.is_smooth();
-  const double ratio = state.inside ? optics.index : 1.0 / optics.index;
+  const double ratio = optics.ratio_at_back(state.inside);
   surface_models::RandomStream random(key_, replicate_, sample_, is_rough ? choices_++ : 0);
   RoughEvent rough;
   Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
@@ -351,8 +355,8 @@ PathWalker::RoughEvent PathWalker::rough_event(const State& state, const ExactSu
   const Vec3 x = facet.normal.cross(Vec3::UnitZ()).normalized();
   rough.world_from_local << x, z.cross(x), z;
   rough.event.direction_in = rough.world_from_local.transpose() * state.direction;
-  rough.event.index_from = state.inside ? setup_.optics.index : 1.0;
-  rough.event.index_to = state.inside ? 1.0 : setup_.optics.index;
+  rough.event.index_from = state.inside ? setup_.optics.index : setup_.optics.back_index;
+  rough.event.index_to = state.inside ? setup_.optics.back_index : setup_.optics.index;
   rough.event.wavelength_nm = setup_.optics.wavelength_nm;
   rough.event.inside_material = state.inside;
   rough.piece = surface_models::sample_facet(setup_.optics.facet_scatter, rough.event, random);

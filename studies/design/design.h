@@ -42,6 +42,7 @@ struct Design {
   InputLocation material_location;          ///< where the material was named, for whoever finds that it is not shipped
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
   std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
+  double back_index = 1.0;                  ///< of what lies behind the facets, relative to air; 1..3
   double wavelength_nm = 587.56;
   InputLocation wavelength_location;  ///< where it was given, for whoever finds no index there
   /// Of the incident light, along the axes of raytrace::source_axis(); i = 1.

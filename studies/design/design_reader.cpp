@@ -59,6 +59,7 @@ constexpr std::array kEntranceModels = {Choice<bool>{"real", false}, Choice<bool
 
 constexpr Range kApexAngle{.low = 60.0, .high = 120.0};
 constexpr Range kAngleError{.low = -300.0, .high = 300.0};
+constexpr Range kBackIndex{.low = 1.0, .high = 3.0};
 constexpr Range kRandomTilt{.low = 0.0, .high = 60.0};
 constexpr Range kSeed{.low = 0.0, .high = 4294967295.0};
 constexpr Range kOverlap{.low = 0.0, .high = 100.0, .high_included = false};
@@ -264,7 +265,8 @@ void read_body(TableReader& body, Design& design) {
   if (design.material.empty()) body.fail("material", "must name a material, such as \"PMMA\", got \"\"");
   design.refractive_index = body.number("refractive_index", kRefractiveIndex);
   design.absorption_per_mm = body.number("absorption_per_mm", kNotNegative);
-  body.skip({"back_index", "facet_coating"});
+  design.back_index = body.number("back_index", kBackIndex).value_or(design.back_index);
+  body.skip({"facet_coating"});
   body.finish();
 }
 

@@ -43,6 +43,7 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
   raytrace::Optics optics;
   optics.mirror_facets = design.idealisation.mirror_facets;
   optics.facet_scatter = scatter_model(design.texture);
+  optics.back_index = design.back_index;
   optics.absorbing_walls = design.texture.absorbing_walls;
   optics.wavelength_nm = design.wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;

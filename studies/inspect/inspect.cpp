@@ -18,7 +18,7 @@ namespace {
 constexpr double kElementsToCheck = 1000.0;
 
 /// The incidence inside at which the facet that is hit most squarely stops to reflect totally.
-double inner_limit_rad(const geometry::PartSpec& part, double index) {
+double inner_limit_rad(const geometry::PartSpec& part, double index, double back_index) {
   std::vector<geometry::Vec3> normals;
   for (const geometry::CellFacet& facet : geometry::element_cell(part.element, part.angle_errors).facets)
     normals.push_back(geometry::Vec3(facet.plane.slope.x(), facet.plane.slope.y(), -1.0).normalized());
@@ -33,7 +33,7 @@ double inner_limit_rad(const geometry::PartSpec& part, double index) {
       image = image * (Eigen::Matrix3d::Identity() - 2.0 * normals[k] * normals[k].transpose());
     }
   } while (std::next_permutation(order.begin(), order.end()));
-  return least - std::asin(1.0 / index);
+  return least - std::asin(std::min(1.0, back_index / index));
 }
 
 /// A finite part of the same elements that CGAL checks quickly: the design itself if it is small.
@@ -83,8 +83,8 @@ void add_warnings(Inspection& result, const geometry::Part& part) {
 
 }  // namespace
 
-std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index) {
-  const double inside = inner_limit_rad(part, index);
+std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index, double back_index) {
+  const double inside = inner_limit_rad(part, index, back_index);
   if (!(inside >= 0.0)) return std::nullopt;
   const double sine = index * std::sin(inside);
   return sine >= 1.0 ? 90.0 : Angle::from_rad(std::asin(sine)).deg();
@@ -103,7 +103,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   const double aperture = geometry::area(geometry::aperture_outline(design.part.element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   result.refractive_index = model.optics.index;
-  result.tir_limit_deg = tir_limit_deg(design.part, model.optics.index);
+  result.tir_limit_deg = tir_limit_deg(design.part, model.optics.index, model.optics.back_index);
   result.dead_zone_share = geometry::edge_share(
       geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part.edges));
   result.boundary = boundary_finding(design.part, part.size_mm);

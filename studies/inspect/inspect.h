@@ -28,8 +28,9 @@ struct Inspection {
   std::vector<std::string> warnings;
 };
 
-/// Largest incidence of total reflection for a part's elements at this index; closed form. \pre index >= 1
-std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index);
+/// Largest incidence of total reflection for a part's elements at this index, of what is behind them; closed form.
+/// \pre both >= 1
+std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index, double back_index);
 
 /// \throw InputError as make_model()
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library);

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "materials/fresnel.h"
+#include "raytrace/beam_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
@@ -19,6 +23,8 @@ struct Case {
   double azimuth_deg;
   double index;
   double absorption_per_mm;
+  double back_index = 1.0;
+  bool absorbing_walls = false;
 };
 
 std::vector<Case> cases() {
@@ -38,7 +44,12 @@ std::vector<Case> cases() {
       {"bricks askew, low index", bricks, 50.0, 110.0, 1.3, 0.0},
       {"spaced checker", spaced, 12.0, 40.0, 1.4917, 0.05},
       {"honeycomb, partial omitted", omitted, 28.0, 15.0, 1.4917, 0.0},
-      {"triangular, cut", finite(TriangularCube{1.0}, Arrangement::triangular, 2.0, 1.6, 0.2), 40.0, 300.0, 1.8, 0.0}};
+      {"triangular, cut", finite(TriangularCube{1.0}, Arrangement::triangular, 2.0, 1.6, 0.2), 40.0, 300.0, 1.8, 0.0},
+      {"hexagon in water", single(HexagonalCube{1.0}, 0.4), 14.0, 70.0, 1.4917, 0.0, 1.333},
+      {"bricks in a denser glue", bricks, 20.0, 35.0, 1.4917, 0.0, 1.6},
+      {"spaced checker, black walls", spaced, 12.0, 40.0, 1.4917, 0.05, 1.0, true},
+      {"honeycomb, black walls", omitted, 28.0, 15.0, 1.4917, 0.0, 1.0, true},
+      {"bricks askew, black walls", bricks, 50.0, 110.0, 1.3, 0.0, 1.0, true}};
 }
 
 class AgainstReference : public ::testing::TestWithParam<std::size_t> {};
@@ -49,6 +60,8 @@ TEST_P(AgainstReference, EveryAccountAgrees) {
   Optics optics;
   optics.index = c.index;
   optics.absorption_per_mm = c.absorption_per_mm;
+  optics.back_index = c.back_index;
+  optics.absorbing_walls = c.absorbing_walls;
   // A wide cone puts power on both sides of its edge.
   const double cone_deg = 8.0;
   const ReferenceResult reference =
@@ -66,6 +79,20 @@ TEST_P(AgainstReference, EveryAccountAgrees) {
     EXPECT_NEAR(ledger.power[a], reference.mean.power[a], z * reference.std_error[a] + slack)
         << c.name << ": " << kAccountNames[a];
   }
+}
+
+// At normal incidence a prism's facets at 45 degrees reflect little in water: (R_s^2 + R_p^2) / 2 comes back, in both
+// engines.
+TEST(BackIndex, PrismInWater) {
+  const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
+  Optics optics = pmma();
+  optics.lossless_entrance = true;
+  optics.back_index = 1.333;
+  const materials::FresnelCoefficients f = materials::fresnel(kPmma / 1.333, std::sqrt(0.5));
+  const double expected = 0.5 * (std::pow(std::norm(f.r_s), 2) + std::pow(std::norm(f.r_p), 2));
+  EXPECT_NEAR(BeamTracer(part).trace(optics, {}, {0.5}, {}).ledgers[0][Account::retroreflected], expected, 1e-9);
+  const ConeResult sampled = MonteCarlo(part).trace(optics, {}, {0.5}, rays(1U << 14), {}).cones[0];
+  EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, AgainstReference, ::testing::Range(std::size_t{0}, cases().size()));

@@ -135,8 +135,15 @@ class Reference {
       ray.field = {strength * first.cast<Complex>(), strength * ray.direction.cross(first).cast<Complex>()};
     }
     const Vec3 n = hit.normal.dot(ray.direction) > 0.0 ? Vec3(-hit.normal) : hit.normal;
-    const double n1 = ray.inside ? optics_.index : 1.0;
-    const double n2 = ray.inside ? 1.0 : optics_.index;
+    const bool is_wall = hit.role == FacetRole::border_wall || hit.role == FacetRole::inner_gable;
+    if (is_wall && optics_.absorbing_walls) {
+      ledger_[Account::absorbed] += ray.power();
+      return;
+    }
+    const bool in_front = hit.role == FacetRole::entrance || hit.role == FacetRole::side;
+    const double outside = in_front ? 1.0 : optics_.back_index;
+    const double n1 = ray.inside ? optics_.index : outside;
+    const double n2 = ray.inside ? outside : optics_.index;
     const double ci = -n.dot(ray.direction);
     const double sin_t = n1 / n2 * std::sqrt(std::max(0.0, 1.0 - ci * ci));
     const Complex ct = std::sqrt(Complex(1.0 - sin_t * sin_t, 0.0));
