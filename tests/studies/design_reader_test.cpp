@@ -317,7 +317,7 @@ TEST(DesignReader, UnknownKeysAreNamedWithASuggestion) {
             "apex_angle_deg, aperture_mm)");
   EXPECT_EQ(complaint(with_line(10, "thickness = 2")),
             "d.toml:10: body.thickness: unknown key, did you mean \"thickness_mm\"? (allowed: thickness_mm, material, "
-            "refractive_index, absorption_per_mm)");
+            "refractive_index, absorption_per_mm, back_index)");
   EXPECT_EQ(complaint(with_line(11, "colour = \"red\"")),
             "d.toml:11: body.colour: unknown key (allowed: thickness_mm, material, refractive_index, "
             "absorption_per_mm, back_index)");
