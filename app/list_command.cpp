@@ -21,12 +21,12 @@ ExitCode run_list_command(const CommandLine& line) {
   if (line.what != "materials")
     throw InputError(fmt::format("list: this version ships materials only, got {}", line.what));
   const auto library = materials::MaterialLibrary::shipped();
-  std::string text = fmt::format("{:<16} {:<8} {:<12} {}\n", "name", "n 588 nm", "data (nm)", "description");
+  std::string text = fmt::format("{:<16} {:<10} {:<12} {}\n", "name", "n 588 nm", "data (nm)", "description");
   nlohmann::ordered_json json = {{"schema", "retrace.materials/1"}, {"materials", nlohmann::ordered_json::array()}};
   for (const materials::Material& m : library.all()) {
     const double n = materials::refractive_index(m.dispersion, kShownWavelengthNm);
     const std::string range = shortest(m.valid_from_nm) + "-" + shortest(m.valid_to_nm);
-    text += fmt::format("{:<16} {:<8} {:<12} {}\n", m.name, fixed(n, 5), range, m.description);
+    text += fmt::format("{:<16} {:<10} {:<12} {}\n", m.name, fixed(n, 5), range, m.description);
     json["materials"].push_back({{"name", m.name},
                                  {"description", m.description},
                                  {"refractive_index", n},
@@ -36,6 +36,22 @@ ExitCode run_list_command(const CommandLine& line) {
                                  {"valid_to_nm", m.valid_to_nm},
                                  {"absorption_per_mm", m.absorption_per_mm},
                                  {"source", m.source}});
+  }
+  json["metals"] = nlohmann::ordered_json::array();
+  for (const materials::Metal& m : library.metals()) {
+    const std::complex<double> n = materials::complex_index(m.model, kShownWavelengthNm);
+    const std::string range = shortest(m.valid_from_nm) + "-" + shortest(m.valid_to_nm);
+    text += fmt::format("{:<16} {:<10} {:<12} {}\n", m.name,
+                        fmt::format("{}+{}i", fixed(n.real(), 2), fixed(n.imag(), 2)), range, m.description);
+    json["metals"].push_back({{"name", m.name},
+                              {"description", m.description},
+                              {"refractive_index", n.real()},
+                              {"extinction_coefficient", n.imag()},
+                              {"wavelength_nm", kShownWavelengthNm},
+                              {"relative_to", "vacuum"},
+                              {"valid_from_nm", m.valid_from_nm},
+                              {"valid_to_nm", m.valid_to_nm},
+                              {"source", m.source}});
   }
   json["version"] = kVersion;
   json["warnings"] = nlohmann::ordered_json::array();

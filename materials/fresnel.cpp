@@ -33,6 +33,18 @@ FresnelCoefficients fresnel(double index_ratio, double cos_incidence) {
   return f;
 }
 
+FresnelCoefficients fresnel_metal(std::complex<double> index_ratio, double cos_incidence) {
+  const double ci = std::clamp(cos_incidence, 0.0, 1.0);
+  // Of the two roots the one whose wave decays into the metal.
+  std::complex<double> ct = std::sqrt(1.0 - index_ratio * index_ratio * (1.0 - ci * ci));
+  if ((ct / index_ratio).imag() < 0.0) ct = -ct;
+  FresnelCoefficients f;
+  f.r_s = (index_ratio * ci - ct) / (index_ratio * ci + ct);
+  f.r_p = (ci - index_ratio * ct) / (ci + index_ratio * ct);
+  f.total_reflection = true;
+  return f;
+}
+
 double reflectance(double index_ratio, double cos_incidence) {
   const FresnelCoefficients f = fresnel(index_ratio, cos_incidence);
   return 0.5 * (std::norm(f.r_s) + std::norm(f.r_p));

@@ -23,6 +23,10 @@ struct FresnelCoefficients {
 /// \param cos_incidence 0..1 (values beyond by rounding are clamped)
 FresnelCoefficients fresnel(double index_ratio, double cos_incidence);
 
+/// Of an opaque metal: the transmission amplitudes are 0 and total_reflection is set, though |r| < 1; what is not
+/// reflected is absorbed. Born and Wolf, 14.2. \param index_ratio n of the side the wave comes from over n + i k
+FresnelCoefficients fresnel_metal(std::complex<double> index_ratio, double cos_incidence);
+
 /// Share of unpolarised power that a plane interface reflects.
 double reflectance(double index_ratio, double cos_incidence);
 

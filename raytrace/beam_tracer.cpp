@@ -518,11 +518,10 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
     tally_.other[Account::absorbed] += power_of(beam);
     return;
   }
-  const bool is_mirror = setup_.optics.mirror_facets && candidate.role == FacetRole::retro_facet;
   const Vec3 against = from.inside ? Vec3(-candidate.plane.normal) : candidate.plane.normal;
   const double ratio = setup_.optics.ratio_at_back(from.inside);
   const double cos_incidence = -against.dot(from.direction);
-  const materials::FresnelCoefficients f = is_mirror ? perfect_mirror() : materials::fresnel(ratio, cos_incidence);
+  const materials::FresnelCoefficients f = fresnel_at_back(setup_.optics, candidate.role, from.inside, cos_incidence);
   beam.light.turn_to(from.direction, against);
   if (!f.total_reflection) {
     Beam through = beam;
@@ -532,6 +531,8 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
          !from.inside);
   }
   const Light reflected = beam.light.reflected(f);
+  if (setup_.optics.coating_index && candidate.role == FacetRole::retro_facet)
+    tally_.other[Account::absorbed] += transmission_of(beam) * (beam.light.power() - reflected.power());
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), reflected, from.inside);
 }
 

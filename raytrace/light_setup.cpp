@@ -14,12 +14,25 @@ Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
   return (direction - 2.0 * normal.dot(direction) * normal).normalized();
 }
 
+namespace {
+
 materials::FresnelCoefficients perfect_mirror() {
   materials::FresnelCoefficients f;
   f.r_s = -1.0;
   f.r_p = 1.0;
   f.total_reflection = true;
   return f;
+}
+
+}  // namespace
+
+materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::FacetRole role, bool inside,
+                                               double cos_incidence) {
+  const bool is_retro = role == geometry::FacetRole::retro_facet;
+  if (is_retro && optics.mirror_facets) return perfect_mirror();
+  if (is_retro && optics.coating_index)
+    return materials::fresnel_metal((inside ? optics.index : optics.back_index) / *optics.coating_index, cos_incidence);
+  return materials::fresnel(optics.ratio_at_back(inside), cos_incidence);
 }
 
 Vec3 source_axis(const Vec3& direction) {

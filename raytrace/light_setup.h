@@ -81,7 +81,9 @@ Stokes seen_from_above(Light light, const Vec3& direction);
 Account account_of_exit(geometry::FacetRole role);
 
 /// Amplitudes of a perfect mirror.
-materials::FresnelCoefficients perfect_mirror();
+/// What a face of the back surface makes of light on its way, inside the part or outside.
+materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::FacetRole role, bool inside,
+                                               double cos_incidence);
 
 /// The direction after refraction at a plane whose unit normal `against` faces the ray. \param ratio index before over
 /// after

@@ -320,13 +320,13 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
     against = rough.world_from_local * rough.piece.normal;
   }
   const double cos_incidence = -against.dot(state.direction);
-  const materials::FresnelCoefficients f =
-      is_retro && optics.mirror_facets ? perfect_mirror() : materials::fresnel(ratio, cos_incidence);
+  const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, state.inside, cos_incidence);
 
   state.source = hit.facet;
   state.near_edge = hit.near_edge;
   state.light.turn_to(state.direction, against);
   Light reflected = state.light.reflected(f);
+  if (is_retro && optics.coating_index) tally_.other[Account::absorbed] += state.light.power() - reflected.power();
   Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
   if (branch != Branch::reflected) {

@@ -10,15 +10,16 @@
 namespace retrace::materials {
 namespace {
 
-/// One [[material]] table; every read names file, line and key when it fails.
+/// One [[material]] or [[metal]] table; every read names file, line and key when it fails.
 class Entry {
  public:
-  Entry(const std::string& file, const toml::table& table) : file_(file), table_(table) {}
+  Entry(const std::string& file, std::string_view kind, const toml::table& table)
+      : file_(file), kind_(kind), table_(table) {}
 
   [[noreturn]] void fail(std::string_view key, std::string_view text) const {
     const toml::node* node = table_.get(key);
     const auto& source = node != nullptr ? node->source() : table_.source();
-    throw InputError({file_, static_cast<int>(source.begin.line), "material." + std::string(key)}, text);
+    throw InputError({file_, static_cast<int>(source.begin.line), fmt::format("{}.{}", kind_, key)}, text);
   }
 
   std::string text(std::string_view key) const {
@@ -66,11 +67,12 @@ class Entry {
 
  private:
   const std::string& file_;
+  std::string_view kind_;
   const toml::table& table_;
 };
 
 Material read_material(const std::string& file, const toml::table& table) {
-  const Entry entry(file, table);
+  const Entry entry(file, "material", table);
   Material m;
   m.name = entry.text("name");
   m.description = entry.text("description");
@@ -84,6 +86,45 @@ Material read_material(const std::string& file, const toml::table& table) {
   return m;
 }
 
+Metal read_metal(const std::string& file, const toml::table& table) {
+  const Entry entry(file, "metal", table);
+  Metal m;
+  m.name = entry.text("name");
+  m.description = entry.text("description");
+  m.model.plasma_ev = entry.numbers("plasma_ev", 1).front();
+  const std::vector<double> values = entry.numbers("terms", 3);
+  for (std::size_t i = 0; i < values.size(); i += 3) m.model.terms.push_back({values[i], values[i + 1], values[i + 2]});
+  const std::vector<double> range = entry.numbers("valid_nm", 2);
+  m.valid_from_nm = range[0];
+  m.valid_to_nm = range[1];
+  m.source = entry.text("source");
+  return m;
+}
+
+template <class Read>
+void for_each_table(const toml::table& root, const std::string& file, const std::string& kind, Read read) {
+  const toml::array* entries = root[kind].as_array();
+  const std::string must = fmt::format("the file must hold [[{}]] tables", kind);
+  if (entries == nullptr) throw InputError({file, 0, kind}, must);
+  for (const toml::node& node : *entries) {
+    if (!node.is_table()) throw InputError({file, 0, kind}, must);
+    read(*node.as_table());
+  }
+}
+
+/// \throw InputError at `where` if no item has the name
+template <class Item>
+const Item& find_by_name(const std::vector<Item>& items, std::string_view kind, std::string_view name,
+                         const InputLocation& where) {
+  std::vector<std::string> names;
+  for (const Item& item : items) {
+    if (item.name == name) return item;
+    names.push_back(item.name);
+  }
+  throw InputError(where,
+                   fmt::format("no {} of that name, got \"{}\"; there are {}", kind, name, fmt::join(names, ", ")));
+}
+
 }  // namespace
 
 MaterialLibrary MaterialLibrary::read(const std::filesystem::path& file) {
@@ -92,12 +133,11 @@ MaterialLibrary MaterialLibrary::read(const std::filesystem::path& file) {
   MaterialLibrary library;
   try {
     const toml::table root = toml::parse(content, name);
-    const toml::array* entries = root["material"].as_array();
-    if (entries == nullptr) throw InputError({name, 0, "material"}, "the file must hold [[material]] tables");
-    for (const toml::node& node : *entries) {
-      if (!node.is_table()) throw InputError({name, 0, "material"}, "the file must hold [[material]] tables");
-      library.materials_.push_back(read_material(name, *node.as_table()));
-    }
+    for_each_table(root, name, "material",
+                   [&](const toml::table& table) { library.materials_.push_back(read_material(name, table)); });
+    if (root.contains("metal"))
+      for_each_table(root, name, "metal",
+                     [&](const toml::table& table) { library.metals_.push_back(read_metal(name, table)); });
   } catch (const toml::parse_error& error) {
     throw InputError({name, static_cast<int>(error.source().begin.line), ""}, error.description());
   }
@@ -109,12 +149,11 @@ MaterialLibrary MaterialLibrary::shipped() {
 }
 
 const Material& MaterialLibrary::find(std::string_view name, const InputLocation& where) const {
-  for (const Material& m : materials_)
-    if (m.name == name) return m;
-  std::vector<std::string> names;
-  for (const Material& m : materials_) names.push_back(m.name);
-  throw InputError(where,
-                   fmt::format("no material of that name, got \"{}\"; there are {}", name, fmt::join(names, ", ")));
+  return find_by_name(materials_, "material", name, where);
+}
+
+const Metal& MaterialLibrary::find_metal(std::string_view name, const InputLocation& where) const {
+  return find_by_name(metals_, "metal", name, where);
 }
 
 }  // namespace retrace::materials

@@ -6,13 +6,15 @@
 
 #include "core/error.h"
 #include "materials/dispersion.h"
+#include "materials/metal.h"
 
 namespace retrace::materials {
 
-/// The shipped materials, in the order of the file.
+/// The shipped materials and metals, each in the order of the file.
 class MaterialLibrary {
  public:
-  /// Reads a materials file (TOML, one [[material]] table each). \throw InputError naming file, line and key
+  /// Reads a materials file (TOML, one [[material]] or [[metal]] table each). \throw InputError naming file, line and
+  /// key
   static MaterialLibrary read(const std::filesystem::path& file);
   /// The library in the data folder. \throw InputError
   static MaterialLibrary shipped();
@@ -21,9 +23,13 @@ class MaterialLibrary {
   /// \throw InputError at `where`, listing what there is
   const Material& find(std::string_view name, const InputLocation& where = {}) const;
   const Material& air() const { return find("air"); }
+  const std::vector<Metal>& metals() const { return metals_; }
+  /// \throw InputError as find()
+  const Metal& find_metal(std::string_view name, const InputLocation& where = {}) const;
 
  private:
   std::vector<Material> materials_;
+  std::vector<Metal> metals_;
 };
 
 }  // namespace retrace::materials

@@ -43,6 +43,7 @@ struct Design {
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
   std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
   double back_index = 1.0;                  ///< of what lies behind the facets, relative to air; 1..3
+  bool aluminised_facets = false;           ///< an opaque film behind the retro facets
   double wavelength_nm = 587.56;
   InputLocation wavelength_location;  ///< where it was given, for whoever finds no index there
   /// Of the incident light, along the axes of raytrace::source_axis(); i = 1.
@@ -53,6 +54,8 @@ struct Design {
 
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }
+  /// Whether the retro facets rely on total reflection.
+  bool needs_total_reflection() const { return !idealisation.mirror_facets && !aluminised_facets; }
 };
 
 }  // namespace retrace::studies

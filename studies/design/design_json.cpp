@@ -120,6 +120,7 @@ nlohmann::ordered_json to_json(const Design& design) {
   Json body = {{"thickness_mm", design.part.thickness_mm}, {"material", design.material}};
   if (design.refractive_index) body["refractive_index"] = *design.refractive_index;
   if (design.absorption_per_mm) body["absorption_per_mm"] = *design.absorption_per_mm;
+  if (design.aluminised_facets) body["facet_coating"] = "aluminium";
   if (design.back_index != 1.0) body["back_index"] = design.back_index;
   Json json = {{"source", design.source}};
   if (!design.title.empty()) json["title"] = design.title;

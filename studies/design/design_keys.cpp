@@ -54,9 +54,8 @@ constexpr std::array kArrayKeys = {KeyRule{"arrangement"},
                                    KeyRule{"overlap_percent"},
                                    KeyRule{"mask", NotAvailable{}},
                                    KeyRule{"mask_threshold", NotAvailable{}}};
-constexpr std::array kBodyKeys = {KeyRule{"thickness_mm"},     KeyRule{"material"},
-                                  KeyRule{"refractive_index"}, KeyRule{"absorption_per_mm"},
-                                  KeyRule{"back_index"},       KeyRule{"facet_coating", OnlyWord{"none"}}};
+constexpr std::array kBodyKeys = {KeyRule{"thickness_mm"},      KeyRule{"material"},   KeyRule{"refractive_index"},
+                                  KeyRule{"absorption_per_mm"}, KeyRule{"back_index"}, KeyRule{"facet_coating"}};
 constexpr std::array kLightKeys = {KeyRule{"wavelength_nm"}, KeyRule{"polarisation"}, KeyRule{"polarisation_angle_deg"},
                                    KeyRule{"spectrum", NotAvailable{}}};
 constexpr std::array kDetectorKeys = {KeyRule{"acceptance_half_angle_deg"}};

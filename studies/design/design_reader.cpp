@@ -57,6 +57,8 @@ constexpr std::array kPolarisations = {Choice<Polarisation>{"unpolarised", Polar
 constexpr std::array kFacetModels = {Choice<bool>{"real", false}, Choice<bool>{"mirror", true}};
 constexpr std::array kEntranceModels = {Choice<bool>{"real", false}, Choice<bool>{"lossless", true}};
 
+constexpr std::array kCoatings = {Choice<bool>{"none", false}, Choice<bool>{"aluminium", true}};
+
 constexpr Range kApexAngle{.low = 60.0, .high = 120.0};
 constexpr Range kAngleError{.low = -300.0, .high = 300.0};
 constexpr Range kBackIndex{.low = 1.0, .high = 3.0};
@@ -266,7 +268,7 @@ void read_body(TableReader& body, Design& design) {
   design.refractive_index = body.number("refractive_index", kRefractiveIndex);
   design.absorption_per_mm = body.number("absorption_per_mm", kNotNegative);
   design.back_index = body.number("back_index", kBackIndex).value_or(design.back_index);
-  body.skip({"facet_coating"});
+  design.aluminised_facets = body.choice("facet_coating", all(kCoatings)).value_or(false);
   body.finish();
 }
 

@@ -44,6 +44,9 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
   optics.mirror_facets = design.idealisation.mirror_facets;
   optics.facet_scatter = scatter_model(design.texture);
   optics.back_index = design.back_index;
+  if (design.aluminised_facets)
+    optics.coating_index = materials::complex_index(library.find_metal("aluminium").model, design.wavelength_nm) /
+                           materials::refractive_index(library.air().dispersion, design.wavelength_nm);
   optics.absorbing_walls = design.texture.absorbing_walls;
   optics.wavelength_nm = design.wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;

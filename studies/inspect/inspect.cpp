@@ -72,7 +72,7 @@ std::string boundary_finding(const geometry::PartSpec& spec, double element_mm) 
 }
 
 void add_warnings(Inspection& result, const geometry::Part& part) {
-  if (!result.tir_limit_deg && !result.design.idealisation.mirror_facets)
+  if (!result.tir_limit_deg && result.design.needs_total_reflection())
     result.warnings.push_back(fmt::format("{}: no total reflection at the facets at normal incidence (n = {:.4f})",
                                           result.design.source_name(), result.refractive_index));
   if (part.elements_partial > 0 && part.spec.partial_elements == geometry::PartialElements::cut)
@@ -103,7 +103,8 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   const double aperture = geometry::area(geometry::aperture_outline(design.part.element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   result.refractive_index = model.optics.index;
-  result.tir_limit_deg = tir_limit_deg(design.part, model.optics.index, model.optics.back_index);
+  if (design.needs_total_reflection())
+    result.tir_limit_deg = tir_limit_deg(design.part, model.optics.index, model.optics.back_index);
   result.dead_zone_share = geometry::edge_share(
       geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part.edges));
   result.boundary = boundary_finding(design.part, part.size_mm);

@@ -21,7 +21,8 @@ struct Inspection {
   double full_element_share = 0.0;  ///< of the entrance area
   double refractive_index = 1.0;
   /// Largest incidence up to which the retroreflected light is totally reflected at every facet: across the roof edge
-  /// for an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence.
+  /// for an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence, or
+  /// none is needed: facets are mirrors or aluminised.
   std::optional<double> tir_limit_deg;
   double dead_zone_share = 0.0;  ///< of an element's plan that rounded and chamfered edges take
   std::string boundary;          ///< what the check of the boundary found

@@ -155,7 +155,12 @@ TEST(List, MaterialsAsTextAndJson) {
   EXPECT_EQ(json["schema"], "retrace.materials/1");
   for (const char* key : {"version", "warnings", "complete"}) EXPECT_TRUE(json.contains(key)) << key;
   ASSERT_GE(json["materials"].size(), 4U);
-  EXPECT_EQ(lines_of(text.out).size(), json["materials"].size() + 1);
+  EXPECT_EQ(lines_of(text.out).size(), json["materials"].size() + json["metals"].size() + 1);
+  ASSERT_GE(json["metals"].size(), 1U);
+  for (const Json& metal : json["metals"]) {
+    EXPECT_NE(text.out.find("\n" + metal["name"].get<std::string>() + " "), std::string::npos) << metal;
+    EXPECT_GT(metal["extinction_coefficient"].get<double>(), 0.0) << metal;
+  }
   for (const Json& material : json["materials"]) {
     const std::string name = material["name"];
     EXPECT_NE(text.out.find("\n" + name + " "), std::string::npos) << name;

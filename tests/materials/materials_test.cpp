@@ -9,6 +9,7 @@
 #include "materials/dispersion.h"
 #include "materials/fresnel.h"
 #include "materials/io/material_library.h"
+#include "materials/metal.h"
 
 namespace retrace::materials {
 namespace {
@@ -46,6 +47,36 @@ TEST(Dispersion, IsNormalInTheVisible) {
 
 TEST(Dispersion, NoRealIndexIsAnError) {
   EXPECT_THROW(refractive_index(Sellmeier{{{1.0, 1.0}}}, 999.0), InputError);
+}
+
+// Rows of the table that refractiveindex.info (public domain, CC0) computed from the same paper.
+TEST(Metal, AluminiumOfRakic1998) {
+  const LorentzDrude model = shipped().find_metal("aluminium").model;
+  for (const auto& [wavelength_nm, n, k] : {std::array{401.43, 0.45683, 4.7236}, std::array{502.30, 0.76990, 5.9264},
+                                            std::array{588.13, 1.1354, 6.8566}, std::array{700.15, 1.6945, 7.9618}}) {
+    const std::complex<double> index = complex_index(model, wavelength_nm);
+    EXPECT_NEAR(index.real(), n, 2e-4 * n) << wavelength_nm;
+    EXPECT_NEAR(index.imag(), k, 2e-4 * k) << wavelength_nm;
+  }
+}
+
+TEST(FresnelMetal, NormalIncidenceAndLimits) {
+  const std::complex<double> metal(1.13, 6.85);
+  const FresnelCoefficients normal = fresnel_metal(1.49 / metal, 1.0);
+  EXPECT_NEAR(std::norm(normal.r_s), std::norm((1.49 - metal) / (1.49 + metal)), 1e-15);
+  EXPECT_NEAR(std::abs(normal.r_s + normal.r_p), 0.0, 1e-15);
+  for (double c = 0.0; c <= 1.0; c += 0.05) {
+    const FresnelCoefficients f = fresnel_metal(1.49 / metal, c);
+    EXPECT_LE(std::norm(f.r_s), 1.0);
+    EXPECT_LE(std::norm(f.r_p), std::norm(f.r_s) + 1e-15);
+    // Without absorption it is glass; phases of total reflection included.
+    for (const double ratio : {0.7, 1.49}) {
+      const FresnelCoefficients glass = fresnel(ratio, c);
+      const FresnelCoefficients limit = fresnel_metal(ratio / std::complex<double>(1.0, 1e-12), c);
+      EXPECT_NEAR(std::abs(limit.r_s - glass.r_s), 0.0, 1e-5) << ratio << ' ' << c;
+      EXPECT_NEAR(std::abs(limit.r_p - glass.r_p), 0.0, 1e-5) << ratio << ' ' << c;
+    }
+  }
 }
 
 TEST(MaterialLibrary, UnknownNameListsWhatThereIs) {

@@ -25,6 +25,7 @@ struct Case {
   double absorption_per_mm;
   double back_index = 1.0;
   bool absorbing_walls = false;
+  std::optional<std::complex<double>> coating_index = {};
 };
 
 std::vector<Case> cases() {
@@ -49,7 +50,10 @@ std::vector<Case> cases() {
       {"bricks in a denser glue", bricks, 20.0, 35.0, 1.4917, 0.0, 1.6},
       {"spaced checker, black walls", spaced, 12.0, 40.0, 1.4917, 0.05, 1.0, true},
       {"honeycomb, black walls", omitted, 28.0, 15.0, 1.4917, 0.0, 1.0, true},
-      {"bricks askew, black walls", bricks, 50.0, 110.0, 1.3, 0.0, 1.0, true}};
+      {"bricks askew, black walls", bricks, 50.0, 110.0, 1.3, 0.0, 1.0, true},
+      {"aluminised hexagon in glue", single(HexagonalCube{1.0}, 0.4), 35.0, 70.0, 1.4917, 0.0, 1.5, false,
+       std::complex<double>(1.1, 6.9)},
+      {"poor metal on bricks", bricks, 30.0, 35.0, 1.4917, 0.1, 1.0, false, std::complex<double>(2.5, 1.2)}};
 }
 
 class AgainstReference : public ::testing::TestWithParam<std::size_t> {};
@@ -62,6 +66,7 @@ TEST_P(AgainstReference, EveryAccountAgrees) {
   optics.absorption_per_mm = c.absorption_per_mm;
   optics.back_index = c.back_index;
   optics.absorbing_walls = c.absorbing_walls;
+  optics.coating_index = c.coating_index;
   // A wide cone puts power on both sides of its edge.
   const double cone_deg = 8.0;
   const ReferenceResult reference =
@@ -91,6 +96,26 @@ TEST(BackIndex, PrismInWater) {
   const materials::FresnelCoefficients f = materials::fresnel(kPmma / 1.333, std::sqrt(0.5));
   const double expected = 0.5 * (std::pow(std::norm(f.r_s), 2) + std::pow(std::norm(f.r_p), 2));
   EXPECT_NEAR(BeamTracer(part).trace(optics, {}, {0.5}, {}).ledgers[0][Account::retroreflected], expected, 1e-9);
+  const ConeResult sampled = MonteCarlo(part).trace(optics, {}, {0.5}, rays(1U << 14), {}).cones[0];
+  EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
+}
+
+// Two reflections by metal instead: the same in any surroundings, and the rest is absorbed.
+TEST(FacetCoating, AluminisedPrism) {
+  const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
+  Optics optics = pmma();
+  optics.lossless_entrance = true;
+  optics.back_index = 1.333;
+  optics.coating_index = std::complex<double>(1.13, 6.85);
+  const double n1 = kPmma;
+  const std::complex<double> n2 = *optics.coating_index;
+  const std::complex<double> cos2 = std::sqrt(1.0 - 0.5 * n1 * n1 / (n2 * n2));
+  const std::complex<double> r_s = (n1 * std::sqrt(0.5) - n2 * cos2) / (n1 * std::sqrt(0.5) + n2 * cos2);
+  const std::complex<double> r_p = (n2 * std::sqrt(0.5) - n1 * cos2) / (n2 * std::sqrt(0.5) + n1 * cos2);
+  const double expected = 0.5 * (std::pow(std::norm(r_s), 2) + std::pow(std::norm(r_p), 2));
+  const Ledger exact = BeamTracer(part).trace(optics, {}, {0.5}, {}).ledgers[0];
+  EXPECT_NEAR(exact[Account::retroreflected], expected, 1e-9);
+  EXPECT_NEAR(exact[Account::absorbed], 1.0 - expected, 1e-9);
   const ConeResult sampled = MonteCarlo(part).trace(optics, {}, {0.5}, rays(1U << 14), {}).cones[0];
   EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
 }

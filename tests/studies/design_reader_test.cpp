@@ -213,7 +213,7 @@ TEST(DesignReader, NumbersOutOfRangeAreRefused) {
             "d.toml:11: body.absorption_per_mm: must be >= 0, got -1");
   EXPECT_EQ(complaint(with_line(11, "light.wavelength_nm = 0")),
             "d.toml:11: body.light: unknown key (allowed: thickness_mm, material, refractive_index, "
-            "absorption_per_mm, back_index)");
+            "absorption_per_mm, back_index, facet_coating)");
   EXPECT_EQ(complaint(with_line(11, "[light]\nwavelength_nm = 0")),
             "d.toml:12: light.wavelength_nm: must be > 0, got 0");
 }
@@ -317,10 +317,10 @@ TEST(DesignReader, UnknownKeysAreNamedWithASuggestion) {
             "apex_angle_deg, aperture_mm)");
   EXPECT_EQ(complaint(with_line(10, "thickness = 2")),
             "d.toml:10: body.thickness: unknown key, did you mean \"thickness_mm\"? (allowed: thickness_mm, material, "
-            "refractive_index, absorption_per_mm, back_index)");
+            "refractive_index, absorption_per_mm, back_index, facet_coating)");
   EXPECT_EQ(complaint(with_line(11, "colour = \"red\"")),
             "d.toml:11: body.colour: unknown key (allowed: thickness_mm, material, refractive_index, "
-            "absorption_per_mm, back_index)");
+            "absorption_per_mm, back_index, facet_coating)");
   EXPECT_EQ(complaint(with_line(11, "[boddy]\nx = 1")),
             "d.toml:11: boddy: unknown table, did you mean \"body\"? (allowed: element, array, body, light, detector, "
             "surface, idealisation)");
@@ -469,8 +469,10 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
   EXPECT_EQ(refused("body.back_index=0.9"),
             "--set body.back_index=0.9: body.back_index: must be >= 1 and <= 3, got 0.9");
   EXPECT_EQ(refused("body.back_index=1.33"), "");
-  EXPECT_EQ(refused("body.facet_coating=aluminium"), "--set body.facet_coating=aluminium: body.facet_coating" + no +
-                                                         ", which takes only \"none\", got \"aluminium\"");
+  EXPECT_EQ(refused("body.facet_coating=aluminium"), "");
+  EXPECT_EQ(
+      refused("body.facet_coating=silver"),
+      "--set body.facet_coating=silver: body.facet_coating: must be one of \"none\" or \"aluminium\", got \"silver\"");
   EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")),
             "d.toml:11: part" + no + ", which takes only [element] and [array]");
   EXPECT_EQ(refused("surface.height_map=m.gsf"), "--set surface.height_map=m.gsf: surface.height_map" + no);

@@ -145,6 +145,10 @@ class Reference {
     const double n1 = ray.inside ? optics_.index : outside;
     const double n2 = ray.inside ? outside : optics_.index;
     const double ci = -n.dot(ray.direction);
+    if (optics_.coating_index && hit.role == FacetRole::retro_facet) {
+      meet_metal(ray, n, n1, *optics_.coating_index);
+      return;
+    }
     const double sin_t = n1 / n2 * std::sqrt(std::max(0.0, 1.0 - ci * ci));
     const Complex ct = std::sqrt(Complex(1.0 - sin_t * sin_t, 0.0));
     const Complex r_s = (n1 * ci - n2 * ct) / (n1 * ci + n2 * ct);
@@ -168,6 +172,22 @@ class Reference {
     through.entered = true;
     if (ray.inside) through.left_through = hit.role;
     follow(through);
+  }
+
+  /// By the tangential wave numbers of the metal, not by an angle of refraction.
+  void meet_metal(Ray ray, const Vec3& n, double n1, Complex metal) {
+    const double ci = -n.dot(ray.direction);
+    Complex kz = std::sqrt(metal * metal - n1 * n1 * (1.0 - ci * ci));
+    if (kz.imag() < 0.0) kz = -kz;
+    const Complex r_s = (n1 * ci - kz) / (n1 * ci + kz);
+    const Complex r_p = (metal * metal * ci - n1 * kz) / (metal * metal * ci + n1 * kz);
+    Vec3 s = n.cross(ray.direction);
+    s = s.norm() > 1e-9 ? s.normalized() : ray.direction.unitOrthogonal();
+    Ray mirrored = ray;
+    mirrored.direction = (ray.direction + 2.0 * ci * n).normalized();
+    mirrored.field = recombined(ray, mirrored.direction, s, r_s, r_p);
+    ledger_[Account::absorbed] += ray.power() - mirrored.power();
+    follow(mirrored);
   }
 
   /// Field after an interface: s stays, p turns with the direction.

@@ -11,6 +11,17 @@
 #include "studies/design/message_text.h"
 
 namespace retrace::studies {
+namespace {
+
+std::string total_reflection(const Inspection& i) {
+  if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
+  if (!i.tir_limit_deg) return "none at normal incidence";
+  const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part.element);
+  return fmt::format("up to {} degrees {}", fixed(*i.tir_limit_deg, 2),
+                     is_rtp ? "across the roof edge" : "at every azimuth");
+}
+
+}  // namespace
 
 std::string inspect_json(const Inspection& i) {
   nlohmann::ordered_json json = {{"schema", "retrace.inspect/1"},
@@ -32,7 +43,6 @@ std::string inspect_json(const Inspection& i) {
 }
 
 std::string inspect_text(const Inspection& i) {
-  const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part.element);
   const bool infinite = i.design.part.extent == geometry::Extent::infinite;
   const char* per_period = infinite ? " per period" : "";
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));
@@ -43,10 +53,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5),
                       shortest(i.design.wavelength_nm));
-  text += fmt::format("  total reflection    {}\n",
-                      i.tir_limit_deg ? fmt::format("up to {} degrees {}", fixed(*i.tir_limit_deg, 2),
-                                                    is_rtp ? "across the roof edge" : "at every azimuth")
-                                      : std::string("none at normal incidence"));
+  text += fmt::format("  total reflection    {}\n", total_reflection(i));
   text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_share, 3));
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;
