@@ -31,7 +31,8 @@ void refuse_overlaps(const CommonOptions& options, const FileNames& names) {
     if (!fs::is_regular_file(output, ignored)) return;
     for (const std::string& design : names.designs)
       if (design != "-" && is_same_file(output, design))
-        throw InputError({"", 0, option}, output.string() + " is a design that is read; it would be overwritten");
+        throw InputError({"", 0, option},
+                         output.string() + " is a design or a file that is read; it would be overwritten");
   };
   if (has_json) refuse_design("--json", options.json);
   if (options.out.empty()) return;
@@ -49,6 +50,15 @@ void refuse_overlaps(const CommonOptions& options, const FileNames& names) {
 void print(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw OutputError("standard output: cannot be written");
+}
+
+std::vector<std::string> files_read(const std::vector<studies::Design>& designs) {
+  std::vector<std::string> files;
+  for (const studies::Design& design : designs) {
+    files.push_back(design.source);
+    if (!design.texture.height_map_file.empty()) files.push_back(design.texture.height_map_file.string());
+  }
+  return files;
 }
 
 void prepare_outputs(const CommonOptions& options, const FileNames& names) {

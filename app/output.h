@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/command_line.h"
+#include "studies/design/design.h"
 
 namespace retrace::app {
 
@@ -20,10 +21,13 @@ struct OutputFile {
 
 /// What a command reads and writes, to be kept apart.
 struct FileNames {
-  std::vector<std::string> designs;  ///< that it reads
+  std::vector<std::string> designs;  ///< and other files that it reads
   std::string document;              ///< file in the output folder that holds the same as --json
   std::vector<std::string> others;   ///< further files in the output folder
 };
+
+/// The files that designs come from, with those that they name.
+std::vector<std::string> files_read(const std::vector<studies::Design>& designs);
 
 /// Refuses, before any work is done, outputs that would replace a design or each other and outputs that cannot be
 /// written; makes the output folder. \throw InputError, OutputError

@@ -97,9 +97,11 @@ std::vector<OutputFile> files_of(const studies::RreResult& result, const std::st
 ExitCode run_rre_command(const CommandLine& line) {
   studies::RreRequest request = request_of(line);
   const std::vector<std::string> others = other_files(request);
-  const studies::RreStudy study(designs_of(line), std::move(request));
+  std::vector<studies::Design> designs = designs_of(line);
+  const std::vector<std::string> inputs = files_read(designs);
+  const studies::RreStudy study(std::move(designs), std::move(request));
   const OrderlyInterrupt interrupt;
-  prepare_outputs(line.common, {line.rre.designs, "rre.json", others});
+  prepare_outputs(line.common, {inputs, "rre.json", others});
 
   studies::RreResult result;
   {

@@ -352,7 +352,9 @@ PathWalker::RoughEvent PathWalker::rough_event(const State& state, const ExactSu
                                                surface_models::RandomStream& random) const {
   RoughEvent rough;
   const Vec3 z = state.inside ? Vec3(-facet.normal) : facet.normal;
-  const Vec3 x = facet.normal.cross(Vec3::UnitZ()).normalized();
+  // Chamfered roots are level all round: there the roof edge of a prism is the axis.
+  const Vec3 level = facet.normal.cross(Vec3::UnitZ());
+  const Vec3 x = level.norm() > 1e-9 ? level.normalized() : facet.normal.cross(Vec3::UnitX()).normalized();
   rough.world_from_local << x, z.cross(x), z;
   rough.event.direction_in = rough.world_from_local.transpose() * state.direction;
   rough.event.index_from = state.inside ? setup_.optics.index : setup_.optics.back_index;

@@ -14,6 +14,15 @@ std::size_t measured_points(const HeightMap& map) {
       std::count_if(map.heights_nm.begin(), map.heights_nm.end(), [](double z) { return std::isfinite(z); }));
 }
 
+HeightMap turned_by_quarter(const HeightMap& map) {
+  HeightMap turned{map.rows, map.columns, map.y_pixel_um, map.x_pixel_um, {}};
+  turned.heights_nm.resize(map.heights_nm.size());
+  for (std::size_t row = 0; row < turned.rows; ++row)
+    for (std::size_t column = 0; column < turned.columns; ++column)
+      turned.at(column, row) = map.at(map.columns - 1 - row, column);
+  return turned;
+}
+
 HeightMap cropped(const HeightMap& map, double x_um, double y_um) {
   const auto points = [](double length_um, double pixel_um) {
     return static_cast<std::size_t>(std::ceil(length_um / pixel_um));

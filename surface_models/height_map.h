@@ -33,6 +33,9 @@ HeightMap with_heights(const HeightMap& grid, std::vector<double> heights_nm);
 /// How many points have a height.
 std::size_t measured_points(const HeightMap& map);
 
+/// The map turned by a quarter: what lay along y lies along x, what lay along x lies along -y.
+HeightMap turned_by_quarter(const HeightMap& map);
+
 /// The map without `x_um` at both ends of its rows and `y_um` at both ends of its columns (rounded up to points; a
 /// profile keeps its row). \pre something is left
 HeightMap cropped(const HeightMap& map, double x_um, double y_um);

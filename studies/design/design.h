@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,9 +18,11 @@ struct Idealisation {
       false;  ///< entrance face refracts with T = 1 both ways; beyond the critical angle light ends
 };
 
+enum class HeightMapAxis { x, y };
+
 /// What the texture of the retro facets does to light, and whether walls absorb it.
 struct FacetTexture {
-  enum class Model { smooth, harvey_shack, abg, microfacet };
+  enum class Model { smooth, harvey_shack, abg, microfacet, height_map };
   Model model = Model::smooth;
   double roughness_sq_nm = 0.0;        ///< rms height
   double correlation_length_um = 0.0;  ///< 1/e of a Gaussian autocorrelation
@@ -28,9 +31,15 @@ struct FacetTexture {
   double abg_a = 0.0;               ///< per sr; BSDF = A / (B + |dbeta|^g)
   double abg_b = 0.0;
   double abg_g = 0.0;
-  bool ggx = false;              ///< microfacets with longer tails of slopes than Gaussian
-  bool absorbing_walls = false;  ///< of elements and of the border
-  InputLocation location;        ///< where it was given, for whoever cannot trace it
+  bool ggx = false;        ///< microfacets with longer tails of slopes than Gaussian
+  std::string height_map;  ///< name of the file, as given
+  /// The same, from the working directory; checked only when it is read, by make_optics().
+  std::filesystem::path height_map_file;
+  /// Axis of the map that lies level on a facet: along the roof edge of a prism.
+  HeightMapAxis height_map_level_axis = HeightMapAxis::x;
+  int height_map_form_degree = 1;  ///< of the polynomial that is removed from the map, 1..8
+  bool absorbing_walls = false;    ///< of elements and of the border
+  InputLocation location;          ///< where it was given, for whoever cannot trace it
 };
 
 /// Everything a design file says, checked and with its defaults filled in.

@@ -84,7 +84,9 @@ void merge(toml::table& into, toml::table& from) {
 
 DesignDocument::DesignDocument(std::string_view text, std::string_view source_name,
                                std::span<const std::string> overrides)
-    : file_(printable(source_name, std::string::npos)), root_(parse_file(text, file_)) {
+    : file_(printable(source_name, std::string::npos)),
+      folder_(std::filesystem::path(source_name).parent_path()),
+      root_(parse_file(text, file_)) {
   sources_.push_back(root_.source().path);
   for (const std::string& override_text : overrides) apply_override(override_text);
 }
@@ -109,6 +111,10 @@ InputLocation DesignDocument::location(const toml::node& node, std::string_view 
 InputLocation DesignDocument::location_of_missing(const toml::node* table, std::string_view key) const {
   if (table == nullptr || table == &root_ || source_index(*table) > 0) return {file_, 0, std::string(key)};
   return location(*table, key);
+}
+
+std::filesystem::path DesignDocument::folder(const toml::node& node) const {
+  return source_index(node) > 0 ? std::filesystem::path() : folder_;
 }
 
 DesignDocument::Position DesignDocument::position(const toml::node& node) const {

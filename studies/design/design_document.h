@@ -6,6 +6,7 @@
 
 #include <compare>
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,6 +34,9 @@ class DesignDocument {
   /// Where to report that `key` is missing from `table` (null: the table is missing too): the line of the table's head.
   InputLocation location_of_missing(const toml::node* table, std::string_view key) const;
 
+  /// The folder from which paths in `node` are meant: the design file's; empty for overrides.
+  std::filesystem::path folder(const toml::node& node) const;
+
   /// Orders nodes as they were written: the file from top to bottom, then the overrides.
   struct Position {
     std::size_t source = 0;
@@ -47,6 +51,7 @@ class DesignDocument {
   std::size_t source_index(const toml::node& node) const;
 
   std::string file_;
+  std::filesystem::path folder_;
   toml::table root_;
   std::vector<toml::source_path_ptr> sources_;  ///< the file, then one a `--set`
 };

@@ -72,12 +72,33 @@ Json polarisation_json(const raytrace::Stokes& stokes) {
   return values;
 }
 
+const char* name_of(FacetTexture::Model model) {
+  switch (model) {
+    case FacetTexture::Model::smooth:
+      return "smooth";
+    case FacetTexture::Model::harvey_shack:
+      return "harvey_shack";
+    case FacetTexture::Model::abg:
+      return "abg";
+    case FacetTexture::Model::microfacet:
+      return "microfacet";
+    case FacetTexture::Model::height_map:
+      break;
+  }
+  return "height_map";
+}
+
 void add_texture(Json& json, const FacetTexture& t) {
   using Model = FacetTexture::Model;
   if (t.absorbing_walls) json["walls"] = "absorbing";
   if (t.model == Model::smooth) return;
-  json["model"] = t.model == Model::abg ? "abg" : (t.model == Model::microfacet ? "microfacet" : "harvey_shack");
+  json["model"] = name_of(t.model);
   if (t.model == Model::abg) json.update({{"abg_a", t.abg_a}, {"abg_b", t.abg_b}, {"abg_g", t.abg_g}});
+  if (t.model == Model::height_map)
+    json.update({{"height_map", t.height_map},
+                 {"height_map_level_axis", t.height_map_level_axis == HeightMapAxis::x ? "x" : "y"},
+                 {"height_map_form",
+                  t.height_map_form_degree == 1 ? "plane" : fmt::format("poly{}", t.height_map_form_degree)}});
   if (t.model == Model::microfacet) json["slope_distribution"] = t.ggx ? "ggx" : "beckmann";
   if (t.roughness_sq_nm > 0.0)
     json.update({{"roughness_sq_nm", t.roughness_sq_nm}, {"correlation_length_um", t.correlation_length_um}});

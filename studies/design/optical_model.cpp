@@ -2,9 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
+#include "surface_models/form.h"
+#include "surface_models/io/height_map_reader.h"
+
 namespace retrace::studies {
 
 namespace {
+
+constexpr double kMissingShareToTell = 0.05;
 
 double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air) {
   try {
@@ -14,7 +22,32 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
   }
 }
 
-surface_models::ScatterModel scatter_model(const FacetTexture& t) {
+/// The map as it lies on a facet, x level. Warnings are appended.
+surface_models::ScatterModel height_map_model(const FacetTexture& t, double wavelength_nm,
+                                              std::vector<std::string>& warnings) {
+  using namespace surface_models;
+  HeightMapOptions options;
+  options.can_be_given = false;
+  HeightMapFile file = read_height_map(t.height_map_file, options);
+  const std::size_t points = file.map.heights_nm.size();
+  const std::size_t missing = points - measured_points(file.map);
+  if (static_cast<double>(missing) > kMissingShareToTell * static_cast<double>(points))
+    file.warnings.push_back(fmt::format("{:.1f} % of the points are missing; they count as the mean height",
+                                        100.0 * static_cast<double>(missing) / static_cast<double>(points)));
+  const HeightMap level =
+      t.height_map_level_axis == HeightMapAxis::x ? std::move(file.map) : turned_by_quarter(file.map);
+  try {
+    HeightMapScatter model(without_form(level, t.height_map_form_degree), wavelength_nm);
+    for (const std::string& warning : file.warnings)
+      warnings.push_back(fmt::format("{}: {}", t.height_map_file.string(), warning));
+    return model;
+  } catch (const InputError& error) {
+    throw InputError({t.height_map_file.string(), 0, ""}, error.what());
+  }
+}
+
+surface_models::ScatterModel scatter_model(const FacetTexture& t, double wavelength_nm,
+                                           std::vector<std::string>& warnings) {
   using Model = FacetTexture::Model;
   const auto shape = t.ggx ? surface_models::SlopeShape::ggx : surface_models::SlopeShape::beckmann;
   try {
@@ -26,6 +59,8 @@ surface_models::ScatterModel scatter_model(const FacetTexture& t) {
         return surface_models::Abg(t.abg_a, t.abg_b, t.abg_g);
       case Model::microfacet:
         return surface_models::Microfacet::of_waviness(shape, t.waviness_sq_nm, t.waviness_length_um);
+      case Model::height_map:
+        return height_map_model(t, wavelength_nm, warnings);
       case Model::smooth:
         break;
     }
@@ -42,7 +77,7 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
   const materials::Material& material = library.find(design.material, design.material_location);
   raytrace::Optics optics;
   optics.mirror_facets = design.idealisation.mirror_facets;
-  optics.facet_scatter = scatter_model(design.texture);
+  optics.facet_scatter = scatter_model(design.texture, design.wavelength_nm, warnings);
   optics.back_index = design.back_index;
   if (design.aluminised_facets)
     optics.coating_index = materials::complex_index(library.find_metal("aluminium").model, design.wavelength_nm) /
@@ -69,8 +104,8 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library) {
   OpticalModel model;
   model.optics = make_optics(design, library, model.warnings);
-  for (const std::string& warning :
-       surface_models::warnings(model.optics.facet_scatter, model.optics.index, design.wavelength_nm))
+  for (const std::string& warning : surface_models::warnings(
+           model.optics.facet_scatter, std::max(model.optics.index, design.back_index), design.wavelength_nm))
     model.warnings.push_back(fmt::format("{}: {}", design.source_name(), warning));
   model.part = geometry::build_part(design.part);
   return model;

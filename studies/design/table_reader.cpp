@@ -113,6 +113,15 @@ std::optional<std::string> TableReader::text(std::string_view key) {
   return text_or(key, "");
 }
 
+std::optional<std::filesystem::path> TableReader::file(std::string_view key) {
+  const std::optional<std::string> given = text(key);
+  if (!given) return std::nullopt;
+  // A byte 0 would end the name for the system alone.
+  if (given->empty() || given->find('\0') != std::string::npos)
+    fail(key, fmt::format("must name a file, got {}", in_quotes(*given)));
+  return document_.folder(*find(key)) / *given;
+}
+
 std::optional<std::string> TableReader::text_or(std::string_view key, std::string_view or_else) {
   const toml::node* const node = take(key);
   if (node == nullptr) return std::nullopt;

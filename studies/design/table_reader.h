@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <initializer_list>
 #include <limits>
 #include <optional>
@@ -58,6 +59,9 @@ class TableReader {
   /// How many entries the list of that name has; nothing if the key has no list.
   std::optional<std::size_t> list_size(std::string_view key) const;
   std::optional<std::string> text(std::string_view key);
+  /// The name of a file. Relative ones are taken from the folder of the design, those of an override (and of a design
+  /// on standard input) from the working directory.
+  std::optional<std::filesystem::path> file(std::string_view key);
 
   /// \param or_else what the key may have instead of a word, for messages: " or a list of four numbers"
   template <class Value>

@@ -40,8 +40,8 @@ RawMap parse_known(const Source& source) {
 double pixel_um(const Source& source, const std::optional<double>& option, const std::optional<double>& in_file,
                 const char* axis, std::vector<std::string>& warnings) {
   if (!option && !in_file)
-    source.fail(0,
-                fmt::format("the spacing along {0} is not known: give {0}_pixel_um in the file, or --pixel-um", axis));
+    source.fail(0, fmt::format("the spacing along {0} is not known: give {0}_pixel_um in the file{1}", axis,
+                               source.options.can_be_given ? ", or --pixel-um" : ""));
   if (option && in_file && std::abs(*option - *in_file) > 1e-6 * *option)
     warnings.push_back(fmt::format("--pixel-um {} goes before the file's spacing along {} of {} um", shortest(*option),
                                    axis, shortest(*in_file)));
@@ -54,9 +54,8 @@ double pixel_um(const Source& source, const std::optional<double>& option, const
 double nm_per_unit(const Source& source, RawMap& raw) {
   if (!source.options.height_unit) {
     if (!raw.nm_per_unit)
-      source.fail(0, fmt::format("the unit of heights is not known: give height_unit = UNIT in the file, or "
-                                 "--height-unit UNIT; UNIT is {}",
-                                 kUnits));
+      source.fail(0, fmt::format("the unit of heights is not known: give height_unit = UNIT in the file{}; UNIT is {}",
+                                 source.options.can_be_given ? ", or --height-unit UNIT" : "", kUnits));
     return *raw.nm_per_unit;
   }
   const std::optional<double> given = nm_per(*source.options.height_unit);

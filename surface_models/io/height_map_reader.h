@@ -18,6 +18,7 @@ struct HeightMapOptions {
   std::optional<std::string> height_unit;   ///< m, mm, um, nm or pm
   std::optional<std::string> lateral_unit;  ///< the same words, for files that give lengths without a unit
   std::optional<std::size_t> channel;       ///< of a Gwyddion file; default: the first
+  bool can_be_given = true;                 ///< whether messages may ask for these as options of retrace metrology
 };
 
 struct HeightMapFile {

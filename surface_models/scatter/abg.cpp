@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kLargestShift = 2.0;
+// Smooth surfaces, (4 pi n s / w)^2 << 1 (Stover, Optical Scattering, 3rd ed., SPIE 2012): about the phase squared.
+constexpr double kMostScatterOfSmooth = 0.1;
 
 }  // namespace
 
@@ -82,6 +84,13 @@ double Abg::specular_share(const ScatterEvent& event, const Facet& facet, Lobe l
   if (!specular) return 0.0;
   return 1.0 - integrate_over_disc(specular->head<2>(), shoulder_,
                                    [&](const Vec2& beta) { return scattered_density(event, facet, lobe, beta); });
+}
+
+std::vector<std::string> Abg::warnings(double, double) const {
+  if (total_ <= kMostScatterOfSmooth) return {};
+  return {"up to " + shortest(std::round(1e3 * total_) / 10.0) +
+          " % of the light scatters by abg, which holds for smooth surfaces (up to " +
+          shortest(100.0 * kMostScatterOfSmooth) + " %): rougher ones change their scatter with the angle"};
 }
 
 }  // namespace retrace::surface_models

@@ -32,6 +32,11 @@ double shift_variance(double correlation_um, double index, double wavelength_nm)
   return deviation * deviation;
 }
 
+/// Of Gaussian heights with a Gaussian autocorrelation, areal.
+double roughness_rms_slope(const Roughness& r) {
+  return 2e-3 * r.sq_nm / r.correlation_length_um;
+}
+
 }  // namespace
 
 HarveyShack::HarveyShack(const Roughness& roughness)
@@ -44,6 +49,8 @@ HarveyShack::HarveyShack(const Roughness& roughness)
   require(r.waviness_sq_nm >= 0.0, "waviness_sq_nm", "must be >= 0", r.waviness_sq_nm);
   require(r.waviness_sq_nm == 0.0 || r.waviness_length_um > 0.0, "waviness_length_um",
           "must be > 0 where waviness_sq_nm is", r.waviness_length_um);
+  if (r.sq_nm > 0.0) require_modelled_slope(roughness_rms_slope(r), "roughness");
+  require_modelled_slope(slopes_.rms_slope(), "waviness");
 }
 
 Facet HarveyShack::sample_facet(const ScatterEvent& event, RandomStream& random) const {
@@ -140,7 +147,7 @@ std::vector<std::string> HarveyShack::warnings(double index, double wavelength_n
     if (r.correlation_length_um < wave_um)
       found.push_back("correlation length " + shortest(r.correlation_length_um) +
                       " um is below the wavelength in the material: the phase model of roughness does not hold");
-    const double slope = 2e-3 * r.sq_nm / r.correlation_length_um;
+    const double slope = roughness_rms_slope(r);
     if (slope > kLargestSlope)
       found.push_back("rms slope of the roughness " + shortest(slope) + " is above " + shortest(kLargestSlope) +
                       ": multiple reflection is left out");

@@ -218,6 +218,10 @@ HeightMapScatter::HeightMapScatter(const HeightMap& map, double wavelength_nm) {
   if (map.rows < kLeastPoints || map.columns < kLeastPoints)
     throw InputError("a height map that scatters light needs at least 8 x 8 points, got " +
                      std::to_string(map.columns) + " x " + std::to_string(map.rows));
+  if (map.rows * map.columns > kMostScatterPoints)
+    throw InputError("a height map that scatters light may have at most " + std::to_string(kMostScatterPoints) +
+                     " points, got " + std::to_string(map.columns) + " x " + std::to_string(map.rows) +
+                     ": give a part of it");
   if (measured_points(map) == 0) throw InputError("the height map holds no measured point");
   const HeightMap levelled = without_form(map, 1);
   const HeightParameters heights = height_parameters(levelled.heights_nm);
@@ -226,6 +230,7 @@ HeightMapScatter::HeightMapScatter(const HeightMap& map, double wavelength_nm) {
   texture->kurtosis = heights.sku;
   texture->set_spectrum(levelled);
   texture->set_facets(gradients(levelled, 1e-3 * wavelength_nm));
+  require_modelled_slope(texture->rms_slope, "height map (is the unit of heights right?)");
   texture_ = std::move(texture);
 }
 

@@ -9,6 +9,9 @@
 
 namespace retrace::surface_models {
 
+/// Most points of a map that scatters light: 2048 x 2048. Its spectrum takes about 100 bytes a point.
+inline constexpr std::size_t kMostScatterPoints = std::size_t{1} << 22;
+
 /// Scatter from a measured surface, taken as a sample of a larger one: statistics of the map, not its place on the
 /// part.
 ///
@@ -22,7 +25,8 @@ namespace retrace::surface_models {
 /// The map is levelled first. Its x and y are those of the event. Weights are 1 where light leaves to the right side.
 class HeightMapScatter {
  public:
-  /// \param map areal, at least 8 x 8 points; missing points count as the mean
+  /// \param map areal, at least 8 x 8 and at most kMostScatterPoints points, of an rms slope up to kSlopeOfNoModel;
+  ///        missing points count as the mean
   /// \param wavelength_nm slopes of facets are taken over at least this distance, > 0
   /// \throw InputError
   HeightMapScatter(const HeightMap& map, double wavelength_nm);

@@ -8,6 +8,7 @@ namespace retrace::surface_models {
 
 Microfacet::Microfacet(SlopeShape shape, double rms_slope) : slopes_(shape, rms_slope) {
   if (!(rms_slope >= 0.0)) throw InputError({"", 0, "rms_slope"}, "must be >= 0, got " + shortest(rms_slope));
+  require_modelled_slope(rms_slope, "facets");
 }
 
 Microfacet Microfacet::of_waviness(SlopeShape shape, double waviness_sq_nm, double waviness_length_um) {

@@ -1,6 +1,10 @@
 #include "surface_models/scatter/slope_distribution.h"
 
 #include <numbers>
+#include <string>
+
+#include "core/error.h"
+#include "core/number_format.h"
 
 namespace retrace::surface_models {
 namespace {
@@ -41,6 +45,12 @@ Vec3 visible_ggx_normal(const Vec3& towards_light, double width, RandomStream& r
 }
 
 }  // namespace
+
+void require_modelled_slope(double rms_slope, const char* what) {
+  if (rms_slope > kSlopeOfNoModel)
+    throw InputError(std::string("rms slope of the ") + what + " must be at most " + shortest(kSlopeOfNoModel) +
+                     " for any model to hold, got " + shortest(rms_slope));
+}
 
 double waviness_rms_slope(double waviness_sq_nm, double waviness_length_um) {
   return waviness_sq_nm > 0.0 ? 2.0 * kPi * 1e-3 * waviness_sq_nm / waviness_length_um : 0.0;

@@ -13,6 +13,8 @@ enum class SlopeShape {
 /// Light that meets a surface twice is left out here; its share grows with the square of the slope, about a tenth from
 /// this rms slope on.
 inline constexpr double kLargestSlope = 0.3;
+/// No model holds for areal rms slopes above this one, 45 degrees: most light then meets the surface more than once.
+inline constexpr double kSlopeOfNoModel = 1.0;
 
 /// Isotropic distribution of the slopes of a surface with masking after Smith: facets are of different heights,
 /// independent of their slopes. Walter, Marschner, Li, Torrance, Microfacet Models for Refraction through Rough
@@ -38,6 +40,9 @@ class SlopeDistribution {
   SlopeShape shape_;
   double width_;
 };
+
+/// \throw InputError for a slope that is outside of every model; `what` has it, as in "roughness"
+void require_modelled_slope(double rms_slope, const char* what);
 
 /// Areal rms slope of waves of one period in any direction: 2 pi Sq / L. 0 for no height.
 double waviness_rms_slope(double waviness_sq_nm, double waviness_length_um);
