@@ -23,7 +23,7 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
 }
 
 /// The map as it lies on a facet, x level. Warnings are appended.
-surface_models::ScatterModel height_map_model(const FacetTexture& t, double wavelength_nm,
+surface_models::ScatterModel height_map_model(const FacetTexture& t, const std::string& source, double wavelength_nm,
                                               std::vector<std::string>& warnings) {
   using namespace surface_models;
   HeightMapOptions options;
@@ -39,16 +39,16 @@ surface_models::ScatterModel height_map_model(const FacetTexture& t, double wave
   try {
     HeightMapScatter model(without_form(level, t.height_map_form_degree), wavelength_nm);
     for (const std::string& warning : file.warnings)
-      warnings.push_back(fmt::format("{}: {}", t.height_map_file.string(), warning));
+      warnings.push_back(fmt::format("{}: {}: {}", source, t.height_map_file.string(), warning));
     return model;
   } catch (const InputError& error) {
     throw InputError({t.height_map_file.string(), 0, ""}, error.what());
   }
 }
 
-surface_models::ScatterModel scatter_model(const FacetTexture& t, double wavelength_nm,
-                                           std::vector<std::string>& warnings) {
+surface_models::ScatterModel scatter_model(const Design& design, std::vector<std::string>& warnings) {
   using Model = FacetTexture::Model;
+  const FacetTexture& t = design.texture;
   const auto shape = t.ggx ? surface_models::SlopeShape::ggx : surface_models::SlopeShape::beckmann;
   try {
     switch (t.model) {
@@ -60,7 +60,7 @@ surface_models::ScatterModel scatter_model(const FacetTexture& t, double wavelen
       case Model::microfacet:
         return surface_models::Microfacet::of_waviness(shape, t.waviness_sq_nm, t.waviness_length_um);
       case Model::height_map:
-        return height_map_model(t, wavelength_nm, warnings);
+        return height_map_model(t, design.source_name(), design.wavelength_nm, warnings);
       case Model::smooth:
         break;
     }
@@ -77,7 +77,7 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
   const materials::Material& material = library.find(design.material, design.material_location);
   raytrace::Optics optics;
   optics.mirror_facets = design.idealisation.mirror_facets;
-  optics.facet_scatter = scatter_model(design.texture, design.wavelength_nm, warnings);
+  optics.facet_scatter = scatter_model(design, warnings);
   optics.back_index = design.back_index;
   if (design.aluminised_facets)
     optics.coating_index = materials::complex_index(library.find_metal("aluminium").model, design.wavelength_nm) /
@@ -101,12 +101,27 @@ raytrace::Optics make_optics(const Design& design, const materials::MaterialLibr
   return optics;
 }
 
+namespace {
+
+/// What the texture's model says of its range. \throw InputError beyond every model
+void add_texture_warnings(const Design& design, OpticalModel& model) {
+  const double index = std::max(model.optics.index, model.optics.back_index);
+  const surface_models::ScatterModel& scatter = model.optics.facet_scatter;
+  try {
+    surface_models::require_in_range(scatter, index, design.wavelength_nm);
+  } catch (const InputError& error) {
+    throw InputError(design.texture.location, error.what());
+  }
+  for (const std::string& warning : surface_models::warnings(scatter, index, design.wavelength_nm))
+    model.warnings.push_back(fmt::format("{}: {}", design.source_name(), warning));
+}
+
+}  // namespace
+
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library) {
   OpticalModel model;
   model.optics = make_optics(design, library, model.warnings);
-  for (const std::string& warning : surface_models::warnings(
-           model.optics.facet_scatter, std::max(model.optics.index, design.back_index), design.wavelength_nm))
-    model.warnings.push_back(fmt::format("{}: {}", design.source_name(), warning));
+  add_texture_warnings(design, model);
   model.part = geometry::build_part(design.part);
   return model;
 }

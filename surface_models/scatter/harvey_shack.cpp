@@ -32,9 +32,11 @@ double shift_variance(double correlation_um, double index, double wavelength_nm)
   return deviation * deviation;
 }
 
-/// Of Gaussian heights with a Gaussian autocorrelation, areal.
-double roughness_rms_slope(const Roughness& r) {
-  return 2e-3 * r.sq_nm / r.correlation_length_um;
+/// Areal, of Gaussian heights with a Gaussian autocorrelation: of their spatial frequencies below n / w.
+double roughness_rms_slope(const Roughness& r, double index, double wavelength_nm) {
+  const double x = kPi * r.correlation_length_um * 1e3 * index / wavelength_nm;
+  const double share = -std::expm1(-x * x) - x * x * std::exp(-x * x);
+  return 2e-3 * r.sq_nm / r.correlation_length_um * std::sqrt(std::max(0.0, share));
 }
 
 }  // namespace
@@ -49,7 +51,6 @@ HarveyShack::HarveyShack(const Roughness& roughness)
   require(r.waviness_sq_nm >= 0.0, "waviness_sq_nm", "must be >= 0", r.waviness_sq_nm);
   require(r.waviness_sq_nm == 0.0 || r.waviness_length_um > 0.0, "waviness_length_um",
           "must be > 0 where waviness_sq_nm is", r.waviness_length_um);
-  if (r.sq_nm > 0.0) require_modelled_slope(roughness_rms_slope(r), "roughness");
   require_modelled_slope(slopes_.rms_slope(), "waviness");
 }
 
@@ -139,6 +140,11 @@ double HarveyShack::scattered_density(const ScatterEvent& event, const Facet& fa
   return sum > 0.0 ? phase_lobe->scattered_share() * unscaled_density(event, facet, lobe, beta) / sum : 0.0;
 }
 
+void HarveyShack::require_in_range(double index, double wavelength_nm) const {
+  if (roughness_.sq_nm > 0.0)
+    require_modelled_slope(roughness_rms_slope(roughness_, index, wavelength_nm), "roughness");
+}
+
 std::vector<std::string> HarveyShack::warnings(double index, double wavelength_nm) const {
   std::vector<std::string> found;
   const Roughness& r = roughness_;
@@ -147,7 +153,7 @@ std::vector<std::string> HarveyShack::warnings(double index, double wavelength_n
     if (r.correlation_length_um < wave_um)
       found.push_back("correlation length " + shortest(r.correlation_length_um) +
                       " um is below the wavelength in the material: the phase model of roughness does not hold");
-    const double slope = roughness_rms_slope(r);
+    const double slope = roughness_rms_slope(r, index, wavelength_nm);
     if (slope > kLargestSlope)
       found.push_back("rms slope of the roughness " + shortest(slope) + " is above " + shortest(kLargestSlope) +
                       ": multiple reflection is left out");

@@ -31,7 +31,7 @@ struct Roughness {
 /// Functions take events in the frame of the facet; directions by their cosines along its x and y.
 class HarveyShack {
  public:
-  /// \throw InputError for a value out of range
+  /// \throw InputError for a value out of range, a slope of the waviness beyond every model among them
   explicit HarveyShack(const Roughness& roughness);
 
   const Roughness& roughness() const { return roughness_; }
@@ -47,6 +47,8 @@ class HarveyShack {
   double scattered_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;
   /// Share of light into `direction` (frame of the mean surface) that the waviness does not mask.
   double unmasked_share(const Vec3& direction) const { return slopes_.visible_share(direction); }
+  /// \throw InputError where the slopes of what scatters are beyond every model
+  void require_in_range(double index, double wavelength_nm) const;
   /// What lies outside the model's range at this index (of the denser side) and wavelength, one sentence each.
   std::vector<std::string> warnings(double index, double wavelength_nm) const;
 

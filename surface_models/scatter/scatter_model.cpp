@@ -77,6 +77,10 @@ double pdf(const ScatterModel& model, const ScatterEvent& event, const Facet& fa
   return std::visit([&](const auto& m) { return cos_out * density(m, event, facet, lobe, direction); }, model);
 }
 
+void require_in_range(const ScatterModel& model, double index, double wavelength_nm) {
+  if (const auto* rough = std::get_if<HarveyShack>(&model)) rough->require_in_range(index, wavelength_nm);
+}
+
 std::vector<std::string> warnings(const ScatterModel& model, double index, double wavelength_nm) {
   return std::visit([&](const auto& m) { return m.warnings(index, wavelength_nm); }, model);
 }

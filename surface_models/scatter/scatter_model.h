@@ -43,6 +43,10 @@ double evaluate(const ScatterModel& model, const ScatterEvent& event, const Face
 /// Density with which sample() draws `direction` as scattered light, per sr.
 double pdf(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& direction);
 
+/// \throw InputError for a texture that no model holds for. Most are refused when they are made; harvey_shack needs to
+/// know which of its roughness scatters. \param index of the denser side
+void require_in_range(const ScatterModel& model, double index, double wavelength_nm);
+
 /// What lies outside the range in which the model holds, one sentence each. Allocates.
 /// \param index of the denser side
 std::vector<std::string> warnings(const ScatterModel& model, double index, double wavelength_nm);

@@ -10,5 +10,6 @@ retrace_test(app_test
     app/readme_test.cpp
     app/returned_light_test.cpp
     app/rre_test.cpp
+    app/texture_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 add_dependencies(app_test retrace)

@@ -460,6 +460,41 @@ TEST(DesignReader, ArrayHasAtMost1e8Elements) {
   EXPECT_EQ(set_complaint({"array.x_length_mm=5000", "array.y_length_mm=5000"}), "");
 }
 
+TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
+  const std::string text = with_line(11, "[surface]\nheight_map = \"maps/m.gsf\"");
+  const FacetTexture texture = parse_design(text, "parts/d.toml").texture;
+  EXPECT_EQ(texture.model, FacetTexture::Model::height_map);
+  EXPECT_EQ(texture.height_map, "maps/m.gsf");
+  EXPECT_EQ(texture.height_map_file, fs::path("parts/maps/m.gsf"));
+  EXPECT_EQ(texture.height_map_level_axis, HeightMapAxis::x);
+  EXPECT_EQ(texture.height_map_form_degree, 1);
+  EXPECT_EQ(parse_design(text, "standard input").texture.height_map_file, fs::path("maps/m.gsf"));
+  const std::vector<std::string> overrides = {"surface.height_map=m.txt", "surface.height_map_level_axis=y",
+                                              "surface.height_map_form=poly3"};
+  const FacetTexture other = parse_design(text, "parts/d.toml", overrides).texture;
+  EXPECT_EQ(other.height_map_file, fs::path("m.txt")) << "as typed, from the working directory";
+  EXPECT_EQ(other.height_map_level_axis, HeightMapAxis::y);
+  EXPECT_EQ(other.height_map_form_degree, 3);
+}
+
+TEST(DesignReader, HeightMapKeysAreChecked) {
+  const auto said = [](const std::string& lines) { return complaint(with_line(11, "[surface]\n" + lines)); };
+  EXPECT_EQ(said("model = \"height_map\""),
+            "d.toml:11: surface.height_map: missing, must name the file of a measured map");
+  EXPECT_EQ(said("height_map = \"\""), "d.toml:12: surface.height_map: must name a file, got \"\"");
+  EXPECT_EQ(said("height_map = 3"), "d.toml:12: surface.height_map: must be a string, got 3");
+  EXPECT_EQ(said("model = \"smooth\"\nheight_map = \"m.txt\""),
+            "d.toml:13: surface.height_map: only allowed for model = \"height_map\", got \"m.txt\"");
+  EXPECT_EQ(said("height_map_form = \"poly2\""),
+            "d.toml:12: surface.height_map_form: only allowed for model = \"height_map\", got \"poly2\"");
+  EXPECT_EQ(said("model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9"),
+            "d.toml:14: surface.waviness_sq_nm: must be 0 for model = \"height_map\", whose map holds both, got 5");
+  EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_level_axis = \"z\"")
+                  .starts_with("d.toml:13: surface.height_map_level_axis: must be one of \"x\" or \"y\", got \"z\""));
+  EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_form = \"none\"")
+                  .starts_with("d.toml:13: surface.height_map_form: must be one of \"plane\""));
+}
+
 TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
   const std::string no = ": not available in this version";
   const auto refused = [](const std::string& set) { return set_complaint({set}); };
@@ -475,7 +510,6 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
       "--set body.facet_coating=silver: body.facet_coating: must be one of \"none\" or \"aluminium\", got \"silver\"");
   EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")),
             "d.toml:11: part" + no + ", which takes only [element] and [array]");
-  EXPECT_EQ(refused("surface.height_map=m.gsf"), "--set surface.height_map=m.gsf: surface.height_map" + no);
   for (const std::string key : {"element.cant_deg", "element.cant_azimuth_deg"}) {
     EXPECT_EQ(refused(key + "=2"), "--set " + key + "=2: " + key + no + ", which takes only 0, got 2");
     EXPECT_EQ(refused(key + "=0"), "");

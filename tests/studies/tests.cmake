@@ -3,5 +3,5 @@ retrace_test(studies_design_test
   LIBRARIES retrace::optical_model rapidcheck)
 retrace_test(studies_rre_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/derivatives_test.cpp ${CMAKE_CURRENT_LIST_DIR}/returned_light_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/rre_files_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/rre_files_test.cpp ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp
   LIBRARIES retrace::rre)

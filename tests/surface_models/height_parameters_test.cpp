@@ -79,6 +79,17 @@ TEST(Summary, GivesThePublishedMeansOfFacets) {
   }
 }
 
+TEST(HeightMap, TurnedByAQuarter) {
+  const HeightMap map{3, 2, 0.5, 2.0, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}};
+  const HeightMap turned = turned_by_quarter(map);
+  EXPECT_EQ(turned.columns, 2U);
+  EXPECT_EQ(turned.rows, 3U);
+  EXPECT_EQ(turned.x_pixel_um, 2.0);
+  EXPECT_EQ(turned.y_pixel_um, 0.5);
+  // What rose along y (1 to 4) rises along x, what rose along x (1 to 3) falls along y: no mirror image.
+  EXPECT_EQ(turned.heights_nm, (std::vector<double>{3.0, 6.0, 2.0, 5.0, 1.0, 4.0}));
+}
+
 TEST(Form, IsRemovedWhateverIsMissing) {
   for (const int degree : {1, 2, 5}) {
     HeightMap map{83, 61, 0.5, 0.7, std::vector<double>(83 * 61)};

@@ -449,6 +449,19 @@ TEST(Scatter, WarnsOutsideItsRange) {
   EXPECT_EQ(warnings(Microfacet::of_waviness(SlopeShape::ggx, 20.0, 50.0), kIndex, 550.0).size(), 1U);
   EXPECT_TRUE(warnings(Microfacet::of_waviness(SlopeShape::ggx, 200.0, 50.0), kIndex, 550.0).empty());
   EXPECT_TRUE(warnings(Smooth(), kIndex, 550.0).empty());
+  EXPECT_TRUE(warnings(Abg(1e-3, 1e-4, 2.0), kIndex, 550.0).empty());
+  EXPECT_EQ(warnings(Abg(0.01, 1e-4, 2.0), kIndex, 550.0).size(), 1U);
+}
+
+// Slopes of roughness count as far as its spatial frequencies scatter: those below n / w.
+TEST(Scatter, RefusesSlopesBeyondEveryModel) {
+  EXPECT_THROW(HarveyShack({0.0, 0.0, 1000.0, 6.0}), InputError);
+  EXPECT_NO_THROW(HarveyShack({0.0, 0.0, 1000.0, 6.5}));
+  EXPECT_THROW(Microfacet(SlopeShape::beckmann, 1.01), InputError);
+  EXPECT_THROW(require_in_range(HarveyShack({1010.0, 2.0, 0.0, 0.0}), kIndex, 550.0), InputError);
+  EXPECT_NO_THROW(require_in_range(HarveyShack({990.0, 2.0, 0.0, 0.0}), kIndex, 550.0));
+  EXPECT_NO_THROW(require_in_range(HarveyShack({20.0, 0.02, 0.0, 0.0}), kIndex, 550.0));
+  EXPECT_NO_THROW(require_in_range(Smooth(), kIndex, 550.0));
 }
 
 TEST(Scatter, RefusesValuesOutOfRange) {

@@ -1,0 +1,275 @@
+// Textured and rounded facets as a design file asks for them: closed forms, limits, order.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/number_format.h"
+#include "studies/design/design_reader.h"
+#include "studies/design/optical_model.h"
+#include "studies/rre/rre.h"
+#include "surface_models/form.h"
+#include "surface_models/height_parameters.h"
+#include "tests/support/statistics.h"
+#include "tests/support/synthetic_surface.h"
+
+namespace retrace::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using surface_models::HeightMap;
+constexpr double kPi = std::numbers::pi;
+constexpr double kWavelengthNm = 587.56;
+
+/// A prism under a lossless face, so that RRE is what the facets leave.
+const std::string kPrism =
+    "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"single\"\n"
+    "[body]\nthickness_mm = 0.5\n[idealisation]\nentrance = \"lossless\"\n";
+const std::string kArray =
+    "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"offset\"\nextent = "
+    "\"infinite\"\n[body]\nthickness_mm = 0.5\n";
+const std::string kCubes =
+    "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1.0\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = "
+    "0.5\n";
+const std::string kTriangles =
+    "[element]\nkind = \"triangular_icc\"\naperture_mm = 1.0\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = "
+    "0.5\n";
+/// Cuts less off than any test here can see, where cube corners split light into very many beams.
+constexpr double kExactCutoff = 1e-7;
+/// So narrow that nothing that scatters returns into it.
+const std::string kNarrow = "detector.acceptance_half_angle_deg=0.001";
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "retrace_texture_XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const fs::path& path() const { return path_; }
+
+  void write(const std::string& name, const HeightMap& map) const {
+    std::string text =
+        "x_pixel_um " + shortest(map.x_pixel_um) + "\ny_pixel_um " + shortest(map.y_pixel_um) + "\nheight_unit nm\n";
+    for (std::size_t row = 0; row < map.rows; ++row)
+      for (std::size_t column = 0; column < map.columns; ++column)
+        text += shortest(map.at(column, row)) + (column + 1 == map.columns ? "\n" : " ");
+    std::ofstream(path_ / name) << text;
+  }
+
+ private:
+  fs::path path_;
+};
+
+struct Question {
+  double incidence_deg = 0.0;
+  Engine engine = Engine::montecarlo;
+  std::uint64_t rays = 1U << 17;
+};
+
+RrePoint rre_of(const std::string& design, const std::vector<std::string>& overrides, const Question& asked = {},
+                const std::string& source = "d.toml") {
+  RreRequest request;
+  request.incidence_deg = {asked.incidence_deg};
+  request.engine = asked.engine;
+  if (asked.engine == Engine::montecarlo) request.rays = asked.rays;
+  if (asked.engine == Engine::exact) request.cutoff = kExactCutoff;
+  return RreStudy({parse_design(design, source, overrides)}, request).run().points.at(0);
+}
+
+RrePoint exact(const std::string& design, std::vector<std::string> overrides, double incidence_deg = 0.0) {
+  return rre_of(design, overrides, {incidence_deg, Engine::exact});
+}
+
+double index_of(const std::string& design) {
+  std::vector<std::string> warnings;
+  return make_optics(parse_design(design, "d.toml"), materials::MaterialLibrary::shipped(), warnings).index;
+}
+
+/// Closed form 7 for the two facets that light meets one after the other.
+double specular_share_of_two(double index, double sq_nm, double incidence_deg) {
+  const double inside = std::asin(std::sin(incidence_deg * kPi / 180.0) / index);
+  double phase2 = 0.0;
+  for (const double side : {-1.0, 1.0})
+    phase2 += std::pow(4.0 * kPi * index * sq_nm * std::cos(0.25 * kPi + side * inside) / kWavelengthNm, 2);
+  return std::exp(-phase2);
+}
+
+// Waves too low to act by their slopes diffract: 63 % stay specular at each total reflection, of PMMA at the d line.
+TEST(DesignTexture, WavinessOf30NmLeaves63PercentAtEachTotalReflection) {
+  const double share = specular_share_of_two(index_of(kPrism), 30.0, 0.0);
+  EXPECT_NEAR(std::sqrt(share), 0.63, 0.005);
+  const double all = exact(kPrism, {kNarrow}).rre;
+  const RrePoint wavy = rre_of(kPrism, {kNarrow, "surface.waviness_sq_nm=30", "surface.waviness_length_um=100"}, {});
+  EXPECT_NEAR(wavy.rre, all * share, testing::student_bound(1) * wavy.std_error);
+  EXPECT_LT(wavy.std_error, 2e-3);
+}
+
+// From g = 10 on no light is specular: facets tilt it, and the ledger calls it scattered.
+TEST(DesignTexture, HighWavinessLeavesNothingSpecular) {
+  const double sq_nm = std::sqrt(10.1) * kWavelengthNm / (4.0 * kPi * index_of(kPrism) * std::cos(0.25 * kPi));
+  const RrePoint wavy =
+      rre_of(kPrism, {kNarrow, "surface.waviness_sq_nm=" + shortest(sq_nm), "surface.waviness_length_um=100"}, {});
+  EXPECT_LT(wavy.rre, 1e-3);
+  EXPECT_GT(wavy.ledger[raytrace::Account::scattered_out], 0.9);
+}
+
+TEST(DesignTexture, SpecularSharesOfTwoFacetsMultiply) {
+  const Folder folder;
+  const double index = index_of(kPrism);
+  HeightMap map = testing::gaussian_surface(192, 192, 12.0, 12.0, 5);
+  map.x_pixel_um = map.y_pixel_um = 0.25;  // a correlation length of 3 um, and half a wavelength resolved
+  folder.write("map.txt", map);
+  const double map_sq_nm = surface_models::height_parameters(surface_models::without_form(map, 1).heights_nm).sq_nm;
+  const std::string source = (folder.path() / "d.toml").string();
+  for (const double incidence_deg : {0.0, 3.0}) {
+    const double all = exact(kPrism, {kNarrow}, incidence_deg).rre;
+    const RrePoint rough =
+        rre_of(kPrism, {kNarrow, "surface.roughness_sq_nm=15", "surface.correlation_length_um=2"}, {incidence_deg});
+    EXPECT_NEAR(rough.rre, all * specular_share_of_two(index, 15.0, incidence_deg),
+                testing::student_bound(4) * rough.std_error);
+    const RrePoint mapped =
+        rre_of(kPrism + "[surface]\nheight_map = \"map.txt\"\n", {kNarrow}, {incidence_deg}, source);
+    EXPECT_NEAR(mapped.rre, all * specular_share_of_two(index, map_sq_nm, incidence_deg),
+                testing::student_bound(4) * mapped.std_error);
+  }
+}
+
+// Waves along the roof edge turn light by w / L out of the plane of incidence, waves across it by w / L over the
+// cosine of 45 degrees within it: a cone between both tells how the map lies.
+TEST(DesignTexture, LevelAxisOfTheMapLiesAlongTheRoofEdge) {
+  const Folder folder;
+  const double period_um = 20.0;
+  HeightMap map{512, 64, 1.25, 1.25, std::vector<double>(512 * 64, 0.0)};
+  testing::add_wave(map, 15.0, 1.0 / period_um, 0.0);
+  folder.write("grating.txt", map);
+  const std::string source = (folder.path() / "d.toml").string();
+  const double first_order_deg = 1e-3 * kWavelengthNm / period_um * 180.0 / kPi;
+  const std::string cone = "detector.acceptance_half_angle_deg=" + shortest(1.2 * first_order_deg);
+  const auto rre = [&](const std::string& axis) {
+    return rre_of(kPrism + "[surface]\nheight_map = \"grating.txt\"\nheight_map_level_axis = \"" + axis + "\"\n",
+                  {cone}, {}, source)
+        .rre;
+  };
+  const double specular = specular_share_of_two(index_of(kPrism), 15.0, 0.0);
+  EXPECT_GT(rre("x"), specular + 0.8 * (1.0 - specular));
+  EXPECT_LT(rre("y"), specular + 0.1 * (1.0 - specular));
+}
+
+// A map of a surface with Gaussian autocorrelation does what harvey_shack says of its two numbers.
+TEST(DesignTexture, MapAndStatisticsOfOneSurfaceAgree) {
+  const Folder folder;
+  HeightMap map = testing::gaussian_surface(384, 384, 14.0, 8.0, 9);
+  map.x_pixel_um = map.y_pixel_um = 0.25;
+  const double measured_sq_nm =
+      surface_models::height_parameters(surface_models::without_form(map, 1).heights_nm).sq_nm;
+  folder.write("map.txt", map);
+  const std::string cone = "detector.acceptance_half_angle_deg=5";
+  const std::string source = (folder.path() / "d.toml").string();
+  const RrePoint mapped = rre_of(kPrism + "[surface]\nheight_map = \"map.txt\"\n", {cone}, {}, source);
+  const RrePoint stated = rre_of(
+      kPrism, {cone, "surface.roughness_sq_nm=" + shortest(measured_sq_nm), "surface.correlation_length_um=2"}, {});
+  EXPECT_GT(stated.rre, 0.84);
+  EXPECT_LT(stated.rre, 0.92);
+  // The spectrum of so small a sample scatters by some percent; the cone holds about half of what scatters.
+  EXPECT_NEAR(mapped.rre, stated.rre, 0.01);
+}
+
+TEST(DesignTexture, FormAndTiltOfTheMapAreRemoved) {
+  const Folder folder;
+  HeightMap map = testing::gaussian_surface(96, 96, 8.0, 8.0, 2);
+  map.x_pixel_um = map.y_pixel_um = 0.25;
+  folder.write("bare.txt", surface_models::without_form(map, 2));
+  testing::add_plane(map, 1000.0, 400.0, -250.0);
+  for (std::size_t row = 0; row < map.rows; ++row)
+    for (std::size_t column = 0; column < map.columns; ++column)
+      map.at(column, row) += 0.02 * std::pow(static_cast<double>(column) - 40.0, 2);
+  folder.write("formed.txt", map);
+  const std::string source = (folder.path() / "d.toml").string();
+  const auto rre = [&](const std::string& surface) {
+    return rre_of(kPrism + "[surface]\n" + surface, {kNarrow}, {0.0, Engine::montecarlo, 1U << 14}, source).rre;
+  };
+  const double bare = rre("height_map = \"bare.txt\"\n");
+  EXPECT_NEAR(rre("height_map = \"formed.txt\"\nheight_map_form = \"poly2\"\n"), bare, 1e-3);
+  EXPECT_LT(rre("height_map = \"formed.txt\"\n"), bare - 0.05);
+}
+
+TEST(DesignTexture, VanishingRoughnessGivesTheExactAnswer) {
+  for (const std::string& design : {kArray, kCubes, kTriangles}) {
+    const double incidence_deg = design == kArray ? 3.0 : 0.0;
+    const RrePoint smooth = exact(design, {}, incidence_deg);
+    EXPECT_EQ(exact(design, {"surface.roughness_sq_nm=0"}, incidence_deg).rre, smooth.rre);
+    for (const std::string texture :
+         {"roughness_sq_nm=0.001 correlation_length_um=5", "waviness_sq_nm=0.001 waviness_length_um=100"}) {
+      const std::size_t blank = texture.find(' ');
+      const RrePoint rough = rre_of(
+          design, {"surface." + texture.substr(0, blank), "surface." + texture.substr(blank + 1)}, {incidence_deg});
+      EXPECT_NEAR(rough.rre, smooth.rre,
+                  testing::student_bound(6) * rough.std_error + smooth.ledger[raytrace::Account::truncated] + 1e-9)
+          << texture;
+    }
+  }
+}
+
+// Steps wide enough that sampling cannot hide one.
+TEST(DesignTexture, RreFallsMonotonicallyWithSa) {
+  for (const std::string& design : {kArray, kCubes, kTriangles}) {
+    double before = exact(design, {}).rre;
+    for (const double sa_nm : {3.0, 6.0, 12.0, 25.0, 50.0, 100.0}) {
+      const double sq_nm = sa_nm * std::sqrt(0.5 * kPi);
+      const RrePoint point =
+          rre_of(design, {"surface.roughness_sq_nm=" + shortest(sq_nm), "surface.correlation_length_um=5"}, {});
+      EXPECT_LT(point.rre + 4.0 * point.std_error, before) << sa_nm;
+      before = point.rre - 4.0 * point.std_error;
+    }
+  }
+}
+
+TEST(DesignTexture, RreFallsMonotonicallyWithTheRadiusOfEdges) {
+  for (const auto& [design, key] : std::vector<std::pair<std::string, std::string>>{{kArray, "root_radius_um"},
+                                                                                    {kArray, "rim_radius_um"},
+                                                                                    {kCubes, "root_radius_um"},
+                                                                                    {kTriangles, "root_radius_um"}}) {
+    const double sharp = rre_of(design, {}, {0.0, Engine::montecarlo, 1U << 18}).rre;
+    double before = sharp;
+    for (const double radius_um : {5.0, 10.0, 20.0, 40.0}) {
+      const RrePoint point =
+          rre_of(design, {"surface." + key + "=" + shortest(radius_um)}, {0.0, Engine::montecarlo, 1U << 18});
+      EXPECT_LT(point.rre + 4.0 * point.std_error, before) << key << " " << radius_um;
+      before = point.rre - 4.0 * point.std_error;
+    }
+  }
+}
+
+TEST(DesignTexture, VanishingRadiusGivesTheExactAnswer) {
+  for (const auto& [design, key] : std::vector<std::pair<std::string, std::string>>{{kArray, "root_radius_um"},
+                                                                                    {kArray, "rim_radius_um"},
+                                                                                    {kCubes, "root_radius_um"},
+                                                                                    {kTriangles, "root_radius_um"}}) {
+    const double sharp = exact(design, {}).rre;
+    // A thousandth of a micrometre takes 3e-6 of the smallest element.
+    const RrePoint round = rre_of(design, {"surface." + key + "=0.001"}, {0.0, Engine::montecarlo, 1U << 18});
+    EXPECT_NEAR(round.rre, sharp, testing::student_bound(4) * round.std_error + 2e-5) << key;
+  }
+}
+
+// The flat of a chamfered root is level all round, and has its roof edge all the same.
+TEST(DesignTexture, WavyFacetsWithAChamferCloseTheLedger) {
+  const RrePoint point =
+      rre_of(kArray,
+             {"surface.root_chamfer_um=60", "surface.waviness_sq_nm=400", "surface.waviness_length_um=60",
+              "surface.roughness_sq_nm=10", "surface.correlation_length_um=2"},
+             {5.0, Engine::montecarlo, 1U << 15});
+  EXPECT_NEAR(point.ledger.total(), 1.0, 1e-9);
+  EXPECT_LT(point.ledger[raytrace::Account::lost], 1e-9);
+}
+
+}  // namespace
+}  // namespace retrace::studies
