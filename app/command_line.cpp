@@ -102,6 +102,45 @@ void add_rre(CLI::App& app, RreOptions& rre) {
                     "the directions in which light leaves the entrance face (--engine exact, --out)");
 }
 
+void add_roughness(CLI::App& app, RoughnessOptions& roughness) {
+  CLI::App* command = app.add_subcommand("roughness", "retroreflective efficiency against the roughness of the facets");
+  command->add_option("DESIGN", roughness.design, "design file; - is standard input")->required()->check(not_empty());
+  command->add_option("--sa", roughness.sa, "Sa of the curves in nm: a,b,c and start:stop:step")
+      ->type_name("LIST")
+      ->capture_default_str();
+  command
+      ->add_option("--correlation-length-um", roughness.correlation_length_um,
+                   "one curve each; measured facets have the first")
+      ->type_name("LIST")
+      ->capture_default_str();
+  command->add_option("--waviness-length-um", roughness.waviness_length_um, "period of the waviness of measured facets")
+      ->type_name("L")
+      ->capture_default_str()
+      ->check(real_number());
+  command->add_option("--facets", roughness.facets, "table of measured facets, repeatable [the shipped ones]")
+      ->type_name("FILE")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->check(not_empty());
+  command->add_option("--incidence", roughness.incidence_deg, "angle of incidence in degrees")
+      ->type_name("T")
+      ->capture_default_str()
+      ->check(real_number());
+  command->add_option("--azimuth", roughness.azimuth_deg, "azimuth of the source in degrees")
+      ->type_name("P")
+      ->capture_default_str()
+      ->check(real_number());
+  auto* samples =
+      command->add_option("--samples", roughness.samples, "rays for each point [until the target error is reached]")
+          ->type_name("N")
+          ->check(whole_number(1, std::uint64_t{1} << 36));
+  command->add_option("--target-error", roughness.target_error, "standard error of RRE to reach, as a fraction")
+      ->type_name("E")
+      ->capture_default_str()
+      ->check(real_number())
+      ->excludes(samples);
+}
+
 void add_metrology(CLI::App& app, MetrologyOptions& metrology) {
   CLI::App* command = app.add_subcommand("metrology", "roughness, waviness and edge radius of a measured surface");
   command->add_option("FILE", metrology.file, "height map or profile: text, SDF, GSF or GWY")
@@ -138,7 +177,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
   for (const std::string& word : unknown)
     if (word.starts_with('-')) return "unknown option " + word;
   if (!app.get_subcommands().empty()) return otherwise;
-  const std::string commands = "rre, inspect, metrology, init and list";
+  const std::string commands = "rre, inspect, roughness, metrology, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -164,6 +203,7 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
       ->add_option("DESIGN", line.design, "design file; - is standard input")
       ->required()
       ->check(not_empty());
+  add_roughness(app, line.roughness);
   add_metrology(app, line.metrology);
   app.add_subcommand("init", "a commented design file to start from")
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")

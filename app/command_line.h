@@ -30,6 +30,18 @@ struct RreOptions {
   bool far_field = false;
 };
 
+struct RoughnessOptions {
+  std::string design;
+  std::string sa = "0,2,5,10,15,20,30,40,50,75,100,150,200";
+  std::string correlation_length_um = "5,20,50";
+  double waviness_length_um = 200.0;
+  std::vector<std::string> facets;  ///< tables; none: the shipped ones
+  double incidence_deg = 0.0;
+  double azimuth_deg = 0.0;
+  std::optional<std::uint64_t> samples;
+  double target_error = 1e-3;
+};
+
 struct MetrologyOptions {
   std::string file;
   std::string form = "plane";
@@ -47,6 +59,7 @@ struct CommandLine {
   std::string command;
   CommonOptions common;
   RreOptions rre;
+  RoughnessOptions roughness;
   MetrologyOptions metrology;
   std::string design;  ///< inspect
   std::string kind;    ///< init

@@ -9,6 +9,7 @@ retrace_test(app_test
     app/program.cpp
     app/readme_test.cpp
     app/returned_light_test.cpp
+    app/roughness_test.cpp
     app/rre_test.cpp
     app/texture_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)

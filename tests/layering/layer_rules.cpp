@@ -33,8 +33,11 @@ const std::map<std::string, Names>& folders() {
 
 /// What a room of studies/ may see of the others. Rooms that come later are listed here first.
 const std::map<std::string, Names>& study_rooms() {
-  static const std::map<std::string, Names> rooms = {
-      {"design", {}}, {"rre", {"design"}}, {"inspect", {"design"}}, {"metrology", {}}};
+  static const std::map<std::string, Names> rooms = {{"design", {}},
+                                                     {"rre", {"design"}},
+                                                     {"roughness", {"design", "rre"}},
+                                                     {"inspect", {"design"}},
+                                                     {"metrology", {}}};
   return rooms;
 }
 

@@ -3,5 +3,6 @@ retrace_test(studies_design_test
   LIBRARIES retrace::optical_model rapidcheck)
 retrace_test(studies_rre_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/derivatives_test.cpp ${CMAKE_CURRENT_LIST_DIR}/returned_light_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/rre_files_test.cpp ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp
-  LIBRARIES retrace::rre)
+          ${CMAKE_CURRENT_LIST_DIR}/rre_files_test.cpp ${CMAKE_CURRENT_LIST_DIR}/roughness_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp
+  LIBRARIES retrace::roughness retrace::rre)

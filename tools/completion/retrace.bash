@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect metrology init list'
+  local commands='rre inspect roughness metrology init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -71,12 +71,21 @@ _retrace() {
       return
       ;;
     --threads | --seed | --incidence | --azimuth | --samples | --target-error | --cutoff) return ;;
+    --facets)
+      _retrace_files "$word" .csv
+      return
+      ;;
+    --sa | --correlation-length-um | --waviness-length-um) return ;;
     --cutoff-um | --pixel-um | --channel | --feed-mm-per-min) return ;;
   esac
 
   if [[ $word == -* ]]; then
     case $command in
       rre) _retrace_words "$word" "$common --incidence --azimuth --engine --samples --target-error --cutoff --derivatives --footprint --far-field" ;;
+      roughness)
+        _retrace_words "$word" "$common --sa --correlation-length-um --waviness-length-um --facets --incidence \
+          --azimuth --samples --target-error"
+        ;;
       metrology)
         _retrace_words "$word" "$common --form --cutoff-um --pixel-um --height-unit --lateral-unit --channel \
           --feed-mm-per-min --edge"
@@ -87,7 +96,7 @@ _retrace() {
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect) _retrace_files "$word" .toml ;;
+    rre | inspect | roughness) _retrace_files "$word" .toml ;;
     metrology) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
     list) _retrace_words "$word" 'materials' ;;
