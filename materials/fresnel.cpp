@@ -16,9 +16,13 @@ FresnelCoefficients fresnel(double index_ratio, double cos_incidence) {
   }
   if (sin2_refracted >= 1.0) {
     f.total_reflection = true;
-    const std::complex<double> ct(0.0, std::sqrt(sin2_refracted - 1.0));
-    f.r_s = (index_ratio * ci - ct) / (index_ratio * ci + ct);
-    f.r_p = (ci - index_ratio * ct) / (ci + index_ratio * ct);
+    // (a - i b) / (a + i b) with real a, b
+    const auto phase = [](double a, double b) {
+      return std::complex<double>(a * a - b * b, -2.0 * a * b) / (a * a + b * b);
+    };
+    const double decay = std::sqrt(sin2_refracted - 1.0);
+    f.r_s = phase(index_ratio * ci, decay);
+    f.r_p = phase(ci, index_ratio * decay);
     return f;
   }
   const double ct = std::sqrt(1.0 - sin2_refracted);

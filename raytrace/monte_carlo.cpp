@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <pmmintrin.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
@@ -9,7 +10,9 @@
 
 #include "core/error.h"
 #include "raytrace/back_surface.h"
+#include "raytrace/cell/cell_walker.h"
 #include "raytrace/entrance_sampler.h"
+#include "raytrace/path_tracer.h"
 #include "raytrace/sobol.h"
 #include "raytrace/threads.h"
 
@@ -44,27 +47,10 @@ class FlushDenormals {
   unsigned saved_;
 };
 
-/// Rays first..last-1 of one replicate.
-struct Task {
-  std::uint32_t replicate = 0;
-  std::uint32_t first = 0;
-  std::uint32_t last = 0;
-};
-
-/// Nothing if cancelled.
-template <class Cancelled>
-std::optional<Tally> trace_task(const PathSetup& setup, const EntranceSampler& entrance, std::uint32_t seed,
-                                const Task& task, const Cancelled& cancelled) {
-  const FlushDenormals flush;
-  Tally tally(setup.cone_chord2.size());
-  const auto words = philox({seed, kScrambleStream}, task.replicate, 0);
-  const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
-  PathWalker walker(setup, tally);
-  for (std::uint32_t ray = task.first; ray < task.last; ++ray) {
-    if (cancelled()) return std::nullopt;
-    walker.trace(entrance(square(ray)), {seed, kChoiceStream}, task.replicate, ray);
-  }
-  return tally;
+/// Of the scrambles of a replicate's entry points.
+std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t replicate) {
+  const auto words = philox({seed, kScrambleStream}, replicate, 0);
+  return {(std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]};
 }
 
 ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double half_angle_deg, std::size_t cone) {
@@ -117,19 +103,66 @@ void check_lost(const MonteCarloResult& result) {
 }  // namespace
 
 struct MonteCarlo::Scene {
-  explicit Scene(const geometry::Part& p) : part(p), entrance(p), surface(p, entrance.centre_mm()) {}
+  Scene(const geometry::Part& p, Engine engine) : part(p), entrance(p) {
+    if (engine == Engine::cell)
+      cells = CellArray::make(p.spec);
+    else
+      surface.emplace(p, entrance.centre_mm());
+  }
 
   const geometry::Part& part;
   EntranceSampler entrance;
-  BackSurface surface;
+  std::optional<BackSurface> surface;  ///< for Embree
+  std::optional<CellArray> cells;
 };
 
-MonteCarlo::MonteCarlo(const geometry::Part& part) : scene_(std::make_unique<Scene>(part)) {}
+/// Rays first..last-1 of one replicate.
+struct MonteCarlo::Task {
+  std::uint32_t replicate = 0;
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+
+MonteCarlo::MonteCarlo(const geometry::Part& part, Engine engine) : scene_(std::make_unique<Scene>(part, engine)) {}
 MonteCarlo::~MonteCarlo() = default;
 
-bool MonteCarlo::trace_range(const PathSetup& setup, std::uint32_t seed, std::uint32_t from, std::uint32_t until,
-                             std::vector<Tally>& replicates, const Cancellation* cancel) const {
-  const auto cancelled = [&] { return cancel != nullptr && cancel->requested(); };
+bool MonteCarlo::cell_serves(const geometry::Part& part, const Optics& optics) {
+  return optics.is_smooth() && CellArray::make(part.spec).has_value();
+}
+
+MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, std::uint32_t seed,
+                                             const Cancellation* cancel) const {
+  return [this, &setup, seed, cancel](const Task& task) -> std::optional<Tally> {
+    const FlushDenormals flush;
+    Tally tally(setup.cone_chord2.size());
+    const auto keys = scramble_keys(seed, task.replicate);
+    const SobolSquare square(keys[0], keys[1]);
+    PathWalker walker(setup, tally);
+    for (std::uint32_t ray = task.first; ray < task.last; ++ray) {
+      if (cancel != nullptr && cancel->requested()) return std::nullopt;
+      walker.trace(scene_->entrance(square(ray)), {seed, kChoiceStream}, task.replicate, ray);
+    }
+    return tally;
+  };
+}
+
+MonteCarlo::TraceTask MonteCarlo::by_cells(const LightSetup& setup, const PathPolicy& policy, std::uint32_t seed,
+                                           const Cancellation* cancel) const {
+  // Every thread keeps its walker, for its memory.
+  const auto walkers = std::make_shared<tbb::enumerable_thread_specific<CellWalker>>(
+      [this, &setup, &policy] { return CellWalker(setup, policy, *scene_->cells); });
+  return [walkers, &setup, seed, cancel](const Task& task) -> std::optional<Tally> {
+    if (cancel != nullptr && cancel->requested()) return std::nullopt;
+    Tally tally(setup.cone_chord2.size());
+    const auto keys = scramble_keys(seed, task.replicate);
+    walkers->local().trace(keys[0], keys[1], task.first, task.last - task.first, {seed, kChoiceStream}, task.replicate,
+                           tally);
+    return tally;
+  };
+}
+
+bool MonteCarlo::trace_range(const TraceTask& trace_task, std::uint32_t from, std::uint32_t until,
+                             std::vector<Tally>& replicates) const {
   for (std::uint32_t slice = from; slice < until;) {
     const std::uint32_t slice_end = until - slice > kRaysPerSlice ? slice + kRaysPerSlice : until;
     std::vector<Task> tasks;
@@ -137,9 +170,7 @@ bool MonteCarlo::trace_range(const PathSetup& setup, std::uint32_t seed, std::ui
       for (std::uint32_t first = slice; first < slice_end; first += kRaysPerTask)
         tasks.push_back({replicate, first, std::min(slice_end, first + kRaysPerTask)});
     std::vector<std::optional<Tally>> tallies(tasks.size());
-    for_each_in_parallel(tasks.size(), [&](std::size_t k) {
-      tallies[k] = trace_task(setup, scene_->entrance, seed, tasks[k], cancelled);
-    });
+    for_each_in_parallel(tasks.size(), [&](std::size_t k) { tallies[k] = trace_task(tasks[k]); });
     if (std::any_of(tallies.begin(), tallies.end(), [](const auto& t) { return !t.has_value(); })) return false;
     // Added up in the order of the tasks, whichever thread did them.
     for (std::size_t k = 0; k < tasks.size(); ++k) replicates[tasks[k].replicate].add(*tallies[k]);
@@ -151,8 +182,17 @@ bool MonteCarlo::trace_range(const PathSetup& setup, std::uint32_t seed, std::ui
 MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& illumination,
                                    const std::vector<double>& cones_deg, const Sampling& sampling,
                                    const PathPolicy& policy, const Cancellation* cancel) const {
-  const PathSetup setup(scene_->part, scene_->surface, scene_->entrance.centre_mm(), optics, illumination, cones_deg,
-                        policy);
+  std::optional<LightSetup> light;
+  std::optional<PathSetup> paths;
+  TraceTask trace_task;
+  if (scene_->cells) {
+    light.emplace(scene_->part, scene_->entrance.centre_mm(), optics, illumination, cones_deg);
+    trace_task = by_cells(*light, policy, sampling.seed, cancel);
+  } else {
+    paths.emplace(scene_->part, *scene_->surface, scene_->entrance.centre_mm(), optics, illumination, cones_deg,
+                  policy);
+    trace_task = one_by_one(*paths, sampling.seed, cancel);
+  }
   const std::uint64_t rays = sampling.rays.value_or(sampling.max_rays);
   const auto goal = static_cast<std::uint32_t>(
       std::min<std::uint64_t>((rays + kReplicates - 1) / kReplicates, kMostRaysPerReplicate));
@@ -161,7 +201,7 @@ MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& ill
   for (std::uint32_t done = 0; done < goal;) {
     // Doubling keeps every round's points the first 2^k of their sequence, where they are best stratified.
     const std::uint32_t until = done == 0 ? std::min(goal, kFirstRound) : (done > goal / 2 ? goal : 2 * done);
-    if (!trace_range(setup, sampling.seed, done, until, replicates, cancel)) {
+    if (!trace_range(trace_task, done, until, replicates)) {
       result.complete = false;
       return result;  // what the rounds before gave
     }

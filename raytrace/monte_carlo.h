@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -8,10 +9,13 @@
 #include "core/progress.h"
 #include "geometry/part.h"
 #include "raytrace/ledger.h"
+#include "raytrace/light_setup.h"
 #include "raytrace/optics.h"
-#include "raytrace/path_tracer.h"
+#include "raytrace/path_policy.h"
 
 namespace retrace::raytrace {
+
+struct PathSetup;
 
 /// How long a Monte-Carlo run goes on.
 struct Sampling {
@@ -43,13 +47,21 @@ struct MonteCarloResult {
 /// on the seed and the question alone, not on the number of threads.
 class MonteCarlo {
  public:
+  /// How rays find what they meet.
+  enum class Engine {
+    embree,  ///< one by one, in a bounding volume hierarchy: any part
+    cell     ///< all rays of like history together, column by column: where cell_serves()
+  };
+  /// Infinite parts of smooth facets, without rounded rims.
+  static bool cell_serves(const geometry::Part& part, const Optics& optics);
+
   /// Independent scrambles: the estimate is their mean, its standard error comes from their spread.
   static constexpr std::uint32_t kReplicates = 32;
 
-  explicit MonteCarlo(const geometry::Part& part);
+  explicit MonteCarlo(const geometry::Part& part, Engine engine = Engine::embree);
   ~MonteCarlo();
 
-  /// Traces in the calling thread's TBB arena.
+  /// Traces in the calling thread's TBB arena. \pre for Engine::cell: cell_serves()
   /// \throw BudgetError if power is lost: a ray missed every face from inside
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy,
@@ -57,10 +69,16 @@ class MonteCarlo {
 
  private:
   struct Scene;
+  struct Task;
+  using TraceTask = std::function<std::optional<Tally>(const Task&)>;
 
+  TraceTask one_by_one(const PathSetup& setup, std::uint32_t seed, const Cancellation* cancel) const;
+  TraceTask by_cells(const LightSetup& setup, const PathPolicy& policy, std::uint32_t seed,
+                     const Cancellation* cancel) const;
   /// Adds rays from..until-1 of every replicate to its tally. False if cancelled: the tallies are then of no use.
-  bool trace_range(const PathSetup& setup, std::uint32_t seed, std::uint32_t from, std::uint32_t until,
-                   std::vector<Tally>& replicates, const Cancellation* cancel) const;
+  /// \param trace_task what one task gives, nothing if cancelled
+  bool trace_range(const TraceTask& trace_task, std::uint32_t from, std::uint32_t until,
+                   std::vector<Tally>& replicates) const;
 
   std::unique_ptr<Scene> scene_;
 };

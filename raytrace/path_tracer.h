@@ -8,15 +8,9 @@
 #include "geometry/part.h"
 #include "raytrace/back_surface.h"
 #include "raytrace/light_setup.h"
+#include "raytrace/path_policy.h"
 
 namespace retrace::raytrace {
-
-/// How paths are followed.
-struct PathPolicy {
-  double cutoff = 1e-10;      ///< power below which a path ends in `truncated`
-  double split_power = 1e-3;  ///< both branches of an interface are followed while each carries at least this
-  std::uint32_t max_events = 1'000'000;  ///< hits on one path before it ends in `truncated`
-};
 
 /// What every path of a run shares.
 struct PathSetup : LightSetup {

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/random.h"
+#include "raytrace/cell/cell_array.h"
+#include "raytrace/cell/cell_lanes.h"
+#include "raytrace/cell/ray_store.h"
+#include "raytrace/light_setup.h"
+#include "raytrace/path_policy.h"
+
+namespace retrace::raytrace {
+
+/// Follows light through an infinite part, column by column, many rays at once: all that are over one column, or under
+/// its surface, wait in one stream and are moved in SIMD lanes, the fullest stream first. One walker serves one thread.
+class CellWalker {
+ public:
+  CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array);
+
+  /// Traces light that enters at points `first`..`first + count - 1` of SobolSquare(key_x, key_y), spread over one
+  /// period of the entrance face, each as power 1. Random choices depend on `key`, `replicate` and `first` alone.
+  void trace(std::uint64_t key_x, std::uint64_t key_y, std::uint32_t first, std::size_t count, RandomKey key,
+             std::uint32_t replicate, Tally& tally);
+
+ private:
+  /// Where rays are. Over its own column a surface is convex: light that leaves it there does not come back before
+  /// another column.
+  enum class Place : std::uint8_t { inside, below, below_after_leaving };
+  static constexpr std::size_t kPlaces = 3;
+
+  /// One way on across a border.
+  struct Crossing {
+    std::uint32_t column = 0;
+    Vec2 shift_mm = Vec2::Zero();
+    Vec3 wall_normal = Vec3::Zero();  ///< out of the part
+  };
+  /// A border that needs a closer look: its stretches are numbered from `to` on.
+  struct Refinement {
+    double number = 0.0;
+    double to = 0.0;
+    lanes::Border border;
+    std::size_t first_crossing = 0;
+  };
+  struct Stream {
+    std::uint32_t column = 0;
+    Place place = Place::inside;
+    RayStore rays;
+    std::vector<std::optional<Crossing>> borders;  ///< those with one level neighbour
+    std::vector<Refinement> refinements;
+    std::vector<Crossing> crossings;  ///< of the refinements
+  };
+  struct Shape {
+    std::vector<lanes::Plane> facets;
+    std::vector<lanes::Plane> borders;
+    std::vector<lanes::LinearForm> heights;
+    geometry::FacetRole role = geometry::FacetRole::retro_facet;
+  };
+
+  static std::uint32_t stream_of(std::uint32_t column, Place place) {
+    return static_cast<std::uint32_t>(kPlaces * column + static_cast<std::size_t>(place));
+  }
+  void prepare(Stream& stream) const;
+  void advance(std::uint32_t number);
+  void move(const Stream& stream);
+  void meet_surface(const Stream& stream);
+  void meet_metal(const Stream& stream, std::complex<double> index);
+  void meet_wall(const Stream& stream, const Crossing& crossing, double number);
+  void meet_faces(double number, bool inside, std::uint32_t reflected_to, std::uint32_t transmitted_to,
+                  const Vec2& transmitted_shift);
+  void meet_entrance();
+  void cross(const Stream& stream, const Crossing& crossing, double number);
+  void fall();
+  void book(double number, Account account);
+  lanes::Met met();
+  lanes::Meeting meeting(double number, bool inside);
+  lanes::Rays end_of(std::uint32_t stream, std::size_t most);
+  void grow(std::uint32_t stream, std::size_t more, const Vec2& shift);
+  void waits(std::uint32_t stream);
+  std::optional<std::uint32_t> fullest();
+  void truncate_weak();
+  void reserve(std::size_t count);
+  double random() { return unit_interval(philox(key_, replicate_, sample_, choices_++)[0]); }
+
+  const LightSetup& setup_;
+  const PathPolicy& policy_;
+  const CellArray& array_;
+  Tally* tally_ = nullptr;
+  std::vector<Shape> shapes_;  ///< of the columns
+  std::vector<Stream> streams_;
+  std::vector<std::vector<std::uint32_t>> waiting_;  ///< streams by the binary logarithm of their rays
+  std::vector<lanes::LinearForm> pieces_;            ///< edges of the array's pieces
+  std::vector<std::uint32_t> piece_starts_;
+  RayStore moved_;                ///< of the stream at hand
+  RayStore chosen_;               ///< those of them that meet the same
+  std::vector<double> met_;       ///< by `moved_`: number, normal
+  std::vector<double> branches_;  ///< marks of `chosen_`, or of weak rays
+  std::size_t capacity_ = 0;
+  std::uint64_t batches_ = 0;
+  RandomKey key_;
+  std::uint32_t replicate_ = 0;
+  std::uint32_t sample_ = 0;
+  std::uint32_t choices_ = 0;
+};
+
+}  // namespace retrace::raytrace
