@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "raytrace/back_surface.h"
@@ -34,6 +35,7 @@ constexpr double kLostLimit = 1e-9;
 // Philox streams: one for the scrambles of the entry points, one for choices on the way.
 constexpr std::uint32_t kScrambleStream = 1;
 constexpr std::uint32_t kChoiceStream = 2;
+constexpr std::uint32_t kEntryStream = 3;  // plain sampling
 
 /// Embree wants denormals flushed; done here for the whole task so that every task computes alike.
 class FlushDenormals {
@@ -51,6 +53,11 @@ class FlushDenormals {
 std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t replicate) {
   const auto words = philox({seed, kScrambleStream}, replicate, 0);
   return {(std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]};
+}
+
+std::array<double, 2> random_point(std::uint32_t seed, std::uint32_t replicate, std::uint32_t ray) {
+  const auto words = philox({seed, kEntryStream}, replicate, ray);
+  return {unit_interval(words[0]), unit_interval(words[1])};
 }
 
 ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double half_angle_deg, std::size_t cone) {
@@ -130,9 +137,10 @@ bool MonteCarlo::cell_serves(const geometry::Part& part, const Optics& optics) {
   return optics.is_smooth() && CellArray::make(part.spec).has_value();
 }
 
-MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, std::uint32_t seed,
+MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, const Sampling& sampling,
                                              const Cancellation* cancel) const {
-  return [this, &setup, seed, cancel](const Task& task) -> std::optional<Tally> {
+  return [this, &setup, seed = sampling.seed, is_plain = sampling.kind == Sampling::Kind::plain,
+          cancel](const Task& task) -> std::optional<Tally> {
     const FlushDenormals flush;
     Tally tally(setup.cone_chord2.size());
     const auto keys = scramble_keys(seed, task.replicate);
@@ -140,7 +148,8 @@ MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, std::uint32
     PathWalker walker(setup, tally);
     for (std::uint32_t ray = task.first; ray < task.last; ++ray) {
       if (cancel != nullptr && cancel->requested()) return std::nullopt;
-      walker.trace(scene_->entrance(square(ray)), {seed, kChoiceStream}, task.replicate, ray);
+      const std::array<double, 2> point = is_plain ? random_point(seed, task.replicate, ray) : square(ray);
+      walker.trace(scene_->entrance(point), {seed, kChoiceStream}, task.replicate, ray);
     }
     return tally;
   };
@@ -189,9 +198,10 @@ MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& ill
     light.emplace(scene_->part, scene_->entrance.centre_mm(), optics, illumination, cones_deg);
     trace_task = by_cells(*light, policy, sampling.seed, cancel);
   } else {
-    paths.emplace(scene_->part, *scene_->surface, scene_->entrance.centre_mm(), optics, illumination, cones_deg,
-                  policy);
-    trace_task = one_by_one(*paths, sampling.seed, cancel);
+    PathPolicy how = policy;
+    if (sampling.kind == Sampling::Kind::plain) how.split_power = std::numeric_limits<double>::infinity();
+    paths.emplace(scene_->part, *scene_->surface, scene_->entrance.centre_mm(), optics, illumination, cones_deg, how);
+    trace_task = one_by_one(*paths, sampling, cancel);
   }
   const std::uint64_t rays = sampling.rays.value_or(sampling.max_rays);
   const auto goal = static_cast<std::uint32_t>(

@@ -19,6 +19,10 @@ struct PathSetup;
 
 /// How long a Monte-Carlo run goes on.
 struct Sampling {
+  /// Of entry points and branches: Sobol points with splitting, or pseudo-random ones of which each takes one branch at
+  /// every interface - the slow way, to measure what the other is worth. The latter with Engine::embree only.
+  enum class Kind { stratified, plain };
+  Kind kind = Kind::stratified;
   std::uint32_t seed = 1;
   std::optional<std::uint64_t> rays;  ///< traced exactly (rounded up to whole replicates); else until the target
   double target_error = 1e-4;         ///< standard error of RRE to reach, > 0
@@ -72,7 +76,7 @@ class MonteCarlo {
   struct Task;
   using TraceTask = std::function<std::optional<Tally>(const Task&)>;
 
-  TraceTask one_by_one(const PathSetup& setup, std::uint32_t seed, const Cancellation* cancel) const;
+  TraceTask one_by_one(const PathSetup& setup, const Sampling& sampling, const Cancellation* cancel) const;
   TraceTask by_cells(const LightSetup& setup, const PathPolicy& policy, std::uint32_t seed,
                      const Cancellation* cancel) const;
   /// Adds rays from..until-1 of every replicate to its tally. False if cancelled: the tallies are then of no use.

@@ -18,6 +18,8 @@ namespace retrace::raytrace {
 class CellWalker {
  public:
   CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array);
+  CellWalker(const CellWalker&) = delete;
+  CellWalker(CellWalker&&) = default;
 
   /// Traces light that enters at points `first`..`first + count - 1` of SobolSquare(key_x, key_y), spread over one
   /// period of the entrance face, each as power 1. Random choices depend on `key`, `replicate` and `first` alone.

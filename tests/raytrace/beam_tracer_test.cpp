@@ -180,25 +180,36 @@ rc::Gen<RandomCase> random_case() {
   });
 }
 
-// Two engines that share the geometry and Fresnel's formulas and nothing else.
+// Engines that share the geometry and Fresnel's formulas and nothing else.
 TEST(BeamTracer, AgreesWithMonteCarlo) {
-  constexpr std::size_t kCases = 100;
+  constexpr std::size_t kCases = 200;
   const std::vector<RandomCase> cases =
       rc::gen::container<std::vector<RandomCase>>(kCases, random_case())(rc::Random(11), rc::kNominalSize).value();
   const double t95 = student_bound_of(0.05, MonteCarlo::kReplicates);
   int within = 0;
+  int cell_cases = 0;
+  int cell_within = 0;
   for (std::size_t k = 0; k < kCases; ++k) {
     const RandomCase& c = cases[k];
     const Part part = build_part(c.spec);
     // 1e-4 is below the Monte Carlo's own error in nearly all of them.
     const Ledger exact = beams(part, c.optics, c.illumination, 2.0, 2e-4);
-    const MonteCarloResult traced = MonteCarlo(part).trace(c.optics, c.illumination, {2.0}, rays(1U << 14), {});
     EXPECT_NEAR(exact.total(), 1.0, 1e-9) << k;
     EXPECT_GT(exact[Account::truncated], -1e-9) << k;
-    const double difference = std::abs(exact[Account::retroreflected] - traced.cones[0].rre);
-    if (difference <= t95 * traced.cones[0].std_error + exact[Account::truncated] + 1e-9) ++within;
+    const auto agrees = [&](MonteCarlo::Engine engine, std::uint64_t count) {
+      const ConeResult traced =
+          MonteCarlo(part, engine).trace(c.optics, c.illumination, {2.0}, rays(count), {}).cones[0];
+      return std::abs(exact[Account::retroreflected] - traced.rre) <=
+             t95 * traced.std_error + exact[Account::truncated] + 1e-9;
+    };
+    within += agrees(MonteCarlo::Engine::embree, 1U << 14) ? 1 : 0;
+    if (!MonteCarlo::cell_serves(part, c.optics)) continue;
+    ++cell_cases;
+    cell_within += agrees(MonteCarlo::Engine::cell, 1U << 14) ? 1 : 0;
   }
-  EXPECT_GE(within, 88);
+  EXPECT_GE(within, 0.88 * kCases);
+  EXPECT_GE(cell_cases, 60);
+  EXPECT_GE(cell_within, 0.88 * cell_cases);
 }
 
 TEST(BeamTracer, RunsOutOfItsBudgetAloud) {
