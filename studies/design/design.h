@@ -33,13 +33,28 @@ struct FacetTexture {
   double abg_g = 0.0;
   bool ggx = false;        ///< microfacets with longer tails of slopes than Gaussian
   std::string height_map;  ///< name of the file, as given
-  /// The same, from the working directory; checked only when it is read, by make_optics().
+  /// The same, from the working directory; checked only when it is read, by make_model().
   std::filesystem::path height_map_file;
   /// Axis of the map that lies level on a facet: along the roof edge of a prism.
   HeightMapAxis height_map_level_axis = HeightMapAxis::x;
   int height_map_form_degree = 1;  ///< of the polynomial that is removed from the map, 1..8
   bool absorbing_walls = false;    ///< of elements and of the border
   InputLocation location;          ///< where it was given, for whoever cannot trace it
+};
+
+/// Light of more than one wavelength, as the design names it.
+struct LightSpectrum {
+  enum class Kind { illuminant_a, illuminant_d65, file, lines };
+  struct Line {
+    double wavelength_nm = 0.0;
+    double power = 0.0;  ///< in any unit, >= 0
+  };
+  Kind kind = Kind::illuminant_a;
+  std::string name;            ///< of a file, as given
+  std::filesystem::path file;  ///< the same, from the working directory; empty if there is none
+  std::vector<Line> lines;     ///< ascending
+  bool photopic = true;        ///< shares are of the luminous flux; else of the power
+  InputLocation location;      ///< where it was given, for whoever cannot read the file or finds no index there
 };
 
 /// Everything a design file says, checked and with its defaults filled in.
@@ -53,8 +68,9 @@ struct Design {
   std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
   double back_index = 1.0;                  ///< of what lies behind the facets, relative to air; 1..3
   bool aluminised_facets = false;           ///< an opaque film behind the retro facets
-  double wavelength_nm = 587.56;
-  InputLocation wavelength_location;  ///< where it was given, for whoever finds no index there
+  double wavelength_nm = 587.56;            ///< means nothing where there is a spectrum
+  InputLocation wavelength_location;        ///< where it was given, for whoever finds no index there
+  std::optional<LightSpectrum> spectrum;
   /// Of the incident light, along the axes of raytrace::source_axis(); i = 1.
   raytrace::Stokes polarisation = raytrace::kUnpolarised;
   std::vector<double> acceptance_half_angle_deg = {0.5};  ///< ascending, each in (0, 90]

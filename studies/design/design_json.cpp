@@ -123,6 +123,35 @@ Json surface_json(const Design& design) {
   return json;
 }
 
+/// As the design file has it.
+Json named_spectrum(const LightSpectrum& spectrum) {
+  switch (spectrum.kind) {
+    case LightSpectrum::Kind::illuminant_a:
+      return "A";
+    case LightSpectrum::Kind::illuminant_d65:
+      return "D65";
+    case LightSpectrum::Kind::file:
+      return spectrum.name;
+    case LightSpectrum::Kind::lines:
+      break;
+  }
+  Json lines = Json::array();
+  for (const LightSpectrum::Line& line : spectrum.lines) lines.push_back(Json::array({line.wavelength_nm, line.power}));
+  return lines;
+}
+
+Json light_json(const Design& design) {
+  Json json = Json::object();
+  if (design.spectrum) {
+    json["spectrum"] = named_spectrum(*design.spectrum);
+    json["weighting"] = design.spectrum->photopic ? "photopic" : "radiant";
+  } else {
+    json["wavelength_nm"] = design.wavelength_nm;
+  }
+  json["polarisation"] = polarisation_json(design.polarisation);
+  return json;
+}
+
 struct ElementName {
   std::string operator()(const RtpElement& e) const {
     return fmt::format("RTP {} x {} mm", shortest(e.base_mm), shortest(e.width_mm));
@@ -148,12 +177,29 @@ nlohmann::ordered_json to_json(const Design& design) {
   json["element"] = std::visit(ElementJson{}, design.part.element);
   json["array"] = array_json(design.part);
   json["body"] = body;
-  json["light"] = {{"wavelength_nm", design.wavelength_nm}, {"polarisation", polarisation_json(design.polarisation)}};
+  json["light"] = light_json(design);
   json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};
   json["surface"] = surface_json(design);
   json["idealisation"] = {{"facets", design.idealisation.mirror_facets ? "mirror" : "real"},
                           {"entrance", design.idealisation.lossless_entrance ? "lossless" : "real"}};
   return json;
+}
+
+nlohmann::ordered_json spectrum_json(const std::vector<SpectralOptics>& light) {
+  double centroid_nm = 0.0;
+  Json wavelengths_nm = Json::array();
+  Json weights = Json::array();
+  Json indices = Json::array();
+  for (const SpectralOptics& at : light) {
+    centroid_nm += at.weight * at.wavelength_nm;
+    wavelengths_nm.push_back(at.wavelength_nm);
+    weights.push_back(at.weight);
+    indices.push_back(at.optics.index);
+  }
+  return {{"centroid_nm", centroid_nm},
+          {"wavelengths_nm", wavelengths_nm},
+          {"weights", weights},
+          {"refractive_index", indices}};
 }
 
 std::string short_name(const Design& design) {

@@ -57,7 +57,7 @@ constexpr std::array kArrayKeys = {KeyRule{"arrangement"},
 constexpr std::array kBodyKeys = {KeyRule{"thickness_mm"},      KeyRule{"material"},   KeyRule{"refractive_index"},
                                   KeyRule{"absorption_per_mm"}, KeyRule{"back_index"}, KeyRule{"facet_coating"}};
 constexpr std::array kLightKeys = {KeyRule{"wavelength_nm"}, KeyRule{"polarisation"}, KeyRule{"polarisation_angle_deg"},
-                                   KeyRule{"spectrum", NotAvailable{}}};
+                                   KeyRule{"spectrum"}, KeyRule{"weighting"}};
 constexpr std::array kDetectorKeys = {KeyRule{"acceptance_half_angle_deg"}};
 constexpr std::array kSurfaceKeys = {KeyRule{"model"},
                                      KeyRule{"roughness_sq_nm"},

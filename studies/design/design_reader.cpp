@@ -17,6 +17,7 @@
 #include "studies/design/array_checks.h"
 #include "studies/design/design_keys.h"
 #include "studies/design/message_text.h"
+#include "studies/design/spectrum_reader.h"
 #include "studies/design/table_reader.h"
 #include "studies/design/texture_reader.h"
 
@@ -312,6 +313,7 @@ raytrace::Stokes read_polarisation(TableReader& light) {
 
 void read_light_and_detector(const DesignDocument& document, Design& design) {
   TableReader light(document, "light");
+  design.spectrum = read_spectrum(light);
   design.wavelength_nm = light.number("wavelength_nm", kPositive).value_or(design.wavelength_nm);
   design.wavelength_location = light.where("wavelength_nm");
   design.polarisation = read_polarisation(light);

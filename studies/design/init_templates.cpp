@@ -78,7 +78,7 @@ material = "PMMA"                 # `retrace list materials` shows what there is
 # absorption_per_mm = 0           # Napierian, for power; wins over the material
 
 [light]
-wavelength_nm = 587.56
+wavelength_nm = 587.56            # or spectrum = "A", "D65", "lamp.csv", [[wavelength_nm, power], ...]
 # polarisation = "unpolarised"    # "linear" (polarisation_angle_deg), "right_circular", "left_circular", [i, q, u, v]
 
 [detector]

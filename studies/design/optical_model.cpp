@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
+#include "materials/io/spectrum_reader.h"
 #include "surface_models/form.h"
 #include "surface_models/io/height_map_reader.h"
 
@@ -14,17 +17,23 @@ namespace {
 
 constexpr double kMissingShareToTell = 0.05;
 
-double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air) {
+/// Where the design says what wavelengths its light has.
+const InputLocation& light_location(const Design& design) {
+  return design.spectrum ? design.spectrum->location : design.wavelength_location;
+}
+
+double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air,
+                           double wavelength_nm) {
   try {
-    return materials::index_relative_to_air(material, air, design.wavelength_nm);
+    return materials::index_relative_to_air(material, air, wavelength_nm);
   } catch (const InputError& error) {
-    throw InputError(design.wavelength_location, error.what());  // which knows the number but not where it was given
+    throw InputError(light_location(design), error.what());  // which knows the number but not where it was given
   }
 }
 
 /// The map as it lies on a facet, x level. Warnings are appended.
-surface_models::ScatterModel height_map_model(const FacetTexture& t, const std::string& source, double wavelength_nm,
-                                              std::vector<std::string>& warnings) {
+surface_models::HeightMap levelled_map(const FacetTexture& t, const std::string& source,
+                                       std::vector<std::string>& warnings) {
   using namespace surface_models;
   HeightMapOptions options;
   options.can_be_given = false;
@@ -34,21 +43,40 @@ surface_models::ScatterModel height_map_model(const FacetTexture& t, const std::
   if (static_cast<double>(missing) > kMissingShareToTell * static_cast<double>(points))
     file.warnings.push_back(fmt::format("{:.1f} % of the points are missing; they count as the mean height",
                                         100.0 * static_cast<double>(missing) / static_cast<double>(points)));
+  for (const std::string& warning : file.warnings)
+    warnings.push_back(fmt::format("{}: {}: {}", source, t.height_map_file.string(), warning));
   const HeightMap level =
       t.height_map_level_axis == HeightMapAxis::x ? std::move(file.map) : turned_by_quarter(file.map);
   try {
-    HeightMapScatter model(without_form(level, t.height_map_form_degree), wavelength_nm);
-    for (const std::string& warning : file.warnings)
-      warnings.push_back(fmt::format("{}: {}: {}", source, t.height_map_file.string(), warning));
-    return model;
+    return without_form(level, t.height_map_form_degree);
   } catch (const InputError& error) {
     throw InputError({t.height_map_file.string(), 0, ""}, error.what());
   }
 }
 
-surface_models::ScatterModel scatter_model(const Design& design, std::vector<std::string>& warnings) {
+/// The measured map of the facets; nothing for other models of their texture. Warnings are appended.
+std::optional<surface_models::HeightMap> facet_map(const Design& design, std::vector<std::string>& warnings) {
+  if (design.texture.model != FacetTexture::Model::height_map) return std::nullopt;
+  try {
+    return levelled_map(design.texture, design.source_name(), warnings);
+  } catch (const InputError& error) {
+    throw InputError(design.texture.location, error.what());  // which does not know who named the file
+  }
+}
+
+surface_models::ScatterModel height_map_model(const FacetTexture& t, const surface_models::HeightMap& map,
+                                              double wavelength_nm) {
+  try {
+    return surface_models::HeightMapScatter(map, wavelength_nm);
+  } catch (const InputError& error) {
+    throw InputError({t.height_map_file.string(), 0, ""}, error.what());
+  }
+}
+
+/// \param map that of facet_map()
+surface_models::ScatterModel scatter_model(const FacetTexture& t, const std::optional<surface_models::HeightMap>& map,
+                                           double wavelength_nm) {
   using Model = FacetTexture::Model;
-  const FacetTexture& t = design.texture;
   const auto shape = t.ggx ? surface_models::SlopeShape::ggx : surface_models::SlopeShape::beckmann;
   try {
     switch (t.model) {
@@ -60,7 +88,7 @@ surface_models::ScatterModel scatter_model(const Design& design, std::vector<std
       case Model::microfacet:
         return surface_models::Microfacet::of_waviness(shape, t.waviness_sq_nm, t.waviness_length_um);
       case Model::height_map:
-        return height_map_model(t, design.source_name(), design.wavelength_nm, warnings);
+        return height_map_model(t, *map, wavelength_nm);
       case Model::smooth:
         break;
     }
@@ -70,57 +98,124 @@ surface_models::ScatterModel scatter_model(const Design& design, std::vector<std
   }
 }
 
-}  // namespace
-
-raytrace::Optics make_optics(const Design& design, const materials::MaterialLibrary& library,
-                             std::vector<std::string>& warnings) {
+/// \param map that of facet_map()
+raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrary& library,
+                           const std::optional<surface_models::HeightMap>& map, double wavelength_nm) {
   const materials::Material& material = library.find(design.material, design.material_location);
   raytrace::Optics optics;
   optics.mirror_facets = design.idealisation.mirror_facets;
-  optics.facet_scatter = scatter_model(design, warnings);
+  optics.facet_scatter = scatter_model(design.texture, map, wavelength_nm);
   optics.back_index = design.back_index;
   if (design.aluminised_facets)
-    optics.coating_index = materials::complex_index(library.find_metal("aluminium").model, design.wavelength_nm) /
-                           materials::refractive_index(library.air().dispersion, design.wavelength_nm);
+    optics.coating_index = materials::complex_index(library.find_metal("aluminium").model, wavelength_nm) /
+                           materials::refractive_index(library.air().dispersion, wavelength_nm);
   optics.absorbing_walls = design.texture.absorbing_walls;
-  optics.wavelength_nm = design.wavelength_nm;
+  optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
   optics.absorption_per_mm = design.absorption_per_mm.value_or(material.absorption_per_mm);
   if (design.refractive_index) {
     optics.index = *design.refractive_index;
     return optics;
   }
-  optics.index = index_at_wavelength(design, material, library.air());
-  if (!materials::is_valid_at(material, design.wavelength_nm))
-    warnings.push_back(fmt::format("{}: the data of {} reach from {} to {} nm; its index at {} nm is extrapolated",
-                                   design.source_name(), material.name, material.valid_from_nm, material.valid_to_nm,
-                                   design.wavelength_nm));
+  optics.index = index_at_wavelength(design, material, library.air(), wavelength_nm);
   if (!(optics.index >= 1.0))
     throw InputError(design.material_location, fmt::format("the index of {} at {} nm must be >= 1, got {}",
-                                                           material.name, design.wavelength_nm, optics.index));
+                                                           material.name, wavelength_nm, optics.index));
   return optics;
 }
 
-namespace {
-
-/// What the texture's model says of its range. \throw InputError beyond every model
-void add_texture_warnings(const Design& design, OpticalModel& model) {
-  const double index = std::max(model.optics.index, model.optics.back_index);
-  const surface_models::ScatterModel& scatter = model.optics.facet_scatter;
-  try {
-    surface_models::require_in_range(scatter, index, design.wavelength_nm);
-  } catch (const InputError& error) {
-    throw InputError(design.texture.location, error.what());
+/// The flux of a lamp, or of its lines, before wavelengths are chosen.
+materials::Spectrum flux_of(const Design& design) {
+  using Kind = LightSpectrum::Kind;
+  const LightSpectrum& light = *design.spectrum;
+  const materials::CieTable cie = materials::shipped_cie_table();
+  const materials::SpectralCurve* const efficiency = light.photopic ? &cie.photopic_efficiency : nullptr;
+  switch (light.kind) {
+    case Kind::illuminant_a:
+      return materials::resolved_spectrum(cie.illuminant_a, efficiency);
+    case Kind::illuminant_d65:
+      return materials::resolved_spectrum(cie.illuminant_d65, efficiency);
+    case Kind::file:
+      return materials::resolved_spectrum(materials::read_spectral_power(light.file), efficiency);
+    case Kind::lines:
+      break;
   }
-  for (const std::string& warning : surface_models::warnings(scatter, index, design.wavelength_nm))
-    model.warnings.push_back(fmt::format("{}: {}", design.source_name(), warning));
+  std::vector<materials::SpectralLine> lines;
+  for (const LightSpectrum::Line& line : light.lines) lines.push_back({line.wavelength_nm, line.power});
+  return materials::line_spectrum(lines, efficiency);
+}
+
+/// Every line of a design, or the wavelengths that stand for a lamp.
+materials::Spectrum wavelengths_to_trace(const Design& design) {
+  if (!design.spectrum) return materials::monochromatic(design.wavelength_nm);
+  const LightSpectrum& light = *design.spectrum;
+  try {
+    const materials::Spectrum flux = flux_of(design);
+    return light.kind == LightSpectrum::Kind::lines ? flux : materials::traced_spectrum(flux);
+  } catch (const InputError& error) {
+    throw InputError(light.location, error.what());  // which may know file and line, but not who named it
+  }
+}
+
+/// Says so where an index is not backed by data.
+void warn_of_extrapolation(const Design& design, const materials::Material& material, OpticalModel& model) {
+  if (design.refractive_index) return;
+  std::vector<double> outside_nm;
+  double share = 0.0;
+  for (const SpectralOptics& at : model.spectral) {
+    if (materials::is_valid_at(material, at.wavelength_nm)) continue;
+    outside_nm.push_back(at.wavelength_nm);
+    share += at.weight;
+  }
+  if (outside_nm.empty()) return;
+  const std::string data = fmt::format("{}: the data of {} reach from {} to {} nm; its index ", design.source_name(),
+                                       material.name, material.valid_from_nm, material.valid_to_nm);
+  model.warnings.push_back(
+      model.spectral.size() == 1
+          ? data + fmt::format("at {} nm is extrapolated", outside_nm.front())
+          : data + fmt::format("is extrapolated for {:.2g} % of the light, at {} wavelengths from {:.0f} to {:.0f} nm",
+                               100.0 * share, outside_nm.size(), outside_nm.front(), outside_nm.back()));
+}
+
+/// What the texture's model says of its range, at the shortest wavelength that gives reason to: surfaces are roughest
+/// to it. \throw InputError beyond every model
+void add_texture_warnings(const Design& design, OpticalModel& model) {
+  bool is_told = false;
+  for (const SpectralOptics& at : model.spectral) {
+    const double index = std::max(at.optics.index, at.optics.back_index);
+    try {
+      surface_models::require_in_range(at.optics.facet_scatter, index, at.wavelength_nm);
+    } catch (const InputError& error) {
+      throw InputError(design.texture.location, error.what());
+    }
+    if (is_told) continue;
+    for (const std::string& warning : surface_models::warnings(at.optics.facet_scatter, index, at.wavelength_nm)) {
+      model.warnings.push_back(fmt::format("{}: {}", design.source_name(), warning));
+      is_told = true;
+    }
+  }
+}
+
+/// The wavelength of those to trace that lies nearest to `wavelength_nm`.
+const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double wavelength_nm) {
+  return *std::min_element(light.begin(), light.end(), [&](const SpectralOptics& a, const SpectralOptics& b) {
+    return std::abs(a.wavelength_nm - wavelength_nm) < std::abs(b.wavelength_nm - wavelength_nm);
+  });
 }
 
 }  // namespace
 
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library) {
   OpticalModel model;
-  model.optics = make_optics(design, library, model.warnings);
+  const materials::Material& material = library.find(design.material, design.material_location);
+  const materials::Spectrum light = wavelengths_to_trace(design);
+  const std::optional<surface_models::HeightMap> map = facet_map(design, model.warnings);
+  for (std::size_t k = 0; k < light.size(); ++k)
+    model.spectral.push_back(
+        {light.wavelengths_nm[k], light.weights[k], optics_at(design, library, map, light.wavelengths_nm[k])});
+  model.wavelength_nm = light.centroid_nm();
+  model.optics = nearest(model.spectral, model.wavelength_nm).optics;
+  warn_of_extrapolation(design, material, model);
   add_texture_warnings(design, model);
   model.part = geometry::build_part(design.part);
   return model;

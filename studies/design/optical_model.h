@@ -10,18 +10,24 @@
 
 namespace retrace::studies {
 
+/// The optics at one of the wavelengths of a design's light.
+struct SpectralOptics {
+  double wavelength_nm = 0.0;
+  double weight = 1.0;  ///< share of the flux that it stands for
+  raytrace::Optics optics;
+};
+
 /// A design made ready to trace.
 struct OpticalModel {
   geometry::Part part;
-  raytrace::Optics optics;
-  std::vector<std::string> warnings;  ///< what the user should know, such as an index outside its data
+  double wavelength_nm = 0.0;            ///< of the light; of a spectrum, its centroid
+  raytrace::Optics optics;               ///< at that of the wavelengths to trace which lies nearest to it
+  std::vector<SpectralOptics> spectral;  ///< at the wavelengths to trace, ascending; their weights add to 1
+  std::vector<std::string> warnings;     ///< what the user should know, such as an index outside its data
 };
 
-/// Builds the part and looks up the material. \throw InputError naming file and line for an unknown material
+/// Builds the part, looks up the material and resolves the spectrum of the light. \throw InputError naming file and
+/// line for an unknown material, a spectrum that cannot be read, or a wavelength at which the material has no index
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library);
-
-/// The optics alone. Warnings are appended to `warnings`.
-raytrace::Optics make_optics(const Design& design, const materials::MaterialLibrary& library,
-                             std::vector<std::string>& warnings);
 
 }  // namespace retrace::studies

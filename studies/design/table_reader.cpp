@@ -104,6 +104,32 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key, co
   return values;
 }
 
+std::vector<std::array<double, 2>> TableReader::number_pairs(std::string_view key, std::string_view shape,
+                                                             const Range& first, const Range& second) {
+  const toml::array& list = *take(key)->as_array();
+  const auto refuse = [&](const toml::node& node, const std::string& given) -> InputError {
+    return {document_.location(node, full_name(key)), fmt::format("must be a list of {}, got {}", shape, given)};
+  };
+  if (list.empty()) throw refuse(list, shown(list));
+  std::vector<std::array<double, 2>> pairs;
+  for (const toml::node& node : list) {
+    const toml::array* const pair = node.as_array();
+    if (pair == nullptr) throw refuse(node, fmt::format("{} in it", shown(node)));
+    if (pair->size() != 2) throw refuse(node, fmt::format("a list of {} in it", pair->size()));
+    pairs.push_back({checked_number(key, *pair->get(0), first), checked_number(key, *pair->get(1), second)});
+  }
+  return pairs;
+}
+
+bool TableReader::is_text(std::string_view key) const {
+  const toml::node* const node = find(key);
+  return node != nullptr && node->is_string();
+}
+
+std::string TableReader::shown_value(std::string_view key) const {
+  return shown(*find(key));
+}
+
 std::optional<std::size_t> TableReader::list_size(std::string_view key) const {
   const toml::node* const node = find(key);
   return node != nullptr && node->is_array() ? std::optional(node->as_array()->size()) : std::nullopt;

@@ -56,12 +56,19 @@ class TableReader {
   double required_number(std::string_view key, const Range& range);
   /// A number or a list of one or more numbers.
   std::optional<std::vector<double>> numbers(std::string_view key, const Range& range);
+  /// A list of one or more pairs of numbers. \param shape of a pair, for messages: "[wavelength_nm, power]" \pre it is
+  /// a list
+  std::vector<std::array<double, 2>> number_pairs(std::string_view key, std::string_view shape, const Range& first,
+                                                  const Range& second);
   /// How many entries the list of that name has; nothing if the key has no list.
   std::optional<std::size_t> list_size(std::string_view key) const;
+  bool is_text(std::string_view key) const;
   std::optional<std::string> text(std::string_view key);
   /// The name of a file. Relative ones are taken from the folder of the design, those of an override (and of a design
   /// on standard input) from the working directory.
   std::optional<std::filesystem::path> file(std::string_view key);
+  /// The value of a key that was given, as a message shows it.
+  std::string shown_value(std::string_view key) const;
 
   /// \param or_else what the key may have instead of a word, for messages: " or a list of four numbers"
   template <class Value>

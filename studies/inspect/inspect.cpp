@@ -71,10 +71,40 @@ std::string boundary_finding(const geometry::PartSpec& spec, double element_mm) 
   return is_whole ? finding : finding + " (checked on a smaller array of the same elements)";
 }
 
+double least_index(const std::vector<SpectralOptics>& light) {
+  const auto smaller = [](const SpectralOptics& a, const SpectralOptics& b) { return a.optics.index < b.optics.index; };
+  return std::min_element(light.begin(), light.end(), smaller)->optics.index;
+}
+
+double mean_index(const std::vector<SpectralOptics>& light) {
+  double mean = 0.0;
+  for (const SpectralOptics& at : light) mean += at.weight * at.optics.index;
+  return mean;
+}
+
+/// Says so if light that falls in along the normal is not totally reflected, or not all of it.
+void warn_of_lost_reflection(Inspection& result) {
+  if (result.tir_limit_deg || !result.design.needs_total_reflection()) return;
+  const std::string lost =
+      fmt::format("{}: no total reflection at the facets at normal incidence", result.design.source_name());
+  double share = 0.0;
+  double from_nm = 0.0;  // indices fall with the wavelength, but need not
+  double to_nm = 0.0;
+  for (const SpectralOptics& at : result.light) {
+    if (tir_limit_deg(result.design.part, at.optics.index, at.optics.back_index)) continue;
+    if (share == 0.0) from_nm = at.wavelength_nm;
+    to_nm = at.wavelength_nm;
+    share += at.weight;
+  }
+  if (result.light.size() == 1)
+    result.warnings.push_back(fmt::format("{} (n = {:.4f})", lost, result.refractive_index));
+  else
+    result.warnings.push_back(fmt::format("{} for {:.0f} % of the light, {:.0f} to {:.0f} nm (n from {:.4f})", lost,
+                                          100.0 * share, from_nm, to_nm, least_index(result.light)));
+}
+
 void add_warnings(Inspection& result, const geometry::Part& part) {
-  if (!result.tir_limit_deg && result.design.needs_total_reflection())
-    result.warnings.push_back(fmt::format("{}: no total reflection at the facets at normal incidence (n = {:.4f})",
-                                          result.design.source_name(), result.refractive_index));
+  warn_of_lost_reflection(result);
   if (part.elements_partial > 0 && part.spec.partial_elements == geometry::PartialElements::cut)
     result.warnings.push_back(
         fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
@@ -102,9 +132,10 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.entrance_area_mm2 = part.entrance_area_mm2;
   const double aperture = geometry::area(geometry::aperture_outline(design.part.element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
-  result.refractive_index = model.optics.index;
-  if (design.needs_total_reflection())
-    result.tir_limit_deg = tir_limit_deg(design.part, model.optics.index, model.optics.back_index);
+  result.refractive_index = mean_index(model.spectral);
+  if (design.needs_total_reflection()) result.wavelength_nm = model.wavelength_nm;
+  result.light = model.spectral;
+  result.tir_limit_deg = tir_limit_deg(design.part, least_index(model.spectral), model.optics.back_index);
   result.dead_zone_share = geometry::edge_share(
       geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part.edges));
   result.boundary = boundary_finding(design.part, part.size_mm);

@@ -7,6 +7,7 @@
 
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
+#include "studies/design/optical_model.h"
 
 namespace retrace::studies {
 
@@ -18,11 +19,13 @@ struct Inspection {
   double element_depth_mm = 0.0;
   double facet_area_mm2 = 0.0;  ///< of all retro facets, partial elements included
   double entrance_area_mm2 = 0.0;
-  double full_element_share = 0.0;  ///< of the entrance area
-  double refractive_index = 1.0;
+  double full_element_share = 0.0;    ///< of the entrance area
+  double wavelength_nm = 0.0;         ///< of the light; of a spectrum, its centroid
+  double refractive_index = 1.0;      ///< of a spectrum: its mean
+  std::vector<SpectralOptics> light;  ///< the wavelengths that stand for a spectrum, or the one there is
   /// Largest incidence up to which the retroreflected light is totally reflected at every facet: across the roof edge
   /// for an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence, or
-  /// none is needed: facets are mirrors or aluminised.
+  /// none is needed: facets are mirrors or aluminised. Of a spectrum, that of the wavelength with the least index.
   std::optional<double> tir_limit_deg;
   double dead_zone_share = 0.0;  ///< of an element's plan that rounded and chamfered edges take
   std::string boundary;          ///< what the check of the boundary found

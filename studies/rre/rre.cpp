@@ -14,7 +14,7 @@
 #include "raytrace/beam_tracer.h"
 #include "raytrace/monte_carlo.h"
 #include "raytrace/threads.h"
-#include "studies/design/optical_model.h"
+#include "studies/rre/spectral_mean.h"
 
 namespace retrace::studies {
 namespace {
@@ -51,6 +51,19 @@ void check(const RreRequest& request) {
       throw InputError({"", 0, "--incidence"}, fmt::format("must lie between -90 and 90 degrees, got {}", shortest(t)));
 }
 
+/// A slope, a footprint or a far field is that of one wavelength: a mean of them over others would show none of them.
+void check_light(const Design& design, const OpticalModel& model, const RreRequest& request) {
+  if (model.spectral.size() < 2) return;
+  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
+                                      {request.far_field, "--far-field"},
+                                      {request.derivatives, "--derivatives"}})
+    if (asked)
+      throw InputError(design.spectrum->location,
+                       fmt::format("{} takes one wavelength and this light has {}: give light.wavelength_nm instead, "
+                                   "or --set light.spectrum=[[{:.0f},1]]",
+                                   option, model.spectral.size(), model.wavelength_nm));
+}
+
 std::string missed_target(const Design& design, const RrePoint& at, const RreRequest& request) {
   return fmt::format("{}: the standard error at incidence {}, azimuth {} is above the target of {}",
                      design.source_name(), shortest(at.incidence_deg), shortest(at.azimuth_deg),
@@ -82,6 +95,7 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
   const auto library = materials::MaterialLibrary::shipped();
   for (const Design& design : designs) {
     prepared_->models.push_back(make_model(design, library));
+    check_light(design, prepared_->models.back(), request);
     if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
       throw InputError(design.texture.location,
                        "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "
@@ -98,22 +112,26 @@ namespace {
 /// One direction of one design, and what was found there.
 struct Direction {
   RrePoint at;
-  std::vector<RrePoint> points;  ///< one a cone; empty until traced
+  std::vector<std::vector<RrePoint>> spectral;  ///< by wavelength and cone; those not traced yet are empty
+  std::vector<RrePoint> points;                 ///< one a cone; empty until all wavelengths are traced
   std::optional<Footprint> footprint;
   std::optional<FarField> far_field;
 };
 
-std::vector<Direction> directions_of(const std::vector<Design>& designs, const RreRequest& request) {
+std::vector<Direction> directions_of(const std::vector<OpticalModel>& models, const RreRequest& request) {
   std::vector<Direction> directions;
-  for (std::size_t d = 0; d < designs.size(); ++d)
+  for (std::size_t d = 0; d < models.size(); ++d)
     for (const double azimuth : request.azimuth_deg)
       for (const double incidence : request.incidence_deg) {
         RrePoint at;
         at.design = d;
         at.incidence_deg = incidence;
         at.azimuth_deg = azimuth;
-        at.wavelength_nm = designs[d].wavelength_nm;
-        directions.push_back({at, {}, {}, {}});
+        at.wavelength_nm = models[d].wavelength_nm;
+        Direction direction;
+        direction.at = at;
+        direction.spectral.resize(models[d].spectral.size());
+        directions.push_back(std::move(direction));
       }
   return directions;
 }
@@ -155,38 +173,115 @@ void warn_of_truncation(RreResult& result) {
       shortest(worst->azimuth_deg)));
 }
 
-/// Directions one after the other, each on all threads.
+/// Each wavelength of a direction by itself.
+struct Unit {
+  std::size_t direction = 0;
+  std::size_t wavelength = 0;
+};
+
+std::vector<Unit> units_of(const std::vector<Direction>& directions) {
+  std::vector<Unit> units;
+  for (std::size_t d = 0; d < directions.size(); ++d)
+    for (std::size_t w = 0; w < directions[d].spectral.size(); ++w) units.push_back({d, w});
+  return units;
+}
+
+/// Makes points of a direction whose wavelengths are all traced.
+void finish(Direction& direction, const Design& design, const OpticalModel& model) {
+  const auto& spectral = direction.spectral;
+  if (std::any_of(spectral.begin(), spectral.end(), [](const auto& cones) { return cones.empty(); })) return;
+  if (!design.spectrum) {
+    direction.points = spectral.front();
+    return;
+  }
+  for (std::size_t cone = 0; cone < spectral.front().size(); ++cone) {
+    RrePoint at = direction.at;
+    at.acceptance_half_angle_deg = spectral.front()[cone].acceptance_half_angle_deg;
+    std::vector<SpectralPoint> points;
+    for (std::size_t w = 0; w < spectral.size(); ++w) points.push_back({model.spectral[w].weight, spectral[w][cone]});
+    direction.points.push_back(spectral_mean(at, points));
+    direction.points.back().derivatives = spectral.front()[cone].derivatives;
+  }
+}
+
+/// The sampling of one wavelength. Rays are shared in proportion to the weights w: variances v / (w N) of the estimates
+/// then make w^2 v / (w N) each and v / N in all, as if all N rays were of one wavelength. A target t becomes
+/// t / sqrt(w) in the same way. Seeds differ, so that the estimates are independent; the first is the one asked for.
+raytrace::Sampling sampling_of(const RreRequest& request, double weight, std::size_t wavelength) {
+  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
+  raytrace::Sampling sampling;
+  sampling.seed = request.seed + kGolden * static_cast<std::uint32_t>(wavelength);
+  sampling.target_error = request.target_error / std::sqrt(weight);
+  if (request.rays)
+    sampling.rays = std::max<std::uint64_t>(
+        1, static_cast<std::uint64_t>(std::llround(weight * static_cast<double>(*request.rays))));
+  return sampling;
+}
+
+std::vector<RrePoint> points_of(const RrePoint& at, const raytrace::MonteCarloResult& traced) {
+  std::vector<RrePoint> points;
+  for (const raytrace::ConeResult& cone : traced.cones) {
+    RrePoint point = at;
+    point.acceptance_half_angle_deg = cone.half_angle_deg;
+    point.rre = cone.rre;
+    point.std_error = cone.std_error;
+    point.stokes = cone.stokes;
+    point.ledger = cone.ledger;
+    points.push_back(point);
+  }
+  return points;
+}
+
+std::vector<RrePoint> points_of(const RrePoint& at, const std::vector<double>& cones,
+                                const raytrace::BeamResult& traced) {
+  std::vector<RrePoint> points;
+  for (std::size_t cone = 0; cone < cones.size(); ++cone) {
+    RrePoint point = at;
+    point.acceptance_half_angle_deg = cones[cone];
+    point.ledger = traced.ledgers[cone];
+    point.rre = point.ledger[raytrace::Account::retroreflected];
+    point.stokes = traced.stokes[cone];
+    point.beams = traced.beams;
+    point.depth = traced.depth;
+    points.push_back(point);
+  }
+  return points;
+}
+
+/// The point of a direction at one of its wavelengths, before it is traced.
+RrePoint spectral_point(const Direction& direction, const SpectralOptics& light) {
+  RrePoint at = direction.at;
+  at.wavelength_nm = light.wavelength_nm;
+  return at;
+}
+
+/// Directions and wavelengths one after the other, each on all threads.
 void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                           const RreRequest& request, std::vector<Direction>& directions, Progress* progress,
                           const Cancellation* cancel, RreResult& result) {
-  Counter counter(progress, directions.size());
-  raytrace::Sampling sampling;
-  sampling.seed = request.seed;
-  sampling.rays = request.rays;
-  sampling.target_error = request.target_error;
+  const std::vector<Unit> units = units_of(directions);
+  Counter counter(progress, units.size());
   raytrace::PathPolicy policy;
   policy.cutoff = request.cutoff.value_or(policy.cutoff);
   std::optional<raytrace::MonteCarlo> tracer;
   std::size_t traced_design = designs.size();
-  for (Direction& direction : directions) {
-    const RrePoint& at = direction.at;
-    if (at.design != traced_design) tracer.emplace(models[at.design].part);
-    traced_design = at.design;
+  bool reached_target = true;
+  for (const auto& [d, w] : units) {
+    Direction& direction = directions[d];
+    const Design& design = designs[direction.at.design];
+    const OpticalModel& model = models[direction.at.design];
+    const SpectralOptics& light = model.spectral[w];
+    if (direction.at.design != traced_design) tracer.emplace(model.part);
+    traced_design = direction.at.design;
     const raytrace::MonteCarloResult traced =
-        tracer->trace(models[at.design].optics, illumination_of(at, designs[at.design]),
-                      designs[at.design].acceptance_half_angle_deg, sampling, policy, cancel);
+        tracer->trace(light.optics, illumination_of(direction.at, design), design.acceptance_half_angle_deg,
+                      sampling_of(request, light.weight, w), policy, cancel);
     if (!traced.complete) return;  // an unfinished point is no point
-    for (const raytrace::ConeResult& cone : traced.cones) {
-      RrePoint point = at;
-      point.acceptance_half_angle_deg = cone.half_angle_deg;
-      point.rre = cone.rre;
-      point.std_error = cone.std_error;
-      point.stokes = cone.stokes;
-      point.ledger = cone.ledger;
-      direction.points.push_back(point);
-    }
+    direction.spectral[w] = points_of(spectral_point(direction, light), traced);
     result.rays += traced.rays;
-    if (!traced.reached_target) result.warnings.push_back(missed_target(designs[at.design], at, request));
+    reached_target = (w == 0 || reached_target) && traced.reached_target;
+    if (w + 1 == direction.spectral.size() && !reached_target)
+      result.warnings.push_back(missed_target(design, direction.at, request));
     counter.finished();
   }
 }
@@ -225,41 +320,33 @@ bool add_derivatives(const TracedDirection& traced, const Cancellation* cancel, 
   return true;
 }
 
-/// Several directions at a time, each on one thread but for its derivatives.
+/// Several directions and wavelengths at a time, each on one thread but for its derivatives.
 void trace_exactly(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                    const RreRequest& request, std::vector<Direction>& directions, Progress* progress,
                    const Cancellation* cancel) {
-  Counter counter(progress, directions.size());
+  const std::vector<Unit> units = units_of(directions);
+  Counter counter(progress, units.size());
   raytrace::BeamPolicy policy;
   policy.cutoff = request.cutoff;
   if (!must_be_exact(request)) policy.max_beams = kBeamsOfAutomatic;
   std::vector<raytrace::BeamTracer> tracers;
   for (const OpticalModel& model : models) tracers.emplace_back(model.part);
-  raytrace::for_each_in_parallel(directions.size(), [&](std::size_t k) {
-    const RrePoint& at = directions[k].at;
-    const std::vector<double>& cones = designs[at.design].acceptance_half_angle_deg;
-    const raytrace::Illumination illumination = illumination_of(at, designs[at.design]);
-    Collector collector(request, models[at.design], cones.size(), illumination);
+  raytrace::for_each_in_parallel(units.size(), [&](std::size_t k) {
+    Direction& direction = directions[units[k].direction];
+    const std::size_t d = direction.at.design;
+    const SpectralOptics& light = models[d].spectral[units[k].wavelength];
+    const std::vector<double>& cones = designs[d].acceptance_half_angle_deg;
+    const raytrace::Illumination illumination = illumination_of(direction.at, designs[d]);
+    Collector collector(request, models[d], cones.size(), illumination);
     const raytrace::BeamResult traced =
-        tracers[at.design].trace(models[at.design].optics, illumination, cones, policy, cancel, collector.observer());
+        tracers[d].trace(light.optics, illumination, cones, policy, cancel, collector.observer());
     if (!traced.complete) return;
-    collector.finish(directions[k]);
-    for (std::size_t cone = 0; cone < cones.size(); ++cone) {
-      RrePoint point = at;
-      point.acceptance_half_angle_deg = cones[cone];
-      point.ledger = traced.ledgers[cone];
-      point.rre = point.ledger[raytrace::Account::retroreflected];
-      point.stokes = traced.stokes[cone];
-      point.beams = traced.beams;
-      point.depth = traced.depth;
-      directions[k].points.push_back(point);
-    }
+    collector.finish(direction);
+    std::vector<RrePoint> points = points_of(spectral_point(direction, light), cones, traced);
     if (request.derivatives &&
-        !add_derivatives({designs[at.design], models[at.design], tracers[at.design], illumination, policy, traced},
-                         cancel, directions[k].points)) {
-      directions[k].points.clear();
+        !add_derivatives({designs[d], models[d], tracers[d], illumination, policy, traced}, cancel, points))
       return;
-    }
+    direction.spectral[units[k].wavelength] = std::move(points);
     counter.finished();
   });
 }
@@ -275,7 +362,7 @@ bool trace_exactly_if_cheap(const std::vector<Design>& designs, const std::vecto
     return true;
   } catch (const BudgetError&) {
     if (must_be_exact(request)) throw;
-    directions = directions_of(designs, request);
+    directions = directions_of(models, request);
     return false;
   }
 }
@@ -289,14 +376,16 @@ RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
   result.designs = designs;
   result.engine_requested = engine_name(request.engine);
   result.seed = request.seed;
+  for (const OpticalModel& model : models) result.light.push_back(model.spectral);
   for (const OpticalModel& model : models)
     result.warnings.insert(result.warnings.end(), model.warnings.begin(), model.warnings.end());
 
-  std::vector<Direction> directions = directions_of(designs, request);
+  std::vector<Direction> directions = directions_of(models, request);
   const bool exact = trace_exactly_if_cheap(designs, models, request, directions, progress, cancel);
   if (!exact) trace_by_monte_carlo(designs, models, request, directions, progress, cancel, result);
   result.engine = exact ? "exact" : "embree";
   for (Direction& direction : directions) {
+    finish(direction, designs[direction.at.design], models[direction.at.design]);
     result.complete = result.complete && !direction.points.empty();
     result.points.insert(result.points.end(), direction.points.begin(), direction.points.end());
     if (!direction.points.empty() && (direction.footprint || direction.far_field))

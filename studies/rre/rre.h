@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "raytrace/ledger.h"
 #include "studies/design/design.h"
+#include "studies/design/optical_model.h"
 #include "studies/rre/derivatives.h"
 #include "studies/rre/far_field.h"
 #include "studies/rre/footprint.h"
@@ -40,11 +41,19 @@ struct RreRequest {
   bool far_field = false;    ///< exact engine: the directions in which light leaves the entrance face
 };
 
+/// RRE at one of the wavelengths of a spectrum.
+struct SpectralRre {
+  double wavelength_nm = 0.0;
+  double weight = 0.0;  ///< share of the flux that it stands for
+  double rre = 0.0;
+  double std_error = 0.0;
+};
+
 struct RrePoint {
   std::size_t design = 0;
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  double wavelength_nm = 0.0;
+  double wavelength_nm = 0.0;  ///< of a spectrum: its centroid
   double acceptance_half_angle_deg = 0.0;
   double rre = 0.0;
   double std_error = 0.0;
@@ -53,6 +62,7 @@ struct RrePoint {
   std::uint64_t beams = 0;                      ///< exact engine: followed for this point
   std::uint32_t depth = 0;                      ///< exact engine: interfaces on the longest path
   std::vector<RreDerivative> derivatives = {};  ///< if they were asked for
+  std::vector<SpectralRre> by_wavelength = {};  ///< designs with a spectrum: what the point is the mean of
 };
 
 /// What was asked for beyond RRE, for one direction.
@@ -64,7 +74,8 @@ struct ReturnedLight {
 
 struct RreResult {
   std::vector<Design> designs;
-  std::string engine = "embree";  ///< that ran
+  std::vector<std::vector<SpectralOptics>> light;  ///< by design: the wavelengths that were traced
+  std::string engine = "embree";                   ///< that ran
   std::string engine_requested;
   std::uint32_t seed = 1;
   std::vector<RrePoint> points;         ///< in the order design, wavelength, azimuth, incidence, acceptance

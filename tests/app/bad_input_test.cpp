@@ -73,6 +73,13 @@ TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
       {2, "kind = \"prism\"", "d.toml:2: element.kind: "},                       //
       {4, "this is no TOML", "d.toml:4: not valid TOML"},                        //
       {4, "base_mm = 1", "d.toml:4: "},                                          // twice the same key
+      {12, "[light]\nspectrum = \"B\"", "d.toml:13: light.spectrum: must be \"A\", \"D65\", a file"},
+      {12, "[light]\nspectrum = \"no.csv\"", "d.toml:13: light.spectrum: no.csv: cannot be read"},
+      {12, "[light]\nspectrum = \"d.toml/a.csv\"", "d.toml:13: light.spectrum: d.toml/a.csv: cannot be read"},
+      {12, "[light]\nspectrum = [[555, -1]]", "d.toml:13: light.spectrum: must be >= 0, got -1"},
+      {12, "[light]\nspectrum = [[1000, 1]]", "d.toml:13: light.spectrum: holds no light that the eye sees"},
+      {12, "[light]\nspectrum = \"A\"\nwavelength_nm = 1", "d.toml:14: light.wavelength_nm: not allowed together"},
+      {12, "[light]\nweighting = \"radiant\"", "d.toml:13: light.weighting: only allowed together with spectrum"},
       {12, "[surface]\nroughness_sq_nm = 5", "d.toml:12: surface.correlation_length_um: "},
   };
   for (const BadLine& bad : cases)
@@ -83,6 +90,40 @@ TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
       expect_one_line(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"}), 2, bad.where);
       EXPECT_EQ(folder.names(), Arguments{"d.toml"});
     }
+}
+
+TEST(BadInput, WrongFilesOfSpectraAreRefusedWithFileLineAndColumn) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", ": must begin with the header wavelength_nm,power"},
+      {"wavelength_nm,power\n", ": must hold at least two wavelengths, got 0"},
+      {"400,1\n500,1\n", ":1: must be the header"},
+      {"wavelength_nm,power\n400,1\n500,nan\n", ":3: power: must be a finite number, got \"nan\""},
+      {"wavelength_nm,power\n400,1\n500,-1\n", ":3: power: must be >= 0, got -1"},
+      {"wavelength_nm,power\n500,1\n400,1\n", ":3: wavelength_nm: must ascend, got 400 after 500"},
+      {"wavelength_nm,power\n400,0\n500,0\n", ""},   // the file is sound, but all of it is dark
+      {"wavelength_nm,power\n900,1\n1000,1\n", ""},  // or unseen
+  };
+  for (const auto& [text, complaint] : cases)
+    for (const std::string command : {"rre", "inspect"}) {
+      SCOPED_TRACE(text);
+      const TemporaryFolder folder;
+      folder.write("d.toml", design_with(12, "[light]\nspectrum = \"lamp.csv\""));
+      folder.write("lamp.csv", text);
+      const std::string where = "d.toml:13: light.spectrum: ";
+      expect_one_line(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"}), 2,
+                      where + (complaint.empty() ? "holds no light that the eye sees" : "lamp.csv" + complaint));
+      EXPECT_EQ(folder.names(), (Arguments{"d.toml", "lamp.csv"}));
+    }
+}
+
+TEST(BadOutput, NoOutputReplacesTheFileOfASpectrum) {
+  const TemporaryFolder folder;
+  const std::string lamp = "wavelength_nm,power\n400,1\n700,1\n";
+  folder.write("d.toml", design_with(12, "[light]\nspectrum = \"rre.csv\""));
+  folder.write("rre.csv", lamp);
+  expect_one_line(retrace(folder, {"rre", "d.toml", "-o", "."}), 2, "--out: ./rre.csv is a design or a file");
+  expect_one_line(retrace(folder, {"inspect", "d.toml", "--json", "rre.csv"}), 2, "--json: rre.csv is a design or a");
+  EXPECT_EQ(folder.read("rre.csv"), lamp);
 }
 
 TEST(BadInput, ErrorsOfStandardInputAndOverridesSayWhere) {

@@ -262,6 +262,43 @@ TEST(Rre, WithoutOutATableIsPrintedAndNothingWritten) {
   EXPECT_TRUE(folder.names().empty());
 }
 
+TEST(Rre, LightOfASpectrumIsTraced) {
+  const TemporaryFolder folder;
+  folder.write("lamp.csv", "wavelength_nm,power\n400,0.5\n700,1\n");
+  folder.write("d.toml",
+               "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"single\"\n"
+               "[body]\nthickness_mm = 1\n[light]\nspectrum = \"lamp.csv\"\n");
+  for (const std::string engine : {"exact", "montecarlo"}) {
+    const Outcome outcome =
+        retrace(folder, {"rre", "d.toml", "--engine", engine, "--incidence=0,12", "--target-error=1e-3", "-o", "r"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Json json = folder.json("r/rre.json");
+    ASSERT_EQ(json["points"].size(), 2U);
+    const Json& point = json["points"][1];
+    EXPECT_EQ(point["by_wavelength"].size(), 10U);
+    EXPECT_EQ(point["wavelength_nm"], json["designs"][0]["spectrum"]["centroid_nm"]);
+    EXPECT_EQ(json["designs"][0]["light"]["spectrum"], "lamp.csv");
+    EXPECT_EQ(lines_of(folder.read("r/rre.csv")).size(), 3U);
+  }
+  const Json inspected = retrace_json(folder, {"inspect", "d.toml"});
+  EXPECT_EQ(inspected["spectrum"]["wavelengths_nm"].size(), 10U);
+  const Outcome text = retrace(folder, {"inspect", "d.toml"});
+  EXPECT_NE(text.out.find("spectrum            10 wavelengths, "), std::string::npos) << text.out;
+}
+
+TEST(Rre, SpectraGiveTheSameBytesAtAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  const Arguments run = {"rre",    kDesign, "--set", "light.spectrum=D65", "--samples=4096", "--incidence=0,20",
+                         "--json", "-"};
+  Arguments one = run;
+  one.insert(one.end(), {"--threads", "1"});
+  Arguments two = run;
+  two.insert(two.end(), {"--threads", "2"});
+  const Outcome first = retrace(folder, one);
+  ASSERT_EQ(first.code, 0) << first.err;
+  EXPECT_EQ(without_elapsed(first.out), without_elapsed(retrace(folder, two).out));
+}
+
 TEST(Rre, QuietSaysNothing) {
   const TemporaryFolder folder;
   // Warns: the wavelength is outside the material's data.

@@ -500,7 +500,6 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
   const auto refused = [](const std::string& set) { return set_complaint({set}); };
   EXPECT_EQ(refused("array.mask=m.png"), "--set array.mask=m.png: array.mask" + no);
   EXPECT_EQ(refused("array.mask_threshold=0.7"), "--set array.mask_threshold=0.7: array.mask_threshold" + no);
-  EXPECT_EQ(refused("light.spectrum=A"), "--set light.spectrum=A: light.spectrum" + no);
   EXPECT_EQ(refused("body.back_index=0.9"),
             "--set body.back_index=0.9: body.back_index: must be >= 1 and <= 3, got 0.9");
   EXPECT_EQ(refused("body.back_index=1.33"), "");
@@ -516,6 +515,63 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
   }
   EXPECT_EQ(refused("surface.roughness_sq_nm=rough"),
             "--set surface.roughness_sq_nm=rough: surface.roughness_sq_nm: must be a number, got \"rough\"");
+}
+
+TEST(DesignReader, SpectrumIsANameAFileOrLines) {
+  using Kind = LightSpectrum::Kind;
+  EXPECT_FALSE(set({}).spectrum);
+  const auto spectrum = [](const std::string& value) { return *set({"light.spectrum=" + value}).spectrum; };
+  EXPECT_EQ(spectrum("A").kind, Kind::illuminant_a);
+  EXPECT_EQ(spectrum("D65").kind, Kind::illuminant_d65);
+  EXPECT_TRUE(spectrum("A").photopic);
+  EXPECT_FALSE(set({"light.spectrum=A", "light.weighting=radiant"}).spectrum->photopic);
+  EXPECT_TRUE(set({"light.spectrum=A", "light.weighting=photopic"}).spectrum->photopic);
+  const LightSpectrum file = spectrum("\"lamps/led.csv\"");
+  EXPECT_EQ(file.kind, Kind::file);
+  EXPECT_EQ(file.name, "lamps/led.csv");
+  EXPECT_EQ(file.file, "lamps/led.csv") << "of an override: from the working directory";
+  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"led.csv\"\n", "a/d.toml", {}).spectrum->file,
+            "a/led.csv");
+  const LightSpectrum lines = spectrum("[[589.6, 1], [589.0, 2]]");
+  EXPECT_EQ(lines.kind, Kind::lines);
+  ASSERT_EQ(lines.lines.size(), 2U);
+  EXPECT_EQ(lines.lines[0].wavelength_nm, 589.0) << "ascending";
+  EXPECT_EQ(lines.lines[0].power, 2.0);
+  EXPECT_EQ(lines.lines[1].wavelength_nm, 589.6);
+  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"A\"\n", "d.toml", {}).spectrum->location.line, 12);
+}
+
+TEST(DesignReader, WhatIsNoSpectrumIsRefused) {
+  const auto refused = [](const std::string& value) {
+    return complaint(with_line(11, "[light]\nspectrum = " + value));
+  };
+  const std::string where = "d.toml:12: light.spectrum: ";
+  const std::string allowed =
+      where + "must be \"A\", \"D65\", a file that ends in .csv or a list of [wavelength_nm, power], got ";
+  EXPECT_EQ(refused("\"F11\""), allowed + "\"F11\"");
+  EXPECT_EQ(refused("\"a\""), allowed + "\"a\"");
+  EXPECT_EQ(refused("\"\""), allowed + "\"\"");
+  EXPECT_EQ(refused("\"a\\u0000.csv\""), allowed + "\"a\\x00.csv\"");
+  EXPECT_EQ(refused("555"), allowed + "555");
+  EXPECT_EQ(refused("{ a = 1 }"), allowed + "a table");
+  const std::string list = where + "must be a list of [wavelength_nm, power], got ";
+  EXPECT_EQ(refused("[]"), list + "an empty list");
+  EXPECT_EQ(refused("[555, 1]"), list + "555 in it");
+  EXPECT_EQ(refused("[[555]]"), list + "a list of 1 in it");
+  EXPECT_EQ(refused("[[555, 1, 2]]"), list + "a list of 3 in it");
+  EXPECT_EQ(refused("[[555, \"x\"]]"), where + "must be a number, got \"x\"");
+  EXPECT_EQ(refused("[[555, 1], [0, 1]]"), where + "must be > 0, got 0");
+  EXPECT_EQ(refused("[[555, -1]]"), where + "must be >= 0, got -1");
+  EXPECT_EQ(refused("[[555, nan]]"), where + "must be a finite number, got nan");
+  EXPECT_EQ(refused("[[555, 1], [555.0, 2]]"), where + "must name each wavelength once, got 555 twice");
+  EXPECT_EQ(
+      refused("\"A\"\nwavelength_nm = 555"),
+      "d.toml:13: light.wavelength_nm: not allowed together with spectrum: one of the two says what the light is, "
+      "got 555");
+  EXPECT_EQ(refused("\"A\"\nweighting = \"eye\""),
+            "d.toml:13: light.weighting: must be one of \"photopic\" or \"radiant\", got \"eye\"");
+  EXPECT_EQ(set_complaint({"light.weighting=photopic"}),
+            "--set light.weighting=photopic: light.weighting: only allowed together with spectrum, got \"photopic\"");
 }
 
 TEST(DesignReader, AngleErrorsAreReadForEveryKind) {

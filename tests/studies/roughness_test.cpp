@@ -117,8 +117,7 @@ double phase2(double index, double sa_nm) {
 // Two total reflections at 45 degrees, each of which leaves exp(-g) of closed form 7; Sq = sqrt(pi / 2) Sa.
 TEST(RoughnessStudy, SpecularShareIsTheClosedFormOfSa) {
   const Design design = parse_design(kPrism, "d.toml");
-  std::vector<std::string> warnings;
-  const double index = make_optics(design, materials::MaterialLibrary::shipped(), warnings).index;
+  const double index = make_model(design, materials::MaterialLibrary::shipped()).optics.index;
   RoughnessRequest request = request_of({0.0, 4.0, 9.0, 20.0});
   FacetGroup wavy;
   wavy.name = "wavy";

@@ -4,5 +4,5 @@ retrace_test(studies_design_test
 retrace_test(studies_rre_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/derivatives_test.cpp ${CMAKE_CURRENT_LIST_DIR}/returned_light_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/rre_files_test.cpp ${CMAKE_CURRENT_LIST_DIR}/roughness_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp
-  LIBRARIES retrace::roughness retrace::rre)
+          ${CMAKE_CURRENT_LIST_DIR}/spectrum_of_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp
+  LIBRARIES retrace::roughness retrace::rre retrace::inspect)

@@ -89,8 +89,7 @@ RrePoint exact(const std::string& design, std::vector<std::string> overrides, do
 }
 
 double index_of(const std::string& design) {
-  std::vector<std::string> warnings;
-  return make_optics(parse_design(design, "d.toml"), materials::MaterialLibrary::shipped(), warnings).index;
+  return make_model(parse_design(design, "d.toml"), materials::MaterialLibrary::shipped()).optics.index;
 }
 
 /// Closed form 7 for the two facets that light meets one after the other.

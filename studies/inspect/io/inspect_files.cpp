@@ -21,6 +21,20 @@ std::string total_reflection(const Inspection& i) {
                      is_rtp ? "across the roof edge" : "at every azimuth");
 }
 
+std::string wavelength_text(const Inspection& i) {
+  return i.design.spectrum ? fixed(i.wavelength_nm, 1) : shortest(i.wavelength_nm);
+}
+
+/// What a spectrum spans, and what its wavelengths see; a line of its own.
+std::string spectrum_text(const Inspection& i) {
+  if (!i.design.spectrum) return {};
+  const SpectralOptics& first = i.light.front();
+  const SpectralOptics& last = i.light.back();
+  return fmt::format("  spectrum            {} wavelengths, {} to {} nm, index {} to {}\n", i.light.size(),
+                     fixed(first.wavelength_nm, 1), fixed(last.wavelength_nm, 1), fixed(first.optics.index, 5),
+                     fixed(last.optics.index, 5));
+}
+
 }  // namespace
 
 std::string inspect_json(const Inspection& i) {
@@ -33,6 +47,7 @@ std::string inspect_json(const Inspection& i) {
                                  {"entrance_area_mm2", i.entrance_area_mm2},
                                  {"full_element_share", i.full_element_share},
                                  {"refractive_index", i.refractive_index}};
+  if (i.design.spectrum) json["spectrum"] = spectrum_json(i.light);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   json["dead_zone_share"] = i.dead_zone_share;
   json["boundary"] = i.boundary;
@@ -51,8 +66,8 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
   text += fmt::format("  full elements       {} % of it\n", fixed(100.0 * i.full_element_share, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
-  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5),
-                      shortest(i.design.wavelength_nm));
+  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
+  text += spectrum_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
   text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_share, 3));
   text += fmt::format("  boundary            {}\n", i.boundary);

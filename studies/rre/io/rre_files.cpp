@@ -25,6 +25,21 @@ Json ledger_json(const raytrace::Ledger& ledger) {
   return json;
 }
 
+Json by_wavelength_json(const std::vector<SpectralRre>& points) {
+  Json json = Json::array();
+  for (const SpectralRre& p : points)
+    json.push_back(
+        {{"wavelength_nm", p.wavelength_nm}, {"weight", p.weight}, {"rre", p.rre}, {"std_error", p.std_error}});
+  return json;
+}
+
+/// The design as it was read, and the wavelengths that stood for its spectrum.
+Json design_json(const RreResult& result, std::size_t d) {
+  Json json = to_json(result.designs[d]);
+  if (result.designs[d].spectrum) json["spectrum"] = spectrum_json(result.light[d]);
+  return json;
+}
+
 /// Empty where the JSON leaves the key out.
 std::string csv_number(double value) {
   return std::isfinite(value) ? shortest(value) : std::string();
@@ -41,7 +56,7 @@ bool has_several_cones(const RreResult& result) {
 std::string rre_json(const RreResult& result) {
   Json json = {{"schema", "retrace.rre/1"}, {"engine", result.engine}, {"engine_requested", result.engine_requested}};
   json["designs"] = Json::array();
-  for (const Design& design : result.designs) json["designs"].push_back(to_json(design));
+  for (std::size_t d = 0; d < result.designs.size(); ++d) json["designs"].push_back(design_json(result, d));
   json["seed"] = result.seed;
   json["points"] = Json::array();
   for (const RrePoint& p : result.points) {
@@ -54,6 +69,7 @@ std::string rre_json(const RreResult& result) {
                               {"std_error", p.std_error},
                               {"stokes", p.stokes.values()},
                               {"ledger", ledger_json(p.ledger)}});
+    if (!p.by_wavelength.empty()) json["points"].back()["by_wavelength"] = by_wavelength_json(p.by_wavelength);
     if (result.engine != "exact") continue;
     json["points"].back()["beams"] = p.beams;
     json["points"].back()["depth"] = p.depth;

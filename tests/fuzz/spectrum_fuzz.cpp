@@ -1,0 +1,28 @@
+// Whatever the file of a lamp holds, it either becomes wavelengths and weights that add to 1 or is refused in one line.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/error.h"
+#include "materials/io/spectrum_reader.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  namespace materials = retrace::materials;
+  try {
+    const auto lamp = materials::parse_spectral_power({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    const auto rule = materials::traced_spectrum(materials::resolved_spectrum(lamp, nullptr));
+    double total = 0.0;
+    for (const double weight : rule.weights) total += weight;
+    if (!(std::abs(total - 1.0) < 1e-9) || !std::is_sorted(rule.wavelengths_nm.begin(), rule.wavelengths_nm.end()))
+      std::abort();
+  } catch (const retrace::InputError& error) {
+    const std::string_view message = error.what();
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+  }
+  return 0;
+}
