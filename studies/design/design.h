@@ -42,6 +42,11 @@ struct FacetTexture {
   InputLocation location;          ///< where it was given, for whoever cannot trace it
 };
 
+struct SpectralAbsorption {
+  double wavelength_nm = 0.0;
+  double per_mm = 0.0;  ///< Napierian, for power; >= 0
+};
+
 /// Light of more than one wavelength, as the design names it.
 struct LightSpectrum {
   enum class Kind { illuminant_a, illuminant_d65, file, lines };
@@ -66,10 +71,13 @@ struct Design {
   InputLocation material_location;          ///< where the material was named, for whoever finds that it is not shipped
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
   std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
-  double back_index = 1.0;                  ///< of what lies behind the facets, relative to air; 1..3
-  bool aluminised_facets = false;           ///< an opaque film behind the retro facets
-  double wavelength_nm = 587.56;            ///< means nothing where there is a spectrum
-  InputLocation wavelength_location;        ///< where it was given, for whoever finds no index there
+  /// The same by wavelength: linear between two or more pairs that ascend; empty if it was not given so.
+  std::vector<SpectralAbsorption> absorption_by_wavelength;
+  InputLocation absorption_location;  ///< where it was given, for whoever finds none at a wavelength
+  double back_index = 1.0;            ///< of what lies behind the facets, relative to air; 1..3
+  bool aluminised_facets = false;     ///< an opaque film behind the retro facets
+  double wavelength_nm = 587.56;      ///< means nothing where there is a spectrum
+  InputLocation wavelength_location;  ///< where it was given, for whoever finds no index there
   std::optional<LightSpectrum> spectrum;
   /// Of the incident light, along the axes of raytrace::source_axis(); i = 1.
   raytrace::Stokes polarisation = raytrace::kUnpolarised;

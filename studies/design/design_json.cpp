@@ -170,6 +170,8 @@ nlohmann::ordered_json to_json(const Design& design) {
   Json body = {{"thickness_mm", design.part.thickness_mm}, {"material", design.material}};
   if (design.refractive_index) body["refractive_index"] = *design.refractive_index;
   if (design.absorption_per_mm) body["absorption_per_mm"] = *design.absorption_per_mm;
+  for (const auto& [wavelength_nm, per_mm] : design.absorption_by_wavelength)
+    body["absorption_per_mm"].push_back(Json::array({wavelength_nm, per_mm}));
   if (design.aluminised_facets) body["facet_coating"] = "aluminium";
   if (design.back_index != 1.0) body["back_index"] = design.back_index;
   Json json = {{"source", design.source}};

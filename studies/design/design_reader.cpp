@@ -256,6 +256,26 @@ PartSpec read_part(const DesignDocument& document) {
   return part;
 }
 
+/// One number, or pairs over the wavelength.
+void read_absorption(TableReader& body, Design& design) {
+  constexpr std::string_view key = "absorption_per_mm";
+  design.absorption_location = body.where(key);
+  const std::optional<std::size_t> size = body.list_size(key);
+  if (!size) {
+    design.absorption_per_mm = body.number(key, kNotNegative);
+    return;
+  }
+  for (const auto& [wavelength_nm, per_mm] :
+       body.number_pairs(key, "[wavelength_nm, absorption_per_mm]", kPositive, kNotNegative)) {
+    std::vector<SpectralAbsorption>& curve = design.absorption_by_wavelength;
+    if (!curve.empty() && !(wavelength_nm > curve.back().wavelength_nm))
+      body.fail(key, fmt::format("wavelengths must ascend, got {} after {}", shortest(wavelength_nm),
+                                 shortest(curve.back().wavelength_nm)));
+    curve.push_back({wavelength_nm, per_mm});
+  }
+  if (*size < 2) body.fail(key, "must be a number or a list of two or more pairs, got a list of one");
+}
+
 void read_body(TableReader& body, Design& design) {
   design.part.thickness_mm = read_size(body, "thickness_mm");
   const double top_mm = geometry::element_top_mm(design.part.element, design.part.angle_errors);
@@ -267,7 +287,7 @@ void read_body(TableReader& body, Design& design) {
   design.material = body.text("material").value_or(design.material);
   if (design.material.empty()) body.fail("material", "must name a material, such as \"PMMA\", got \"\"");
   design.refractive_index = body.number("refractive_index", kRefractiveIndex);
-  design.absorption_per_mm = body.number("absorption_per_mm", kNotNegative);
+  read_absorption(body, design);
   design.back_index = body.number("back_index", kBackIndex).value_or(design.back_index);
   design.aluminised_facets = body.choice("facet_coating", all(kCoatings)).value_or(false);
   body.finish();

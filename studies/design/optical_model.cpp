@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/number_format.h"
 #include "materials/io/spectrum_reader.h"
 #include "surface_models/form.h"
 #include "surface_models/io/height_map_reader.h"
@@ -98,6 +99,21 @@ surface_models::ScatterModel scatter_model(const FacetTexture& t, const std::opt
   }
 }
 
+double absorption_at(const Design& design, const materials::Material& material, double wavelength_nm) {
+  if (design.absorption_by_wavelength.empty()) return design.absorption_per_mm.value_or(material.absorption_per_mm);
+  materials::SpectralCurve curve;
+  for (const auto& [at_nm, per_mm] : design.absorption_by_wavelength) {
+    curve.wavelengths_nm.push_back(at_nm);
+    curve.values.push_back(per_mm);
+  }
+  if (wavelength_nm < curve.wavelengths_nm.front() || wavelength_nm > curve.wavelengths_nm.back())
+    throw InputError(
+        design.absorption_location,
+        fmt::format("must reach all wavelengths of the light, such as {} nm, got {} to {} nm", shortest(wavelength_nm),
+                    shortest(curve.wavelengths_nm.front()), shortest(curve.wavelengths_nm.back())));
+  return curve.at(wavelength_nm);
+}
+
 /// \param map that of facet_map()
 raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrary& library,
                            const std::optional<surface_models::HeightMap>& map, double wavelength_nm) {
@@ -112,7 +128,7 @@ raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrar
   optics.absorbing_walls = design.texture.absorbing_walls;
   optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
-  optics.absorption_per_mm = design.absorption_per_mm.value_or(material.absorption_per_mm);
+  optics.absorption_per_mm = absorption_at(design, material, wavelength_nm);
   if (design.refractive_index) {
     optics.index = *design.refractive_index;
     return optics;

@@ -541,6 +541,27 @@ TEST(DesignReader, SpectrumIsANameAFileOrLines) {
   EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"A\"\n", "d.toml", {}).spectrum->location.line, 12);
 }
 
+TEST(DesignReader, AbsorptionIsANumberOrPairsOverTheWavelength) {
+  const std::string key = "body.absorption_per_mm";
+  const Design red = set({key + "=[[400, 2], [600, 0.5], [800, 0]]"});
+  EXPECT_FALSE(red.absorption_per_mm);
+  ASSERT_EQ(red.absorption_by_wavelength.size(), 3U);
+  EXPECT_EQ(red.absorption_by_wavelength[1].wavelength_nm, 600.0);
+  EXPECT_EQ(red.absorption_by_wavelength[1].per_mm, 0.5);
+  EXPECT_TRUE(set({key + "=0.1"}).absorption_by_wavelength.empty());
+  const auto refused = [&](const std::string& value) {
+    return complaint(with_line(11, "absorption_per_mm = " + value));
+  };
+  const std::string where = "d.toml:11: " + key + ": ";
+  EXPECT_EQ(refused("[[400, 1], [400, 2]]"), where + "wavelengths must ascend, got 400 after 400");
+  EXPECT_EQ(refused("[[500, 1], [400, 2]]"), where + "wavelengths must ascend, got 400 after 500");
+  EXPECT_EQ(refused("[[500, 1]]"), where + "must be a number or a list of two or more pairs, got a list of one");
+  EXPECT_EQ(refused("[[500, -1], [600, 1]]"), where + "must be >= 0, got -1");
+  EXPECT_EQ(refused("[500, 600]"), where + "must be a list of [wavelength_nm, absorption_per_mm], got 500 in it");
+  EXPECT_EQ(refused("[]"), where + "must be a list of [wavelength_nm, absorption_per_mm], got an empty list");
+  EXPECT_EQ(refused("\"much\""), where + "must be a number, got \"much\"");
+}
+
 TEST(DesignReader, WhatIsNoSpectrumIsRefused) {
   const auto refused = [](const std::string& value) {
     return complaint(with_line(11, "[light]\nspectrum = " + value));

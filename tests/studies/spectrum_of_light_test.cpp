@@ -262,6 +262,34 @@ TEST(SpectrumOfLight, TargetErrorIsThatOfTheMean) {
   EXPECT_TRUE(lit.warnings.empty());
 }
 
+// Mirror facets under a lossless face, light along the normal: down, across and up again it goes 2 (2 + 0.25) mm. An
+// amber plate, a(w) linear from 0.2 per mm at 380 nm to 0 at 780 nm; the sum over the table is that of exp(-a(w) L).
+TEST(SpectrumOfLight, AColouredPlateKeepsTheMeanOfItsTransmittance) {
+  const double path_mm = 4.5;
+  const auto absorption_per_mm = [](double wavelength_nm) { return 0.2 * (780.0 - wavelength_nm) / 400.0; };
+  const Overrides amber = {"body.absorption_per_mm=[[380, 0.2], [780, 0]]", "idealisation.facets=mirror",
+                           "idealisation.entrance=lossless"};
+  const materials::CieTable cie = materials::shipped_cie_table();
+  for (const bool is_a : {true, false}) {
+    Overrides lit = amber;
+    lit.push_back(is_a ? "light.spectrum=A" : "light.spectrum=D65");
+    const RrePoint p = point(lit, exactly(0.0));
+    for (const SpectralRre& at : p.by_wavelength)
+      EXPECT_NEAR(at.rre, std::exp(-path_mm * absorption_per_mm(at.wavelength_nm)), 1e-9) << at.wavelength_nm;
+    std::vector<SpectralRre> table;
+    for (const double w : cie.illuminant_a.wavelengths_nm)
+      table.push_back({w, 0.0, std::exp(-path_mm * absorption_per_mm(w)), 0.0});
+    const double expected = luminous_mean(is_a ? cie.illuminant_a : cie.illuminant_d65, cie.photopic_efficiency, table);
+    EXPECT_NEAR(p.rre, expected, 1e-6);
+    EXPECT_NEAR(p.ledger[Account::absorbed], 1.0 - expected, 1e-6);
+  }
+  EXPECT_EQ(
+      complaint(design({"body.absorption_per_mm=[[500, 0.2], [780, 0]]", "light.spectrum=[[490, 1], [600, 1]]"}),
+                exactly(0.0)),
+      "--set body.absorption_per_mm=[[500, 0.2], [780, 0]]: body.absorption_per_mm: must reach all wavelengths of "
+      "the light, such as 490 nm, got 500 to 780 nm");
+}
+
 TEST(SpectrumOfLight, AFileIsReadFromTheFolderOfTheDesign) {
   const fs::path folder = fs::temp_directory_path() / "retrace_spectrum_of_light";
   fs::create_directories(folder);
