@@ -74,15 +74,17 @@ void add_rre(CLI::App& app, RreOptions& rre) {
   command->add_option("--azimuth", rre.azimuth, "azimuths of the source in degrees, likewise")
       ->type_name("LIST")
       ->capture_default_str();
-  command
-      ->add_option("--engine", rre.engine,
-                   "exact, montecarlo, embree, or auto: exact where that is cheap (cell: not in this version)")
+  command->add_option("--engine", rre.engine, "exact, montecarlo (cell or embree), or auto: exact where that is cheap")
       ->type_name("ENGINE")
       ->capture_default_str();
   auto* samples =
       command->add_option("--samples", rre.samples, "rays for each point [until the target error is reached]")
           ->type_name("N")
           ->check(whole_number(1, std::uint64_t{1} << 36));
+  command
+      ->add_option("--sampling", rre.sampling, "stratified, or plain: random points and no splitting, to compare with")
+      ->type_name("KIND")
+      ->capture_default_str();
   command->add_option("--target-error", rre.target_error, "standard error of RRE to reach, as a fraction")
       ->type_name("E")
       ->capture_default_str()

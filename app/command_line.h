@@ -22,6 +22,7 @@ struct RreOptions {
   std::string incidence = "0";
   std::string azimuth = "0";
   std::string engine = "auto";
+  std::string sampling = "stratified";
   std::optional<std::uint64_t> samples;
   double target_error = 1e-4;
   std::optional<double> cutoff;

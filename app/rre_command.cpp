@@ -36,6 +36,7 @@ studies::RreRequest request_of(const CommandLine& line) {
   request.incidence_deg = read_number_list(line.rre.incidence, "--incidence");
   request.azimuth_deg = read_number_list(line.rre.azimuth, "--azimuth");
   request.engine = studies::engine_from_name(line.rre.engine);
+  request.sampling = studies::sampling_from_name(line.rre.sampling);
   request.rays = line.rre.samples;
   check_share(line.rre.target_error, false, "--target-error");
   if (line.rre.cutoff) check_share(*line.rre.cutoff, true, "--cutoff");

@@ -30,7 +30,8 @@ constexpr std::uint64_t kBeamsOfAutomatic = 1'000'000;
 
 /// Rays can only be asked of Monte Carlo.
 bool may_be_exact(const RreRequest& request) {
-  return request.engine == Engine::exact || (request.engine == Engine::automatic && !request.rays);
+  const bool asks_for_rays = request.rays || request.sampling == raytrace::Sampling::Kind::plain;
+  return request.engine == Engine::exact || (request.engine == Engine::automatic && !asks_for_rays);
 }
 
 /// What only the exact engine can tell must not depend on how many beams that takes.
@@ -39,9 +40,10 @@ bool must_be_exact(const RreRequest& request) {
 }
 
 void check(const RreRequest& request) {
-  if (request.engine == Engine::cell)
-    throw InputError({"", 0, "--engine"},
-                     "cell is not available in this version; there are auto, exact, montecarlo, embree");
+  if (request.sampling == raytrace::Sampling::Kind::plain)
+    if (request.engine == Engine::cell || request.engine == Engine::exact)
+      throw InputError({"", 0, "--sampling"},
+                       fmt::format("plain needs --engine montecarlo or embree, got {}", engine_name(request.engine)));
   for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
                                       {request.far_field, "--far-field"},
                                       {request.derivatives, "--derivatives"}})
@@ -78,6 +80,12 @@ Engine engine_from_name(std::string_view name) {
   throw InputError({"", 0, "--engine"}, fmt::format("must be auto, exact, montecarlo, cell or embree, got {}", name));
 }
 
+raytrace::Sampling::Kind sampling_from_name(std::string_view name) {
+  if (name == "stratified") return raytrace::Sampling::Kind::stratified;
+  if (name == "plain") return raytrace::Sampling::Kind::plain;
+  throw InputError({"", 0, "--sampling"}, fmt::format("must be stratified or plain, got {}", name));
+}
+
 std::string_view engine_name(Engine engine) {
   for (const auto& [name, known] : kEngines)
     if (known == engine) return name;
@@ -100,6 +108,12 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
       throw InputError(design.texture.location,
                        "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "
                        "--far-field and --derivatives");
+    if (request.engine == Engine::cell &&
+        !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part, prepared_->models.back().optics))
+      throw InputError({"", 0, "--engine"},
+                       fmt::format("cell takes endless arrays of smooth facets with sharp rims, and {} is none: use "
+                                   "--engine embree",
+                                   design.source_name()));
   }
   prepared_->designs = std::move(designs);
   prepared_->request = std::move(request);
@@ -210,6 +224,7 @@ void finish(Direction& direction, const Design& design, const OpticalModel& mode
 raytrace::Sampling sampling_of(const RreRequest& request, double weight, std::size_t wavelength) {
   constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
   raytrace::Sampling sampling;
+  sampling.kind = request.sampling;
   sampling.seed = request.seed + kGolden * static_cast<std::uint32_t>(wavelength);
   sampling.target_error = request.target_error / std::sqrt(weight);
   if (request.rays)
@@ -255,6 +270,22 @@ RrePoint spectral_point(const Direction& direction, const SpectralOptics& light)
   return at;
 }
 
+raytrace::MonteCarlo::Engine engine_for(const OpticalModel& model, const RreRequest& request) {
+  using raytrace::MonteCarlo;
+  const bool may_be_cell = request.engine != Engine::embree && request.sampling == raytrace::Sampling::Kind::stratified;
+  return may_be_cell && MonteCarlo::cell_serves(model.part, model.optics) ? MonteCarlo::Engine::cell
+                                                                          : MonteCarlo::Engine::embree;
+}
+
+/// The engine that Monte Carlo takes, one for all designs or several.
+std::string monte_carlo_name(const std::vector<OpticalModel>& models, const RreRequest& request) {
+  const auto is_cell = [&](const OpticalModel& model) {
+    return engine_for(model, request) == raytrace::MonteCarlo::Engine::cell;
+  };
+  if (std::all_of(models.begin(), models.end(), is_cell)) return "cell";
+  return std::none_of(models.begin(), models.end(), is_cell) ? "embree" : "montecarlo";
+}
+
 /// Directions and wavelengths one after the other, each on all threads.
 void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                           const RreRequest& request, std::vector<Direction>& directions, Progress* progress,
@@ -271,7 +302,7 @@ void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<
     const Design& design = designs[direction.at.design];
     const OpticalModel& model = models[direction.at.design];
     const SpectralOptics& light = model.spectral[w];
-    if (direction.at.design != traced_design) tracer.emplace(model.part);
+    if (direction.at.design != traced_design) tracer.emplace(model.part, engine_for(model, request));
     traced_design = direction.at.design;
     const raytrace::MonteCarloResult traced =
         tracer->trace(light.optics, illumination_of(direction.at, design), design.acceptance_half_angle_deg,
@@ -383,7 +414,7 @@ RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
   std::vector<Direction> directions = directions_of(models, request);
   const bool exact = trace_exactly_if_cheap(designs, models, request, directions, progress, cancel);
   if (!exact) trace_by_monte_carlo(designs, models, request, directions, progress, cancel, result);
-  result.engine = exact ? "exact" : "embree";
+  result.engine = exact ? "exact" : monte_carlo_name(models, request);
   for (Direction& direction : directions) {
     finish(direction, designs[direction.at.design], models[direction.at.design]);
     result.complete = result.complete && !direction.points.empty();

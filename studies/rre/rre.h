@@ -9,6 +9,7 @@
 
 #include "core/progress.h"
 #include "raytrace/ledger.h"
+#include "raytrace/monte_carlo.h"
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
 #include "studies/rre/derivatives.h"
@@ -18,11 +19,13 @@
 namespace retrace::studies {
 
 /// Which tracer is asked for. `automatic` is exact where that takes few beams at every direction asked for, else Monte
-/// Carlo; `montecarlo` chooses Embree; `cell` is part of the contract but not served by this version.
+/// Carlo; `montecarlo` is `cell` for endless arrays of smooth facets with sharp rims, else `embree`.
 enum class Engine { automatic, exact, montecarlo, cell, embree };
 
 /// \throw InputError listing the engines for a name that is none of them
 Engine engine_from_name(std::string_view name);
+/// \throw InputError likewise
+raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
 /// What is asked: retroreflective efficiency over a grid of directions.
@@ -32,6 +35,7 @@ struct RreRequest {
   Engine engine = Engine::automatic;
   std::optional<std::uint64_t> rays;  ///< per point; else until target_error is reached
   double target_error = 1e-4;         ///< standard error of RRE as a fraction
+  raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< plain: on Embree
   /// Least power followed, as a share of the incident. By default 1e-10 (Monte Carlo), or as little as it takes to
   /// leave less than 1e-10 in `truncated` (exact).
   std::optional<double> cutoff;
@@ -75,7 +79,7 @@ struct ReturnedLight {
 struct RreResult {
   std::vector<Design> designs;
   std::vector<std::vector<SpectralOptics>> light;  ///< by design: the wavelengths that were traced
-  std::string engine = "embree";                   ///< that ran
+  std::string engine = "embree";                   ///< that ran; montecarlo if designs took different ones
   std::string engine_requested;
   std::uint32_t seed = 1;
   std::vector<RrePoint> points;         ///< in the order design, wavelength, azimuth, incidence, acceptance

@@ -173,8 +173,11 @@ TEST(BadInput, WrongOptionsAreRefused) {
   const std::vector<BadArguments> cases = {
       {{"--engine", "magic"}, "--engine: must be auto, exact, montecarlo, cell or embree, got magic"},
       {{"--engine", ""}, "--engine: "},
-      {{"--engine", "cell"}, "--engine: cell is not available in this version"},
-      {{"--engine", "cell"}, "--engine: cell is not available in this version"},
+      {{"--engine", "cell"}, "--engine: cell takes endless arrays of smooth facets with sharp rims, and "},
+      {{"--sampling", "random"}, "--sampling: must be stratified or plain, got random"},
+      {{"--sampling", "plain", "--engine", "exact"},
+       "--sampling: plain needs --engine montecarlo or embree, got exact"},
+      {{"--sampling", "plain", "--engine", "cell"}, "--sampling: plain needs --engine montecarlo or embree, got cell"},
       {{"--incidence=5:1:1"}, "--incidence: the range runs away"},
       {{"--incidence", ""}, "--incidence: the list is empty"},
       {{"--azimuth", ""}, "--azimuth: the list is empty"},

@@ -128,6 +128,37 @@ TEST(Rre, EngineThatWasAskedForIsNamed) {
   }
 }
 
+// Endless arrays of smooth facets need no search; what rounds their rims or roughens them does.
+TEST(Rre, MonteCarloChoosesItsEngine) {
+  const TemporaryFolder folder;
+  const std::string endless = RETRACE_SOURCE_DIR "/examples/honeycomb_infinite.toml";
+  const auto engine = [&](Arguments more) {
+    more.insert(more.begin(), {"rre", "--samples=64"});
+    return retrace_json(folder, more)["engine"].get<std::string>();
+  };
+  EXPECT_EQ(engine({endless, "--engine=montecarlo"}), "cell");
+  EXPECT_EQ(engine({endless, "--engine=cell"}), "cell");
+  EXPECT_EQ(engine({endless, "--engine=embree"}), "embree");
+  EXPECT_EQ(engine({endless, "--engine=montecarlo", "--sampling=plain"}), "embree");
+  EXPECT_EQ(engine({endless, "--engine=montecarlo", "--set=surface.roughness_sq_nm=5",
+                    "--set=surface.correlation_length_um=2"}),
+            "embree");
+  EXPECT_EQ(engine({endless, kDesign, "--engine=montecarlo"}), "montecarlo");
+}
+
+TEST(Rre, PlainSamplingAgreesAtAHigherPrice) {
+  const TemporaryFolder folder;
+  const auto point = [&](const std::string& sampling) {
+    return retrace_json(folder, {"rre", RETRACE_SOURCE_DIR "/examples/honeycomb_infinite.toml", "--incidence=10",
+                                 "--engine=embree", "--samples=65536", "--sampling=" + sampling})["points"][0];
+  };
+  const Json plain = point("plain");
+  const Json stratified = point("stratified");
+  const double error = std::hypot(plain["std_error"].get<double>(), stratified["std_error"].get<double>());
+  EXPECT_NEAR(plain["rre"].get<double>(), stratified["rre"].get<double>(), 4.0 * error);
+  EXPECT_GT(plain["std_error"].get<double>(), 3.0 * stratified["std_error"].get<double>());
+}
+
 TEST(Rre, AutoIsExactWhereThatIsCheap) {
   const TemporaryFolder folder;
   const Json cheap = retrace_json(folder, {"rre", kDesign, "--incidence=0,3"});
@@ -137,7 +168,7 @@ TEST(Rre, AutoIsExactWhereThatIsCheap) {
   // Cube corners at oblique incidence: one such direction decides for all.
   const Json dear = retrace_json(folder, {"rre", RETRACE_SOURCE_DIR "/examples/honeycomb_infinite.toml",
                                           "--incidence=0,20", "--azimuth=4", "--target-error=0.01"});
-  EXPECT_EQ(dear["engine"], "embree");
+  EXPECT_EQ(dear["engine"], "cell");
   EXPECT_FALSE(dear["points"][0].contains("beams"));
   EXPECT_EQ(dear["complete"], true);
 }

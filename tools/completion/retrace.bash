@@ -54,7 +54,11 @@ _retrace() {
       return
       ;;
     --engine)
-      _retrace_words "$word" 'auto exact montecarlo embree'
+      _retrace_words "$word" 'auto exact montecarlo cell embree'
+      return
+      ;;
+    --sampling)
+      _retrace_words "$word" 'stratified plain'
       return
       ;;
     --form)
@@ -81,7 +85,7 @@ _retrace() {
 
   if [[ $word == -* ]]; then
     case $command in
-      rre) _retrace_words "$word" "$common --incidence --azimuth --engine --samples --target-error --cutoff --derivatives --footprint --far-field" ;;
+      rre) _retrace_words "$word" "$common --incidence --azimuth --engine --sampling --samples --target-error --cutoff --derivatives --footprint --far-field" ;;
       roughness)
         _retrace_words "$word" "$common --sa --correlation-length-um --waviness-length-um --facets --incidence \
           --azimuth --samples --target-error"
