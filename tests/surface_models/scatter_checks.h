@@ -10,7 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "surface_models/fft.h"
 #include "surface_models/scatter/scatter_model.h"
+#include "surface_models/scatter/slope_distribution.h"
+#include "tests/support/statistics.h"
 
 namespace retrace::testing {
 
@@ -35,6 +38,25 @@ inline ScatterEvent inside(double incidence_deg, double wavelength_nm = 550.0) {
 }
 inline ScatterEvent outside(double incidence_deg, double wavelength_nm = 550.0) {
   return event_at(incidence_deg, 1.0, kIndex, wavelength_nm);
+}
+
+struct Case {
+  std::string name;
+  ScatterEvent event;
+  Lobe lobe;
+};
+
+/// Both sides, both lobes, total reflection.
+inline const std::vector<Case>& cases() {
+  static const std::vector<Case> all = {{"normal, inside, reflected", inside(0.0), Lobe::reflection},
+                                        {"30, inside, reflected", inside(30.0), Lobe::reflection},
+                                        {"54.74, total reflection", inside(54.74), Lobe::reflection},
+                                        {"80, total reflection", inside(80.0), Lobe::reflection},
+                                        {"30, inside, transmitted", inside(30.0), Lobe::transmission},
+                                        {"normal, outside, reflected", outside(0.0), Lobe::reflection},
+                                        {"70, outside, reflected", outside(70.0), Lobe::reflection},
+                                        {"40, outside, transmitted", outside(40.0), Lobe::transmission}};
+  return all;
 }
 
 inline RandomStream stream(std::uint32_t seed, std::uint32_t sample) {
@@ -157,6 +179,60 @@ Density scaled_density(const Model& model, const ScatterEvent& event, Lobe lobe)
   const Vec2 at = specular_direction(event, Vec3::UnitZ(), lobe)->template head<2>() * 0.99;
   const double scale = model.scattered_density(event, {}, lobe, at) / model.unscaled_density(event, {}, lobe, at);
   return [=](const Vec2& beta) { return scale * model.unscaled_density(event, {}, lobe, beta); };
+}
+
+inline HeightMap flat(std::size_t points, double pixel_um) {
+  HeightMap map;
+  map.columns = map.rows = points;
+  map.x_pixel_um = map.y_pixel_um = pixel_um;
+  map.heights_nm.assign(points * points, 0.0);
+  return map;
+}
+
+/// Gaussian heights with Gaussian autocorrelation along both axes; Sq as given exactly.
+inline HeightMap random_map(std::size_t points, double pixel_um, double sq_nm, double x_length_um, double y_length_um) {
+  HeightMap map = flat(points, pixel_um);
+  RealFft fft(points, points);
+  RandomStream random = stream(20, 0);
+  for (double& z : fft.field()) z = normal_pair(random).x();
+  fft.forward();
+  const double step = 1.0 / (static_cast<double>(points) * pixel_um);
+  for (std::size_t r = 0; r < points; ++r)
+    for (std::size_t c = 0; c < fft.spectrum_columns(); ++c) {
+      const double fx = step * static_cast<double>(c);
+      const double fy =
+          step * (2 * r > points ? static_cast<double>(r) - static_cast<double>(points) : static_cast<double>(r));
+      const double x = std::numbers::pi * x_length_um * fx, y = std::numbers::pi * y_length_um * fy;
+      fft.spectrum()[r * fft.spectrum_columns() + c] *= std::exp(-0.5 * (x * x + y * y));
+    }
+  fft.spectrum()[0] = 0.0;
+  fft.inverse();
+  map.heights_nm.assign(fft.field().begin(), fft.field().end());
+  const double scale = sq_nm / HeightMapScatter(map, 550.0).sq_nm();
+  for (double& z : map.heights_nm) z *= scale;
+  return map;
+}
+
+/// Closed form 7, by the formula and by drawing: exp(-q^2), with the phase q = 4 pi n s cos t / w in reflection and
+/// 2 pi s (n1 cos t1 - n2 cos t2) / w in transmission.
+inline void expect_closed_form_share(const ScatterModel& model, double sq_nm, const Case& c, std::uint32_t seed,
+                                     std::size_t comparisons) {
+  constexpr std::uint32_t kDraws = 50000;
+  const ScatterEvent& e = c.event;
+  const double sine = e.index_from * std::sqrt(1.0 - e.cos_in() * e.cos_in()) / e.index_of(c.lobe);
+  const double out = e.index_of(c.lobe) * std::sqrt(1.0 - sine * sine);
+  const double paths = e.index_from * e.cos_in() + (c.lobe == Lobe::reflection ? out : -out);
+  const double phase = 2.0 * std::numbers::pi * sq_nm * paths / e.wavelength_nm;
+  const double p = std::exp(-phase * phase);
+  EXPECT_NEAR(specular_share(model, e, {}, c.lobe), p, 1e-9) << c.name;
+  double specular = 0.0;
+  for (std::uint32_t k = 0; k < kDraws; ++k) {
+    RandomStream random = stream(seed, k);
+    const auto drawn = sample(model, e, {}, c.lobe, random);
+    ASSERT_TRUE(drawn) << c.name;
+    specular += drawn->is_specular ? 1.0 : 0.0;
+  }
+  EXPECT_NEAR(specular / kDraws, p, normal_bound(comparisons) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-9) << c.name;
 }
 
 }  // namespace retrace::testing

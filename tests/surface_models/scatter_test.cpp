@@ -11,24 +11,6 @@
 namespace retrace::testing {
 namespace {
 
-struct Case {
-  std::string name;
-  ScatterEvent event;
-  Lobe lobe;
-};
-
-const std::vector<Case>& cases() {
-  static const std::vector<Case> all = {{"normal, inside, reflected", inside(0.0), Lobe::reflection},
-                                        {"30, inside, reflected", inside(30.0), Lobe::reflection},
-                                        {"54.74, total reflection", inside(54.74), Lobe::reflection},
-                                        {"80, total reflection", inside(80.0), Lobe::reflection},
-                                        {"30, inside, transmitted", inside(30.0), Lobe::transmission},
-                                        {"normal, outside, reflected", outside(0.0), Lobe::reflection},
-                                        {"70, outside, reflected", outside(70.0), Lobe::reflection},
-                                        {"40, outside, transmitted", outside(40.0), Lobe::transmission}};
-  return all;
-}
-
 const std::vector<Roughness>& roughnesses() {
   static const std::vector<Roughness> all = {{20.0, 2.0, 0.0, 0.0},    // as a diamond cuts: narrow lobe
                                              {60.0, 0.6, 0.0, 0.0},    // wide, diffracted several times
@@ -89,6 +71,14 @@ TEST(HarveyShack, SpecularShareIsTheClosedForm) {
         EXPECT_NEAR(specular / kDraws, p, normal_bound(80) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-12)
             << sq_nm << " nm, " << waves << " waves, " << t_deg << " deg";
       }
+}
+
+// The same, drawn, in transmission and from outside.
+TEST(HarveyShack, SpecularShareIsTheClosedFormOnBothSides) {
+  std::uint32_t seed = 700;
+  for (const Case& c : cases())
+    for (const double sq_nm : {20.0, 60.0})
+      expect_closed_form_share(HarveyShack({sq_nm, 4.0, 0.0, 0.0}), sq_nm, c, ++seed, 2 * cases().size());
 }
 
 TEST(HarveyShack, PublishedValues) {
@@ -274,6 +264,23 @@ TEST(Abg, WhatDoesNotScatterIsSpecular) {
   }
 }
 
+TEST(Abg, IsReciprocalInReflection) {
+  for (const auto& [a, b, g] : abg_parameters()) {
+    const ScatterModel model = Abg(a, b, g);
+    for (const double x : {0.1, 0.35, 0.6})
+      for (const double y : {0.05, 0.4, 0.63})
+        for (const bool is_inside : {true, false}) {
+          ScatterEvent forward = is_inside ? inside(0.0) : outside(0.0), backward = forward;
+          forward.direction_in = -direction_of(Vec2(-x, 0.1), Lobe::reflection);
+          const Vec3 up = direction_of(Vec2(y, -0.1), Lobe::reflection);
+          backward.direction_in = -up;
+          const double there = evaluate(model, forward, {}, Lobe::reflection, up);
+          EXPECT_GT(there, 0.0);
+          EXPECT_NEAR(evaluate(model, backward, {}, Lobe::reflection, -forward.direction_in), there, 1e-12 * there);
+        }
+  }
+}
+
 // Total integrated scatter at normal incidence: pi A ln(1 + 1 / B) for g = 2.
 TEST(Abg, TotalScatterInClosedForm) {
   EXPECT_NEAR(specular_share(Abg(0.01, 1e-3, 2.0), inside(0.0), {}, Lobe::reflection),
@@ -417,11 +424,37 @@ TEST(Scatter, SmoothIsSpecular) {
     }
 }
 
+// For every model with a density of its own, on both sides, in both lobes. Microfacet has its own test.
+TEST(Scatter, WeightIsBsdfTimesCosineOverPdf) {
+  const std::vector<ScatterModel> models = {HarveyShack({60.0, 0.6, 0.0, 0.0}), HarveyShack({15.0, 1.0, 40.0, 20.0}),
+                                            Abg(0.02, 1e-2, 1.0),
+                                            HeightMapScatter(random_map(32, 0.4, 40.0, 2.0, 1.0), 550.0)};
+  for (const ScatterModel& model : models)
+    for (const Case& c : cases()) {
+      int compared = 0;
+      for (std::uint32_t k = 0; compared < 1; ++k) {
+        ASSERT_LT(k, 10000U) << c.name;
+        RandomStream random = stream(30, k);
+        const Facet facet = sample_facet(model, c.event, random);
+        const auto drawn = sample(model, c.event, facet, c.lobe, random);
+        ASSERT_TRUE(drawn) << c.name;
+        EXPECT_LE(drawn->weight, 1.0);
+        if (drawn->is_specular) continue;
+        ++compared;
+        const double bsdf = evaluate(model, c.event, facet, c.lobe, drawn->direction);
+        const double density = pdf(model, c.event, facet, c.lobe, drawn->direction);
+        EXPECT_GT(density, 0.0);
+        EXPECT_NEAR(drawn->weight, bsdf * std::abs(drawn->direction.dot(facet.normal)) / density, 1e-12) << c.name;
+      }
+    }
+}
+
 TEST(Scatter, TotalReflectionTransmitsNothing) {
   const ScatterEvent event = inside(54.74);
   for (const ScatterModel& model :
        {ScatterModel(Smooth()), ScatterModel(HarveyShack({20.0, 1.0, 0.0, 0.0})), ScatterModel(Abg(0.01, 0.01, 2.0)),
-        ScatterModel(Microfacet(SlopeShape::beckmann, 0.01))}) {
+        ScatterModel(Microfacet(SlopeShape::beckmann, 0.01)),
+        ScatterModel(HeightMapScatter(random_map(32, 0.4, 20.0, 1.5, 1.5), 550.0))}) {
     RandomStream random = stream(10, 0);
     const Facet facet = sample_facet(model, event, random);
     EXPECT_FALSE(sample(model, event, facet, Lobe::transmission, random));
