@@ -129,7 +129,7 @@ struct OutOfRange {
 TEST(TextureOfADesign, WarnsOutsideTheRangeOfEveryModel) {
   const std::vector<OutOfRange> cases = {
       {"roughness_sq_nm = 10\ncorrelation_length_um = 0.2\n", "correlation length 0.2 um is below the wavelength"},
-      {"roughness_sq_nm = 400\ncorrelation_length_um = 2\n", "rms slope of the roughness 0.4 is above 0.3"},
+      {"roughness_sq_nm = 400\ncorrelation_length_um = 2\n", "rms slope of the roughness 0.400 is above 0.3"},
       {"roughness_sq_nm = 250\ncorrelation_length_um = 9\n", "roughness 250 nm is above half a wavelength"},
       {"waviness_sq_nm = 300\nwaviness_length_um = 5\n", "rms slope of the waviness 0.37"},
       {"model = \"abg\"\nabg_a = 0.01\nabg_b = 1e-4\nabg_g = 2\n", "up to 33.3 % of the light scatters by abg"},
