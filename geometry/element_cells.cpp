@@ -1,4 +1,5 @@
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,8 +52,9 @@ double rise_of_dihedral_edge(double aperture_mm) {
   return 0.5 * aperture_mm / std::numbers::sqrt2;
 }
 
-/// Slopes of the facets' planes of an unturned cube corner, each between the dihedral edges k and k + 1.
-std::array<Vec2, 3> cube_slopes(const AngleErrors& errors) {
+/// Slopes of the facets' planes of an unturned cube corner that is not canted, each between the dihedral edges k and
+/// k + 1.
+std::array<Vec2, 3> upright_cube_slopes(const AngleErrors& errors) {
   std::array<Vec2, 3> slopes;
   for (std::size_t k = 0; k < 3; ++k)
     slopes[k] = rim_point(Vec2::Zero(), std::numbers::sqrt2, 120.0 * static_cast<double>(k) + 60.0);
@@ -75,6 +77,19 @@ std::array<Vec2, 3> cube_slopes(const AngleErrors& errors) {
     const Vec3 normal = normals.col(static_cast<Eigen::Index>(k));
     const double inclination = std::atan2(normal.head<2>().norm(), -normal.z());
     slopes[k] = std::tan(inclination - rad_from_arcmin(errors.facet_tilt_arcmin[k])) * normal.head<2>().normalized();
+  }
+  return slopes;
+}
+
+/// The same of a canted one: errors of angle first, then the whole cube turns about its apex.
+std::array<Vec2, 3> cube_slopes(const AngleErrors& errors, const Cant& cant) {
+  std::array<Vec2, 3> slopes = upright_cube_slopes(errors);
+  if (cant.deg == 0.0) return slopes;
+  const Vec2 towards = rim_point(Vec2::Zero(), 1.0, cant.azimuth_deg);
+  const Eigen::AngleAxisd turn(cant.deg * std::numbers::pi / 180.0, Vec3(-towards.y(), towards.x(), 0.0));
+  for (Vec2& slope : slopes) {
+    const Vec3 normal = turn * Vec3(slope.x(), slope.y(), -1.0);
+    slope = -normal.head<2>() / normal.z();
   }
   return slopes;
 }
@@ -157,14 +172,15 @@ Cell rtp_cell(const RtpElement& element, const AngleErrors& errors, const Vec2& 
 Cell hexagonal_cube_cell(const HexagonalCube& element, const AngleErrors& errors, const Vec2& centre) {
   Polygon outline;
   for (int k = 0; k < 6; ++k) outline.push_back(rim_point(centre, 0.5 * element.aperture_mm, 60.0 * k));
-  return cube_cell(std::move(outline), centre, -2.0 * rise_of_dihedral_edge(element.aperture_mm), cube_slopes(errors));
+  return cube_cell(std::move(outline), centre, -2.0 * rise_of_dihedral_edge(element.aperture_mm),
+                   cube_slopes(errors, element.cant));
 }
 
 Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& errors, const Vec2& centre, bool turned) {
   const double start_deg = turned ? 180.0 : 0.0;
   Polygon outline;
   for (int k = 0; k < 3; ++k) outline.push_back(rim_point(centre, 0.5 * element.aperture_mm, start_deg + 120.0 * k));
-  std::array<Vec2, 3> slopes = cube_slopes(errors);
+  std::array<Vec2, 3> slopes = cube_slopes(errors, element.cant);
   if (turned)
     for (Vec2& slope : slopes) slope = -slope;
   Cell cell = cube_cell(std::move(outline), centre, -rise_of_dihedral_edge(element.aperture_mm), slopes);
@@ -194,9 +210,21 @@ double element_depth_mm(const Element& element, const AngleErrors& errors) {
                     element);
 }
 
+Cant cant_of(const Element& element) {
+  return std::visit(Overloaded{[](const RtpElement&) { return Cant{}; }, [](const auto& cube) { return cube.cant; }},
+                    element);
+}
+
+double steepest_facet_deg(const Element& element, const AngleErrors& errors) {
+  double steepest = 0.0;
+  for (const CellFacet& facet : element_cell(element, errors).facets)
+    steepest = std::max(steepest, std::atan(facet.plane.slope.norm()));
+  return steepest * 180.0 / std::numbers::pi;
+}
+
 double element_top_mm(const Element& element, const AngleErrors& errors) {
   double top = 0.0;
-  if (errors == AngleErrors{}) return top;
+  if (errors == AngleErrors{} && cant_of(element).deg == 0.0) return top;
   for (const CellFacet& facet : element_cell(element, errors).facets)
     for (const Vec2& p : facet.outline) top = std::max(top, facet.plane.at(p));
   constexpr double rounding = 1e-12;

@@ -53,11 +53,11 @@ struct Lattice {
 /// edge along x (base = width then).
 Cell rtp_cell(const RtpElement& element, const AngleErrors& errors, const Vec2& corner_mm, bool turned = false);
 
-/// A full cube corner with its apex over `centre_mm` and, without errors, its three highest rim points on z = 0.
+/// A full cube corner with its apex over `centre_mm` and, without errors and cant, its three highest rim points on z = 0.
 Cell hexagonal_cube_cell(const HexagonalCube& element, const AngleErrors& errors, const Vec2& centre_mm);
 
-/// A triangular cube corner with its apex over `centre_mm` and, without errors, its rim on z = 0; `turned` by 180
-/// degrees about z, errors included.
+/// A triangular cube corner with its apex over `centre_mm` and, without errors and cant, its rim on z = 0; `turned` by
+/// 180 degrees about z, errors and cant included.
 Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& errors, const Vec2& centre_mm,
                           bool turned = false);
 
@@ -76,7 +76,13 @@ double edge_share(const Cell& cell);
 /// Depth of an element from z = 0 to its root or apex.
 double element_depth_mm(const Element& element, const AngleErrors& errors = {});
 
-/// How far its errors lift the rim of an element above z = 0; 0 if they do not.
+/// The cant of a cube corner; none for prisms.
+Cant cant_of(const Element& element);
+
+/// Largest angle between a facet of an element and the xy plane.
+double steepest_facet_deg(const Element& element, const AngleErrors& errors);
+
+/// How far its errors or its cant lift the rim of an element above z = 0; 0 if they do not.
 double element_top_mm(const Element& element, const AngleErrors& errors);
 
 /// The outline of one element's aperture, its bounding box starting at the origin.

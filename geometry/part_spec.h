@@ -13,14 +13,23 @@ struct RtpElement {
   double apex_angle_deg = 90.0;  ///< included angle of the two facets; 60..120
 };
 
+/// How far the axis of a cube corner, from its apex into the part, leans away from +z. The three facets turn with it as
+/// one, about the apex; the outline in plan stays.
+struct Cant {
+  double deg = 0.0;          ///< 0..30
+  double azimuth_deg = 0.0;  ///< towards which it leans, from +x towards +y; of a turned cell: turned with it
+};
+
 /// Full cube corner with a hexagonal aperture, apex down, one dihedral edge over +x.
 struct HexagonalCube {
   double aperture_mm = 0.0;  ///< diameter of the circle round the hexagon, 2 a sqrt(2/3) for cube edge a; > 0
+  Cant cant = {};
 };
 
 /// Cube corner with a triangular aperture, apex down, one dihedral edge over +x (turned cells: over -x).
 struct TriangularCube {
   double aperture_mm = 0.0;  ///< diameter of the circle round the triangle, whose side is a sqrt(2); > 0
+  Cant cant = {};
 };
 
 using Element = std::variant<RtpElement, HexagonalCube, TriangularCube>;

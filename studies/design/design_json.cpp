@@ -35,9 +35,13 @@ struct ElementJson {
   Json operator()(const RtpElement& e) const {
     return {{"kind", "rtp"}, {"base_mm", e.base_mm}, {"width_mm", e.width_mm}, {"apex_angle_deg", e.apex_angle_deg}};
   }
-  Json operator()(const HexagonalCube& e) const { return {{"kind", "hexagonal_icc"}, {"aperture_mm", e.aperture_mm}}; }
-  Json operator()(const TriangularCube& e) const {
-    return {{"kind", "triangular_icc"}, {"aperture_mm", e.aperture_mm}};
+  Json operator()(const HexagonalCube& e) const { return cube("hexagonal_icc", e.aperture_mm, e.cant); }
+  Json operator()(const TriangularCube& e) const { return cube("triangular_icc", e.aperture_mm, e.cant); }
+
+  static Json cube(const char* kind, double aperture_mm, const Cant& cant) {
+    Json json = {{"kind", kind}, {"aperture_mm", aperture_mm}};
+    if (cant.deg != 0.0) json.update({{"cant_deg", cant.deg}, {"cant_azimuth_deg", cant.azimuth_deg}});
+    return json;
   }
 };
 

@@ -39,8 +39,8 @@ constexpr std::array kElementKeys = {KeyRule{"kind"},
                                      KeyRule{"width_mm"},
                                      KeyRule{"apex_angle_deg"},
                                      KeyRule{"aperture_mm"},
-                                     KeyRule{"cant_deg", OnlyNumber{0.0}},
-                                     KeyRule{"cant_azimuth_deg", OnlyNumber{0.0}}};
+                                     KeyRule{"cant_deg"},
+                                     KeyRule{"cant_azimuth_deg"}};
 constexpr std::array kArrayKeys = {KeyRule{"arrangement"},
                                    KeyRule{"extent"},
                                    KeyRule{"shifted_rows"},

@@ -61,6 +61,9 @@ constexpr std::array kEntranceModels = {Choice<bool>{"real", false}, Choice<bool
 constexpr std::array kCoatings = {Choice<bool>{"none", false}, Choice<bool>{"aluminium", true}};
 
 constexpr Range kApexAngle{.low = 60.0, .high = 120.0};
+/// Beyond 35.26 degrees a facet can stand upright.
+constexpr Range kCant{.low = 0.0, .high = 30.0};
+constexpr Range kAzimuth{.low = -360.0, .high = 360.0};
 constexpr Range kAngleError{.low = -300.0, .high = 300.0};
 constexpr Range kBackIndex{.low = 1.0, .high = 3.0};
 constexpr Range kRandomTilt{.low = 0.0, .high = 60.0};
@@ -84,9 +87,16 @@ double read_size(TableReader& table, std::string_view key) {
   return table.required_number(key, kSaneSize);
 }
 
+geometry::Cant read_cant(TableReader& element) {
+  geometry::Cant cant;
+  cant.deg = element.number("cant_deg", kCant).value_or(0.0);
+  cant.azimuth_deg = element.number("cant_azimuth_deg", kAzimuth).value_or(0.0);
+  return cant;
+}
+
 geometry::Element read_element(TableReader& element, Kind kind) {
-  element.skip({"cant_deg", "cant_azimuth_deg"});
   if (kind == Kind::rtp) {
+    element.refuse_unless_zero({"cant_deg", "cant_azimuth_deg"}, "only allowed for cube corners");
     element.refuse({"aperture_mm"}, "not allowed for kind = \"rtp\", which has base_mm and width_mm");
     geometry::RtpElement rtp;
     rtp.base_mm = read_size(element, "base_mm");
@@ -96,8 +106,9 @@ geometry::Element read_element(TableReader& element, Kind kind) {
   }
   element.refuse({"base_mm", "width_mm", "apex_angle_deg"}, "only allowed for kind = \"rtp\", others have aperture_mm");
   const double aperture_mm = read_size(element, "aperture_mm");
-  if (kind == Kind::hexagonal_icc) return geometry::HexagonalCube{aperture_mm};
-  return geometry::TriangularCube{aperture_mm};
+  const geometry::Cant cant = read_cant(element);
+  if (kind == Kind::hexagonal_icc) return geometry::HexagonalCube{aperture_mm, cant};
+  return geometry::TriangularCube{aperture_mm, cant};
 }
 
 std::span<const Choice<Arrangement>> arrangements_of(Kind kind) {
@@ -223,6 +234,20 @@ void read_edges(TableReader& surface, PartSpec& part) {
   if (part.x_gap_mm > 0.0) surface.fail("rim_radius_um", "must be 0 where x_gap_mm keeps the rims of neighbours apart");
 }
 
+/// Errors of angle must not let a facet of a canted cube stand upright.
+void check_steepness(const TableReader& surface, const PartSpec& part) {
+  constexpr double steepest_deg = 88.0;
+  constexpr double deviations = 6.0;  // of random tilts; none in 10^8 facets goes beyond
+  const double deg = geometry::steepest_facet_deg(part.element, part.angle_errors) +
+                     deviations * part.random_tilts.sigma_arcmin / 60.0;
+  if (deg <= steepest_deg) return;
+  std::string_view key = "angle_error_sigma_arcmin";
+  for (const std::string_view other : {"facet_tilt_arcmin", "dihedral_error_arcmin"})
+    if (surface.has(other)) key = other;
+  surface.fail(key, fmt::format("the steepest facet of the canted cube with its errors must be <= {} degrees, got {}",
+                                steepest_deg, fixed(deg, 2)));
+}
+
 /// What the retro facets are like.
 FacetTexture read_surface(const DesignDocument& document, PartSpec& part) {
   TableReader surface(document, "surface");
@@ -233,7 +258,10 @@ FacetTexture read_surface(const DesignDocument& document, PartSpec& part) {
   read_edges(surface, part);
   surface.finish();
   const auto* rtp = std::get_if<geometry::RtpElement>(&part.element);
-  if (rtp == nullptr) return texture;
+  if (rtp == nullptr) {
+    check_steepness(surface, part);
+    return texture;
+  }
   const auto& [dihedral, tilt] = part.angle_errors;
   const double apex_deg = rtp->apex_angle_deg + (dihedral[0] + tilt[0] + tilt[1]) / 60.0;
   if (!kApexAngle.contains(apex_deg))
@@ -281,7 +309,7 @@ void read_body(TableReader& body, Design& design) {
   const double top_mm = geometry::element_top_mm(design.part.element, design.part.angle_errors);
   const double least_mm = top_mm > 0.0 ? top_mm + kSaneSize.low : 0.0;
   if (design.part.thickness_mm < least_mm)
-    body.fail("thickness_mm", fmt::format("must be >= {} to cover rims that errors of angle lift to {}, got {}",
+    body.fail("thickness_mm", fmt::format("must be >= {} to cover rims that errors of angle or cant lift to {}, got {}",
                                           shortest(least_mm), shortest(top_mm), shortest(design.part.thickness_mm)));
   design.material_location = body.where("material");
   design.material = body.text("material").value_or(design.material);

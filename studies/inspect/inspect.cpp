@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/angle.h"
+#include "core/number_format.h"
 #include "geometry/check/boundary_check.h"
 #include "studies/design/optical_model.h"
 
@@ -17,23 +18,35 @@ namespace {
 // Boundaries of more elements than this are checked on a smaller part of the same kind: CGAL needs seconds beyond.
 constexpr double kElementsToCheck = 1000.0;
 
-/// The incidence inside at which the facet that is hit most squarely stops to reflect totally.
-double inner_limit_rad(const geometry::PartSpec& part, double index, double back_index) {
+/// Directions to the light inside that meets a facet squarely: its inward normal, and that of its mirror images, as
+/// light meets a facet after others as it would meet their image of it on its straight way.
+std::vector<geometry::Vec3> square_directions(const geometry::PartSpec& part) {
   std::vector<geometry::Vec3> normals;
   for (const geometry::CellFacet& facet : geometry::element_cell(part.element, part.angle_errors).facets)
     normals.push_back(geometry::Vec3(facet.plane.slope.x(), facet.plane.slope.y(), -1.0).normalized());
   std::vector<std::size_t> order(normals.size());
   std::iota(order.begin(), order.end(), 0U);
-  double least = Angle::from_deg(90.0).rad();
+  std::vector<geometry::Vec3> directions;
   do {
-    // Light meets a facet after others as it would meet their mirror image of it on its straight way.
     Eigen::Matrix3d image = Eigen::Matrix3d::Identity();
     for (const std::size_t k : order) {
-      least = std::min(least, std::acos(std::abs((image * normals[k]).z())));
+      const geometry::Vec3 seen = image * normals[k];
+      directions.push_back(seen.z() < 0.0 ? geometry::Vec3(-seen) : seen);
       image = image * (Eigen::Matrix3d::Identity() - 2.0 * normals[k] * normals[k].transpose());
     }
   } while (std::next_permutation(order.begin(), order.end()));
-  return least - std::asin(std::min(1.0, back_index / index));
+  return directions;
+}
+
+/// Degrees from 0 to below 360, without the last digits that differ between equal facets.
+double azimuth_deg(const geometry::Vec3& direction) {
+  const double deg = Angle::from_rad(std::atan2(direction.y(), direction.x())).deg();
+  const double rounded = 1e-9 * std::round(1e9 * std::remainder(deg, 360.0));
+  return rounded < 0.0 ? rounded + 360.0 : std::abs(rounded);
+}
+
+double critical_rad(double index, double back_index) {
+  return std::asin(std::min(1.0, back_index / index));
 }
 
 /// A finite part of the same elements that CGAL checks quickly: the design itself if it is small.
@@ -63,7 +76,8 @@ std::string boundary_finding(const geometry::PartSpec& spec, double element_mm) 
   const geometry::Part part = geometry::build_part(part_to_check(spec, element_mm, is_whole));
   if (part.placements.size() != 1) return "not checked: the elements differ too much in size from their array";
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
-  // Errors of angle may leave neighbours at such heights that the part touches itself where more than three cells meet.
+  // Errors of angle and cant may leave neighbours at such heights that the part touches itself where more than three
+  // cells meet.
   const std::string finding = report.ok()           ? "closed, free of self-intersections"
                               : !report.is_closed   ? "not closed"
                               : !report.is_manifold ? "closed, touches itself along edges"
@@ -82,9 +96,44 @@ double mean_index(const std::vector<SpectralOptics>& light) {
   return mean;
 }
 
+/// What is unusual about the facets, so that total reflection ends early; empty if nothing is.
+std::string circumstances(const Inspection& result) {
+  std::string text;
+  if (result.design.back_index > 1.0) text += fmt::format(", {} behind them", shortest(result.design.back_index));
+  const geometry::Cant cant = geometry::cant_of(result.design.part.element);
+  if (cant.deg > 0.0) text += fmt::format(", canted by {} degrees", shortest(cant.deg));
+  return text;
+}
+
+/// Where light on the other side of the normal is totally reflected after all; empty if nowhere.
+std::string where_it_begins(const Inspection& result) {
+  const geometry::PartSpec& part = result.design.part;
+  if (std::holds_alternative<geometry::RtpElement>(part.element)) return {};
+  const double away_deg = std::fmod(*result.tir_limit_azimuth_deg + 180.0, 360.0);
+  const auto from_deg =
+      total_reflection_from_deg(part, least_index(result.light), result.design.back_index, Angle::from_deg(away_deg));
+  if (!from_deg) return {};
+  return fmt::format("; it begins at {:.2f} degrees of incidence at azimuth {:.1f}", *from_deg, away_deg);
+}
+
+std::string of_turned_elements(const geometry::PartSpec& part) {
+  return part.arrangement == geometry::Arrangement::triangular ? "; of turned elements, 180 degrees from there" : "";
+}
+
+/// Says where total reflection ends in cube corners that do worse than upright ones in air.
+void tell_early_end(Inspection& result) {
+  const geometry::PartSpec& part = result.design.part;
+  if (std::holds_alternative<geometry::RtpElement>(part.element) || circumstances(result).empty()) return;
+  result.warnings.push_back(fmt::format(
+      "{}: total reflection at the facets ends at {:.2f} degrees of incidence at azimuth {:.1f} (n = {:.4f}{}){}",
+      result.design.source_name(), *result.tir_limit_deg, *result.tir_limit_azimuth_deg, least_index(result.light),
+      circumstances(result), of_turned_elements(part)));
+}
+
 /// Says so if light that falls in along the normal is not totally reflected, or not all of it.
 void warn_of_lost_reflection(Inspection& result) {
-  if (result.tir_limit_deg || !result.design.needs_total_reflection()) return;
+  if (!result.design.needs_total_reflection()) return;
+  if (result.tir_limit_deg) return tell_early_end(result);
   const std::string lost =
       fmt::format("{}: no total reflection at the facets at normal incidence", result.design.source_name());
   double share = 0.0;
@@ -96,11 +145,15 @@ void warn_of_lost_reflection(Inspection& result) {
     to_nm = at.wavelength_nm;
     share += at.weight;
   }
+  const std::string begins = where_it_begins(result);
+  const std::string ends = begins.empty() ? begins : begins + of_turned_elements(result.design.part);
   if (result.light.size() == 1)
-    result.warnings.push_back(fmt::format("{} (n = {:.4f})", lost, result.refractive_index));
+    result.warnings.push_back(
+        fmt::format("{} (n = {:.4f}{}){}", lost, result.refractive_index, circumstances(result), ends));
   else
-    result.warnings.push_back(fmt::format("{} for {:.0f} % of the light, {:.0f} to {:.0f} nm (n from {:.4f})", lost,
-                                          100.0 * share, from_nm, to_nm, least_index(result.light)));
+    result.warnings.push_back(fmt::format("{} for {:.0f} % of the light, {:.0f} to {:.0f} nm (n from {:.4f}{}){}", lost,
+                                          100.0 * share, from_nm, to_nm, least_index(result.light),
+                                          circumstances(result), ends));
 }
 
 void add_warnings(Inspection& result, const geometry::Part& part) {
@@ -114,10 +167,53 @@ void add_warnings(Inspection& result, const geometry::Part& part) {
 }  // namespace
 
 std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index, double back_index) {
-  const double inside = inner_limit_rad(part, index, back_index);
+  double least = Angle::from_deg(90.0).rad();
+  for (const geometry::Vec3& direction : square_directions(part)) least = std::min(least, std::acos(direction.z()));
+  const double inside = least - critical_rad(index, back_index);
   if (!(inside >= 0.0)) return std::nullopt;
   const double sine = index * std::sin(inside);
   return sine >= 1.0 ? 90.0 : Angle::from_rad(std::asin(sine)).deg();
+}
+
+double tir_limit_azimuth_deg(const geometry::PartSpec& part) {
+  constexpr double rounding = 1e-12;
+  double highest = -1.0;
+  double azimuth = 0.0;
+  for (const geometry::Vec3& direction : square_directions(part)) {
+    if (direction.z() < highest - rounding) continue;
+    const double here = azimuth_deg(direction);
+    if (direction.z() > highest + rounding || here < azimuth) azimuth = here;
+    highest = std::max(highest, direction.z());
+  }
+  return azimuth;
+}
+
+std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, double index, double back_index,
+                                                Angle azimuth) {
+  constexpr double rounding = 1e-12;
+  const double cos_critical = std::cos(critical_rad(index, back_index));
+  const geometry::Vec2 along(std::cos(azimuth.rad()), std::sin(azimuth.rad()));
+  const std::vector<geometry::Vec3> directions = square_directions(part);
+  // Each direction shuts out the angles inside that come close to it.
+  double inside = 0.0;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const geometry::Vec3& direction : directions) {
+      const double in_plane = direction.head<2>().dot(along);
+      const double size = std::hypot(in_plane, direction.z());
+      if (size <= cos_critical) continue;
+      const double middle = std::atan2(in_plane, direction.z());
+      const double half_width = std::acos(cos_critical / size);
+      if (inside <= middle - half_width + rounding || inside >= middle + half_width - rounding) continue;
+      inside = middle + half_width;
+      moved = true;
+    }
+  }
+  const double sine = index * std::sin(inside);
+  const geometry::Vec3 light(std::sin(inside) * along.x(), std::sin(inside) * along.y(), std::cos(inside));
+  for (const geometry::Vec3& direction : directions)
+    if (direction.dot(light) <= 0.0) return std::nullopt;  // does not meet all facets
+  return sine < 1.0 ? std::optional(Angle::from_rad(std::asin(sine)).deg()) : std::nullopt;
 }
 
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library) {
@@ -136,6 +232,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   if (design.needs_total_reflection()) result.wavelength_nm = model.wavelength_nm;
   result.light = model.spectral;
   result.tir_limit_deg = tir_limit_deg(design.part, least_index(model.spectral), model.optics.back_index);
+  if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part);
   result.dead_zone_share = geometry::edge_share(
       geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part.edges));
   result.boundary = boundary_finding(design.part, part.size_mm);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/angle.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
@@ -27,6 +28,9 @@ struct Inspection {
   /// for an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence, or
   /// none is needed: facets are mirrors or aluminised. Of a spectrum, that of the wavelength with the least index.
   std::optional<double> tir_limit_deg;
+  /// From where light meets a facet most squarely, so that its total reflection ends first; 0 to below 360, the least
+  /// of equal ones, of an unturned element. None where none is needed.
+  std::optional<double> tir_limit_azimuth_deg;
   double dead_zone_share = 0.0;  ///< of an element's plan that rounded and chamfered edges take
   std::string boundary;          ///< what the check of the boundary found
   std::vector<std::string> warnings;
@@ -35,6 +39,14 @@ struct Inspection {
 /// Largest incidence of total reflection for a part's elements at this index, of what is behind them; closed form.
 /// \pre both >= 1
 std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index, double back_index);
+
+/// The azimuth of the light whose total reflection ends first; 0 to below 360, the least of equal ones.
+double tir_limit_azimuth_deg(const geometry::PartSpec& part);
+
+/// Least incidence at this azimuth at which every facet reflects the retroreflected light totally; none if there is
+/// none. \pre both >= 1
+std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, double index, double back_index,
+                                                Angle azimuth);
 
 /// \throw InputError as make_model()
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library);

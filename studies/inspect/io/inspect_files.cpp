@@ -49,6 +49,7 @@ std::string inspect_json(const Inspection& i) {
                                  {"refractive_index", i.refractive_index}};
   if (i.design.spectrum) json["spectrum"] = spectrum_json(i.light);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
+  if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   json["dead_zone_share"] = i.dead_zone_share;
   json["boundary"] = i.boundary;
   json["version"] = kVersion;

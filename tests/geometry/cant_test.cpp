@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "geometry/lattice.h"
+#include "geometry/part.h"
+#include "tests/geometry/part_checks.h"
+
+// Canted cube corners: which way they lean, and that the part stays a solid.
+
+namespace retrace::geometry {
+namespace {
+
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+std::vector<Vec3> inward_normals(const Cell& cell) {
+  std::vector<Vec3> normals;
+  for (const CellFacet& facet : cell.facets)
+    normals.push_back(-Vec3(facet.plane.slope.x(), facet.plane.slope.y(), -1.0).normalized());
+  return normals;
+}
+
+std::vector<Cant> cants() {
+  return {{1e-3, 10.0}, {5.0, 0.0}, {12.0, 60.0}, {20.0, -135.0}, {30.0, 0.0}, {30.0, 180.0}, {30.0, 77.0}};
+}
+
+// The inward normals of a cube are its edges; the axis is the direction at equal angles to all three.
+TEST(Cant, TurnsTheAxisTowardsItsAzimuthAndKeepsTheCubeRight) {
+  for (const Cant& cant : cants()) {
+    const Vec3 axis(std::sin(cant.deg * kDeg) * std::cos(cant.azimuth_deg * kDeg),
+                    std::sin(cant.deg * kDeg) * std::sin(cant.azimuth_deg * kDeg), std::cos(cant.deg * kDeg));
+    for (const Cell& cell :
+         {hexagonal_cube_cell({1.3, cant}, {}, {0.2, 0.3}), triangular_cube_cell({1.3, cant}, {}, {0.2, 0.3}),
+          triangular_cube_cell({1.3, cant}, {}, {0.2, 0.3}, true)}) {
+      const std::vector<Vec3> normals = inward_normals(cell);
+      const Vec3 expected = cell.turned ? Vec3(-axis.x(), -axis.y(), axis.z()) : axis;
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(normals[k].dot(expected), 1.0 / std::numbers::sqrt3, 1e-13);
+        EXPECT_NEAR(normals[k].dot(normals[(k + 1) % 3]), 0.0, 1e-13);
+      }
+    }
+  }
+}
+
+// The cube turns as one about its apex: no twist about its own axis.
+TEST(Cant, TurnsTheFacetsByTheShortestWay) {
+  const Cant cant{20.0, 35.0};
+  const std::vector<Vec3> upright = inward_normals(hexagonal_cube_cell({1.0}, {}, Vec2::Zero()));
+  const std::vector<Vec3> canted = inward_normals(hexagonal_cube_cell({1.0, cant}, {}, Vec2::Zero()));
+  const Vec3 pivot(-std::sin(35.0 * kDeg), std::cos(35.0 * kDeg), 0.0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(canted[k].dot(pivot), upright[k].dot(pivot), 1e-14);
+    EXPECT_LE(std::acos(std::clamp(canted[k].dot(upright[k]), -1.0, 1.0)), 20.0 * kDeg + 1e-9);
+  }
+}
+
+TEST(Cant, ApexStaysInPlace) {
+  for (const Cant& cant : cants())
+    for (const Element& element : {Element(HexagonalCube{1.3, cant}), Element(TriangularCube{1.3, cant})})
+      for (const CellFacet& facet : element_cell(element).facets)
+        EXPECT_NEAR(facet.plane.at(Vec2::Zero()), -element_depth_mm(element), 1e-14);
+}
+
+// Facets tile the outline, and where they meet their planes do: the surface is the highest of the three planes.
+TEST(Cant, FacetsFillTheOutlineAndMeetWithoutSteps) {
+  for (const Cant& cant : cants())
+    for (const Element& element : {Element(HexagonalCube{1.3, cant}), Element(TriangularCube{1.3, cant})}) {
+      const Cell cell = element_cell(element);
+      double filled = 0.0;
+      for (const CellFacet& facet : cell.facets) {
+        filled += area(facet.outline);
+        for (const Vec2& p : facet.outline)
+          for (const CellFacet& other : cell.facets) EXPECT_GE(facet.plane.at(p), other.plane.at(p) - 1e-12);
+      }
+      EXPECT_NEAR(filled, area(cell.outline), 1e-12);
+    }
+}
+
+TEST(Cant, TopIsTheHighestRimOfThePart) {
+  for (const Cant& cant : cants()) {
+    PartSpec spec;
+    spec.element = TriangularCube{1.0, cant};
+    spec.arrangement = Arrangement::single;
+    spec.thickness_mm = 10.0;
+    EXPECT_NEAR(build_part(spec).top_mm, element_top_mm(spec.element, {}), 1e-9) << cant.deg;
+    EXPECT_GT(element_top_mm(spec.element, {}), 0.0);
+  }
+}
+
+TEST(Cant, SteepestFacet) {
+  const double upright = std::atan(std::numbers::sqrt2) / kDeg;
+  EXPECT_NEAR(steepest_facet_deg(HexagonalCube{1.0, {30.0, 0.0}}, {}), upright + 30.0, 1e-12);
+  EXPECT_NEAR(steepest_facet_deg(HexagonalCube{1.0, {0.0, 0.0}}, {}), upright, 1e-12);
+}
+
+TEST(Cant, PartsAreSolids) {
+  for (const Cant& cant : cants()) {
+    PartSpec spec;
+    spec.thickness_mm = 10.0;
+    spec.arrangement = Arrangement::single;
+    for (const Element& element : {Element(HexagonalCube{1.0, cant}), Element(TriangularCube{1.0, cant})}) {
+      spec.element = element;
+      expect_valid(spec);
+    }
+    spec.element = HexagonalCube{1.0, cant};
+    spec.arrangement = Arrangement::honeycomb;
+    spec.x_length_mm = 2.3;
+    spec.y_length_mm = 2.1;
+    expect_valid(spec);
+    spec.partial_elements = PartialElements::omit;
+    expect_valid(spec);
+  }
+}
+
+// Where six cells meet, opposite ones may be the lower: the part may touch itself along a vertical line there.
+TEST(Cant, TriangularArraysAreClosed) {
+  for (const Cant& cant : cants()) {
+    PartSpec spec;
+    spec.thickness_mm = 10.0;
+    spec.element = TriangularCube{1.0, cant};
+    spec.arrangement = Arrangement::triangular;
+    spec.x_length_mm = 2.3;
+    spec.y_length_mm = 2.1;
+    const Part part = build_part(spec);
+    const BoundaryReport report = check_boundary(closed_boundary(part));
+    EXPECT_TRUE(report.is_closed) << cant.deg << " " << cant.azimuth_deg;
+  }
+}
+
+}  // namespace
+}  // namespace retrace::geometry
