@@ -89,6 +89,80 @@ TEST(Inspect, SaysHowUnlikeErrorsCloseTheBoundary) {
             "closed, touches itself along edges (checked on a smaller array of the same elements)");
 }
 
+/// A canted cube, dihedral edges over 0, 120 and 240 degrees before it leans: where total reflection of light that
+/// meets all facets ends first, by trying.
+struct FirstLoss {
+  double incidence_deg = 90.0;
+  double azimuth_deg = 0.0;
+};
+FirstLoss first_loss(double cant_deg, double cant_azimuth_deg, double index, double back_index) {
+  constexpr double deg = std::numbers::pi / 180.0;
+  FirstLoss first;
+  for (double azimuth = 0.0; azimuth < 360.0; azimuth += 0.5) {
+    for (double incidence = 0.0; incidence < first.incidence_deg; incidence += 0.005) {
+      const double sine = std::sin(incidence * deg) / index;
+      // The light as the cube sees it: leaning back by the cant.
+      const double x = sine * std::cos((azimuth - cant_azimuth_deg) * deg);
+      const double y = sine * std::sin((azimuth - cant_azimuth_deg) * deg);
+      const double z = std::sqrt(1.0 - sine * sine);
+      const double along = x * std::cos(cant_deg * deg) - z * std::sin(cant_deg * deg);
+      const double axial = x * std::sin(cant_deg * deg) + z * std::cos(cant_deg * deg);
+      double most_square = -1.0;
+      for (const double edge : {0.0, 120.0, 240.0}) {
+        const double a = (edge - cant_azimuth_deg) * deg;
+        const double cosine = std::sqrt(2.0 / 3.0) * (along * std::cos(a) + y * std::sin(a)) + axial / std::sqrt(3.0);
+        most_square = std::max(most_square, cosine);
+      }
+      if (index * std::sqrt(1.0 - most_square * most_square) < back_index) first = {incidence, azimuth};
+    }
+  }
+  return first;
+}
+
+TEST(Inspect, CantedCubesHaveTheLimitThatTryingFinds) {
+  for (const std::string kind : {"hexagonal_icc", "triangular_icc"})
+    for (const auto& [cant, azimuth, back] : {std::array{0.0, 0.0, 1.0}, std::array{6.0, 0.0, 1.0},
+                                              std::array{9.0, 100.0, 1.0}, std::array{5.0, 180.0, 1.1}}) {
+      std::string design = infinite_cubes(kind, 1.5);
+      design.insert(design.find("[array]"),
+                    "cant_deg = " + std::to_string(cant) + "\ncant_azimuth_deg = " + std::to_string(azimuth) + "\n");
+      design += "back_index = " + std::to_string(back) + "\n";
+      design.replace(design.find("thickness_mm = 1"), 16, "thickness_mm = 5");
+      const Json json = inspect(design);
+      const FirstLoss expected = first_loss(cant, azimuth, 1.5, back);
+      EXPECT_NEAR(json["tir_limit_deg"].get<double>(), expected.incidence_deg, 0.012) << kind << cant;
+      EXPECT_NEAR(json["tir_limit_azimuth_deg"].get<double>(), expected.azimuth_deg, 2.0);
+      EXPECT_EQ(json["warnings"].size(), cant > 0.0 ? 1U : 0U);
+    }
+}
+
+// The facet that the cant flattens lies atan(sqrt 2) - cant from the xy plane: asin(n sin(that - critical angle)).
+TEST(Inspect, WarnsWhereTotalReflectionIsLost) {
+  const auto warnings = [](const std::string& kind, const std::string& element, const std::string& body) {
+    std::string design = infinite_cubes(kind, 1.5);
+    design.insert(design.find("[array]"), element);
+    design.replace(design.find("thickness_mm = 1"), 16, "thickness_mm = 5");
+    return inspect(design + body)["warnings"];
+  };
+  const std::string hexagonal = "hexagonal_icc";
+  EXPECT_EQ(warnings(hexagonal, "", "").size(), 0U);
+  EXPECT_EQ(warnings(hexagonal, "cant_deg = 6\ncant_azimuth_deg = 180\n", ""),
+            Json::array({"standard input: total reflection at the facets ends at 10.42 degrees of incidence at azimuth "
+                         "0.0 (n = 1.5000, canted by 6 degrees)"}));
+  EXPECT_EQ(warnings("triangular_icc", "", "back_index = 1.1\n"),
+            Json::array({"standard input: total reflection at the facets ends at 11.40 degrees of incidence at azimuth "
+                         "0.0 (n = 1.5000, 1.1 behind them); of turned elements, 180 degrees from there"}));
+  EXPECT_EQ(warnings(hexagonal, "cant_deg = 15\ncant_azimuth_deg = 180\n", ""),
+            Json::array({"standard input: no total reflection at the facets at normal incidence (n = 1.5000, canted by "
+                         "15 degrees); it begins at 3.11 degrees of incidence at azimuth 180.0"}));
+  EXPECT_EQ(warnings(hexagonal, "", "back_index = 1.333\n"),
+            Json::array({"standard input: no total reflection at the facets at normal incidence (n = 1.5000, 1.333 "
+                         "behind them)"}));
+  EXPECT_EQ(
+      warnings(hexagonal, "cant_deg = 15\ncant_azimuth_deg = 180\n", "[idealisation]\nfacets = \"mirror\"\n").size(),
+      0U);
+}
+
 TEST(Inspect, LimitIsLeftOutWhereThereIsNone) {
   const Json json = inspect(infinite_cubes("hexagonal_icc", 1.2));
   EXPECT_FALSE(json.contains("tir_limit_deg"));

@@ -4,6 +4,7 @@ retrace_test(raytrace_test
     ${CMAKE_CURRENT_LIST_DIR}/back_surface_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/beam_tracer_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/cell_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/cant_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/closed_forms_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/edges_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "geometry/lattice.h"
 #include "studies/design/init_templates.h"
 
 namespace retrace::studies {
@@ -509,10 +510,6 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
       "--set body.facet_coating=silver: body.facet_coating: must be one of \"none\" or \"aluminium\", got \"silver\"");
   EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")),
             "d.toml:11: part" + no + ", which takes only [element] and [array]");
-  for (const std::string key : {"element.cant_deg", "element.cant_azimuth_deg"}) {
-    EXPECT_EQ(refused(key + "=2"), "--set " + key + "=2: " + key + no + ", which takes only 0, got 2");
-    EXPECT_EQ(refused(key + "=0"), "");
-  }
   EXPECT_EQ(refused("surface.roughness_sq_nm=rough"),
             "--set surface.roughness_sq_nm=rough: surface.roughness_sq_nm: must be a number, got \"rough\"");
 }
@@ -593,6 +590,42 @@ TEST(DesignReader, WhatIsNoSpectrumIsRefused) {
             "d.toml:13: light.weighting: must be one of \"photopic\" or \"radiant\", got \"eye\"");
   EXPECT_EQ(set_complaint({"light.weighting=photopic"}),
             "--set light.weighting=photopic: light.weighting: only allowed together with spectrum, got \"photopic\"");
+}
+
+TEST(DesignReader, CantIsReadForCubeCornersAlone) {
+  const auto read = [](const std::string& element, const std::vector<std::string>& overrides) {
+    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part;
+  };
+  const auto refused = [&](const std::string& element, const std::vector<std::string>& overrides) -> std::string {
+    try {
+      read(element, overrides);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const std::string& cube : {kHexagonal, kTriangular}) {
+    const std::string azimuth = "element.cant_azimuth_deg=-90";
+    const geometry::Cant cant =
+        geometry::cant_of(read(cube, {"element.cant_deg=7.5", azimuth, "body.thickness_mm=9"}).element);
+    EXPECT_EQ(cant.deg, 7.5);
+    EXPECT_EQ(cant.azimuth_deg, -90.0);
+    EXPECT_EQ(geometry::cant_of(read(cube, {}).element).deg, 0.0);
+    EXPECT_EQ(refused(cube, {"element.cant_deg=31"}),
+              "--set element.cant_deg=31: element.cant_deg: must be >= 0 and <= 30, got 31");
+    EXPECT_EQ(refused(cube, {"element.cant_azimuth_deg=361"}),
+              "--set element.cant_azimuth_deg=361: element.cant_azimuth_deg: must be >= -360 and <= 360, got 361");
+    EXPECT_EQ(refused(cube, {"element.cant_deg=30", "surface.facet_tilt_arcmin=[0, -300, 0]"}),
+              "--set surface.facet_tilt_arcmin=[0, -300, 0]: surface.facet_tilt_arcmin: the steepest facet of the "
+              "canted cube with its errors must be <= 88 degrees, got 89.74");
+    EXPECT_NE(
+        refused(cube, {"element.cant_deg=20", "body.thickness_mm=1e-3"}).find("rims that errors of angle or cant"),
+        std::string::npos);
+  }
+  for (const std::string key : {"element.cant_deg", "element.cant_azimuth_deg"}) {
+    EXPECT_EQ(refused(kRtp, {key + "=2"}), "--set " + key + "=2: " + key + ": only allowed for cube corners, got 2");
+    EXPECT_EQ(refused(kRtp, {key + "=0"}), "");
+  }
 }
 
 TEST(DesignReader, AngleErrorsAreReadForEveryKind) {

@@ -1,0 +1,192 @@
+// Canted cube corners: their three planes stay at right angles, so that they send light straight back, from an aperture
+// that leans with them.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "raytrace/beam_tracer.h"
+#include "tests/support/designs.h"
+#include "tests/support/reference_tracer.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+struct Case {
+  std::string name;
+  PartSpec spec;
+};
+
+std::vector<Case> cases() {
+  const HexagonalCube hexagon{1.0, {12.0, 25.0}};
+  const HexagonalCube steep{1.0, {30.0, 0.0}};
+  const TriangularCube triangle{1.0, {12.0, -70.0}};
+  PartSpec omitted = finite(hexagon, Arrangement::honeycomb, 3.1, 2.7, 1.0);
+  omitted.partial_elements = PartialElements::omit;
+  PartSpec with_errors = finite(triangle, Arrangement::triangular, 2.1, 1.9, 1.0);
+  with_errors.angle_errors = {{30.0, -20.0, 10.0}, {15.0, 0.0, -40.0}};
+  with_errors.random_tilts = {5.0, 3};
+  return {{"single hexagon", single(hexagon, 1.0)},
+          {"single steep hexagon", single(steep, 8.0)},
+          {"single triangle", single(triangle, 1.0)},
+          {"honeycomb", finite(hexagon, Arrangement::honeycomb, 2.1, 1.9, 1.0)},
+          {"honeycomb, partial omitted", omitted},
+          {"triangular", finite(triangle, Arrangement::triangular, 2.1, 1.9, 1.0)},
+          {"triangular with errors of angle", with_errors},
+          {"infinite honeycomb", infinite(hexagon, Arrangement::honeycomb, 1.0)},
+          {"infinite steep honeycomb", infinite(steep, Arrangement::honeycomb, 8.0)},
+          {"infinite triangular", infinite(triangle, Arrangement::triangular, 1.0)}};
+}
+
+class Canted : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(Canted, NothingIsLost) {
+  const Case c = cases()[GetParam()];
+  const Part part = build_part(c.spec);
+  ASSERT_GT(part.top_mm, 1e-3);
+  ASSERT_LT(part.top_mm, part.thickness_mm);
+  const MonteCarlo tracer(part);
+  for (const Optics& optics : {pmma(), ideal()})
+    for (const double t : {0.0, 20.0, 60.0, 85.0})
+      for (const double p : {0.0, 70.0, 190.0}) {
+        const MonteCarloResult result = tracer.trace(optics, from(t, p), {0.5}, rays(1024), {});
+        const Ledger& ledger = result.cones[0].ledger;
+        EXPECT_NEAR(ledger.total(), 1.0, 1e-9) << c.name << " at " << t << ", " << p;
+        EXPECT_EQ(ledger[Account::lost], 0.0) << c.name << " at " << t << ", " << p;
+        EXPECT_EQ(result.misses, 0U) << c.name << " at " << t << ", " << p;
+      }
+}
+
+TEST_P(Canted, EnginesAgree) {
+  const Case c = cases()[GetParam()];
+  const Part part = build_part(c.spec);
+  BeamPolicy policy;
+  policy.cutoff = 1e-5;
+  for (const double azimuth_deg : {0.0, 130.0}) {
+    const Illumination light = from(15.0, azimuth_deg);
+    const Ledger exact = BeamTracer(part).trace(pmma(), light, {8.0}, policy).ledgers[0];
+    const Ledger traced = MonteCarlo(part).trace(pmma(), light, {8.0}, rays(1U << 16), {}).cones[0].ledger;
+    EXPECT_NEAR(exact.total(), 1.0, 1e-9) << c.name;
+    for (std::size_t a = 0; a < kAccountCount; ++a)
+      EXPECT_NEAR(exact.power[a], traced.power[a], exact[Account::truncated] + 3e-3)
+          << c.name << ": " << kAccountNames[a];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Canted, ::testing::Range(std::size_t{0}, cases().size()));
+
+TEST(Cant, AgreesWithTheReference) {
+  const std::vector<Case> all = cases();
+  const double cone_deg = 8.0;
+  for (const std::size_t k : {std::size_t{3}, std::size_t{5}}) {
+    const Part part = build_part(all[k].spec);
+    const ReferenceResult reference = reference_trace(part, pmma(), from(20.0, 70.0), cone_deg, 8000, 7);
+    const MonteCarloResult traced = MonteCarlo(part).trace(pmma(), from(20.0, 70.0), {cone_deg}, rays(1U << 19), {});
+    const double z = student_bound(2 * kAccountCount);
+    const double slack = reference.mean[Account::truncated] + 1e-3;
+    for (std::size_t a = 0; a < kAccountCount; ++a) {
+      if (a == static_cast<std::size_t>(Account::truncated)) continue;
+      EXPECT_NEAR(traced.cones[0].ledger.power[a], reference.mean.power[a], z * reference.std_error[a] + slack)
+          << all[k].name << ": " << kAccountNames[a];
+    }
+  }
+}
+
+/// A cube's own coordinates: the directions of its three edges, from the apex.
+Eigen::Matrix3d edges_of(const Cant& cant) {
+  Eigen::Matrix3d edges;
+  for (int k = 0; k < 3; ++k) {
+    const double a = 120.0 * k * kDeg;
+    edges.col(k) << std::sqrt(2.0 / 3.0) * std::cos(a), std::sqrt(2.0 / 3.0) * std::sin(a), 1.0 / std::numbers::sqrt3;
+  }
+  const Vec3 pivot(-std::sin(cant.azimuth_deg * kDeg), std::cos(cant.azimuth_deg * kDeg), 0.0);
+  return Eigen::AngleAxisd(cant.deg * kDeg, pivot) * edges;
+}
+
+bool in_polygon(const Polygon& outline, const Vec2& p) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec2 along = outline[(i + 1) % outline.size()] - outline[i];
+    const Vec2 to = p - outline[i];
+    if (along.x() * to.y() - along.y() * to.x() < 0.0) return false;
+  }
+  return true;
+}
+
+/// Share of a regular outline whose light meets all three planes of an unbounded cube, and the entrance face at either
+/// end, over that outline. In the cube's coordinates each plane turns one sign.
+double share_by_points(const Polygon& outline, const Cant& cant, double depth_mm, double thickness_mm,
+                       const Vec3& to_source) {
+  constexpr int kSteps = 500;
+  const Eigen::Matrix3d edges = edges_of(cant);
+  const Vec3 d = edges.transpose() * to_source;
+  if (d.minCoeff() <= 0.0) return 0.0;
+  const Rectangle box = bounding_box(outline);
+  int inside = 0;
+  int back = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const Vec2 p = box.lower + box.size().cwiseProduct(Vec2((i + 0.5) / kSteps, (j + 0.5) / kSteps));
+      if (!in_polygon(outline, p)) continue;
+      ++inside;
+      const Vec3 start = edges.transpose() * Vec3(p.x(), p.y(), thickness_mm + depth_mm);
+      std::array<double, 3> times{};
+      for (Eigen::Index k = 0; k < 3; ++k) times[static_cast<std::size_t>(k)] = start[k] / d[k];
+      bool all = true;
+      for (const double t : times) {
+        const Vec3 at = edges * (start - t * d).cwiseAbs();
+        all = all && in_polygon(outline, at.head<2>());
+      }
+      // Straight through the apex's mirror space, then up to the entrance face again.
+      const Vec3 end = edges * (-start + *std::max_element(times.begin(), times.end()) * d);
+      const double up = (thickness_mm + depth_mm - end.z()) / to_source.z();
+      back += all && in_polygon(outline, (end + up * to_source).head<2>()) ? 1 : 0;
+    }
+  return static_cast<double>(back) / inside;
+}
+
+/// Power that three facets of a single mirror cube send back exactly to where it came from.
+double straight_back(const PartSpec& spec, const Illumination& light) {
+  double power = 0.0;
+  const BeamObserver note = [&](const ReturnedBeam& beam) {
+    const double t = light.incidence.rad();
+    const double p = light.azimuth.rad();
+    const Vec3 to_source(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
+    if (beam.depth == 4 && (beam.direction - to_source).norm() < 1e-9) power += beam.stokes.i;
+  };
+  BeamTracer(build_part(spec)).trace(ideal(), light, {0.5}, {}, nullptr, note);
+  return power;
+}
+
+TEST(Cant, EffectiveApertureIsThatOfTheLeaningCube) {
+  const double thickness_mm = 1.5;
+  for (const Cant& cant : {Cant{}, Cant{6.0, 0.0}, Cant{10.0, 180.0}, Cant{15.0, 100.0}}) {
+    for (const Element& element : {Element(HexagonalCube{1.0, cant}), Element(TriangularCube{1.0, cant})}) {
+      const double along_axis_deg = std::asin(kPmma * std::sin(cant.deg * kDeg)) / kDeg;
+      for (const auto& [t, p] : {std::array{0.0, 0.0}, std::array{along_axis_deg, cant.azimuth_deg},
+                                 std::array{10.0, 40.0}, std::array{20.0, cant.azimuth_deg + 180.0}}) {
+        const double inner = std::asin(std::sin(t * kDeg) / kPmma);
+        const Vec3 to_source(std::sin(inner) * std::cos(p * kDeg), std::sin(inner) * std::sin(p * kDeg),
+                             std::cos(inner));
+        const double expected =
+            share_by_points(element_cell(element).outline, cant, element_depth_mm(element), thickness_mm, to_source);
+        EXPECT_NEAR(straight_back(single(element, thickness_mm), from(t, p)), expected, 4e-3)
+            << cant.deg << ", " << cant.azimuth_deg << " at " << t << ", " << p;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace retrace::testing
