@@ -315,7 +315,7 @@ TEST(DesignReader, WrongTypesAreRefused) {
 TEST(DesignReader, UnknownKeysAreNamedWithASuggestion) {
   EXPECT_EQ(complaint(with_line(3, "bse_mm = 0.5")),
             "d.toml:3: element.bse_mm: unknown key, did you mean \"base_mm\"? (allowed: kind, base_mm, width_mm, "
-            "apex_angle_deg, aperture_mm)");
+            "apex_angle_deg, aperture_mm, cant_deg, cant_azimuth_deg)");
   EXPECT_EQ(complaint(with_line(10, "thickness = 2")),
             "d.toml:10: body.thickness: unknown key, did you mean \"thickness_mm\"? (allowed: thickness_mm, material, "
             "refractive_index, absorption_per_mm, back_index, facet_coating)");
