@@ -53,7 +53,8 @@ struct Lattice {
 /// edge along x (base = width then).
 Cell rtp_cell(const RtpElement& element, const AngleErrors& errors, const Vec2& corner_mm, bool turned = false);
 
-/// A full cube corner with its apex over `centre_mm` and, without errors and cant, its three highest rim points on z = 0.
+/// A full cube corner with its apex over `centre_mm` and, without errors and cant, its three highest rim points on z =
+/// 0.
 Cell hexagonal_cube_cell(const HexagonalCube& element, const AngleErrors& errors, const Vec2& centre_mm);
 
 /// A triangular cube corner with its apex over `centre_mm` and, without errors and cant, its rim on z = 0; `turned` by

@@ -17,8 +17,8 @@ struct Placement {
 };
 
 /// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below it
-/// the elements, whose rims lie on z = 0 but for errors of angle and cant. A finite part is the prism over a convex outline,
-/// open at the bottom only where the back surface ends it; an infinite one repeats with a rectangular period.
+/// the elements, whose rims lie on z = 0 but for errors of angle and cant. A finite part is the prism over a convex
+/// outline, open at the bottom only where the back surface ends it; an infinite one repeats with a rectangular period.
 ///
 /// The back surface is stored as few distinct patches and many placements, so that a large array costs the memory of
 /// its different pieces (interior, borders, corners).

@@ -34,13 +34,9 @@ struct KeyRule {
   Availability availability = Served{};
 };
 
-constexpr std::array kElementKeys = {KeyRule{"kind"},
-                                     KeyRule{"base_mm"},
-                                     KeyRule{"width_mm"},
-                                     KeyRule{"apex_angle_deg"},
-                                     KeyRule{"aperture_mm"},
-                                     KeyRule{"cant_deg"},
-                                     KeyRule{"cant_azimuth_deg"}};
+constexpr std::array kElementKeys = {
+    KeyRule{"kind"},        KeyRule{"base_mm"},  KeyRule{"width_mm"},        KeyRule{"apex_angle_deg"},
+    KeyRule{"aperture_mm"}, KeyRule{"cant_deg"}, KeyRule{"cant_azimuth_deg"}};
 constexpr std::array kArrayKeys = {KeyRule{"arrangement"},
                                    KeyRule{"extent"},
                                    KeyRule{"shifted_rows"},
