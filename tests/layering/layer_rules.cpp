@@ -33,12 +33,24 @@ const std::map<std::string, Names>& folders() {
 
 /// What a room of studies/ may see of the others. Rooms that come later are listed here first.
 const std::map<std::string, Names>& study_rooms() {
-  static const std::map<std::string, Names> rooms = {{"design", {}},
-                                                     {"rre", {"design"}},
-                                                     {"roughness", {"design", "rre"}},
-                                                     {"inspect", {"design"}},
-                                                     {"metrology", {}}};
+  static const std::map<std::string, Names> rooms = {
+      {"design", {}},          {"rre", {"design"}}, {"roughness", {"design", "rre"}},
+      {"inspect", {"design"}}, {"metrology", {}},   {"fabrication", {"design"}}};
   return rooms;
+}
+
+/// The same for rooms of fabrication/. Readers and verifier share nothing with planner and writers.
+const std::map<std::string, Names>& fabrication_rooms() {
+  static const std::map<std::string, Names> rooms = {
+      {"job", {}},           {"machine", {}},       {"program", {}},     {"plan", {"job", "machine", "program"}},
+      {"post", {"program"}}, {"read", {"machine"}}, {"forces", {"job"}}, {"verify", {"job", "machine", "read"}}};
+  return rooms;
+}
+
+/// The rooms of a folder that has such; null for others.
+const std::map<std::string, Names>* rooms_of(const std::string& folder) {
+  if (folder == "studies") return &study_rooms();
+  return folder == "fabrication" ? &fabrication_rooms() : nullptr;
 }
 
 /// Folders that may include anything, or hold no code of the program.
@@ -177,12 +189,13 @@ class Checker {
       report(path, include.line, from.folder + "/ may not include " + include.target);
       return;
     }
-    if (from.folder != "studies" || target.folder != "studies" || from.room == target.room) return;
-    const auto room = study_rooms().find(from.room);
-    if (room == study_rooms().end()) {
-      report(path, include.line, "room studies/" + from.room + "/ has no place in the order of rooms");
+    const auto* const rooms = rooms_of(from.folder);
+    if (rooms == nullptr || target.folder != from.folder || from.room == target.room) return;
+    const auto room = rooms->find(from.room);
+    if (room == rooms->end()) {
+      report(path, include.line, "room " + from.folder + "/" + from.room + "/ has no place in the order of rooms");
     } else if (!room->second.contains(target.room)) {
-      report(path, include.line, "studies/" + from.room + "/ may not include " + include.target);
+      report(path, include.line, from.folder + "/" + from.room + "/ may not include " + include.target);
     }
   }
 

@@ -55,6 +55,19 @@ TEST_F(SyntheticTree, WithoutCoreIsRefused) {
   EXPECT_THROW(check_tree(root_), std::runtime_error) << "a tree without a single source file";
 }
 
+TEST_F(SyntheticTree, ReadersOfPrograms) {
+  add("fabrication/plan/plan.h", "#pragma once\n#include \"fabrication/job/job.h\"\n");
+  add("fabrication/job/job.h", "#pragma once\n");
+  add("fabrication/read/reader.cpp", "#include \"fabrication/plan/plan.h\"\n");
+  add("fabrication/verify/verify.cpp", "#include \"fabrication/program/program.h\"\n");
+  add("fabrication/milling/mill.cpp", "#include \"fabrication/job/job.h\"\n");
+  EXPECT_EQ(found(),
+            (Lines{"fabrication/milling/mill.cpp:1: room fabrication/milling/ has no place in the order of rooms",
+                   "fabrication/read/reader.cpp:1: fabrication/read/ may not include fabrication/plan/plan.h",
+                   "fabrication/verify/verify.cpp:1: fabrication/verify/ may not include "
+                   "fabrication/program/program.h"}));
+}
+
 TEST_F(SyntheticTree, InOrderPasses) {
   add("geometry/part.h", "#include \"core/error.h\"\n#include <Eigen/Core>\n");
   add("geometry/check/closed.cpp", "#include <CGAL/Surface_mesh.h>\n#include \"geometry/check/closed.h\"\n");

@@ -1,4 +1,4 @@
-#include "studies/design/message_text.h"
+#include "core/message_text.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace retrace::studies {
+namespace retrace {
 namespace {
 
 /// Length in bytes of the printable UTF-8 character that `text` starts with; 0 if it starts with anything else.
@@ -92,4 +92,4 @@ std::string_view closest(std::string_view given, std::span<const std::string_vie
   return found;
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace

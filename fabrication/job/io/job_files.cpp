@@ -1,0 +1,370 @@
+#include "fabrication/job/io/job_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "core/atomic_file.h"
+#include "core/data_directory.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "core/toml_file.h"
+
+namespace retrace::fabrication {
+namespace fs = std::filesystem;
+namespace {
+
+using geometry::Arrangement;
+using geometry::RowParity;
+
+constexpr std::string_view kSchema = "retrace.job/1";
+constexpr std::string_view kProcessSchema = "retrace.process/1";
+constexpr std::array<std::string_view, 4> kArrangementWords = {"single", "aligned", "offset", "checker"};
+constexpr std::array kArrangements = {Arrangement::single, Arrangement::aligned, Arrangement::offset,
+                                      Arrangement::checker};
+constexpr std::array<std::string_view, 2> kRowWords = {"even", "odd"};
+constexpr std::array<std::string_view, 1> kKindWords = {"rtp"};
+
+constexpr NumberRange kPositive{.low = 0.0, .low_included = false};
+constexpr NumberRange kNotNegative{.low = 0.0};
+/// From a tenth of a micrometre to ten metres, in which nanometres still are whole numbers of 64 bits.
+constexpr NumberRange kSize{.low = 1e-4, .high = 1e4};
+constexpr NumberRange kGap{.low = 0.0, .high = 1e4};
+constexpr NumberRange kApexAngle{.low = 60.0, .high = 120.0};
+constexpr NumberRange kOverlap{.low = 0.0, .high = 100.0, .high_included = false};
+constexpr NumberRange kShrinkage{.low = 0.0, .high = 10.0};
+constexpr NumberRange kToolWidth{.low = 0.1, .high = 2.0};
+constexpr NumberRange kWedge{.low = 10.0, .high = 80.0};
+constexpr NumberRange kToolClearance{.low = 2.0, .high = 15.0};
+constexpr NumberRange kEdgeRadius{.low = 0.0, .high = 50.0};
+constexpr NumberRange kSideClearance{.low = 0.0, .low_included = false, .high = 20.0};
+constexpr NumberRange kDepth{.low = 0.0, .low_included = false, .high = 1000.0};
+constexpr NumberRange kFeed{.low = 0.0, .low_included = false, .high = 1e5};
+constexpr NumberRange kShortLength{.low = 0.0, .low_included = false, .high = 100.0};
+constexpr NumberRange kDwell{.low = 0.0, .high = 60.0};
+constexpr NumberRange kCuts{.low = 1.0, .high = 1000.0};
+constexpr NumberRange kMicrometres{.low = 0.0, .high = 1000.0};
+/// Keeps element numbers within 32 bits and memory within reason.
+constexpr double kMostElements = 2e7;
+/// A tool this much wider than the element fits it all the same.
+constexpr double kFitToleranceMm = 1e-6;
+/// The chip needs this much between the rake face and the other facet (assumed: half of what wedge 50 and clearance 15
+/// leave of a right angle).
+constexpr double kChipRoomDeg = 12.5;
+
+template <std::size_t size>
+std::span<const std::string_view> words(const std::array<std::string_view, size>& all) {
+  return all;
+}
+
+Workpiece read_workpiece(TomlTable table) {
+  Workpiece workpiece;
+  if (const auto kind = table.choice("kind", kWorkpieceWords)) workpiece.kind = static_cast<WorkpieceKind>(*kind);
+  workpiece.shrinkage_percent = table.number("shrinkage_percent", kShrinkage).value_or(0.0);
+  return workpiece;
+}
+
+geometry::RtpElement read_element(TomlTable table) {
+  table.required_choice("kind", words(kKindWords));
+  geometry::RtpElement element;
+  element.base_mm = table.required_number("base_mm", kSize);
+  element.width_mm = table.required_number("width_mm", kSize);
+  element.apex_angle_deg = table.number("apex_angle_deg", kApexAngle).value_or(90.0);
+  return element;
+}
+
+Array read_array(TomlTable table) {
+  Array array;
+  array.arrangement = kArrangements[table.required_choice("arrangement", words(kArrangementWords))];
+  if (const auto rows = table.choice("shifted_rows", words(kRowWords)))
+    array.shifted_rows = *rows == 0 ? RowParity::even : RowParity::odd;
+  array.overlap_percent = table.number("overlap_percent", kOverlap).value_or(50.0);
+  if (array.arrangement != Arrangement::single) {
+    array.x_length_mm = table.required_number("x_length_mm", kSize);
+    array.y_length_mm = table.required_number("y_length_mm", kSize);
+  }
+  array.x_gap_mm = table.number("x_gap_mm", kGap).value_or(0.0);
+  array.y_gap_mm = table.number("y_gap_mm", kGap).value_or(0.0);
+  array.x_offset_mm = table.number("x_offset_mm", kGap).value_or(0.0);
+  array.y_offset_mm = table.number("y_offset_mm", kGap).value_or(0.0);
+  array.pattern = table.texts("pattern").value_or(std::vector<std::string>{});
+  return array;
+}
+
+Tool read_tool(TomlTable table) {
+  Tool tool;
+  tool.width_mm = table.required_number("width_mm", kToolWidth);
+  tool.wedge_deg = table.number("wedge_deg", kWedge).value_or(tool.wedge_deg);
+  tool.clearance_deg = table.number("clearance_deg", kToolClearance).value_or(tool.clearance_deg);
+  tool.edge_radius_um = table.number("edge_radius_um", kEdgeRadius).value_or(tool.edge_radius_um);
+  tool.side_clearance_deg = table.number("side_clearance_deg", kSideClearance).value_or(tool.side_clearance_deg);
+  return tool;
+}
+
+Process read_process(TomlTable table) {
+  Process p;
+  p.name = table.required_text("name");
+  p.source = table.required_text("source");
+  p.clearance_mm = table.required_number("clearance_mm", kShortLength);
+  p.roughing_depth_um = table.required_number("roughing_depth_um", kDepth);
+  p.finishing_depth_um = table.required_number("finishing_depth_um", kDepth);
+  p.finishing_cuts = static_cast<int>(table.whole("finishing_cuts", kCuts).value_or(p.finishing_cuts));
+  p.plough_length_mm = table.required_number("plough_length_mm", kShortLength);
+  p.dwell_s = table.number("dwell_s", kDwell).value_or(p.dwell_s);
+  p.roughing_feed_mm_per_min = table.required_number("roughing_feed_mm_per_min", kFeed);
+  p.finishing_feed_mm_per_min = table.required_number("finishing_feed_mm_per_min", kFeed);
+  p.retract_feed_mm_per_min = table.required_number("retract_feed_mm_per_min", kFeed);
+  p.shortest_plough = table.flag("shortest_plough").value_or(false);
+  p.plough_lift_um = table.number("plough_lift_um", kMicrometres).value_or(0.0);
+  p.slow_retract_um = table.number("slow_retract_um", kMicrometres).value_or(0.0);
+  p.rotary_clearance_mm = table.number("rotary_clearance_mm", kShortLength).value_or(p.rotary_clearance_mm);
+  // Their values are refused where they are used: a plough shorter than the chip leaves it hanging.
+  if (!p.shortest_plough && p.plough_length_mm < 1e-3 * p.roughing_depth_um)
+    table.fail("plough_length_mm", fmt::format("must be at least roughing_depth_um ({} um) to free the chip, got {}",
+                                               shortest(p.roughing_depth_um), shortest(p.plough_length_mm)));
+  return p;
+}
+
+/// Where the values that belong together were given.
+struct Places {
+  InputLocation element_width;
+  InputLocation tool_width;
+  InputLocation tool_wedge;
+  InputLocation x_length;
+  InputLocation y_length;
+  InputLocation pattern;
+};
+
+void check_tool(const Job& job, const Places& at) {
+  const double width_mm = blank_element(job).width_mm;
+  if (job.tool.width_mm > width_mm + kFitToleranceMm)
+    throw InputError(at.tool_width, fmt::format("must be <= {}, the element's width, got {}", shortest(width_mm),
+                                                shortest(job.tool.width_mm)));
+  const double apex_deg = job.element.apex_angle_deg;
+  const double taken_deg = job.tool.wedge_deg + job.tool.clearance_deg;
+  if (taken_deg >= apex_deg)
+    throw InputError(at.tool_wedge,
+                     fmt::format("with clearance_deg must be < {}, the element's apex angle, for the tool "
+                                 "to fit the root, got {}",
+                                 shortest(apex_deg), shortest(taken_deg)));
+  if (apex_deg - taken_deg < kChipRoomDeg)
+    throw InputError(at.tool_wedge, fmt::format("with clearance_deg must be <= {} for chips to leave between rake face "
+                                                "and facet, got {}",
+                                                shortest(apex_deg - kChipRoomDeg), shortest(taken_deg)));
+}
+
+void check_pattern(const Job& job, const Places& at) {
+  const auto [columns, rows] = cell_counts(job.array, job.element);
+  const std::vector<std::string>& pattern = job.array.pattern;
+  if (static_cast<std::int64_t>(pattern.size()) != rows)
+    throw InputError(at.pattern, fmt::format("must have {} rows, as many as the array, got {}", rows, pattern.size()));
+  for (std::size_t k = 0; k < pattern.size(); ++k) {
+    const std::string& row = pattern[k];
+    if (static_cast<std::int64_t>(row.size()) != columns)
+      throw InputError(at.pattern,
+                       fmt::format("must have {} cells in every row, as many as the array, got {} in row {}", columns,
+                                   row.size(), k));
+    const std::size_t wrong = row.find_first_not_of("#-");
+    if (wrong != std::string::npos)
+      throw InputError(at.pattern, fmt::format("must hold # and - only, got {} in row {}",
+                                               in_quotes(std::string_view(row).substr(wrong, 1)), k));
+  }
+}
+
+void check_array(const Job& job, const Places& at) {
+  if (job.array.arrangement == Arrangement::single) {
+    if (!job.array.pattern.empty()) throw InputError(at.pattern, "not allowed for arrangement = \"single\"");
+    return;
+  }
+  const double columns = (job.array.x_length_mm + job.array.x_gap_mm) / (job.element.base_mm + job.array.x_gap_mm);
+  const double rows = (job.array.y_length_mm + job.array.y_gap_mm) / (job.element.width_mm + job.array.y_gap_mm);
+  if (columns * rows > kMostElements)
+    throw InputError(at.x_length, fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed",
+                                              columns * rows, kMostElements));
+  const CellCounts counts = cell_counts(job.array, job.element);
+  if (counts.columns < 1)
+    throw InputError(at.x_length, "must hold one element between the margins, got " + shortest(job.array.x_length_mm));
+  if (counts.rows < 1)
+    throw InputError(at.y_length, "must hold one element between the margins, got " + shortest(job.array.y_length_mm));
+  if (job.array.arrangement == Arrangement::checker &&
+      std::abs(job.element.base_mm - job.element.width_mm) > 1e-9 * job.element.base_mm)
+    throw InputError(at.element_width, fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
+                                                   shortest(job.element.base_mm), shortest(job.element.width_mm)));
+  if (!job.array.pattern.empty()) check_pattern(job, at);
+  if (cut_elements(job).empty())
+    throw InputError(job.array.pattern.empty() ? at.x_length : at.pattern, "leaves no element to cut");
+}
+
+void check_together(const Job& job, const Places& at) {
+  check_array(job, at);
+  check_tool(job, at);
+}
+
+std::string rows_text(const std::vector<std::string>& pattern) {
+  std::string text = "pattern = [\n";
+  for (const std::string& row : pattern) text += "  " + toml_text(row) + ",\n";
+  return text + "]\n";
+}
+
+class TextWriter {
+ public:
+  void head(std::string_view name) { text_ += fmt::format("\n[{}]\n", name); }
+  void number(std::string_view key, double value) { text_ += fmt::format("{} = {}\n", key, shortest(value)); }
+  void text(std::string_view key, std::string_view value) { text_ += fmt::format("{} = {}\n", key, toml_text(value)); }
+  void flag(std::string_view key, bool value) { text_ += fmt::format("{} = {}\n", key, value); }
+  void raw(std::string_view line) { text_ += line; }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+void write_array(TextWriter& out, const Array& array) {
+  out.head("array");
+  const auto index = std::find(kArrangements.begin(), kArrangements.end(), array.arrangement) - kArrangements.begin();
+  out.text("arrangement", kArrangementWords[static_cast<std::size_t>(index)]);
+  out.text("shifted_rows", array.shifted_rows == RowParity::even ? "even" : "odd");
+  out.number("overlap_percent", array.overlap_percent);
+  if (array.arrangement != Arrangement::single) {
+    out.number("x_length_mm", array.x_length_mm);
+    out.number("y_length_mm", array.y_length_mm);
+  }
+  out.number("x_gap_mm", array.x_gap_mm);
+  out.number("y_gap_mm", array.y_gap_mm);
+  out.number("x_offset_mm", array.x_offset_mm);
+  out.number("y_offset_mm", array.y_offset_mm);
+  if (!array.pattern.empty()) out.raw(rows_text(array.pattern));
+}
+
+void write_process(TextWriter& out, const Process& p) {
+  out.head("process");
+  out.text("name", p.name);
+  out.text("source", p.source);
+  out.number("clearance_mm", p.clearance_mm);
+  out.number("roughing_depth_um", p.roughing_depth_um);
+  out.number("finishing_depth_um", p.finishing_depth_um);
+  out.number("finishing_cuts", p.finishing_cuts);
+  out.number("plough_length_mm", p.plough_length_mm);
+  out.number("dwell_s", p.dwell_s);
+  out.number("roughing_feed_mm_per_min", p.roughing_feed_mm_per_min);
+  out.number("finishing_feed_mm_per_min", p.finishing_feed_mm_per_min);
+  out.number("retract_feed_mm_per_min", p.retract_feed_mm_per_min);
+  out.flag("shortest_plough", p.shortest_plough);
+  out.number("plough_lift_um", p.plough_lift_um);
+  out.number("slow_retract_um", p.slow_retract_um);
+  out.number("rotary_clearance_mm", p.rotary_clearance_mm);
+}
+
+}  // namespace
+
+void check_job(const Job& job, const InputLocation& where) {
+  const auto at = [&](std::string key) { return InputLocation{where.file, where.line, std::move(key)}; };
+  check_together(job, {at("element.width_mm"), at("tool.width_mm"), at("tool.wedge_deg"), at("array.x_length_mm"),
+                       at("array.y_length_mm"), at("array.pattern")});
+}
+
+Job parse_job(std::string_view text, const std::string& source_name) {
+  TomlTable root = parse_toml(text, source_name);
+  const std::string schema = root.required_text("schema");
+  if (schema != kSchema) root.fail("schema", fmt::format("must be {}, got {}", in_quotes(kSchema), in_quotes(schema)));
+  Job job;
+  job.source = source_name;
+  job.title = root.text("title").value_or("");
+  job.design = root.text("design").value_or("");
+  job.notes = root.texts("notes").value_or(std::vector<std::string>{});
+  job.strategy = static_cast<Strategy>(root.required_choice("strategy", kStrategyWords));
+  job.machine = root.required_text("machine");
+  if (job.machine.empty()) root.fail("machine", "must name a machine or a file, got \"\"");
+  TomlTable element = root.required_table("element");
+  TomlTable array = root.required_table("array");
+  TomlTable tool = root.required_table("tool");
+  TomlTable process = root.required_table("process");
+  job.workpiece = read_workpiece(root.table("workpiece"));
+  job.element = read_element(element);
+  job.array = read_array(array);
+  job.tool = read_tool(tool);
+  job.process = read_process(process);
+  root.finish();
+  check_together(job, {element.where("width_mm"), tool.where("width_mm"), tool.where("wedge_deg"),
+                       array.where("x_length_mm"), array.where("y_length_mm"), array.where("pattern")});
+  return job;
+}
+
+Job read_job(const fs::path& file) {
+  Job job = parse_job(read_file(file), file.string());
+  // A name without a folder or an ending is one of the shipped machines.
+  const fs::path machine = job.machine;
+  if (machine.has_extension() && machine.is_relative()) job.machine = (file.parent_path() / machine).string();
+  return job;
+}
+
+std::string job_text(const Job& job) {
+  TextWriter out;
+  out.raw("# A fabrication job for retrace. Lengths in mm, angles in degrees; depths of cut in um.\n");
+  out.text("schema", kSchema);
+  if (!job.title.empty()) out.text("title", job.title);
+  if (!job.design.empty()) out.text("design", job.design);
+  if (!job.notes.empty()) {
+    out.raw("notes = [\n");
+    for (const std::string& note : job.notes) out.raw("  " + toml_text(note) + ",\n");
+    out.raw("]\n");
+  }
+  out.text("machine", job.machine);
+  out.text("strategy", kStrategyWords[static_cast<std::size_t>(job.strategy)]);
+  out.head("workpiece");
+  out.text("kind", kWorkpieceWords[static_cast<std::size_t>(job.workpiece.kind)]);
+  out.number("shrinkage_percent", job.workpiece.shrinkage_percent);
+  out.head("element");
+  out.text("kind", "rtp");
+  out.number("base_mm", job.element.base_mm);
+  out.number("width_mm", job.element.width_mm);
+  out.number("apex_angle_deg", job.element.apex_angle_deg);
+  write_array(out, job.array);
+  out.head("tool");
+  out.number("width_mm", job.tool.width_mm);
+  out.number("wedge_deg", job.tool.wedge_deg);
+  out.number("clearance_deg", job.tool.clearance_deg);
+  out.number("edge_radius_um", job.tool.edge_radius_um);
+  out.number("side_clearance_deg", job.tool.side_clearance_deg);
+  write_process(out, job.process);
+  return out.take();
+}
+
+Process parse_process(std::string_view text, const std::string& source_name) {
+  TomlTable root = parse_toml(text, source_name);
+  const std::string schema = root.required_text("schema");
+  if (schema != kProcessSchema)
+    root.fail("schema", fmt::format("must be {}, got {}", in_quotes(kProcessSchema), in_quotes(schema)));
+  Process process = read_process(root);
+  root.finish();
+  return process;
+}
+
+std::vector<Process> shipped_processes() {
+  std::vector<fs::path> files;
+  const fs::path folder = data_directory() / "processes";
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  if (error) throw InputError(folder.string() + ": cannot be read");
+  std::sort(files.begin(), files.end());
+  std::vector<Process> processes;
+  for (const fs::path& file : files) processes.push_back(parse_process(read_file(file), file.string()));
+  return processes;
+}
+
+Process load_process(const std::string& name_or_file, const InputLocation& where) {
+  if (fs::path(name_or_file).has_extension()) return parse_process(read_file(name_or_file), name_or_file);
+  std::vector<std::string> names;
+  for (const Process& process : shipped_processes()) {
+    if (process.name == name_or_file) return process;
+    names.push_back(process.name);
+  }
+  throw InputError(where,
+                   fmt::format("must be a file or one of {}, got {}", fmt::join(names, ", "), in_quotes(name_or_file)));
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "fabrication/job/job.h"
+
+namespace retrace::fabrication {
+
+/// Reads and checks a job file (schema retrace.job/1). A machine named by a file is taken from the folder of the job.
+/// \throw InputError naming file, line, key, what was given and what is allowed, on one line
+Job read_job(const std::filesystem::path& file);
+
+/// The same for the text of a job file; `source_name` stands for the file in messages.
+Job parse_job(std::string_view text, const std::string& source_name);
+
+/// The job as text that parse_job() reads back to the same job.
+std::string job_text(const Job& job);
+
+/// What a job must fulfil that only several of its values together can tell: the tool fits the root and the element,
+/// chips can leave, the array holds an element, a pattern has the array's size and cells to cut. parse_job() does this.
+/// \param where the file, for messages
+/// \throw InputError
+void check_job(const Job& job, const InputLocation& where);
+
+/// The shipped processes (data/processes/*.toml), by name.
+std::vector<Process> shipped_processes();
+
+/// The shipped process of that name, or the process of a file. \throw InputError at `where` if there is neither
+Process load_process(const std::string& name_or_file, const InputLocation& where);
+
+/// A process from the text of its file. \throw InputError
+Process parse_process(std::string_view text, const std::string& source_name);
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,209 @@
+#include "fabrication/job/job.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/error.h"
+#include "fabrication/job/io/job_files.h"
+#include "geometry/part.h"
+#include "tests/fabrication/jobs.h"
+
+// Jobs: where the elements lie, files that are read and written without loss, and what is refused.
+
+namespace retrace::fabrication::test {
+namespace {
+
+using geometry::Arrangement;
+using geometry::RowParity;
+
+bool same(const Job& a, const Job& b) {
+  return job_text(a) == job_text(b);
+}
+
+TEST(Job, CountsThesisArrays) {
+  // Milliken 2017, 2.3 and 2.7: the first structure of every second row is left out.
+  const std::pair<int, std::size_t> counts[] = {{1, 1}, {3, 8}, {4, 14}, {5, 23}, {7, 46}, {25, 613}};
+  for (const auto& [n, elements] : counts) EXPECT_EQ(cut_elements(square_job(n)).size(), elements) << n;
+}
+
+TEST(Job, HasAsManyElementsAsThePartHasWholeOnes) {
+  for (const auto arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker})
+    for (const auto parity : {RowParity::even, RowParity::odd})
+      for (const double y_length_mm : {1.0, 1.4, 3.7}) {
+        Job job = square_job(5, arrangement);
+        job.array.shifted_rows = parity;
+        job.array.y_length_mm = y_length_mm;
+        job.array.x_gap_mm = 0.02;
+        job.array.x_offset_mm = 0.1;
+        geometry::PartSpec spec;
+        spec.element = job.element;
+        spec.arrangement = arrangement;
+        spec.shifted_rows = parity;
+        spec.partial_elements = geometry::PartialElements::omit;
+        spec.x_length_mm = job.array.x_length_mm;
+        spec.y_length_mm = y_length_mm;
+        spec.x_gap_mm = 0.02;
+        spec.x_offset_mm = 0.1;
+        spec.thickness_mm = 1.0;
+        EXPECT_EQ(static_cast<std::int64_t>(cut_elements(job).size()), geometry::build_part(spec).elements_full);
+      }
+}
+
+TEST(Job, PlacesElementsInTheWorkpieceFrame) {
+  Job job = square_job(2);
+  const auto elements = cut_elements(job);  // row 1: two, row 2 shifted by half a base: one
+  ASSERT_EQ(elements.size(), 3U);
+  // x_w = y_part, y_w = -x_part, from the centre of the extent.
+  EXPECT_NEAR((elements[0].centre_mm - geometry::Vec2(-0.2255, 0.2255)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((elements[1].centre_mm - geometry::Vec2(-0.2255, -0.2255)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((elements[2].centre_mm - geometry::Vec2(0.2255, 0.0)).norm(), 0.0, 1e-15);
+  EXPECT_EQ(elements[2].row, 1);
+}
+
+TEST(Job, MirrorsADirectWorkpiece) {
+  Job job = square_job(4);
+  job.array.pattern = {"#---", "----", "----", "-#--"};
+  const auto mould = cut_elements(job);
+  job.workpiece.kind = WorkpieceKind::direct;
+  const auto direct = cut_elements(job);
+  ASSERT_EQ(mould.size(), 2U);
+  ASSERT_EQ(direct.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_DOUBLE_EQ(direct[k].centre_mm.x(), mould[k].centre_mm.x());
+    EXPECT_DOUBLE_EQ(direct[k].centre_mm.y(), -mould[k].centre_mm.y());
+  }
+}
+
+TEST(Job, NumbersDirectElementsFromItsOwnLeft) {
+  Job job = square_job(3);
+  job.workpiece.kind = WorkpieceKind::direct;
+  const auto elements = cut_elements(job);
+  for (std::size_t k = 1; k < elements.size(); ++k)
+    if (elements[k].row == elements[k - 1].row) {
+      EXPECT_LT(elements[k].centre_mm.y(), elements[k - 1].centre_mm.y()) << "x_part rises, y_w = -x_part falls";
+    }
+}
+
+TEST(Job, TurnsEverySecondElementOfAChecker) {
+  const auto elements = cut_elements(square_job(4, Arrangement::checker));
+  EXPECT_EQ(elements.size(), 16U);
+  for (const CutElement& element : elements) EXPECT_EQ(element.turned, (element.row + element.column) % 2 == 1);
+}
+
+TEST(Job, PatternSaysWhatIsCut) {
+  Job job = square_job(3, Arrangement::aligned);
+  job.array.pattern = {"--#", "---", "#--"};  // the first text is the row of largest y
+  const auto elements = cut_elements(job);
+  ASSERT_EQ(elements.size(), 2U);
+  EXPECT_EQ(elements[0].row, 0);
+  EXPECT_EQ(elements[0].column, 0);
+  EXPECT_EQ(elements[1].row, 2);
+  EXPECT_EQ(elements[1].column, 2);
+}
+
+TEST(Job, ShrinkageMakesTheBlankLarger) {
+  Job job = square_job(3, Arrangement::aligned);
+  const double before_mm = cut_elements(job).front().centre_mm.norm();
+  job.workpiece.shrinkage_percent = 0.5;
+  EXPECT_DOUBLE_EQ(cut_elements(job).front().centre_mm.norm(), 1.005 * before_mm);
+  EXPECT_DOUBLE_EQ(blank_element(job).base_mm, 1.005 * 0.451);
+  EXPECT_DOUBLE_EQ(blank_extent_mm(job).x(), 1.005 * 3 * 0.451);
+}
+
+RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
+  const auto real = [](double low, double high) {
+    return low + (high - low) * *rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30);
+  };
+  Job job = square_job(4, *rc::gen::element(Arrangement::aligned, Arrangement::offset, Arrangement::single));
+  job.title = *rc::gen::string<std::string>();
+  job.title.erase(std::remove_if(job.title.begin(), job.title.end(), [](char c) { return (c & 0x80) != 0; }),
+                  job.title.end());
+  job.element.base_mm = real(0.2, 3.0);
+  job.element.apex_angle_deg = real(70.0, 120.0);
+  job.array.x_length_mm = real(3.0, 30.0);
+  job.array.x_gap_mm = real(0.0, 0.1);
+  job.array.overlap_percent = real(0.0, 99.0);
+  job.array.shifted_rows = *rc::gen::element(RowParity::even, RowParity::odd);
+  job.workpiece.shrinkage_percent = real(0.0, 9.0);
+  job.workpiece.kind = *rc::gen::element(WorkpieceKind::mould, WorkpieceKind::direct);
+  job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
+  job.tool.width_mm = real(0.1, 0.451);
+  job.tool.edge_radius_um = real(0.0, 5.0);
+  job.process.clearance_mm = real(0.01, 1.0);
+  job.process.roughing_depth_um = real(1.0, 50.0);
+  job.process.finishing_cuts = *rc::gen::inRange(1, 5);
+  job.process.shortest_plough = *rc::gen::arbitrary<bool>();
+  job.process.plough_lift_um = real(0.0, 9.0);
+  if (job.array.arrangement == Arrangement::single) job.array.x_length_mm = job.array.y_length_mm = 0.0;
+  RC_ASSERT(same(parse_job(job_text(job), "j.toml"), job));
+}
+
+struct Wrong {
+  std::string from;
+  std::string to;
+  std::string message;
+};
+
+TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
+  const std::string good = job_text(square_job(4));
+  ASSERT_NO_THROW(parse_job(good, "j.toml"));
+  const auto line_of = [&](const std::string& text) {
+    return std::to_string(1 +
+                          std::count(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(good.find(text)), '\n'));
+  };
+  const Wrong cases[] = {
+      {"roughing_depth_um = 15", "roughing_depth_um = 0", "process.roughing_depth_um: must be > 0 and <= 1000, got 0"},
+      {"\nwidth_mm = 0.451\nwedge", "\nwidth_mm = 0.46\nwedge",
+       "tool.width_mm: must be <= 0.451, the element's width, got 0.46"},
+      {"wedge_deg = 50", "wedge_deg = 80", "tool.wedge_deg: with clearance_deg must be <= 77.5 for chips"},
+      {"clearance_deg = 3", "clearance_deg = 1", "tool.clearance_deg: must be >= 2 and <= 15, got 1"},
+      {"strategy = \"two-step\"", "strategy = \"two-steps\"", "strategy: must be"},
+      {"arrangement = \"offset\"", "arrangement = \"honeycomb\"", "array.arrangement: must be"},
+      {"x_gap_mm = 0", "x_gap_m = 0", "array.x_gap_m: unknown key, did you mean \"x_gap_mm\"?"},
+      {"x_length_mm = 1.804", "x_length_mm = 0.4", "array.x_length_mm: must hold one element"},
+      {"x_offset_mm = 0", "x_offset_mm = 0\npattern = [\"#\"]", "array.pattern: must have 4 rows"},
+      {"finishing_cuts = 2", "finishing_cuts = 1.5", "process.finishing_cuts: must be a whole number, got 1.5"},
+      {"plough_length_mm = 0.1", "plough_length_mm = 0.001", "process.plough_length_mm: must be at least"},
+      {"shortest_plough = false", "shortest_plough = 0", "process.shortest_plough: must be true or false, got 0"},
+      {"machine = \"ideal\"", "machine = \"\"", "machine: must name a machine"},
+      {"base_mm = 0.451", "base_mm = nan", "element.base_mm: must be a finite number, got nan"},
+  };
+  for (const Wrong& wrong : cases) {
+    SCOPED_TRACE(wrong.message);
+    std::string text = good;
+    const std::size_t at = text.find(wrong.from);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, wrong.from.size(), wrong.to);
+    try {
+      parse_job(text, "j.toml");
+      ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_TRUE(message.starts_with("j.toml:")) << message;
+      EXPECT_NE(message.find(": " + wrong.message), std::string::npos) << message;
+      if (wrong.from.front() != '\n' && wrong.to.find('\n') == std::string::npos) {
+        EXPECT_TRUE(message.starts_with("j.toml:" + line_of(wrong.from) + ": ")) << message;
+      }
+    }
+  }
+}
+
+TEST(JobFile, APatternMustLeaveSomethingToCut) {
+  Job job = square_job(2, Arrangement::offset);
+  job.array.pattern = {"-#", "--"};  // the only cell that is cut lies in the shifted row's last column
+  EXPECT_THROW(parse_job(job_text(job), "j.toml"), InputError);
+  job.array.pattern = {"#-", "--"};
+  EXPECT_EQ(cut_elements(parse_job(job_text(job), "j.toml")).size(), 1U);
+}
+
+TEST(JobFile, DeepKeysAreRefused) {
+  std::string text = "a";
+  for (int k = 0; k < 1000; ++k) text += ".a";
+  EXPECT_THROW(parse_job(text + " = 1\n", "j.toml"), InputError);
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::test
