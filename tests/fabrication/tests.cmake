@@ -1,3 +1,6 @@
 retrace_test(fabrication_job_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/job_test.cpp
   LIBRARIES retrace::job rapidcheck)
+retrace_test(fabrication_machine_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/machine_test.cpp
+  LIBRARIES retrace::machine rapidcheck)

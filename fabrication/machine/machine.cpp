@@ -1,0 +1,140 @@
+#include "fabrication/machine/machine.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "core/error.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// Columns are the directions of the linear axes.
+Eigen::Matrix3d linear_directions(const Machine& machine) {
+  Eigen::Matrix3d directions;
+  directions << machine.x.direction.value, machine.y.direction.value, machine.z.direction.value;
+  return directions;
+}
+
+Eigen::Matrix3d turn(const RotaryAxis& axis, double word_deg) {
+  return rotation_about(axis.direction.value, Angle::from_deg(axis.sign.value * word_deg));
+}
+
+/// Rotation about a line in space.
+RigidMotion turn_about_line(const RotaryAxis& axis, double word_deg) {
+  const Eigen::Matrix3d rotation = turn(axis, word_deg);
+  return {rotation, axis.point_mm.value - rotation * axis.point_mm.value};
+}
+
+double wrapped_deg(double deg) {
+  return deg - 360.0 * std::round(deg / 360.0);
+}
+
+/// The turn of `value` nearest to `near`.
+double nearest_turn(double value_deg, double near_deg) {
+  return near_deg + wrapped_deg(value_deg - near_deg);
+}
+
+/// Angle about `axis` that turns the part of `from` across the axis onto that of `to`.
+double angle_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
+  const Vec3 a = from - axis * axis.dot(from);
+  const Vec3 b = to - axis * axis.dot(to);
+  return std::atan2(axis.dot(a.cross(b)), a.dot(b));
+}
+
+double to_deg(double rad) {
+  return Angle::from_rad(rad).deg();
+}
+
+}  // namespace
+
+Eigen::Matrix3d rotation_about(const Vec3& axis, Angle angle) {
+  const double c = std::cos(angle.rad());
+  const double s = std::sin(angle.rad());
+  Eigen::Matrix3d cross;
+  cross << 0.0, -axis.z(), axis.y(), axis.z(), 0.0, -axis.x(), -axis.y(), axis.x(), 0.0;
+  return c * Eigen::Matrix3d::Identity() + s * cross + (1.0 - c) * axis * axis.transpose();
+}
+
+RigidMotion machine_from_workpiece(const Machine& machine, const RotaryPose& pose) {
+  const RigidMotion c = turn_about_line(machine.c, pose.c_deg);
+  const RigidMotion a = turn_about_line(machine.a, pose.a_deg);
+  return {a.rotation * c.rotation, a.rotation * c.translation_mm + a.translation_mm};
+}
+
+Vec3 machine_point(const Machine& machine, const AxisPositions& axes) {
+  return linear_directions(machine) * Vec3(axes.x_mm, axes.y_mm, axes.z_mm);
+}
+
+std::array<double, 3> linear_words(const Machine& machine, const Vec3& machine_point_mm) {
+  const Vec3 words = linear_directions(machine).partialPivLu().solve(machine_point_mm);
+  return {words.x(), words.y(), words.z()};
+}
+
+ToolPose forward(const Machine& machine, const AxisPositions& axes) {
+  const RigidMotion motion = machine_from_workpiece(machine, {axes.a_deg, axes.c_deg});
+  return {motion.inverse().point(machine_point(machine, axes)), motion.rotation.transpose()};
+}
+
+AxisPositions inverse(const Machine& machine, const Vec3& reference_mm, const RotaryPose& pose) {
+  const Vec3 point = machine_from_workpiece(machine, pose).point(reference_mm);
+  const std::array<double, 3> words = linear_words(machine, point);
+  return {words[0], words[1], words[2], pose.a_deg, pose.c_deg};
+}
+
+Vec3 plunged_normal(const Machine& machine) {
+  return machine.x.direction.value.cross(machine.z.direction.value).normalized();
+}
+
+PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, const Vec3& root,
+                             const RotaryPose& near) {
+  const Vec3 target = plunged_normal(machine);
+  const Vec3& a_axis = machine.a.direction.value;
+  const Vec3& c_axis = machine.c.direction.value;
+  // Turning about A keeps the component along A, so C alone must bring it to the target's: with n split along and
+  // across C that reads  p cos C + q sin C = r.
+  const double along = c_axis.dot(facet_normal);
+  const double p = a_axis.dot(facet_normal - c_axis * along);
+  const double q = a_axis.dot(c_axis.cross(facet_normal));
+  const double r = a_axis.dot(target) - a_axis.dot(c_axis) * along;
+  const double amplitude = std::hypot(p, q);
+  if (!(amplitude > std::abs(r)))
+    throw InputError("machine " + machine.name + ": no A and C turn that facet to where the tool plunges it");
+  const double middle = std::atan2(q, p);
+  const double half_width = std::acos(r / amplitude);
+
+  std::optional<PlungePose> best;
+  double best_distance = 0.0;
+  for (const double c_rad : {middle + half_width, middle - half_width}) {
+    const Vec3 turned = rotation_about(c_axis, Angle::from_rad(c_rad)) * facet_normal;
+    const double a_rad = angle_about(a_axis, turned, target);
+    const RotaryPose pose = {nearest_turn(to_deg(a_rad) * machine.a.sign.value, near.a_deg),
+                             nearest_turn(to_deg(c_rad) * machine.c.sign.value, near.c_deg)};
+    const double distance = std::hypot(pose.a_deg - near.a_deg, pose.c_deg - near.c_deg);
+    if (best && distance >= best_distance) continue;
+    const Vec3 turned_root = machine_from_workpiece(machine, pose).direction(root);
+    best = PlungePose{pose, Angle::from_rad(angle_about(target, machine.x.direction.value, turned_root))};
+    best_distance = distance;
+  }
+  return *best;
+}
+
+std::vector<LimitExcess> limit_excesses(const Machine& machine, const AxisPositions& axes) {
+  std::vector<LimitExcess> excesses;
+  const auto check = [&](char axis, double position, const Interval& limits) {
+    if (!limits.contains(position)) excesses.push_back({axis, position, limits});
+  };
+  check('X', axes.x_mm, machine.x.limits_mm.value);
+  check('Y', axes.y_mm, machine.y.limits_mm.value);
+  check('Z', axes.z_mm, machine.z.limits_mm.value);
+  check('A', axes.a_deg, machine.a.limits_deg.value);
+  check('C', axes.c_deg, machine.c.limits_deg.value);
+  return excesses;
+}
+
+}  // namespace retrace::fabrication

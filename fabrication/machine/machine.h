@@ -1,0 +1,166 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/angle.h"
+#include "geometry/vec.h"
+
+namespace retrace::fabrication {
+
+/// Where a value of a machine comes from.
+enum class Basis {
+  measured,  ///< `source` says by whom
+  assumed    ///< `source` says why
+};
+
+/// A value with where it comes from.
+template <class Value>
+struct Sourced {
+  Value value{};
+  Basis basis = Basis::assumed;
+  std::string source;
+};
+
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+
+  bool contains(double value) const { return value >= low && value <= high; }
+};
+
+/// A linear axis. Positive words move the tool along `direction`, as seen from the workpiece.
+struct LinearAxis {
+  Sourced<geometry::Vec3> direction;  ///< of length 1, in the frame of the workpiece at A = C = 0
+  Sourced<Interval> limits_mm;
+  Sourced<double> max_feed_mm_per_min;
+  Sourced<double> rapid_mm_per_min;
+  Sourced<double> acceleration_mm_per_s2;
+};
+
+/// A rotary axis: a line in space at A = C = 0.
+struct RotaryAxis {
+  Sourced<geometry::Vec3> point_mm;   ///< on the axis, in the frame of the workpiece
+  Sourced<geometry::Vec3> direction;  ///< of length 1
+  Sourced<double> sign;               ///< 1: positive words turn the workpiece by the right hand about `direction`; -1
+  Sourced<Interval> limits_deg;
+  Sourced<double> speed_deg_per_s;
+  Sourced<double> acceleration_deg_per_s2;
+};
+
+/// What a body of a machine moves with.
+enum class Carrier {
+  workpiece,  ///< the table that A and C turn, in the frame of the workpiece
+  cradle,     ///< what A turns and C does not, in the same frame at A = 0
+  tool        ///< spindle and holder, relative to the tool reference point
+};
+
+/// A convex body of a machine, for collisions: the hull of its points.
+struct MachineBody {
+  std::string name;
+  Carrier carrier = Carrier::workpiece;
+  Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least 4, not in one plane
+};
+
+/// A machine with three linear axes and a table that turns about A and, on top of that, about C. Its kinematic chain
+/// from the workpiece W to the linear axes M is
+///
+///   P_M = b3 b2 R_A b1 R_C b0 P_W
+///
+/// (Hamilton et al., Right triangular prism retroreflectors, eq. 6; docs/theory/kinematics.md), with every axis
+/// given by a point and a direction. At A = C = 0 P_M = P_W, so the words of a program are the position of the tool
+/// reference point in the workpiece frame when nothing is turned.
+struct Machine {
+  std::string name;
+  std::string title;
+  LinearAxis x;
+  LinearAxis y;
+  LinearAxis z;
+  RotaryAxis a;
+  RotaryAxis c;
+  std::vector<MachineBody> bodies;
+};
+
+/// Words of a program: positions of the five axes.
+struct AxisPositions {
+  double x_mm = 0.0;
+  double y_mm = 0.0;
+  double z_mm = 0.0;
+  double a_deg = 0.0;
+  double c_deg = 0.0;
+};
+
+/// Positions of the two rotary axes.
+struct RotaryPose {
+  double a_deg = 0.0;
+  double c_deg = 0.0;
+};
+
+/// A rigid motion: p -> rotation p + translation.
+struct RigidMotion {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  geometry::Vec3 translation_mm = geometry::Vec3::Zero();
+
+  geometry::Vec3 point(const geometry::Vec3& p) const { return rotation * p + translation_mm; }
+  geometry::Vec3 direction(const geometry::Vec3& d) const { return rotation * d; }
+  RigidMotion inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation_mm)}; }
+};
+
+/// Where a machine puts the tool: as a frame in the workpiece.
+struct ToolPose {
+  geometry::Vec3 reference_mm = geometry::Vec3::Zero();  ///< tool reference point, in the workpiece frame
+  /// Turns directions of the machine into those of the workpiece: the tool's edge lies along +x of the machine.
+  Eigen::Matrix3d workpiece_from_machine = Eigen::Matrix3d::Identity();
+};
+
+/// Right-handed rotation about a unit vector (Rodrigues). \pre axis has length 1
+Eigen::Matrix3d rotation_about(const geometry::Vec3& axis, Angle angle);
+
+/// How a pose moves points of the workpiece: frame of the workpiece -> frame of the machine.
+RigidMotion machine_from_workpiece(const Machine& machine, const RotaryPose& pose);
+
+/// Where the tool is when the axes are there.
+ToolPose forward(const Machine& machine, const AxisPositions& axes);
+
+/// Axis positions that put the tool reference point on a point of the workpiece. Forward and back agree to 1e-12 mm
+/// within 200 mm of the origin. Limits are not looked at.
+AxisPositions inverse(const Machine& machine, const geometry::Vec3& reference_mm, const RotaryPose& pose);
+
+/// Axis positions as a point of the machine frame, and back; the same numbers if the linear axes are square.
+geometry::Vec3 machine_point(const Machine& machine, const AxisPositions& axes);
+std::array<double, 3> linear_words(const Machine& machine, const geometry::Vec3& machine_point_mm);
+
+/// The normal, in the machine frame, that a facet has when the tool can plunge it: the normal of the plane that the
+/// tool's edge (along X) sweeps when Z moves, on the side of -Y.
+geometry::Vec3 plunged_normal(const Machine& machine);
+
+/// A pose that lets the tool plunge a facet.
+struct PlungePose {
+  RotaryPose pose;
+  /// Rotation that is left about the facet's normal (right-handed about the outward normal), from the machine's X to
+  /// the root line: two directions are matched, and the third angle of a rotation is what the two axes give.
+  Angle root_tilt;
+};
+
+/// The pose nearest to `near` in which a facet of the workpiece stands as the tool plunges it (closed form in
+/// docs/theory/kinematics.md). A facet's normal fixes two of the three angles of the workpiece; what is left is
+/// `root_tilt`. Limits are not looked at.
+/// \param facet_normal outward from the material, of length 1, in the workpiece frame
+/// \param root along the facet's root, to the side that lies on machine +X when the facet is plunged
+/// \throw InputError if no pose of this machine does that
+PlungePose solve_plunge_pose(const Machine& machine, const geometry::Vec3& facet_normal, const geometry::Vec3& root,
+                             const RotaryPose& near);
+
+/// An axis that a position leaves the limits of.
+struct LimitExcess {
+  char axis = 'X';
+  double position = 0.0;  ///< mm or degrees
+  Interval limits;
+};
+/// All of them, in the order X, Y, Z, A, C.
+std::vector<LimitExcess> limit_excesses(const Machine& machine, const AxisPositions& axes);
+
+}  // namespace retrace::fabrication

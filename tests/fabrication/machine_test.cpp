@@ -1,0 +1,219 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/machine/machine.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
+const Vec3 kFacet1 = Vec3(0, -1, 1).normalized();
+const Vec3 kFacet2 = Vec3(0, 1, 1).normalized();
+
+Machine shipped(const std::string& name) {
+  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name + ".toml");
+}
+
+void expect_axes(const AxisPositions& axes, double x, double y, double z) {
+  EXPECT_NEAR(axes.x_mm, x, 5e-10);
+  EXPECT_NEAR(axes.y_mm, y, 5e-10);
+  EXPECT_NEAR(axes.z_mm, z, 5e-10);
+}
+
+/// Positions of LinuxCNC's xyzac-trt kinematics with y-offset 20 and z-offset 10, which have the A axis on a line
+/// through (0, 20, 10).
+TEST(Machine, PositionsOfLinuxCnc) {
+  Machine machine = shipped("ideal");
+  machine.a.point_mm.value = Vec3(0, 20, 10);
+  const Vec3 p(10, 5, 2);
+  expect_axes(inverse(machine, p, {45, 0}), 10, 15.050252532, -6.263455967);
+  expect_axes(inverse(machine, p, {45, 180}), -10, 7.979184720, -13.334523779);
+  expect_axes(inverse(machine, p, {45, 90}), -5, 18.585786438, -2.727922061);
+  expect_axes(inverse(machine, p, {0, 90}), -5, 10, 2);
+}
+
+TEST(Machine, WordsAreTheWorkpieceFrameWhenNothingIsTurned) {
+  for (const char* name : {"ideal", "paper", "thesis"}) {
+    const AxisPositions axes = inverse(shipped(name), Vec3(3.5, -7.25, 1.125), {0, 0});
+    EXPECT_EQ(axes.x_mm, 3.5) << name;
+    EXPECT_EQ(axes.y_mm, -7.25) << name;
+    EXPECT_EQ(axes.z_mm, 1.125) << name;
+  }
+}
+
+/// The journal paper's axes against ideal ones, to the digits that are given: 10 nm.
+TEST(Machine, MisalignmentOfThePaper) {
+  const AxisPositions real = inverse(shipped("paper"), Vec3(6, 6, 0), {45, 180});
+  const AxisPositions ideal = inverse(shipped("ideal"), Vec3(6, 6, 0), {45, 180});
+  EXPECT_NEAR(1000 * (real.x_mm - ideal.x_mm), 13.95, 0.005);
+  EXPECT_NEAR(1000 * (real.y_mm - ideal.y_mm), -11.58, 0.005);
+  EXPECT_NEAR(1000 * (real.z_mm - ideal.z_mm), -8.10, 0.005);
+}
+
+struct SolvedPose {
+  const char* machine;
+  double c_near;
+  double a_deg, c_deg, tilt_arcmin;
+};
+
+/// Computed outside of this program, to the digits given.
+TEST(Machine, PosesThatThePlungedFacetsNeed) {
+  const SolvedPose expected[] = {{"ideal", 0, 45, 0, 0},
+                                 {"ideal", 180, 45, 180, 0},
+                                 {"paper", 0, 45.000155, -0.119246, 1.17},
+                                 {"paper", 180, 45.055168, 179.898541, 2.69},
+                                 {"thesis", 0, 45.000002, -0.015492, -0.75},
+                                 {"thesis", 180, 45.000002, 179.984508, -0.75}};
+  for (const SolvedPose& e : expected) {
+    const bool first = e.c_near == 0;
+    const PlungePose solved = solve_plunge_pose(shipped(e.machine), first ? kFacet1 : kFacet2,
+                                                first ? Vec3(1, 0, 0) : Vec3(-1, 0, 0), {45, e.c_near});
+    EXPECT_NEAR(solved.pose.a_deg, e.a_deg, 5e-7) << e.machine << e.c_near;
+    EXPECT_NEAR(solved.pose.c_deg, e.c_deg, 5e-7) << e.machine << e.c_near;
+    EXPECT_NEAR(solved.root_tilt.rad() * kArcminPerRad, e.tilt_arcmin, 5e-3) << e.machine << e.c_near;
+  }
+}
+
+/// Planning for ideal axes on the paper's machine: what the facets' normals and their dihedral are off by.
+TEST(Machine, ErrorsOfPlanningForIdealAxes) {
+  const Machine machine = shipped("paper");
+  const auto cut_normal = [&](double c_deg) {
+    return Vec3(machine_from_workpiece(machine, {45, c_deg}).inverse().direction(plunged_normal(machine)));
+  };
+  const auto angle_arcmin = [](const Vec3& a, const Vec3& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b)) * kArcminPerRad;
+  };
+  EXPECT_NEAR(angle_arcmin(cut_normal(0), kFacet1), 5.06, 5e-3);
+  EXPECT_NEAR(angle_arcmin(cut_normal(180), kFacet2), 5.42, 5e-3);
+  EXPECT_NEAR(std::abs(angle_arcmin(cut_normal(0), cut_normal(180)) - 90.0 * 60.0), 3.32, 5e-3);
+}
+
+Vec3 point_within(double size_mm) {
+  const auto coordinate = [&] { return size_mm * 1e-6 * *rc::gen::inRange(-1000000, 1000001); };
+  const double x = coordinate();
+  const double y = coordinate();
+  return {x, y, coordinate()};
+}
+
+RotaryPose any_pose() {
+  const double a = 1e-4 * *rc::gen::inRange(-200000, 1100001);
+  return {a, 1e-4 * *rc::gen::inRange(-3600000, 3600001)};
+}
+
+RC_GTEST_PROP(Machine, ForwardUndoesInverse, ()) {
+  Machine machine = shipped(*rc::gen::element(std::string("ideal"), std::string("paper"), std::string("thesis")));
+  machine.a.point_mm.value = point_within(50);
+  machine.c.point_mm.value = point_within(50);
+  machine.a.sign.value = *rc::gen::element(1.0, -1.0);
+  machine.c.sign.value = *rc::gen::element(1.0, -1.0);
+  machine.y.direction.value = Vec3(1e-3, 1, -2e-3).normalized();
+  const Vec3 point = point_within(100);
+  const AxisPositions axes = inverse(machine, point, any_pose());
+  RC_ASSERT((forward(machine, axes).reference_mm - point).norm() < 1e-12);
+}
+
+/// Whatever the axes, the solved pose stands the facet where the tool plunges it, and turns the root by the tilt.
+RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
+  Machine machine = shipped("ideal");
+  machine.a.direction.value = (Vec3(1, 0, 0) + 1e-2 * point_within(1)).normalized();
+  machine.c.direction.value = (Vec3(0, 0, 1) + 1e-2 * point_within(1)).normalized();
+  machine.a.sign.value = *rc::gen::element(1.0, -1.0);
+  machine.c.sign.value = *rc::gen::element(1.0, -1.0);
+  const double half_apex = (30.0 + 1e-4 * *rc::gen::inRange(0, 300000)) * std::numbers::pi / 180.0;
+  const double azimuth = 1e-6 * *rc::gen::inRange(0, 6283185);
+  const Vec3 root(std::cos(azimuth), std::sin(azimuth), 0);
+  const Vec3 normal = std::cos(half_apex) * Vec3(0, 0, 1).cross(root) * -1.0 + std::sin(half_apex) * Vec3(0, 0, 1);
+  const RotaryPose near = {machine.a.sign.value * half_apex * 180.0 / std::numbers::pi,
+                           -machine.c.sign.value * azimuth * 180.0 / std::numbers::pi};
+  const PlungePose solved = solve_plunge_pose(machine, normal, root, near);
+  const RigidMotion motion = machine_from_workpiece(machine, solved.pose);
+  RC_ASSERT((motion.direction(normal) - Vec3(0, -1, 0)).norm() < 1e-14);
+  const Vec3 expected_root = rotation_about(Vec3(0, -1, 0), solved.root_tilt) * Vec3(1, 0, 0);
+  RC_ASSERT((motion.direction(root) - expected_root).norm() < 1e-14);
+  RC_ASSERT(std::abs(solved.pose.a_deg - near.a_deg) < 5.0);
+  RC_ASSERT(std::abs(solved.pose.c_deg - near.c_deg) < 5.0);
+}
+
+TEST(Machine, AFacetThatNoPoseReaches) {
+  EXPECT_THROW(solve_plunge_pose(shipped("paper"), Vec3(0, 0, 1), Vec3(1, 0, 0), {45, 0}), InputError);
+}
+
+TEST(Machine, LimitsNameTheAxis) {
+  const Machine machine = shipped("ideal");
+  EXPECT_TRUE(limit_excesses(machine, {0, 0, 0, 45, 0}).empty());
+  const auto excesses = limit_excesses(machine, {0, -120.001, 0, 110.5, 0});
+  ASSERT_EQ(excesses.size(), 2U);
+  EXPECT_EQ(excesses[0].axis, 'Y');
+  EXPECT_EQ(excesses[1].axis, 'A');
+  EXPECT_EQ(excesses[1].limits.high, 110.0);
+}
+
+TEST(MachineFile, EveryShippedValueSaysWhereItComesFrom) {
+  for (const char* name : {"ideal", "paper", "thesis"}) {
+    const Machine machine = shipped(name);
+    EXPECT_EQ(machine.name, name);
+    EXPECT_FALSE(machine.a.direction.source.empty());
+    EXPECT_NEAR(machine.a.direction.value.norm(), 1.0, 1e-15) << "directions are normalised";
+  }
+  EXPECT_EQ(shipped("paper").a.direction.basis, Basis::measured);
+  EXPECT_EQ(shipped("paper").c.direction.basis, Basis::measured);
+  EXPECT_EQ(shipped("thesis").a.direction.basis, Basis::measured);
+  EXPECT_EQ(shipped("thesis").c.direction.basis, Basis::assumed);
+  EXPECT_EQ(shipped("ideal").a.direction.basis, Basis::assumed);
+}
+
+/// The message for a machine file in which `from` was replaced by `to`.
+std::string refusal(const std::string& from, const std::string& to) {
+  std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml");
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) return "not in the file: " + from;
+  text.replace(at, from.size(), to);
+  try {
+    parse_machine(text, "m.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(MachineFile, BadInputIsRefusedOnOneLine) {
+  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 0, 0]"),
+            "m.toml:30: a.direction.value: must be a vector of a length above 0, got [0, 0, 0]");
+  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 1]"),
+            "m.toml:30: a.direction.value: must be a list of 3 numbers, got 2 of them");
+  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[nan, 0, 0]"),
+            "m.toml:30: a.direction.value: must be a finite number, got nan");
+  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 0, 1]"), "m.toml:36: c: C must lie across A");
+  EXPECT_EQ(refusal("value = [-120, 120]", "value = [120, -120]"),
+            "m.toml:9: x.limits_mm.value: must rise, got [120, -120]");
+  EXPECT_EQ(refusal("value = 10,", "value = 0,"),
+            "m.toml:33: a.speed_deg_per_s.value: must be > 0 and <= 1e+06, got 0");
+  EXPECT_EQ(refusal("sign = { value = 1,", "sign = { value = 2,"), "m.toml:31: a.sign.value: must be 1 or -1, got 2");
+  EXPECT_EQ(refusal("assumed = \"square guideways\"", "assumed = \"\""),
+            "m.toml:8: x.direction: must name its source, got \"\"");
+  EXPECT_EQ(refusal(", assumed = \"square guideways\"", ""),
+            "m.toml:8: x.direction: must say either measured = \"source\" or assumed = \"why\"");
+  EXPECT_EQ(refusal("[z]", "[w]"), "m.toml: z: missing, must be a table");
+  EXPECT_EQ(refusal("moves_with = \"tool\"", "moves_with = \"spindle\""),
+            "m.toml:51: body.moves_with: must be \"workpiece\", \"cradle\" or \"tool\", got \"spindle\"");
+  EXPECT_EQ(refusal("retrace.machine/1", "retrace.machine/2"),
+            "m.toml:3: schema: must be \"retrace.machine/1\", got \"retrace.machine/2\"");
+}
+
+TEST(MachineFile, UnknownKeysAreRefused) {
+  EXPECT_NE(refusal("point_mm", "point"), "accepted");
+  EXPECT_NE(refusal("title", "titel"), "accepted");
+}
+
+}  // namespace
+}  // namespace retrace::fabrication
