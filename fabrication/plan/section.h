@@ -1,0 +1,61 @@
+#pragma once
+
+#include "core/angle.h"
+#include "fabrication/job/job.h"
+#include "fabrication/machine/machine.h"
+#include "fabrication/program/program.h"
+
+namespace retrace::fabrication {
+
+/// A facet of an element, as a pose can present it to the tool. Facet 1 faces -Y of the workpiece frame (for a turned
+/// element -X), facet 2 the other way (docs/theory/cutting.md).
+struct FacetChoice {
+  bool turned = false;
+  int facet = 1;
+};
+
+/// What the tool sees of an element in a pose: the section across the root line at its middle, in words of the linear
+/// axes relative to the root. The wall is the facet that is plunged, the floor the other one.
+struct Section {
+  double wall_y = -1.0;            ///< Y of the wall for each mm that stays on it
+  geometry::Vec2 floor_normal;     ///< (Y, Z) parts; floor_normal . (y, z) = what stays on the floor
+  geometry::Vec2 floor_direction;  ///< along the floor away from the wall, of length 1 mm
+  geometry::Vec2 bisector;         ///< between wall and floor, of length 1 mm
+  geometry::Vec2 face_normal;      ///< face_normal . (y, z) = depth + height above the blank's face
+  double depth_mm = 0.0;           ///< of the root below the blank's face
+  double lift_mm = 0.0;            ///< by which the tool stays up so that the deeper end of its edge touches the floor
+  double edge_mm = 0.0;            ///< the floor's distance that the edge's radius asks of the reference point
+  Angle apex;
+
+  double floor_z(double y, double left_mm) const {
+    return (left_mm + edge_mm - floor_normal.x() * y) / floor_normal.y() + lift_mm;
+  }
+  /// Z at a height above the blank's face, measured normal to it.
+  double face_z(double y, double height_mm) const {
+    return (depth_mm + height_mm - face_normal.x() * y) / face_normal.y();
+  }
+};
+
+/// A pose of the rotary axes in which one facet of the elements of one orientation is plunged.
+struct CuttingPose {
+  FacetChoice facet;
+  RotaryUnits a = 0;  ///< as written, after rounding
+  RotaryUnits c = 0;
+  RotaryPose rounded;  ///< the same in degrees: what positions are computed from
+  Angle root_tilt;     ///< of the root line against the tool's edge
+  geometry::Vec3 root;  ///< direction of the root line that lies on machine +X, in the workpiece frame
+  Section section;
+};
+
+/// Outward normals of facets 1 and 2 of an element as it is cut, in the workpiece frame.
+geometry::Vec3 facet_normal(const geometry::RtpElement& element, const FacetChoice& facet);
+/// Direction of the root line that lies on machine +X when the facet is plunged.
+geometry::Vec3 root_direction(const FacetChoice& facet);
+/// Depth of the root below the blank's face.
+double root_depth_mm(const geometry::RtpElement& element);
+
+/// The pose, with C as near to `previous_c_deg` as its limits let it.
+/// \throw InputError naming axis and limits if the machine cannot take it
+CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg);
+
+}  // namespace retrace::fabrication
