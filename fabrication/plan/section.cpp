@@ -27,14 +27,16 @@ RotaryUnits rounded_units(double deg) {
   return std::llround(deg * kRotaryUnitsPerDeg);
 }
 
-/// The turn of C by whole revolutions that lies within the limits, nearest to where C was.
+/// The turn of C by whole revolutions that lies within the limits, nearest to where C was; as it is if others are no
+/// nearer.
 double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where) {
   const Interval& limits = machine.c.limits_deg.value;
   std::optional<double> best;
-  for (int turns = -2; turns <= 2; ++turns) {
+  for (const int turns : {0, 1, -1, 2, -2}) {
     const double candidate = c_deg + 360.0 * turns;
     if (!limits.contains(candidate)) continue;
-    if (!best || std::abs(candidate - previous_c_deg) < std::abs(*best - previous_c_deg)) best = candidate;
+    constexpr double kAsFarDeg = 1.0;  // solved angles differ from round ones by less
+    if (!best || std::abs(candidate - previous_c_deg) < std::abs(*best - previous_c_deg) - kAsFarDeg) best = candidate;
   }
   if (!best)
     throw InputError(where, fmt::format("machine {}: axis C would go to {} degrees, beyond its limits of {} to {}",
@@ -87,16 +89,16 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
   const Interval& limits = machine.a.limits_deg.value;
   if (!limits.contains(pose.rounded.a_deg))
-    throw InputError(where, fmt::format("machine {}: axis A would go to {} degrees, beyond its limits of {} to {}",
-                                        machine.name, fixed(pose.rounded.a_deg, 4), shortest(limits.low),
-                                        shortest(limits.high)));
+    throw InputError(
+        where, fmt::format("machine {}: axis A would go to {} degrees, beyond its limits of {} to {}", machine.name,
+                           fixed(pose.rounded.a_deg, 4), shortest(limits.low), shortest(limits.high)));
 
   const RigidMotion motion = machine_from_workpiece(machine, pose.rounded);
   Section& section = pose.section;
   const Vec3 wall = in_words(machine, motion.direction(facet_normal(element, facet)));
   section.wall_y = 1.0 / wall.y();
-  // A floor that is ploughed makes exactly the apex angle with the wall; the other facet's own normal is turned away from
-  // it by the root's tilt, and touches the deeper end of the edge.
+  // A floor that is ploughed makes exactly the apex angle with the wall; the other facet's own normal is turned away
+  // from it by the root's tilt, and touches the deeper end of the edge.
   const Vec3 floor = in_words(machine, Vec3(0.0, std::cos(apex_rad), std::sin(apex_rad)));
   section.floor_normal = {floor.y(), floor.z()};
   section.floor_direction = direction_in_words(machine, -std::sin(apex_rad), std::cos(apex_rad));

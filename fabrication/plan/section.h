@@ -41,8 +41,8 @@ struct CuttingPose {
   FacetChoice facet;
   RotaryUnits a = 0;  ///< as written, after rounding
   RotaryUnits c = 0;
-  RotaryPose rounded;  ///< the same in degrees: what positions are computed from
-  Angle root_tilt;     ///< of the root line against the tool's edge
+  RotaryPose rounded;   ///< the same in degrees: what positions are computed from
+  Angle root_tilt;      ///< of the root line against the tool's edge
   geometry::Vec3 root;  ///< direction of the root line that lies on machine +X, in the workpiece frame
   Section section;
 };

@@ -4,3 +4,9 @@ retrace_test(fabrication_job_test
 retrace_test(fabrication_machine_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/machine_test.cpp
   LIBRARIES retrace::machine rapidcheck)
+retrace_test(fabrication_plan_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/plan_test.cpp
+  LIBRARIES retrace::plan rapidcheck)
+retrace_test(fabrication_post_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/linuxcnc_test.cpp
+  LIBRARIES retrace::plan retrace::post)

@@ -1,0 +1,462 @@
+#include "fabrication/plan/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "fabrication/plan/move_time.h"
+#include "fabrication/plan/order.h"
+#include "fabrication/plan/routines.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+constexpr double kSecondsPerHour = 3600.0;
+constexpr std::array kPoseOrder = {FacetChoice{false, 1}, FacetChoice{true, 1}, FacetChoice{false, 2},
+                                   FacetChoice{true, 2}};
+
+Nanometres nanometres(double mm) {
+  return std::llround(mm * kNanometresPerMm);
+}
+double millimetres(Nanometres nm) {
+  return static_cast<double>(nm) / kNanometresPerMm;
+}
+double degrees(RotaryUnits units) {
+  return static_cast<double>(units) / kRotaryUnitsPerDeg;
+}
+
+/// `text` as every dialect takes it within a comment.
+std::string plain(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool fits = c >= 0x20 && c < 0x7f && std::string_view("()[]{}\"';%").find(c) == std::string_view::npos;
+    result += fits ? c : '_';
+  }
+  return result;
+}
+
+/// What the stages need to know of a routine beside its steps.
+struct Start {
+  Nanometres y_nm = 0;
+  Nanometres z_nm = 0;
+  Reach reach;
+};
+
+/// Makes poses, routines and stages of a job: what is cut in which order, without positions.
+class StageMaker {
+ public:
+  StageMaker(const Job& job, const Machine& machine, Plan& plan) : job_(job), machine_(machine), plan_(plan) {}
+
+  std::vector<Start> run() {
+    std::array<bool, 2> has = {};
+    for (const CutElement& element : plan_.elements) has[element.turned ? 1 : 0] = true;
+    const bool one_facet = job_.strategy == Strategy::unidirectional;
+    for (const FacetChoice& facet : kPoseOrder) {
+      if (!has[facet.turned ? 1 : 0] || (one_facet && facet.facet == 2)) continue;
+      plan_.poses.push_back(cutting_pose(job_, machine_, facet, previous_c_deg_));
+      previous_c_deg_ = plan_.poses.back().rounded.c_deg;
+    }
+    switch (job_.strategy) {
+      case Strategy::unidirectional:
+        for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) add_roughing(pose);
+        break;
+      case Strategy::bidirectional:
+        add_plunges("layer", plan_.cuts_per_facet, job_.process.roughing_depth_um,
+                    job_.process.roughing_feed_mm_per_min, false);
+        break;
+      case Strategy::two_step:
+        add_plunges("finishing", job_.process.finishing_cuts, job_.process.finishing_depth_um,
+                    job_.process.finishing_feed_mm_per_min, true);
+        break;
+    }
+    return std::move(starts_);
+  }
+
+ private:
+  void add_roughing(std::size_t pose) {
+    Stage stage;
+    stage.name = std::string("roughing") + (plan_.poses[pose].facet.turned ? "-turned" : "");
+    stage.roughs = true;
+    Routine routine = unidirectional_routine(job_, plan_.poses[pose].section);
+    routine.subroutine.title = fmt::format("{}: {} cuts by plunging and ploughing", stage.name, plan_.cuts_per_facet);
+    add(std::move(stage), pose, std::move(routine));
+  }
+
+  /// Cut by cut, all poses in turn. \param rough_first roughs in the pose of a facet 1 before its first cut
+  void add_plunges(std::string_view what, int cuts, double depth_um, double feed_mm_per_min, bool rough_first) {
+    for (int cut = 1; cut <= cuts; ++cut)
+      for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
+        const FacetChoice& facet = plan_.poses[pose].facet;
+        if (rough_first && cut == 1 && facet.facet == 1) add_roughing(pose);
+        Stage stage;
+        stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, facet.facet, facet.turned ? "-turned" : "");
+        stage.cut = cut;
+        stage.cuts = cuts;
+        Routine routine =
+            plunge_routine(job_, plan_.poses[pose].section, 1e-3 * depth_um * (cuts - cut), feed_mm_per_min);
+        routine.subroutine.title = fmt::format("{}: one plunge", stage.name);
+        add(std::move(stage), pose, std::move(routine));
+      }
+  }
+
+  void add(Stage stage, std::size_t pose, Routine routine) {
+    stage.pose = pose;
+    stage.subroutine = static_cast<std::uint32_t>(plan_.subroutines.size());
+    routine.subroutine.number = 101 + static_cast<int>(plan_.subroutines.size());
+    starts_.push_back({routine.y_start_nm, routine.z_start_nm, reach_of(routine.subroutine)});
+    plan_.subroutines.push_back(std::move(routine.subroutine));
+    plan_.stages.push_back(std::move(stage));
+  }
+
+  const Job& job_;
+  const Machine& machine_;
+  Plan& plan_;
+  std::vector<Start> starts_;
+  double previous_c_deg_ = 0.0;
+};
+
+/// Leaves the stages that were asked for. \throw InputError for a phase that the job does not have
+void choose_stages(Plan& plan, const PlanOptions& options) {
+  if (options.phase == "all") return;
+  const bool and_after = options.phase.ends_with('+');
+  const std::string name = options.phase.substr(0, options.phase.size() - (and_after ? 1 : 0));
+  std::vector<Stage> chosen;
+  for (const Stage& stage : plan.stages) {
+    const bool group = (name == "roughing" && stage.roughs) || (name == "finishing" && stage.name.starts_with(name));
+    if ((and_after && !chosen.empty()) || group || stage.name == name) chosen.push_back(stage);
+  }
+  if (chosen.empty()) {
+    std::vector<std::string> names;
+    for (const Stage& stage : plan.stages) names.push_back(stage.name);
+    constexpr std::size_t kMostNamed = 12;
+    if (names.size() > kMostNamed) {
+      names.resize(kMostNamed);
+      names.emplace_back("...");
+    }
+    throw InputError({"", 0, "--phase"},
+                     fmt::format("must be all, roughing, finishing or one of {} (with + for all after "
+                                 "it too), got {}",
+                                 fmt::join(names, ", "), plain(options.phase)));
+  }
+  plan.stages = std::move(chosen);
+}
+
+/// Seconds that a routine takes, by what they are spent on.
+TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
+  TimeShares time;
+  for (const Step& step : subroutine.steps) {
+    if (const auto* dwell = std::get_if<Dwell>(&step)) {
+      time.dwell_s += 1e-3 * dwell->ms;
+      continue;
+    }
+    const auto& move = std::get<Increment>(step);
+    const double seconds =
+        linear_move_s(machine, Vec3(0.0, millimetres(move.y_nm), millimetres(move.z_nm)), move.feed_mm_per_min);
+    const bool cuts = move.motion == Motion::plunge || move.motion == Motion::plough;
+    (cuts ? time.cutting_s : time.retract_s) += seconds;
+  }
+  return time;
+}
+
+/// Puts visits into programs, keeps time, and starts a new program where one has grown too long.
+class ProgramMaker {
+ public:
+  ProgramMaker(const Job& job, const Machine& machine, const PlanOptions& options, const std::vector<Start>& starts,
+               Plan& plan)
+      : job_(job), machine_(machine), options_(options), starts_(starts), plan_(plan) {
+    for (const Subroutine& subroutine : plan.subroutines) routine_times_.push_back(routine_time(machine, subroutine));
+    safe_z_nm_ = nanometres(plan.safe_z_mm);
+  }
+
+  void run() {
+    const std::vector<double> offsets = pass_offsets_mm(blank_element(job_).width_mm, job_.tool.width_mm);
+    plan_.passes = static_cast<int>(offsets.size());
+    std::map<bool, std::vector<std::int32_t>> orders;
+    for (const bool turned : {false, true}) orders[turned] = cutting_order(plan_.elements, turned);
+    for (const Stage& stage : plan_.stages)
+      if (stage.roughs)
+        roughing_total_ += static_cast<std::int64_t>(orders[plan_.poses[stage.pose].facet.turned].size());
+    bool waiting = options_.from_element.has_value();
+    begin();
+    for (Stage& stage : plan_.stages) {
+      const CuttingPose& pose = plan_.poses[stage.pose];
+      std::vector<std::int32_t> order = orders[pose.facet.turned];
+      if (waiting) {
+        const auto first = std::find(order.begin(), order.end(), static_cast<std::int32_t>(*options_.from_element));
+        waiting = first == order.end();
+        if (stage.roughs) roughing_done_ += first - order.begin();
+        order.erase(order.begin(), first);
+        if (waiting) continue;
+      }
+      enter(stage);
+      for (const std::int32_t element : order) visit(stage, element, offsets);
+    }
+    end();
+    plan_.programs.size() == 1 ? void(plan_.programs.front().name = base_name()) : number_programs();
+  }
+
+ private:
+  std::string base_name() const {
+    std::string name = options_.phase == "all" ? "program" : options_.phase;
+    std::replace(name.begin(), name.end(), '+', '_');
+    return name;
+  }
+
+  void number_programs() {
+    for (std::size_t k = 0; k < plan_.programs.size(); ++k) {
+      plan_.programs[k].name = fmt::format("{}_{:03}", base_name(), k + 1);
+      plan_.programs[k].header.insert(plan_.programs[k].header.begin(),
+                                      fmt::format("Part {} of {}", k + 1, plan_.programs.size()));
+    }
+  }
+
+  void begin() {
+    program_ = {};
+    program_seconds_ = 0.0;
+    program_.subroutines = plan_.subroutines;
+    at_ = {};
+    raise();
+  }
+
+  void raise() {
+    if (at_.z_nm != safe_z_nm_) {
+      const double up_mm = at_.z_nm ? millimetres(safe_z_nm_ - *at_.z_nm) : 0.0;
+      spend(nullptr, &TimeShares::fixed_s, linear_move_s(machine_, Vec3(0.0, 0.0, up_mm), std::nullopt));
+      program_.items.push_back(Raise{safe_z_nm_});
+    }
+    at_.z_nm = safe_z_nm_;
+    just_turned_ = true;
+  }
+
+  void turn(RotaryUnits a, RotaryUnits c) {
+    if (a == at_.a && c == at_.c) return;
+    raise();
+    constexpr double kRotationDeg = 45.0;
+    if (std::abs(degrees(c - at_.c)) > kRotationDeg) ++plan_.c_rotations;
+    spend(nullptr, &TimeShares::fixed_s, rotary_move_s(machine_, degrees(a - at_.a), degrees(c - at_.c)));
+    program_.items.push_back(Turn{a, c});
+    at_.a = a;
+    at_.c = c;
+  }
+
+  /// The operator is told where the work stands before a stage starts.
+  void enter(const Stage& stage) {
+    const CuttingPose& pose = plan_.poses[stage.pose];
+    turn(pose.a, pose.c);
+    if (stage.roughs) {
+      program_.items.push_back(Comment{plain("Stage " + stage.name)});
+      return;
+    }
+    const auto c_deg = static_cast<long>(std::lround(pose.rounded.c_deg));
+    const std::string what = stage.name.starts_with("layer") ? "Layer" : "Finishing cut";
+    program_.items.push_back(Message{fmt::format("{} {} of {} C-axis at {}", what, stage.cut, stage.cuts, c_deg)});
+  }
+
+  void visit(Stage& stage, std::int32_t element, const std::vector<double>& offsets) {
+    const CuttingPose& pose = plan_.poses[stage.pose];
+    const geometry::Vec2& centre = plan_.elements[static_cast<std::size_t>(element)].centre_mm;
+    const Vec3 root(centre.x(), centre.y(), -pose.section.depth_mm);
+    if (is_full(stage)) {
+      finish_program();
+      begin();
+      enter(stage);
+    }
+    // To and fro over the passes as well.
+    forth_ = !forth_;
+    for (std::size_t k = 0; k < offsets.size(); ++k) {
+      const double offset_mm = offsets[forth_ ? k : offsets.size() - 1 - k];
+      const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
+      const Start& start = starts_[stage.subroutine];
+      Visit visit{element, stage.subroutine, nanometres(at.x_mm), nanometres(at.y_mm) + start.y_nm,
+                  nanometres(at.z_mm) + start.z_nm};
+      check_limits(visit, start.reach);
+      add(stage, visit, start.reach);
+    }
+    ++stage.visits;
+    ++visits_;
+    if (options_.stop_every && visits_ % *options_.stop_every == 0) program_.items.push_back(OptionalStop{});
+    if (stage.roughs) tell_progress();
+  }
+
+  void tell_progress() {
+    ++roughing_done_;
+    for (const int percent : {25, 50, 75, 100}) {
+      // The first visit with which so much of the roughing is done.
+      const std::int64_t due = (roughing_total_ * percent + 99) / 100;
+      if (roughing_done_ == due) program_.items.push_back(Message{fmt::format("Roughing {} percent", percent)});
+    }
+  }
+
+  void add(Stage& stage, const Visit& visit, const Reach& reach) {
+    Position at = at_;
+    for (const Rapid& rapid : approach(at_, visit)) {
+      Vec3 by = Vec3::Zero();
+      if (rapid.x_nm && at.x_nm) by.x() = millimetres(*rapid.x_nm - *at.x_nm);
+      if (rapid.y_nm && at.y_nm) by.y() = millimetres(*rapid.y_nm - *at.y_nm);
+      if (rapid.z_nm && at.z_nm) by.z() = millimetres(*rapid.z_nm - *at.z_nm);
+      if (rapid.x_nm) at.x_nm = rapid.x_nm;
+      if (rapid.y_nm) at.y_nm = rapid.y_nm;
+      if (rapid.z_nm) at.z_nm = rapid.z_nm;
+      spend(&stage, just_turned_ ? &TimeShares::fixed_s : &TimeShares::rapid_s,
+            linear_move_s(machine_, by, std::nullopt));
+    }
+    just_turned_ = false;
+    at_ = at;
+    const TimeShares& routine = routine_times_[stage.subroutine];
+    spend(&stage, &TimeShares::cutting_s, routine.cutting_s);
+    spend(&stage, &TimeShares::dwell_s, routine.dwell_s);
+    spend(&stage, &TimeShares::retract_s, routine.retract_s);
+    *at_.y_nm += reach.y_end_nm;
+    *at_.z_nm += reach.z_end_nm;
+    program_.items.push_back(visit);
+  }
+
+  void spend(Stage* stage, double TimeShares::*on, double seconds) {
+    plan_.time.*on += seconds;
+    if (stage != nullptr) stage->time.*on += seconds;
+    program_seconds_ += seconds;
+  }
+
+  bool is_full(const Stage& stage) const {
+    if (!options_.split_hours || program_.items.size() < 4) return false;
+    constexpr double kToLeaveS = 30.0;  // for the way home
+    return program_seconds_ + routine_times_[stage.subroutine].total_s() + kToLeaveS >
+           *options_.split_hours * kSecondsPerHour;
+  }
+
+  void check_axis(char axis, Nanometres low_nm, Nanometres high_nm, const Interval& limits,
+                  std::int32_t element) const {
+    const double low_mm = millimetres(low_nm);
+    const double high_mm = millimetres(high_nm);
+    if (limits.contains(low_mm) && limits.contains(high_mm)) return;
+    const std::string who = element < 0 ? "the safe height" : fmt::format("element {}", element);
+    throw InputError({job_.source, 0, "machine"},
+                     fmt::format("{}: axis {} of machine {} would go to {} mm, beyond its limits of {} to {}", who,
+                                 axis, machine_.name, fixed(limits.contains(low_mm) ? high_mm : low_mm, 3),
+                                 shortest(limits.low), shortest(limits.high)));
+  }
+
+  void check_limits(const Visit& visit, const Reach& reach) const {
+    check_axis('X', visit.x_nm, visit.x_nm, machine_.x.limits_mm.value, visit.element);
+    check_axis('Y', visit.y_nm + reach.y_low_nm, visit.y_nm + reach.y_high_nm, machine_.y.limits_mm.value,
+               visit.element);
+    check_axis('Z', visit.z_nm + reach.z_low_nm, visit.z_nm + reach.z_high_nm, machine_.z.limits_mm.value,
+               visit.element);
+  }
+
+  void finish_program() {
+    raise();
+    turn(0, 0);
+    program_.header = header();
+    plan_.program_times_s.push_back(program_seconds_);
+    plan_.programs.push_back(std::move(program_));
+  }
+
+  void end() {
+    check_axis('Z', safe_z_nm_, safe_z_nm_, machine_.z.limits_mm.value, -1);
+    finish_program();
+  }
+
+  std::vector<std::string> header() const {
+    const geometry::RtpElement element = blank_element(job_);
+    const geometry::Vec2 extent = blank_extent_mm(job_);
+    const Process& p = job_.process;
+    std::vector<std::string> lines = {
+        job_.title.empty() ? "Prism array" : plain(job_.title),
+        plain("Job " + std::filesystem::path(job_.source).filename().string() + ", machine " + machine_.name),
+        fmt::format("Blank: {}, array of {} x {} mm along X and Y at A0 C0",
+                    kWorkpieceWords[static_cast<std::size_t>(job_.workpiece.kind)], fixed(extent.x(), 3),
+                    fixed(extent.y(), 3)),
+        fmt::format("{} elements, base {} width {} apex {} deg, root {} mm deep", plan_.elements.size(),
+                    shortest(element.base_mm), shortest(element.width_mm), shortest(element.apex_angle_deg),
+                    fixed(root_depth_mm(element), 6)),
+        "Zero: centre of the array on the face of the blank, roof edges along X at A0 C0. Controller transformation "
+        "off",
+        fmt::format("Tool: width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: middle of the edge",
+                    shortest(job_.tool.width_mm), shortest(job_.tool.wedge_deg), shortest(job_.tool.clearance_deg)),
+        plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
+                          shortest(p.roughing_depth_um), job_.strategy == Strategy::two_step ? p.finishing_cuts : 0,
+                          shortest(p.finishing_depth_um), shortest(p.clearance_mm)))};
+    for (const CuttingPose& pose : plan_.poses)
+      lines.push_back(fmt::format("Pose: facet {}{} A{:.7f} C{:.7f}", pose.facet.facet,
+                                  pose.facet.turned ? " of turned elements" : "", pose.rounded.a_deg,
+                                  pose.rounded.c_deg));
+    const auto minutes = static_cast<std::int64_t>(std::ceil(program_seconds_ / 60.0));
+    lines.push_back(fmt::format("Expected time: {} h {} min", minutes / 60, minutes % 60));
+    return lines;
+  }
+
+  const Job& job_;
+  const Machine& machine_;
+  const PlanOptions& options_;
+  const std::vector<Start>& starts_;
+  Plan& plan_;
+  std::vector<TimeShares> routine_times_;
+  Program program_;
+  double program_seconds_ = 0.0;
+  Position at_;
+  Nanometres safe_z_nm_ = 0;
+  bool just_turned_ = true;
+  bool forth_ = false;
+  std::int64_t visits_ = 0;
+  std::int64_t roughing_total_ = 0;
+  std::int64_t roughing_done_ = 0;
+};
+
+void check_options(const PlanOptions& options, std::size_t elements) {
+  const auto most = static_cast<std::int64_t>(elements) - 1;
+  if (options.from_element && (*options.from_element < 0 || *options.from_element > most))
+    throw InputError({"", 0, "--from-element"}, fmt::format("must be 0 to {}, got {}", most, *options.from_element));
+  if (options.stop_every && *options.stop_every < 1)
+    throw InputError({"", 0, "--stop-every"}, fmt::format("must be >= 1, got {}", *options.stop_every));
+  if (options.split_hours && !(*options.split_hours > 0.0))
+    throw InputError({"", 0, "--split-hours"}, "must be > 0, got " + shortest(*options.split_hours));
+}
+
+}  // namespace
+
+double safe_height_mm(const Job& job, const Machine& machine, const std::vector<CuttingPose>& poses) {
+  constexpr double kStepDeg = 3.0;
+  const geometry::Vec2 half = 0.5 * blank_extent_mm(job);
+  double a_low = 0.0;
+  double a_high = 0.0;
+  for (const CuttingPose& pose : poses) {
+    a_low = std::min(a_low, pose.rounded.a_deg);
+    a_high = std::max(a_high, pose.rounded.a_deg);
+  }
+  double highest_mm = 0.0;
+  const int a_steps = static_cast<int>(std::ceil((a_high - a_low) / kStepDeg));
+  for (int i = 0; i <= a_steps; ++i)
+    for (double c_deg = 0.0; c_deg < 360.0; c_deg += kStepDeg)
+      for (const double x : {-half.x(), half.x()})
+        for (const double y : {-half.y(), half.y()}) {
+          const RotaryPose pose{std::min(a_low + kStepDeg * i, a_high), c_deg};
+          highest_mm = std::max(highest_mm, inverse(machine, Vec3(x, y, 0.0), pose).z_mm);
+        }
+  // Between samples a corner rises by less than the sagitta of its circle.
+  const double sagitta_mm = (1.0 - std::cos(Angle::from_deg(0.5 * kStepDeg).rad())) * 2.0 * highest_mm;
+  return highest_mm + sagitta_mm + job.process.rotary_clearance_mm + job.process.clearance_mm;
+}
+
+Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& options) {
+  Plan plan;
+  plan.elements = cut_elements(job);
+  check_options(options, plan.elements.size());
+  plan.cuts_per_facet = cuts_per_facet(job);
+  const std::vector<Start> starts = StageMaker(job, machine, plan).run();
+  plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);
+  const geometry::RtpElement element = blank_element(job);
+  plan.aperture_area_mm2 = element.base_mm * element.width_mm * static_cast<double>(plan.elements.size());
+  choose_stages(plan, options);
+  ProgramMaker(job, machine, options, starts, plan).run();
+  return plan;
+}
+
+}  // namespace retrace::fabrication

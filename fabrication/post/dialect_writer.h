@@ -1,0 +1,72 @@
+#pragma once
+
+// What a dialect must be able to say. A new one is one file with a class of this kind and its make_ function, and a
+// line in post.cpp.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "fabrication/program/program.h"
+
+namespace retrace::fabrication {
+
+/// Words of one move; those that are not there stay as they are.
+struct Words {
+  std::optional<Nanometres> x_nm;
+  std::optional<Nanometres> y_nm;
+  std::optional<Nanometres> z_nm;
+  std::optional<RotaryUnits> a;
+  std::optional<RotaryUnits> c;
+};
+
+/// Collects the lines of a file. Numbers are written from integers, digit by digit.
+class NcText {
+ public:
+  NcText& add(std::string_view text);
+  NcText& number(long long value);
+  /// " X1.000000 Y..." with six decimals of a mm, seven of a degree.
+  NcText& words(const Words& words);
+  /// Three decimals and a point.
+  NcText& decimal(double value);
+  NcText& end_line();
+  void line(std::string_view text) { add(text).end_line(); }
+  std::string take() { return std::move(text_); }
+
+ private:
+  void fixed_point(char letter, long long value, int decimals);
+  std::string text_;
+};
+
+class DialectWriter {
+ public:
+  virtual ~DialectWriter() = default;
+
+  /// Whether subroutines stand before the main part, or after it.
+  virtual bool subroutines_first() const = 0;
+  virtual void begin_file(NcText& out) const = 0;
+  virtual void end_file(NcText& out) const = 0;
+  /// The main part: what precedes its first line and follows its last one.
+  virtual void begin_main(NcText& out) const = 0;
+  virtual void end_main(NcText& out) const = 0;
+  /// Plane, mm, absolute, feed per minute, compensations and blending off, exact stop, first zero offset, spindle off.
+  virtual void prepare(NcText& out) const = 0;
+  virtual void mist(NcText& out, bool on) const = 0;
+  virtual void comment(NcText& out, std::string_view text) const = 0;
+  virtual void message(NcText& out, std::string_view text) const = 0;
+  virtual void optional_stop(NcText& out) const = 0;
+  virtual void begin_subroutine(NcText& out, const Subroutine& subroutine) const = 0;
+  virtual void end_subroutine(NcText& out, const Subroutine& subroutine) const = 0;
+  virtual void call(NcText& out, int number) const = 0;
+  virtual void rapid(NcText& out, const Words& words) const = 0;
+  virtual void feed(NcText& out, const Words& words, double feed_mm_per_min) const = 0;
+  virtual void dwell(NcText& out, int ms) const = 0;
+};
+
+std::unique_ptr<DialectWriter> make_rs274ngc();
+std::unique_ptr<DialectWriter> make_sinumerik();
+std::unique_ptr<DialectWriter> make_fanuc();
+std::unique_ptr<DialectWriter> make_pmac();
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "fabrication/program/program.h"
+
+namespace retrace::fabrication {
+
+/// A dialect of NC text.
+struct Dialect {
+  std::string_view name;     ///< as commands call it
+  std::string_view ending;   ///< of its files, with the dot
+  std::string_view comment;  ///< what is said of it in lists
+};
+
+/// All dialects, the reference first.
+std::span<const Dialect> dialects();
+
+/// The program as one complete file of that dialect: header, preparation, subroutines, moves, end.
+/// \throw InputError for a dialect that is not known
+std::string nc_text(const Program& program, std::string_view dialect);
+
+}  // namespace retrace::fabrication

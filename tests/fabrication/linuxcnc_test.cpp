@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/atomic_file.h"
+#include "core/data_directory.h"
+#include "fabrication/job/io/job_files.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/plan/plan.h"
+#include "fabrication/post/post.h"
+#include "tests/fabrication/jobs.h"
+
+// LinuxCNC's own interpreter reads our RS274/NGC text: its canonical moves are the planned ones. Golden programs pin
+// the text of every dialect.
+
+namespace retrace::fabrication::test {
+namespace {
+
+namespace fs = std::filesystem;
+using geometry::Arrangement;
+
+const fs::path kSource = RETRACE_SOURCE_DIR;
+
+Machine machine(const std::string& name) {
+  return parse_machine(read_file(kSource / "data" / "machines" / (name + ".toml")), name);
+}
+
+/// One move as the interpreter printed it.
+struct CanonicalMove {
+  bool rapid = false;
+  std::array<double, 6> at{};  ///< x, y, z, a, b, c
+  double feed = 0.0;
+  double dwell_s = 0.0;  ///< after it
+};
+
+/// Runs `rs274`, which writes its parameters into the working folder.
+std::string interpreted(const std::string& text) {
+  const fs::path folder = fs::temp_directory_path() / ("retrace_rs274_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "p.ngc") << text;
+  const std::string command = "cd '" + folder.string() + "' && rs274 -g p.ngc > out.txt 2> err.txt < /dev/null";
+  const int code = std::system(command.c_str());
+  const std::string out = read_file(folder / "out.txt");
+  const std::string err = read_file(folder / "err.txt");
+  fs::remove_all(folder);
+  EXPECT_EQ(code, 0) << "LinuxCNC's rs274 (Debian package linuxcnc-uspace): " << err << out.substr(0, 500);
+  return out;
+}
+
+std::vector<CanonicalMove> canonical_moves(const std::string& printed) {
+  std::vector<CanonicalMove> moves;
+  double feed = 0.0;
+  std::istringstream lines(printed);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t open = line.find('(');
+    const auto number_after = [&] { return std::strtod(line.c_str() + open + 1, nullptr); };
+    const bool rapid = line.find("STRAIGHT_TRAVERSE(") != std::string::npos;
+    if (line.find("SET_FEED_RATE(") != std::string::npos) feed = number_after();
+    if (line.find("DWELL(") != std::string::npos && !moves.empty()) moves.back().dwell_s = number_after();
+    if (!rapid && line.find("STRAIGHT_FEED(") == std::string::npos) continue;
+    CanonicalMove move;
+    move.rapid = rapid;
+    move.feed = rapid ? 0.0 : feed;
+    std::istringstream numbers(line.substr(open + 1));
+    for (double& value : move.at) {
+      numbers >> value;
+      numbers.ignore(1);
+    }
+    moves.push_back(move);
+  }
+  return moves;
+}
+
+void expect_planned(const Plan& plan, const std::string& what) {
+  SCOPED_TRACE(what);
+  for (const Program& program : plan.programs) {
+    const std::string printed = interpreted(nc_text(program, "rs274ngc"));
+    EXPECT_NE(printed.find("SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)"), std::string::npos);
+    EXPECT_NE(printed.find("PROGRAM_END()"), std::string::npos);
+    const std::vector<CanonicalMove> moves = canonical_moves(printed);
+    std::vector<PlannedMove> planned;
+    for_each_move(program, [&](const PlannedMove& move) { planned.push_back(move); });
+    ASSERT_EQ(moves.size(), planned.size());
+    constexpr double kPrinted = 1e-4;  // four decimals
+    for (std::size_t k = 0; k < moves.size(); ++k) {
+      const Position& to = planned[k].to;
+      ASSERT_EQ(moves[k].rapid, planned[k].rapid) << "move " << k;
+      ASSERT_NEAR(moves[k].at[0], 1e-6 * static_cast<double>(to.x_nm.value_or(0)), kPrinted);
+      ASSERT_NEAR(moves[k].at[1], 1e-6 * static_cast<double>(to.y_nm.value_or(0)), kPrinted);
+      ASSERT_NEAR(moves[k].at[2], 1e-6 * static_cast<double>(*to.z_nm), kPrinted);
+      ASSERT_NEAR(moves[k].at[3], 1e-7 * static_cast<double>(to.a), kPrinted);
+      ASSERT_NEAR(moves[k].at[5], 1e-7 * static_cast<double>(to.c), kPrinted);
+      ASSERT_EQ(moves[k].feed, planned[k].feed_mm_per_min);
+      ASSERT_NEAR(moves[k].dwell_s, planned[k].dwell_s, 1e-9);
+      ASSERT_TRUE(moves[k].rapid || moves[k].at[0] == moves[k - 1].at[0]) << "X while cutting";
+    }
+  }
+}
+
+TEST(LinuxCnc, MovesAsPlannedForAllStrategiesArrangementsAndMachines) {
+  for (const char* name : {"ideal", "paper", "thesis"})
+    for (const auto strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step})
+      for (const auto arrangement :
+           {Arrangement::single, Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
+        Job job = square_job(arrangement == Arrangement::single ? 1 : 2, arrangement);
+        job.strategy = strategy;
+        job.process.roughing_depth_um = 60.0;
+        job.process.slow_retract_um = 4.0;
+        expect_planned(make_plan(job, machine(name)),
+                       std::string(name) + " " + std::string(kStrategyWords[static_cast<std::size_t>(strategy)]) +
+                           " arrangement " + std::to_string(static_cast<int>(arrangement)));
+      }
+}
+
+TEST(LinuxCnc, TakesSplitAndStoppedPrograms) {
+  PlanOptions options;
+  options.split_hours = 0.03;
+  options.stop_every = 4;
+  const Plan plan = make_plan(square_job(3), machine("paper"), options);
+  ASSERT_GT(plan.programs.size(), 2U);
+  expect_planned(plan, "split");
+}
+
+/// The folders of golden/ hold a job and its programs in every dialect. RETRACE_WRITE_GOLDEN=1 writes them anew, to be
+/// looked through before they are committed.
+TEST(Golden, ProgramsOfSmallJobs) {
+  const char* const rewrite = std::getenv("RETRACE_WRITE_GOLDEN");
+  int folders = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "tests" / "fabrication" / "golden")) {
+    if (!entry.is_directory()) continue;
+    ++folders;
+    SCOPED_TRACE(entry.path().filename().string());
+    Job job = parse_job(read_file(entry.path() / "job.toml"), "job.toml");
+    const Plan plan = make_plan(job, machine(job.machine));
+    expect_planned(plan, entry.path().filename().string());
+    for (const Dialect& dialect : dialects()) {
+      const fs::path file = entry.path() / ("program" + std::string(dialect.ending));
+      const std::string text = nc_text(plan.programs.front(), dialect.name);
+      if (rewrite != nullptr) write_file_atomically(file, text);
+      EXPECT_EQ(read_file(file), text) << file;
+    }
+  }
+  EXPECT_GE(folders, 6);
+}
+
+TEST(Dialects, AreComplete) {
+  const Plan plan = make_plan(square_job(2), machine("ideal"));
+  const auto text = [&](std::string_view dialect) { return nc_text(plan.programs.front(), dialect); };
+  for (const Dialect& dialect : dialects()) {
+    const std::string nc = text(dialect.name);
+    SCOPED_TRACE(std::string(dialect.name));
+    EXPECT_NE(nc.find("Expected time"), std::string::npos);
+    EXPECT_NE(nc.find("Tool: width 0.451 mm"), std::string::npos);
+    EXPECT_NE(nc.find("Pose: facet 2 A45.0000000 C180.0000000"), std::string::npos);
+    EXPECT_NE(nc.find("Roughing 25 percent"), std::string::npos);
+    EXPECT_NE(nc.find("Finishing cut 2 of 2 C-axis at 180"), std::string::npos);
+    EXPECT_EQ(nc.find("#3006"), std::string::npos);
+    for (const char* word : {"M5\n", "M7\n", "M9\n"}) EXPECT_NE(nc.find(word), std::string::npos) << word;
+  }
+  EXPECT_NE(text("sinumerik").find("G60"), std::string::npos);
+  EXPECT_NE(text("sinumerik").find("TRAFOOF"), std::string::npos);
+  EXPECT_NE(text("fanuc").find("G61"), std::string::npos);
+  EXPECT_NE(text("fanuc").find("G4 P100\n"), std::string::npos) << "milliseconds";
+  EXPECT_NE(text("pmac").find("Coord[1].NoBlend=1"), std::string::npos);
+  EXPECT_NE(text("pmac").find("dwell 100\n"), std::string::npos) << "milliseconds";
+  EXPECT_THROW(text("kugler"), InputError);
+}
+
+TEST(Dialects, WriteNumbersInFixedPoint) {
+  Program program;
+  program.subroutines.push_back({101, "a routine", {Increment{Motion::plunge, -1, 2000000, 12.5}}});
+  program.items = {Raise{5000000}, Turn{-1, 450000000}, Visit{3, 0, -123, 1000000000, 7}};
+  const std::string text = nc_text(program, "rs274ngc");
+  EXPECT_NE(text.find("G1 Y-0.000001 Z2.000000 F12.500\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("G0 A-0.0000001 C45.0000000\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("G0 X-0.000123 Y1000.000000\nG0 Z0.000007\n"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::test

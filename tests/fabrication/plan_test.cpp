@@ -1,0 +1,492 @@
+#include "fabrication/plan/plan.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/job/tool_angles.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/plan/move_time.h"
+#include "fabrication/plan/routines.h"
+#include "tests/fabrication/jobs.h"
+
+// Plans: cuts, poses, order, safety of moves and time, against the figures of the thesis and the machine's own forward
+// kinematics.
+
+namespace retrace::fabrication::test {
+namespace {
+
+using geometry::Arrangement;
+using geometry::Vec3;
+
+constexpr double kArcminPerRad = 60.0 * 180.0 / 3.14159265358979323846;
+const std::vector<std::string> kMachines = {"ideal", "paper", "thesis"};
+
+Machine machine(const std::string& name) {
+  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
+}
+
+Job job_of(double base_mm, double depth_um, Strategy strategy) {
+  Job job = square_job(1);
+  job.element.base_mm = job.element.width_mm = base_mm;
+  job.tool.width_mm = base_mm;
+  job.process.roughing_depth_um = depth_um;
+  job.strategy = strategy;
+  return job;
+}
+
+AxisPositions axes_of(const Position& p) {
+  return {static_cast<double>(*p.x_nm) * 1e-6, static_cast<double>(*p.y_nm) * 1e-6, static_cast<double>(*p.z_nm) * 1e-6,
+          static_cast<double>(p.a) * 1e-7, static_cast<double>(p.c) * 1e-7};
+}
+
+std::vector<PlannedMove> moves_of(const Plan& plan) {
+  std::vector<PlannedMove> moves;
+  for (const Program& program : plan.programs)
+    for_each_move(program, [&](const PlannedMove& move) { moves.push_back(move); });
+  return moves;
+}
+
+std::vector<Visit> visits_of(const Plan& plan) {
+  std::vector<Visit> visits;
+  for (const Program& program : plan.programs)
+    for (const Item& item : program.items)
+      if (const auto* visit = std::get_if<Visit>(&item)) visits.push_back(*visit);
+  return visits;
+}
+
+/// Lengths of the plunges below the blank's face, in order.
+std::vector<double> plunge_lengths_mm(const Job& job) {
+  const CuttingPose pose = cutting_pose(job, machine("ideal"), {}, 0.0);
+  const Routine routine = unidirectional_routine(job, pose.section);
+  const double approach_mm = job.process.clearance_mm * std::sqrt(2.0);
+  std::vector<double> lengths;
+  for (const Step& step : routine.subroutine.steps)
+    if (const auto* move = std::get_if<Increment>(&step); move != nullptr && move->motion == Motion::plunge)
+      lengths.push_back(-1e-6 * static_cast<double>(move->z_nm) - approach_mm);
+  return lengths;
+}
+
+TEST(Cuts, AreThoseOfTheThesis) {
+  // Milliken 2017, 4.1.3: 1 mm at 10 um takes 71 cuts; the last three are 687.1, 697.1 and 707.1 um long.
+  const std::vector<double> lengths = plunge_lengths_mm(job_of(1.0, 10.0, Strategy::unidirectional));
+  ASSERT_EQ(lengths.size(), 71U);
+  EXPECT_NEAR(lengths.front(), 0.0071, 6e-5);
+  EXPECT_NEAR(lengths[68], 0.6871, 6e-5);
+  EXPECT_NEAR(lengths[69], 0.6971, 6e-5);
+  EXPECT_NEAR(lengths.back(), std::sqrt(0.5), 1e-6);
+  EXPECT_EQ(cuts_per_facet(job_of(1.0, 5.0, Strategy::unidirectional)), 142);
+  EXPECT_EQ(cuts_per_facet(job_of(0.451, 15.0, Strategy::unidirectional)), 22);
+  EXPECT_EQ(cuts_per_facet(job_of(0.451, 15.0, Strategy::two_step)), 21);
+}
+
+TEST(Cuts, OfLayersRemoveAsMuchFromEitherFacet) {
+  // Nested V shells: the root of shell i is (N - i) DOC sqrt 2 above the design's, so half as many reach the face.
+  EXPECT_EQ(cuts_per_facet(job_of(1.0, 10.0, Strategy::bidirectional)), 36);
+}
+
+TEST(Tool, AnglesAreThoseOfTheThesis) {
+  Tool tool;
+  EXPECT_DOUBLE_EQ(plunge_angles(tool).rake_deg, 37.0);
+  EXPECT_DOUBLE_EQ(plough_angles(tool).rake_deg, -53.0);
+  EXPECT_DOUBLE_EQ(plough_angles(tool).clearance_deg, 93.0);
+  for (const CuttingAngles& angles : {plunge_angles(tool), plough_angles(tool)})
+    EXPECT_DOUBLE_EQ(angles.clearance_deg + tool.wedge_deg + angles.rake_deg, 90.0);
+}
+
+TEST(Passes, LieSideBySide) {
+  EXPECT_EQ(pass_offsets_mm(0.451, 0.451), std::vector<double>{0.0});
+  EXPECT_EQ(pass_offsets_mm(0.451, 0.451 + 1e-6).size(), 1U);
+  const std::vector<double> three = pass_offsets_mm(1.0, 0.4);
+  ASSERT_EQ(three.size(), 3U);
+  EXPECT_NEAR(three.front() - 0.2, -0.5, 1e-12) << "the first ends at the border";
+  EXPECT_NEAR(three.back() + 0.2, 0.5, 1e-12);
+  EXPECT_LE(three[1] - three[0], 0.4);
+}
+
+TEST(Poses, StandThePlungedFacetUpright) {
+  for (const std::string& name : kMachines)
+    for (const double apex_deg : {80.0, 90.0, 90.2, 110.0})
+      for (const bool turned : {false, true})
+        for (const int facet : {1, 2}) {
+          Job job = square_job(2, Arrangement::checker);
+          job.element.apex_angle_deg = apex_deg;
+          const Machine m = machine(name);
+          const CuttingPose pose = cutting_pose(job, m, {turned, facet}, 0.0);
+          const RigidMotion motion = machine_from_workpiece(m, pose.rounded);
+          const Vec3 normal = motion.direction(facet_normal(job.element, {turned, facet}));
+          EXPECT_LT(kArcminPerRad * std::acos(std::min(1.0, -normal.y())), 0.01)
+              << name << " apex " << apex_deg << " facet " << facet << (turned ? " turned" : "");
+          EXPECT_GT(motion.direction(pose.root).x(), 0.999);
+        }
+}
+
+TEST(Poses, LeaveThePredictedRotation) {
+  // Closed form 12 of the issue: rotation that is left about the facet's normal, in arc minutes.
+  struct Expected {
+    std::string machine;
+    int facet;
+    double a_deg;
+    double c_deg;
+    double delta_arcmin;
+  };
+  const Expected all[] = {{"paper", 1, 45.000155, -0.119246, 1.17},
+                          {"paper", 2, 45.055168, 179.898541, 2.69},
+                          {"thesis", 1, 45.000002, -0.015492, -0.75},
+                          {"thesis", 2, 45.000002, 179.984508, -0.75}};
+  for (const Expected& e : all) {
+    const CuttingPose pose = cutting_pose(square_job(3), machine(e.machine), {false, e.facet}, 0.0);
+    EXPECT_NEAR(pose.rounded.a_deg, e.a_deg, 1e-6) << e.machine;
+    EXPECT_NEAR(pose.rounded.c_deg, e.c_deg, 1e-6) << e.machine;
+    EXPECT_NEAR(std::abs(60.0 * pose.root_tilt.deg()), std::abs(e.delta_arcmin), 0.006) << e.machine;
+  }
+}
+
+/// Signed distance of a point of the workpiece from a facet of an element: positive outside the material.
+double distance_nm(const Job& job, const CutElement& element, int facet, const Vec3& point) {
+  const Vec3 root(element.centre_mm.x(), element.centre_mm.y(), -root_depth_mm(blank_element(job)));
+  return 1e6 * facet_normal(blank_element(job), {element.turned, facet}).dot(point - root);
+}
+
+/// Both ends of the tool's edge in the workpiece, where the axes are there.
+std::array<Vec3, 2> edge_ends(const Job& job, const Machine& m, const Position& at) {
+  const ToolPose tool = forward(m, axes_of(at));
+  const Vec3 half = tool.workpiece_from_machine * Vec3(0.5 * job.tool.width_mm, 0.0, 0.0);
+  return {Vec3(tool.reference_mm - half), Vec3(tool.reference_mm + half)};
+}
+
+TEST(Plunges, EndWhereTheDeeperEndTouchesTheOtherFacetAndNeverBelow) {
+  for (const std::string& name : kMachines)
+    for (const Arrangement arrangement : {Arrangement::offset, Arrangement::checker})
+      for (const double apex_deg : {90.0, 90.3, 84.0}) {
+        Job job = square_job(3, arrangement);
+        job.element.apex_angle_deg = apex_deg;
+        const Machine m = machine(name);
+        const Plan plan = make_plan(job, m);
+        std::map<std::pair<std::int32_t, int>, std::array<double, 2>> nearest;  // to wall and floor
+        for (const PlannedMove& move : moves_of(plan)) {
+          if (move.rapid || move.motion != Motion::plunge) continue;
+          const CutElement& element = plan.elements[static_cast<std::size_t>(move.element)];
+          double c_deg = 1e-7 * static_cast<double>(move.to.c) - (element.turned ? 90.0 : 0.0);
+          const int wall = std::abs(c_deg) < 45.0 || std::abs(c_deg - 360.0) < 45.0 ? 1 : 2;
+          auto [it, is_new] = nearest.try_emplace({move.element, wall}, std::array{1e9, 1e9});
+          for (const Vec3& end : edge_ends(job, m, move.to)) {
+            it->second[0] = std::min(it->second[0], distance_nm(job, element, wall, end));
+            it->second[1] = std::min(it->second[1], distance_nm(job, element, 3 - wall, end));
+          }
+        }
+        ASSERT_EQ(nearest.size(), 2 * plan.elements.size());
+        for (const auto& [key, near] : nearest)
+          for (const double nm : near) EXPECT_NEAR(nm, 0.0, 2.0) << name << " element " << key.first;
+      }
+}
+
+TEST(Unidirectional, SlicesAreParallelToFacetOneAndRootsLieOnThePloughedPlane) {
+  const Job job = job_of(1.0, 10.0, Strategy::unidirectional);
+  const Machine m = machine("ideal");
+  const Plan plan = make_plan(job, m);
+  const int cuts = plan.cuts_per_facet;
+  int cut = 0;
+  for (const PlannedMove& move : moves_of(plan)) {
+    if (move.rapid || (move.motion != Motion::plunge && move.motion != Motion::plough)) continue;
+    const Vec3 tip = forward(m, axes_of(move.to)).reference_mm;
+    EXPECT_NEAR(distance_nm(job, plan.elements[0], 2, tip), 0.0, 1.0) << "on the ploughed plane";
+    if (move.motion == Motion::plough) continue;
+    ++cut;
+    EXPECT_NEAR(distance_nm(job, plan.elements[0], 1, tip), 1e4 * (cuts - cut), 1.0) << "cut " << cut;
+    EXPECT_DOUBLE_EQ(move.dwell_s, 0.1);
+  }
+  EXPECT_EQ(cut, 71);
+}
+
+TEST(Bidirectional, EveryTipStopsOnTheRootOfItsShell) {
+  const Job job = job_of(1.0, 20.0, Strategy::bidirectional);
+  const Machine m = machine("ideal");
+  const Plan plan = make_plan(job, m);
+  std::map<int, int> plunges;  // by facet
+  for (const PlannedMove& move : moves_of(plan)) {
+    if (move.rapid || move.motion != Motion::plunge) continue;
+    const int facet = move.to.c < 900000000 ? 1 : 2;
+    const int layer = ++plunges[facet];
+    const Vec3 tip = forward(m, axes_of(move.to)).reference_mm;
+    // Past the floor of the layer before by one depth of cut, which is the floor of this one.
+    for (const int side : {1, 2})
+      EXPECT_NEAR(distance_nm(job, plan.elements[0], side, tip), 2e4 * (plan.cuts_per_facet - layer), 1.5);
+  }
+  EXPECT_EQ(plunges[1], plan.cuts_per_facet);
+  EXPECT_EQ(plunges[2], plan.cuts_per_facet);
+}
+
+TEST(TwoStep, RoughingStopsShortOfBothFacets) {
+  const Job job = square_job(1);
+  const Machine m = machine("ideal");
+  const Plan plan = make_plan(job, m);
+  double least[2] = {1e9, 1e9};
+  for (const PlannedMove& move : moves_of(plan)) {
+    if (move.rapid || move.feed_mm_per_min != job.process.roughing_feed_mm_per_min) continue;
+    const Vec3 tip = forward(m, axes_of(move.to)).reference_mm;
+    for (const int facet : {1, 2})
+      least[facet - 1] = std::min(least[facet - 1], distance_nm(job, plan.elements[0], facet, tip));
+  }
+  EXPECT_NEAR(least[0], 1e4, 1.0) << "2 x 5 um";
+  EXPECT_NEAR(least[1], 1e4, 1.0);
+}
+
+TEST(Options, OfTheThesisChangeTheCutAsTheySay) {
+  Job job = job_of(1.0, 10.0, Strategy::unidirectional);
+  job.process.shortest_plough = true;
+  job.tool.edge_radius_um = 0.5;
+  const CuttingPose pose = cutting_pose(job, machine("ideal"), {}, 0.0);
+  for (const Step& step : unidirectional_routine(job, pose.section).subroutine.steps)
+    if (const auto* move = std::get_if<Increment>(&step); move != nullptr && move->motion == Motion::plough) {
+      EXPECT_EQ(move->y_nm, -10500);
+    }
+  job.process.shortest_plough = false;
+  job.process.plough_lift_um = 3.0;
+  int ploughs = 0;
+  for (const Step& step : unidirectional_routine(job, pose.section).subroutine.steps)
+    if (const auto* move = std::get_if<Increment>(&step); move != nullptr && move->motion == Motion::plough) {
+      EXPECT_EQ(move->z_nm, ploughs++ % 2 == 0 ? 0 : 3000);
+    }
+  EXPECT_EQ(ploughs, 142);
+  job.process.slow_retract_um = 8.0;
+  const Routine plunge = plunge_routine(job, pose.section, 0.0, 20.0);
+  const auto& slow = std::get<Increment>(plunge.subroutine.steps[2]);
+  EXPECT_EQ(slow.y_nm, 0);
+  EXPECT_EQ(slow.z_nm, 8000);
+  EXPECT_EQ(slow.feed_mm_per_min, 20.0);
+}
+
+TEST(Order, CTurnsOnlyTwicePerFinishingCut) {
+  const Machine m = machine("ideal");
+  Job job = square_job(5);
+  EXPECT_EQ(make_plan(job, m).elements.size(), 23U);
+  EXPECT_EQ(make_plan(job, m).c_rotations, 4) << "the thesis: 25 structures, 4 rotations instead of 100";
+  EXPECT_EQ(make_plan(square_job(4, Arrangement::checker), m).c_rotations, 8) << "four poses: 4 per cut";
+  job.strategy = Strategy::unidirectional;
+  EXPECT_EQ(make_plan(job, m).c_rotations, 0);
+  job.strategy = Strategy::bidirectional;
+  const Plan layers = make_plan(job, m);
+  EXPECT_EQ(layers.c_rotations, 2 * layers.cuts_per_facet);
+}
+
+TEST(Order, TravelBetweenElementsIsShort) {
+  // To and fro: hardly longer than one pitch for each element, which no order can undercut.
+  const Machine m = machine("ideal");
+  for (const Arrangement arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
+    const Job job = square_job(20, arrangement);
+    const Plan plan = make_plan(job, m, {.phase = "roughing", .from_element = {}, .stop_every = {}, .split_hours = {}});
+    double travel_mm = 0.0;
+    int lines = 0;
+    std::optional<geometry::Vec2> last;
+    for (const Visit& visit : visits_of(plan)) {
+      const geometry::Vec2& at = plan.elements[static_cast<std::size_t>(visit.element)].centre_mm;
+      if (last) travel_mm += (at - *last).norm();
+      last = at;
+      ++lines;
+    }
+    // Of a checker either half has diagonal neighbours only; the way along a line is two pitches.
+    const double pitches = arrangement == Arrangement::checker ? 2.0 : arrangement == Arrangement::offset ? 1.15 : 1.0;
+    EXPECT_LT(travel_mm, 1.05 * pitches * 0.451 * lines);
+  }
+}
+
+TEST(Time, IsThatOfTheThesis) {
+  // Closed form 14 of the issue: 29.2 s for an element and 25.1 mm^2/h, both within 15 %.
+  const Plan plan = make_plan(square_job(25), machine("thesis"));
+  ASSERT_EQ(plan.elements.size(), 613U);
+  const double per_element_s = plan.time.total_s() / 613.0;
+  EXPECT_NEAR(per_element_s, 29.16, 0.15 * 29.16);
+  EXPECT_NEAR(plan.aperture_area_mm2 / (plan.time.total_s() / 3600.0), 25.1, 0.15 * 25.1);
+  std::printf("time per element %.2f s, rate %.2f mm^2/h\n", per_element_s,
+              plan.aperture_area_mm2 / (plan.time.total_s() / 3600.0));
+}
+
+TEST(Time, WideToolHalvesTheTimePerArea) {
+  Job job = square_job(10, Arrangement::aligned);
+  const Plan narrow = make_plan(job, machine("ideal"));
+  job.element.width_mm = job.tool.width_mm = 0.902;
+  job.array.y_length_mm *= 2.0;
+  const Plan wide = make_plan(job, machine("ideal"));
+  const double ratio =
+      (wide.time.total_s() / wide.aperture_area_mm2) / (narrow.time.total_s() / narrow.aperture_area_mm2);
+  EXPECT_NEAR(ratio, 0.5, 0.01);
+}
+
+TEST(Time, OfAMoveFromRestToRest) {
+  EXPECT_DOUBLE_EQ(rest_to_rest_s(10.0, 2.0, 1.0), 7.0);  // 2 s up, 3 s at speed over 6, 2 s down
+  EXPECT_DOUBLE_EQ(rest_to_rest_s(4.0, 2.0, 1.0), 4.0);
+  EXPECT_DOUBLE_EQ(rest_to_rest_s(1.0, 2.0, 1.0), 2.0);
+  EXPECT_DOUBLE_EQ(rest_to_rest_s(0.0, 2.0, 1.0), 0.0);
+}
+
+/// Height of a point above the blank's face, normal to it.
+double height_mm(const Machine& m, const Position& at) {
+  return forward(m, axes_of(at)).reference_mm.z();
+}
+
+RC_GTEST_PROP(Moves, AreSafe, ()) {
+  Job job = square_job(*rc::gen::inRange(2, 6),
+                       *rc::gen::element(Arrangement::aligned, Arrangement::offset, Arrangement::checker));
+  job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
+  job.element.apex_angle_deg = *rc::gen::element(80.0, 90.0, 90.5, 100.0);
+  job.tool.width_mm = *rc::gen::element(0.451, 0.3, 0.15);
+  job.process.roughing_depth_um = *rc::gen::element(15.0, 7.3, 40.0);
+  job.tool.edge_radius_um = *rc::gen::element(0.0, 0.2, 2.0);
+  const Machine m = machine(*rc::gen::elementOf(kMachines));
+  const Plan plan = make_plan(job, m);
+  Position at;
+  for (const PlannedMove& move : moves_of(plan)) {
+    const Position& to = move.to;
+    if (move.rotary) {
+      RC_ASSERT(at.z_nm == std::llround(plan.safe_z_mm * 1e6));
+    } else if (move.rapid && at.z_nm && at.x_nm && to.x_nm) {
+      const bool down = *to.z_nm < *at.z_nm;
+      const bool across = to.x_nm != at.x_nm || to.y_nm != at.y_nm;
+      RC_ASSERT(!(down && across));
+      // Never nearer to the face than the clearance, but for rounding: half the way is as high as its ends.
+      RC_ASSERT(height_mm(m, to) > job.process.clearance_mm - 1e-3);
+    } else if (!move.rapid) {
+      RC_ASSERT(to.x_nm == at.x_nm);
+    }
+    at = to;
+  }
+  RC_ASSERT(at.a == 0);
+  RC_ASSERT(at.c == 0);
+}
+
+RC_GTEST_PROP(Positions, DoNotDrift, ()) {
+  Job job = square_job(*rc::gen::inRange(2, 9), Arrangement::offset);
+  const Machine m = machine(*rc::gen::elementOf(kMachines));
+  const Plan plan = make_plan(job, m);
+  for (const Visit& visit : visits_of(plan)) {
+    const Stage& stage = plan.stages[0].subroutine == visit.subroutine
+                             ? plan.stages[0]
+                             : *std::find_if(plan.stages.begin(), plan.stages.end(),
+                                             [&](const Stage& s) { return s.subroutine == visit.subroutine; });
+    const CuttingPose& pose = plan.poses[stage.pose];
+    const geometry::Vec2 centre = plan.elements[static_cast<std::size_t>(visit.element)].centre_mm;
+    const AxisPositions root = inverse(m, Vec3(centre.x(), centre.y(), -pose.section.depth_mm), pose.rounded);
+    // Where a routine starts relative to its element is the same for all, to the rounding of either.
+    const Visit& first = visits_of(plan).front();
+    if (visit.subroutine != first.subroutine) continue;
+    const geometry::Vec2 centre0 = plan.elements[static_cast<std::size_t>(first.element)].centre_mm;
+    const AxisPositions root0 = inverse(m, Vec3(centre0.x(), centre0.y(), -pose.section.depth_mm), pose.rounded);
+    RC_ASSERT(std::abs(1e-6 * static_cast<double>(visit.x_nm - first.x_nm) - (root.x_mm - root0.x_mm)) < 1.01e-6);
+    RC_ASSERT(std::abs(1e-6 * static_cast<double>(visit.y_nm - first.y_nm) - (root.y_mm - root0.y_mm)) < 1.01e-6);
+    RC_ASSERT(std::abs(1e-6 * static_cast<double>(visit.z_nm - first.z_nm) - (root.z_mm - root0.z_mm)) < 1.01e-6);
+  }
+}
+
+bool same_visit(const Visit& a, const Visit& b) {
+  return a.element == b.element && a.subroutine == b.subroutine && a.x_nm == b.x_nm && a.y_nm == b.y_nm &&
+         a.z_nm == b.z_nm;
+}
+
+TEST(LongJobs, PartsAddUpToTheWhole) {
+  const Job job = square_job(6);
+  const Machine m = machine("paper");
+  const std::vector<Visit> whole = visits_of(make_plan(job, m));
+  PlanOptions hours;
+  hours.split_hours = 0.1;
+  const Plan split = make_plan(job, m, hours);
+  EXPECT_GT(split.programs.size(), 2U);
+  for (const double seconds : split.program_times_s) EXPECT_LE(seconds, 360.0);
+  const std::vector<Visit> parts = visits_of(split);
+  ASSERT_EQ(parts.size(), whole.size());
+  EXPECT_TRUE(std::equal(parts.begin(), parts.end(), whole.begin(), same_visit));
+
+  PlanOptions rest;
+  rest.phase = "finishing-1-facet-2+";
+  rest.from_element = 7;
+  const std::vector<Visit> tail = visits_of(make_plan(job, m, rest));
+  ASSERT_LT(tail.size(), whole.size());
+  EXPECT_EQ(tail.front().element, 7);
+  EXPECT_TRUE(std::equal(tail.rbegin(), tail.rend(), whole.rbegin(), same_visit));
+
+  std::size_t visits = 0;
+  for (const std::string phase : {"roughing", "finishing"}) {
+    PlanOptions options;
+    options.phase = phase;
+    visits += visits_of(make_plan(job, m, options)).size();
+  }
+  EXPECT_EQ(visits, whole.size());
+}
+
+TEST(LongJobs, StopsComeAsAsked) {
+  PlanOptions options;
+  options.stop_every = 10;
+  const Plan plan = make_plan(square_job(5), machine("ideal"), options);
+  int visits = 0;
+  int stops = 0;
+  for (const Item& item : plan.programs.front().items) {
+    if (std::holds_alternative<Visit>(item)) ++visits;
+    if (!std::holds_alternative<OptionalStop>(item)) continue;
+    ++stops;
+    EXPECT_EQ(visits % 10, 0);
+  }
+  EXPECT_EQ(stops, 5 * 23 / 10);
+}
+
+TEST(Messages, TellProgress) {
+  const Plan plan = make_plan(square_job(5, Arrangement::checker), machine("ideal"));
+  std::vector<std::string> texts;
+  for (const Item& item : plan.programs.front().items)
+    if (const auto* message = std::get_if<Message>(&item)) texts.push_back(message->text);
+  for (const std::string percent : {"25", "50", "75", "100"})
+    EXPECT_EQ(std::count(texts.begin(), texts.end(), "Roughing " + percent + " percent"), 1) << percent;
+  for (const std::string text :
+       {"Finishing cut 1 of 2 C-axis at 0", "Finishing cut 1 of 2 C-axis at 180", "Finishing cut 2 of 2 C-axis at 270"})
+    EXPECT_EQ(std::count(texts.begin(), texts.end(), text), 1) << text;
+}
+
+std::string refusal(const Job& job, const Machine& m, const PlanOptions& options = {}) {
+  try {
+    make_plan(job, m, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(Refused, JobsBeyondTheLimitsOfAnAxis) {
+  Job job = square_job(4);
+  job.source = "j.toml";
+  Machine m = machine("ideal");
+  m.x.limits_mm.value = {-0.3, 120.0};
+  EXPECT_TRUE(refusal(job, m).starts_with("j.toml: machine: element 0: axis X of machine ideal would go to -0.67"))
+      << refusal(job, m);
+  m = machine("ideal");
+  m.c.limits_deg.value = {-90.0, 90.0};
+  EXPECT_NE(refusal(job, m).find("axis C would go to 180"), std::string::npos) << refusal(job, m);
+  m = machine("ideal");
+  m.a.limits_deg.value = {-10.0, 40.0};
+  EXPECT_NE(refusal(job, m).find("axis A would go to 45"), std::string::npos) << refusal(job, m);
+  m = machine("ideal");
+  m.z.limits_mm.value = {-120.0, 3.0};
+  EXPECT_NE(refusal(job, m).find("the safe height: axis Z"), std::string::npos) << refusal(job, m);
+  m = machine("ideal");
+  m.c.limits_deg.value = {-190.0, 190.0};
+  EXPECT_EQ(refusal(square_job(4, Arrangement::checker), m), "not refused") << "-90 instead of 270";
+}
+
+TEST(Refused, OptionsWithoutMeaning) {
+  PlanOptions options;
+  options.from_element = 23;
+  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--from-element: must be 0 to 22, got 23");
+  options = {};
+  options.phase = "finishing-3-facet-1";
+  EXPECT_TRUE(refusal(square_job(5), machine("ideal"), options).starts_with("--phase: must be all, roughing"));
+  options = {};
+  options.stop_every = 0;
+  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--stop-every: must be >= 1, got 0");
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::test
