@@ -10,3 +10,6 @@ retrace_test(fabrication_plan_test
 retrace_test(fabrication_post_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/linuxcnc_test.cpp
   LIBRARIES retrace::plan retrace::post)
+retrace_test(fabrication_read_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/nc_reader_test.cpp
+  LIBRARIES retrace::nc_read rapidcheck)

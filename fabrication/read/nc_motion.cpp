@@ -1,0 +1,147 @@
+#include "fabrication/read/nc_motion.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <vector>
+
+#include "core/error.h"
+
+namespace retrace::fabrication {
+namespace {
+
+constexpr std::size_t kLinearAxes = 3;
+
+template <class Value>
+void take_over(std::optional<Value>& setting, const Setting<Value>& given) {
+  if (given) setting = given;
+}
+
+class Runner {
+ public:
+  Runner(const NcProgram& program, NcSink& sink) : program_(program), sink_(sink) {}
+
+  NcEnd run() {
+    next_ = program_.main_first;
+    while (next_ < program_.main_last || !calls_.empty()) {
+      if (!calls_.empty() && next_ >= calls_.back().end) {
+        go_back();
+        continue;
+      }
+      const NcBlock& block = program_.blocks[next_++];
+      if (++carried_out_ > kMostNcBlocks)
+        fail(block, fmt::format("the program carries out more than {} lines", kMostNcBlocks));
+      carry_out(block);
+      if (block.call >= 0 && !call(block)) return missing_subroutine(block);
+      if (block.returns && !calls_.empty()) go_back();
+      if (block.ends) return end();
+    }
+    return {false, program_.lines, program_.truncated.value_or("the program does not end")};
+  }
+
+ private:
+  struct Call {
+    std::size_t back = 0;  ///< block to go on with
+    std::size_t end = 0;   ///< block behind the subroutine's last
+    std::int32_t line = 0;
+  };
+
+  [[noreturn]] void fail(const NcBlock& block, std::string_view text) const {
+    throw InputError({program_.file, block.line, ""}, text);
+  }
+
+  NcEnd end() const {
+    if (!program_.truncated) return {};
+    return {false, program_.lines, *program_.truncated};
+  }
+
+  NcEnd missing_subroutine(const NcBlock& block) const {
+    const std::string& name = program_.subroutines[static_cast<std::size_t>(block.call)].name;
+    return {false, block.line, fmt::format("the file does not hold the whole of subroutine {}", name)};
+  }
+
+  bool call(const NcBlock& block) {
+    const NcSubroutine& subroutine = program_.subroutines[static_cast<std::size_t>(block.call)];
+    if (!subroutine.is_whole) return false;
+    if (calls_.size() >= kDeepestNcCall)
+      fail(block, fmt::format("calls are nested more than {} deep; subroutine {} may call itself", kDeepestNcCall,
+                              subroutine.name));
+    calls_.push_back({next_, subroutine.last, block.line});
+    next_ = subroutine.first;
+    return true;
+  }
+
+  void go_back() {
+    next_ = calls_.back().back;
+    calls_.pop_back();
+  }
+
+  NcPlace place_of(const NcBlock& block) const { return {block.line, calls_.empty() ? 0 : calls_.front().line}; }
+
+  void carry_out(const NcBlock& block) {
+    take_over(settings_.absolute, block.absolute);
+    take_over(settings_.unit_mm, block.unit_mm);
+    take_over(settings_.feed_time_s, block.feed_time_s);
+    take_over(settings_.exact_stop, block.exact_stop);
+    take_over(settings_.workpiece_offset, block.workpiece_offset);
+    take_over(settings_.compensation_off, block.compensation_off);
+    take_over(settings_.spindle_on, block.spindle_on);
+    take_over(settings_.mist_on, block.mist_on);
+    if (block.move) move_ = block.move;
+    if (block.feed) feed_ = *block.feed;
+    if (block.dwell_s) sink_.dwell(*block.dwell_s, place_of(block), axes_of(position_));
+    if (block.axes != 0) move(block);
+  }
+
+  void move(const NcBlock& block) {
+    if (!move_) fail(block, "axes move before G0 or G1 says how");
+    NcMotion motion;
+    motion.move = *move_;
+    motion.place = place_of(block);
+    motion.known = known_;
+    motion.from = axes_of(position_);
+    for (std::size_t axis = 0; axis < kNcAxes; ++axis)
+      if ((block.axes >> axis & 1U) != 0) move_axis(block, axis, motion);
+    motion.to = axes_of(position_);
+    // Without a setting a feed counts mm/min, but for PMAC, which starts with mm/s.
+    const double default_time_s = program_.dialect == NcDialect::pmac ? 1.0 : 60.0;
+    const double unit_mm = settings_.unit_mm.value_or(1.0);
+    if (motion.move == NcMove::linear)
+      motion.feed_mm_per_min = feed_ * unit_mm * 60.0 / settings_.feed_time_s.value_or(default_time_s);
+    motion.is_exact_stop = settings_.exact_stop.value_or(true);
+    sink_.motion(motion, settings_);
+  }
+
+  void move_axis(const NcBlock& block, std::size_t axis, NcMotion& motion) {
+    const auto bit = static_cast<std::uint8_t>(1U << axis);
+    const bool is_absolute = settings_.absolute.value_or(true);
+    const double unit = axis < kLinearAxes ? settings_.unit_mm.value_or(1.0) : 1.0;
+    if (!is_absolute && (known_ & bit) == 0)
+      fail(block, fmt::format("{} moves by an increment before its position is known", kNcAxisLetters[axis]));
+    const double to = block.words[axis] * unit + (is_absolute ? 0.0 : position_[axis]);
+    if ((known_ & bit) == 0 || to != position_[axis]) motion.moved = static_cast<std::uint8_t>(motion.moved | bit);
+    position_[axis] = to;
+    known_ = static_cast<std::uint8_t>(known_ | bit);
+  }
+
+  static AxisPositions axes_of(const std::array<double, kNcAxes>& p) { return {p[0], p[1], p[2], p[3], p[4]}; }
+
+  const NcProgram& program_;
+  NcSink& sink_;
+  std::size_t next_ = 0;
+  std::vector<Call> calls_;
+  std::int64_t carried_out_ = 0;
+  NcSettings settings_;
+  std::optional<NcMove> move_;
+  double feed_ = 0.0;
+  std::array<double, kNcAxes> position_{};
+  std::uint8_t known_ = 0;
+};
+
+}  // namespace
+
+NcEnd run_nc(const NcProgram& program, NcSink& sink) {
+  return Runner(program, sink).run();
+}
+
+}  // namespace retrace::fabrication

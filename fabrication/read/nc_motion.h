@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "fabrication/machine/machine.h"
+#include "fabrication/read/nc_program.h"
+
+namespace retrace::fabrication {
+
+/// Where in a program something happens.
+struct NcPlace {
+  std::int32_t line = 0;       ///< of the word that does it
+  std::int32_t call_line = 0;  ///< of the call in the main program that led there; 0 in the main program itself
+};
+
+/// One straight move of the axes, or a dwell.
+struct NcMotion {
+  NcMove move = NcMove::rapid;
+  NcPlace place;
+  std::uint8_t moved = 0;  ///< bit i: axis i has another position afterwards
+  std::uint8_t known = 0;  ///< bit i: the position of axis i before the move is known; 0 is assumed where it is not
+  AxisPositions from;
+  AxisPositions to;
+  double feed_mm_per_min = 0.0;  ///< of a linear move; 0: none was given
+  bool is_exact_stop = true;     ///< the move ends in its end point
+};
+
+/// Modal settings that a program has made so far. Nothing: it has not, and relies on what the controller starts with.
+struct NcSettings {
+  std::optional<bool> absolute;
+  std::optional<double> unit_mm;
+  std::optional<double> feed_time_s;
+  std::optional<bool> exact_stop;
+  std::optional<bool> workpiece_offset;
+  std::optional<bool> compensation_off;
+  std::optional<bool> spindle_on;
+  std::optional<bool> mist_on;
+};
+
+/// What becomes of a program, in its order.
+class NcSink {
+ public:
+  virtual ~NcSink() = default;
+  virtual void motion(const NcMotion& motion, const NcSettings& settings) = 0;
+  virtual void dwell(double seconds, const NcPlace& place, const AxisPositions& position) = 0;
+};
+
+/// How a program ended.
+struct NcEnd {
+  bool is_complete = true;  ///< it reached its end, and nothing was missing
+  std::int32_t line = 0;    ///< where it stopped if not
+  std::string reason;
+};
+
+/// Most levels of calls, which is above what controllers allow, and most blocks that are carried out.
+inline constexpr std::size_t kDeepestNcCall = 16;
+inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
+
+/// Carries out a program: calls, modal settings, absolute and incremental words.
+/// \throw InputError naming file and line: axes that move before G0 or G1, an incremental word for an axis whose
+/// position nobody has set, subroutines that call each other without end
+NcEnd run_nc(const NcProgram& program, NcSink& sink);
+
+}  // namespace retrace::fabrication

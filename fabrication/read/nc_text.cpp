@@ -1,0 +1,207 @@
+#include "fabrication/read/nc_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/message_text.h"
+
+namespace retrace::fabrication {
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+char capital(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+bool is_control(char c) {
+  return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f;
+}
+
+}  // namespace
+
+NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), rest_(text) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    throw InputError({file, 0, ""}, "must be an NC program, is empty");
+  if (text.size() > kLongestNcBytes)
+    throw InputError({file, 0, ""}, fmt::format("too long, at most {} bytes are allowed", kLongestNcBytes));
+}
+
+bool NcLines::next(std::string_view& line) {
+  if (rest_.empty()) return false;
+  ++number_;
+  const std::size_t end = rest_.substr(0, kLongestNcLine + 2).find('\n');
+  if (end == std::string_view::npos && rest_.size() > kLongestNcLine)
+    fail(fmt::format("a line may have at most {} characters", kLongestNcLine));
+  ended_by_newline_ = end != std::string_view::npos;
+  line = rest_.substr(0, end);
+  rest_ = ended_by_newline_ ? rest_.substr(end + 1) : std::string_view{};
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  const auto control = std::find_if(line.begin(), line.end(), is_control);
+  if (control != line.end())
+    fail(fmt::format("must be text, got a byte {}", static_cast<unsigned>(static_cast<unsigned char>(*control))));
+  return true;
+}
+
+void NcLines::fail(std::string_view text) const {
+  throw InputError({file_, number_, ""}, text);
+}
+
+bool NcNumber::is_whole() const {
+  return value == std::floor(value) && std::abs(value) < 1e9;
+}
+
+NcNumber take_number(std::string_view& text, const NcLines& lines) {
+  std::size_t end = !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0;
+  const std::size_t first = end;
+  std::size_t digits = 0;
+  NcNumber number;
+  for (; end < text.size(); ++end) {
+    if (is_digit(text[end])) {
+      ++digits;
+    } else if (text[end] == '.' && !number.has_point) {
+      number.has_point = true;
+    } else {
+      break;
+    }
+  }
+  constexpr std::size_t most_digits = 20;
+  if (digits == 0 || digits > most_digits)
+    lines.fail(fmt::format("must have a number of at most {} digits at {}", most_digits, in_quotes(text)));
+  std::from_chars(text.data() + first, text.data() + end, number.value, std::chars_format::fixed);
+  if (text[0] == '-') number.value = -number.value;
+  text.remove_prefix(end);
+  return number;
+}
+
+NcWord take_word(std::string_view& text, const NcLines& lines) {
+  NcWord word;
+  word.letter = capital(text.front());
+  if (word.letter < 'A' || word.letter > 'Z') lines.fail("is not understood from " + in_quotes(text));
+  text.remove_prefix(1);
+  word.number = take_number(text, lines);
+  return word;
+}
+
+std::string without_blanks(std::string_view text) {
+  std::string result;
+  for (const char c : text)
+    if (c != ' ' && c != '\t') result += capital(c);
+  return result;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+bool starts_with_word(std::string_view text, std::string_view word) {
+  if (!text.starts_with(word)) return false;
+  return text.size() == word.size() || text[word.size()] == ' ' || text[word.size()] == '\t';
+}
+
+std::size_t axis_index(char letter) {
+  const std::size_t index = kNcAxisLetters.find(letter);
+  return index == std::string_view::npos ? kNcAxes : index;
+}
+
+void IsoBlock::set_g(const NcWord& word, Meaning meaning) {
+  if (meaning.group != 0) {
+    const unsigned bit = 1U << static_cast<unsigned>(meaning.group);
+    if ((groups_ & bit) != 0)
+      lines_.fail(fmt::format("has two G codes of one group, the second is G{}", word.number.value));
+    groups_ |= bit;
+  }
+  switch (meaning.code) {
+    case Code::unknown:
+      lines_.fail(fmt::format("G{} is not understood", word.number.value));
+    case Code::rapid:
+      block_.move = NcMove::rapid;
+      break;
+    case Code::linear:
+      block_.move = NcMove::linear;
+      break;
+    case Code::dwell:
+      wants_dwell_ = true;
+      break;
+    case Code::no_effect:
+      break;
+    case Code::inch:
+      block_.unit_mm = 25.4;
+      break;
+    case Code::millimetre:
+      block_.unit_mm = 1.0;
+      break;
+    case Code::compensation_off:
+      block_.compensation_off = true;
+      break;
+    case Code::workpiece_offset:
+      block_.workpiece_offset = true;
+      break;
+    case Code::exact_stop:
+      block_.exact_stop = true;
+      break;
+    case Code::blending:
+      block_.exact_stop = false;
+      break;
+    case Code::absolute:
+      block_.absolute = true;
+      break;
+    case Code::incremental:
+      block_.absolute = false;
+      break;
+    case Code::feed_per_minute:
+      block_.feed_time_s = 60.0;
+      break;
+  }
+}
+
+void IsoBlock::set_m(const NcWord& word) {
+  const double code = word.number.value;
+  if (code == 0.0 || code == 1.0) return;
+  if (code == 2.0 || code == 30.0)
+    block_.ends = true;
+  else if (code == 3.0 || code == 4.0)
+    block_.spindle_on = true;
+  else if (code == 5.0)
+    block_.spindle_on = false;
+  else if (code == 7.0 || code == 8.0)
+    block_.mist_on = true;
+  else if (code == 9.0)
+    block_.mist_on = false;
+  else
+    lines_.fail(fmt::format("M{} is not understood", code));
+}
+
+void IsoBlock::set_feed(const NcWord& word) {
+  if (block_.feed) lines_.fail("has two feeds");
+  if (word.number.value < 0.0) lines_.fail(fmt::format("F must be >= 0, got {}", word.number.value));
+  block_.feed = word.number.value;
+}
+
+void IsoBlock::set_axis(std::size_t axis, double value) {
+  const auto bit = static_cast<std::uint8_t>(1U << axis);
+  if ((block_.axes & bit) != 0) lines_.fail(fmt::format("has two words for {}", kNcAxisLetters[axis]));
+  block_.axes = static_cast<std::uint8_t>(block_.axes | bit);
+  block_.words[axis] = value;
+}
+
+void IsoBlock::set_dwell(double seconds) {
+  if (block_.dwell_s) lines_.fail("has two times of dwell");
+  if (seconds < 0.0) lines_.fail(fmt::format("a dwell must be >= 0, got {}", seconds));
+  block_.dwell_s = seconds;
+}
+
+void IsoBlock::finish() {
+  if (wants_dwell_ != block_.dwell_s.has_value())
+    lines_.fail(wants_dwell_ ? "G4 needs a time" : "has a time of dwell without G4");
+  if (wants_dwell_ && (block_.axes != 0 || block_.move)) lines_.fail("G4 must stand alone in its line");
+}
+
+}  // namespace retrace::fabrication

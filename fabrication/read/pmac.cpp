@@ -1,0 +1,182 @@
+#include <fmt/format.h>
+
+#include "core/message_text.h"
+#include "fabrication/read/dialects.h"
+#include "fabrication/read/subroutine_table.h"
+
+namespace retrace::fabrication {
+namespace {
+
+/// Takes the word (letters, digits, brackets and points of a name) off the front.
+std::string_view take_name(std::string_view& text) {
+  std::size_t end = 0;
+  while (end < text.size() && ((text[end] >= 'A' && text[end] <= 'Z') || text[end] == '_')) ++end;
+  const std::string_view name = text.substr(0, end);
+  text.remove_prefix(end);
+  return name;
+}
+
+class Reader {
+ public:
+  explicit Reader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
+    program_.file = lines_.file();
+    program_.dialect = NcDialect::pmac;
+  }
+
+  NcProgram run() {
+    std::string_view line;
+    while (lines_.next(line))
+      read_line_that_may_be_cut(lines_, program_, [&] { read(line.substr(0, line.find("//"))); });
+    program_.lines = lines_.number();
+    if (is_in_main_) end_main();
+    if ((is_in_main_ || open_ >= 0 || !has_main_) && !program_.truncated) program_.truncated = "close is missing";
+    return std::move(program_);
+  }
+
+ private:
+  void read(std::string_view line) {
+    std::string capitals;
+    for (const char c : trimmed(line)) capitals += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    std::string_view text = capitals;
+    if (text.empty()) return;
+    if (starts_with_word(text, "OPEN")) return open(trimmed(text.substr(4)));
+    if (text == "CLOSE") return close();
+    if (!is_in_main_ && open_ < 0) lines_.fail("stands outside of open ... close");
+    NcBlock block;
+    block.line = lines_.number();
+    IsoBlock iso(lines_, block);
+    while (!text.empty()) {
+      read_statement(text, iso, block);
+      text = trimmed(text);
+    }
+    if (block.dwell_s && (block.axes != 0 || block.move)) lines_.fail("dwell must stand alone in its line");
+    if (block.call >= 0 && block.axes != 0) lines_.fail("a call must not move axes");
+    program_.blocks.push_back(block);
+  }
+
+  void open(std::string_view text) {
+    if (is_in_main_ || open_ >= 0) lines_.fail("open within open");
+    const bool is_main = starts_with_word(text, "PROG");
+    if (!is_main && !starts_with_word(text, "SUBPROG")) lines_.fail("must be open prog or open subprog");
+    text = trimmed(text.substr(is_main ? 4 : 7));
+    const std::string name = whole_number(text);
+    if (!text.empty()) lines_.fail("is not understood from " + in_quotes(text));
+    if (is_main && has_main_) lines_.fail("there is a program already; one file is one program");
+    if (is_main) {
+      has_main_ = is_in_main_ = true;
+      program_.main_first = program_.blocks.size();
+      return;
+    }
+    open_ = table_.index_of(name);
+    if (table_.get(open_).is_whole) lines_.fail("there is a subprogram of that number already: " + name);
+    table_.get(open_).first = program_.blocks.size();
+  }
+
+  void close() {
+    if (!is_in_main_ && open_ < 0) lines_.fail("close without open");
+    NcBlock& block = program_.blocks.emplace_back();
+    block.line = lines_.number();
+    block.ends = is_in_main_;
+    block.returns = !is_in_main_;
+    if (is_in_main_) {
+      end_main();
+      is_in_main_ = false;
+      return;
+    }
+    table_.get(open_).last = program_.blocks.size();
+    table_.get(open_).is_whole = true;
+    open_ = -1;
+  }
+
+  void end_main() { program_.main_last = program_.blocks.size(); }
+
+  std::string whole_number(std::string_view& text) {
+    const NcNumber number = take_number(text, lines_);
+    if (!number.is_whole() || number.has_point || number.value < 0) lines_.fail("needs a whole number");
+    return fmt::format("{}", number.value);
+  }
+
+  void read_statement(std::string_view& text, IsoBlock& iso, NcBlock& block) {
+    if (text.starts_with("COORD[1].")) return read_coordinate_system(text, block);
+    const std::string_view whole = text;
+    const std::string_view name = take_name(text);
+    if (name.size() == 1) {
+      text = whole;
+      return read_word(take_word(text, lines_), iso);
+    }
+    if (name == "RAPID")
+      block.move = NcMove::rapid;
+    else if (name == "LINEAR")
+      block.move = NcMove::linear;
+    else if (name == "ABS" || name == "INC")
+      set_distance(name == "ABS", block);
+    else if (name == "DWELL")
+      iso.set_dwell(number_behind(text) / 1000.0);
+    else if (name == "CALL")
+      read_call(text, block);
+    else if (name == "FRAX")
+      read_feed_axes(text);
+    else
+      lines_.fail("is not understood from " + in_quotes(whole));
+  }
+
+  void set_distance(bool absolute, NcBlock& block) {
+    if (block.absolute) lines_.fail("says abs or inc twice");
+    block.absolute = absolute;
+  }
+
+  double number_behind(std::string_view& text) {
+    text = trimmed(text);
+    return take_number(text, lines_).value;
+  }
+
+  void read_call(std::string_view& text, NcBlock& block) {
+    text = trimmed(text);
+    if (block.call >= 0) lines_.fail("has two calls");
+    block.call = table_.index_of(whole_number(text));
+  }
+
+  /// Feeds are those of the three linear axes together.
+  void read_feed_axes(std::string_view& text) {
+    constexpr std::string_view all = "(X,Y,Z)";
+    if (!text.starts_with(all)) lines_.fail("frax must name X, Y and Z");
+    text.remove_prefix(all.size());
+  }
+
+  void read_coordinate_system(std::string_view& text, NcBlock& block) {
+    text.remove_prefix(9);
+    const std::string_view name = take_name(text);
+    if (!text.starts_with('=')) lines_.fail("needs = and a number");
+    text.remove_prefix(1);
+    const double value = take_number(text, lines_).value;
+    if (name == "NOBLEND" && (value == 0 || value == 1))
+      block.exact_stop = value == 1;
+    else if (name == "FEEDTIME" && value > 0)
+      block.feed_time_s = value / 1000.0;  // in ms
+    else
+      lines_.fail("Coord[1]." + printable(name) + " with that value is not understood");
+  }
+
+  void read_word(const NcWord& word, IsoBlock& iso) {
+    const std::size_t axis = axis_index(word.letter);
+    if (axis < kNcAxes) return iso.set_axis(axis, word.number.value);
+    if (word.letter == 'F') return iso.set_feed(word);
+    if (word.letter == 'M') return iso.set_m(word);
+    lines_.fail(fmt::format("a word {} is not understood", word.letter));
+  }
+
+  NcLines lines_;
+  NcProgram program_;
+  SubroutineTable table_;
+  std::int32_t open_ = -1;
+  bool is_in_main_ = false;
+  bool has_main_ = false;
+};
+
+}  // namespace
+
+NcProgram parse_pmac(NcLines lines) {
+  return Reader(std::move(lines)).run();
+}
+
+}  // namespace retrace::fabrication

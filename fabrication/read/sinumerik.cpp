@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <vector>
+
+#include "core/message_text.h"
+#include "fabrication/read/dialects.h"
+#include "fabrication/read/subroutine_table.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using Code = IsoBlock::Code;
+
+/// G groups of the Programming Manual Fundamentals, section Tables.
+IsoBlock::Meaning meaning_of(double g) {
+  if (g == 0) return {Code::rapid, 1};
+  if (g == 1) return {Code::linear, 1};
+  if (g == 4) return {Code::dwell, 2};
+  if (g == 17 || g == 18 || g == 19) return {Code::no_effect, 6};
+  if (g == 40) return {Code::compensation_off, 7};
+  if (g == 54) return {Code::workpiece_offset, 8};
+  if (g == 60) return {Code::exact_stop, 10};
+  if (g == 64) return {Code::blending, 10};
+  if (g == 601) return {Code::no_effect, 12};
+  if (g == 700) return {Code::inch, 13};
+  if (g == 710) return {Code::millimetre, 13};
+  if (g == 90) return {Code::absolute, 14};
+  if (g == 91) return {Code::incremental, 14};
+  if (g == 94) return {Code::feed_per_minute, 15};
+  return {};
+}
+
+/// The line without its comment, in capitals but for what stands between quotes.
+std::string_view without_comment(std::string_view line) {
+  bool in_text = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') in_text = !in_text;
+    if (line[i] == ';' && !in_text) return line.substr(0, i);
+  }
+  return line;
+}
+
+bool is_name(std::string_view text) {
+  if (text.size() < 2 || text[0] < 'A' || text[0] > 'Z') return false;
+  return text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::string_view::npos;
+}
+
+class Reader {
+ public:
+  explicit Reader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
+    program_.file = lines_.file();
+    program_.dialect = NcDialect::sinumerik;
+  }
+
+  NcProgram run() {
+    std::string_view line;
+    while (lines_.next(line))
+      read_line_that_may_be_cut(lines_, program_, [&] { read(trimmed(without_comment(line))); });
+    program_.lines = lines_.number();
+    program_.main_last = program_.blocks.size();
+    resolve_sections();
+    // Nothing marks the end of the text, so its last line has to.
+    if (lines_.is_open_end() && !program_.truncated) program_.truncated = "the last line does not end";
+    return std::move(program_);
+  }
+
+ private:
+  /// A part of the program between two labels, both included.
+  struct Section {
+    std::string first_label;
+    std::string last_label;
+  };
+
+  void read(std::string_view text) {
+    std::string capitals;
+    for (const char c : text) capitals += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    text = capitals;
+    skip_block_number(text);
+    read_label(text);
+    if (text.empty()) return;
+    if (text.front() == '/') lines_.fail("a line that a switch of the controller may leave out is not understood");
+    if (text.starts_with("MSG(")) return check_message(text);
+    if (starts_with_word(text, "CALL")) return read_call(trimmed(text.substr(4)));
+    read_words(text);
+  }
+
+  void skip_block_number(std::string_view& text) {
+    if (text.size() < 2 || text[0] != 'N' || text[1] < '0' || text[1] > '9') return;
+    text.remove_prefix(1);
+    take_number(text, lines_);
+    text = trimmed(text);
+  }
+
+  void read_label(std::string_view& text) {
+    const std::size_t colon = text.find(':');
+    if (colon == std::string_view::npos || text.find('"') < colon) return;
+    const std::string label(text.substr(0, colon));
+    if (!is_name(label)) lines_.fail("is no label: " + in_quotes(label));
+    if (!labels_.emplace(label, program_.blocks.size()).second)
+      lines_.fail("there is a label of that name already: " + label);
+    text = trimmed(text.substr(colon + 1));
+    // What follows a label belongs to its block; a label alone is an empty one, so that a section can end with it.
+    if (text.empty() || text.starts_with("MSG(")) program_.blocks.emplace_back().line = lines_.number();
+  }
+
+  void check_message(std::string_view text) const {
+    const bool is_empty = text == "MSG()";
+    const bool is_text = text.starts_with("MSG(\"") && text.ends_with("\")") && text.size() >= 7 &&
+                         text.substr(5, text.size() - 7).find('"') == std::string_view::npos;
+    if (!is_empty && !is_text) lines_.fail("MSG must have one text between quotes");
+  }
+
+  void read_call(std::string_view text) {
+    const auto refuse = [&] { lines_.fail("must be CALL BLOCK label TO label"); };
+    if (!starts_with_word(text, "BLOCK")) refuse();
+    text = trimmed(text.substr(5));
+    const std::size_t to = text.find(" TO ");
+    if (to == std::string_view::npos) refuse();
+    const std::string first(trimmed(text.substr(0, to)));
+    const std::string last(trimmed(text.substr(to + 4)));
+    if (!is_name(first) || !is_name(last)) refuse();
+    NcBlock& block = program_.blocks.emplace_back();
+    block.line = lines_.number();
+    block.call = table_.index_of(first + " TO " + last);
+    if (sections_.size() < program_.subroutines.size()) sections_.push_back({first, last});
+  }
+
+  void read_words(std::string_view text) {
+    NcBlock block;
+    block.line = lines_.number();
+    IsoBlock iso(lines_, block);
+    Setting<NcWord> feed;
+    while (!text.empty()) {
+      if (starts_with_word(text, "TRAFOOF")) {
+        block.compensation_off = true;
+        text = trimmed(text.substr(7));
+        continue;
+      }
+      const NcWord word = take_assignment(text);
+      if (word.letter == 'F') {
+        if (feed) lines_.fail("has two words F");
+        feed = word;
+      } else {
+        read_word(word, iso, block);
+      }
+    }
+    // F of a line with G4 is a time in seconds and leaves the feed as it is.
+    if (feed && iso.wants_dwell())
+      iso.set_dwell(feed->number.value);
+    else if (feed)
+      iso.set_feed(*feed);
+    iso.finish();
+    program_.blocks.push_back(block);
+  }
+
+  /// X1.5 or X=1.5
+  NcWord take_assignment(std::string_view& text) {
+    if (text.size() > 2 && text[1] == '=') {
+      const std::string joined = std::string(1, text[0]) + std::string(text.substr(2));
+      std::string_view rest = joined;
+      const NcWord word = take_word(rest, lines_);
+      text = trimmed(text.substr(text.size() - rest.size()));
+      return word;
+    }
+    const NcWord word = take_word(text, lines_);
+    text = trimmed(text);
+    return word;
+  }
+
+  void read_word(const NcWord& word, IsoBlock& iso, NcBlock& block) {
+    const std::size_t axis = axis_index(word.letter);
+    if (axis < kNcAxes) return iso.set_axis(axis, word.number.value);
+    switch (word.letter) {
+      case 'G':
+        return iso.set_g(word, meaning_of(word.number.value));
+      case 'M':
+        return iso.set_m(word);
+      case 'D':
+        if (word.number.value != 0) lines_.fail("D must be 0: offsets of the tool are not understood");
+        block.compensation_off = true;
+        return;
+      case 'S':
+        return;
+      default:
+        lines_.fail(fmt::format("a word {} is not understood", word.letter));
+    }
+  }
+
+  void resolve_sections() {
+    for (std::size_t i = 0; i < sections_.size(); ++i) {
+      const auto first = labels_.find(sections_[i].first_label);
+      const auto last = labels_.find(sections_[i].last_label);
+      if (first == labels_.end() || last == labels_.end() || last->second < first->second) continue;
+      program_.subroutines[i].first = first->second;
+      program_.subroutines[i].last = last->second + 1;
+      program_.subroutines[i].is_whole = true;
+    }
+  }
+
+  NcLines lines_;
+  NcProgram program_;
+  SubroutineTable table_;
+  std::map<std::string, std::size_t, std::less<>> labels_;
+  std::vector<Section> sections_;  ///< one a subroutine, in the same order
+};
+
+}  // namespace
+
+NcProgram parse_sinumerik(NcLines lines) {
+  return Reader(std::move(lines)).run();
+}
+
+}  // namespace retrace::fabrication

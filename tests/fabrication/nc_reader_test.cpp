@@ -1,0 +1,250 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "fabrication/read/nc_motion.h"
+#include "fabrication/read/nc_program.h"
+#include "tests/fabrication/nc_record.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using test::Record;
+using test::record_of;
+
+constexpr NcDialect kAll[] = {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac};
+
+std::string word_of(NcDialect dialect) {
+  return std::string(kNcDialectWords[static_cast<std::size_t>(dialect)]);
+}
+
+/// One and the same program in four languages, written by hand after their manuals: turn, approach, a subroutine
+/// that plunges, waits, ploughs and retracts, called at two places.
+std::string sample(NcDialect dialect) {
+  switch (dialect) {
+    case NcDialect::rs274ngc:
+      return "%\n(a sample)\no101 sub\nG91\nG1 F50. Z-0.25\nG4 P0.100\nG1 Y-0.1\nG1 F200. Z0.35\nG90\no101 endsub\n"
+             "G17 G21 G40 G49 G54 G61 G80 G90 G94\nM5\nM7\nG0 Z5.\nG0 A45. C-0.1192463\n(MSG, half way)\n"
+             "G0 X1.5 Y-2.25\nG0 Z0.2\no101 call\nN10 G0 X 1.7 Z1.0 ; remark\nG0 Y0.\ng0 z.2\nO101 CALL\nM9\nM2\n%\n";
+    case NcDialect::sinumerik:
+      return "; a sample\nG17 G40 G54 G60 G90 G94 G710\nD0\nTRAFOOF\nM5\nM7\nG0 Z5.\nG0 A45. C=-0.1192463\n"
+             "MSG(\"half way; 50 percent\")\nG0 X1.5 Y-2.25\nG0 Z0.2\nCALL BLOCK RT101 TO RE101\nN10 G0 X=1.7 Z1.0 ; "
+             "x\n"
+             "G0 Y0.\ng0 z.2\nCALL BLOCK RT101 TO RE101\nM9\nM30\n"
+             "RT101:\nG91\nG1 F50. Z-0.25\nG4 F0.100\nG1 Y-0.1\nG1 F200. Z0.35\nRE101: G90\n";
+    case NcDialect::fanuc:
+      return "%\nO0001 (a sample)\nG17 G21 G40 G49 G54 G61 G80 G90 G94\nM5\nM7\nG0 Z5.\nG0 A45. C-0.1192463\n(half "
+             "way)\n"
+             "G0 X1.5 Y-2.25\nG0 Z0.2\nM98 P0101\nN10 G0 X1.7 Z1.0\nG0 Y0.\nG0 Z.2\nM98 P0101\nM9\nM30\n"
+             "O0101\nG91\nG1 F50. Z-0.25\nG4 P100\nG1 Y-0.1\nG1 F200. Z0.35\nG90\nM99\n%\n";
+    case NcDialect::pmac:
+      return "// a sample\nopen subprog 101\ninc\nlinear F50. Z-0.25\ndwell 100\nlinear Y-0.1\nlinear F200. "
+             "Z0.35\nabs\nclose\n"
+             "open prog 1\nCoord[1].NoBlend=1\nCoord[1].FeedTime=60000\nfrax(X,Y,Z)\nabs\nM5\nM7\nrapid Z5.\n"
+             "rapid A45. C-0.1192463\n// half way\nrapid X1.5 Y-2.25\nrapid Z0.2\ncall 101\nrapid X1.7 Z1.0\nrapid "
+             "Y0.\n"
+             "rapid Z.2\ncall 101\nM9\nclose\n";
+  }
+  return {};
+}
+
+struct Expected {
+  NcMove move;
+  std::array<double, 5> to;
+  double feed;
+};
+
+TEST(NcReader, OneProgramInFourLanguages) {
+  using enum NcMove;
+  const double c = -0.1192463;
+  const std::vector<Expected> expected = {{rapid, {0, 0, 5, 0, 0}, 0},
+                                          {rapid, {0, 0, 5, 45, c}, 0},
+                                          {rapid, {1.5, -2.25, 5, 45, c}, 0},
+                                          {rapid, {1.5, -2.25, 0.2, 45, c}, 0},
+                                          {linear, {1.5, -2.25, -0.05, 45, c}, 50},
+                                          {linear, {1.5, -2.35, -0.05, 45, c}, 50},
+                                          {linear, {1.5, -2.35, 0.3, 45, c}, 200},
+                                          {rapid, {1.7, -2.35, 1, 45, c}, 0},
+                                          {rapid, {1.7, 0, 1, 45, c}, 0},
+                                          {rapid, {1.7, 0, 0.2, 45, c}, 0},
+                                          {linear, {1.7, 0, -0.05, 45, c}, 50},
+                                          {linear, {1.7, -0.1, -0.05, 45, c}, 50},
+                                          {linear, {1.7, -0.1, 0.3, 45, c}, 200}};
+  for (const NcDialect dialect : kAll) {
+    const Record record = record_of(sample(dialect), dialect);
+    EXPECT_TRUE(record.end.is_complete) << word_of(dialect) << ": " << record.end.reason;
+    ASSERT_EQ(record.motions.size(), expected.size()) << word_of(dialect);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const NcMotion& m = record.motions[i];
+      EXPECT_EQ(m.move, expected[i].move) << word_of(dialect) << " " << i;
+      EXPECT_EQ(m.feed_mm_per_min, expected[i].feed) << word_of(dialect) << " " << i;
+      const std::array<double, 5> to = {m.to.x_mm, m.to.y_mm, m.to.z_mm, m.to.a_deg, m.to.c_deg};
+      for (std::size_t axis = 0; axis < 5; ++axis)
+        EXPECT_NEAR(to[axis], expected[i].to[axis], 1e-12) << word_of(dialect) << i;
+    }
+    ASSERT_EQ(record.dwells.size(), 2U) << word_of(dialect);
+    EXPECT_DOUBLE_EQ(record.dwells[1].seconds, 0.1) << word_of(dialect);
+    EXPECT_EQ(record.settings.exact_stop, true) << word_of(dialect);
+    EXPECT_EQ(record.settings.spindle_on, false) << word_of(dialect);
+    EXPECT_EQ(record.settings.mist_on, true) << word_of(dialect);
+    EXPECT_EQ(recognise_dialect(sample(dialect), "p"), dialect);
+  }
+}
+
+TEST(NcReader, MovesKnowTheirLineAndTheCallThatLedThere) {
+  const Record record = record_of(sample(NcDialect::rs274ngc), NcDialect::rs274ngc);
+  EXPECT_EQ(record.motions[4].place.line, 5);
+  EXPECT_EQ(record.motions[4].place.call_line, 19);
+  EXPECT_EQ(record.motions[10].place.call_line, 23);
+  EXPECT_EQ(record.motions[0].place.line, 14);
+  EXPECT_EQ(record.motions[0].place.call_line, 0);
+}
+
+/// Text of a random sequence of moves, in every language.
+struct Step {
+  bool is_absolute = true;
+  NcMove move = NcMove::rapid;
+  std::size_t axis = 0;
+  long long micro = 0;  ///< in 1e-6 mm or 1e-7 degrees
+};
+
+std::string number_of(const Step& step) {
+  const int digits = step.axis < 3 ? 6 : 7;
+  const long long scale = step.axis < 3 ? 1000000 : 10000000;
+  return fmt::format("{}{}.{:0{}}", step.micro < 0 ? "-" : "", std::abs(step.micro) / scale,
+                     std::abs(step.micro) % scale, digits);
+}
+
+std::string text_of(const std::vector<Step>& steps, NcDialect dialect) {
+  const bool is_pmac = dialect == NcDialect::pmac;
+  std::string text = dialect == NcDialect::rs274ngc ? "%\n"
+                     : dialect == NcDialect::fanuc  ? "%\nO1\n"
+                     : is_pmac                      ? "open prog 1\n"
+                                                    : "";
+  text += is_pmac ? "linear F10 abs X0. Y0. Z0. A0. C0.\n" : "G1 F10 G90 X0. Y0. Z0. A0. C0.\n";
+  for (const Step& s : steps) {
+    const bool rapid = s.move == NcMove::rapid;
+    text += is_pmac ? fmt::format("{} {} ", s.is_absolute ? "abs" : "inc", rapid ? "rapid" : "linear")
+                    : fmt::format("G{} G{} ", s.is_absolute ? 90 : 91, rapid ? 0 : 1);
+    text += fmt::format("{}{}\n", kNcAxisLetters[s.axis], number_of(s));
+  }
+  if (dialect == NcDialect::rs274ngc) text += "M2\n%\n";
+  if (dialect == NcDialect::sinumerik) text += "M30\n";
+  if (dialect == NcDialect::fanuc) text += "M30\n%\n";
+  return is_pmac ? text + "close\n" : text;
+}
+
+/// Positions are those of whole nanometres, however the moves are written: to 1e-10 mm after 200 of them.
+RC_GTEST_PROP(NcReader, RandomMovesInEveryLanguage, ()) {
+  std::vector<Step> steps;
+  for (int i = 0; i < 200; ++i) {
+    Step step;
+    step.is_absolute = *rc::gen::inRange(0, 2) == 1;
+    step.move = *rc::gen::inRange(0, 2) == 1 ? NcMove::rapid : NcMove::linear;
+    step.axis = *rc::gen::inRange<std::size_t>(0, 5);
+    step.micro = *rc::gen::inRange<long long>(-100000000, 100000001);
+    steps.push_back(step);
+  }
+  for (const NcDialect dialect : kAll) {
+    const Record record = record_of(text_of(steps, dialect), dialect);
+    RC_ASSERT(record.end.is_complete);
+    RC_ASSERT(record.motions.size() == steps.size() + 1);
+    std::array<long long, 5> at{};
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      at[steps[i].axis] = steps[i].micro + (steps[i].is_absolute ? 0 : at[steps[i].axis]);
+      const AxisPositions& to = record.motions[i + 1].to;
+      const std::array<double, 5> got = {to.x_mm, to.y_mm, to.z_mm, to.a_deg, to.c_deg};
+      for (std::size_t axis = 0; axis < 5; ++axis)
+        RC_ASSERT(std::abs(got[axis] - static_cast<double>(at[axis]) * (axis < 3 ? 1e-6 : 1e-7)) < 1e-10);
+    }
+  }
+}
+
+std::string refusal(const std::string& text, NcDialect dialect) {
+  try {
+    const Record record = record_of(text, dialect);
+    return record.end.is_complete ? "accepted" : fmt::format("cut off at {}: {}", record.end.line, record.end.reason);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::runtime_error("the sample has no " + from);
+  return text.replace(at, from.size(), to);
+}
+
+TEST(NcReader, WhatIsNotUnderstoodIsAnErrorWithItsLine) {
+  const auto rs274 = [](const std::string& from, const std::string& to) {
+    return refusal(replaced(sample(NcDialect::rs274ngc), from, to), NcDialect::rs274ngc);
+  };
+  EXPECT_EQ(rs274("G0 Z5.", "G2 Z5."), "p:14: G2 is not understood");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 B5."), "p:14: a word B is not understood");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 G1 Z5."), "p:14: has two G codes of one group, the second is G1");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 Z5. Z6."), "p:14: has two words for Z");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 Z"), "p:14: must have a number of at most 20 digits at \"\"");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 Z#1"), "p:14: must have a number of at most 20 digits at \"#1\"");
+  EXPECT_EQ(rs274("G0 Z5.", "/G0 Z5."), "p:14: a line that a switch of the controller may leave out is not understood");
+  EXPECT_EQ(rs274("G0 Z5.", "G53 G0 Z5."), "p:14: G53 is not understood");
+  EXPECT_EQ(rs274("M7", "M6"), "p:13: M6 is not understood");
+  EXPECT_EQ(rs274("(a sample)", "(a sample"), "p:2: has a comment that does not end, or a nested one");
+  EXPECT_EQ(rs274("G4 P0.100", "G4"), "p:6: G4 needs a time");
+  EXPECT_EQ(rs274("o101 call", "o101 while [1]"), "p:19: o101 is followed by what is not understood, \"WHILE[1]\"");
+  EXPECT_EQ(rs274("G0 Z5.", "Z5."), "p:14: axes move before G0 or G1 says how");
+  EXPECT_EQ(rs274("G90 G94\n", "G91 G94\n"), "p:14: Z moves by an increment before its position is known");
+  EXPECT_EQ(refusal(replaced(sample(NcDialect::fanuc), "X1.5", "X1500"), NcDialect::fanuc),
+            "p:9: X needs a decimal point: without one it counts least increments");
+  EXPECT_EQ(refusal(replaced(sample(NcDialect::fanuc), "M98 P0101", "M99"), NcDialect::fanuc),
+            "p:11: M99 outside of a subprogram would run the program again without end");
+  EXPECT_EQ(refusal(replaced(sample(NcDialect::sinumerik), "TRAFOOF", "TRAORI"), NcDialect::sinumerik),
+            "p:4: must have a number of at most 20 digits at \"RAORI\"");
+  EXPECT_EQ(refusal(replaced(sample(NcDialect::sinumerik), "D0", "D1"), NcDialect::sinumerik),
+            "p:3: D must be 0: offsets of the tool are not understood");
+  EXPECT_EQ(refusal(replaced(sample(NcDialect::pmac), "frax(X,Y,Z)", "frax(X,Y)"), NcDialect::pmac),
+            "p:13: frax must name X, Y and Z");
+  EXPECT_EQ(refusal(replaced(sample(NcDialect::pmac), "rapid Z5.", "spline Z5."), NcDialect::pmac),
+            "p:17: is not understood from \"SPLINE Z5.\"");
+}
+
+TEST(NcReader, EndlessRecursionIsRefused) {
+  EXPECT_EQ(refusal("o1 sub\no2 call\no1 endsub\no2 sub\no1 call\no2 endsub\no1 call\nM2\n", NcDialect::rs274ngc),
+            "p:5: calls are nested more than 16 deep; subroutine 1 may call itself");
+  EXPECT_EQ(refusal("%\nO1\nM98 P2\nM30\nO2\nM98 P2\nM99\n%\n", NcDialect::fanuc),
+            "p:6: calls are nested more than 16 deep; subroutine 2 may call itself");
+  EXPECT_EQ(refusal("open subprog 1\ncall 1\nclose\nopen prog 1\ncall 1\nclose\n", NcDialect::pmac),
+            "p:2: calls are nested more than 16 deep; subroutine 1 may call itself");
+  EXPECT_EQ(refusal("A1:\nCALL BLOCK A1 TO E1\nE1:\nM30\n", NcDialect::sinumerik),
+            "p:2: calls are nested more than 16 deep; subroutine A1 TO E1 may call itself");
+}
+
+TEST(NcReader, TextThatIsNoProgram) {
+  EXPECT_EQ(refusal("", NcDialect::rs274ngc), "p: must be an NC program, is empty");
+  EXPECT_EQ(refusal(" \n\n", NcDialect::pmac), "p: must be an NC program, is empty");
+  EXPECT_EQ(refusal("%\nG0 \x01Z5\n", NcDialect::rs274ngc), "p:2: must be text, got a byte 1");
+  EXPECT_EQ(refusal(std::string("%\n\0\0", 4), NcDialect::fanuc), "p:2: must be text, got a byte 0");
+  EXPECT_EQ(refusal("%\n" + std::string(100000, 'G'), NcDialect::rs274ngc),
+            "p:2: a line may have at most 1024 characters");
+  EXPECT_THROW(recognise_dialect("hello world\n", "p"), InputError);
+}
+
+/// A file that stops in the middle is no error of the reader: it says where, and the verifier makes a finding of it.
+TEST(NcReader, EveryCutOffFileIsRecognised) {
+  for (const NcDialect dialect : kAll) {
+    const std::string whole = sample(dialect);
+    // Less than the last line end is nothing that a controller would miss.
+    for (std::size_t length = 1; length + 1 < whole.size(); ++length) {
+      const std::string outcome = refusal(whole.substr(0, length), dialect);
+      EXPECT_NE(outcome, "accepted") << word_of(dialect) << " cut to " << length;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace retrace::fabrication

@@ -1,0 +1,39 @@
+#pragma once
+
+// Records what a program does.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fabrication/read/nc_motion.h"
+
+namespace retrace::fabrication::test {
+
+struct Record : NcSink {
+  struct Dwell {
+    double seconds = 0.0;
+    NcPlace place;
+  };
+
+  void motion(const NcMotion& motion, const NcSettings& now) override {
+    motions.push_back(motion);
+    settings = now;
+  }
+  void dwell(double seconds, const NcPlace& place, const AxisPositions&) override {
+    dwells.push_back({seconds, place});
+  }
+
+  std::vector<NcMotion> motions;
+  std::vector<Dwell> dwells;
+  NcSettings settings;
+  NcEnd end;
+};
+
+inline Record record_of(std::string_view text, NcDialect dialect) {
+  Record record;
+  record.end = run_nc(parse_nc(text, "p", dialect), record);
+  return record;
+}
+
+}  // namespace retrace::fabrication::test

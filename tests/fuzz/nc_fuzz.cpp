@@ -1,0 +1,52 @@
+// Any bytes as an NC program of each dialect: motions or an error of one line, in bounded time.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/error.h"
+#include "fabrication/read/nc_motion.h"
+#include "fabrication/read/nc_program.h"
+
+namespace {
+
+using namespace retrace::fabrication;
+
+struct CheckingSink : NcSink {
+  void motion(const NcMotion& motion, const NcSettings&) override {
+    if (!std::isfinite(motion.to.x_mm) || motion.place.line < 1 || motion.feed_mm_per_min < 0) std::abort();
+    if (++motions > 100000) throw retrace::InputError("enough");
+  }
+  void dwell(double seconds, const NcPlace&, const AxisPositions&) override {
+    if (!(seconds >= 0)) std::abort();
+  }
+  int motions = 0;
+};
+
+void check_message(const retrace::InputError& error) {
+  const std::string_view message = error.what();
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+  if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  for (const NcDialect dialect : {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac}) {
+    try {
+      CheckingSink sink;
+      run_nc(parse_nc(text, "fuzz", dialect), sink);
+    } catch (const retrace::InputError& error) {
+      check_message(error);
+    }
+  }
+  try {
+    recognise_dialect(text, "fuzz");
+  } catch (const retrace::InputError& error) {
+    check_message(error);
+  }
+  return 0;
+}
