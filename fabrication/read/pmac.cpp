@@ -116,6 +116,8 @@ class Reader {
       read_call(text, block);
     else if (name == "FRAX")
       read_feed_axes(text);
+    else if (name == "CCMODE" && number_behind(text) == 0)
+      block.compensation_off = true;
     else
       lines_.fail("is not understood from " + in_quotes(whole));
   }
@@ -153,6 +155,8 @@ class Reader {
       block.exact_stop = value == 1;
     else if (name == "FEEDTIME" && value > 0)
       block.feed_time_s = value / 1000.0;  // in ms
+    else if (name == "SEGMOVETIME" && value == 0)
+      block.compensation_off = true;  // no kinematics of the controller's own between the ends of a move
     else
       lines_.fail("Coord[1]." + printable(name) + " with that value is not understood");
   }

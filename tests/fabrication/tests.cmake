@@ -13,3 +13,6 @@ retrace_test(fabrication_post_test
 retrace_test(fabrication_read_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/nc_reader_test.cpp
   LIBRARIES retrace::nc_read rapidcheck)
+retrace_test(fabrication_read_back_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/read_back_test.cpp
+  LIBRARIES retrace::plan retrace::post retrace::nc_read rapidcheck)
