@@ -173,13 +173,20 @@ void add_metrology(CLI::App& app, MetrologyOptions& metrology) {
   command->add_flag("--edge", metrology.edge, "rows are profiles across an edge: fit its radius and chamfer");
 }
 
+void add_study(CLI::App& app, StudyOptions& study, const char* name, const char* what) {
+  CLI::App* command = app.add_subcommand(name, what);
+  command->add_option("STUDY", study.study, "study file; - is standard input")->required()->check(not_empty());
+  auto* resume = command->add_flag("--resume", study.resume, "go on with the store that is in the output folder");
+  command->add_flag("--overwrite", study.overwrite, "replace the store that is in the output folder")->excludes(resume);
+}
+
 /// What to say if a command or what it needs is missing: a word that nobody knows explains it better.
 std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::vector<std::string> unknown = app.remaining(true);
   for (const std::string& word : unknown)
     if (word.starts_with('-')) return "unknown option " + word;
   if (!app.get_subcommands().empty()) return otherwise;
-  const std::string commands = "rre, inspect, roughness, metrology, init and list";
+  const std::string commands = "rre, inspect, roughness, metrology, sweep, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -207,6 +214,7 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
       ->check(not_empty());
   add_roughness(app, line.roughness);
   add_metrology(app, line.metrology);
+  add_study(app, line.study, "sweep", "designs and directions over ranges, as a study file says");
   app.add_subcommand("init", "a commented design file to start from")
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
       ->required();

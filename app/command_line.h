@@ -55,6 +55,13 @@ struct MetrologyOptions {
   bool edge = false;
 };
 
+/// Of commands that keep their points in a store.
+struct StudyOptions {
+  std::string study;
+  bool resume = false;
+  bool overwrite = false;
+};
+
 /// What the user typed.
 struct CommandLine {
   std::string command;
@@ -62,6 +69,7 @@ struct CommandLine {
   RreOptions rre;
   RoughnessOptions roughness;
   MetrologyOptions metrology;
+  StudyOptions study;
   std::string design;  ///< inspect
   std::string kind;    ///< init
   std::string what;    ///< list

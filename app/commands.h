@@ -11,6 +11,7 @@ ExitCode run_rre_command(const CommandLine& line);
 ExitCode run_roughness_command(const CommandLine& line);
 ExitCode run_inspect_command(const CommandLine& line);
 ExitCode run_metrology_command(const CommandLine& line);
+ExitCode run_sweep_command(const CommandLine& line);
 ExitCode run_init_command(const CommandLine& line);
 ExitCode run_list_command(const CommandLine& line);
 

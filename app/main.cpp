@@ -23,6 +23,7 @@ ExitCode run(int argc, const char* const* argv) {
   if (line->command == "roughness") return app::run_roughness_command(*line);
   if (line->command == "inspect") return app::run_inspect_command(*line);
   if (line->command == "metrology") return app::run_metrology_command(*line);
+  if (line->command == "sweep") return app::run_sweep_command(*line);
   if (line->command == "init") return app::run_init_command(*line);
   return app::run_list_command(*line);
 }

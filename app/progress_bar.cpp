@@ -23,6 +23,11 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::at(double share) {
+  at(share, "");
+}
+
+void ProgressBar::at(double share, const std::string& remark) {
+  if (first_share_ < 0.0) first_share_ = share;
   const auto now = std::chrono::steady_clock::now();
   if (!enabled_ || (drawn_ && share < 1.0 && now - last_ < kRedraw)) return;
   last_ = now;
@@ -30,7 +35,8 @@ void ProgressBar::at(double share) {
   const auto full = static_cast<int>(std::lround(share * kWidth));
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
   fmt::print(stderr, "\r\033[K{} [{:=>{}}{:>{}}] {:3.0f} %", what_, "", full, "", kWidth - full, 100.0 * share);
-  if (share > 0.0) fmt::print(stderr, "  {:.0f} s left", elapsed_s * (1.0 - share) / share);
+  if (share > first_share_) fmt::print(stderr, "  {:.0f} s left", elapsed_s * (1.0 - share) / (share - first_share_));
+  fmt::print(stderr, "{}", remark);
   std::fflush(stderr);
 }
 

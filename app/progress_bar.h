@@ -17,11 +17,14 @@ class ProgressBar : public Progress {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void at(double share) override;
+  /// The same, with a remark behind it.
+  void at(double share, const std::string& remark);
 
  private:
   std::string what_;
   bool enabled_;
   bool drawn_ = false;
+  double first_share_ = -1.0;  ///< that work began with; negative before the first call
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point last_;
 };

@@ -192,4 +192,17 @@ void check_keys(const DesignDocument& document) {
   }
 }
 
+std::string complaint_about_key(std::string_view name) {
+  std::vector<std::string> served;
+  for (const TableRule& table : kTables)
+    for (const KeyRule& rule : table.keys)
+      if (!std::holds_alternative<NotAvailable>(rule.availability))
+        served.push_back(fmt::format("{}.{}", table.name, rule.name));
+  if (std::find(served.begin(), served.end(), name) != served.end()) return {};
+  const std::vector<std::string_view> names(served.begin(), served.end());
+  const std::string_view meant = closest(name, names);
+  return fmt::format("{} is no key of a design{}", in_quotes(name),
+                     meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)));
+}
+
 }  // namespace retrace::studies

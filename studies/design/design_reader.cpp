@@ -398,17 +398,6 @@ std::string read_stream(std::istream& stream, const std::string& name) {
   return text;
 }
 
-std::string read_text(const fs::path& file) {
-  std::error_code ignored;
-  const bool is_special =
-      fs::exists(file, ignored) && !fs::is_directory(file, ignored) &&
-      (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) > DesignDocument::max_bytes);
-  if (!is_special) return read_file(file);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(InputLocation{file.string(), 0, ""}, "cannot be read");
-  return read_stream(stream, file.string());
-}
-
 }  // namespace
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
@@ -428,10 +417,21 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   return design;
 }
 
+std::string read_toml_text(const fs::path& file) {
+  if (file == "-") return read_stream(std::cin, "standard input");
+  std::error_code ignored;
+  const bool is_special =
+      fs::exists(file, ignored) && !fs::is_directory(file, ignored) &&
+      (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) > DesignDocument::max_bytes);
+  if (!is_special) return read_file(file);
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(InputLocation{file.string(), 0, ""}, "cannot be read");
+  return read_stream(stream, file.string());
+}
+
 Design read_design(const fs::path& file, std::span<const std::string> overrides) {
-  if (file != "-") return parse_design(read_text(file), file.string(), overrides);
-  const std::string name = "standard input";
-  Design design = parse_design(read_stream(std::cin, name), name, overrides);
+  if (file != "-") return parse_design(read_toml_text(file), file.string(), overrides);
+  Design design = parse_design(read_toml_text(file), "standard input", overrides);
   design.source = file.string();
   return design;
 }

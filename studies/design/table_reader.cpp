@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/number_format.h"
 #include "studies/design/message_text.h"
@@ -38,6 +39,9 @@ TableReader::TableReader(const DesignDocument& document, std::string_view name)
     : document_(document),
       name_(name),
       table_(name.empty() ? &document.root() : document.root().get_as<toml::table>(name)) {}
+
+TableReader::TableReader(const DesignDocument& document, std::string name, const toml::table& table)
+    : document_(document), name_(std::move(name)), table_(&table) {}
 
 const toml::node* TableReader::find(std::string_view key) const {
   return table_ != nullptr ? table_->get(key) : nullptr;

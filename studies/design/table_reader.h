@@ -47,6 +47,9 @@ class TableReader {
  public:
   /// The table `name`, which reads as empty if it is absent; an empty `name` is the top level.
   TableReader(const DesignDocument& document, std::string_view name);
+  /// A table that is not at the top level, such as an entry of a list of tables; `name` stands for it in messages.
+  /// \pre `table` belongs to the document
+  TableReader(const DesignDocument& document, std::string name, const toml::table& table);
 
   bool has(std::string_view key) const { return find(key) != nullptr; }
   InputLocation where(std::string_view key) const;
@@ -67,6 +70,8 @@ class TableReader {
   /// The name of a file. Relative ones are taken from the folder of the design, those of an override (and of a design
   /// on standard input) from the working directory.
   std::optional<std::filesystem::path> file(std::string_view key);
+  /// The node of a key, which counts as asked for; null if it was not given.
+  const toml::node* node(std::string_view key) { return take(key); }
   /// The value of a key that was given, as a message shows it.
   std::string shown_value(std::string_view key) const;
 

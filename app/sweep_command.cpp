@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/output.h"
+#include "app/progress_bar.h"
+#include "raytrace/threads.h"
+#include "studies/quantity/io/study_reader.h"
+#include "studies/sweep/io/sweep_files.h"
+#include "studies/sweep/io/sweep_reader.h"
+
+namespace retrace::app {
+namespace {
+
+constexpr const char* kStore = "sweep.sqlite";
+
+/// The bar with points a second and failures behind it.
+class SweepBar : public studies::SweepObserver {
+ public:
+  explicit SweepBar(bool enabled) : bar_("sweeping", enabled) {}
+
+  void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) override {
+    if (!began_) begun_with_ = done;
+    began_ = true;
+    const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double rate = elapsed_s > 0.0 ? static_cast<double>(done - begun_with_) / elapsed_s : 0.0;
+    bar_.at(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0,
+            fmt::format("  {}/{} points, {:.3g}/s, {} failed", done, total, rate, failed));
+  }
+
+ private:
+  ProgressBar bar_;
+  bool began_ = false;
+  std::uint64_t begun_with_ = 0;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void check_options(const CommandLine& line) {
+  for (const auto& [given, option] : {std::pair{line.study.resume, "--resume"}, {line.study.overwrite, "--overwrite"}})
+    if (given && line.common.out.empty()) throw InputError({"", 0, option}, "needs --out DIR, where the store is");
+}
+
+studies::IfExists if_exists(const StudyOptions& options) {
+  if (options.resume) return studies::IfExists::resume;
+  return options.overwrite ? studies::IfExists::overwrite : studies::IfExists::refuse;
+}
+
+std::vector<std::string> files_of(const studies::Study& study) {
+  std::vector<std::string> files = {study.source};
+  for (const auto& [file, text] : study.design_texts) files.push_back(file);
+  return files;
+}
+
+}  // namespace
+
+ExitCode run_sweep_command(const CommandLine& line) {
+  check_options(line);
+  const auto start = std::chrono::steady_clock::now();
+  const studies::Sweep sweep =
+      studies::read_sweep(studies::read_study(line.study.study, line.common.overrides, line.common.seed));
+  const OrderlyInterrupt interrupt;
+  prepare_outputs(line.common, {files_of(sweep.study()), "sweep.json", {"sweep.csv", kStore}});
+  const std::filesystem::path file =
+      line.common.out.empty() ? std::filesystem::path() : std::filesystem::path(line.common.out) / kStore;
+  studies::ResultStore store(file, sweep.layout(), if_exists(line.study));
+  bool complete = false;
+  {
+    SweepBar bar(!line.common.quiet);
+    raytrace::run_with_threads(line.common.threads.value_or(0),
+                               [&] { complete = studies::run_sweep(sweep, store, &bar, &interrupt.cancellation()); });
+  }
+  studies::SweepResult result = studies::collect(sweep, store, complete);
+  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::string json = studies::sweep_json(result);
+  write_outputs(line.common, json, {{"sweep.json", json}, {"sweep.csv", studies::sweep_csv(result)}},
+                studies::sweep_table(result));
+  print_warnings(line.common, result.warnings);
+  if (complete) return ExitCode::done;
+  say(fmt::format("retrace: interrupted; finished points: {} of {}", result.points.size(), sweep.size()));
+  return ExitCode::interrupted;
+}
+
+}  // namespace retrace::app

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "geometry/part.h"
+#include "studies/design/design.h"
+#include "studies/quantity/machining.h"
+#include "studies/rre/rre.h"
+
+namespace retrace::studies {
+
+/// How quantities of a study are computed where they do not say otherwise.
+struct AnalysisSettings {
+  double incidence_deg = 0.0;
+  double azimuth_deg = 0.0;
+  Engine engine = Engine::automatic;
+  double target_error = 1e-4;  ///< standard error of RRE to reach
+  std::optional<std::uint64_t> rays;
+  std::optional<double> cutoff;
+  std::uint32_t seed = 1;
+};
+
+/// A design at one point of a study, with what is to be known to judge it. For one thread at a time.
+class Candidate {
+ public:
+  Candidate(Design design, const AnalysisSettings& analysis, const MachiningProcess& machining)
+      : design_(std::move(design)), analysis_(analysis), machining_(machining) {}
+
+  const Design& design() const { return design_; }
+  const AnalysisSettings& analysis() const { return analysis_; }
+  const MachiningProcess& machining() const { return machining_; }
+  /// Built when it is first asked for. \throw InputError as geometry::build_part()
+  const geometry::Part& part() const {
+    if (!part_) part_ = geometry::build_part(design_.part);
+    return *part_;
+  }
+
+ private:
+  Design design_;
+  AnalysisSettings analysis_;
+  MachiningProcess machining_;
+  mutable std::optional<geometry::Part> part_;
+};
+
+}  // namespace retrace::studies

@@ -1,0 +1,130 @@
+#include "studies/quantity/io/quantity_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/number_format.h"
+#include "studies/design/message_text.h"
+
+namespace retrace::studies {
+namespace {
+
+enum class Kind { share, plain };
+struct KindOf {
+  Kind kind = Kind::plain;
+  PlainQuantity plain = PlainQuantity::elements_full;
+  bool far_field = false;
+  bool any_account = false;
+};
+
+constexpr KindOf plain(PlainQuantity which) {
+  return {Kind::plain, which, false, false};
+}
+
+constexpr std::array kKinds = {
+    Choice<KindOf>{"rre", {Kind::share, PlainQuantity::elements_full, false, false}},
+    Choice<KindOf>{"ledger", {Kind::share, PlainQuantity::elements_full, false, true}},
+    Choice<KindOf>{"far_field", {Kind::share, PlainQuantity::elements_full, true, false}},
+    Choice<KindOf>{"elements_full", plain(PlainQuantity::elements_full)},
+    Choice<KindOf>{"elements_partial", plain(PlainQuantity::elements_partial)},
+    Choice<KindOf>{"element_depth_mm", plain(PlainQuantity::element_depth_mm)},
+    Choice<KindOf>{"lens_thickness_mm", plain(PlainQuantity::lens_thickness_mm)},
+    Choice<KindOf>{"facet_area_mm2", plain(PlainQuantity::facet_area_mm2)},
+    Choice<KindOf>{"effective_area_mm2", plain(PlainQuantity::effective_area_mm2)},
+    Choice<KindOf>{"entrance_area_mm2", plain(PlainQuantity::entrance_area_mm2)},
+    Choice<KindOf>{"full_element_share", plain(PlainQuantity::full_element_share)},
+    Choice<KindOf>{"tir_limit_deg", plain(PlainQuantity::tir_limit_deg)},
+    Choice<KindOf>{"machining_time_h", plain(PlainQuantity::machining_time_h)},
+    Choice<KindOf>{"machining_time_per_element_s", plain(PlainQuantity::machining_time_per_element_s)},
+    Choice<KindOf>{"area_rate_mm2_per_h", plain(PlainQuantity::area_rate_mm2_per_h)}};
+constexpr std::array kReductions = {Choice<Reduction>{"mean", Reduction::mean},
+                                    Choice<Reduction>{"least", Reduction::least}};
+constexpr std::array kWeightings = {Choice<bool>{"uniform", false}, Choice<bool>{"solid_angle", true}};
+constexpr Range kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
+constexpr Range kAnyAngle{};
+constexpr Range kHalfAngle{.low = 0.0, .low_included = false, .high = 90.0};
+constexpr double kMostDirections = 10000.0;
+
+template <class Value, std::size_t size>
+std::span<const Choice<Value>> all(const std::array<Choice<Value>, size>& choices) {
+  return choices;
+}
+
+/// The middles of `count` equal parts of a range: their mean is that over the range to second order.
+std::vector<double> middles(const DesignDocument& document, const std::string& name, const toml::table& table,
+                            const Range& allowed) {
+  TableReader window(document, name, table);
+  const double from = window.required_number("from", allowed);
+  const double to = window.required_number("to", allowed);
+  if (!(to > from)) window.fail("to", fmt::format("must be > from ({}), got {}", shortest(from), shortest(to)));
+  const double count = window.required_number("count", {.low = 1.0, .high = kMostDirections});
+  if (count != std::floor(count)) window.fail("count", fmt::format("must be a whole number, got {}", shortest(count)));
+  window.finish();
+  std::vector<double> values;
+  for (double k = 0.5; k < count; ++k) values.push_back(from + (to - from) * k / count);
+  return values;
+}
+
+std::optional<std::vector<double>> read_angles(const DesignDocument& document, TableReader& quantity,
+                                               std::string_view key, const Range& allowed) {
+  const toml::node* const node = quantity.node(key);
+  if (node != nullptr && node->is_table())
+    return middles(document, fmt::format("quantity.{}", key), *node->as_table(), allowed);
+  return quantity.numbers(key, allowed);
+}
+
+std::size_t read_account(TableReader& quantity) {
+  std::array<Choice<std::size_t>, raytrace::kAccountCount> choices{};
+  for (std::size_t k = 0; k < choices.size(); ++k) choices[k] = {raytrace::kAccountNames[k], k};
+  return quantity.required_choice("account", std::span<const Choice<std::size_t>>(choices));
+}
+
+ShareSpec read_share(const DesignDocument& document, TableReader& quantity, const KindOf& kind) {
+  ShareSpec spec;
+  spec.window.incidence_deg = read_angles(document, quantity, "incidence_deg", kIncidence);
+  spec.window.azimuth_deg = read_angles(document, quantity, "azimuth_deg", kAnyAngle);
+  spec.window.by_solid_angle = quantity.choice("weighting", all(kWeightings)).value_or(false);
+  spec.reduction = quantity.choice("over_directions", all(kReductions)).value_or(Reduction::mean);
+  if (spec.window.by_solid_angle && spec.reduction == Reduction::least)
+    quantity.fail("weighting", "means nothing for the least of all directions");
+  if (kind.any_account) spec.account = read_account(quantity);
+  if (kind.far_field) {
+    spec.beyond_half_angle_deg = quantity.required_number("from_deg", kHalfAngle);
+    spec.acceptance_half_angle_deg = quantity.required_number("to_deg", kHalfAngle);
+    if (!(*spec.acceptance_half_angle_deg > *spec.beyond_half_angle_deg))
+      quantity.fail("to_deg", fmt::format("must be > from_deg ({}), got {}", shortest(*spec.beyond_half_angle_deg),
+                                          shortest(*spec.acceptance_half_angle_deg)));
+  } else {
+    spec.acceptance_half_angle_deg = quantity.number("acceptance_half_angle_deg", kHalfAngle);
+  }
+  return spec;
+}
+
+bool is_name(const std::string& text) {
+  constexpr std::size_t longest = 64;
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
+  };
+  return !text.empty() && text.size() <= longest && !(text.front() >= '0' && text.front() <= '9') &&
+         std::all_of(text.begin(), text.end(), fits);
+}
+
+}  // namespace
+
+std::shared_ptr<const Quantity> read_quantity(const DesignDocument& document, const toml::table& table) {
+  TableReader quantity(document, "quantity", table);
+  const KindOf kind = quantity.required_choice("kind", all(kKinds));
+  const std::string name = quantity.text("name").value_or(quantity.text("kind").value_or(""));
+  if (!is_name(name))
+    quantity.fail("name",
+                  fmt::format("must be of letters, digits, \"_\" and \".\", at most 64, got {}", in_quotes(name)));
+  std::shared_ptr<const Quantity> result =
+      kind.kind == Kind::share ? make_share(name, read_share(document, quantity, kind)) : make_plain(name, kind.plain);
+  quantity.finish();
+  return result;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,446 @@
+#include "studies/quantity/io/study_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "core/atomic_file.h"
+#include "core/number_format.h"
+#include "studies/design/design_keys.h"
+#include "studies/design/design_reader.h"
+#include "studies/design/message_text.h"
+#include "studies/design/table_reader.h"
+#include "studies/quantity/io/quantity_reader.h"
+
+namespace retrace::studies {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kSchema = "retrace.study/1";
+constexpr std::array<std::string_view, 11> kTopLevel = {"schema",   "title",      "design",    "parameter",
+                                                        "quantity", "analysis",   "machining", "sweep",
+                                                        "optimize", "constraint", "tolerance"};
+/// Parts of a study that decide what its points are.
+constexpr std::array<std::string_view, 7> kParts = {"parameter", "quantity",  "analysis",  "machining",
+                                                    "sweep",     "tolerance", "constraint"};
+constexpr std::array<std::string_view, 2> kSettingTables = {"analysis", "machining"};
+constexpr std::array<std::string_view, 6> kAnalysisKeys = {"incidence_deg", "azimuth_deg", "engine",
+                                                           "target_error",  "samples",     "cutoff"};
+constexpr std::array<std::string_view, 9> kMachiningKeys = {
+    "tool_width_mm",           "clearance_um",     "roughing_depth_um",        "finishing_depth_um",
+    "finishing_cuts",          "plough_length_um", "roughing_feed_mm_per_min", "finishing_feed_mm_per_min",
+    "traverse_feed_mm_per_min"};
+constexpr std::array kEngines = {Choice<Engine>{"auto", Engine::automatic}, Choice<Engine>{"exact", Engine::exact},
+                                 Choice<Engine>{"montecarlo", Engine::montecarlo}, Choice<Engine>{"cell", Engine::cell},
+                                 Choice<Engine>{"embree", Engine::embree}};
+constexpr std::array kScales = {Choice<bool>{"linear", false}, Choice<bool>{"log", true}};
+constexpr std::array kDistributions = {Choice<Distribution::Kind>{"normal", Distribution::Kind::normal},
+                                       Choice<Distribution::Kind>{"uniform", Distribution::Kind::uniform},
+                                       Choice<Distribution::Kind>{"triangular", Distribution::Kind::triangular}};
+constexpr Range kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
+constexpr Range kShare{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false};
+constexpr Range kCutoff{.low = 0.0, .high = 1.0, .high_included = false};
+constexpr Range kSane{.low = 1e-6, .high = 1e6};
+constexpr Range kSaneOrNone{.low = 0.0, .high = 1e6};
+constexpr double kMostValues = 100'000.0;
+
+template <class Value, std::size_t size>
+std::span<const Choice<Value>> all(const std::array<Choice<Value>, size>& choices) {
+  return choices;
+}
+
+double whole(TableReader& table, std::string_view key, const Range& range, double otherwise) {
+  const double value = table.number(key, range).value_or(otherwise);
+  if (value != std::floor(value)) table.fail(key, fmt::format("must be a whole number, got {}", shortest(value)));
+  return value;
+}
+
+AnalysisSettings read_analysis(const DesignDocument& document, std::uint32_t seed) {
+  TableReader table(document, "analysis");
+  AnalysisSettings analysis;
+  analysis.incidence_deg = table.number("incidence_deg", kIncidence).value_or(0.0);
+  analysis.azimuth_deg = table.number("azimuth_deg", Range{}).value_or(0.0);
+  analysis.engine = table.choice("engine", all(kEngines)).value_or(Engine::automatic);
+  analysis.target_error = table.number("target_error", kShare).value_or(analysis.target_error);
+  if (table.has("samples"))
+    analysis.rays = static_cast<std::uint64_t>(whole(table, "samples", {.low = 1.0, .high = 0x1p36}, 1.0));
+  analysis.cutoff = table.number("cutoff", kCutoff);
+  analysis.seed = seed;
+  table.finish();
+  return analysis;
+}
+
+MachiningProcess read_machining(const DesignDocument& document) {
+  TableReader table(document, "machining");
+  MachiningProcess process;
+  const auto read = [&](std::string_view key, const Range& range, double& value) {
+    value = table.number(key, range).value_or(value);
+  };
+  process.tool_width_mm = table.number("tool_width_mm", kSane);
+  read("clearance_um", kSaneOrNone, process.clearance_um);
+  read("roughing_depth_um", kSane, process.roughing_depth_um);
+  read("finishing_depth_um", kSaneOrNone, process.finishing_depth_um);
+  process.finishing_cuts = static_cast<int>(whole(table, "finishing_cuts", {.low = 0.0, .high = 1000.0}, 2.0));
+  read("plough_length_um", kSaneOrNone, process.plough_length_um);
+  read("roughing_feed_mm_per_min", kSane, process.roughing_feed_mm_per_min);
+  read("finishing_feed_mm_per_min", kSane, process.finishing_feed_mm_per_min);
+  read("traverse_feed_mm_per_min", kSane, process.traverse_feed_mm_per_min);
+  read("dwell_s", {.low = 0.0, .high = 3600.0}, process.dwell_s);
+  table.finish();
+  return process;
+}
+
+/// Whether an override or a parameter is one of how designs are analysed or made.
+bool is_setting(std::string_view key) {
+  return std::any_of(kSettingTables.begin(), kSettingTables.end(), [&](std::string_view table) {
+    return key.starts_with(table) && key.substr(table.size()).starts_with('.');
+  });
+}
+
+/// What is wrong with a key that a parameter names; empty if nothing is.
+std::string complaint_about_parameter(const std::string& key) {
+  if (key == "design" || key == "machining.dwell_s") return {};
+  if (!is_setting(key)) return complaint_about_key(key);
+  const bool analysis = key.starts_with("analysis.");
+  const std::string name = key.substr(key.find('.') + 1);
+  const std::span<const std::string_view> known =
+      analysis ? std::span<const std::string_view>(kAnalysisKeys) : std::span<const std::string_view>(kMachiningKeys);
+  if (std::find(known.begin(), known.end(), name) != known.end()) return {};
+  return fmt::format("{} is no key of [{}], which has {}", in_quotes(key), analysis ? "analysis" : "machining",
+                     fmt::join(known, ", "));
+}
+
+std::string key_of(const std::string& override_text) {
+  std::string key = override_text.substr(0, override_text.find('='));
+  std::erase_if(key, [](char c) { return c == ' ' || c == '\t'; });
+  return key;
+}
+
+/// The --set texts that concern the design, or those that concern the study.
+std::vector<std::string> overrides_for(std::span<const std::string> overrides, bool study) {
+  std::vector<std::string> chosen;
+  for (const std::string& text : overrides)
+    if (is_setting(key_of(text)) == study) chosen.push_back(text);
+  return chosen;
+}
+
+/// Tables of a list of tables, such as [[parameter]].
+std::vector<const toml::table*> tables_of(const DesignDocument& document, std::string_view name) {
+  std::vector<const toml::table*> tables;
+  const toml::node* const node = document.root().get(name);
+  if (node == nullptr) return tables;
+  const toml::array* const list = node->as_array();
+  const auto fail = [&](const toml::node& where) {
+    throw InputError(document.location(where, name),
+                     fmt::format("must be one or more tables [[{}]], got {}", name, shown(where)));
+  };
+  if (list == nullptr) fail(*node);
+  for (const toml::node& entry : *list) {
+    if (!entry.is_table()) fail(entry);
+    tables.push_back(entry.as_table());
+  }
+  return tables;
+}
+
+void check_top_level(const DesignDocument& document) {
+  const toml::node* first = nullptr;
+  std::string name;
+  for (auto&& [key, node] : document.root()) {
+    if (std::find(kTopLevel.begin(), kTopLevel.end(), key.str()) != kTopLevel.end()) continue;
+    if (first != nullptr && document.position(*first) <= document.position(node)) continue;
+    first = &node;
+    name = key.str();
+  }
+  if (first == nullptr) return;
+  const std::string_view meant = closest(name, kTopLevel);
+  throw InputError(document.location(*first, printable(name)),
+                   fmt::format("unknown key{} (allowed: {})",
+                               meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)),
+                               fmt::join(kTopLevel, ", ")));
+}
+
+ParameterValue value_of(const DesignDocument& document, const toml::node& node) {
+  const auto refuse = [&]() -> InputError {
+    return {document.location(node, "parameter.values"),
+            fmt::format("must be a list of finite numbers, strings or lists, got {} in it", shown(node))};
+  };
+  if (node.is_number()) {
+    const double number = *node.value<double>();
+    if (!std::isfinite(number)) throw refuse();
+    return Parameter::value_of(number);
+  }
+  if (!node.is_string() && !node.is_array()) throw refuse();
+  std::ostringstream text;
+  node.visit([&](const auto& value) { text << value; });
+  std::string toml = text.str();
+  std::replace(toml.begin(), toml.end(), '\n', ' ');
+  return {toml, node.is_string() ? node.as_string()->get() : toml};
+}
+
+std::vector<ParameterValue> read_values(const DesignDocument& document, TableReader& table) {
+  const toml::node* const node = table.node("values");
+  const toml::array* const list = node->as_array();
+  if (list == nullptr || list->empty())
+    table.fail("values", fmt::format("must be a list of at least one value, got {}", shown(*node)));
+  std::vector<ParameterValue> values;
+  for (const toml::node& entry : *list) values.push_back(value_of(document, entry));
+  return values;
+}
+
+/// The ends of a range, where `from` and `to` were given.
+Interval read_interval(TableReader& table) {
+  Interval interval;
+  interval.logarithmic = table.choice("scale", all(kScales)).value_or(false);
+  const Range allowed = interval.logarithmic ? kPositive : Range{};
+  interval.from = table.required_number("from", allowed);
+  interval.to = table.required_number("to", allowed);
+  if (!(interval.to > interval.from))
+    table.fail("to", fmt::format("must be > from ({}), got {}", shortest(interval.from), shortest(interval.to)));
+  return interval;
+}
+
+/// The values of a range with a step or a count: those of a LIST, or equal parts.
+std::vector<ParameterValue> range_values(TableReader& table, const Interval& interval) {
+  std::vector<ParameterValue> values;
+  if (table.has("step")) {
+    table.refuse({"count"}, "either step or count");
+    if (interval.logarithmic) table.fail("step", "a logarithmic range takes count");
+    const double step = table.required_number("step", kPositive);
+    const double steps = std::floor((interval.to - interval.from) / step + 1e-9);
+    if (!(steps < kMostValues))
+      table.fail("step", fmt::format("makes more than {} values, got {}", kMostValues, shortest(step)));
+    for (double k = 0.0; k <= steps; ++k) values.push_back(Parameter::value_of(interval.from + k * step));
+    return values;
+  }
+  const double count = whole(table, "count", {.low = 2.0, .high = kMostValues}, 2.0);
+  for (double k = 0.0; k < count; ++k) values.push_back(Parameter::value_of(interval.at(k / (count - 1.0))));
+  return values;
+}
+
+Distribution read_distribution(TableReader& table) {
+  Distribution distribution;
+  distribution.kind = *table.choice("distribution", all(kDistributions));
+  table.refuse({"values", "step", "count", "scale"}, "not allowed beside distribution");
+  const bool normal = distribution.kind == Distribution::Kind::normal;
+  if (normal) {
+    distribution.mean = table.required_number("mean", Range{});
+    distribution.sigma = table.required_number("sigma", kPositive);
+  }
+  if (!normal || table.has("from") || table.has("to")) distribution.range = read_interval(table);
+  if (distribution.kind == Distribution::Kind::triangular)
+    distribution.mean =
+        table.required_number("mode", {.low = distribution.range->from, .high = distribution.range->to});
+  // A cut that leaves nothing of the distribution would have all its values in a tail nobody meant.
+  if (normal && distribution.range &&
+      (distribution.range->from > distribution.mean || distribution.range->to < distribution.mean))
+    table.fail("mean", fmt::format("must lie between from and to, got {}", shortest(distribution.mean)));
+  return distribution;
+}
+
+std::vector<std::string> read_keys(const DesignDocument& document, TableReader& table) {
+  const toml::node* const node = table.node("key");
+  std::vector<std::string> keys;
+  if (node != nullptr && node->is_string()) keys.push_back(node->as_string()->get());
+  if (node != nullptr && node->is_array())
+    for (const toml::node& entry : *node->as_array()) keys.push_back(entry.value<std::string>().value_or(""));
+  if (keys.empty())
+    table.fail("key", fmt::format("{}, must be a key of a design such as \"element.base_mm\", or a list of keys",
+                                  node == nullptr ? "missing" : "got " + shown(*node)));
+  for (const std::string& key : keys)
+    if (const std::string text = complaint_about_parameter(key); !text.empty())
+      throw InputError(document.location(*node, "parameter.key"), text);
+  return keys;
+}
+
+/// Paths of designs are meant from the folder of the study.
+void resolve_designs(const TableReader& table, const DesignDocument& document, const toml::node& where,
+                     Parameter& parameter) {
+  for (ParameterValue& value : parameter.values) {
+    const std::string* const name = std::get_if<std::string>(&value.shown);
+    if (name == nullptr || name->empty()) table.fail("values", "must be names of design files");
+    value.toml = (document.folder(where) / *name).string();
+  }
+}
+
+Parameter read_parameter(const DesignDocument& document, const toml::table& entry) {
+  TableReader table(document, "parameter", entry);
+  Parameter parameter;
+  parameter.location = document.location(entry, "parameter");
+  parameter.keys = read_keys(document, table);
+  parameter.name = table.text("name").value_or(parameter.keys.front());
+  if (table.has("distribution")) {
+    parameter.distribution = read_distribution(table);
+  } else if (table.has("values")) {
+    table.refuse({"from", "to", "step", "count", "scale"}, "not allowed beside values");
+    parameter.values = read_values(document, table);
+  } else if (table.has("from") || table.has("to")) {
+    const Interval interval = read_interval(table);
+    if (table.has("step") || table.has("count"))
+      parameter.values = range_values(table, interval);
+    else
+      parameter.interval = interval;
+  } else {
+    table.fail("values", "missing: a parameter has values, or from and to, or a distribution");
+  }
+  const bool is_design = parameter.keys.front() == "design";
+  if (is_design && (parameter.keys.size() > 1 || parameter.values.empty()))
+    table.fail("key", "\"design\" stands alone and takes values, names of design files");
+  if (is_design) resolve_designs(table, document, entry, parameter);
+  table.finish();
+  return parameter;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+/// Columns of a table are told apart by their names, whatever their case.
+void check_columns(const DesignDocument& document, const Study& study) {
+  std::set<std::string> taken = {"point", "failed", "reason", "elapsed_s", "version", "status"};
+  const auto take = [&](const std::string& name, const InputLocation& where, std::string_view what) {
+    if (name.empty() || name.size() > 128 || printable(name, 200) != name || !taken.insert(lower(name)).second)
+      throw InputError(where, fmt::format("{} {} is taken or no name: give another name", what, in_quotes(name)));
+  };
+  for (const Parameter& parameter : study.parameters) take(parameter.name, parameter.location, "the column");
+  const std::vector<const toml::table*> tables = tables_of(document, "quantity");
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const InputLocation where = document.location(*tables[k], "quantity.name");
+    take(study.quantities[k]->name(), where, "the column");
+    take(study.quantities[k]->name() + "_std_error", where, "the column");
+  }
+}
+
+/// A key has one value at a point.
+void check_keys_once(const Study& study) {
+  std::set<std::string> taken;
+  for (const Parameter& parameter : study.parameters)
+    for (const std::string& key : parameter.keys)
+      if (!taken.insert(key).second)
+        throw InputError(parameter.location, fmt::format("{} has a parameter already", in_quotes(key)));
+  for (const std::string& text : study.overrides)
+    if (taken.contains(key_of(text)))
+      throw InputError({"--set " + printable(text), 0, ""}, "the study varies this key");
+}
+
+std::string as_json(const toml::table& table) {
+  std::ostringstream text;
+  text << toml::json_formatter{table};
+  return text.str();
+}
+
+/// FNV-1a: tells whether a file was changed, not by whom.
+std::string fingerprint(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return fmt::format("{} bytes, {:016x}", text.size(), hash);
+}
+
+/// Files that a design names, by what is in them. Designs that are none without their parameters name none.
+std::string files_of(const std::string& text, const std::string& source, std::span<const std::string> overrides) {
+  std::string parts;
+  try {
+    const Design design = parse_design(text, source, overrides);
+    for (const fs::path& file : {design.texture.height_map_file, design.spectrum ? design.spectrum->file : fs::path()})
+      if (!file.empty()) parts += file.filename().string() + ": " + fingerprint(read_file(file)) + "\n";
+  } catch (const Error&) {
+    return parts;
+  }
+  return parts;
+}
+
+std::vector<std::pair<std::string, std::string>> parts_of(const DesignDocument& document, const Study& study) {
+  std::vector<std::pair<std::string, std::string>> parts;
+  for (const std::string_view key : kParts) {
+    const toml::node* const node = document.root().get(key);
+    toml::table holder;
+    if (node != nullptr) node->visit([&](const auto& value) { holder.insert("value", value); });
+    parts.emplace_back(key, node == nullptr ? std::string() : as_json(holder));
+  }
+  const std::vector<std::string> overrides = overrides_for(study.overrides, false);
+  std::string designs;
+  std::string files;
+  for (const auto& [file, text] : study.design_texts) {
+    designs += fs::path(file).filename().string() + " " + as_json(DesignDocument(text, file, {}).root()) + "\n";
+    files += files_of(text, file, overrides);
+  }
+  parts.emplace_back("the design", designs);
+  parts.emplace_back("a file of the design", files);
+  parts.emplace_back("--set", fmt::format("{}", fmt::join(study.overrides, "\n")));
+  parts.emplace_back("--seed", fmt::format("{}", study.seed));
+  return parts;
+}
+
+void read_designs(const DesignDocument& document, Study& study) {
+  const auto varied = std::find_if(study.parameters.begin(), study.parameters.end(),
+                                   [](const Parameter& p) { return p.keys.front() == "design"; });
+  TableReader top(document, "");
+  const std::optional<fs::path> file = top.file("design");
+  if (varied != study.parameters.end()) {
+    if (file) top.fail("design", "a parameter names the designs");
+    for (const ParameterValue& value : varied->values)
+      study.design_texts.emplace(value.toml, read_toml_text(value.toml));
+    return;
+  }
+  if (!file) top.fail("design", "missing, must be the name of a design file");
+  study.design_file = file->string();
+  study.design_texts.emplace(study.design_file, read_toml_text(study.design_file));
+}
+
+}  // namespace
+
+Study parse_study(const std::string& text, const std::string& source_name, std::span<const std::string> overrides,
+                  std::uint32_t seed) {
+  const DesignDocument document(text, source_name, overrides_for(overrides, true));
+  Study study;
+  study.source = source_name;
+  study.text = text;
+  study.overrides.assign(overrides.begin(), overrides.end());
+  study.seed = seed;
+  TableReader top(document, "");
+  const std::optional<std::string> schema = top.text("schema");
+  if (schema && *schema != kSchema)
+    top.fail("schema", fmt::format("must be {}, got {}", in_quotes(kSchema), in_quotes(*schema)));
+  check_top_level(document);
+  study.title = top.text("title").value_or("");
+  for (const toml::table* table : tables_of(document, "parameter"))
+    study.parameters.push_back(read_parameter(document, *table));
+  for (const toml::table* table : tables_of(document, "quantity"))
+    study.quantities.push_back(read_quantity(document, *table));
+  if (study.parameters.empty()) top.fail("parameter", "missing, must be one or more tables [[parameter]]");
+  if (study.quantities.empty()) top.fail("quantity", "missing, must be one or more tables [[quantity]]");
+  check_columns(document, study);
+  check_keys_once(study);
+  read_analysis(document, seed);
+  read_machining(document);
+  read_designs(document, study);
+  study.parts = parts_of(document, study);
+  return study;
+}
+
+Study read_study(const fs::path& file, std::span<const std::string> overrides, std::uint32_t seed) {
+  return parse_study(read_toml_text(file), file == "-" ? "standard input" : file.string(), overrides, seed);
+}
+
+Candidate make_candidate(const Study& study, std::span<const ParameterValue> values) {
+  std::vector<std::string> for_design = overrides_for(study.overrides, false);
+  std::vector<std::string> for_study = overrides_for(study.overrides, true);
+  std::string design = study.design_file;
+  for (std::size_t k = 0; k < study.parameters.size(); ++k)
+    for (const std::string& key : study.parameters[k].keys) {
+      if (key == "design")
+        design = values[k].toml;
+      else
+        (is_setting(key) ? for_study : for_design).push_back(fmt::format("{}={}", key, values[k].toml));
+    }
+  const DesignDocument document(study.text, study.source, for_study);
+  return {parse_design(study.design_texts.at(design), design, for_design), read_analysis(document, study.seed),
+          read_machining(document)};
+}
+
+}  // namespace retrace::studies

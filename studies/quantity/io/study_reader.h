@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "studies/quantity/candidate.h"
+#include "studies/quantity/study.h"
+
+namespace retrace::studies {
+
+/// Reads and checks what every study file says; "-" is standard input.
+/// \param overrides `--set`: keys of the design, of [analysis] and of [machining]
+/// \throw InputError naming file, line, key, what was given and what is allowed, on one line
+Study read_study(const std::filesystem::path& file, std::span<const std::string> overrides = {},
+                 std::uint32_t seed = 1);
+
+/// The same for the text of a study; the designs that it names are read.
+Study parse_study(const std::string& text, const std::string& source_name, std::span<const std::string> overrides = {},
+                  std::uint32_t seed = 1);
+
+/// The design of a study at one point, with its analysis. \param values one for each parameter \throw InputError
+Candidate make_candidate(const Study& study, std::span<const ParameterValue> values);
+
+}  // namespace retrace::studies

@@ -1,0 +1,66 @@
+#include "studies/quantity/machining.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace retrace::studies {
+namespace {
+
+constexpr double kUmPerMm = 1e3;
+constexpr double kSecondsPerMinute = 60.0;
+/// A tool within a nanometre of the element's width fits it.
+constexpr double kFitMm = 1e-6;
+
+double facet_length_mm(const geometry::RtpElement& element) {
+  return element.base_mm / std::numbers::sqrt2;
+}
+
+double seconds(double path_mm, double feed_mm_per_min) {
+  return kSecondsPerMinute * path_mm / feed_mm_per_min;
+}
+
+double passes(const geometry::RtpElement& element, const MachiningProcess& process) {
+  if (!process.tool_width_mm) return 1.0;
+  return std::max(1.0, std::ceil((element.width_mm - kFitMm) / *process.tool_width_mm));
+}
+
+double allowance_mm(const MachiningProcess& process) {
+  return process.finishing_cuts * process.finishing_depth_um / kUmPerMm;
+}
+
+/// There and back of `cuts` cuts whose depths add up to `depths_mm`, each with the step to the next.
+double plunges_s(double cuts, double depths_mm, double step_mm, double feed_mm_per_min,
+                 const MachiningProcess& process) {
+  // The facet that is cut stands upright and the face of the workpiece at 45 degrees to it.
+  const double approach_mm = std::numbers::sqrt2 * process.clearance_um / kUmPerMm;
+  const double path_mm = cuts * approach_mm + depths_mm;
+  return seconds(path_mm, feed_mm_per_min) + cuts * process.dwell_s +
+         seconds(path_mm + cuts * step_mm, process.traverse_feed_mm_per_min);
+}
+
+}  // namespace
+
+double roughing_cuts(const geometry::RtpElement& element, const MachiningProcess& process) {
+  const double cuts = (facet_length_mm(element) - allowance_mm(process)) / (process.roughing_depth_um / kUmPerMm);
+  return std::max(0.0, std::ceil(cuts - 1e-9));
+}
+
+double seconds_per_element(const geometry::RtpElement& element, const MachiningProcess& process) {
+  const double depth_of_cut_mm = process.roughing_depth_um / kUmPerMm;
+  const double plough_mm = process.plough_length_um / kUmPerMm;
+  const double deepest_mm = facet_length_mm(element) - allowance_mm(process);
+  const double cuts = roughing_cuts(element, process);
+  // The last cut is the deepest; the first is what the others leave.
+  const double depths_mm = cuts * deepest_mm - 0.5 * cuts * (cuts - 1.0) * depth_of_cut_mm;
+  const double roughing_s =
+      plunges_s(cuts, depths_mm, plough_mm + depth_of_cut_mm, process.roughing_feed_mm_per_min, process) +
+      seconds(cuts * plough_mm, process.roughing_feed_mm_per_min);
+  const double finishing = 2.0 * process.finishing_cuts;
+  const double finishing_s =
+      plunges_s(finishing, finishing * facet_length_mm(element), process.finishing_depth_um / kUmPerMm,
+                process.finishing_feed_mm_per_min, process);
+  return passes(element, process) * (roughing_s + finishing_s);
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,209 @@
+#include "studies/quantity/quantity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "core/angle.h"
+#include "core/error.h"
+#include "geometry/lattice.h"
+#include "studies/design/optical_model.h"
+#include "studies/inspect/inspect.h"
+
+namespace retrace::studies {
+
+std::optional<double> Quantity::slope(const Candidate&, RreParameter, const Cancellation*) const {
+  return std::nullopt;
+}
+
+namespace {
+
+/// Directions are those of the request in its own order: azimuth by azimuth, incidence by incidence.
+RreRequest request_of(const AngleWindow& window, const AnalysisSettings& analysis) {
+  RreRequest request;
+  request.incidence_deg = window.incidence_deg.value_or(std::vector{analysis.incidence_deg});
+  request.azimuth_deg = window.azimuth_deg.value_or(std::vector{analysis.azimuth_deg});
+  request.engine = analysis.engine;
+  request.target_error = analysis.target_error;
+  request.rays = analysis.rays;
+  request.cutoff = analysis.cutoff;
+  request.seed = analysis.seed;
+  return request;
+}
+
+/// A share with its error, and that at each direction.
+struct Share {
+  double value = 0.0;
+  double std_error = 0.0;
+};
+
+/// The mean of shares by weight. Directions share their random numbers, so that their errors are taken to add up.
+Share mean_of(const std::vector<Share>& shares, const std::vector<double>& weights) {
+  Share mean;
+  double total = 0.0;
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    mean.value += weights[k] * shares[k].value;
+    mean.std_error += weights[k] * shares[k].std_error;
+    total += weights[k];
+  }
+  if (total > 0.0) return {mean.value / total, mean.std_error / total};
+  return {};
+}
+
+Share least_of(const std::vector<Share>& shares) {
+  return *std::min_element(shares.begin(), shares.end(),
+                           [](const Share& a, const Share& b) { return a.value < b.value; });
+}
+
+class ShareQuantity final : public Quantity {
+ public:
+  ShareQuantity(std::string name, const ShareSpec& spec) : Quantity(std::move(name)), spec_(spec) {}
+
+  std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const override {
+    const RreStudy study({design_of(candidate)}, request_of(spec_.window, candidate.analysis()));
+    const RreResult result = study.run(nullptr, cancel);
+    if (!result.complete) return std::nullopt;
+    const std::size_t cones = result.designs.front().acceptance_half_angle_deg.size();
+    std::vector<Share> shares;
+    std::vector<double> weights;
+    for (std::size_t k = 0; k < result.points.size(); k += cones) {
+      shares.push_back(share_at(&result.points[k], cones));
+      const double sine = std::sin(Angle::from_deg(result.points[k].incidence_deg).rad());
+      weights.push_back(spec_.window.by_solid_angle ? std::abs(sine) : 1.0);
+    }
+    const Share share = spec_.reduction == Reduction::mean ? mean_of(shares, weights) : least_of(shares);
+    return Measured{share.value, share.std_error};
+  }
+
+  std::optional<double> slope(const Candidate& candidate, RreParameter parameter,
+                              const Cancellation* cancel) const override {
+    const bool is_rre = spec_.account == static_cast<std::size_t>(raytrace::Account::retroreflected);
+    if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction != Reduction::mean) return std::nullopt;
+    RreRequest request = request_of(spec_.window, candidate.analysis());
+    if (request.engine != Engine::automatic && request.engine != Engine::exact) return std::nullopt;
+    request.engine = Engine::exact;
+    request.derivatives = true;
+    const RreResult result = RreStudy({design_of(candidate)}, request).run(nullptr, cancel);
+    if (!result.complete) return std::nullopt;
+    std::vector<Share> slopes;
+    std::vector<double> weights;
+    for (const RrePoint& point : result.points) {
+      const auto found = std::find_if(point.derivatives.begin(), point.derivatives.end(),
+                                      [&](const RreDerivative& d) { return d.parameter == parameter; });
+      if (found == point.derivatives.end() || !found->left_out.empty()) return std::nullopt;
+      slopes.push_back({found->derivative.value, 0.0});
+      const double sine = std::sin(Angle::from_deg(point.incidence_deg).rad());
+      weights.push_back(spec_.window.by_solid_angle ? std::abs(sine) : 1.0);
+    }
+    return mean_of(slopes, weights).value;
+  }
+
+ private:
+  /// The design with the acceptance cones that are needed, ascending.
+  Design design_of(const Candidate& candidate) const {
+    Design design = candidate.design();
+    std::vector<double>& cones = design.acceptance_half_angle_deg;
+    cones = {spec_.acceptance_half_angle_deg.value_or(cones.front())};
+    if (spec_.beyond_half_angle_deg) cones.insert(cones.begin(), *spec_.beyond_half_angle_deg);
+    return design;
+  }
+
+  Share share_at(const RrePoint* points, std::size_t cones) const {
+    const RrePoint& widest = points[cones - 1];
+    if (cones == 2) return {widest.rre - points[0].rre, widest.std_error + points[0].std_error};
+    return {widest.ledger.power[spec_.account], widest.std_error};
+  }
+
+  ShareSpec spec_;
+};
+
+const geometry::RtpElement& prism_of(const Candidate& candidate) {
+  const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part.element);
+  if (prism == nullptr) throw InputError("machining time is known for prisms (element.kind = \"rtp\") alone");
+  return *prism;
+}
+
+double full_element_area_mm2(const geometry::PartSpec& spec) {
+  return geometry::area(geometry::aperture_outline(spec.element));
+}
+
+/// Area of the facets of one whole element.
+double facets_of_element_mm2(const geometry::PartSpec& spec) {
+  geometry::PartSpec single = spec;
+  single.arrangement = geometry::Arrangement::single;
+  single.extent = geometry::Extent::finite;
+  single.x_gap_mm = single.y_gap_mm = single.x_offset_mm = single.y_offset_mm = 0.0;
+  single.x_length_mm = single.y_length_mm = 0.0;
+  return geometry::build_part(single).retro_facet_area_mm2;
+}
+
+std::optional<double> total_reflection_limit_deg(const Candidate& candidate) {
+  const auto library = materials::MaterialLibrary::shipped();
+  const OpticalModel model = make_model(candidate.design(), library);
+  double least = model.spectral.front().optics.index;
+  for (const SpectralOptics& light : model.spectral) least = std::min(least, light.optics.index);
+  return tir_limit_deg(candidate.design().part, least, model.optics.back_index);
+}
+
+/// The machine cuts whole elements alone.
+double machining_time_h(const Candidate& candidate) {
+  constexpr double seconds_per_hour = 3600.0;
+  return static_cast<double>(candidate.part().elements_full) *
+         seconds_per_element(prism_of(candidate), candidate.machining()) / seconds_per_hour;
+}
+
+std::optional<double> plain_value(PlainQuantity which, const Candidate& candidate) {
+  const geometry::PartSpec& spec = candidate.design().part;
+  switch (which) {
+    case PlainQuantity::elements_full:
+      return static_cast<double>(candidate.part().elements_full);
+    case PlainQuantity::elements_partial:
+      return static_cast<double>(candidate.part().elements_partial);
+    case PlainQuantity::element_depth_mm:
+      return candidate.part().element_depth_mm;
+    case PlainQuantity::lens_thickness_mm:
+      return candidate.part().element_depth_mm + candidate.part().thickness_mm;
+    case PlainQuantity::facet_area_mm2:
+      return candidate.part().retro_facet_area_mm2;
+    case PlainQuantity::effective_area_mm2:
+      return static_cast<double>(candidate.part().elements_full) * facets_of_element_mm2(spec);
+    case PlainQuantity::entrance_area_mm2:
+      return candidate.part().entrance_area_mm2;
+    case PlainQuantity::full_element_share:
+      return static_cast<double>(candidate.part().elements_full) * full_element_area_mm2(spec) /
+             candidate.part().entrance_area_mm2;
+    case PlainQuantity::tir_limit_deg:
+      return total_reflection_limit_deg(candidate);
+    case PlainQuantity::machining_time_h:
+      return machining_time_h(candidate);
+    case PlainQuantity::machining_time_per_element_s:
+      return seconds_per_element(prism_of(candidate), candidate.machining());
+    case PlainQuantity::area_rate_mm2_per_h:
+      return 3600.0 * full_element_area_mm2(spec) / seconds_per_element(prism_of(candidate), candidate.machining());
+  }
+  return std::nullopt;
+}
+
+class PlainQuantityOf final : public Quantity {
+ public:
+  PlainQuantityOf(std::string name, PlainQuantity which) : Quantity(std::move(name)), which_(which) {}
+
+  std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
+    return Measured{plain_value(which_, candidate), 0.0};
+  }
+
+ private:
+  PlainQuantity which_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Quantity> make_share(std::string name, const ShareSpec& spec) {
+  return std::make_shared<ShareQuantity>(std::move(name), spec);
+}
+
+std::shared_ptr<const Quantity> make_plain(std::string name, PlainQuantity which) {
+  return std::make_shared<PlainQuantityOf>(std::move(name), which);
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "studies/quantity/candidate.h"
+
+namespace retrace::studies {
+
+/// What a quantity of a candidate came to.
+struct Measured {
+  std::optional<double> value;  ///< none where there is none, such as a limit that does not exist
+  double std_error = 0.0;
+};
+
+/// Something that a study asks of every design: the one way in which sweeps, optimisation and tolerance studies reach
+/// the rest of retrace. Values without state, shared by threads.
+class Quantity {
+ public:
+  explicit Quantity(std::string name) : name_(std::move(name)) {}
+  virtual ~Quantity() = default;
+  Quantity(const Quantity&) = delete;
+  Quantity& operator=(const Quantity&) = delete;
+
+  /// Its column in tables; unique in a study.
+  const std::string& name() const { return name_; }
+  /// Nothing if it was cancelled. \throw Error if it cannot be computed for this candidate
+  virtual std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const = 0;
+  /// Its change with a parameter of the design, per unit of the parameter's name; none where it cannot be told
+  /// reliably, or only by differences. \throw Error as measure()
+  virtual std::optional<double> slope(const Candidate& candidate, RreParameter parameter,
+                                      const Cancellation* cancel) const;
+
+ private:
+  std::string name_;
+};
+
+using Quantities = std::vector<std::shared_ptr<const Quantity>>;
+
+/// Directions over which a quantity is taken, and how they count.
+struct AngleWindow {
+  std::optional<std::vector<double>> incidence_deg;  ///< without it, that of the analysis
+  std::optional<std::vector<double>> azimuth_deg;    ///< likewise
+  bool by_solid_angle = false;                       ///< directions count by |sin t|; else all alike
+};
+
+enum class Reduction { mean, least };
+
+/// A share of the incident light over a window: RRE, or another account of the ledger.
+struct ShareSpec {
+  AngleWindow window;
+  Reduction reduction = Reduction::mean;
+  std::size_t account = static_cast<std::size_t>(raytrace::Account::retroreflected);
+  std::optional<double> acceptance_half_angle_deg;  ///< without it, the design's narrowest
+  /// Far field: what comes back between this half-angle and the other.
+  std::optional<double> beyond_half_angle_deg;
+};
+std::shared_ptr<const Quantity> make_share(std::string name, const ShareSpec& spec);
+
+/// What needs no light; see docs/study_file.md.
+enum class PlainQuantity {
+  elements_full,
+  elements_partial,
+  element_depth_mm,
+  lens_thickness_mm,
+  facet_area_mm2,
+  effective_area_mm2,
+  entrance_area_mm2,
+  full_element_share,
+  tir_limit_deg,
+  machining_time_h,
+  machining_time_per_element_s,
+  area_rate_mm2_per_h
+};
+std::shared_ptr<const Quantity> make_plain(std::string name, PlainQuantity which);
+
+}  // namespace retrace::studies

@@ -1,0 +1,57 @@
+#include "studies/quantity/study.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
+#include "core/number_format.h"
+
+namespace retrace::studies {
+namespace {
+
+double normal_quantile(const Distribution& d, double u) {
+  const boost::math::normal_distribution<double> normal(d.mean, d.sigma);
+  double low = 0.0;
+  double high = 1.0;
+  if (d.range) {
+    low = boost::math::cdf(normal, d.range->from);
+    high = boost::math::cdf(normal, d.range->to);
+  }
+  // Shares of exactly 0 or 1 lie at infinity.
+  constexpr double least = 1e-15;
+  const double value = boost::math::quantile(normal, std::clamp(low + u * (high - low), least, 1.0 - least));
+  return d.range ? std::clamp(value, d.range->from, d.range->to) : value;
+}
+
+double triangular_quantile(double from, double mode, double to, double u) {
+  const double below = (mode - from) / (to - from);
+  if (u < below) return from + std::sqrt(u * (to - from) * (mode - from));
+  return to - std::sqrt((1.0 - u) * (to - from) * (to - mode));
+}
+
+}  // namespace
+
+double Interval::at(double share) const {
+  if (share <= 0.0) return from;
+  if (share >= 1.0) return to;
+  if (logarithmic) return from * std::pow(to / from, share);
+  return from + share * (to - from);
+}
+
+double Distribution::quantile(double u) const {
+  switch (kind) {
+    case Kind::normal:
+      return normal_quantile(*this, u);
+    case Kind::uniform:
+      return range->at(u);
+    case Kind::triangular:
+      break;
+  }
+  return triangular_quantile(range->from, mean, range->to, u);
+}
+
+ParameterValue Parameter::value_of(double number) {
+  return {shortest(number), number};
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,54 @@
+#include "studies/store/process_locks.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/error.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr std::int64_t kMostProcesses = 4096;
+
+struct flock byte_lock(std::int64_t byte) {
+  struct flock lock = {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = byte;
+  lock.l_len = 1;
+  return lock;
+}
+
+}  // namespace
+
+ProcessLocks::ProcessLocks(const std::filesystem::path& file)
+    : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  const auto fail = [&] {
+    const OutputError error(file.string() + ": cannot be locked: " + std::strerror(errno));
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw error;
+  };
+  if (descriptor_ < 0) fail();
+  for (; own_ < kMostProcesses; ++own_) {
+    struct flock lock = byte_lock(own_);
+    // Locks of the open file, not of the process: closing another descriptor of it does not end them.
+    if (::fcntl(descriptor_, F_OFD_SETLK, &lock) == 0) return;
+    if (errno != EAGAIN && errno != EACCES) fail();
+  }
+  fail();
+}
+
+ProcessLocks::~ProcessLocks() {
+  ::close(descriptor_);
+}
+
+bool ProcessLocks::is_alive(std::int64_t owner) const {
+  if (owner == own_) return true;
+  struct flock lock = byte_lock(owner);
+  return ::fcntl(descriptor_, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
+}
+
+}  // namespace retrace::studies

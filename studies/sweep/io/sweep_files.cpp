@@ -1,0 +1,131 @@
+#include "studies/sweep/io/sweep_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/json_text.h"
+#include "core/number_format.h"
+#include "core/version.h"
+#include "studies/design/message_text.h"
+
+namespace retrace::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Rows of the terminal's table; files have all.
+constexpr std::size_t kMostRows = 200;
+
+Json value_json(const StoredValue& value) {
+  return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+std::string value_text(const StoredValue& value) {
+  const double* const number = std::get_if<double>(&value);
+  return number != nullptr ? shortest(*number) : std::get<std::string>(value);
+}
+
+/// A field of CSV, in quotes where it needs them (RFC 4180).
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
+
+Json point_json(const StoredPoint& point, const StoreLayout& layout) {
+  Json json = {{"point", point.point}, {"status", point.failed ? "failed" : "done"}};
+  for (std::size_t k = 0; k < layout.inputs.size(); ++k) json[layout.inputs[k]] = value_json(point.inputs[k]);
+  if (point.failed) json["reason"] = point.reason;
+  for (std::size_t k = 0; k < point.outputs.size(); ++k) {
+    if (!point.outputs[k].value) continue;
+    json[layout.outputs[k]] = *point.outputs[k].value;
+    json[layout.outputs[k] + "_std_error"] = point.outputs[k].std_error;
+  }
+  return json;
+}
+
+std::string csv_line(const StoredPoint& point, const StoreLayout& layout) {
+  std::string line = fmt::format("{},{}", point.point, point.failed ? "failed" : "done");
+  for (const StoredValue& input : point.inputs) line += ',' + field(value_text(input));
+  for (std::size_t k = 0; k < layout.outputs.size(); ++k) {
+    const bool has_value = k < point.outputs.size() && point.outputs[k].value;
+    line += ',' + (has_value ? shortest(*point.outputs[k].value) : std::string());
+    line += ',' + (has_value ? shortest(point.outputs[k].std_error) : std::string());
+  }
+  return line + ',' + field(point.version) + ',' + field(point.reason) + '\n';
+}
+
+using Row = std::vector<std::string>;
+
+Row table_row(const StoredPoint& point) {
+  Row row;
+  for (const StoredValue& input : point.inputs) row.push_back(printable(value_text(input), 40));
+  if (point.failed) {
+    row.push_back("failed: " + printable(point.reason, 100));
+    return row;
+  }
+  for (const StoredOutput& output : point.outputs)
+    row.push_back(output.value ? fmt::format("{:.6g}", *output.value) : "-");
+  return row;
+}
+
+}  // namespace
+
+std::string sweep_json(const SweepResult& result) {
+  const StoreLayout layout = result.sweep.layout();
+  const Study& study = result.sweep.study();
+  Json json = {{"schema", "retrace.sweep/1"}, {"study", study.source}};
+  if (!study.title.empty()) json["title"] = study.title;
+  json["parameters"] = layout.inputs;
+  json["quantities"] = layout.outputs;
+  json["seed"] = study.seed;
+  json["points_in_all"] = result.sweep.size();
+  json["failed"] = std::count_if(result.points.begin(), result.points.end(), [](const auto& p) { return p.failed; });
+  json["points"] = Json::array();
+  for (const StoredPoint& point : result.points) json["points"].push_back(point_json(point, layout));
+  json["elapsed_s"] = result.elapsed_s;
+  json["version"] = kVersion;
+  json["warnings"] = result.warnings;
+  json["complete"] = result.complete;
+  return to_text(json);
+}
+
+std::string sweep_csv(const SweepResult& result) {
+  const StoreLayout layout = result.sweep.layout();
+  std::string csv = "point,status";
+  for (const std::string& name : layout.inputs) csv += ',' + field(name);
+  for (const std::string& name : layout.outputs) csv += fmt::format(",{0},{0}_std_error", name);
+  csv += ",version,reason\n";
+  for (const StoredPoint& point : result.points) csv += csv_line(point, layout);
+  return csv;
+}
+
+std::string sweep_table(const SweepResult& result) {
+  const StoreLayout layout = result.sweep.layout();
+  std::vector<Row> rows(1);
+  for (const auto* names : {&layout.inputs, &layout.outputs})
+    for (const std::string& name : *names) rows.front().push_back(printable(name, 40));
+  for (const StoredPoint& point : result.points) {
+    if (rows.size() > kMostRows) break;
+    rows.push_back(table_row(point));
+  }
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const Row& row : rows)
+    for (std::size_t k = 0; k < row.size(); ++k)
+      if (!row[k].starts_with("failed: ")) widths[k] = std::max(widths[k], row[k].size());
+  std::string table;
+  for (const Row& row : rows) {
+    std::string line;
+    for (std::size_t k = 0; k < row.size(); ++k) line += fmt::format("{}{:>{}}", k == 0 ? "" : "  ", row[k], widths[k]);
+    table += line + '\n';
+  }
+  if (result.points.size() > kMostRows)
+    table += fmt::format("... and {} more points\n", result.points.size() - kMostRows);
+  return table;
+}
+
+}  // namespace retrace::studies

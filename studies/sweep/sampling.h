@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace retrace::studies {
+
+/// Points of the unit cube, each told by its number alone, so that any process may compute any of them.
+class UnitSamples {
+ public:
+  enum class Kind {
+    sobol,           ///< Owen-scrambled by hashes (Laine and Karras 2011): best with a power of two
+    latin_hypercube  ///< one point in each of `count` equal parts of every axis (McKay et al. 1979)
+  };
+  /// \pre 1 <= dimensions <= most_dimensions, 1 <= count <= 2^31
+  UnitSamples(Kind kind, std::size_t dimensions, std::uint64_t count, std::uint32_t seed);
+
+  static constexpr std::size_t most_dimensions = 1000;
+
+  /// The coordinates of a point, each in (0, 1).
+  std::vector<double> at(std::uint64_t point) const;
+
+ private:
+  std::vector<double> sobol(std::uint64_t point) const;
+  std::vector<double> latin_hypercube(std::uint64_t point) const;
+
+  Kind kind_;
+  std::size_t dimensions_;
+  std::uint64_t count_;
+  std::uint32_t seed_;
+  std::vector<std::vector<std::uint32_t>> permutations_;  ///< by axis; Latin hypercube
+};
+
+}  // namespace retrace::studies

@@ -1,0 +1,240 @@
+#include "studies/sweep/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <new>
+#include <thread>
+#include <utility>
+
+#include "core/version.h"
+#include "raytrace/threads.h"
+#include "studies/quantity/io/study_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr std::chrono::milliseconds kWaitForOthers{50};
+
+bool is_sampled(Combine combine) {
+  return combine == Combine::sobol || combine == Combine::latin_hypercube;
+}
+
+std::uint64_t grid_size(const Study& study) {
+  std::uint64_t size = 1;
+  for (const Parameter& parameter : study.parameters) {
+    size *= parameter.values.size();
+    if (size > Sweep::most_points)
+      throw InputError(parameter.location,
+                       fmt::format("the grid has more than {} points with this parameter", Sweep::most_points));
+  }
+  return size;
+}
+
+std::uint64_t zipped_size(const Study& study) {
+  const std::size_t size = study.parameters.front().values.size();
+  for (const Parameter& parameter : study.parameters)
+    if (parameter.values.size() != size)
+      throw InputError(parameter.location,
+                       fmt::format("zipped parameters must have as many values as the first, {}, got {}", size,
+                                   parameter.values.size()));
+  return size;
+}
+
+}  // namespace
+
+Sweep::Sweep(Study study, Combine combine, std::uint64_t samples) : study_(std::move(study)), combine_(combine) {
+  if (is_sampled(combine)) {
+    size_ = samples;
+    const auto kind = combine == Combine::sobol ? UnitSamples::Kind::sobol : UnitSamples::Kind::latin_hypercube;
+    samples_.emplace(kind, study_.parameters.size(), size_, study_.seed);
+    return;
+  }
+  for (const Parameter& parameter : study_.parameters)
+    if (parameter.values.empty())
+      throw InputError(parameter.location,
+                       "a grid needs values, or a range with step or count; an interval or a distribution is for "
+                       "sweep.combine = \"sobol\" and \"latin_hypercube\"");
+  size_ = combine == Combine::grid ? grid_size(study_) : zipped_size(study_);
+}
+
+PointValues Sweep::values(std::uint64_t point) const {
+  if (samples_) return sampled(point);
+  PointValues values(study_.parameters.size());
+  for (std::size_t k = values.size(); k-- > 0;) {
+    const std::vector<ParameterValue>& choices = study_.parameters[k].values;
+    values[k] = choices[combine_ == Combine::zipped ? point : point % choices.size()];
+    point = combine_ == Combine::zipped ? point : point / choices.size();
+  }
+  return values;
+}
+
+PointValues Sweep::sampled(std::uint64_t point) const {
+  const std::vector<double> share = samples_->at(point);
+  PointValues values;
+  for (std::size_t k = 0; k < share.size(); ++k) {
+    const Parameter& parameter = study_.parameters[k];
+    if (parameter.distribution) {
+      values.push_back(Parameter::value_of(parameter.distribution->quantile(share[k])));
+    } else if (parameter.interval) {
+      values.push_back(Parameter::value_of(parameter.interval->at(share[k])));
+    } else {
+      const double count = static_cast<double>(parameter.values.size());
+      values.push_back(parameter.values[static_cast<std::size_t>(share[k] * count)]);
+    }
+  }
+  return values;
+}
+
+StoreLayout Sweep::layout() const {
+  StoreLayout layout{"retrace.sweep/1", study_.source, study_.parts, {}, {}};
+  for (const Parameter& parameter : study_.parameters) layout.inputs.push_back(parameter.name);
+  for (const auto& quantity : study_.quantities) layout.outputs.push_back(quantity->name());
+  return layout;
+}
+
+namespace {
+
+/// Nothing if it was cancelled.
+std::optional<std::vector<StoredOutput>> measure_all(const Study& study, const PointValues& values,
+                                                     const Cancellation* cancel) {
+  const Candidate candidate = make_candidate(study, values);
+  std::vector<StoredOutput> outputs;
+  for (const auto& quantity : study.quantities) {
+    const std::optional<Measured> measured = quantity->measure(candidate, cancel);
+    if (!measured) return std::nullopt;
+    // What is no number is no value either.
+    const bool has_value = measured->value && std::isfinite(*measured->value);
+    outputs.push_back({has_value ? measured->value : std::nullopt, measured->std_error});
+  }
+  return outputs;
+}
+
+}  // namespace
+
+std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
+                                         const Cancellation* cancel) {
+  const auto start = std::chrono::steady_clock::now();
+  StoredPoint point;
+  point.point = number;
+  point.version = kVersion;
+  for (const ParameterValue& value : values) point.inputs.push_back(value.shown);
+  try {
+    const auto outputs = measure_all(study, values, cancel);
+    if (!outputs) return std::nullopt;
+    point.outputs = *outputs;
+  } catch (const Error& error) {
+    point.failed = true;
+    point.reason = error.what();
+  } catch (const std::bad_alloc&) {
+    point.failed = true;
+    point.reason = "out of memory";
+  }
+  point.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return point;
+}
+
+struct SweepCount::State {
+  SweepObserver* observer = nullptr;
+  std::uint64_t done = 0;
+  std::uint64_t failed = 0;
+  std::uint64_t total = 0;
+  std::mutex mutex;
+
+  void tell() const {
+    if (observer != nullptr) observer->at(done, total, failed);
+  }
+};
+
+SweepCount::SweepCount(const Sweep& sweep, const ResultStore& store, SweepObserver* observer)
+    : state_(std::make_unique<State>()) {
+  state_->observer = observer;
+  state_->done = store.finished().size();
+  state_->total = sweep.size();
+  state_->tell();
+}
+
+SweepCount::~SweepCount() = default;
+
+void SweepCount::finished(bool failed) {
+  const std::lock_guard lock(state_->mutex);
+  ++state_->done;
+  state_->failed += failed ? 1 : 0;
+  state_->tell();
+}
+
+std::vector<std::uint64_t> unfinished(const Sweep& sweep, const ResultStore& store) {
+  const std::vector<std::uint64_t> finished = store.finished();
+  std::vector<std::uint64_t> open;
+  auto next = finished.begin();
+  for (std::uint64_t point = 0; point < sweep.size(); ++point) {
+    if (next != finished.end() && *next == point)
+      ++next;
+    else
+      open.push_back(point);
+  }
+  return open;
+}
+
+namespace {
+
+bool is_cancelled(const Cancellation* cancel) {
+  return cancel != nullptr && cancel->requested();
+}
+
+/// Computes those of the points that nobody else has. \return how many
+std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& points, ResultStore& store,
+                     SweepCount& count, const Cancellation* cancel) {
+  std::atomic<std::size_t> next{0};
+  std::atomic<std::size_t> computed{0};
+  raytrace::for_each_in_parallel(points.size(), [&](std::size_t) {
+    // In the order of their numbers, whatever pieces the threads were given.
+    const std::uint64_t number = points[next.fetch_add(1)];
+    if (is_cancelled(cancel) || !store.claim(number)) return;
+    const std::optional<StoredPoint> point = compute_point(sweep.study(), number, sweep.values(number), cancel);
+    if (!point) {
+      store.give_up(number);
+      return;
+    }
+    store.record(*point);
+    count.finished(point->failed);
+    ++computed;
+  });
+  return computed;
+}
+
+}  // namespace
+
+bool run_sweep(const Sweep& sweep, ResultStore& store, SweepObserver* observer, const Cancellation* cancel) {
+  SweepCount count(sweep, store, observer);
+  for (;;) {
+    const std::vector<std::uint64_t> open = unfinished(sweep, store);
+    if (open.empty()) return true;
+    const std::size_t computed = work_off(sweep, open, store, count, cancel);
+    if (is_cancelled(cancel)) return unfinished(sweep, store).empty();
+    if (computed == 0 && store.claimed_by_others() > 0) std::this_thread::sleep_for(kWaitForOthers);
+  }
+}
+
+SweepResult collect(const Sweep& sweep, const ResultStore& store, bool complete) {
+  SweepResult result{sweep, store.points(), 0.0, complete, {}};
+  const auto failed = [](const StoredPoint& point) { return point.failed; };
+  const auto first = std::find_if(result.points.begin(), result.points.end(), failed);
+  if (first != result.points.end())
+    result.warnings.push_back(fmt::format("{} of {} points failed, the first of them point {}: {}",
+                                          std::count_if(result.points.begin(), result.points.end(), failed),
+                                          result.points.size(), first->point, first->reason));
+  for (const StoredPoint& point : result.points)
+    if (point.version != kVersion) {
+      result.warnings.push_back(
+          fmt::format("points were computed by version {} and this is {}", point.version, kVersion));
+      break;
+    }
+  return result;
+}
+
+}  // namespace retrace::studies
