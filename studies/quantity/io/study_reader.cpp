@@ -30,10 +30,16 @@ constexpr std::array<std::string_view, 7> kParts = {"parameter", "quantity",  "a
 constexpr std::array<std::string_view, 2> kSettingTables = {"analysis", "machining"};
 constexpr std::array<std::string_view, 6> kAnalysisKeys = {"incidence_deg", "azimuth_deg", "engine",
                                                            "target_error",  "samples",     "cutoff"};
-constexpr std::array<std::string_view, 9> kMachiningKeys = {
-    "tool_width_mm",           "clearance_um",     "roughing_depth_um",        "finishing_depth_um",
-    "finishing_cuts",          "plough_length_um", "roughing_feed_mm_per_min", "finishing_feed_mm_per_min",
-    "traverse_feed_mm_per_min"};
+constexpr std::array<std::string_view, 10> kMachiningKeys = {"tool_width_mm",
+                                                             "clearance_um",
+                                                             "roughing_depth_um",
+                                                             "finishing_depth_um",
+                                                             "finishing_cuts",
+                                                             "plough_length_um",
+                                                             "roughing_feed_mm_per_min",
+                                                             "finishing_feed_mm_per_min",
+                                                             "traverse_feed_mm_per_min",
+                                                             "dwell_s"};
 constexpr std::array kEngines = {Choice<Engine>{"auto", Engine::automatic}, Choice<Engine>{"exact", Engine::exact},
                                  Choice<Engine>{"montecarlo", Engine::montecarlo}, Choice<Engine>{"cell", Engine::cell},
                                  Choice<Engine>{"embree", Engine::embree}};
@@ -103,7 +109,7 @@ bool is_setting(std::string_view key) {
 
 /// What is wrong with a key that a parameter names; empty if nothing is.
 std::string complaint_about_parameter(const std::string& key) {
-  if (key == "design" || key == "machining.dwell_s") return {};
+  if (key == "design") return {};
   if (!is_setting(key)) return complaint_about_key(key);
   const bool analysis = key.starts_with("analysis.");
   const std::string name = key.substr(key.find('.') + 1);

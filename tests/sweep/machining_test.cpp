@@ -1,0 +1,68 @@
+#include "studies/quantity/machining.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+namespace retrace::studies {
+namespace {
+
+/// A value of the table of measured machining times.
+double measured(const std::string& quantity) {
+  std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/tests/data/machining_time.csv");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(quantity + ",")) return std::stod(line.substr(quantity.size() + 1));
+  throw std::runtime_error("no " + quantity);
+}
+
+constexpr geometry::RtpElement kMeasured{0.451, 0.451, 90.0};
+
+TEST(Machining, CutsOfAFacetAsPublished) {
+  MachiningProcess process;
+  EXPECT_EQ(roughing_cuts(kMeasured, process), 21.0);  // 2 x 5 um left for finishing
+  process.finishing_cuts = 0;
+  EXPECT_EQ(roughing_cuts(kMeasured, process), 22.0);
+  process.roughing_depth_um = 10.0;
+  EXPECT_EQ(roughing_cuts({1.0, 1.0, 90.0}, process), 71.0);
+  process.roughing_depth_um = 5.0;
+  EXPECT_EQ(roughing_cuts({1.0, 1.0, 90.0}, process), 142.0);
+}
+
+TEST(Machining, TimeOfAnElementIsThatOfItsPath) {
+  // Summed cut by cut, with the approach of 283 um along Z: 27.7 s.
+  EXPECT_NEAR(seconds_per_element(kMeasured, {}), 27.7, 0.15);
+  // The clock saw 29.16 s: accelerations and turns of the table are no part of the path.
+  EXPECT_NEAR(seconds_per_element(kMeasured, {}), 3600.0 * measured("time_per_structure"), 0.06 * 29.16);
+  EXPECT_NEAR(0.451 * 0.451 / measured("time_per_structure"), measured("removal_area_rate"), 0.05);
+}
+
+TEST(Machining, SumOfCutsOneByOne) {
+  const geometry::RtpElement element{0.3, 0.3, 90.0};
+  const MachiningProcess process;
+  const double facet_mm = 0.3 * std::sqrt(0.5);
+  const double approach_mm = 0.2 * std::sqrt(2.0);
+  double minutes = 0.0;
+  int cuts = 0;
+  for (double depth_mm = facet_mm - 0.010; depth_mm > 1e-9; depth_mm -= 0.015, ++cuts)
+    minutes += (approach_mm + depth_mm + 0.1) / 50.0 + (approach_mm + depth_mm + 0.115) / 200.0 + 0.1 / 60.0;
+  for (int cut = 0; cut < 4; ++cut)
+    minutes += (approach_mm + facet_mm) / 20.0 + (approach_mm + facet_mm + 0.005) / 200.0 + 0.1 / 60.0;
+  EXPECT_EQ(roughing_cuts(element, process), cuts);
+  EXPECT_NEAR(seconds_per_element(element, process), 60.0 * minutes, 1e-9);
+}
+
+TEST(Machining, AWiderToolSavesPassesAndWidthAloneCostsNothing) {
+  MachiningProcess process;
+  const double one_pass_s = seconds_per_element({0.451, 0.451, 90.0}, process);
+  EXPECT_EQ(seconds_per_element({0.451, 0.902, 90.0}, process), one_pass_s);  // a tool that fits
+  process.tool_width_mm = 0.451;
+  EXPECT_EQ(seconds_per_element({0.451, 0.902, 90.0}, process), 2.0 * one_pass_s);
+  process.tool_width_mm = 0.9019995;  // within a nanometre
+  EXPECT_EQ(seconds_per_element({0.451, 0.902, 90.0}, process), one_pass_s);
+}
+
+}  // namespace
+}  // namespace retrace::studies

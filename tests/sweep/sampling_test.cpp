@@ -1,0 +1,94 @@
+#include "studies/sweep/sampling.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "studies/quantity/study.h"
+
+namespace retrace::studies {
+namespace {
+
+using Kind = UnitSamples::Kind;
+
+/// Whether the points fill `bins` equal parts of an axis evenly.
+void expect_even(const UnitSamples& samples, std::uint64_t count, std::size_t axis, std::uint64_t bins) {
+  std::vector<std::uint64_t> hits(bins, 0);
+  for (std::uint64_t k = 0; k < count; ++k) {
+    const double u = samples.at(k)[axis];
+    ASSERT_GT(u, 0.0);
+    ASSERT_LT(u, 1.0);
+    ++hits[static_cast<std::size_t>(u * static_cast<double>(bins))];
+  }
+  for (const std::uint64_t hit : hits) EXPECT_EQ(hit, count / bins) << "axis " << axis;
+}
+
+TEST(Sampling, EveryAxisIsFilledEvenly) {
+  constexpr std::uint64_t count = 256;
+  for (const Kind kind : {Kind::sobol, Kind::latin_hypercube}) {
+    const UnitSamples samples(kind, 7, count, 1);
+    for (std::size_t axis = 0; axis < 7; ++axis) expect_even(samples, count, axis, count);
+  }
+}
+
+TEST(Sampling, SobolFillsThePlaneEvenlyWhateverTheSeed) {
+  for (const std::uint32_t seed : {1U, 2U, 77U}) {
+    const UnitSamples samples(Kind::sobol, 2, 256, seed);
+    std::set<std::pair<int, int>> cells;
+    for (std::uint64_t k = 0; k < 256; ++k) {
+      const auto u = samples.at(k);
+      cells.emplace(static_cast<int>(16 * u[0]), static_cast<int>(16 * u[1]));
+    }
+    EXPECT_EQ(cells.size(), 256U);  // a (0, 8, 2)-net
+  }
+}
+
+TEST(Sampling, PointsAreToldByTheirNumberAndSeed) {
+  for (const Kind kind : {Kind::sobol, Kind::latin_hypercube}) {
+    const UnitSamples samples(kind, 3, 64, 5);
+    const auto late = samples.at(40);
+    samples.at(3);
+    EXPECT_EQ(samples.at(40), late);
+    EXPECT_EQ(UnitSamples(kind, 3, 64, 5).at(40), late);
+    EXPECT_NE(UnitSamples(kind, 3, 64, 6).at(40), late);
+    EXPECT_NE(late[0], late[1]);
+  }
+}
+
+TEST(Sampling, SobolIntegratesASmoothFunctionFarBetterThanChance) {
+  constexpr std::uint64_t count = 4096;
+  const UnitSamples samples(Kind::sobol, 4, count, 3);
+  double sum = 0.0;
+  for (std::uint64_t k = 0; k < count; ++k) {
+    double product = 1.0;
+    for (const double u : samples.at(k)) product *= 1.5 * std::sqrt(u);
+    sum += product;
+  }
+  // The product has mean 1 and variance (9/8)^4 - 1: chance would miss by 0.012.
+  EXPECT_NEAR(sum / count, 1.0, 1e-3);
+}
+
+TEST(Distribution, QuantilesOfKnownDistributions) {
+  Distribution normal{Distribution::Kind::normal, 10.0, 2.0, {}};
+  EXPECT_NEAR(normal.quantile(0.5), 10.0, 1e-12);
+  EXPECT_NEAR(normal.quantile(0.975), 10.0 + 2.0 * 1.959963984540054, 1e-9);
+  normal.range = Interval{9.0, 11.0, false};
+  EXPECT_NEAR(normal.quantile(0.5), 10.0, 1e-12);
+  EXPECT_NEAR(normal.quantile(1e-12), 9.0, 1e-6);
+  const Distribution uniform{Distribution::Kind::uniform, 0.0, 0.0, Interval{-1.0, 3.0, false}};
+  EXPECT_DOUBLE_EQ(uniform.quantile(0.25), 0.0);
+  const Distribution triangular{Distribution::Kind::triangular, 1.0, 0.0, Interval{0.0, 4.0, false}};
+  EXPECT_DOUBLE_EQ(triangular.quantile(0.25), 1.0);
+  EXPECT_NEAR(triangular.quantile(0.5), 4.0 - std::sqrt(0.5 * 4.0 * 3.0), 1e-12);
+}
+
+TEST(Interval, LogarithmicStepsAreEqualRatios) {
+  const Interval interval{0.1, 10.0, true};
+  EXPECT_NEAR(interval.at(0.5), 1.0, 1e-12);
+  EXPECT_EQ(interval.at(0.0), 0.1);
+  EXPECT_EQ(interval.at(1.0), 10.0);
+}
+
+}  // namespace
+}  // namespace retrace::studies

@@ -1,0 +1,191 @@
+#include "studies/store/store.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "core/error.h"
+
+namespace retrace::studies {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Store : public testing::Test {
+ protected:
+  Store() {
+    std::string name = (fs::temp_directory_path() / "retrace_store_XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~Store() override { fs::remove_all(folder_); }
+
+  fs::path file() const { return folder_ / "s.sqlite"; }
+  static StoreLayout layout() {
+    return {"retrace.sweep/1", "study.toml", {{"parameter", "a"}}, {"x", "word"}, {"rre"}};
+  }
+  static StoredPoint point(std::uint64_t number) {
+    StoredPoint p;
+    p.point = number;
+    p.inputs = {0.1 * static_cast<double>(number), "it's, \"odd\""};
+    p.outputs = {{1.0 / 3.0, 1e-9}};
+    p.elapsed_s = 0.25;
+    p.version = "0.1.0";
+    return p;
+  }
+  std::string message(const StoreLayout& layout, IfExists if_exists) const {
+    try {
+      const ResultStore store(file(), layout, if_exists);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Store, PointsComeBackAsTheyWere) {
+  {
+    ResultStore store(file(), layout(), IfExists::refuse);
+    store.record(point(7));
+    StoredPoint failed = point(3);
+    failed.failed = true;
+    failed.reason = "design.toml: no";
+    failed.outputs.clear();
+    store.record(failed);
+    StoredPoint without = point(9);
+    without.outputs = {{std::nullopt, 0.0}};
+    store.record(without);
+  }
+  const ResultStore store(file(), layout(), IfExists::resume);
+  EXPECT_EQ(store.finished(), (std::vector<std::uint64_t>{3, 7, 9}));
+  const std::vector<StoredPoint> points = store.points();
+  ASSERT_EQ(points.size(), 3U);
+  EXPECT_TRUE(points[0].failed);
+  EXPECT_EQ(points[0].reason, "design.toml: no");
+  EXPECT_EQ(points[1].inputs, point(7).inputs);
+  EXPECT_EQ(points[1].outputs[0].value, 1.0 / 3.0);
+  EXPECT_EQ(points[1].outputs[0].std_error, 1e-9);
+  EXPECT_EQ(points[1].elapsed_s, 0.25);
+  EXPECT_EQ(points[1].version, "0.1.0");
+  EXPECT_FALSE(points[2].outputs[0].value.has_value());
+}
+
+TEST_F(Store, TheFirstResultOfAPointStays) {
+  ResultStore store(file(), layout(), IfExists::refuse);
+  store.record(point(1));
+  StoredPoint other = point(1);
+  other.outputs[0].value = 2.0;
+  store.record(other);
+  EXPECT_EQ(store.points().at(0).outputs[0].value, 1.0 / 3.0);
+}
+
+TEST_F(Store, TwoProcessesNeverTakeOnePoint) {
+  // Locks belong to an open file: two stores in one process stand for two processes.
+  ResultStore first(file(), layout(), IfExists::refuse);
+  {
+    ResultStore second(file(), layout(), IfExists::resume);
+    EXPECT_TRUE(first.claim(1));
+    EXPECT_FALSE(second.claim(1));
+    EXPECT_TRUE(second.claim(2));
+    EXPECT_FALSE(first.claim(2));
+    EXPECT_EQ(first.claimed_by_others(), 1U);
+    EXPECT_EQ(second.claimed_by_others(), 1U);
+    first.record(point(1));
+    EXPECT_FALSE(second.claim(1)) << "finished";
+    second.give_up(2);
+    EXPECT_TRUE(first.claim(2));
+    EXPECT_TRUE(second.claim(3));
+  }
+  EXPECT_FALSE(first.claim(3)) << "claimed by who died";
+  EXPECT_EQ(first.claimed_by_others(), 0U);
+  EXPECT_TRUE(first.claim(3));
+}
+
+TEST_F(Store, ClaimsOfADeadProcessAreVoidForItsSuccessor) {
+  {
+    ResultStore died(file(), layout(), IfExists::refuse);
+    EXPECT_TRUE(died.claim(5));
+  }
+  ResultStore next(file(), layout(), IfExists::resume);
+  EXPECT_TRUE(next.claim(5));
+}
+
+TEST_F(Store, ManyThreadsOfTwoProcessesShareThePoints) {
+  constexpr std::uint64_t count = 200;
+  ResultStore first(file(), layout(), IfExists::refuse);
+  ResultStore second(file(), layout(), IfExists::resume);
+  std::atomic<int> taken{0};
+  const auto work = [&](ResultStore& store) {
+    for (std::uint64_t k = 0; k < count; ++k)
+      if (store.claim(k)) {
+        ++taken;
+        store.record(point(k));
+      }
+  };
+  std::vector<std::thread> threads;
+  for (ResultStore* store : {&first, &second, &first, &second}) threads.emplace_back([&work, store] { work(*store); });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(taken, static_cast<int>(count));
+  EXPECT_EQ(first.finished().size(), count);
+  SQLite::Database database(file().string(), SQLite::OPEN_READONLY);
+  EXPECT_EQ(database.execAndGet("PRAGMA integrity_check").getString(), "ok");
+}
+
+TEST_F(Store, WhatIsNoStoreOfThisStudyIsRefused) {
+  { const ResultStore store(file(), layout(), IfExists::refuse); }
+  EXPECT_NE(message(layout(), IfExists::refuse).find("s.sqlite: exists: --resume"), std::string::npos);
+  EXPECT_EQ(message(layout(), IfExists::resume), "");
+  StoreLayout changed = layout();
+  changed.parts[0].second = "b";
+  EXPECT_EQ(message(changed, IfExists::resume), "study.toml: parameter differs from that of " + file().string() +
+                                                    ": --overwrite starts anew, another --out keeps both");
+  StoreLayout other = layout();
+  other.kind = "retrace.optimum/1";
+  EXPECT_NE(message(other, IfExists::resume).find("is a store of retrace.sweep/1, not of retrace.optimum/1"),
+            std::string::npos);
+  EXPECT_EQ(message(changed, IfExists::overwrite), "");
+  EXPECT_EQ(message(changed, IfExists::resume), "");
+}
+
+TEST_F(Store, ANewerFormatIsSaidToBeOne) {
+  { const ResultStore store(file(), layout(), IfExists::refuse); }
+  {
+    SQLite::Database database(file().string(), SQLite::OPEN_READWRITE);
+    database.exec("PRAGMA user_version = 99");
+  }
+  EXPECT_EQ(message(layout(), IfExists::resume),
+            file().string() + ": is of a newer version of retrace (format 99), this one reads up to 1");
+}
+
+TEST_F(Store, OtherFilesAreNoStores) {
+  std::ofstream(file()) << "a text that is long enough to be looked at as a database, and is none";
+  EXPECT_EQ(message(layout(), IfExists::resume), file().string() + ": is no store of retrace");
+  fs::remove(file());
+  {
+    SQLite::Database database(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    database.exec("CREATE TABLE t (a)");
+  }
+  EXPECT_EQ(message(layout(), IfExists::resume), file().string() + ": is no store of retrace");
+}
+
+TEST_F(Store, AStoreInUseIsNotOverwritten) {
+  const ResultStore store(file(), layout(), IfExists::refuse);
+  EXPECT_NE(message(layout(), IfExists::overwrite).find("in use by another process"), std::string::npos);
+}
+
+TEST_F(Store, InMemoryNothingIsWritten) {
+  ResultStore store("", layout(), IfExists::refuse);
+  EXPECT_TRUE(store.claim(0));
+  EXPECT_FALSE(store.claim(0));
+  store.record(point(0));
+  EXPECT_EQ(store.finished().size(), 1U);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+}  // namespace
+}  // namespace retrace::studies

@@ -1,0 +1,211 @@
+#include "studies/quantity/io/study_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/error.h"
+#include "studies/sweep/io/sweep_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/";
+
+const std::string kDesign = "design = \"rtp_brick_1mm.toml\"\n";
+const std::string kParameter = "[[parameter]]\nkey = \"element.base_mm\"\nvalues = [1, 2]\n";
+const std::string kQuantity = "[[quantity]]\nkind = \"rre\"\n";
+
+Sweep sweep_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return read_sweep(parse_study(text, kFolder + "study.toml", overrides));
+}
+
+/// The message that a study is refused with, without the folder.
+std::string message(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    sweep_of(text, overrides);
+  } catch (const InputError& error) {
+    std::string what = error.what();
+    EXPECT_EQ(error.exit_code(), ExitCode::bad_input);
+    EXPECT_TRUE(std::none_of(what.begin(), what.end(), [](char c) { return c == '\n'; })) << what;
+    return what.starts_with(kFolder) ? what.substr(kFolder.size()) : what;
+  }
+  return "";
+}
+
+std::string with_parameter(const std::string& keys) {
+  return kDesign + "[[parameter]]\n" + keys + kQuantity;
+}
+std::string with_quantity(const std::string& keys) {
+  return kDesign + kParameter + "[[quantity]]\n" + keys;
+}
+
+std::vector<double> numbers(const Parameter& parameter) {
+  std::vector<double> values;
+  for (const ParameterValue& value : parameter.values) values.push_back(std::get<double>(value.shown));
+  return values;
+}
+
+TEST(StudyReader, RangesAreThoseOfLists) {
+  const auto values = [](const std::string& keys) {
+    return numbers(sweep_of(with_parameter("key = \"element.base_mm\"\n" + keys)).study().parameters[0]);
+  };
+  EXPECT_EQ(values("from = 1\nto = 2\nstep = 0.25\n"), (std::vector{1.0, 1.25, 1.5, 1.75, 2.0}));
+  EXPECT_EQ(values("from = 0\nto = 1\nstep = 0.3\n").size(), 4U);
+  EXPECT_EQ(values("from = 0\nto = 0.3\nstep = 0.1\n").size(), 4U) << "the stop belongs to it, whatever the rounding";
+  EXPECT_EQ(values("from = 1\nto = 3\ncount = 5\n"), (std::vector{1.0, 1.5, 2.0, 2.5, 3.0}));
+  const std::vector<double> decades = values("from = 0.01\nto = 10\ncount = 4\nscale = \"log\"\n");
+  ASSERT_EQ(decades.size(), 4U);
+  EXPECT_NEAR(decades[1], 0.1, 1e-12);
+  EXPECT_NEAR(decades[2], 1.0, 1e-12);
+  EXPECT_EQ(decades[3], 10.0);
+}
+
+TEST(StudyReader, GridAndZip) {
+  const std::string parameters = kDesign + kParameter + "[[parameter]]\nkey = \"element.width_mm\"\nvalues = [3, 4]\n";
+  const Sweep grid = sweep_of(parameters + kQuantity);
+  ASSERT_EQ(grid.size(), 4U);
+  const auto shown = [](const Sweep& sweep, std::uint64_t point) {
+    std::vector<double> values;
+    for (const ParameterValue& value : sweep.values(point)) values.push_back(std::get<double>(value.shown));
+    return values;
+  };
+  EXPECT_EQ(shown(grid, 0), (std::vector{1.0, 3.0}));
+  EXPECT_EQ(shown(grid, 1), (std::vector{1.0, 4.0}));
+  EXPECT_EQ(shown(grid, 3), (std::vector{2.0, 4.0}));
+  const Sweep zipped = sweep_of(parameters + kQuantity + "[sweep]\ncombine = \"zipped\"\n");
+  ASSERT_EQ(zipped.size(), 2U);
+  EXPECT_EQ(shown(zipped, 1), (std::vector{2.0, 4.0}));
+}
+
+TEST(StudyReader, AParameterSetsItsKeys) {
+  const Sweep sweep = sweep_of(with_parameter("key = [\"element.base_mm\", \"element.width_mm\"]\nvalues = [0.25]\n"));
+  const Candidate candidate = make_candidate(sweep.study(), sweep.values(0));
+  const auto& prism = std::get<geometry::RtpElement>(candidate.design().part.element);
+  EXPECT_EQ(prism.base_mm, 0.25);
+  EXPECT_EQ(prism.width_mm, 0.25);
+}
+
+TEST(StudyReader, AnalysisMachiningAndWordsCanBeVaried) {
+  const Sweep sweep = sweep_of(kDesign +
+                                   "[[parameter]]\nkey = \"analysis.incidence_deg\"\nvalues = [7]\n"
+                                   "[[parameter]]\nkey = \"machining.tool_width_mm\"\nvalues = [0.3]\n"
+                                   "[[parameter]]\nkey = \"array.arrangement\"\nvalues = [\"aligned\"]\n" +
+                                   kQuantity,
+                               {"analysis.engine=exact", "array.shifted_rows=odd", "body.thickness_mm=3"});
+  std::vector<std::string> overrides = sweep.study().overrides;
+  Study study = sweep.study();
+  std::erase(study.overrides, "array.shifted_rows=odd");
+  // The base design shifts rows, which an aligned array does not.
+  EXPECT_THROW(make_candidate(study, sweep.values(0)), InputError);
+  PointValues values = sweep.values(0);
+  values[2].toml = "\"offset\"";
+  const Candidate candidate = make_candidate(study, values);
+  EXPECT_EQ(candidate.analysis().incidence_deg, 7.0);
+  EXPECT_EQ(candidate.analysis().engine, Engine::exact);
+  EXPECT_EQ(candidate.machining().tool_width_mm, 0.3);
+  EXPECT_EQ(candidate.design().part.thickness_mm, 3.0);
+}
+
+TEST(StudyReader, DesignsCanBeVaried) {
+  const Sweep sweep = sweep_of(
+      "[[parameter]]\nkey = \"design\"\nvalues = [\"rtp_brick_1mm.toml\", \"rtp_brick_2mm.toml\"]\n" + kQuantity);
+  ASSERT_EQ(sweep.size(), 2U);
+  const Candidate candidate = make_candidate(sweep.study(), sweep.values(1));
+  EXPECT_EQ(std::get<geometry::RtpElement>(candidate.design().part.element).base_mm, 2.0);
+}
+
+TEST(StudyReader, CommentsAreNoChangeButValuesAre) {
+  const auto parts = [](const std::string& text) { return sweep_of(text).layout().parts; };
+  const std::string text = kDesign + kParameter + kQuantity;
+  EXPECT_EQ(parts(text), parts("# why\ntitle = \"a title\"\n" + text + "\n# end\n"));
+  EXPECT_NE(parts(text), parts(kDesign + "[[parameter]]\nkey = \"element.base_mm\"\nvalues = [1, 3]\n" + kQuantity));
+  EXPECT_NE(parts(text), parts(text + "incidence_deg = 5\n"));
+  EXPECT_NE(parts(text), parts(text + "[analysis]\ntarget_error = 0.001\n"));
+  EXPECT_NE(parts(text), parts("design = \"rtp_brick_2mm.toml\"\n" + kParameter + kQuantity));
+}
+
+TEST(StudyReader, WhatIsWrongIsSaidWithItsLine) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {kParameter + kQuantity, "study.toml: design: missing, must be the name of a design file"},
+      {kDesign + kQuantity, "study.toml: parameter: missing, must be one or more tables [[parameter]]"},
+      {kDesign + kParameter, "study.toml: quantity: missing, must be one or more tables [[quantity]]"},
+      {kDesign + "parameter = 3\n", "study.toml:2: parameter: must be one or more tables [[parameter]], got 3"},
+      {"schema = \"retrace.design/1\"\n" + kDesign,
+       "study.toml:1: schema: must be \"retrace.study/1\", got \"retrace.design/1\""},
+      {kDesign + "[swep]\n", "study.toml:2: swep: unknown key, did you mean \"sweep\"?"},
+      {with_parameter("key = \"element.bas_mm\"\nvalues = [1]\n"),
+       "study.toml:3: parameter.key: \"element.bas_mm\" is no key of a design, did you mean \"element.base_mm\"?"},
+      {with_parameter("key = \"analysis.engin\"\nvalues = [1]\n"),
+       "study.toml:3: parameter.key: \"analysis.engin\" is no key of [analysis], which has incidence_deg"},
+      {with_parameter("values = [1]\n"), "study.toml:2: parameter.key: missing, must be a key of a design"},
+      {with_parameter("key = \"element.base_mm\"\n"),
+       "study.toml:2: parameter.values: missing: a parameter has values"},
+      {with_parameter("key = \"element.base_mm\"\nvalues = []\n"),
+       "study.toml:4: parameter.values: must be a list of at least one value, got an empty list"},
+      {with_parameter("key = \"element.base_mm\"\nvalues = [1, true]\n"),
+       "study.toml:4: parameter.values: must be a list of finite numbers, strings or lists, got true in it"},
+      {with_parameter("key = \"element.base_mm\"\nfrom = 2\nto = 1\nstep = 1\n"),
+       "study.toml:5: parameter.to: must be > from (2), got 1"},
+      {with_parameter("key = \"element.base_mm\"\nfrom = 0\nto = 1\ncount = 3\nscale = \"log\"\n"),
+       "study.toml:4: parameter.from: must be > 0, got 0"},
+      {with_parameter("key = \"element.base_mm\"\nfrom = 0\nto = 1\nstep = 1e-9\n"),
+       "study.toml:6: parameter.step: makes more than 100000 values, got 1e-09"},
+      {with_parameter("key = \"element.base_mm\"\nfrom = 0\nto = 1\ncount = 2.5\n"),
+       "study.toml:6: parameter.count: must be a whole number, got 2.5"},
+      {with_parameter("key = \"element.base_mm\"\nfrom = 0\nto = 1\n"), "study.toml:2: parameter: a grid needs values"},
+      {with_parameter("key = \"element.base_mm\"\nvalues = [1]\nfrom = 2\n"),
+       "study.toml:5: parameter.from: not allowed beside values, got 2"},
+      {with_parameter("key = \"element.base_mm\"\nvalues = [1]\ntypo = 2\n"),
+       "study.toml:5: parameter.typo: has no meaning"},
+      {with_parameter("key = \"element.base_mm\"\ndistribution = \"normal\"\nmean = 1\n"),
+       "study.toml:2: parameter.sigma: missing, must be > 0"},
+      {with_parameter("key = \"element.base_mm\"\ndistribution = \"normal\"\nmean = 1\nsigma = -1\n"),
+       "study.toml:6: parameter.sigma: must be > 0, got -1"},
+      {kDesign + kParameter + kParameter + kQuantity,
+       "study.toml:5: parameter: the column \"element.base_mm\" is taken"},
+      {kDesign + kParameter + kQuantity + kQuantity, "study.toml:7: quantity.name: the column \"rre\" is taken"},
+      {with_quantity("kind = \"rree\"\n"), "study.toml:6: quantity.kind: must be one of \"rre\""},
+      {with_quantity("kind = \"rre\"\nincidence_deg = 90\n"),
+       "study.toml:7: quantity.incidence_deg: must be > -90 and < 90, got 90"},
+      {with_quantity("kind = \"rre\"\nincidence_deg = {from = 20, to = 10, count = 4}\n"),
+       "study.toml:7: quantity.incidence_deg.to: must be > from (20), got 10"},
+      {with_quantity("kind = \"rre\"\nincidence_deg = {from = 10, to = 20}\n"),
+       "study.toml:7: quantity.incidence_deg.count: missing"},
+      {with_quantity("kind = \"ledger\"\n"),
+       "study.toml:5: quantity.account: missing, must be one of \"retroreflected\""},
+      {with_quantity("kind = \"far_field\"\nfrom_deg = 2\nto_deg = 1\n"),
+       "study.toml:8: quantity.to_deg: must be > from_deg (2), got 1"},
+      {with_quantity("kind = \"rre\"\nname = \"1 2\"\n"), "study.toml:7: quantity.name: must be of letters"},
+      {with_quantity("kind = \"elements_full\"\nincidence_deg = 3\n"),
+       "study.toml:7: quantity.incidence_deg: has no meaning"},
+      {kDesign + kParameter + kQuantity + "[analysis]\nengine = \"fast\"\n",
+       "study.toml:8: analysis.engine: must be one of"},
+      {kDesign + kParameter + kQuantity + "[machining]\ntool_width_mm = 0\n",
+       "study.toml:8: machining.tool_width_mm: must be >= 1e-06 and <= 1e+06, got 0"},
+      {kDesign + kParameter + kQuantity + "[sweep]\ncombine = \"sobol\"\n",
+       "study.toml:7: sweep.samples: missing, must be >= 1 and <= 1e+06"},
+      {kDesign + kParameter + kQuantity + "[sweep]\nsamples = 5\n", "study.toml:8: sweep.samples: only allowed for"},
+      {kDesign + kParameter + "[[parameter]]\nkey = \"element.width_mm\"\nvalues = [1]\n" + kQuantity +
+           "[sweep]\ncombine = \"zipped\"\n",
+       "study.toml:5: parameter: zipped parameters must have as many values as the first, 2, got 1"},
+      {"design = \"absent.toml\"\n" + kParameter + kQuantity, "absent.toml: "},
+      {"[[parameter]]\nkey = \"design\"\nvalues = [1]\n" + kQuantity,
+       "study.toml:3: parameter.values: must be names of design files"},
+      {kDesign + "[[parameter]]\nkey = \"design\"\nvalues = [\"rtp_brick_1mm.toml\"]\n" + kQuantity,
+       "study.toml:1: design: a parameter names the designs"},
+      {"a = \n", "study.toml:1: not valid TOML"}};
+  for (const auto& [text, expected] : cases) {
+    const std::string what = message(text);
+    EXPECT_EQ(what.substr(0, expected.size()), expected) << what;
+  }
+}
+
+TEST(StudyReader, AnOverrideOfAVariedKeyIsRefused) {
+  EXPECT_EQ(message(kDesign + kParameter + kQuantity, {"element.base_mm=3"}),
+            "--set element.base_mm=3: the study varies this key");
+}
+
+}  // namespace
+}  // namespace retrace::studies

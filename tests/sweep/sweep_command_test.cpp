@@ -1,0 +1,202 @@
+// `retrace sweep` as users meet it: killed, interrupted, shared between processes, on a full disk.
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "tests/app/program.h"
+
+namespace retrace::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Points of a few milliseconds each.
+std::string study(int points, int samples = 20000) {
+  return "schema = \"retrace.study/1\"\ndesign = \"" + example("honeycomb_infinite.toml") +
+         "\"\n[[parameter]]\nkey = \"analysis.incidence_deg\"\nfrom = 0\nto = 40\ncount = " + std::to_string(points) +
+         "\n[[quantity]]\nkind = \"rre\"\n[analysis]\nengine = \"cell\"\nsamples = " + std::to_string(samples) + "\n";
+}
+
+/// What the store of a run holds, read beside it: the time that each point took, by number.
+std::map<int, double> stored(const fs::path& file) {
+  std::map<int, double> points;
+  try {
+    SQLite::Database database(file.string(), SQLite::OPEN_READONLY, 10000);
+    SQLite::Statement query(database, "SELECT point, elapsed_s FROM points");
+    while (query.executeStep()) points[query.getColumn(0).getInt()] = query.getColumn(1).getDouble();
+  } catch (const SQLite::Exception&) {
+    return {};  // not made yet
+  }
+  return points;
+}
+
+Arguments sweep_arguments(const std::string& folder, bool resume) {
+  Arguments arguments = {RETRACE_PROGRAM, "sweep", "study.toml", "-o", folder, "--quiet"};
+  if (resume) arguments.push_back("--resume");
+  return arguments;
+}
+
+std::string whole_run(const TemporaryFolder& folder) {
+  const Outcome outcome = Child(folder.path(), sweep_arguments("whole", false)).wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return folder.read("whole/sweep.csv");
+}
+
+TEST(SweepCommand, TwentyKillsLoseNoPointAndRepeatNone) {
+  constexpr int points = 240;
+  constexpr int kills = 20;
+  const TemporaryFolder folder;
+  folder.write("study.toml", study(points));
+  const std::string expected = whole_run(folder);
+  std::mt19937 random(20);
+  std::map<int, double> before;
+  int kills_at_work = 0;
+  for (int kill = 0; kill < kills; ++kill) {
+    {
+      const Child child(folder.path(), sweep_arguments("killed", true));
+      // A random moment after the run has got somewhere: how fast the machine is does not matter.
+      const std::size_t goal = before.size() + random() % 8;
+      const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+      while (stored(folder.path() / "killed/sweep.sqlite").size() < goal && std::chrono::steady_clock::now() < deadline)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
+    }  // the child dies by SIGKILL here
+    const std::map<int, double> after = stored(folder.path() / "killed/sweep.sqlite");
+    for (const auto& [point, elapsed_s] : before) {
+      ASSERT_TRUE(after.contains(point)) << "lost by kill " << kill;
+      ASSERT_EQ(after.at(point), elapsed_s) << "computed again by run " << kill;
+    }
+    kills_at_work += after.size() < points ? 1 : 0;
+    before = after;
+  }
+  EXPECT_GE(kills_at_work, 10) << "kills must hit runs that work";
+  const Outcome outcome = Child(folder.path(), sweep_arguments("killed", true)).wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(folder.read("killed/sweep.csv"), expected);
+  for (const auto& [point, elapsed_s] : stored(folder.path() / "killed/sweep.sqlite"))
+    EXPECT_TRUE(!before.contains(point) || elapsed_s == before.at(point)) << point;
+}
+
+TEST(SweepCommand, TwoProcessesShareOneStore) {
+  constexpr int points = 120;
+  const TemporaryFolder folder;
+  folder.write("study.toml", study(points));
+  const std::string expected = whole_run(folder);
+  Child first(folder.path(), sweep_arguments("shared", true));
+  Child second(folder.path(), sweep_arguments("shared", true));
+  for (Child* child : {&first, &second}) {
+    const Outcome outcome = child->wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+  }
+  EXPECT_EQ(folder.read("shared/sweep.csv"), expected);
+  EXPECT_EQ(stored(folder.path() / "shared/sweep.sqlite").size(), static_cast<std::size_t>(points));
+  SQLite::Database database((folder.path() / "shared/sweep.sqlite").string(), SQLite::OPEN_READWRITE);
+  EXPECT_EQ(database.execAndGet("PRAGMA integrity_check").getString(), "ok");
+  EXPECT_EQ(database.execAndGet("SELECT count(*) FROM claims").getInt(), 0);
+}
+
+TEST(SweepCommand, AnInterruptedRunIsValidAndGoesOn) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study(400));
+  Child child(folder.path(), sweep_arguments("out", false));
+  while (stored(folder.path() / "out/sweep.sqlite").size() < 5)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  child.interrupt();
+  const Outcome outcome = child.wait();
+  EXPECT_EQ(outcome.code, 130);
+  const Json json = folder.json("out/sweep.json");
+  EXPECT_EQ(json["complete"], false);
+  EXPECT_EQ(json["points_in_all"], 400);
+  EXPECT_GE(json["points"].size(), 5U);
+  EXPECT_LT(json["points"].size(), 400U);
+}
+
+TEST(SweepCommand, AnExistingStoreNeedsAWord) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study(4, 1000));
+  const auto run = [&](const Arguments& more) {
+    Arguments arguments = {"sweep", "study.toml", "-o", "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return retrace(folder, arguments);
+  };
+  EXPECT_EQ(run({}).code, 0);
+  const Outcome again = run({});
+  EXPECT_EQ(again.code, 2);
+  EXPECT_EQ(again.err,
+            "retrace: out/sweep.sqlite: exists: --resume goes on with it, --overwrite starts anew, another "
+            "--out keeps it\n");
+  EXPECT_EQ(run({"--resume"}).code, 0);
+  EXPECT_EQ(run({"--resume", "--overwrite"}).code, 2);
+  folder.write("study.toml", study(5, 1000));
+  const Outcome changed = run({"--resume"});
+  EXPECT_EQ(changed.code, 2);
+  EXPECT_EQ(changed.err,
+            "retrace: study.toml: parameter differs from that of out/sweep.sqlite: --overwrite starts "
+            "anew, another --out keeps both\n");
+  EXPECT_EQ(folder.json("out/sweep.json")["points"].size(), 4U) << "nothing written";
+  EXPECT_EQ(run({"--overwrite"}).code, 0);
+  EXPECT_EQ(folder.json("out/sweep.json")["points"].size(), 5U);
+  EXPECT_EQ(run({"--resume", "--seed", "2"}).code, 2);
+  const Outcome without = retrace(folder, {"sweep", "study.toml", "--resume"});
+  EXPECT_EQ(without.code, 2);
+  EXPECT_EQ(without.err, "retrace: --resume: needs --out DIR, where the store is\n");
+}
+
+TEST(SweepCommand, AFullDiskLosesNothing) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study(300, 1000));
+  const std::string expected = whole_run(folder);
+  // A limit on the size of files stands for the disk; 64 blocks of 512 or 1024 bytes.
+  const Outcome outcome = Child(folder.path(), {"/bin/sh", "-c",
+                                                std::string("trap '' XFSZ; ulimit -f 64; exec '") + RETRACE_PROGRAM +
+                                                    "' sweep study.toml -o full --quiet"})
+                              .wait();
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("retrace: full/sweep.sqlite: cannot be written: ")) << outcome.err;
+  EXPECT_EQ(lines_of(outcome.err).size(), 1U);
+  const std::size_t kept = stored(folder.path() / "full/sweep.sqlite").size();
+  EXPECT_GT(kept, 0U);
+  EXPECT_LT(kept, 300U);
+  const Outcome resumed = Child(folder.path(), sweep_arguments("full", true)).wait();
+  EXPECT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_EQ(folder.read("full/sweep.csv"), expected);
+}
+
+TEST(SweepCommand, WithoutAFolderATableIsPrintedAndNothingWritten) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"sweep", example("studies/table1.toml")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(lines_of(outcome.out).size(), 6U) << outcome.out;
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(SweepCommand, ItsDocumentHasWhatScriptsCountOn) {
+  const TemporaryFolder folder;
+  const Json json = retrace_json(folder, {"sweep", example("studies/table1.toml"), "--quiet"});
+  EXPECT_EQ(json["schema"], "retrace.sweep/1");
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["failed"], 0);
+  ASSERT_EQ(json["points"].size(), 5U);
+  EXPECT_EQ(json["points"][3]["size_mm"], 1.0);
+  EXPECT_NEAR(json["points"][3]["rre"].get<double>(), 0.953748, 1e-6);
+  for (const char* key : {"version", "warnings", "elapsed_s", "seed"}) EXPECT_TRUE(json.contains(key)) << key;
+}
+
+TEST(SweepCommand, TheSameBytesAtAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study(12, 5000));
+  const auto document = [&](const std::string& threads) {
+    return without_elapsed(retrace(folder, {"sweep", "study.toml", "--json", "-", "--threads", threads}).out);
+  };
+  EXPECT_EQ(document("1"), document("3"));
+}
+
+}  // namespace
+}  // namespace retrace::test
