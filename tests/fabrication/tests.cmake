@@ -16,3 +16,6 @@ retrace_test(fabrication_read_test
 retrace_test(fabrication_read_back_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/read_back_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::nc_read rapidcheck)
+retrace_test(fabrication_verify_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
+  LIBRARIES retrace::plan retrace::post retrace::verify rapidcheck)

@@ -1,0 +1,220 @@
+#include "fabrication/verify/facet_figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+constexpr double kNmPerMm = 1e6;
+/// Lines stay this far off the corners of the envelope, where they would run within a plane of the tool.
+constexpr double kOffCornerMm = 2e-7;
+/// Nearer to the root than this a line cannot tell the facets apart.
+constexpr double kLeastStripMm = 2e-6;
+/// Where what is left at the root is taken.
+constexpr double kAtRootMm = 1.5e-6;
+/// Margin on what is predicted of the region at the root, for apex angles other than 90 degrees.
+constexpr double kRootMargin = 1.2;
+constexpr int kEvenLines = 12;
+
+/// Where sections are taken, along the root, and which passes of the tool cover them.
+struct Stations {
+  std::vector<double> along_mm;
+  std::vector<double> pass_middles_mm;
+};
+
+class Measurer {
+ public:
+  Measurer(const Groove& groove, std::span<const Sweep> sweeps, std::span<const RigidMotion> poses,
+           const ToolWedge& wedge, const Prediction& prediction)
+      : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
+    for (const RigidMotion& pose : poses) back_.push_back(pose.inverse());
+    find_stations();
+    strip_mm_ = std::max(1.05 * prediction.root_mm, kLeastStripMm);
+    find_burr();
+  }
+
+  /// The facet that the first cuts stand upright for the tool.
+  std::size_t plunged_facet() const {
+    const Vec3 n = poses_[sweeps_.front().pose].direction(groove_.facets[0].normal);
+    const Vec3 up = wedge_.sides[0].outward;
+    return n.dot(up) < poses_[sweeps_.front().pose].direction(groove_.facets[1].normal).dot(up) ? 0 : 1;
+  }
+
+  /// \param is_other_ploughed the other facet is, and its floor rises along the edge by what is predicted
+  FacetFigures measure(std::size_t facet, bool is_ploughed, bool is_other_ploughed) {
+    FacetFigures figures;
+    figures.is_ploughed = is_ploughed;
+    const std::vector<double> slants = slant_positions(facet);
+    Sums sums;
+    for (const double along : stations_.along_mm) {
+      double previous_slant = 0.0;
+      double previous_top = 0.0;
+      for (const double slant : slants) {
+        const double floor_mm = is_other_ploughed && slant == kAtRootMm ? ploughed_height(1 - facet, along) : 0.0;
+        const LineSurface surface = surface_at(facet, along, slant + floor_mm);
+        take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along) : 0.0);
+        if (slant > strip_mm_) sums.add(slant, along, slant > burr_end_mm_ ? surface.top : surface.lowest);
+        const double width_mm = 2.0 * groove_.half_width_mm / static_cast<double>(stations_.along_mm.size());
+        figures.residual_mm3 += 0.5 * (surface.top + previous_top) * (slant - previous_slant) * width_mm;
+        previous_slant = slant;
+        previous_top = surface.top;
+      }
+    }
+    sums.fit(figures);
+    figures.distance_nm = std::max(figures.highest.nm, -figures.deepest.nm);
+    return figures;
+  }
+
+ private:
+  /// Sums for the plane top = mean + up (slant - ...) + along (along - ...), by least squares.
+  struct Sums {
+    void add(double slant, double along, double top) { points.push_back({slant, along, top}); }
+    void fit(FacetFigures& figures) const {
+      if (points.empty()) return;
+      Vec3 mean = Vec3::Zero();
+      for (const Vec3& p : points) mean += p;
+      mean /= static_cast<double>(points.size());
+      double uu = 0.0, uv = 0.0, vv = 0.0, ut = 0.0, vt = 0.0;
+      for (const Vec3& p : points) {
+        const Vec3 d = p - mean;
+        uu += d.x() * d.x();
+        uv += d.x() * d.y();
+        vv += d.y() * d.y();
+        ut += d.x() * d.z();
+        vt += d.y() * d.z();
+      }
+      figures.mean_nm = mean.z() * kNmPerMm;
+      const double determinant = uu * vv - uv * uv;
+      if (!(determinant > 1e-12 * uu * vv)) return;
+      figures.slope_up = (ut * vv - vt * uv) / determinant;
+      figures.slope_along = (vt * uu - ut * uv) / determinant;
+    }
+    std::vector<Vec3> points;
+  };
+
+  /// Plunges along the two facets whose tips end up to t above the other facet leave a burr between their rake faces,
+  /// free of the facets beyond the strip: t + v / r < height < (v - t) r with r the rake face's slope.
+  void find_burr() {
+    const double up = wedge_.rake_direction.dot(wedge_.clearance_direction);
+    const double slope = std::tan(std::acos(std::clamp(up, -1.0, 1.0)) + std::asin(wedge_.sides[0].outward.z()));
+    const double t = prediction_.root_mm;
+    burr_end_mm_ = strip_mm_ + kRootMargin * t * (1.0 + slope) / std::max(slope - 1.0 / slope, 0.05);
+    burr_height_mm_ = kRootMargin * (t + burr_end_mm_ / slope);
+  }
+
+  void find_stations() {
+    for (const Sweep& sweep : sweeps_) {
+      const double middle = groove_.along_mm(back_[sweep.pose].point(sweep.to_mm));
+      const auto is_same = [&](double known) { return std::abs(known - middle) < 0.02 * wedge_.half_width_mm; };
+      if (std::none_of(stations_.pass_middles_mm.begin(), stations_.pass_middles_mm.end(), is_same))
+        stations_.pass_middles_mm.push_back(middle);
+    }
+    // The ends of a tilted edge leave slivers at the walls, which the neighbours' cuts take.
+    const double margin = prediction_.wall_mm + 10.0 * kOffCornerMm;
+    const double end = groove_.half_width_mm - margin;
+    stations_.along_mm = {-end, 0.5 * kOffCornerMm, end};
+    if (stations_.pass_middles_mm.size() < 2) return;
+    for (const double middle : stations_.pass_middles_mm)
+      for (const double side : {-1.0, 1.0}) {
+        const double inner = middle + side * (wedge_.half_width_mm - margin);
+        if (std::abs(inner) < end) stations_.along_mm.push_back(inner);
+      }
+    std::sort(stations_.along_mm.begin(), stations_.along_mm.end());
+  }
+
+  /// Distances from the root at which lines are taken: on both sides of every corner that a tip leaves, between them,
+  /// and evenly over the facet.
+  std::vector<double> slant_positions(std::size_t facet) const {
+    std::vector<double> corners = {strip_mm_, burr_end_mm_, groove_.facet_length_mm};
+    for (const Sweep& sweep : sweeps_)
+      for (const Vec3& tip : {sweep.from_mm, sweep.to_mm}) {
+        const Vec3 p = back_[sweep.pose].point(tip);
+        corners.push_back(groove_.facets[facet].up_slope.dot(p - groove_.root_mm));
+      }
+    std::sort(corners.begin(), corners.end());
+    std::vector<double> slants = {kAtRootMm};
+    const double last = groove_.facet_length_mm - kOffCornerMm;
+    const auto add = [&](double slant) {
+      if (slant > strip_mm_ && slant < last) slants.push_back(slant);
+    };
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      add(corners[i] - kOffCornerMm);
+      add(corners[i] + kOffCornerMm);
+      if (i > 0) add(0.5 * (corners[i - 1] + corners[i]) + 1e-9);
+    }
+    for (int i = 0; i < kEvenLines; ++i) add((i + 0.5137) / kEvenLines * groove_.facet_length_mm);
+    std::sort(slants.begin(), slants.end());
+    const auto is_same = [](double a, double b) { return b - a < 0.5 * kOffCornerMm; };
+    slants.erase(std::unique(slants.begin(), slants.end(), is_same), slants.end());
+    return slants;
+  }
+
+  LineSurface surface_at(std::size_t facet, double along, double slant) {
+    const DesignFacet& design = groove_.facets[facet];
+    const Vec3 point = groove_.root_mm + along * groove_.root_direction + slant * design.up_slope;
+    spans_.clear();
+    for (std::size_t pose = 0; pose < poses_.size(); ++pose) {
+      const Vec3 p = poses_[pose].point(point);
+      const Vec3 d = poses_[pose].direction(design.normal);
+      for (const Sweep& sweep : sweeps_)
+        if (sweep.pose == pose)
+          if (const auto span = swept_span(wedge_, sweep, p, d)) spans_.push_back(*span);
+    }
+    return surface_along(spans_, -point.z() / design.normal.z());
+  }
+
+  /// What ploughing must leave: 0 at the deeper end of the edge, which touches the design's facet.
+  double ploughed_height(std::size_t facet, double along) const {
+    const double slope = prediction_.plough_slope[facet];
+    const double half = wedge_.half_width_mm;
+    double least = 2.0 * half * std::abs(slope);
+    for (const double middle : stations_.pass_middles_mm)
+      if (std::abs(along - middle) <= half * (1.0 + 1e-9))
+        least = std::min(least, half * std::abs(slope) + slope * (along - middle));
+    return least;
+  }
+
+  void take(FacetFigures& figures, const LineSurface& surface, double slant, double predicted) const {
+    const double lowest_nm = (std::min(surface.lowest, surface.top) - predicted) * kNmPerMm;
+    if (slant <= strip_mm_) {
+      if (lowest_nm > figures.root.nm) figures.root = {lowest_nm, surface.lowest_line};
+      return;
+    }
+    const bool is_under_burr = slant < burr_end_mm_ && surface.top < burr_height_mm_;
+    const double above_nm = is_under_burr ? lowest_nm : (surface.top - predicted) * kNmPerMm;
+    if (above_nm > figures.highest.nm) figures.highest = {above_nm, surface.top_line};
+    if (lowest_nm < figures.deepest.nm) figures.deepest = {lowest_nm, surface.lowest_line};
+  }
+
+  const Groove& groove_;
+  std::span<const Sweep> sweeps_;
+  std::span<const RigidMotion> poses_;
+  const ToolWedge& wedge_;
+  const Prediction& prediction_;
+  std::vector<RigidMotion> back_;
+  Stations stations_;
+  double strip_mm_ = 0.0;
+  double burr_end_mm_ = 0.0;     ///< distance from the root
+  double burr_height_mm_ = 0.0;  ///< over a facet
+  std::vector<LineSpan> spans_;
+};
+
+}  // namespace
+
+ElementFigures element_figures(const Groove& groove, std::span<const Sweep> sweeps, std::span<const RigidMotion> poses,
+                               const ToolWedge& wedge, const Prediction& prediction, bool is_one_facet_ploughed) {
+  ElementFigures figures;
+  figures.is_cut = !sweeps.empty();
+  if (!figures.is_cut) return figures;
+  Measurer measurer(groove, sweeps, poses, wedge, prediction);
+  const std::size_t plunged = measurer.plunged_facet();
+  for (std::size_t f = 0; f < 2; ++f)
+    figures.facets[f] =
+        measurer.measure(f, is_one_facet_ploughed && f != plunged, is_one_facet_ploughed && f == plunged);
+  return figures;
+}
+
+}  // namespace retrace::fabrication

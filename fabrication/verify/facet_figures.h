@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fabrication/verify/groove.h"
+#include "fabrication/verify/prediction.h"
+#include "fabrication/verify/sweep.h"
+
+namespace retrace::fabrication {
+
+/// A place of a facet where what is left differs most from what should be.
+struct FacetDeviation {
+  double nm = 0.0;        ///< along the design's normal, above what is predicted; negative: too much was removed
+  std::int32_t line = 0;  ///< NC line of the move that made the surface there
+};
+
+/// What the sweeps of one element leave of one of its facets. The surface is the envelope of the tool's planes, taken
+/// along lines normal to the design's facet at the corners of that envelope and between them.
+struct FacetFigures {
+  bool is_ploughed = false;
+  double distance_nm = 0.0;   ///< largest deviation from the prediction outside of the strip along the root, unsigned
+  FacetDeviation highest;     ///< outside of the strip
+  FacetDeviation deepest;     ///< likewise
+  FacetDeviation root;        ///< highest within the strip
+  double mean_nm = 0.0;       ///< of the deviations from the design outside of the strip
+  double slope_up = 0.0;      ///< of the plane through the surface against the design: up the slope
+  double slope_along = 0.0;   ///< and along the root
+  double residual_mm3 = 0.0;  ///< volume that is left above the design's facet, less what was removed below it
+};
+
+struct ElementFigures {
+  bool is_cut = false;
+  std::array<FacetFigures, 2> facets;
+};
+
+/// \param poses machine_from_workpiece for each Sweep::pose
+/// \param is_one_facet_ploughed the strategy ploughs the facet that it does not plunge
+ElementFigures element_figures(const Groove& groove, std::span<const Sweep> sweeps, std::span<const RigidMotion> poses,
+                               const ToolWedge& wedge, const Prediction& prediction, bool is_one_facet_ploughed);
+
+}  // namespace retrace::fabrication

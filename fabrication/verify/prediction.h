@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+
+#include "fabrication/machine/machine.h"
+#include "fabrication/verify/groove.h"
+
+namespace retrace::fabrication {
+
+/// What a machine's axes make unavoidable for the elements of one orientation, from the poses that this machine needs -
+/// not from those of the program (docs/theory/verification.md).
+struct Prediction {
+  std::array<PlungePose, 2> poses;  ///< in which facets 1 and 2 are plunged
+  /// By how much facet f rises from one end of the tool's edge to the other, per mm, when it is ploughed in the pose of
+  /// the other facet; signed along the root direction of the groove.
+  std::array<double, 2> plough_slope{};
+  double root_mm = 0.0;  ///< what the tilted edge leaves at the root at most, at right angles to a facet
+  double wall_mm = 0.0;  ///< by which the tilted edge's ends cut into the walls at most
+};
+
+/// \throw InputError if the machine cannot plunge a facet
+Prediction predict(const Machine& machine, const Groove& groove, double tool_width_mm);
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fabrication/job/job.h"
+#include "fabrication/machine/machine.h"
+#include "fabrication/read/nc_motion.h"
+#include "geometry/vec.h"
+
+namespace retrace::fabrication {
+
+/// The diamond as an endless wedge, in the frame of the machine relative to the tool reference point: between clearance
+/// face and rake face, and between two planes at the ends of its edge. Its tip is sharp: an edge radius leaves both
+/// swept planes where they are, as the reference point is the crossing of the edge circle's tangents.
+struct ToolWedge {
+  /// inward . p <= bound
+  struct Side {
+    geometry::Vec3 outward = geometry::Vec3::Zero();
+    double bound_mm = 0.0;
+  };
+  std::array<Side, 4> sides;  ///< clearance face, rake face, ends of the edge at +X and -X
+  geometry::Vec3 edge = geometry::Vec3::UnitX();
+  geometry::Vec3 clearance_direction = geometry::Vec3::UnitZ();  ///< up the clearance face
+  geometry::Vec3 rake_direction = geometry::Vec3::UnitZ();       ///< up the rake face
+  double half_width_mm = 0.0;
+};
+
+ToolWedge tool_wedge(const Tool& tool, const Machine& machine);
+
+/// A straight move of the tool in one pose, as points of the machine frame.
+struct Sweep {
+  std::uint32_t pose = 0;
+  NcPlace place;
+  bool is_rapid = false;
+  geometry::Vec3 from_mm = geometry::Vec3::Zero();
+  geometry::Vec3 to_mm = geometry::Vec3::Zero();
+};
+
+/// Part of a line that a sweep removes.
+struct LineSpan {
+  double low = 0.0;
+  double high = 0.0;
+  std::int32_t line = 0;  ///< NC line of the sweep
+};
+
+/// The part of the line point + s direction (in the frame of the machine) within the convex body that the wedge sweeps.
+/// That body is { q + t (to - from) : q in the wedge at `from`, 0 <= t <= 1 }, so the part is a linear programme in s
+/// and t, of which t is eliminated (Fourier-Motzkin): exact to rounding.
+std::optional<LineSpan> swept_span(const ToolWedge& wedge, const Sweep& sweep, const geometry::Vec3& point_mm,
+                                   const geometry::Vec3& direction);
+
+/// What is left along a line from far inside the material (s = -infinity) to the outside at `exit`.
+struct LineSurface {
+  double top = 0.0;           ///< s above which everything is removed
+  std::int32_t top_line = 0;  ///< NC line of the move that made the surface there; 0: the blank's face
+  double lowest = 0.0;        ///< least s that was removed
+  std::int32_t lowest_line = 0;
+};
+
+/// The surface along a line that leaves the blank at s = exit. `spans` is used up as working space.
+LineSurface surface_along(std::vector<LineSpan>& spans, double exit);
+
+}  // namespace retrace::fabrication
