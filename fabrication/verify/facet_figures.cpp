@@ -18,6 +18,8 @@ constexpr double kAtRootMm = 1.5e-6;
 /// Margin on what is predicted of the region at the root, for apex angles other than 90 degrees.
 constexpr double kRootMargin = 1.2;
 constexpr int kEvenLines = 12;
+/// Inner part of the width from which a facet's plane is taken.
+constexpr double kPlaneShare = 0.8;
 
 /// Where sections are taken, along the root, and which passes of the tool cover them.
 struct Stations {
@@ -49,15 +51,16 @@ class Measurer {
     figures.is_ploughed = is_ploughed;
     const std::vector<double> slants = slant_positions(facet);
     Sums sums;
-    for (const double along : stations_.along_mm) {
+    for (std::size_t k = 0; k < stations_.along_mm.size(); ++k) {
+      const double along = stations_.along_mm[k];
+      const double width_mm = width_of_station(k);
       double previous_slant = 0.0;
       double previous_top = 0.0;
       for (const double slant : slants) {
         const double floor_mm = is_other_ploughed && slant == kAtRootMm ? ploughed_height(1 - facet, along) : 0.0;
         const LineSurface surface = surface_at(facet, along, slant + floor_mm);
         take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along) : 0.0);
-        if (slant > strip_mm_) sums.add(slant, along, slant > burr_end_mm_ ? surface.top : surface.lowest);
-        const double width_mm = 2.0 * groove_.half_width_mm / static_cast<double>(stations_.along_mm.size());
+        if (is_for_plane(slant, along)) sums.add(slant, along, surface.lowest);
         figures.residual_mm3 += 0.5 * (surface.top + previous_top) * (slant - previous_slant) * width_mm;
         previous_slant = slant;
         previous_top = surface.top;
@@ -95,6 +98,20 @@ class Measurer {
     std::vector<Vec3> points;
   };
 
+  /// Part of the width that a station stands for: halfway to its neighbours.
+  double width_of_station(std::size_t k) const {
+    const std::vector<double>& at = stations_.along_mm;
+    const double low = k == 0 ? -groove_.half_width_mm : 0.5 * (at[k - 1] + at[k]);
+    const double high = k + 1 == at.size() ? groove_.half_width_mm : 0.5 * (at[k] + at[k + 1]);
+    return high - low;
+  }
+
+  /// The plane of a facet is taken where neither root nor rim nor the tool's ends disturb it.
+  bool is_for_plane(double slant, double along) const {
+    return std::abs(along) <= plane_end_mm_ && slant >= std::max(burr_end_mm_, 0.02 * groove_.facet_length_mm) &&
+           slant <= 0.98 * groove_.facet_length_mm;
+  }
+
   /// Plunges along the two facets whose tips end up to t above the other facet leave a burr between their rake faces,
   /// free of the facets beyond the strip: t + v / r < height < (v - t) r with r the rake face's slope.
   void find_burr() {
@@ -115,7 +132,8 @@ class Measurer {
     // The ends of a tilted edge leave slivers at the walls, which the neighbours' cuts take.
     const double margin = prediction_.wall_mm + 10.0 * kOffCornerMm;
     const double end = groove_.half_width_mm - margin;
-    stations_.along_mm = {-end, 0.5 * kOffCornerMm, end};
+    stations_.along_mm = {-end, -kPlaneShare * end, kPlaneShare * end, end};
+    plane_end_mm_ = kPlaneShare * groove_.half_width_mm;
     if (stations_.pass_middles_mm.size() < 2) return;
     for (const double middle : stations_.pass_middles_mm)
       for (const double side : {-1.0, 1.0}) {
@@ -197,6 +215,7 @@ class Measurer {
   std::vector<RigidMotion> back_;
   Stations stations_;
   double strip_mm_ = 0.0;
+  double plane_end_mm_ = 0.0;
   double burr_end_mm_ = 0.0;     ///< distance from the root
   double burr_height_mm_ = 0.0;  ///< over a facet
   std::vector<LineSpan> spans_;

@@ -19,6 +19,8 @@ constexpr std::uint8_t kRotaryBits = 0b11000;
 constexpr double kMostlyAlong = 0.9;
 /// Share of the process's clearance that rapid moves must keep from the blank's face.
 constexpr double kClearanceShare = 0.9;
+/// Share of a cutting move that may lead towards the facet: rounding of its end points.
+constexpr double kMostSlip = 1e-3;
 /// Tips of two plunges that are the same cut.
 constexpr double kSameTipMm = 5e-7;
 
@@ -280,6 +282,10 @@ void ProgramCheck::check_cut(const NcMotion& motion, const Sweep& sweep, std::si
   if (sweep.is_rapid) return close_plunge();
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   const double z_share = travel.z() / travel.norm();
+  // Only a retract may move the tool towards the facet that its clearance face looks at.
+  if (z_share < 0.5 && travel.y() > kMostSlip * travel.norm())
+    report("clearance_face_leads", motion.place, number, "the tool is pushed into the material by its clearance face",
+           0, 0);
   if (z_share < -kMostlyAlong) return check_plunge(motion, sweep, element);
   if (z_share < 0.5) return check_plough(motion, sweep, element);
   if (motion.feed_mm_per_min <= 0.0) check_feed(motion, 0.0);
@@ -302,13 +308,32 @@ void ProgramCheck::check_plunge(const NcMotion& motion, const Sweep& sweep, std:
     for (std::size_t f = 0; f < 2; ++f) plunge.tip_mm[f] = std::min(plunge.tip_mm[f], groove.facets[f].height_mm(tip));
   }
   CutState& state = states_[element];
-  plunge.chip_mm = state.surface_mm[plunge.facet] - plunge.tip_mm[plunge.facet];
   const Vec3 tip = back_[sweep.pose].point(sweep.to_mm);
+  // Where nothing was cut before, the blank's face ends the chip.
+  plunge.chip_mm = std::min(state.surface_mm[plunge.facet] - plunge.tip_mm[plunge.facet],
+                            -tip.z() / groove.facets[plunge.facet].normal.z());
+  check_chip_thickness(plunge);
   for (const auto& known : state.tips)
     if (known[3] == static_cast<double>(plunge.facet) && (Vec3(known[0], known[1], known[2]) - tip).norm() < kSameTipMm)
       report("cut_twice", motion.place, static_cast<std::int64_t>(element), "this cut has been made before", 0, 0);
   state.tips.push_back({tip.x(), tip.y(), tip.z(), static_cast<double>(plunge.facet)});
   open_ = plunge;
+}
+
+void ProgramCheck::check_chip_thickness(const OpenPlunge& plunge) {
+  const double deepest_mm =
+      1e-3 * std::max(job_.process.roughing_depth_um,
+                      job_.strategy == Strategy::two_step ? job_.process.finishing_depth_um : 0.0);
+  // The first of nested V shells is a whole V, which both of its plunges take from the blank's face: two depths wide.
+  const bool is_first_shell =
+      job_.strategy == Strategy::bidirectional && states_[plunge.element].surface_mm[plunge.facet] > 1e8;
+  const double limit_mm = (is_first_shell ? 2.0 : 1.0) * deepest_mm + workpiece_.tolerance_mm +
+                          workpiece_.prediction(plunge.element).root_mm;
+  if (plunge.chip_mm > limit_mm)
+    report("chip_too_thick", plunge.place, static_cast<std::int64_t>(plunge.element),
+           fmt::format("the plunge takes {} um at once, the process {} um: a cut before it is missing",
+                       fixed(1e3 * plunge.chip_mm, 3), shortest(1e3 * deepest_mm)),
+           1e3 * plunge.chip_mm, 1e3 * limit_mm);
 }
 
 void ProgramCheck::check_plough(const NcMotion& motion, const Sweep& sweep, std::size_t element) {

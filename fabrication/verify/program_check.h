@@ -90,6 +90,7 @@ class ProgramCheck : public NcSink {
   void check_outside(const Sweep& sweep);
   void check_plunge(const NcMotion& motion, const Sweep& sweep, std::size_t element);
   void check_plough(const NcMotion& motion, const Sweep& sweep, std::size_t element);
+  void check_chip_thickness(const OpenPlunge& plunge);
   void close_plunge();
   void check_chip();
   void count_time(const NcMotion& motion);
