@@ -46,7 +46,7 @@ void add_common(CLI::App& app, CommonOptions& common) {
   app.add_option("--json", common.json, "write the result as JSON to FILE; - is standard output")
       ->type_name("FILE")
       ->check(not_empty());
-  app.add_option("-o,--out", common.out, "write the result's files to folder DIR (init: to file FILE)")
+  app.add_option("-o,--out", common.out, "write the result's files to folder DIR (init and job: to file FILE)")
       ->type_name("DIR")
       ->check(not_empty());
   app.add_option("--threads", common.threads, "threads to use [all cores the process may use]")
@@ -180,13 +180,65 @@ void add_study(CLI::App& app, StudyOptions& study, const char* name, const char*
   command->add_flag("--overwrite", study.overwrite, "replace the store that is in the output folder")->excludes(resume);
 }
 
+void add_job(CLI::App& app, JobOptions& job) {
+  CLI::App* command = app.add_subcommand("job", "a fabrication job from a design");
+  command->add_option("DESIGN", job.design, "design file of prisms; - is standard input")
+      ->required()
+      ->check(not_empty());
+  command->add_option("--machine", job.machine, "ideal, paper, thesis or a file")
+      ->type_name("MACHINE")
+      ->capture_default_str()
+      ->check(not_empty());
+  command->add_option("--tool-width-mm", job.tool_width_mm, "width of the tool's edge, 0.1 to 2")
+      ->type_name("W")
+      ->required()
+      ->check(real_number());
+  command->add_option("--strategy", job.strategy, "unidirectional, bidirectional or two-step")
+      ->type_name("STRATEGY")
+      ->capture_default_str();
+  command->add_option("--process", job.process, "depths, feeds and dwells: a shipped process or a file")
+      ->type_name("PROCESS")
+      ->capture_default_str()
+      ->check(not_empty());
+  command->add_option("--workpiece", job.workpiece, "mould, or direct: the optic itself is cut")
+      ->type_name("KIND")
+      ->capture_default_str();
+  command->add_option("--shrinkage-percent", job.shrinkage_percent, "by which the mould is larger than the part")
+      ->type_name("S")
+      ->capture_default_str()
+      ->check(real_number());
+}
+
+void add_fabricate(CLI::App& app, FabricateOptions& fabricate) {
+  CLI::App* command = app.add_subcommand("fabricate", "NC programs, tool path and time of a fabrication job");
+  command->add_option("JOB", fabricate.job, "job file, as retrace job writes it")->required()->check(not_empty());
+  command->add_option("--dialect", fabricate.dialect, "rs274ngc, sinumerik, fanuc or pmac")
+      ->type_name("DIALECT")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--phase", fabricate.phase,
+          "roughing, finishing, one stage such as finishing-1-facet-2, or that stage and all after it with a +")
+      ->type_name("PHASE")
+      ->capture_default_str();
+  command->add_option("--from-element", fabricate.from_element, "start at that element's first visit [the first]")
+      ->type_name("N")
+      ->check(whole_number(0, std::numeric_limits<std::int32_t>::max()));
+  command->add_option("--stop-every", fabricate.stop_every, "optional stop after every N visits [none]")
+      ->type_name("N")
+      ->check(whole_number(1, std::numeric_limits<std::int32_t>::max()));
+  command->add_option("--split-hours", fabricate.split_hours, "programs of at most so many hours [one program]")
+      ->type_name("H")
+      ->check(real_number());
+}
+
 /// What to say if a command or what it needs is missing: a word that nobody knows explains it better.
 std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::vector<std::string> unknown = app.remaining(true);
   for (const std::string& word : unknown)
     if (word.starts_with('-')) return "unknown option " + word;
   if (!app.get_subcommands().empty()) return otherwise;
-  const std::string commands = "rre, inspect, roughness, metrology, sweep, init and list";
+  const std::string commands = "rre, inspect, roughness, metrology, sweep, job, fabricate, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -215,10 +267,14 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_roughness(app, line.roughness);
   add_metrology(app, line.metrology);
   add_study(app, line.study, "sweep", "designs and directions over ranges, as a study file says");
+  add_job(app, line.job);
+  add_fabricate(app, line.fabricate);
   app.add_subcommand("init", "a commented design file to start from")
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
       ->required();
-  app.add_subcommand("list", "what is shipped")->add_option("WHAT", line.what, "materials")->required();
+  app.add_subcommand("list", "what is shipped")
+      ->add_option("WHAT", line.what, "materials, machines or processes")
+      ->required();
   for (CLI::App* command : app.get_subcommands({})) {
     command->fallthrough();
     command->footer(

@@ -62,6 +62,25 @@ struct StudyOptions {
   bool overwrite = false;
 };
 
+struct JobOptions {
+  std::string design;
+  std::string machine = "ideal";
+  double tool_width_mm = 0.0;
+  std::string strategy = "two-step";
+  std::string process = "thesis-acrylic";
+  std::string workpiece = "mould";
+  double shrinkage_percent = 0.0;
+};
+
+struct FabricateOptions {
+  std::string job;
+  std::string dialect = "rs274ngc";
+  std::string phase = "all";
+  std::optional<std::int64_t> from_element;
+  std::optional<std::int64_t> stop_every;
+  std::optional<double> split_hours;
+};
+
 /// What the user typed.
 struct CommandLine {
   std::string command;
@@ -70,6 +89,8 @@ struct CommandLine {
   RoughnessOptions roughness;
   MetrologyOptions metrology;
   StudyOptions study;
+  JobOptions job;
+  FabricateOptions fabricate;
   std::string design;  ///< inspect
   std::string kind;    ///< init
   std::string what;    ///< list

@@ -12,6 +12,8 @@ ExitCode run_roughness_command(const CommandLine& line);
 ExitCode run_inspect_command(const CommandLine& line);
 ExitCode run_metrology_command(const CommandLine& line);
 ExitCode run_sweep_command(const CommandLine& line);
+ExitCode run_job_command(const CommandLine& line);
+ExitCode run_fabricate_command(const CommandLine& line);
 ExitCode run_init_command(const CommandLine& line);
 ExitCode run_list_command(const CommandLine& line);
 

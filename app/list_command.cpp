@@ -7,6 +7,8 @@
 #include "core/json_text.h"
 #include "core/number_format.h"
 #include "core/version.h"
+#include "fabrication/job/io/job_files.h"
+#include "fabrication/machine/io/machine_files.h"
 #include "materials/io/material_library.h"
 
 namespace retrace::app {
@@ -15,11 +17,68 @@ namespace {
 // The sodium d line of tables, and the default wavelength of a design.
 constexpr double kShownWavelengthNm = 587.56;
 
-}  // namespace
+using Json = nlohmann::ordered_json;
 
-ExitCode run_list_command(const CommandLine& line) {
-  if (line.what != "materials")
-    throw InputError(fmt::format("list: this version ships materials only, got {}", line.what));
+/// Ends a list: what every document carries, and where it goes.
+ExitCode write_list(const CommandLine& line, Json json, const std::string& text) {
+  const std::string file = line.what + ".json";
+  json["version"] = kVersion;
+  json["warnings"] = Json::array();
+  json["complete"] = true;
+  prepare_outputs(line.common, {{}, file, {}});
+  write_outputs(line.common, to_text(json), {{file, to_text(json)}}, text);
+  return ExitCode::done;
+}
+
+template <class Value>
+Json sourced(const fabrication::Sourced<Value>& item, Json value) {
+  return {{"value", std::move(value)},
+          {"basis", item.basis == fabrication::Basis::measured ? "measured" : "assumed"},
+          {"source", item.source}};
+}
+
+Json direction_json(const fabrication::Sourced<geometry::Vec3>& item) {
+  return sourced(item, Json{item.value.x(), item.value.y(), item.value.z()});
+}
+
+ExitCode list_machines(const CommandLine& line) {
+  std::string text = fmt::format("{:<10} {:<10} {:<10} {}\n", "name", "A axis", "C axis", "title");
+  Json json = {{"schema", "retrace.machines/1"}, {"machines", Json::array()}};
+  for (const fabrication::Machine& m : fabrication::shipped_machines()) {
+    const auto basis = [](const auto& item) {
+      return item.basis == fabrication::Basis::measured ? "measured" : "assumed";
+    };
+    text += fmt::format("{:<10} {:<10} {:<10} {}\n", m.name, basis(m.a.direction), basis(m.c.direction), m.title);
+    json["machines"].push_back({{"name", m.name},
+                                {"title", m.title},
+                                {"a_direction", direction_json(m.a.direction)},
+                                {"c_direction", direction_json(m.c.direction)}});
+  }
+  return write_list(line, std::move(json), text);
+}
+
+ExitCode list_processes(const CommandLine& line) {
+  std::string text = fmt::format("{:<16} {:<13} {:<16} {}\n", "name", "roughing (um)", "finishing (um)", "source");
+  Json json = {{"schema", "retrace.processes/1"}, {"processes", Json::array()}};
+  for (const fabrication::Process& p : fabrication::shipped_processes()) {
+    text += fmt::format("{:<16} {:<13} {:<16} {}\n", p.name, shortest(p.roughing_depth_um),
+                        fmt::format("{} x {}", p.finishing_cuts, shortest(p.finishing_depth_um)), p.source);
+    json["processes"].push_back({{"name", p.name},
+                                 {"source", p.source},
+                                 {"clearance_mm", p.clearance_mm},
+                                 {"roughing_depth_um", p.roughing_depth_um},
+                                 {"finishing_depth_um", p.finishing_depth_um},
+                                 {"finishing_cuts", p.finishing_cuts},
+                                 {"plough_length_mm", p.plough_length_mm},
+                                 {"dwell_s", p.dwell_s},
+                                 {"roughing_feed_mm_per_min", p.roughing_feed_mm_per_min},
+                                 {"finishing_feed_mm_per_min", p.finishing_feed_mm_per_min},
+                                 {"retract_feed_mm_per_min", p.retract_feed_mm_per_min}});
+  }
+  return write_list(line, std::move(json), text);
+}
+
+ExitCode list_materials(const CommandLine& line) {
   const auto library = materials::MaterialLibrary::shipped();
   std::string text = fmt::format("{:<16} {:<10} {:<12} {}\n", "name", "n 588 nm", "data (nm)", "description");
   nlohmann::ordered_json json = {{"schema", "retrace.materials/1"}, {"materials", nlohmann::ordered_json::array()}};
@@ -53,12 +112,16 @@ ExitCode run_list_command(const CommandLine& line) {
                               {"valid_to_nm", m.valid_to_nm},
                               {"source", m.source}});
   }
-  json["version"] = kVersion;
-  json["warnings"] = nlohmann::ordered_json::array();
-  json["complete"] = true;
-  prepare_outputs(line.common, {{}, "materials.json", {}});
-  write_outputs(line.common, to_text(json), {{"materials.json", to_text(json)}}, text);
-  return ExitCode::done;
+  return write_list(line, std::move(json), text);
+}
+
+}  // namespace
+
+ExitCode run_list_command(const CommandLine& line) {
+  if (line.what == "materials") return list_materials(line);
+  if (line.what == "machines") return list_machines(line);
+  if (line.what == "processes") return list_processes(line);
+  throw InputError(fmt::format("list: must be materials, machines or processes, got {}", line.what));
 }
 
 }  // namespace retrace::app

@@ -24,6 +24,8 @@ ExitCode run(int argc, const char* const* argv) {
   if (line->command == "inspect") return app::run_inspect_command(*line);
   if (line->command == "metrology") return app::run_metrology_command(*line);
   if (line->command == "sweep") return app::run_sweep_command(*line);
+  if (line->command == "job") return app::run_job_command(*line);
+  if (line->command == "fabricate") return app::run_fabricate_command(*line);
   if (line->command == "init") return app::run_init_command(*line);
   return app::run_list_command(*line);
 }

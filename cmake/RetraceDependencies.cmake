@@ -19,6 +19,11 @@ pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus>=3.3)
 pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3>=3.3)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo>=1.16 cairo-svg cairo-png)
 
+if(RETRACE_WITH_OPENIMAGEIO)
+  # Its own CMake package asks for OpenEXR's and others', which reading pictures does not need.
+  pkg_check_modules(OPENIMAGEIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
+endif()
+
 if(RETRACE_BUILD_TESTS)
   find_package(GTest 1.12 CONFIG REQUIRED)
   find_package(rapidcheck CONFIG REQUIRED)

@@ -62,11 +62,20 @@ struct LightSpectrum {
   InputLocation location;      ///< where it was given, for whoever cannot read the file or finds no index there
 };
 
+/// A picture whose dark pixels say which elements are there. Only fabrication jobs know what to do with it.
+struct ArrayMask {
+  std::string name;            ///< of the file, as given
+  std::filesystem::path file;  ///< the same, from the working directory
+  double threshold = 0.7;      ///< pixels with grey < threshold * 255 are cut
+  InputLocation location;      ///< where it was given, for whoever cannot use it
+};
+
 /// Everything a design file says, checked and with its defaults filled in.
 struct Design {
   std::string source;  ///< file name as given, "-" for standard input
   std::string title;   ///< empty if none was given
   geometry::PartSpec part;
+  std::optional<ArrayMask> mask;
   std::string material = "PMMA";
   InputLocation material_location;          ///< where the material was named, for whoever finds that it is not shipped
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1

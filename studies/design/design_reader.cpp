@@ -279,6 +279,7 @@ PartSpec read_part(const DesignDocument& document) {
   part.element = read_element(element, kind);
   read_array(array, part, kind);
   element.finish();
+  array.skip({"mask", "mask_threshold"});
   array.finish();
   check_array(part, array, element);
   return part;
@@ -398,6 +399,27 @@ std::string read_stream(std::istream& stream, const std::string& name) {
   return text;
 }
 
+/// The picture of the array; the keys of the array itself are read by read_array().
+std::optional<ArrayMask> read_mask(const DesignDocument& document, const PartSpec& part) {
+  constexpr Range threshold{.low = 0.0, .low_included = false, .high = 1.0};
+  TableReader array(document, "array");
+  const auto file = array.file("mask");
+  if (!file) {
+    array.refuse({"mask_threshold"}, "only allowed with mask");
+    return std::nullopt;
+  }
+  if (!std::holds_alternative<geometry::RtpElement>(part.element))
+    array.fail("mask", "only allowed for kind = \"rtp\"");
+  if (part.extent == Extent::infinite || part.arrangement == Arrangement::single)
+    array.fail("mask", "only allowed for finite arrays that are not \"single\"");
+  ArrayMask mask;
+  mask.name = *array.text("mask");
+  mask.file = *file;
+  mask.threshold = array.number("mask_threshold", threshold).value_or(mask.threshold);
+  mask.location = array.where("mask");
+  return mask;
+}
+
 }  // namespace
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
@@ -409,6 +431,7 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   design.source = source_name;
   design.title = top.text("title").value_or("");
   design.part = read_part(document);
+  design.mask = read_mask(document, design.part);
   design.texture = read_surface(document, design.part);
   TableReader body(document, "body");
   read_body(body, design);

@@ -114,6 +114,7 @@ const std::vector<Library>& libraries() {
        [](const std::string& path) { return path.starts_with("studies/sweep/mpi_") && !is_header(path); }},
       {"NLopt", "nlopt", "a .cpp file of studies/optimise/",
        [](const std::string& path) { return path.starts_with("studies/optimise/") && !is_header(path); }},
+      {"OpenImageIO", "OpenImageIO/", "an io/ room", in_io_room},
       {"CLI11", "CLI/", "app/", [](const std::string& path) { return path.starts_with("app/"); }},
       {"FFTW", "fftw3", "a .cpp file of surface_models/",
        [](const std::string& path) { return path.starts_with("surface_models/") && !is_header(path); }},

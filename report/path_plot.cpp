@@ -1,0 +1,131 @@
+#include "report/path_plot.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "report/axis_ticks.h"
+#include "report/canvas.h"
+
+namespace retrace::report {
+namespace {
+
+using geometry::Vec2;
+
+constexpr Colour kWhite{1.0, 1.0, 1.0};
+constexpr Colour kText{0.13, 0.13, 0.13};
+constexpr Colour kFaint{0.42, 0.42, 0.42};
+constexpr Colour kMaterial{0.88, 0.88, 0.88};
+constexpr Colour kOutline{0.35, 0.35, 0.35};
+// Okabe and Ito (2008): blue, vermillion, bluish green, reddish purple, black.
+constexpr std::array<Colour, 5> kColours = {
+    {{0.0, 0.447, 0.698}, {0.835, 0.369, 0.0}, {0.0, 0.620, 0.451}, {0.8, 0.475, 0.655}, {0.0, 0.0, 0.0}}};
+constexpr Font kTitleFont{16.0, true};
+constexpr Font kRemarkFont{11.5, false};
+constexpr Font kLabelFont{13.0, false};
+constexpr Font kTickFont{11.0, false};
+constexpr double kMargin = 22.0;
+constexpr double kPlanWidth = 560.0;
+constexpr double kLeft = 74.0;
+constexpr double kBelow = 52.0;
+constexpr double kLegendLine = 20.0;
+
+struct Box {
+  Vec2 low = Vec2::Zero();
+  Vec2 high = Vec2::Ones();
+};
+
+Box box_of(const PathPlot& plot) {
+  std::vector<double> x;
+  std::vector<double> y;
+  const auto take = [&](const Vec2& p) {
+    x.push_back(p.x());
+    y.push_back(p.y());
+  };
+  for (const Vec2& p : plot.material) take(p);
+  for (const PathKind& kind : plot.kinds)
+    for (const auto& [from, to] : kind.moves) {
+      take(from);
+      take(to);
+    }
+  const Range across = drawable(extent_of(x).value_or(Range{0.0, 1.0}));
+  const Range up = drawable(extent_of(y).value_or(Range{0.0, 1.0}));
+  const double room = 0.04 * std::max(across.span(), up.span());
+  return {{across.low - room, up.low - room}, {across.high + room, up.high + room}};
+}
+
+std::string draw(const PathPlot& plot, Canvas::Format format, double scale) {
+  const Box box = box_of(plot);
+  const Vec2 size = box.high - box.low;
+  const double height = kPlanWidth * std::clamp(size.y() / size.x(), 0.15, 1.4);
+  const double unit = std::min(kPlanWidth / size.x(), height / size.y());
+  const double top =
+      kMargin + kTitleFont.size + 14.0 + (kRemarkFont.size + 5.0) * static_cast<double>(plot.remarks.size());
+  const double legend_top = top + height + kBelow + 8.0;
+  const Size figure{kLeft + kPlanWidth + kMargin,
+                    legend_top + kLegendLine * static_cast<double>((plot.kinds.size() + 3) / 4) + kMargin};
+  Canvas canvas(format, figure, scale);
+  canvas.fill_rectangle({0.0, 0.0}, figure, kWhite);
+  const std::vector<std::string> title =
+      canvas.fitted(plot.title, kTitleFont, figure.width - 2.0 * kMargin, 1, Ellipsis::end);
+  double y = kMargin + kTitleFont.size;
+  for (const std::string& line : title) canvas.text({kMargin, y}, line, kTitleFont, kText, Align::left);
+  for (const std::string& remark : plot.remarks) {
+    y += kRemarkFont.size + 5.0;
+    for (const std::string& line : canvas.fitted(remark, kRemarkFont, figure.width - 2.0 * kMargin, 1, Ellipsis::end))
+      canvas.text({kMargin, y}, line, kRemarkFont, kFaint, Align::left);
+  }
+
+  const auto at = [&](const Vec2& p) {
+    return Point{kLeft + (p.x() - box.low.x()) * unit, top + height - (p.y() - box.low.y()) * unit};
+  };
+  std::vector<Point> material;
+  for (const Vec2& p : plot.material) material.push_back(at(p));
+  if (!material.empty()) {
+    canvas.fill({material}, kMaterial);
+    canvas.line(material, {kOutline, 1.0, {}});
+  }
+  for (std::size_t k = 0; k < plot.kinds.size(); ++k) {
+    Stroke stroke{kColours[k % kColours.size()], 0.9, {}};
+    if (plot.kinds[k].dashed) stroke.dashes = {4.0, 3.0};
+    for (const auto& [from, to] : plot.kinds[k].moves) canvas.line({at(from), at(to)}, stroke);
+    const Point sample{kLeft + 140.0 * static_cast<double>(k % 4),
+                       legend_top + kLegendLine * static_cast<double>(k / 4)};
+    stroke.width = 2.0;
+    canvas.line({sample, {sample.x + 24.0, sample.y}}, stroke);
+    canvas.text({sample.x + 30.0, sample.y + 4.0}, plot.kinds[k].label, kTickFont, kText, Align::left);
+  }
+
+  const Range across{box.low.x(), box.low.x() + kPlanWidth / unit};
+  const Range up{box.low.y(), box.low.y() + height / unit};
+  const Stroke axis{kOutline, 1.0, {}};
+  canvas.line({{kLeft, top}, {kLeft, top + height}, {kLeft + kPlanWidth, top + height}}, axis);
+  const Ticks below = make_ticks(across, 6);
+  for (std::size_t k = 0; k < below.positions.size(); ++k) {
+    const double x = kLeft + (below.positions[k] - across.low) * unit;
+    canvas.line({{x, top + height}, {x, top + height + 4.0}}, axis);
+    canvas.text({x, top + height + 17.0}, below.labels[k], kTickFont, kText, Align::centre);
+  }
+  const Ticks beside = make_ticks(up, 6);
+  for (std::size_t k = 0; k < beside.positions.size(); ++k) {
+    const double at_y = top + height - (beside.positions[k] - up.low) * unit;
+    canvas.line({{kLeft - 4.0, at_y}, {kLeft, at_y}}, axis);
+    canvas.text({kLeft - 7.0, at_y + 4.0}, beside.labels[k], kTickFont, kText, Align::right);
+  }
+  canvas.text({kLeft + 0.5 * kPlanWidth, top + height + 38.0}, plot.x_label, kLabelFont, kText, Align::centre);
+  canvas.text({18.0, top + 0.5 * height}, plot.y_label, kLabelFont, kText, Align::centre, true);
+  return canvas.finish();
+}
+
+}  // namespace
+
+std::string render_svg(const PathPlot& plot) {
+  return draw(plot, Canvas::Format::svg, 1.0);
+}
+
+std::string render_png(const PathPlot& plot, double scale) {
+  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument("scale must be > 0 and <= 16");
+  return draw(plot, Canvas::Format::png, scale);
+}
+
+}  // namespace retrace::report

@@ -1,0 +1,99 @@
+#include "studies/fabrication/fabricate.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "core/message_text.h"
+#include "fabrication/job/io/job_files.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/post/post.h"
+
+namespace retrace::studies {
+namespace {
+
+using fabrication::Plan;
+using geometry::Vec3;
+
+const fabrication::Dialect& dialect_of(const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const fabrication::Dialect& dialect : fabrication::dialects()) {
+    if (dialect.name == name) return dialect;
+    names.push_back(dialect.name);
+  }
+  throw InputError({"", 0, "--dialect"}, fmt::format("must be {}, got {}", alternatives(names), in_quotes(name)));
+}
+
+/// Where the axes are, in the section of an element.
+geometry::Vec2 in_section(const FabricationResult& result, const fabrication::CutElement& element,
+                          const fabrication::Position& at) {
+  const fabrication::AxisPositions axes{1e-6 * static_cast<double>(at.x_nm.value_or(0)),
+                                        1e-6 * static_cast<double>(at.y_nm.value_or(0)),
+                                        1e-6 * static_cast<double>(at.z_nm.value_or(0)),
+                                        1e-7 * static_cast<double>(at.a), 1e-7 * static_cast<double>(at.c)};
+  const Vec3 tip = fabrication::forward(result.machine, axes).reference_mm;
+  const Vec3 from_root = tip - Vec3(element.centre_mm.x(), element.centre_mm.y(),
+                                    -fabrication::root_depth_mm(fabrication::blank_element(result.job)));
+  // Facet 1 has its wall on the side of +y_w; of turned elements on that of +x_w.
+  return {element.turned ? -from_root.x() : -from_root.y(), from_root.z()};
+}
+
+}  // namespace
+
+FabricationResult fabricate(const FabricationRequest& request) {
+  FabricationResult result;
+  const fabrication::Dialect& dialect = dialect_of(request.dialect);
+  result.dialect = dialect.name;
+  result.file_ending = dialect.ending;
+  result.job = fabrication::read_job(request.job_file);
+  result.machine = fabrication::load_machine(result.job.machine, {result.job.source, 0, "machine"});
+  result.plan = fabrication::make_plan(result.job, result.machine, request.options);
+  return result;
+}
+
+std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing) {
+  std::set<std::uint32_t> wanted;
+  for (const fabrication::Stage& stage : result.plan.stages)
+    if (stage.roughs == roughing) wanted.insert(stage.subroutine);
+  std::vector<SectionMove> moves;
+  for (const fabrication::Program& program : result.plan.programs) {
+    fabrication::Program first_only;
+    first_only.subroutines = program.subroutines;
+    std::optional<std::int32_t> element;
+    std::set<std::uint32_t> seen;
+    for (const fabrication::Item& item : program.items) {
+      if (std::holds_alternative<fabrication::Turn>(item)) first_only.items.push_back(item);
+      const auto* const visit = std::get_if<fabrication::Visit>(&item);
+      if (visit == nullptr || !wanted.contains(visit->subroutine)) continue;
+      const bool turned = result.plan.elements[static_cast<std::size_t>(visit->element)].turned;
+      if (!element && !turned) element = visit->element;
+      // Side-by-side passes look the same in the section.
+      if (element == visit->element && seen.insert(visit->subroutine).second) first_only.items.push_back(item);
+    }
+    if (!element) continue;
+    const fabrication::CutElement& cut = result.plan.elements[static_cast<std::size_t>(*element)];
+    geometry::Vec2 at = geometry::Vec2::Zero();
+    fabrication::for_each_move(first_only, [&](const fabrication::PlannedMove& move) {
+      if (move.rotary) return;
+      const geometry::Vec2 to = in_section(result, cut, move.to);
+      if (!move.rapid) moves.push_back({move.motion, at.x(), at.y(), to.x(), to.y()});
+      at = to;
+    });
+    break;
+  }
+  return moves;
+}
+
+std::vector<std::int64_t> cutting_places(const FabricationResult& result) {
+  std::vector<std::int64_t> places(result.plan.elements.size(), 0);
+  std::int64_t next = 0;
+  for (const fabrication::Program& program : result.plan.programs)
+    for (const fabrication::Item& item : program.items)
+      if (const auto* const visit = std::get_if<fabrication::Visit>(&item)) {
+        std::int64_t& place = places[static_cast<std::size_t>(visit->element)];
+        if (place == 0) place = ++next;
+      }
+  return places;
+}
+
+}  // namespace retrace::studies

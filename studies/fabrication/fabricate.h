@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fabrication/job/job.h"
+#include "fabrication/machine/machine.h"
+#include "fabrication/plan/plan.h"
+
+namespace retrace::studies {
+
+struct FabricationRequest {
+  std::filesystem::path job_file;
+  std::string dialect = "rs274ngc";
+  fabrication::PlanOptions options;
+};
+
+/// A job as a plan and its programs in one dialect.
+struct FabricationResult {
+  fabrication::Job job;
+  fabrication::Machine machine;
+  fabrication::Plan plan;
+  std::string dialect;
+  std::string file_ending;  ///< of programs, with the dot
+  std::vector<std::string> warnings;
+
+  std::string program_file(std::size_t k) const { return plan.programs[k].name + file_ending; }
+};
+
+/// Reads and plans a job. \throw InputError
+FabricationResult fabricate(const FabricationRequest& request);
+
+/// The way of the tool through one element, in the section across its root: u to the side of facet 2, z up, in mm from
+/// the root.
+struct SectionMove {
+  fabrication::Motion motion = fabrication::Motion::translate;
+  double from_u_mm = 0.0;
+  double from_z_mm = 0.0;
+  double to_u_mm = 0.0;
+  double to_z_mm = 0.0;
+};
+
+/// All cutting moves of the first element that is cut, those of roughing stages or of the others.
+std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing);
+
+/// For each element that is cut its place in the order of cutting, from 1, within the first stage of its orientation.
+std::vector<std::int64_t> cutting_places(const FabricationResult& result);
+
+}  // namespace retrace::studies

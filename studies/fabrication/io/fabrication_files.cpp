@@ -1,0 +1,174 @@
+#include "studies/fabrication/io/fabrication_files.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/json_text.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "core/version.h"
+#include "fabrication/job/tool_angles.h"
+
+namespace retrace::studies {
+namespace {
+
+using fabrication::Plan;
+using fabrication::TimeShares;
+using Json = nlohmann::ordered_json;
+
+constexpr double kSecondsPerHour = 3600.0;
+
+double per_element_s(const Plan& plan) {
+  return plan.time.total_s() / static_cast<double>(plan.elements.size());
+}
+
+double area_rate(const Plan& plan) {
+  return plan.aperture_area_mm2 / (plan.time.total_s() / kSecondsPerHour);
+}
+
+Json shares_json(const TimeShares& time) {
+  return {{"cutting_s", time.cutting_s},
+          {"dwell_s", time.dwell_s},
+          {"retract_s", time.retract_s},
+          {"rapid_s", time.rapid_s},
+          {"fixed_s", time.fixed_s}};
+}
+
+std::string hours_text(double seconds) {
+  const auto minutes = static_cast<long>(std::lround(seconds / 60.0));
+  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+std::string_view word_of(fabrication::Strategy strategy) {
+  return fabrication::kStrategyWords[static_cast<std::size_t>(strategy)];
+}
+
+Json poses_json(const Plan& plan) {
+  Json poses = Json::array();
+  for (const fabrication::CuttingPose& pose : plan.poses)
+    poses.push_back({{"facet", pose.facet.facet},
+                     {"turned", pose.facet.turned},
+                     {"a_deg", pose.rounded.a_deg},
+                     {"c_deg", pose.rounded.c_deg},
+                     {"root_tilt_arcmin", 60.0 * pose.root_tilt.deg()},
+                     {"lift_nm", 1e6 * pose.section.lift_mm}});
+  return poses;
+}
+
+}  // namespace
+
+std::string job_json(const MadeJob& made) {
+  const fabrication::Job& job = made.job;
+  const Json json = {{"schema", "retrace.job_summary/1"},
+                     {"elements", made.elements},
+                     {"partial_elements", made.partial_elements},
+                     {"machine", job.machine},
+                     {"strategy", word_of(job.strategy)},
+                     {"process", job.process.name},
+                     {"process_source", job.process.source},
+                     {"tool_width_mm", job.tool.width_mm},
+                     {"workpiece", fabrication::kWorkpieceWords[static_cast<std::size_t>(job.workpiece.kind)]},
+                     {"version", kVersion},
+                     {"warnings", made.warnings},
+                     {"complete", true}};
+  return to_text(json);
+}
+
+std::string job_table(const MadeJob& made) {
+  const fabrication::Job& job = made.job;
+  std::string text;
+  text +=
+      fmt::format("  elements            {}{}\n", made.elements,
+                  made.partial_elements > 0 ? fmt::format(", {} partial ones left out", made.partial_elements) : "");
+  text += fmt::format("  machine, strategy   {}, {}\n", printable(job.machine), word_of(job.strategy));
+  text +=
+      fmt::format("  process             {} ({})\n", printable(job.process.name), printable(job.process.source, 200));
+  return text;
+}
+
+std::string fabrication_json(const FabricationResult& result) {
+  const Plan& plan = result.plan;
+  Json programs = Json::array();
+  for (std::size_t k = 0; k < plan.programs.size(); ++k) programs.push_back(result.program_file(k));
+  Json stages = Json::array();
+  for (const fabrication::Stage& stage : plan.stages) {
+    const fabrication::CuttingPose& pose = plan.poses[stage.pose];
+    stages.push_back({{"name", stage.name},
+                      {"a_deg", pose.rounded.a_deg},
+                      {"c_deg", pose.rounded.c_deg},
+                      {"elements", stage.visits},
+                      {"time_s", stage.time.total_s()}});
+  }
+  const fabrication::CuttingAngles plunge = fabrication::plunge_angles(result.job.tool);
+  const fabrication::CuttingAngles plough = fabrication::plough_angles(result.job.tool);
+  const Json json = {{"schema", "retrace.fabrication/1"},
+                     {"job", result.job.source},
+                     {"machine", result.machine.name},
+                     {"dialect", result.dialect},
+                     {"strategy", word_of(result.job.strategy)},
+                     {"process", result.job.process.name},
+                     {"elements", plan.elements.size()},
+                     {"cuts_per_facet", plan.cuts_per_facet},
+                     {"passes", plan.passes},
+                     {"c_rotations", plan.c_rotations},
+                     {"time_s", plan.time.total_s()},
+                     {"time_per_element_s", per_element_s(plan)},
+                     {"time_fixed_s", plan.time.fixed_s},
+                     {"area_mm2", plan.aperture_area_mm2},
+                     {"area_rate_mm2_per_h", area_rate(plan)},
+                     {"time_per_cm2_s", 100.0 * plan.time.total_s() / plan.aperture_area_mm2},
+                     {"time", shares_json(plan.time)},
+                     {"plunge_rake_deg", plunge.rake_deg},
+                     {"plough_rake_deg", plough.rake_deg},
+                     {"safe_z_mm", plan.safe_z_mm},
+                     {"poses", poses_json(plan)},
+                     {"stages", stages},
+                     {"programs", programs},
+                     {"program_times_s", plan.program_times_s},
+                     {"version", kVersion},
+                     {"warnings", result.warnings},
+                     {"complete", true}};
+  return to_text(json);
+}
+
+std::string stages_csv(const FabricationResult& result) {
+  std::string text = "name,a_deg,c_deg,elements,time_s,cutting_s,dwell_s,retract_s,rapid_s,fixed_s\n";
+  for (const fabrication::Stage& stage : result.plan.stages) {
+    const fabrication::CuttingPose& pose = result.plan.poses[stage.pose];
+    const TimeShares& t = stage.time;
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", stage.name, shortest(pose.rounded.a_deg),
+                        shortest(pose.rounded.c_deg), stage.visits, shortest(t.total_s()), shortest(t.cutting_s),
+                        shortest(t.dwell_s), shortest(t.retract_s), shortest(t.rapid_s), shortest(t.fixed_s));
+  }
+  return text;
+}
+
+std::string fabrication_table(const FabricationResult& result) {
+  const Plan& plan = result.plan;
+  const TimeShares& t = plan.time;
+  std::string text;
+  text += fmt::format("  elements            {}, {} cuts a facet{}\n", plan.elements.size(), plan.cuts_per_facet,
+                      plan.passes > 1 ? fmt::format(", {} passes side by side", plan.passes) : "");
+  text += fmt::format("  machine, dialect    {}, {}\n", printable(result.machine.name), result.dialect);
+  text += fmt::format("  rotations of C      {}\n", plan.c_rotations);
+  text += fmt::format("  time                {}: {} s an element, {} mm2/h, {} h a cm2\n", hours_text(t.total_s()),
+                      fixed(per_element_s(plan), 2), fixed(area_rate(plan), 1),
+                      fixed(100.0 * t.total_s() / plan.aperture_area_mm2 / kSecondsPerHour, 2));
+  text += fmt::format("  of which            cutting {} %, dwell {} %, retract {} %, rapid {} %, fixed {} %\n",
+                      fixed(100.0 * t.cutting_s / t.total_s(), 1), fixed(100.0 * t.dwell_s / t.total_s(), 1),
+                      fixed(100.0 * t.retract_s / t.total_s(), 1), fixed(100.0 * t.rapid_s / t.total_s(), 1),
+                      fixed(100.0 * t.fixed_s / t.total_s(), 1));
+  constexpr std::size_t kMostStages = 20;
+  for (std::size_t k = 0; k < plan.stages.size() && k < kMostStages; ++k) {
+    const fabrication::Stage& stage = plan.stages[k];
+    const fabrication::CuttingPose& pose = plan.poses[stage.pose];
+    text += fmt::format("  {:<28} A{} C{}  {} elements, {}\n", stage.name, fixed(pose.rounded.a_deg, 4),
+                        fixed(pose.rounded.c_deg, 4), stage.visits, hours_text(stage.time.total_s()));
+  }
+  if (plan.stages.size() > kMostStages) text += fmt::format("  and {} more\n", plan.stages.size() - kMostStages);
+  return text;
+}
+
+}  // namespace retrace::studies

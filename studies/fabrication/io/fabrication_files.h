@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "studies/fabrication/fabricate.h"
+#include "studies/fabrication/job_maker.h"
+
+namespace retrace::studies {
+
+/// The result of `retrace job` as JSON (retrace.job_summary/1) and as a table.
+std::string job_json(const MadeJob& made);
+std::string job_table(const MadeJob& made);
+
+/// The result of `retrace fabricate` as JSON (retrace.fabrication/1), as one line a stage, and as a table.
+std::string fabrication_json(const FabricationResult& result);
+std::string stages_csv(const FabricationResult& result);
+std::string fabrication_table(const FabricationResult& result);
+
+}  // namespace retrace::studies

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "fabrication/job/job.h"
+#include "studies/design/design.h"
+
+namespace retrace::studies {
+
+/// What a design does not say of its fabrication.
+struct JobRequest {
+  std::string machine = "ideal";  ///< a shipped one, or a file
+  double tool_width_mm = 0.0;
+  std::string strategy = "two-step";
+  std::string process = "thesis-acrylic";  ///< a shipped one, or a file
+  std::string workpiece = "mould";
+  double shrinkage_percent = 0.0;
+};
+
+struct MadeJob {
+  fabrication::Job job;
+  std::int64_t elements = 0;          ///< that are cut
+  std::int64_t partial_elements = 0;  ///< that the design has and the job leaves out
+  std::vector<std::string> warnings;
+};
+
+/// The fabrication job of a design: prisms of its array its dihedral error included, other errors and edges of
+/// [surface] not; partial elements are left out. \throw InputError for designs and requests that cannot be cut
+MadeJob make_job(const Design& design, const JobRequest& request);
+
+}  // namespace retrace::studies
