@@ -70,7 +70,7 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
     panel.remarks = {"the optic's back seen from the tool: mirrored against the design"};
   panel.outline = rectangle(Vec2::Zero(), extent);
   // x_part = -y_w and y_part = x_w, from a corner of the extent.
-  const auto in_plan = [&](const Vec2& w) { return Vec2(-w.y(), w.x()) + 0.5 * extent; };
+  const auto in_plan = [&](const Vec2& w) -> Vec2 { return Vec2(-w.y(), w.x()) + 0.5 * extent; };
   for (std::size_t k = 0; k < elements.size();) {
     const Vec2 half = elements[k].turned ? 0.5 * Vec2(element.width_mm, element.base_mm)
                                          : 0.5 * Vec2(element.base_mm, element.width_mm);

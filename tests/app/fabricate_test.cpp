@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "tests/app/program.h"
@@ -13,8 +14,8 @@ namespace {
 
 std::string design(const std::string& arrangement, double length_mm, const std::string& more = {}) {
   const std::string length = std::to_string(length_mm);
-  return "[element]\nkind = \"rtp\"\nbase_mm = 0.451\nwidth_mm = 0.451\n[array]\narrangement = \"" + arrangement + "\"\n" +
-         (arrangement == "single" ? "" : "x_length_mm = " + length + "\ny_length_mm = " + length + "\n") +
+  return "[element]\nkind = \"rtp\"\nbase_mm = 0.451\nwidth_mm = 0.451\n[array]\narrangement = \"" + arrangement +
+         "\"\n" + (arrangement == "single" ? "" : "x_length_mm = " + length + "\ny_length_mm = " + length + "\n") +
          more + "[body]\nthickness_mm = 0.5\n";
 }
 
@@ -101,8 +102,9 @@ TEST(Fabricate, TakesAMask) {
   const TemporaryFolder folder;
   // 178 is cut, 179 is not; the first row of the picture has the largest y.
   folder.write("m.pgm", grey_map(3, 2, {255, 178, 179, 0, 255, 255}));
-  folder.write("d.toml", "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 1.5\n"
-                         "y_length_mm = 1\nmask = \"m.pgm\"\n[body]\nthickness_mm = 1\n");
+  folder.write("d.toml",
+               "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 1.5\n"
+               "y_length_mm = 1\nmask = \"m.pgm\"\n[body]\nthickness_mm = 1\n");
   ASSERT_EQ(retrace(folder, {"job", "d.toml", "--tool-width-mm", "0.5", "-o", "j.toml"}).code, 0);
   EXPECT_NE(folder.read("j.toml").find("pattern = [\n  \"-#-\",\n  \"#--\",\n]"), std::string::npos)
       << folder.read("j.toml");
@@ -116,8 +118,8 @@ TEST(Fabricate, AWiderToolHalvesTheTimeForTheArea) {
   const TemporaryFolder folder;
   folder.write("d.toml", design("aligned", 8 * 0.451));
   ASSERT_EQ(retrace(folder, with(kJob, {"-o", "a.toml"})).code, 0);
-  ASSERT_EQ(retrace(folder, {"job", "d.toml", "--set", "element.width_mm=0.902", "--tool-width-mm", "0.902",
-                             "--machine", "thesis", "-o", "b.toml"})
+  ASSERT_EQ(retrace(folder, {"job", "d.toml", "--set", "element.width_mm=0.902", "--set", "array.y_length_mm=7.216",
+                             "--tool-width-mm", "0.902", "--machine", "thesis", "-o", "b.toml"})
                 .code,
             0);
   const double narrow = retrace_json(folder, {"fabricate", "a.toml"})["time_per_cm2_s"].get<double>();
@@ -128,12 +130,13 @@ TEST(Fabricate, AWiderToolHalvesTheTimeForTheArea) {
 TEST(Fabricate, AMachineOfTheUserIsNamedFromTheJob) {
   const TemporaryFolder folder;
   folder.write("d.toml", design("single", 0));
+  std::filesystem::create_directories(folder.path() / "m");
+  std::filesystem::create_directories(folder.path() / "jobs");
   folder.write("m/mine.toml", read_text(std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml"));
-  folder.write("jobs/empty", "");
-  ASSERT_EQ(retrace(folder, {"job", "d.toml", "--tool-width-mm", "0.451", "--machine", "m/mine.toml", "-o",
-                             "jobs/j.toml"})
-                .code,
-            0);
+  ASSERT_EQ(
+      retrace(folder, {"job", "d.toml", "--tool-width-mm", "0.451", "--machine", "m/mine.toml", "-o", "jobs/j.toml"})
+          .code,
+      0);
   EXPECT_NE(folder.read("jobs/j.toml").find("machine = \"../m/mine.toml\""), std::string::npos);
   EXPECT_EQ(retrace_json(folder, {"fabricate", "jobs/j.toml"})["machine"], "paper");
 }
@@ -163,8 +166,9 @@ struct Refused {
 TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
   const TemporaryFolder folder;
   folder.write("d.toml", design("offset", 3 * 0.451));
-  folder.write("cube.toml", "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\narrangement = \"single\"\n"
-                            "[body]\nthickness_mm = 1\n");
+  folder.write("cube.toml",
+               "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\narrangement = \"single\"\n"
+               "[body]\nthickness_mm = 1\n");
   folder.write("white.pgm", grey_map(3, 3, std::vector<int>(9, 255)));
   folder.write("small.pgm", grey_map(2, 2, {0, 0, 0, 0}));
   folder.write("text.png", "no picture\n");
@@ -196,7 +200,8 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
   const Arguments before = folder.names();
 
   const std::vector<Refused> cases = {
-      {{"job", "d.toml", "--tool-width-mm", "0.46"}, "--tool-width-mm: must be <= 0.451, the element's width, got 0.46"},
+      {{"job", "d.toml", "--tool-width-mm", "0.46"},
+       "--tool-width-mm: must be <= 0.451, the element's width, got 0.46"},
       {{"job", "d.toml", "--tool-width-mm", "3"}, "--tool-width-mm: must be >= 0.1 and <= 2, got 3"},
       {{"job", "d.toml"}, "--tool-width-mm is required"},
       {{"job", "d.toml", "--tool-width-mm", "0.4", "--machine", "kugler"}, "--machine: must be"},
@@ -210,7 +215,8 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
       {{"job", "mask_white.pgm.toml", "--tool-width-mm", "0.451"},
        "mask_white.pgm.toml:9: array.mask: white.pgm: no pixel is dark enough"},
       {{"job", "mask_small.pgm.toml", "--tool-width-mm", "0.451"},
-       "mask_small.pgm.toml:9: array.mask: small.pgm: must have 3 x 3 pixels, one for each cell of the array, got 2 x 2"},
+       "mask_small.pgm.toml:9: array.mask: small.pgm: must have 3 x 3 pixels, one for each cell of the array, got 2 x "
+       "2"},
       {{"job", "mask_text.png.toml", "--tool-width-mm", "0.451"},
        "mask_text.png.toml:9: array.mask: text.png: cannot be read as a picture"},
       {{"job", "mask_none.png.toml", "--tool-width-mm", "0.451"},
@@ -219,8 +225,8 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
        "--dialect: must be \"rs274ngc\", \"sinumerik\", \"fanuc\" or \"pmac\", got \"kugler\""},
       {{"fabricate", "missing.toml"}, "missing.toml: cannot be read"},
       {{"fabricate", "d.toml"}, "d.toml: schema: missing"},
-      {{"fabricate", "doc0.toml"}, "doc0.toml:38: process.roughing_depth_um: must be > 0 and <= 1000, got 0"},
-      {{"fabricate", "wide.toml"}, "wide.toml:30: tool.width_mm: must be <= 0.451, the element's width, got 0.5"},
+      {{"fabricate", "doc0.toml"}, "doc0.toml:42: process.roughing_depth_um: must be > 0 and <= 1000, got 0"},
+      {{"fabricate", "wide.toml"}, "wide.toml:32: tool.width_mm: must be <= 0.451, the element's width, got 0.5"},
       {{"fabricate", "far.toml"}, "far.toml: machine: element 0: axis X of machine ideal would go to -0.451"},
       {{"fabricate", "zero.toml"}, "zero_axis.toml:"},
       {{"fabricate", "unknown.toml"}, "unknown.toml: machine: must be"},
