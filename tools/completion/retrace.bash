@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect roughness metrology sweep init list'
+  local commands='rre inspect roughness metrology sweep job fabricate init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -69,6 +69,31 @@ _retrace() {
       _retrace_words "$word" 'm mm um nm pm'
       return
       ;;
+    --machine)
+      _retrace_words "$word" 'ideal paper thesis'
+      return
+      ;;
+    --strategy)
+      _retrace_words "$word" 'unidirectional bidirectional two-step'
+      return
+      ;;
+    --process)
+      _retrace_words "$word" 'paper-pmma thesis-acrylic thesis-forces'
+      return
+      ;;
+    --workpiece)
+      _retrace_words "$word" 'mould direct'
+      return
+      ;;
+    --dialect)
+      _retrace_words "$word" 'rs274ngc sinumerik fanuc pmac'
+      return
+      ;;
+    --phase)
+      _retrace_words "$word" 'all roughing finishing'
+      return
+      ;;
+    --tool-width-mm | --shrinkage-percent | --from-element | --stop-every | --split-hours) return ;;
     --set)
       compopt -o nospace 2>/dev/null
       _retrace_words "$word" 'element. array. body. light. detector. idealisation.'
@@ -95,16 +120,22 @@ _retrace() {
           --feed-mm-per-min --edge"
         ;;
       sweep) _retrace_words "$word" "$common --resume --overwrite" ;;
+      job)
+        _retrace_words "$word" "$common --machine --tool-width-mm --strategy --process --workpiece --shrinkage-percent"
+        ;;
+      fabricate)
+        _retrace_words "$word" "$common --dialect --phase --from-element --stop-every --split-hours"
+        ;;
       *) _retrace_words "$word" "$common" ;;
     esac
     return
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect | roughness | sweep) _retrace_files "$word" .toml ;;
+    rre | inspect | roughness | sweep | job | fabricate) _retrace_files "$word" .toml ;;
     metrology) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
-    list) _retrace_words "$word" 'materials' ;;
+    list) _retrace_words "$word" 'materials machines processes' ;;
   esac
 }
 
