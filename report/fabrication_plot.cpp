@@ -32,7 +32,10 @@ PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing)
   const double half_mm = 0.5 * element.base_mm;
   const double depth_mm = fabrication::root_depth_mm(element);
   PathPlot plot;
-  plot.title = fmt::format("{}: {}", name_of(result), roughing ? "roughing" : result.job.strategy == fabrication::Strategy::bidirectional ? "layers" : "finishing");
+  plot.title = fmt::format("{}: {}", name_of(result),
+                           roughing                                                      ? "roughing"
+                           : result.job.strategy == fabrication::Strategy::bidirectional ? "layers"
+                                                                                         : "finishing");
   plot.remarks = {fmt::format("one element of {}, in the section across its root; machine {}",
                               result.plan.elements.size(), result.machine.name)};
   plot.x_label = "across the root (mm)";
