@@ -204,9 +204,9 @@ class ProgramMaker {
 
  private:
   std::string base_name() const {
-    std::string name = options_.phase == "all" ? "program" : options_.phase;
-    std::replace(name.begin(), name.end(), '+', '_');
-    return name;
+    if (options_.phase == "all") return "program";
+    if (!options_.phase.ends_with('+')) return options_.phase;
+    return options_.phase.substr(0, options_.phase.size() - 1) + "_and_after";
   }
 
   void number_programs() {

@@ -71,6 +71,21 @@ TEST(Fabricate, WritesProgramsPicturesAndTimesTheSameInEveryRun) {
   EXPECT_TRUE(folder.read("a/stages.csv").starts_with("name,a_deg,c_deg,elements,time_s,"));
 }
 
+TEST(Fabricate, TakesAsManyCutsAsTheThesis) {
+  // Milliken 2017, 4.1.3: a 1 mm prism at 10 and at 5 um.
+  const TemporaryFolder folder;
+  folder.write("d.toml", design("single", 0));
+  const std::pair<std::string, int> cases[] = {{"thesis-forces-10um", 71}, {"thesis-forces", 142}};
+  for (const auto& [process, cuts] : cases) {
+    ASSERT_EQ(
+        retrace(folder, {"job", "d.toml", "--set", "element.base_mm=1", "--set", "element.width_mm=1",
+                         "--tool-width-mm", "1", "--strategy", "unidirectional", "--process", process, "-o", "j.toml"})
+            .code,
+        0);
+    EXPECT_EQ(retrace_json(folder, {"fabricate", "j.toml"})["cuts_per_facet"], cuts);
+  }
+}
+
 TEST(Fabricate, EveryDialectHasItsEnding) {
   const TemporaryFolder folder;
   folder.write("d.toml", design("single", 0));
@@ -94,8 +109,8 @@ TEST(Fabricate, SplitsAndResumes) {
   const Json rest = retrace_json(folder, {"fabricate", "j.toml", "--phase", "finishing-2-facet-1+", "--from-element",
                                           "5", "--stop-every", "3", "-o", "r"});
   EXPECT_EQ(rest["stages"].size(), 2U);
-  EXPECT_EQ(rest["programs"], Json::array({"finishing-2-facet-1_.ngc"}));
-  EXPECT_NE(folder.read("r/finishing-2-facet-1_.ngc").find("M1\n"), std::string::npos);
+  EXPECT_EQ(rest["programs"], Json::array({"finishing-2-facet-1_and_after.ngc"}));
+  EXPECT_NE(folder.read("r/finishing-2-facet-1_and_after.ngc").find("M1\n"), std::string::npos);
 }
 
 TEST(Fabricate, TakesAMask) {

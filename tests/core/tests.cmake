@@ -1,3 +1,3 @@
 retrace_test(core_test
-  SOURCES core/atomic_file_test.cpp core/derivative_test.cpp core/json_text_test.cpp core/number_format_test.cpp
+  SOURCES core/atomic_file_test.cpp core/derivative_test.cpp core/json_text_test.cpp core/number_format_test.cpp core/toml_file_test.cpp
   LIBRARIES retrace::core rapidcheck)

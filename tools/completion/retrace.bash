@@ -78,7 +78,7 @@ _retrace() {
       return
       ;;
     --process)
-      _retrace_words "$word" 'paper-pmma thesis-acrylic thesis-forces'
+      _retrace_words "$word" 'paper-pmma thesis-acrylic thesis-forces thesis-forces-10um'
       return
       ;;
     --workpiece)

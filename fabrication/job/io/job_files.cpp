@@ -28,8 +28,6 @@ constexpr std::array kArrangements = {Arrangement::single, Arrangement::aligned,
 constexpr std::array<std::string_view, 2> kRowWords = {"even", "odd"};
 constexpr std::array<std::string_view, 1> kKindWords = {"rtp"};
 
-constexpr NumberRange kPositive{.low = 0.0, .low_included = false};
-constexpr NumberRange kNotNegative{.low = 0.0};
 /// From a tenth of a micrometre to ten metres, in which nanometres still are whole numbers of 64 bits.
 constexpr NumberRange kSize{.low = 1e-4, .high = 1e4};
 constexpr NumberRange kGap{.low = 0.0, .high = 1e4};
@@ -47,8 +45,8 @@ constexpr NumberRange kShortLength{.low = 0.0, .low_included = false, .high = 10
 constexpr NumberRange kDwell{.low = 0.0, .high = 60.0};
 constexpr NumberRange kCuts{.low = 1.0, .high = 1000.0};
 constexpr NumberRange kMicrometres{.low = 0.0, .high = 1000.0};
-/// Keeps element numbers within 32 bits and memory within reason.
-constexpr double kMostElements = 2e7;
+/// Keeps the memory of a plan within reason: about 1 KiB an element.
+constexpr double kMostElements = 2e6;
 /// A tool this much wider than the element fits it all the same.
 constexpr double kFitToleranceMm = 1e-6;
 /// The chip needs this much between the rake face and the other facet (assumed: half of what wedge 50 and clearance 15
@@ -193,9 +191,10 @@ void check_array(const Job& job, const Places& at) {
       std::abs(job.element.base_mm - job.element.width_mm) > 1e-9 * job.element.base_mm)
     throw InputError(at.element_width, fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
                                                    shortest(job.element.base_mm), shortest(job.element.width_mm)));
-  if (!job.array.pattern.empty()) check_pattern(job, at);
-  if (cut_elements(job).empty())
-    throw InputError(job.array.pattern.empty() ? at.x_length : at.pattern, "leaves no element to cut");
+  // Without a pattern the first unshifted row has elements.
+  if (job.array.pattern.empty()) return;
+  check_pattern(job, at);
+  if (cut_elements(job).empty()) throw InputError(at.pattern, "leaves no element to cut");
 }
 
 void check_together(const Job& job, const Places& at) {

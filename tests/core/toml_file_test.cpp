@@ -1,0 +1,75 @@
+#include "core/toml_file.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+// Tables of TOML files: what they hand out, and what they refuse with file, line and key.
+
+namespace retrace {
+namespace {
+
+std::string refusal(const std::string& text, const std::function<void(TomlTable&)>& read) {
+  try {
+    TomlTable root = parse_toml(text, "f.toml");
+    read(root);
+    root.finish();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TomlFile, HandsOutWhatIsThere) {
+  TomlTable root = parse_toml(
+      "n = 3\nr = 1.5\nt = 'a'\nb = true\nl = [1, 2]\ns = ['x', 'y']\n[in.ner]\nk = 'two'\n"
+      "[[row]]\nv = 1\n[[row]]\nv = 2\n",
+      "f.toml");
+  EXPECT_EQ(root.whole("n", {}), 3);
+  EXPECT_EQ(root.number("r"), 1.5);
+  EXPECT_EQ(root.text("t"), "a");
+  EXPECT_EQ(root.flag("b"), true);
+  EXPECT_EQ(root.numbers("l", 2), (std::vector<double>{1.0, 2.0}));
+  EXPECT_EQ(root.texts("s"), (std::vector<std::string>{"x", "y"}));
+  const std::string_view words[] = {"one", "two"};
+  EXPECT_EQ(root.table("in").table("ner").choice("k", words), 1U);
+  std::vector<TomlTable> rows = root.tables("row");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].number("v"), 1.0);
+  EXPECT_EQ(rows[1].number("v"), 2.0);
+  EXPECT_EQ(root.number("none"), std::nullopt);
+  EXPECT_FALSE(root.table("nothing").exists());
+  EXPECT_NO_THROW(root.finish());
+}
+
+TEST(TomlFile, RefusesWithFileLineAndKey) {
+  const auto number = [](TomlTable& t) { t.required_number("a", {.low = 0.0, .low_included = false}); };
+  EXPECT_EQ(refusal("\na = -1\n", number), "f.toml:2: a: must be > 0, got -1");
+  EXPECT_EQ(refusal("a = 'x'\n", number), "f.toml:1: a: must be a number, got \"x\"");
+  EXPECT_EQ(refusal("a = inf\n", number), "f.toml:1: a: must be a finite number, got inf");
+  EXPECT_EQ(refusal("", number), "f.toml: a: missing, must be > 0");
+  EXPECT_EQ(refusal("a = 1\nab = 2\n", number).substr(0, 22), "f.toml:2: ab: unknown ");
+  EXPECT_EQ(refusal("a = = 1\n", number).substr(0, 24), "f.toml:1: not valid TOML");
+  EXPECT_EQ(refusal("[t]\n\nk = 2.5\n", [](TomlTable& t) { t.table("t").whole("k", {}); }),
+            "f.toml:3: t.k: must be a whole number, got 2.5");
+  EXPECT_EQ(refusal("t = 1\n", [](TomlTable& t) { t.table("t"); }), "f.toml:1: t: must be a table, got 1");
+  EXPECT_EQ(refusal("l = [1]\n", [](TomlTable& t) { t.numbers("l", 3); }),
+            "f.toml:1: l: must be a list of 3 numbers, got 1 of them");
+  EXPECT_EQ(refusal("[t]\nx = 1\n", [](TomlTable& t) { t.table("t"); }).substr(0, 24), "f.toml:2: t.x: unknown k");
+}
+
+TEST(TomlFile, RefusesWhatWouldNestTooDeeply) {
+  std::string text = "a";
+  for (int k = 0; k < 100000; ++k) text += ".a";
+  EXPECT_EQ(refusal(text + " = 1\n", [](TomlTable&) {}), "f.toml:1: a line may have at most 64 dots");
+}
+
+TEST(TomlFile, TextsAreEscaped) {
+  const std::string text = "quote \" backslash \\ tab \t line \n end";
+  TomlTable root = parse_toml("t = " + toml_text(text) + "\n", "f.toml");
+  EXPECT_EQ(root.text("t"), text);
+}
+
+}  // namespace
+}  // namespace retrace
