@@ -1,5 +1,9 @@
 #include "raytrace/cell/cell_lanes.h"
 
+#include <bit>
+
+#include "raytrace/sobol.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/cell/cell_lanes.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for every instruction set
@@ -49,8 +53,9 @@ HWY_INLINE V3 along(const V3& a, V t, const V3& b) {
 HWY_INLINE V3 times(V t, const V3& a) {
   return {hn::Mul(t, a.x), hn::Mul(t, a.y), hn::Mul(t, a.z)};
 }
-HWY_INLINE V3 normalised(const V3& a) {
-  return times(hn::Div(splat(1.0), hn::Sqrt(dot(a, a))), a);
+/// Of vectors that have unit length but for rounding: one step of Newton's towards 1 / |a|.
+HWY_INLINE V3 renormalised(const V3& a) {
+  return times(hn::NegMulAdd(splat(0.5), dot(a, a), splat(1.5)), a);
 }
 HWY_INLINE V3 load3(const Rays& rays, std::size_t first, std::size_t k) {
   return {load(rays[first], k), load(rays[first + 1], k), load(rays[first + 2], k)};
@@ -92,12 +97,12 @@ HWY_INLINE Stokes total(const S& s) {
   return {total(s.i), total(s.q), total(s.u), total(s.v)};
 }
 
-/// As Light::turn_to_axis().
-HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V3& to) {
+/// As Light::turn_to_axis(), with axes of any length. \param over 1 / (|axis|^2 |to|^2)
+HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V3& to, V over) {
   const V c = dot(to, axis);
   const V s = dot(to, cross(direction, axis));
-  const V c2 = hn::MulSub(c, c, hn::Mul(s, s));
-  const V s2 = hn::Mul(hn::Add(c, c), s);
+  const V c2 = hn::Mul(over, hn::MulSub(c, c, hn::Mul(s, s)));
+  const V s2 = hn::Mul(over, hn::Mul(hn::Add(c, c), s));
   return {light.i, hn::MulAdd(c2, light.q, hn::Mul(s2, light.u)), hn::MulSub(c2, light.u, hn::Mul(s2, light.q)),
           light.v};
 }
@@ -110,25 +115,44 @@ HWY_INLINE V absorbed(const Rays& rays, std::size_t k, std::size_t count, V way,
   return hn::IfThenElseZero(present(k, count), hn::Sub(before.i, after.i));
 }
 
+/// A way along a ray as a fraction, so that many are compared with one division at the end.
+struct Way {
+  V over;   ///< not negative
+  V under;  ///< not negative; 0 for what is never met
+
+  HWY_INLINE V length() const { return hn::Div(over, under); }
+};
+HWY_INLINE M is_less(const Way& a, const Way& b) {
+  return hn::Lt(hn::Mul(a.over, b.under), hn::Mul(b.over, a.under));
+}
+HWY_INLINE Way chosen(M mask, const Way& yes, const Way& no) {
+  return {hn::IfThenElse(mask, yes.over, no.over), hn::IfThenElse(mask, yes.under, no.under)};
+}
+
 /// The nearest so far of what rays may meet.
 struct Nearest {
-  V t;
+  Way way;
   V which;
   V3 normal;
 
-  HWY_INLINE void consider(V t_new, V number) {
-    const M nearer = hn::Lt(t_new, t);
-    t = hn::IfThenElse(nearer, t_new, t);
+  HWY_INLINE M consider(const Way& next, V number) {
+    const M nearer = is_less(next, way);
+    way = chosen(nearer, next, way);
     which = hn::IfThenElse(nearer, number, which);
+    return nearer;
   }
 };
 
-/// Along rays to a plane that they approach from its inner side, never less than 0; else infinite.
-HWY_INLINE V way_to(const Plane& plane, const V3& p, const V3& d) {
+/// What is numbered 1, infinitely far.
+HWY_INLINE Nearest nothing() {
+  return {{splat(1.0), hn::Zero(D())}, splat(1.0), splat(geometry::Vec3(0.0, 0.0, 1.0))};
+}
+
+/// Along rays to a plane that they approach from its inner side, never less than 0.
+HWY_INLINE Way way_to(const Plane& plane, const V3& p, const V3& d) {
   const V3 n = splat(plane.normal);
-  const V towards = dot(n, d);
-  const V t = hn::Div(hn::Sub(splat(plane.offset_mm), dot(n, p)), towards);
-  return hn::IfThenElse(hn::Gt(towards, hn::Zero(D())), hn::Max(t, hn::Zero(D())), hn::Inf(D()));
+  const V zero = hn::Zero(D());
+  return {hn::Max(hn::Sub(splat(plane.offset_mm), dot(n, p)), zero), hn::Max(dot(n, d), zero)};
 }
 
 HWY_INLINE void find_border(std::span<const Plane> borders, const V3& p, const V3& d, Nearest& nearest) {
@@ -139,9 +163,9 @@ HWY_INLINE void find_border(std::span<const Plane> borders, const V3& p, const V
   }
 }
 
-HWY_INLINE void store_met(const Nearest& nearest, const V3& p, const V3& d, const Rays& rays, const Met& met,
+HWY_INLINE void store_met(const Nearest& nearest, V way, const V3& p, const V3& d, const Rays& rays, const Met& met,
                           std::size_t k) {
-  store3(along(p, nearest.t, d), rays, kX, k);
+  store3(along(p, way, d), rays, kX, k);
   store(nearest.which, met.which, k);
   store(nearest.normal.x, met.normal[0], k);
   store(nearest.normal.y, met.normal[1], k);
@@ -154,16 +178,16 @@ double advance_inside(const Rays& rays, std::size_t count, std::span<const Plane
   for (std::size_t k = 0; k < count; k += hn::Lanes(D())) {
     const V3 p = load3(rays, kX, k);
     const V3 d = load3(rays, kDx, k);
-    Nearest nearest{hn::Inf(D()), splat(1.0), splat(geometry::Vec3(0.0, 0.0, 1.0))};
+    Nearest nearest = nothing();
     for (const Plane& facet : facets) {
-      const V t = way_to(facet, p, d);
-      nearest.normal = chosen(hn::Lt(t, nearest.t), splat(facet.normal), nearest.normal);
-      nearest.consider(t, hn::Zero(D()));
+      const M nearer = nearest.consider(way_to(facet, p, d), hn::Zero(D()));
+      nearest.normal = chosen(nearer, splat(facet.normal), nearest.normal);
     }
     nearest.consider(way_to({geometry::Vec3::UnitZ(), top_mm}, p, d), splat(1.0));
     find_border(borders, p, d, nearest);
-    store_met(nearest, p, d, rays, met, k);
-    if (absorption_per_mm > 0.0) lost = hn::Add(lost, absorbed(rays, k, count, nearest.t, absorption_per_mm));
+    const V way = nearest.way.length();
+    store_met(nearest, way, p, d, rays, met, k);
+    if (absorption_per_mm > 0.0) lost = hn::Add(lost, absorbed(rays, k, count, way, absorption_per_mm));
   }
   return total(lost);
 }
@@ -174,29 +198,28 @@ void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane>
   for (std::size_t k = 0; k < count; k += hn::Lanes(D())) {
     const V3 p = load3(rays, kX, k);
     const V3 d = load3(rays, kDx, k);
-    Nearest nearest{infinite, splat(1.0), splat(geometry::Vec3(0.0, 0.0, 1.0))};
+    Nearest nearest = nothing();
     nearest.consider(way_to({-geometry::Vec3::UnitZ(), depth_mm}, p, d), splat(1.0));
     find_border(borders, p, d, nearest);
+    V way = nearest.way.length();
     // Into the convex body after the last plane that is entered, before the first that is left.
     V in = hn::Neg(infinite);
     V out = infinite;
-    V3 normal = splat(geometry::Vec3(0.0, 0.0, 1.0));
     for (const Plane& facet : facets) {
       const V3 n = splat(facet.normal);
       const V towards = dot(n, d);
       const V t = hn::Div(hn::Sub(splat(facet.offset_mm), dot(n, p)), towards);
       const M enters = hn::And(hn::Lt(towards, hn::Zero(D())), hn::Gt(t, in));
       in = hn::IfThenElse(enters, t, in);
-      normal = chosen(enters, n, normal);
+      nearest.normal = chosen(enters, n, nearest.normal);
       const M leaves = hn::Gt(towards, hn::Zero(D()));
       out = hn::IfThenElse(leaves, hn::Min(out, t), out);
     }
     const M is_hit = hn::And(hn::And(hn::Lt(in, out), hn::Gt(out, hn::Zero(D()))),
-                             hn::And(hn::Lt(in, nearest.t), hn::Gt(in, hn::Neg(infinite))));
-    nearest.t = hn::IfThenElse(is_hit, hn::Max(in, hn::Zero(D())), nearest.t);
+                             hn::And(hn::Lt(in, way), hn::Gt(in, hn::Neg(infinite))));
+    way = hn::IfThenElse(is_hit, hn::Max(in, hn::Zero(D())), way);
     nearest.which = hn::IfThenElse(is_hit, hn::Zero(D()), nearest.which);
-    nearest.normal = normal;
-    store_met(nearest, p, d, rays, met, k);
+    store_met(nearest, way, p, d, rays, met, k);
   }
 }
 
@@ -317,12 +340,10 @@ struct Interface {
   V3 axis;  ///< of both
 };
 
-/// The axis across the plane of incidence. At normal incidence s and p are alike, any axis serves.
+/// An axis across the plane of incidence. At normal incidence s and p are alike, any axis serves.
 HWY_INLINE V3 axis_at(const V3& d, const V3& axis, const V3& against) {
   const V3 across = cross(d, against);
-  const V norm2 = dot(across, across);
-  return chosen(hn::Lt(norm2, splat(1e-16)), axis,
-                times(hn::Div(splat(1.0), hn::Sqrt(hn::Max(norm2, splat(1e-300)))), across));
+  return chosen(hn::Lt(dot(across, across), splat(1e-16)), axis, across);
 }
 
 /// \param against the normal against the light
@@ -334,28 +355,36 @@ HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& 
   const V ci = hn::Min(one, hn::Max(zero, hn::Neg(dot(against, d))));
   const V sin2 = hn::Mul(hn::Mul(ratio, ratio), hn::NegMulAdd(ci, ci, one));
   // At grazing incidence everything is reflected, whatever the ratio.
-  const M total = hn::Or(hn::Ge(sin2, one), hn::Le(ci, zero));
+  const M grazes = hn::Le(ci, zero);
+  const M total = hn::Or(hn::Ge(sin2, one), grazes);
   const V root = hn::Sqrt(hn::Abs(hn::Sub(one, sin2)));
   const V a_s = hn::Mul(ratio, ci);
   const V b_p = hn::Mul(ratio, root);
 
   Interface face;
   face.axis = axis_at(d, axis, against);
-  const S in = turned(light, d, axis, face.axis);
+  // Both fractions of what follows from one division: it takes longer than everything else.
+  const V axes2 = hn::Mul(dot(axis, axis), dot(face.axis, face.axis));
+  const V sum_s = hn::Add(a_s, root);
+  const V sum_p = hn::Add(ci, b_p);
+  const V norm =
+      hn::IfThenElse(total, hn::Mul(hn::MulAdd(a_s, a_s, hn::Mul(root, root)), hn::MulAdd(ci, ci, hn::Mul(b_p, b_p))),
+                     hn::Mul(sum_s, sum_p));
+  const V safe = hn::Max(norm, splat(1e-200));
+  const V over_both = hn::Div(one, hn::Mul(safe, axes2));
+  const V over = hn::Mul(over_both, axes2);
+  const S in = turned(light, d, axis, face.axis, hn::Mul(over_both, safe));
   const V s = hn::Mul(splat(0.5), hn::Add(in.i, in.q));
   const V p = hn::Mul(splat(0.5), hn::Sub(in.i, in.q));
 
   // Partial reflection: real amplitudes. Total: (a - i b) / (a + i b), so that r_s conj(r_p) is a phase.
-  const V r_s = hn::Div(hn::Sub(a_s, root), hn::Add(a_s, root));
-  const V r_p = hn::Div(hn::Sub(ci, b_p), hn::Add(ci, b_p));
-  const V norm = hn::Mul(hn::MulAdd(a_s, a_s, hn::Mul(root, root)), hn::MulAdd(ci, ci, hn::Mul(b_p, b_p)));
+  const V r_s = hn::Mul(over, hn::Mul(hn::Sub(a_s, root), sum_p));
+  const V r_p = hn::Mul(over, hn::Mul(hn::Sub(ci, b_p), sum_s));
   // (a_s - i root)^2 (ci + i b_p)^2 / norm
   const V re_s = hn::MulSub(a_s, a_s, hn::Mul(root, root));
   const V im_s = hn::Mul(splat(-2.0), hn::Mul(a_s, root));
   const V re_p = hn::MulSub(ci, ci, hn::Mul(b_p, b_p));
   const V im_p = hn::Mul(splat(2.0), hn::Mul(ci, b_p));
-  const M grazes = hn::Le(ci, zero);
-  const V over = hn::Div(one, hn::Max(norm, splat(1e-300)));
   const V total_re = hn::IfThenElse(grazes, one, hn::Mul(over, hn::MulSub(re_s, re_p, hn::Mul(im_s, im_p))));
   const V total_im = hn::IfThenElseZero(hn::Not(grazes), hn::Mul(over, hn::MulAdd(re_s, im_p, hn::Mul(im_s, re_p))));
   const V power_s = hn::IfThenElse(total, one, hn::Mul(r_s, r_s));
@@ -369,11 +398,11 @@ HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& 
   const V ts = hn::Mul(s, hn::Sub(one, power_s));
   const V tp = hn::Mul(p, hn::Sub(one, power_p));
   // t_s t_p = 4 ratio ci root / ((a_s + root) (ci + b_p)), of amplitudes whose squares are shares of power
-  const V both = hn::IfThenElseZero(hn::Not(total), hn::Div(hn::Mul(splat(4.0 * index_ratio), hn::Mul(ci, root)),
-                                                            hn::Mul(hn::Add(a_s, root), hn::Add(ci, b_p))));
+  const V both =
+      hn::IfThenElseZero(hn::Not(total), hn::Mul(over, hn::Mul(splat(4.0 * index_ratio), hn::Mul(ci, root))));
   face.transmitted = {hn::Add(ts, tp), hn::Sub(ts, tp), hn::Mul(both, in.u), hn::Mul(both, in.v)};
-  face.mirrored = normalised(along(d, hn::Add(ci, ci), against));
-  face.refracted = normalised(along(times(ratio, d), hn::MulSub(ratio, ci, root), against));
+  face.mirrored = renormalised(along(d, hn::Add(ci, ci), against));
+  face.refracted = renormalised(along(times(ratio, d), hn::MulSub(ratio, ci, root), against));
   return face;
 }
 
@@ -393,9 +422,13 @@ HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& refle
   const V at = hn::MulAdd(number, splat(kGolden), splat(meeting.start));
   const V u = hn::Sub(at, hn::Floor(at));
   const M takes_reflected = hn::Lt(hn::Mul(u, power), r);
-  const V one = splat(1.0);
-  reflected = scaled(reflected, hn::IfThenElse(both, one, hn::Div(power, r)));
-  transmitted = scaled(transmitted, hn::IfThenElse(both, one, hn::Div(power, t)));
+  // All light reflected, or none of it to be chosen from.
+  if (hn::AllTrue(D(), hn::Or(hn::Or(both, hn::Not(here)), hn::Le(t, hn::Zero(D())))))
+    return {here, hn::And(here, both)};
+  // The whole power to the branch that is taken.
+  const V factor = hn::IfThenElse(both, splat(1.0), hn::Div(power, hn::IfThenElse(takes_reflected, r, t)));
+  reflected = scaled(reflected, factor);
+  transmitted = scaled(transmitted, factor);
   return {hn::And(here, hn::Or(both, takes_reflected)), hn::And(here, hn::Or(both, hn::Not(takes_reflected)))};
 }
 
@@ -438,8 +471,9 @@ std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& mee
     const V3 against = normal_of(meeting, k);
     const V3 to = axis_at(d, axis, against);
     // r_s = -1, r_p = 1
-    const S in = turned(load_light(rays, k), d, axis, to);
-    append_ray(load3(rays, kX, k), normalised(along(d, hn::Mul(splat(-2.0), dot(against, d)), against)),
+    const V axes2 = hn::Mul(dot(axis, axis), dot(to, to));
+    const S in = turned(load_light(rays, k), d, axis, to, hn::Div(splat(1.0), axes2));
+    append_ray(load3(rays, kX, k), renormalised(along(d, hn::Mul(splat(-2.0), dot(against, d)), against)),
                {in.i, in.q, hn::Neg(in.u), hn::Neg(in.v)}, to, here, reflected, found);
     found += hn::CountTrue(D(), here);
   }
@@ -473,7 +507,8 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     Chosen take{here, here};
     if (entrance.is_lossless) {
       // Beyond the critical angle light ends here.
-      face.transmitted = turned(light, d, axis, face.axis);
+      const V axes2 = hn::Mul(dot(axis, axis), dot(face.axis, face.axis));
+      face.transmitted = turned(light, d, axis, face.axis, hn::Div(splat(1.0), axes2));
       returned.back().i += total(hn::IfThenElseZero(hn::And(here, is_total), light.i));
       take = {hn::Lt(zero, zero), hn::AndNot(is_total, here)};
     } else {
@@ -482,7 +517,8 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     // source_axis(): +x, less what lies along the direction.
     const V3 out = face.refracted;
     const V3 x{hn::NegMulAdd(out.x, out.x, splat(1.0)), hn::Neg(hn::Mul(out.x, out.y)), hn::Neg(hn::Mul(out.x, out.z))};
-    const S seen = turned(face.transmitted, out, face.axis, normalised(x));
+    const V axes2 = hn::Mul(dot(face.axis, face.axis), dot(x, x));
+    const S seen = turned(face.transmitted, out, face.axis, x, hn::Div(splat(1.0), axes2));
     const V3 off{hn::Sub(out.x, to_source.x), hn::Sub(out.y, to_source.y), hn::Sub(out.z, to_source.z)};
     const V chord2 = dot(off, off);
     M left = take.transmitted;
@@ -538,48 +574,72 @@ Share sum_of(const double* which, double wanted, const Rays& rays, std::size_t c
   return share;
 }
 
-using U = hn::ScalableTag<std::uint64_t>;
+using U = hn::ScalableTag<std::uint32_t>;
 using VU = hn::Vec<U>;
 
-HWY_INLINE VU mixed(VU z) {
+HWY_INLINE VU mixed(VU node, std::uint64_t key) {
   const U u;
-  z = hn::Mul(hn::Xor(z, hn::ShiftRight<30>(z)), hn::Set(u, 0xbf58476d1ce4e5b9U));
-  return hn::Mul(hn::Xor(z, hn::ShiftRight<27>(z)), hn::Set(u, 0x94d049bb133111ebU));
+  VU x = hn::Add(hn::Mul(node, hn::Set(u, 0x9e3779b9U)), hn::Set(u, static_cast<std::uint32_t>(key)));
+  x = hn::Mul(hn::Xor(x, hn::ShiftRight<17>(x)), hn::Set(u, 0xed5ad4bbU));
+  x = hn::Add(x, hn::Set(u, static_cast<std::uint32_t>(key >> 32)));
+  x = hn::Mul(hn::Xor(x, hn::ShiftRight<11>(x)), hn::Set(u, 0xac4c1b51U));
+  x = hn::Mul(hn::Xor(x, hn::ShiftRight<15>(x)), hn::Set(u, 0x31848babU));
+  return hn::Xor(x, hn::ShiftRight<14>(x));
 }
 
-/// The full nested scramble of 32 digits, by the same hash as SobolSquare.
-HWY_INLINE V scrambled(VU digits, std::uint64_t key) {
+/// As nested_flips(), of the digits themselves.
+HWY_INLINE VU scrambled(VU digits, std::uint64_t key) {
   const U u;
   const VU one = hn::Set(u, 1);
+  VU left = digits;
   VU flips = hn::Zero(u);
   VU node = one;
-  for (int level = 31; level >= 0; --level) {
-    const VU hash = mixed(hn::Add(hn::Set(u, key), hn::Mul(node, hn::Set(u, 0x9e3779b97f4a7c15U))));
-    flips = hn::Or(hn::Add(flips, flips), hn::ShiftRight<63>(hash));
-    const VU digit = hn::And(hn::Shr(digits, hn::Set(u, static_cast<std::uint64_t>(level))), one);
-    node = hn::Or(hn::Add(node, node), digit);
+  for (int block = 0; block < kScrambleBlocks; ++block) {
+    const VU hash = mixed(node, key);
+    VU below = one;
+    for (int level = 0; level < kScrambleLevels; ++level) {
+      flips = hn::Or(hn::Add(flips, flips), hn::And(hn::Shr(hash, below), one));
+      below = hn::Or(hn::Add(below, below), hn::ShiftRight<31>(left));
+      left = hn::Add(left, left);
+    }
+    node = hn::Or(hn::ShiftLeft<kScrambleLevels>(node), hn::And(below, hn::Set(u, (1U << kScrambleLevels) - 1U)));
   }
-  return hn::Mul(hn::ConvertTo(D(), hn::BitCast(hn::RebindToSigned<U>(), hn::Xor(digits, flips))),
-                 hn::Set(D(), 0x1p-32));
+  const VU rest = hn::ShiftRight<32 - kScrambleRest>(mixed(node, key));
+  return hn::Xor(digits, hn::Or(hn::ShiftLeft<kScrambleRest>(flips), rest));
+}
+
+/// Digits as fractions times `size`.
+HWY_INLINE void store_fractions(VU digits, double size, double* to) {
+  const hn::RebindToUnsigned<D> wide;
+  std::array<std::uint32_t, kPadding> buffer;
+  hn::StoreU(digits, U(), buffer.data());
+  for (std::size_t at = 0; at < hn::Lanes(U()); at += hn::Lanes(D())) {
+    const auto words = hn::PromoteTo(wide, hn::LoadU(hn::Rebind<std::uint32_t, D>(), buffer.data() + at));
+    store(hn::Mul(hn::ConvertTo(D(), hn::BitCast(hn::RebindToSigned<D>(), words)), splat(size * 0x1p-32)), to, at);
+  }
 }
 
 void sobol(std::uint64_t key_x, std::uint64_t key_y, std::uint32_t first, std::size_t count, const geometry::Vec2& size,
            double* x, double* y) {
-  const D d;
-  const U tag;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const VU index =
-        hn::And(hn::Add(hn::Iota(tag, 0), hn::Set(tag, std::uint64_t{first} + i)), hn::Set(tag, 0xffffffffU));
-    VU reversed = hn::Zero(tag);
-    VU second = hn::Zero(tag);
-    std::uint32_t direction = 1U << 31;
-    for (int bit = 0; bit < 32; ++bit, direction ^= direction >> 1) {
-      const auto is_set = hn::Ne(hn::And(index, hn::Set(tag, std::uint64_t{1} << bit)), hn::Zero(tag));
-      reversed = hn::Or(reversed, hn::IfThenElseZero(is_set, hn::Set(tag, std::uint64_t{1} << (31 - bit))));
-      second = hn::Xor(second, hn::IfThenElseZero(is_set, hn::Set(tag, std::uint64_t{direction})));
+  const U u;
+  // From one point to the next changes the digits by those of the trailing ones.
+  std::array<std::array<std::uint32_t, 2>, 33> steps{};
+  for (std::size_t ones = 0; ones < 32; ++ones) steps[ones] = SobolSquare::digits((2U << ones) - 1U);
+  steps[32] = steps[31];
+  std::uint32_t index = first;
+  std::array<std::uint32_t, 2> digits = SobolSquare::digits(first);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(u)) {
+    std::array<std::array<std::uint32_t, kPadding>, 2> point{};
+    for (std::size_t lane = 0; lane < hn::Lanes(u); ++lane) {
+      point[0][lane] = digits[0];
+      point[1][lane] = digits[1];
+      const auto& step = steps[static_cast<std::size_t>(std::countr_one(index))];
+      digits[0] ^= step[0];
+      digits[1] ^= step[1];
+      ++index;
     }
-    hn::StoreU(hn::Mul(scrambled(reversed, key_x), hn::Set(d, size.x())), d, x + i);
-    hn::StoreU(hn::Mul(scrambled(second, key_y), hn::Set(d, size.y())), d, y + i);
+    store_fractions(scrambled(hn::LoadU(u, point[0].data()), key_x), size.x(), x + i);
+    store_fractions(scrambled(hn::LoadU(u, point[1].data()), key_y), size.y(), y + i);
   }
 }
 

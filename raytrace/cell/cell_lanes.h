@@ -16,7 +16,7 @@ namespace retrace::raytrace::lanes {
 
 inline constexpr std::size_t kPadding = 16;
 
-/// The arrays of rays: place (mm), direction, Stokes parameters (as in Light) and their first axis.
+/// The arrays of rays: place (mm), direction, Stokes parameters (as in Light) and their first axis, of any length.
 enum RayNumber : std::size_t { kX, kY, kZ, kDx, kDy, kDz, kI, kQ, kU, kV, kAx, kAy, kAz, kRayNumbers };
 using Rays = std::array<double*, kRayNumbers>;
 

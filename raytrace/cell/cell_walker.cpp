@@ -302,7 +302,7 @@ void CellWalker::meet_metal(const Stream& stream, std::complex<double> metal) {
     const Vec3 direction = vector(lanes::kDx);
     const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
     const Vec3 against = inside ? Vec3(-normal) : normal;
-    Light light{{rays[lanes::kI][k], rays[lanes::kQ][k], rays[lanes::kU][k], rays[lanes::kV][k]}, vector(lanes::kAx)};
+    Light light{{rays[lanes::kI][k], rays[lanes::kQ][k], rays[lanes::kU][k], rays[lanes::kV][k]}, vector(lanes::kAx).normalized()};
     light.turn_to(direction, against);
     const Light reflected = light.reflected(materials::fresnel_metal(ratio, -against.dot(direction)));
     tally_->other[Account::absorbed] += light.power() - reflected.power();
