@@ -237,6 +237,21 @@ void add_surface(Part& part, const Layout& layout, const Vec2& origin) {
   }
 }
 
+/// Where the surface is nowhere cut off or left out.
+void find_lattice_region(Part& part, const Layout& layout, const Vec2& origin) {
+  if (layout.spec.random_tilts.sigma_arcmin > 0.0) return;
+  Rectangle region{layout.block.lower + origin, layout.block.upper + origin};
+  if (layout.partial == PartialElements::omit)
+    for (const Cell& cell : layout.lattice.cells) {
+      const Vec2 size = bounding_box(cell.outline).size();
+      region.lower = region.lower.cwiseMax(layout.block.lower + origin + size);
+      region.upper = region.upper.cwiseMin(layout.block.upper + origin - size);
+    }
+  if (region.empty()) return;
+  part.lattice_region_mm = region;
+  part.lattice_anchor_mm = layout.anchor + origin;
+}
+
 void count_elements(Part& part, const Layout& layout) {
   const IndexRange all = indices_over(layout);
   for (std::int64_t j = all.lower[1]; j < all.upper[1]; ++j) {
@@ -350,6 +365,7 @@ Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
     layout.spec = spec;
     part.outline = moved(to_polygon(layout.extent), origin_mm);
     add_surface(part, layout, origin_mm);
+    find_lattice_region(part, layout, origin_mm);
     count_elements(part, layout);
     if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   }

@@ -30,9 +30,12 @@ struct Part {
   double size_mm = 0.0;           ///< of an element in plan, the scale for tolerances
   std::vector<SurfacePatch> patches;
   std::vector<Placement> placements;
-  Polygon outline;                 ///< finite parts; counter-clockwise
-  std::optional<Vec2> period_mm;   ///< infinite parts: the surface covers [-margin, 1 + margin] periods in x and y
-  int periods_beyond = 0;          ///< that margin
+  Polygon outline;                ///< finite parts; counter-clockwise
+  std::optional<Vec2> period_mm;  ///< infinite parts: the surface covers [-margin, 1 + margin] periods in x and y
+  int periods_beyond = 0;         ///< that margin
+  /// Finite arrays of equal elements: where the surface is that of the lattice, which starts at `lattice_anchor_mm`.
+  std::optional<Rectangle> lattice_region_mm;
+  Vec2 lattice_anchor_mm = Vec2::Zero();
   std::int64_t elements_full = 0;  ///< finite: whole elements; infinite: elements per period
   std::int64_t elements_partial = 0;
   double entrance_area_mm2 = 0.0;     ///< infinite: of one period

@@ -17,6 +17,9 @@ class EntranceSampler {
   /// The point of the part's plane that is the origin of the samples.
   const Vec2& centre_mm() const { return centre_mm_; }
 
+  /// Round the face, relative to its centre; of arrays it is the face.
+  geometry::Rectangle bounding_box() const { return {lower_, lower_ + size_}; }
+
   /// Maps the unit square onto the face, preserving area ratios.
   Vec2 operator()(const std::array<double, 2>& u) const;
 

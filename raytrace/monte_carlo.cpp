@@ -111,15 +111,13 @@ void check_lost(const MonteCarloResult& result) {
 
 struct MonteCarlo::Scene {
   Scene(const geometry::Part& p, Engine engine) : part(p), entrance(p) {
-    if (engine == Engine::cell)
-      cells = CellArray::make(p.spec);
-    else
-      surface.emplace(p, entrance.centre_mm());
+    if (engine == Engine::cell) cells = CellArray::make(p);
+    if (engine == Engine::embree || !p.period_mm) surface.emplace(p, entrance.centre_mm());
   }
 
   const geometry::Part& part;
   EntranceSampler entrance;
-  std::optional<BackSurface> surface;  ///< for Embree
+  std::optional<BackSurface> surface;  ///< for Embree, and borders
   std::optional<CellArray> cells;
 };
 
@@ -133,8 +131,8 @@ struct MonteCarlo::Task {
 MonteCarlo::MonteCarlo(const geometry::Part& part, Engine engine) : scene_(std::make_unique<Scene>(part, engine)) {}
 MonteCarlo::~MonteCarlo() = default;
 
-bool MonteCarlo::cell_serves(const geometry::Part& part, const Optics& optics) {
-  return optics.is_smooth() && CellArray::make(part.spec).has_value();
+bool MonteCarlo::cell_serves(const geometry::Part& part) {
+  return CellArray::make(part).has_value();
 }
 
 MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, const Sampling& sampling,
@@ -155,17 +153,27 @@ MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, const Sampl
   };
 }
 
-MonteCarlo::TraceTask MonteCarlo::by_cells(const LightSetup& setup, const PathPolicy& policy, std::uint32_t seed,
-                                           const Cancellation* cancel) const {
+MonteCarlo::TraceTask MonteCarlo::by_cells(const LightSetup& setup, const PathSetup* paths, const PathPolicy& policy,
+                                           std::uint32_t seed, const Cancellation* cancel) const {
   // Every thread keeps its walker, for its memory.
   const auto walkers = std::make_shared<tbb::enumerable_thread_specific<CellWalker>>(
-      [this, &setup, &policy] { return CellWalker(setup, policy, *scene_->cells); });
-  return [walkers, &setup, seed, cancel](const Task& task) -> std::optional<Tally> {
+      [this, &setup, &policy] { return CellWalker(setup, policy, *scene_->cells, scene_->entrance.centre_mm()); });
+  const geometry::Rectangle entrance = scene_->part.period_mm
+                                           ? geometry::Rectangle{Vec2::Zero(), *scene_->part.period_mm}
+                                           : scene_->entrance.bounding_box();
+  return [walkers, &setup, paths, entrance, seed, cancel](const Task& task) -> std::optional<Tally> {
     if (cancel != nullptr && cancel->requested()) return std::nullopt;
+    const FlushDenormals flush;
     Tally tally(setup.cone_chord2.size());
     const auto keys = scramble_keys(seed, task.replicate);
-    walkers->local().trace(keys[0], keys[1], task.first, task.last - task.first, {seed, kChoiceStream}, task.replicate,
-                           tally);
+    const RandomKey key{seed, kChoiceStream};
+    CellWalker& walker = walkers->local();
+    walker.trace(entrance, keys[0], keys[1], task.first, task.last - task.first, key, task.replicate, tally);
+    if (paths == nullptr) return tally;
+    PathWalker border(*paths, tally);
+    std::uint32_t choices = walker.choices();
+    for (const CellWalker::HandedOver& ray : walker.handed_over())
+      border.resume(ray.position, ray.ray, ray.near_edge, key, task.replicate, task.first, choices);
     return tally;
   };
 }
@@ -194,13 +202,16 @@ MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& ill
   std::optional<LightSetup> light;
   std::optional<PathSetup> paths;
   TraceTask trace_task;
-  if (scene_->cells) {
-    light.emplace(scene_->part, scene_->entrance.centre_mm(), optics, illumination, cones_deg);
-    trace_task = by_cells(*light, policy, sampling.seed, cancel);
+  PathPolicy how = policy;
+  if (sampling.kind == Sampling::Kind::plain) how.split_power = std::numeric_limits<double>::infinity();
+  const Vec2 centre = scene_->entrance.centre_mm();
+  if (scene_->surface) paths.emplace(scene_->part, *scene_->surface, centre, optics, illumination, cones_deg, how);
+  if (scene_->cells && paths) {
+    trace_task = by_cells(*paths, &*paths, policy, sampling.seed, cancel);
+  } else if (scene_->cells) {
+    light.emplace(scene_->part, centre, optics, illumination, cones_deg);
+    trace_task = by_cells(*light, nullptr, policy, sampling.seed, cancel);
   } else {
-    PathPolicy how = policy;
-    if (sampling.kind == Sampling::Kind::plain) how.split_power = std::numeric_limits<double>::infinity();
-    paths.emplace(scene_->part, *scene_->surface, scene_->entrance.centre_mm(), optics, illumination, cones_deg, how);
     trace_task = one_by_one(*paths, sampling, cancel);
   }
   const std::uint64_t rays = sampling.rays.value_or(sampling.max_rays);

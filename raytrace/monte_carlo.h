@@ -56,8 +56,8 @@ class MonteCarlo {
     embree,  ///< one by one, in a bounding volume hierarchy: any part
     cell     ///< all rays of like history together, column by column: where cell_serves()
   };
-  /// Infinite parts of smooth facets, without rounded rims.
-  static bool cell_serves(const geometry::Part& part, const Optics& optics);
+  /// Infinite parts; and finite arrays of equal elements that have an inner piece, whose borders are left to Embree.
+  static bool cell_serves(const geometry::Part& part);
 
   /// Independent scrambles: the estimate is their mean, its standard error comes from their spread.
   static constexpr std::uint32_t kReplicates = 32;
@@ -77,7 +77,8 @@ class MonteCarlo {
   using TraceTask = std::function<std::optional<Tally>(const Task&)>;
 
   TraceTask one_by_one(const PathSetup& setup, const Sampling& sampling, const Cancellation* cancel) const;
-  TraceTask by_cells(const LightSetup& setup, const PathPolicy& policy, std::uint32_t seed,
+  /// \param paths of the rays that leave the inner piece of a finite part; else null
+  TraceTask by_cells(const LightSetup& setup, const PathSetup* paths, const PathPolicy& policy, std::uint32_t seed,
                      const Cancellation* cancel) const;
   /// Adds rays from..until-1 of every replicate to its tally. False if cancelled: the tallies are then of no use.
   /// \param trace_task what one task gives, nothing if cancelled

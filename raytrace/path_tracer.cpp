@@ -33,6 +33,28 @@ void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replic
   sample_ = sample;
   choices_ = 0;
   enter(entry_mm);
+  follow_pending();
+}
+
+void PathWalker::resume(const Vec3& position, const Ray& ray, bool near_edge, RandomKey key, std::uint32_t replicate,
+                        std::uint32_t sample, std::uint32_t& choices) {
+  key_ = key;
+  replicate_ = replicate;
+  sample_ = sample;
+  choices_ = choices;
+  State state;
+  state.position = position;
+  state.direction = ray.direction;
+  state.light = ray.light;
+  state.near_edge = near_edge;
+  state.inside = ray.inside;
+  state.scattered = ray.scattered;
+  pending_.push_back(state);
+  follow_pending();
+  choices = choices_;
+}
+
+void PathWalker::follow_pending() {
   while (!pending_.empty()) {
     State state = pending_.back();
     pending_.pop_back();
@@ -310,20 +332,13 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   const bool is_wall = facet.role == FacetRole::inner_gable || facet.role == FacetRole::border_wall;
   if (is_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
   const bool is_retro = facet.role == FacetRole::retro_facet;
-  const bool is_rough = is_retro && !optics.is_smooth();
-  const double ratio = optics.ratio_at_back(state.inside);
-  surface_models::RandomStream random(key_, replicate_, sample_, is_rough ? choices_++ : 0);
-  RoughEvent rough;
-  Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
-  if (is_rough) {
-    rough = rough_event(state, facet, random);
-    against = rough.world_from_local * rough.piece.normal;
-  }
+  state.source = hit.facet;
+  state.near_edge = hit.near_edge;
+  if (is_retro && !optics.is_smooth()) return meet_textured(state, facet.normal);
+  const Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
   const double cos_incidence = -against.dot(state.direction);
   const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, state.inside, cos_incidence);
 
-  state.source = hit.facet;
-  state.near_edge = hit.near_edge;
   state.light.turn_to(state.direction, against);
   Light reflected = state.light.reflected(f);
   if (is_retro && optics.coating_index) tally_.other[Account::absorbed] += state.light.power() - reflected.power();
@@ -332,66 +347,46 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   if (branch != Branch::reflected) {
     State through = state;
     through.light = transmitted;
-    through.direction = refracted(state.direction, against, ratio, cos_incidence, f.cos_refracted);
+    through.direction =
+        refracted(state.direction, against, optics.ratio_at_back(state.inside), cos_incidence, f.cos_refracted);
     through.inside = !state.inside;
     if (state.inside) through.left_through = facet.role;
-    const bool goes_on = !is_rough || scatter(through, rough, surface_models::Lobe::transmission, random);
     if (branch == Branch::transmitted) {
       state = through;
-      return goes_on;
+      return true;
     }
-    if (goes_on) pending_.push_back(through);
+    pending_.push_back(through);
   }
   state.light = reflected;
   state.direction = mirrored(state.direction, against);
-  return !is_rough || scatter(state, rough, surface_models::Lobe::reflection, random);
-}
-
-/// The light in the frame of a facet: x along it and level, z against the light.
-PathWalker::RoughEvent PathWalker::rough_event(const State& state, const ExactSurface::Facet& facet,
-                                               surface_models::RandomStream& random) const {
-  RoughEvent rough;
-  const Vec3 z = state.inside ? Vec3(-facet.normal) : facet.normal;
-  // Chamfered roots are level all round: there the roof edge of a prism is the axis.
-  const Vec3 level = facet.normal.cross(Vec3::UnitZ());
-  const Vec3 x = level.norm() > 1e-9 ? level.normalized() : facet.normal.cross(Vec3::UnitX()).normalized();
-  rough.world_from_local << x, z.cross(x), z;
-  rough.event.direction_in = rough.world_from_local.transpose() * state.direction;
-  rough.event.index_from = state.inside ? setup_.optics.index : setup_.optics.back_index;
-  rough.event.index_to = state.inside ? setup_.optics.back_index : setup_.optics.index;
-  rough.event.wavelength_nm = setup_.optics.wavelength_nm;
-  rough.event.inside_material = state.inside;
-  rough.piece = surface_models::sample_facet(setup_.optics.facet_scatter, rough.event, random);
-  return rough;
-}
-
-/// Turns a path that has left a textured facet as from a plane one. What the texture keeps is booked in `truncated`.
-bool PathWalker::scatter(State& state, const RoughEvent& rough, surface_models::Lobe lobe,
-                         surface_models::RandomStream& random) {
-  const auto out = surface_models::sample(setup_.optics.facet_scatter, rough.event, rough.piece, lobe, random);
-  if (!out) return finish(state, Account::truncated);
-  tally_.other[Account::truncated] += (1.0 - out->weight) * state.light.power();
-  state.light.scale(out->weight);
-  if (!out->is_specular) {
-    const Vec3 direction = (rough.world_from_local * out->direction).normalized();
-    state.light.s_axis = Eigen::Quaterniond::FromTwoVectors(state.direction, direction) * state.light.s_axis;
-    state.direction = direction;
-  }
-  state.scattered = state.scattered || !out->is_specular || rough.piece.is_tilted;
   return true;
 }
 
-/// Both branches while both matter, else one at random that takes the power of both: nothing is lost or made.
-PathWalker::Branch PathWalker::choose(Light& reflected, Light& transmitted) {
-  const double r = reflected.power();
-  const double t = transmitted.power();
-  if (t <= 0.0) return Branch::reflected;
-  if (r <= 0.0) return Branch::transmitted;
-  if (std::min(r, t) >= setup_.policy.split_power) return Branch::both;
-  const double u = unit_interval(philox(key_, replicate_, sample_, choices_++)[0]);
-  const bool take_reflected = u * (r + t) < r;
-  (take_reflected ? reflected : transmitted).scale((r + t) / (take_reflected ? r : t));
-  return take_reflected ? Branch::reflected : Branch::transmitted;
+bool PathWalker::meet_textured(State& state, const Vec3& normal) {
+  surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
+  const TexturedReturn back =
+      meet_textured_facet(setup_.optics, normal, {state.direction, state.light, state.inside, state.scattered},
+                          setup_.policy.split_power, random);
+  tally_.other[Account::truncated] += back.truncated;
+  tally_.other[Account::absorbed] += back.absorbed;
+  const bool was_inside = state.inside;
+  const auto goes_on = [&](const Ray& ray) {
+    State next = state;
+    next.direction = ray.direction;
+    next.light = ray.light;
+    next.inside = ray.inside;
+    next.scattered = ray.scattered;
+    if (was_inside && !ray.inside) next.left_through = FacetRole::retro_facet;
+    return next;
+  };
+  if (back.transmitted) pending_.push_back(goes_on(*back.transmitted));
+  if (back.reflected) state = goes_on(*back.reflected);
+  return back.reflected.has_value();
+}
+
+Branch PathWalker::choose(Light& reflected, Light& transmitted) {
+  return choose_branch(reflected, transmitted, setup_.policy.split_power,
+                       [this] { return unit_interval(philox(key_, replicate_, sample_, choices_++)[0]); });
 }
 
 bool PathWalker::finish(const State& state, Account account) {

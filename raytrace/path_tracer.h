@@ -9,6 +9,7 @@
 #include "raytrace/back_surface.h"
 #include "raytrace/light_setup.h"
 #include "raytrace/path_policy.h"
+#include "raytrace/textured_facet.h"
 
 namespace retrace::raytrace {
 
@@ -34,6 +35,11 @@ class PathWalker {
   /// `replicate` and `sample` alone.
   void trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
 
+  /// Traces light that is on its way already. \param near_edge edges of facets may be as near as rounding
+  /// \param choices made so far with these numbers; counts on
+  void resume(const Vec3& position, const Ray& ray, bool near_edge, RandomKey key, std::uint32_t replicate,
+              std::uint32_t sample, std::uint32_t& choices);
+
  private:
   struct State {
     Vec3 position = Vec3::Zero();
@@ -53,15 +59,8 @@ class PathWalker {
     std::size_t side = 0;
     double length_mm = 0.0;
   };
-  /// What a textured facet makes of one path.
-  struct RoughEvent {
-    Eigen::Matrix3d world_from_local;
-    surface_models::ScatterEvent event;
-    surface_models::Facet piece;
-  };
-  enum class Branch { reflected, transmitted, both };
-
   void enter(const Vec2& entry_mm);
+  void follow_pending();
   bool advance(State& state);
 
   Step step_inside(State& state) const;
@@ -78,9 +77,7 @@ class PathWalker {
   bool meet_entrance(State& state);
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
-  RoughEvent rough_event(const State& state, const ExactSurface::Facet& facet,
-                         surface_models::RandomStream& random) const;
-  bool scatter(State& state, const RoughEvent& rough, surface_models::Lobe lobe, surface_models::RandomStream& random);
+  bool meet_textured(State& state, const Vec3& normal);
   Branch choose(Light& reflected, Light& transmitted);
   bool finish(const State& state, Account account);
   bool escape(const State& state);

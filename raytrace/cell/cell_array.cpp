@@ -41,6 +41,24 @@ bool is_upper_envelope(const geometry::Cell& cell, const CellArray::Column& colu
   return true;
 }
 
+/// Cells over which the surface is the highest of its facets' planes: those with rounded rims are taken facet by facet.
+std::vector<geometry::Cell> convex_cells(const std::vector<geometry::Cell>& cells, double tolerance_mm) {
+  std::vector<geometry::Cell> convex;
+  for (const geometry::Cell& cell : cells) {
+    if (is_upper_envelope(cell, column_of(cell), tolerance_mm)) {
+      convex.push_back(cell);
+      continue;
+    }
+    for (const geometry::CellFacet& facet : cell.facets) {
+      geometry::Cell part = cell;
+      part.outline = facet.outline;
+      part.facets = {facet};
+      convex.push_back(part);
+    }
+  }
+  return convex;
+}
+
 template <class Visit>
 void for_each_shift(const Vec2& period_mm, const Visit& visit) {
   for (int j = -kReach; j <= kReach; ++j)
@@ -75,16 +93,26 @@ double CellArray::Column::height(const Vec2& p) const {
   return highest;
 }
 
-std::optional<CellArray> CellArray::make(const geometry::PartSpec& spec) {
-  if (spec.extent != geometry::Extent::infinite) return std::nullopt;
-  const geometry::Lattice lattice = geometry::make_lattice(spec, true);
+std::optional<CellArray> CellArray::make(const geometry::Part& part) {
+  if (!part.period_mm && !part.lattice_region_mm) return std::nullopt;
+  geometry::Lattice lattice = geometry::make_lattice(part.spec, true);
   const double tolerance_mm = 1e-9 * lattice.period_mm.maxCoeff();
+  lattice.cells = convex_cells(lattice.cells, tolerance_mm);
   CellArray array;
   array.period_mm_ = lattice.period_mm;
-  for (const geometry::Cell& cell : lattice.cells) {
-    array.columns_.push_back(column_of(cell));
-    if (!is_upper_envelope(cell, array.columns_.back(), tolerance_mm)) return std::nullopt;
+  if (!part.period_mm) {
+    array.inner_ = Inner{*part.lattice_region_mm, part.lattice_anchor_mm};
+    for (const geometry::Cell& cell : lattice.cells) {
+      // As far as the columns behind the borders of one that is hardly reached.
+      const Vec2 margin = 2.0 * geometry::bounding_box(cell.outline).size();
+      array.inner_->where_mm.lower =
+          array.inner_->where_mm.lower.cwiseMax(Vec2(part.lattice_region_mm->lower + margin));
+      array.inner_->where_mm.upper =
+          array.inner_->where_mm.upper.cwiseMin(Vec2(part.lattice_region_mm->upper - margin));
+    }
+    if (array.inner_->where_mm.empty()) return std::nullopt;
   }
+  for (const geometry::Cell& cell : lattice.cells) array.columns_.push_back(column_of(cell));
   array.find_neighbours(lattice, tolerance_mm);
   array.find_pieces(lattice, tolerance_mm);
   return array;

@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "geometry/lattice.h"
+#include "geometry/part.h"
 #include "geometry/vec.h"
 
 namespace retrace::raytrace {
 
-/// An infinite part as columns: each stands over one cell of the period, from the surface up. Over a cell the part is
+/// An endless array as columns: each stands over one cell of the period, from the surface up. Over a cell the part is
 /// the space above all planes of its facets, so that a straight line meets it as it meets any convex body and needs no
 /// search. Coordinates are those of the lattice; where columns of different height meet stands a vertical wall.
 class CellArray {
@@ -45,12 +46,20 @@ class CellArray {
     geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< from the period's coordinates to the column's
   };
 
-  /// Nothing if the part is finite, or the surface over a cell is not the highest of its facets' planes (rounded rims).
-  static std::optional<CellArray> make(const geometry::PartSpec& spec);
+  /// The piece of a finite part that its borders do not matter to.
+  struct Inner {
+    geometry::Rectangle where_mm;  ///< a column that reaches in, and all those beside it, are whole
+    geometry::Vec2 anchor_mm = geometry::Vec2::Zero();  ///< where on the part the lattice starts
+  };
+
+  /// Nothing for a single element, an array whose elements differ, and one too small to have an inner piece.
+  static std::optional<CellArray> make(const geometry::Part& part);
 
   const std::vector<Column>& columns() const { return columns_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
   const geometry::Vec2& period_mm() const { return period_mm_; }
+  /// Nothing if the part is infinite.
+  const std::optional<Inner>& inner() const { return inner_; }
 
  private:
   void find_neighbours(const geometry::Lattice& lattice, double tolerance_mm);
@@ -59,6 +68,7 @@ class CellArray {
   std::vector<Column> columns_;
   std::vector<Piece> pieces_;
   geometry::Vec2 period_mm_ = geometry::Vec2::Zero();
+  std::optional<Inner> inner_;
 };
 
 }  // namespace retrace::raytrace

@@ -275,9 +275,10 @@ HWY_INLINE void append3(const V3& v, M mask, const Rays& to, std::size_t first, 
   append(v.z, mask, to[first + 2] + found);
 }
 
+/// \param from where the ray's other numbers are, at k
 /// \param to by value: stores must not make the compiler read the pointers again
-HWY_INLINE void append_ray(const V3& place, const V3& direction, const S& light, const V3& axis, M mask, const Rays to,
-                           std::size_t found) {
+HWY_INLINE void append_ray(const V3& place, const V3& direction, const S& light, const V3& axis, M mask,
+                           const Rays& from, std::size_t k, const Rays to, std::size_t found) {
   append3(place, mask, to, kX, found);
   append3(direction, mask, to, kDx, found);
   append(light.i, mask, to[kI] + found);
@@ -285,6 +286,8 @@ HWY_INLINE void append_ray(const V3& place, const V3& direction, const S& light,
   append(light.u, mask, to[kU] + found);
   append(light.v, mask, to[kV] + found);
   append3(axis, mask, to, kAx, found);
+  for (std::size_t number = kNumbersOfEndless; number < to.numbers; ++number)
+    append(load(from[number], k), mask, to[number] + found);
 }
 
 std::size_t select(const double* which, double wanted, std::size_t count, const Rays& all_from, const Rays& all_to) {
@@ -295,7 +298,7 @@ std::size_t select(const double* which, double wanted, std::size_t count, const 
     const M mask = hn::And(hn::Eq(load(which, i), splat(wanted)), present(i, count));
     const std::size_t more = hn::CountTrue(D(), mask);
     if (more == 0) continue;
-    for (std::size_t k = 0; k < from.size(); ++k) append(load(from[k], i), mask, to[k] + found);
+    for (std::size_t k = 0; k < from.numbers; ++k) append(load(from[k], i), mask, to[k] + found);
     found += more;
   }
   return found;
@@ -326,11 +329,42 @@ std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, double*
   return found;
 }
 
+HWY_INLINE void add(V more, double* to, std::size_t k) {
+  store(hn::Add(load(to, k), more), to, k);
+}
+
 void shift(const Rays& rays, std::size_t count, const geometry::Vec2& shift) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(D())) {
-    store(hn::Add(load(rays[kX], i), splat(shift.x())), rays[kX], i);
-    store(hn::Add(load(rays[kY], i), splat(shift.y())), rays[kY], i);
+    add(splat(shift.x()), rays[kX], i);
+    add(splat(shift.y()), rays[kY], i);
+    if (!rays.have_periods()) continue;
+    add(splat(-shift.x()), rays[kOx], i);
+    add(splat(-shift.y()), rays[kOy], i);
   }
+}
+
+std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, double of, double number,
+                        double* which) {
+  const D d;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const V before = load(which, i);
+    const M asked = hn::And(hn::Eq(before, splat(of)), present(i, count));
+    if (hn::AllFalse(d, asked)) continue;
+    V x = hn::Add(load(rays[kX], i), load(rays[kOx], i));
+    V y = hn::Add(load(rays[kY], i), load(rays[kOy], i));
+    if (reach.height_mm != 0.0) {
+      const V way = hn::Div(splat(reach.height_mm), load(rays[kDz], i));
+      x = hn::MulAdd(way, load(rays[kDx], i), x);
+      y = hn::MulAdd(way, load(rays[kDy], i), y);
+    }
+    const M within = hn::And(hn::And(hn::Ge(x, splat(reach.lower.x())), hn::Le(x, splat(reach.upper.x()))),
+                             hn::And(hn::Ge(y, splat(reach.lower.y())), hn::Le(y, splat(reach.upper.y()))));
+    const M beyond = hn::AndNot(within, asked);
+    store(hn::IfThenElse(beyond, splat(number), before), which, i);
+    found += hn::CountTrue(d, beyond);
+  }
+  return found;
 }
 
 /// Reflected and transmitted light and directions at interfaces of transparent media, as materials::fresnel().
@@ -452,10 +486,11 @@ Branches meet_faces(const Rays& rays, std::size_t count, const Meeting& meeting,
     Interface face =
         met(load_light(rays, k), load3(rays, kDx, k), load3(rays, kAx, k), normal_of(meeting, k), index_ratio);
     const Chosen take = choose(meeting, k, here, face.reflected, face.transmitted);
-    append_ray(place, face.mirrored, face.reflected, face.axis, take.reflected, reflected, found.reflected);
+    append_ray(place, face.mirrored, face.reflected, face.axis, take.reflected, rays, k, reflected, found.reflected);
     found.reflected += hn::CountTrue(D(), take.reflected);
     if (hn::AllFalse(D(), take.transmitted)) continue;
-    append_ray(place, face.refracted, face.transmitted, face.axis, take.transmitted, transmitted, found.transmitted);
+    append_ray(place, face.refracted, face.transmitted, face.axis, take.transmitted, rays, k, transmitted,
+               found.transmitted);
     found.transmitted += hn::CountTrue(D(), take.transmitted);
   }
   return found;
@@ -474,7 +509,7 @@ std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& mee
     const V axes2 = hn::Mul(dot(axis, axis), dot(to, to));
     const S in = turned(load_light(rays, k), d, axis, to, hn::Div(splat(1.0), axes2));
     append_ray(load3(rays, kX, k), renormalised(along(d, hn::Mul(splat(-2.0), dot(against, d)), against)),
-               {in.i, in.q, hn::Neg(in.u), hn::Neg(in.v)}, to, here, reflected, found);
+               {in.i, in.q, hn::Neg(in.u), hn::Neg(in.v)}, to, here, rays, k, reflected, found);
     found += hn::CountTrue(D(), here);
   }
   return found;
@@ -529,16 +564,18 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     }
     if (!hn::AllFalse(tag, left)) returned.back() += total(where(left, seen));
     if (hn::AllFalse(tag, take.reflected)) continue;
-    append_ray(place, face.mirrored, face.reflected, face.axis, take.reflected, reflected, arrivals.reflected);
+    append_ray(place, face.mirrored, face.reflected, face.axis, take.reflected, rays, k, reflected, arrivals.reflected);
     arrivals.reflected += hn::CountTrue(tag, take.reflected);
   }
   arrivals.absorbed = total(lost);
   return arrivals;
 }
 
-HWY_INLINE V folded(V at, double period) {
+/// Into the period that starts at 0. \param stands_at where it stands, if that is kept
+HWY_INLINE void store_folded(V at, double period, double* to, double* stands_at, std::size_t k) {
   const V periods = hn::Floor(hn::Mul(at, splat(1.0 / period)));
-  return hn::NegMulAdd(periods, splat(period), at);
+  store(hn::NegMulAdd(periods, splat(period), at), to, k);
+  if (stands_at != nullptr) add(hn::Mul(periods, splat(period)), stands_at, k);
 }
 
 double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm, const geometry::Vec2& period_mm,
@@ -547,8 +584,8 @@ double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm
   for (std::size_t k = 0; k < count; k += hn::Lanes(D())) {
     const V3 d = load3(rays, kDx, k);
     const V way = hn::Div(splat(-height_mm), d.z);
-    store(folded(hn::MulAdd(way, d.x, load(rays[kX], k)), period_mm.x()), rays[kX], k);
-    store(folded(hn::MulAdd(way, d.y, load(rays[kY], k)), period_mm.y()), rays[kY], k);
+    store_folded(hn::MulAdd(way, d.x, load(rays[kX], k)), period_mm.x(), rays[kX], rays[kOx], k);
+    store_folded(hn::MulAdd(way, d.y, load(rays[kY], k)), period_mm.y(), rays[kY], rays[kOy], k);
     store(splat(top_mm), rays[kZ], k);
     if (absorption_per_mm > 0.0) lost = hn::Add(lost, absorbed(rays, k, count, way, absorption_per_mm));
   }
@@ -656,6 +693,7 @@ HWY_EXPORT(select);
 HWY_EXPORT(mark_polygon);
 HWY_EXPORT(mark_weak);
 HWY_EXPORT(shift);
+HWY_EXPORT(mark_beyond);
 HWY_EXPORT(meet_faces);
 HWY_EXPORT(meet_mirrors);
 HWY_EXPORT(meet_entrance);
@@ -687,6 +725,10 @@ std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, double*
 }
 void shift(const Rays& rays, std::size_t count, const geometry::Vec2& by) {
   HWY_DYNAMIC_DISPATCH(shift)(rays, count, by);
+}
+std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, double of, double number,
+                        double* which) {
+  return HWY_DYNAMIC_DISPATCH(mark_beyond)(rays, count, reach, of, number, which);
 }
 Branches meet_faces(const Rays& rays, std::size_t count, const Meeting& meeting, double index_ratio,
                     const Rays& reflected, const Rays& transmitted) {

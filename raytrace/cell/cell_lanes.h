@@ -16,9 +16,18 @@ namespace retrace::raytrace::lanes {
 
 inline constexpr std::size_t kPadding = 16;
 
-/// The arrays of rays: place (mm), direction, Stokes parameters (as in Light) and their first axis, of any length.
-enum RayNumber : std::size_t { kX, kY, kZ, kDx, kDy, kDz, kI, kQ, kU, kV, kAx, kAy, kAz, kRayNumbers };
-using Rays = std::array<double*, kRayNumbers>;
+/// The arrays of rays: place (mm), direction, Stokes parameters (as in Light) and their first axis, of any length; in
+/// finite parts also where on the part the period stands in which the place is given.
+enum RayNumber : std::size_t { kX, kY, kZ, kDx, kDy, kDz, kI, kQ, kU, kV, kAx, kAy, kAz, kOx, kOy, kRayNumbers };
+inline constexpr std::size_t kNumbersOfEndless = kOx;
+
+struct Rays {
+  std::array<double*, kRayNumbers> at{};
+  std::size_t numbers = kNumbersOfEndless;  ///< that there are; else kRayNumbers
+
+  double* operator[](std::size_t number) const { return at[number]; }
+  bool have_periods() const { return numbers == kRayNumbers; }
+};
 
 struct Plane {
   geometry::Vec3 normal = geometry::Vec3::Zero();  ///< unit
@@ -77,7 +86,18 @@ void mark_polygon(const Rays& rays, std::size_t count, std::span<const LinearFor
 /// `which` = 1 where power is less than `limit`, else 0; tells how many.
 std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, double* which);
 
+/// Places by another period's coordinates.
 void shift(const Rays& rays, std::size_t count, const geometry::Vec2& shift);
+
+/// `which` = `number` for those rays that, moved on to a height, lie outside a rectangle on the part; the rest stays.
+/// Only rays whose `which` is `of` are asked. Tells how many. \pre rays.have_periods()
+struct Reach {
+  double height_mm = 0.0;  ///< of the goal above the rays, along their way; 0: where they are
+  geometry::Vec2 lower = geometry::Vec2::Zero();
+  geometry::Vec2 upper = geometry::Vec2::Zero();
+};
+std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, double of, double number,
+                        double* which);
 
 /// Those rays that have met the same, and how they take the two branches of a face: both, where each has at least
 /// `split_power`; else one by its share of the power, which it gets whole. Choices are spread evenly over the order of

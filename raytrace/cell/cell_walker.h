@@ -10,27 +10,44 @@
 #include "raytrace/cell/ray_store.h"
 #include "raytrace/light_setup.h"
 #include "raytrace/path_policy.h"
+#include "raytrace/textured_facet.h"
 
 namespace retrace::raytrace {
 
-/// Follows light through an infinite part, column by column, many rays at once: all that are over one column, or under
-/// its surface, wait in one stream and are moved in SIMD lanes, the fullest stream first. One walker serves one thread.
+/// Follows light through an endless array, column by column, many rays at once: all that are over one column, or under
+/// its surface, wait in one stream and are moved in SIMD lanes, the fullest stream first. Rays that leave the inner
+/// piece of a finite part are handed over to whoever traces its borders. One walker serves one thread.
 class CellWalker {
  public:
-  CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array);
+  /// A ray that the walker does not follow any more.
+  struct HandedOver {
+    Vec3 position = Vec3::Zero();  ///< relative to the centre of the entrance face
+    Ray ray;
+    bool near_edge = false;  ///< edges of facets may be as near as rounding
+  };
+
+  /// \param centre_mm of the entrance face; finite parts
+  CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array, const Vec2& centre_mm);
   CellWalker(const CellWalker&) = delete;
   CellWalker(CellWalker&&) = default;
 
-  /// Traces light that enters at points `first`..`first + count - 1` of SobolSquare(key_x, key_y), spread over one
-  /// period of the entrance face, each as power 1. Random choices depend on `key`, `replicate` and `first` alone.
-  void trace(std::uint64_t key_x, std::uint64_t key_y, std::uint32_t first, std::size_t count, RandomKey key,
-             std::uint32_t replicate, Tally& tally);
+  /// Traces light that enters at points `first`..`first + count - 1` of SobolSquare(key_x, key_y), spread over the
+  /// rectangle `entrance_mm` (relative to the centre; infinite parts: one period), each as power 1. Random choices
+  /// depend on `key`, `replicate` and `first` alone.
+  void trace(const geometry::Rectangle& entrance_mm, std::uint64_t key_x, std::uint64_t key_y, std::uint32_t first,
+             std::size_t count, RandomKey key, std::uint32_t replicate, Tally& tally);
+
+  /// What the last trace() has not followed to its end; none in infinite parts.
+  const std::vector<HandedOver>& handed_over() const { return handed_over_; }
+  /// Random choices made so far under the first point's number.
+  std::uint32_t choices() const { return choices_; }
 
  private:
   /// Where rays are. Over its own column a surface is convex: light that leaves it there does not come back before
   /// another column.
   enum class Place : std::uint8_t { inside, below, below_after_leaving };
   static constexpr std::size_t kPlaces = 3;
+  static constexpr std::size_t kStreamsOfColumn = 2 * kPlaces;  ///< of light that has been scattered, and that has not
 
   /// One way on across a border.
   struct Crossing {
@@ -48,6 +65,7 @@ class CellWalker {
   struct Stream {
     std::uint32_t column = 0;
     Place place = Place::inside;
+    bool scattered = false;
     RayStore rays;
     std::vector<std::optional<Crossing>> borders;  ///< those with one level neighbour
     std::vector<Refinement> refinements;
@@ -60,25 +78,31 @@ class CellWalker {
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
   };
 
-  static std::uint32_t stream_of(std::uint32_t column, Place place) {
-    return static_cast<std::uint32_t>(kPlaces * column + static_cast<std::size_t>(place));
+  static std::uint32_t stream_of(std::uint32_t column, Place place, bool scattered) {
+    return static_cast<std::uint32_t>(kStreamsOfColumn * column + (scattered ? kPlaces : 0) +
+                                      static_cast<std::size_t>(place));
   }
   void prepare(Stream& stream) const;
   void advance(std::uint32_t number);
   void move(const Stream& stream);
   void meet_surface(const Stream& stream);
+  void meet_texture(const Stream& stream);
   void meet_metal(const Stream& stream, std::complex<double> index);
   void meet_wall(const Stream& stream, const Crossing& crossing, double number);
   void meet_faces(double number, bool inside, std::uint32_t reflected_to, std::uint32_t transmitted_to,
-                  const Vec2& transmitted_shift);
-  void meet_entrance();
+                  const Crossing* crossing);
+  void meet_entrance(bool scattered);
   void cross(const Stream& stream, const Crossing& crossing, double number);
-  void fall();
+  void fall(bool scattered);
   void book(double number, Account account);
   lanes::Met met();
   lanes::Meeting meeting(double number, bool inside);
   lanes::Rays end_of(std::uint32_t stream, std::size_t most);
-  void grow(std::uint32_t stream, std::size_t more, const Vec2& shift);
+  void grow(std::uint32_t stream, std::size_t more);
+  void come_in(std::uint32_t stream, std::size_t more, const Vec2& shift);
+  void hand_over(const lanes::Rays& rays, std::size_t count, const std::vector<double>& which, double number,
+                 bool inside, bool scattered, bool near_edge);
+  Ray ray_of(const lanes::Rays& rays, std::size_t k, bool inside, bool scattered) const;
   void waits(std::uint32_t stream);
   std::optional<std::uint32_t> fullest();
   void truncate_weak();
@@ -89,6 +113,10 @@ class CellWalker {
   const PathPolicy& policy_;
   const CellArray& array_;
   Tally* tally_ = nullptr;
+  geometry::Rectangle inner_;      ///< finite parts: where rays are followed, relative to the centre
+  geometry::Rectangle outline_;    ///< finite parts: of the entrance face
+  Vec2 anchor_mm_ = Vec2::Zero();  ///< finite parts: where the array starts
+  std::vector<HandedOver> handed_over_;
   std::vector<Shape> shapes_;  ///< of the columns
   std::vector<Stream> streams_;
   std::vector<std::vector<std::uint32_t>> waiting_;  ///< streams by the binary logarithm of their rays

@@ -108,11 +108,10 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
       throw InputError(design.texture.location,
                        "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "
                        "--far-field and --derivatives");
-    if (request.engine == Engine::cell &&
-        !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part, prepared_->models.back().optics))
+    if (request.engine == Engine::cell && !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part))
       throw InputError({"", 0, "--engine"},
-                       fmt::format("cell takes endless arrays of smooth facets with sharp rims, and {} is none: use "
-                                   "--engine embree",
+                       fmt::format("cell takes endless arrays, and arrays of equal elements that reach more than two "
+                                   "elements from every border; {} is neither: use --engine embree",
                                    design.source_name()));
   }
   prepared_->designs = std::move(designs);
@@ -273,8 +272,7 @@ RrePoint spectral_point(const Direction& direction, const SpectralOptics& light)
 raytrace::MonteCarlo::Engine engine_for(const OpticalModel& model, const RreRequest& request) {
   using raytrace::MonteCarlo;
   const bool may_be_cell = request.engine != Engine::embree && request.sampling == raytrace::Sampling::Kind::stratified;
-  return may_be_cell && MonteCarlo::cell_serves(model.part, model.optics) ? MonteCarlo::Engine::cell
-                                                                          : MonteCarlo::Engine::embree;
+  return may_be_cell && MonteCarlo::cell_serves(model.part) ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
 }
 
 /// The engine that Monte Carlo takes, one for all designs or several.

@@ -173,7 +173,9 @@ TEST(BadInput, WrongOptionsAreRefused) {
   const std::vector<BadArguments> cases = {
       {{"--engine", "magic"}, "--engine: must be auto, exact, montecarlo, cell or embree, got magic"},
       {{"--engine", ""}, "--engine: "},
-      {{"--engine", "cell"}, "--engine: cell takes endless arrays of smooth facets with sharp rims, and "},
+      {{"--engine", "cell"},
+       "--engine: cell takes endless arrays, and arrays of equal elements that reach more than two elements from every "
+       "border; "},
       {{"--sampling", "random"}, "--sampling: must be stratified or plain, got random"},
       {{"--sampling", "plain", "--engine", "exact"},
        "--sampling: plain needs --engine montecarlo or embree, got exact"},

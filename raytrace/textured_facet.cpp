@@ -1,0 +1,71 @@
+#include "raytrace/textured_facet.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using surface_models::Lobe;
+
+/// A ray in the frame of a facet: x along it and level, z against the light.
+struct LocalEvent {
+  Eigen::Matrix3d world_from_local;
+  surface_models::ScatterEvent event;
+  surface_models::Facet piece;
+};
+
+LocalEvent local_event(const Optics& optics, const Vec3& normal, const Ray& ray, surface_models::RandomStream& random) {
+  LocalEvent local;
+  const Vec3 z = ray.inside ? Vec3(-normal) : normal;
+  // Chamfered roots are level all round: there the roof edge of a prism is the axis.
+  const Vec3 level = normal.cross(Vec3::UnitZ());
+  const Vec3 x = level.norm() > 1e-9 ? level.normalized() : normal.cross(Vec3::UnitX()).normalized();
+  local.world_from_local << x, z.cross(x), z;
+  local.event.direction_in = local.world_from_local.transpose() * ray.direction;
+  local.event.index_from = ray.inside ? optics.index : optics.back_index;
+  local.event.index_to = ray.inside ? optics.back_index : optics.index;
+  local.event.wavelength_nm = optics.wavelength_nm;
+  local.event.inside_material = ray.inside;
+  local.piece = surface_models::sample_facet(optics.facet_scatter, local.event, random);
+  return local;
+}
+
+/// Turns a ray that has left the facet as from a plane one; nothing if the texture keeps it.
+std::optional<Ray> scattered(Ray ray, const Optics& optics, const LocalEvent& local, Lobe lobe, TexturedReturn& result,
+                             surface_models::RandomStream& random) {
+  const auto out = surface_models::sample(optics.facet_scatter, local.event, local.piece, lobe, random);
+  result.truncated += (1.0 - (out ? out->weight : 0.0)) * ray.light.power();
+  if (!out) return std::nullopt;
+  ray.light.scale(out->weight);
+  if (!out->is_specular) {
+    const Vec3 direction = (local.world_from_local * out->direction).normalized();
+    ray.light.s_axis = Eigen::Quaterniond::FromTwoVectors(ray.direction, direction) * ray.light.s_axis;
+    ray.direction = direction;
+  }
+  ray.scattered = ray.scattered || !out->is_specular || local.piece.is_tilted;
+  return ray;
+}
+
+}  // namespace
+
+TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
+                                   surface_models::RandomStream& random) {
+  const LocalEvent local = local_event(optics, normal, ray, random);
+  const Vec3 against = local.world_from_local * local.piece.normal;
+  const double cos_incidence = -against.dot(ray.direction);
+  const materials::FresnelCoefficients f =
+      fresnel_at_back(optics, geometry::FacetRole::retro_facet, ray.inside, cos_incidence);
+  Light light = ray.light;
+  light.turn_to(ray.direction, against);
+  Ray reflected{mirrored(ray.direction, against), light.reflected(f), ray.inside, ray.scattered};
+  Ray transmitted{refracted(ray.direction, against, optics.ratio_at_back(ray.inside), cos_incidence, f.cos_refracted),
+                  light.transmitted(f), !ray.inside, ray.scattered};
+  TexturedReturn result;
+  if (optics.coating_index) result.absorbed = light.power() - reflected.light.power();
+  const Branch branch = choose_branch(reflected.light, transmitted.light, split_power, [&] { return random.next(); });
+  if (branch != Branch::reflected)
+    result.transmitted = scattered(transmitted, optics, local, Lobe::transmission, result, random);
+  if (branch != Branch::transmitted)
+    result.reflected = scattered(reflected, optics, local, Lobe::reflection, result, random);
+  return result;
+}
+
+}  // namespace retrace::raytrace
