@@ -84,7 +84,7 @@ TEST(Rre, JsonHasEveryKeyOfTheContract) {
                           "version", "warnings", "complete"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["schema"], "retrace.rre/1");
-  EXPECT_EQ(json["engine"], "embree");
+  EXPECT_EQ(json["engine"], "cell");
   EXPECT_EQ(json["engine_requested"], "auto");
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["rays"], 4096);
@@ -124,11 +124,11 @@ TEST(Rre, EngineThatWasAskedForIsNamed) {
   for (const char* engine : {"auto", "montecarlo", "embree"}) {
     const Json json = retrace_json(folder, {"rre", kDesign, "--samples=64", "--engine", engine});
     EXPECT_EQ(json["engine_requested"], engine);
-    EXPECT_EQ(json["engine"], "embree");
+    EXPECT_EQ(json["engine"], std::string(engine) == "embree" ? "embree" : "cell");
   }
 }
 
-// Endless arrays of smooth facets need no search; what rounds their rims or roughens them does.
+// Arrays of equal elements need no search.
 TEST(Rre, MonteCarloChoosesItsEngine) {
   const TemporaryFolder folder;
   const std::string endless = RETRACE_SOURCE_DIR "/examples/honeycomb_infinite.toml";
@@ -142,8 +142,10 @@ TEST(Rre, MonteCarloChoosesItsEngine) {
   EXPECT_EQ(engine({endless, "--engine=montecarlo", "--sampling=plain"}), "embree");
   EXPECT_EQ(engine({endless, "--engine=montecarlo", "--set=surface.roughness_sq_nm=5",
                     "--set=surface.correlation_length_um=2"}),
-            "embree");
-  EXPECT_EQ(engine({endless, kDesign, "--engine=montecarlo"}), "montecarlo");
+            "cell");
+  EXPECT_EQ(engine({kDesign, "--engine=montecarlo"}), "cell");
+  EXPECT_EQ(engine({kDesign, "--engine=montecarlo", "--set=surface.angle_error_sigma_arcmin=1"}), "embree");
+  EXPECT_EQ(engine({endless, kOther, "--engine=montecarlo"}), "montecarlo");
 }
 
 TEST(Rre, PlainSamplingAgreesAtAHigherPrice) {
@@ -178,7 +180,7 @@ TEST(Rre, RoughFacetsAreForMonteCarlo) {
   const Arguments rough = {
       "rre", kDesign, "--set", "surface.roughness_sq_nm=5", "--set", "surface.correlation_length_um=2"};
   const Json json = retrace_json(folder, rough);
-  EXPECT_EQ(json["engine"], "embree");
+  EXPECT_EQ(json["engine"], "cell");
   EXPECT_GT(json["points"][0]["ledger"]["scattered_out"].get<double>(), 0.0);
   Arguments exact = rough;
   exact.insert(exact.end(), {"--engine", "exact"});
