@@ -19,7 +19,7 @@
 namespace retrace::studies {
 
 /// Which tracer is asked for. `automatic` is exact where that takes few beams at every direction asked for, else Monte
-/// Carlo; `montecarlo` is `cell` for endless arrays of smooth facets with sharp rims, else `embree`.
+/// Carlo; `montecarlo` is `cell` where that serves, else `embree`.
 enum class Engine { automatic, exact, montecarlo, cell, embree };
 
 /// \throw InputError listing the engines for a name that is none of them
