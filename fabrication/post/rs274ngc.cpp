@@ -13,7 +13,7 @@ class Rs274ngc : public DialectWriter {
   void end_main(NcText& out) const override { out.line("M2"); }
   void prepare(NcText& out) const override {
     out.line("G17 G21 G40 G49 G80 G90 G94");
-    out.line("G54 G61");
+    out.line("G54 G61 G92.1");
     out.line("M5");
   }
   void mist(NcText& out, bool on) const override { out.line(on ? "M7" : "M9"); }

@@ -14,6 +14,7 @@ class Sinumerik : public DialectWriter {
   void end_main(NcText& out) const override { out.line("M30"); }
   void prepare(NcText& out) const override {
     out.line("TRAFOOF");
+    out.line("TRANS");
     out.line("G17 G710 G40 G90 G94");
     out.line("G54 G60 D0");
     out.line("M5");

@@ -22,6 +22,7 @@ IsoBlock::Meaning meaning_of(double g) {
   if (g == 54) return {Code::workpiece_offset, 14};
   if (g == 61) return {Code::exact_stop, 15};
   if (g == 64) return {Code::blending, 15};
+  if (g == 69) return {Code::no_effect, 16};  // turned coordinates cancelled
   if (g == 80) return {Code::no_effect, 9};
   if (g == 90) return {Code::absolute, 3};
   if (g == 91) return {Code::incremental, 3};

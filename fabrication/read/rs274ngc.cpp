@@ -25,6 +25,7 @@ IsoBlock::Meaning meaning_of(double g) {
   if (g == 80) return {Code::no_effect, 1};
   if (g == 90) return {Code::absolute, 3};
   if (g == 91) return {Code::incremental, 3};
+  if (g == 92.1) return {Code::no_effect, 0};  // shifts of G92 cancelled
   if (g == 94) return {Code::feed_per_minute, 5};
   return {};
 }

@@ -137,6 +137,11 @@ class Reader {
         text = trimmed(text.substr(7));
         continue;
       }
+      // Alone it cancels what frames a program before left; with words it would shift the zero.
+      if (text == "TRANS") {
+        text = {};
+        continue;
+      }
       const NcWord word = take_assignment(text);
       if (word.letter == 'F') {
         if (feed) lines_.fail("has two words F");
