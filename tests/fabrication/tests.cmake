@@ -19,3 +19,6 @@ retrace_test(fabrication_read_back_test
 retrace_test(fabrication_verify_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::verify rapidcheck)
+retrace_test(fabrication_planned_jobs_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp
+  LIBRARIES retrace::plan retrace::post retrace::nc_read retrace::verify)
