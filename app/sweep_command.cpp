@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <map>
+#include <thread>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
@@ -12,6 +13,7 @@
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_files.h"
 #include "studies/sweep/io/sweep_reader.h"
+#include "studies/sweep/mpi_session.h"
 
 namespace retrace::app {
 namespace {
@@ -49,6 +51,10 @@ studies::IfExists if_exists(const StudyOptions& options) {
   return options.overwrite ? studies::IfExists::overwrite : studies::IfExists::refuse;
 }
 
+studies::Sweep sweep_of(const CommandLine& line) {
+  return studies::read_sweep(studies::read_study(line.study.study, line.common.overrides, line.common.seed));
+}
+
 std::vector<std::string> files_of(const studies::Study& study) {
   std::vector<std::string> files = {study.source};
   for (const auto& [file, text] : study.design_texts) files.push_back(file);
@@ -57,11 +63,31 @@ std::vector<std::string> files_of(const studies::Study& study) {
 
 }  // namespace
 
-ExitCode run_sweep_command(const CommandLine& line) {
-  check_options(line);
+namespace {
+
+/// Points that a process has in work at a time.
+std::size_t slots(const CommandLine& line) {
+  return line.common.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+/// Another rank than 0: computes what it is dealt and says nothing. What is wrong is told by rank 0, which goes on
+/// without this one; another exit code than 0 would have mpirun end the job.
+ExitCode serve(const CommandLine& line, studies::MpiSession& session) {
+  try {
+    const studies::Sweep sweep = sweep_of(line);
+    const OrderlyInterrupt interrupt;
+    raytrace::run_with_threads(line.common.threads.value_or(0),
+                               [&] { session.serve(sweep, slots(line), &interrupt.cancellation()); });
+  } catch (const Error& error) {
+    session.leave(error.what());
+  }
+  return ExitCode::done;
+}
+
+/// \param session null without MPI
+ExitCode sweep_with(const CommandLine& line, studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
-  const studies::Sweep sweep =
-      studies::read_sweep(studies::read_study(line.study.study, line.common.overrides, line.common.seed));
+  const studies::Sweep sweep = sweep_of(line);
   const OrderlyInterrupt interrupt;
   prepare_outputs(line.common, {files_of(sweep.study()), "sweep.json", {"sweep.csv", kStore}});
   const std::filesystem::path file =
@@ -70,10 +96,15 @@ ExitCode run_sweep_command(const CommandLine& line) {
   bool complete = false;
   {
     SweepBar bar(!line.common.quiet);
-    raytrace::run_with_threads(line.common.threads.value_or(0),
-                               [&] { complete = studies::run_sweep(sweep, store, &bar, &interrupt.cancellation()); });
+    const Cancellation* const cancel = &interrupt.cancellation();
+    raytrace::run_with_threads(line.common.threads.value_or(0), [&] {
+      complete = session != nullptr ? session->deal(sweep, store, slots(line), &bar, cancel)
+                                    : studies::run_sweep(sweep, store, &bar, cancel);
+    });
   }
   studies::SweepResult result = studies::collect(sweep, store, complete);
+  if (session != nullptr)
+    for (const std::string& remark : session->remarks()) result.warnings.push_back(remark);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string json = studies::sweep_json(result);
   write_outputs(line.common, json, {{"sweep.json", json}, {"sweep.csv", studies::sweep_csv(result)}},
@@ -82,6 +113,15 @@ ExitCode run_sweep_command(const CommandLine& line) {
   if (complete) return ExitCode::done;
   say(fmt::format("retrace: interrupted; finished points: {} of {}", result.points.size(), sweep.size()));
   return ExitCode::interrupted;
+}
+
+}  // namespace
+
+ExitCode run_sweep_command(const CommandLine& line) {
+  check_options(line);
+  if (!studies::MpiSession::is_launched()) return sweep_with(line, nullptr);
+  studies::MpiSession session;
+  return session.rank() == 0 ? sweep_with(line, &session) : serve(line, session);
 }
 
 }  // namespace retrace::app

@@ -2,7 +2,6 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include <chrono>
 #include <filesystem>
@@ -11,31 +10,12 @@
 #include <thread>
 
 #include "tests/app/program.h"
+#include "tests/sweep/stored_points.h"
 
 namespace retrace::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Points of a few milliseconds each.
-std::string study(int points, int samples = 20000) {
-  return "schema = \"retrace.study/1\"\ndesign = \"" + example("honeycomb_infinite.toml") +
-         "\"\n[[parameter]]\nkey = \"analysis.incidence_deg\"\nfrom = 0\nto = 40\ncount = " + std::to_string(points) +
-         "\n[[quantity]]\nkind = \"rre\"\n[analysis]\nengine = \"cell\"\nsamples = " + std::to_string(samples) + "\n";
-}
-
-/// What the store of a run holds, read beside it: the time that each point took, by number.
-std::map<int, double> stored(const fs::path& file) {
-  std::map<int, double> points;
-  try {
-    SQLite::Database database(file.string(), SQLite::OPEN_READONLY, 10000);
-    SQLite::Statement query(database, "SELECT point, elapsed_s FROM points");
-    while (query.executeStep()) points[query.getColumn(0).getInt()] = query.getColumn(1).getDouble();
-  } catch (const SQLite::Exception&) {
-    return {};  // not made yet
-  }
-  return points;
-}
 
 Arguments sweep_arguments(const std::string& folder, bool resume) {
   Arguments arguments = {RETRACE_PROGRAM, "sweep", "study.toml", "-o", folder, "--quiet"};
@@ -53,7 +33,7 @@ TEST(SweepCommand, TwentyKillsLoseNoPointAndRepeatNone) {
   constexpr int points = 240;
   constexpr int kills = 20;
   const TemporaryFolder folder;
-  folder.write("study.toml", study(points));
+  folder.write("study.toml", sweep_study(points));
   const std::string expected = whole_run(folder);
   std::mt19937 random(20);
   std::map<int, double> before;
@@ -64,11 +44,12 @@ TEST(SweepCommand, TwentyKillsLoseNoPointAndRepeatNone) {
       // A random moment after the run has got somewhere: how fast the machine is does not matter.
       const std::size_t goal = before.size() + random() % 8;
       const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-      while (stored(folder.path() / "killed/sweep.sqlite").size() < goal && std::chrono::steady_clock::now() < deadline)
+      while (stored_points(folder.path() / "killed/sweep.sqlite").size() < goal &&
+             std::chrono::steady_clock::now() < deadline)
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
       std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
     }  // the child dies by SIGKILL here
-    const std::map<int, double> after = stored(folder.path() / "killed/sweep.sqlite");
+    const std::map<int, double> after = stored_points(folder.path() / "killed/sweep.sqlite");
     for (const auto& [point, elapsed_s] : before) {
       ASSERT_TRUE(after.contains(point)) << "lost by kill " << kill;
       ASSERT_EQ(after.at(point), elapsed_s) << "computed again by run " << kill;
@@ -80,14 +61,14 @@ TEST(SweepCommand, TwentyKillsLoseNoPointAndRepeatNone) {
   const Outcome outcome = Child(folder.path(), sweep_arguments("killed", true)).wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(folder.read("killed/sweep.csv"), expected);
-  for (const auto& [point, elapsed_s] : stored(folder.path() / "killed/sweep.sqlite"))
+  for (const auto& [point, elapsed_s] : stored_points(folder.path() / "killed/sweep.sqlite"))
     EXPECT_TRUE(!before.contains(point) || elapsed_s == before.at(point)) << point;
 }
 
 TEST(SweepCommand, TwoProcessesShareOneStore) {
   constexpr int points = 120;
   const TemporaryFolder folder;
-  folder.write("study.toml", study(points));
+  folder.write("study.toml", sweep_study(points));
   const std::string expected = whole_run(folder);
   Child first(folder.path(), sweep_arguments("shared", true));
   Child second(folder.path(), sweep_arguments("shared", true));
@@ -96,7 +77,7 @@ TEST(SweepCommand, TwoProcessesShareOneStore) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
   EXPECT_EQ(folder.read("shared/sweep.csv"), expected);
-  EXPECT_EQ(stored(folder.path() / "shared/sweep.sqlite").size(), static_cast<std::size_t>(points));
+  EXPECT_EQ(stored_points(folder.path() / "shared/sweep.sqlite").size(), static_cast<std::size_t>(points));
   SQLite::Database database((folder.path() / "shared/sweep.sqlite").string(), SQLite::OPEN_READWRITE);
   EXPECT_EQ(database.execAndGet("PRAGMA integrity_check").getString(), "ok");
   EXPECT_EQ(database.execAndGet("SELECT count(*) FROM claims").getInt(), 0);
@@ -104,9 +85,9 @@ TEST(SweepCommand, TwoProcessesShareOneStore) {
 
 TEST(SweepCommand, AnInterruptedRunIsValidAndGoesOn) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study(400));
+  folder.write("study.toml", sweep_study(400));
   Child child(folder.path(), sweep_arguments("out", false));
-  while (stored(folder.path() / "out/sweep.sqlite").size() < 5)
+  while (stored_points(folder.path() / "out/sweep.sqlite").size() < 5)
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   child.interrupt();
   const Outcome outcome = child.wait();
@@ -120,7 +101,7 @@ TEST(SweepCommand, AnInterruptedRunIsValidAndGoesOn) {
 
 TEST(SweepCommand, AnExistingStoreNeedsAWord) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study(4, 1000));
+  folder.write("study.toml", sweep_study(4, 1000));
   const auto run = [&](const Arguments& more) {
     Arguments arguments = {"sweep", "study.toml", "-o", "out"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -134,7 +115,7 @@ TEST(SweepCommand, AnExistingStoreNeedsAWord) {
             "--out keeps it\n");
   EXPECT_EQ(run({"--resume"}).code, 0);
   EXPECT_EQ(run({"--resume", "--overwrite"}).code, 2);
-  folder.write("study.toml", study(5, 1000));
+  folder.write("study.toml", sweep_study(5, 1000));
   const Outcome changed = run({"--resume"});
   EXPECT_EQ(changed.code, 2);
   EXPECT_EQ(changed.err,
@@ -151,7 +132,7 @@ TEST(SweepCommand, AnExistingStoreNeedsAWord) {
 
 TEST(SweepCommand, AFullDiskLosesNothing) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study(300, 1000));
+  folder.write("study.toml", sweep_study(300, 1000));
   const std::string expected = whole_run(folder);
   // A limit on the size of files stands for the disk; 64 blocks of 512 or 1024 bytes.
   const Outcome outcome = Child(folder.path(), {"/bin/sh", "-c",
@@ -161,7 +142,7 @@ TEST(SweepCommand, AFullDiskLosesNothing) {
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_TRUE(outcome.err.starts_with("retrace: full/sweep.sqlite: cannot be written: ")) << outcome.err;
   EXPECT_EQ(lines_of(outcome.err).size(), 1U);
-  const std::size_t kept = stored(folder.path() / "full/sweep.sqlite").size();
+  const std::size_t kept = stored_points(folder.path() / "full/sweep.sqlite").size();
   EXPECT_GT(kept, 0U);
   EXPECT_LT(kept, 300U);
   const Outcome resumed = Child(folder.path(), sweep_arguments("full", true)).wait();
@@ -191,7 +172,7 @@ TEST(SweepCommand, ItsDocumentHasWhatScriptsCountOn) {
 
 TEST(SweepCommand, TheSameBytesAtAnyNumberOfThreads) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study(12, 5000));
+  folder.write("study.toml", sweep_study(12, 5000));
   const auto document = [&](const std::string& threads) {
     return without_elapsed(retrace(folder, {"sweep", "study.toml", "--json", "-", "--threads", threads}).out);
   };
