@@ -1,5 +1,5 @@
 retrace_test(sweep_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/machining_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sampling_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/cells_test.cpp ${CMAKE_CURRENT_LIST_DIR}/machining_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sampling_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/store_test.cpp ${CMAKE_CURRENT_LIST_DIR}/study_reader_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/sweep_test.cpp
   LIBRARIES retrace::sweep retrace::quantity retrace::store SQLiteCpp)
