@@ -14,7 +14,7 @@ bool MpiSession::is_launched() {
 }
 
 MpiSession::MpiSession() {
-  throw InputError("this retrace was built without MPI (RETRACE_MPI=OFF): run it without mpirun");
+  throw InputError("this retrace was built without MPI (RETRACE_WITH_MPI=OFF): run it without mpirun");
 }
 MpiSession::~MpiSession() = default;
 

@@ -6,7 +6,7 @@ retrace_test(sweep_test
 
 # The program: runs that are killed, interrupted, shared and refused.
 set(sweep_app_sources sweep_command_test.cpp)
-if(RETRACE_MPI)
+if(RETRACE_WITH_MPI)
   list(APPEND sweep_app_sources mpi_command_test.cpp)
 endif()
 list(TRANSFORM sweep_app_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
@@ -14,6 +14,6 @@ retrace_test(sweep_app_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/../app/program.cpp ${sweep_app_sources}
   LIBRARIES retrace::core nlohmann_json::nlohmann_json SQLiteCpp SQLite::SQLite3)
 add_dependencies(sweep_app_test retrace)
-if(RETRACE_MPI)
+if(RETRACE_WITH_MPI)
   target_compile_definitions(sweep_app_test PRIVATE RETRACE_MPIRUN="${MPIEXEC_EXECUTABLE}")
 endif()
