@@ -41,6 +41,9 @@ ExitCode run_job_command(const CommandLine& line) {
   const std::string text = fabrication::job_text(made.job);
   FileNames names{files_read({design}), "", {}};
   if (design.mask) names.designs.push_back(design.mask->file.string());
+  // Names without an ending are shipped ones, not files.
+  for (const std::string& name : {request.machine, request.process})
+    if (fs::path(name).has_extension()) names.designs.push_back(name);
   prepare_outputs(outputs, names);
   if (!out.empty()) {
     for (const std::string& read : names.designs) {

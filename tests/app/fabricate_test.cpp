@@ -156,6 +156,20 @@ TEST(Fabricate, AMachineOfTheUserIsNamedFromTheJob) {
   EXPECT_EQ(retrace_json(folder, {"fabricate", "jobs/j.toml"})["machine"], "paper");
 }
 
+TEST(Job, DoesNotReplaceWhatItReads) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", design("single", 0));
+  folder.write("p.toml", read_text(std::string(RETRACE_SOURCE_DIR) + "/data/processes/paper-pmma.toml"));
+  for (const std::string file : {"d.toml", "p.toml"}) {
+    const std::string before = folder.read(file);
+    for (const std::string option : {"-o", "--json"}) {
+      const Outcome outcome = retrace(folder, with(kJob, {"--process", "p.toml", option, file}));
+      EXPECT_EQ(outcome.code, 2) << outcome.err;
+      EXPECT_EQ(folder.read(file), before);
+    }
+  }
+}
+
 TEST(Job, WarnsOfWhatItLeavesOut) {
   const TemporaryFolder folder;
   folder.write("d.toml", design("offset", 5 * 0.451) + "[surface]\nfacet_tilt_arcmin = [1, 0]\n");

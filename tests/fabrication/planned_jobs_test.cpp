@@ -49,6 +49,7 @@ const std::vector<Variant>& variants() {
       {"narrow tool", [](Job& job) { job.tool.width_mm = 0.2; }},
       {"gaps", [](Job& job) { job.array.x_gap_mm = job.array.y_gap_mm = 0.03; }},
       {"opened apex", [](Job& job) { job.element.apex_angle_deg = 90.05; }},
+      {"closed apex", [](Job& job) { job.element.apex_angle_deg = 89.95; }},
       {"wide apex", [](Job& job) { job.element.apex_angle_deg = 95.0; }},
       {"blunt edge", [](Job& job) { job.tool.edge_radius_um = 0.5; }},
       {"blunt edge, opened apex",
