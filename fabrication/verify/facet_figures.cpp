@@ -57,7 +57,9 @@ class Measurer {
       double previous_slant = 0.0;
       double previous_top = 0.0;
       for (const double slant : slants) {
-        const double floor_mm = is_other_ploughed && slant == kAtRootMm ? ploughed_height(1 - facet, along) : 0.0;
+        const double floor_mm =
+            is_other_ploughed && slant == kAtRootMm ? ploughed_height(1 - facet, along) / sine_between() : 0.0;
+        if (!is_clear_of_other(slant + floor_mm)) continue;
         const LineSurface surface = surface_at(facet, along, slant + floor_mm);
         take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along) : 0.0);
         if (is_for_plane(slant, along)) sums.add(slant, along, surface.lowest);
@@ -181,7 +183,38 @@ class Measurer {
         if (sweep.pose == pose)
           if (const auto span = swept_span(wedge_, sweep, p, d)) spans_.push_back(*span);
     }
-    return surface_along(spans_, -point.z() / design.normal.z());
+    return surface_along(spans_, exit_of(facet, point, slant));
+  }
+
+  /// Height over the other facet for each mm up a facet: the sine of the angle that they include.
+  double sine_between() const { return groove_.facets[1].normal.dot(groove_.facets[0].up_slope); }
+
+  /// How fast a line normal to a facet comes down on the other one; 0 where they include 90 degrees or more.
+  double approach_of_other() const {
+    constexpr double kParallel = 1e-9;
+    const double towards = -groove_.facets[0].normal.dot(groove_.facets[1].normal);
+    return towards > kParallel ? towards : 0.0;
+  }
+
+  /// Height over the other facet below which a line would meet what is left on that one.
+  double residue_of_other_mm() const { return strip_mm_ + kLeastStripMm; }
+
+  /// Whether a line at that distance from the root says anything of its own facet: of closed grooves the lowest ones
+  /// run into what the other facet may keep.
+  bool is_clear_of_other(double slant) const {
+    if (slant <= strip_mm_ || approach_of_other() <= 0.0) return true;
+    return slant * sine_between() > 2.0 * residue_of_other_mm();
+  }
+
+  /// Where a line normal to a facet leaves what the design takes away: at the blank's face, or before the other facet.
+  double exit_of(std::size_t facet, const Vec3& point, double slant) const {
+    const DesignFacet& design = groove_.facets[facet];
+    const double at_face = -point.z() / design.normal.z();
+    const double towards = approach_of_other();
+    if (towards <= 0.0) return at_face;
+    const double height = groove_.facets[1 - facet].height_mm(point);
+    const double free = slant <= strip_mm_ ? 0.5 * height : height - residue_of_other_mm();
+    return std::min(at_face, free / towards);
   }
 
   /// What ploughing must leave: 0 at the deeper end of the edge, which touches the design's facet.

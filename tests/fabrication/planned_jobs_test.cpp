@@ -24,9 +24,10 @@ Machine machine(const std::string& name) {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
 }
 
-Verification verified(const Job& job, const Machine& m) {
+/// What programs planned for one job leave, judged by another.
+Verification verified(const Job& planned, const Job& job, const Machine& m) {
   std::vector<NcProgram> programs;
-  for (const Program& program : make_plan(job, m).programs)
+  for (const Program& program : make_plan(planned, m).programs)
     programs.push_back(parse_nc(nc_text(program, "rs274ngc"), "p.ngc", NcDialect::rs274ngc));
   return verify_programs(job, m, programs, {}, {});
 }
@@ -50,6 +51,7 @@ const std::vector<Variant>& variants() {
       {"gaps", [](Job& job) { job.array.x_gap_mm = job.array.y_gap_mm = 0.03; }},
       {"opened apex", [](Job& job) { job.element.apex_angle_deg = 90.05; }},
       {"closed apex", [](Job& job) { job.element.apex_angle_deg = 89.95; }},
+      {"narrow apex", [](Job& job) { job.element.apex_angle_deg = 80.0; }},
       {"wide apex", [](Job& job) { job.element.apex_angle_deg = 95.0; }},
       {"blunt edge", [](Job& job) { job.tool.edge_radius_um = 0.5; }},
       {"blunt edge, opened apex",
@@ -88,7 +90,7 @@ TEST(PlannedJobs, EveryKeyIsCutAsDesigned) {
         job.strategy = strategy;
         job.process.roughing_depth_um = 40.0;
         variant.change(job);
-        const Verification v = verified(job, m);
+        const Verification v = verified(job, job, m);
         const std::string what = fmt::format("{}, {}, strategy {}", variant.what, name, static_cast<int>(strategy));
         EXPECT_TRUE(v.passes()) << what << "\n" << listed(v);
         EXPECT_EQ(v.elements_cut, static_cast<std::int64_t>(cut_elements(job).size())) << what;
@@ -97,6 +99,17 @@ TEST(PlannedJobs, EveryKeyIsCutAsDesigned) {
           EXPECT_LT(v.facet_angle_arcmin_max, 0.01) << what;
         }
       }
+  }
+}
+
+TEST(PlannedJobs, AnotherApexIsFound) {
+  for (const double apex_deg : {89.95, 90.05, 80.0}) {
+    Job planned = square_job(2, Arrangement::aligned);
+    planned.process.roughing_depth_um = 40.0;
+    Job job = planned;
+    planned.element.apex_angle_deg = apex_deg + 0.02;
+    job.element.apex_angle_deg = apex_deg;
+    EXPECT_FALSE(verified(planned, job, machine("ideal")).passes()) << apex_deg;
   }
 }
 
