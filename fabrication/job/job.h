@@ -56,6 +56,10 @@ struct Process {
   double plough_lift_um = 0.0;   ///< by which the tool leaves the facet once the chip is free; 0: it does not
   double slow_retract_um = 0.0;  ///< of bidirectional cuts: this much straight up at cutting feed first (thesis 4.4)
   double rotary_clearance_mm = 5.0;  ///< above all that the turning blank can reach, before a rotary move
+  /// Areal roughness Sa that the motions leave on facets. Milliken 2017 and Hamilton et al. 2017, as measured.
+  double plough_sa_nm = 468.0;
+  double roughing_plunge_sa_nm = 115.0;
+  double finishing_plunge_sa_nm = 48.9;
 };
 
 /// Where the elements are, in the part's frame and size.

@@ -137,6 +137,7 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   job.process.finishing_cuts = *rc::gen::inRange(1, 5);
   job.process.shortest_plough = *rc::gen::arbitrary<bool>();
   job.process.plough_lift_um = real(0.0, 9.0);
+  job.process.plough_sa_nm = real(0.0, 900.0);
   if (job.array.arrangement == Arrangement::single) job.array.x_length_mm = job.array.y_length_mm = 0.0;
   RC_ASSERT(same(parse_job(job_text(job), "j.toml"), job));
 }

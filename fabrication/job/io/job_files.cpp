@@ -44,6 +44,7 @@ constexpr NumberRange kFeed{.low = 0.0, .low_included = false, .high = 1e5};
 constexpr NumberRange kShortLength{.low = 0.0, .low_included = false, .high = 100.0};
 constexpr NumberRange kDwell{.low = 0.0, .high = 60.0};
 constexpr NumberRange kCuts{.low = 1.0, .high = 1000.0};
+constexpr NumberRange kRoughness{.low = 0.0, .high = 1e4};
 constexpr NumberRange kMicrometres{.low = 0.0, .high = 1000.0};
 /// Keeps the memory of a plan within reason: about 1 KiB an element.
 constexpr double kMostElements = 2e6;
@@ -119,7 +120,10 @@ Process read_process(TomlTable table) {
   p.plough_lift_um = table.number("plough_lift_um", kMicrometres).value_or(0.0);
   p.slow_retract_um = table.number("slow_retract_um", kMicrometres).value_or(0.0);
   p.rotary_clearance_mm = table.number("rotary_clearance_mm", kShortLength).value_or(p.rotary_clearance_mm);
-  // Their values are refused where they are used: a plough shorter than the chip leaves it hanging.
+  p.plough_sa_nm = table.number("plough_sa_nm", kRoughness).value_or(p.plough_sa_nm);
+  p.roughing_plunge_sa_nm = table.number("roughing_plunge_sa_nm", kRoughness).value_or(p.roughing_plunge_sa_nm);
+  p.finishing_plunge_sa_nm = table.number("finishing_plunge_sa_nm", kRoughness).value_or(p.finishing_plunge_sa_nm);
+  // A plough shorter than the chip leaves it hanging.
   if (!p.shortest_plough && p.plough_length_mm < 1e-3 * p.roughing_depth_um)
     table.fail("plough_length_mm", fmt::format("must be at least roughing_depth_um ({} um) to free the chip, got {}",
                                                shortest(p.roughing_depth_um), shortest(p.plough_length_mm)));
@@ -255,6 +259,9 @@ void write_process(TextWriter& out, const Process& p) {
   out.number("plough_lift_um", p.plough_lift_um);
   out.number("slow_retract_um", p.slow_retract_um);
   out.number("rotary_clearance_mm", p.rotary_clearance_mm);
+  out.number("plough_sa_nm", p.plough_sa_nm);
+  out.number("roughing_plunge_sa_nm", p.roughing_plunge_sa_nm);
+  out.number("finishing_plunge_sa_nm", p.finishing_plunge_sa_nm);
 }
 
 }  // namespace
