@@ -238,7 +238,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
   for (const std::string& word : unknown)
     if (word.starts_with('-')) return "unknown option " + word;
   if (!app.get_subcommands().empty()) return otherwise;
-  const std::string commands = "rre, inspect, roughness, metrology, sweep, job, fabricate, init and list";
+  const std::string commands = "rre, inspect, roughness, metrology, sweep, optimize, job, fabricate, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -269,6 +269,7 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_study(app, line.study, "sweep", "designs and directions over ranges, as a study file says");
   add_job(app, line.job);
   add_fabricate(app, line.fabricate);
+  add_study(app, line.study, "optimize", "the best design within constraints, as a study file says");
   app.add_subcommand("init", "a commented design file to start from")
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
       ->required();

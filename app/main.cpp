@@ -26,6 +26,7 @@ ExitCode run(int argc, const char* const* argv) {
   if (line->command == "sweep") return app::run_sweep_command(*line);
   if (line->command == "job") return app::run_job_command(*line);
   if (line->command == "fabricate") return app::run_fabricate_command(*line);
+  if (line->command == "optimize") return app::run_optimize_command(*line);
   if (line->command == "init") return app::run_init_command(*line);
   return app::run_list_command(*line);
 }

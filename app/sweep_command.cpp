@@ -9,6 +9,7 @@
 #include "app/interrupt.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
+#include "app/study_options.h"
 #include "raytrace/threads.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_files.h"
@@ -41,24 +42,8 @@ class SweepBar : public studies::SweepObserver {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void check_options(const CommandLine& line) {
-  for (const auto& [given, option] : {std::pair{line.study.resume, "--resume"}, {line.study.overwrite, "--overwrite"}})
-    if (given && line.common.out.empty()) throw InputError({"", 0, option}, "needs --out DIR, where the store is");
-}
-
-studies::IfExists if_exists(const StudyOptions& options) {
-  if (options.resume) return studies::IfExists::resume;
-  return options.overwrite ? studies::IfExists::overwrite : studies::IfExists::refuse;
-}
-
 studies::Sweep sweep_of(const CommandLine& line) {
   return studies::read_sweep(studies::read_study(line.study.study, line.common.overrides, line.common.seed));
-}
-
-std::vector<std::string> files_of(const studies::Study& study) {
-  std::vector<std::string> files = {study.source};
-  for (const auto& [file, text] : study.design_texts) files.push_back(file);
-  return files;
 }
 
 }  // namespace
@@ -89,10 +74,10 @@ ExitCode sweep_with(const CommandLine& line, studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Sweep sweep = sweep_of(line);
   const OrderlyInterrupt interrupt;
-  prepare_outputs(line.common, {files_of(sweep.study()), "sweep.json", {"sweep.csv", kStore}});
+  prepare_outputs(line.common, {files_of_study(sweep.study()), "sweep.json", {"sweep.csv", kStore}});
   const std::filesystem::path file =
       line.common.out.empty() ? std::filesystem::path() : std::filesystem::path(line.common.out) / kStore;
-  studies::ResultStore store(file, sweep.layout(), if_exists(line.study));
+  studies::ResultStore store(file, sweep.layout(), if_exists_of(line.study));
   bool complete = false;
   {
     SweepBar bar(!line.common.quiet);
@@ -118,7 +103,7 @@ ExitCode sweep_with(const CommandLine& line, studies::MpiSession* session) {
 }  // namespace
 
 ExitCode run_sweep_command(const CommandLine& line) {
-  check_options(line);
+  check_study_options(line);
   if (!studies::MpiSession::is_launched()) return sweep_with(line, nullptr);
   studies::MpiSession session;
   return session.rank() == 0 ? sweep_with(line, &session) : serve(line, session);

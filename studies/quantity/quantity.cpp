@@ -152,6 +152,12 @@ double machining_time_h(const Candidate& candidate) {
          seconds_per_element(prism_of(candidate), candidate.machining()) / seconds_per_hour;
 }
 
+/// Without a tool there is one that fits.
+double tool_fit_mm(const Candidate& candidate) {
+  const double width_mm = prism_of(candidate).width_mm;
+  return width_mm - candidate.machining().tool_width_mm.value_or(width_mm);
+}
+
 std::optional<double> plain_value(PlainQuantity which, const Candidate& candidate) {
   const geometry::PartSpec& spec = candidate.design().part;
   switch (which) {
@@ -174,6 +180,8 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
              candidate.part().entrance_area_mm2;
     case PlainQuantity::tir_limit_deg:
       return total_reflection_limit_deg(candidate);
+    case PlainQuantity::tool_fit_mm:
+      return tool_fit_mm(candidate);
     case PlainQuantity::machining_time_h:
       return machining_time_h(candidate);
     case PlainQuantity::machining_time_per_element_s:

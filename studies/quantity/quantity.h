@@ -71,6 +71,7 @@ enum class PlainQuantity {
   entrance_area_mm2,
   full_element_share,
   tir_limit_deg,
+  tool_fit_mm,
   machining_time_h,
   machining_time_per_element_s,
   area_rate_mm2_per_h

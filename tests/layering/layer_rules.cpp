@@ -42,7 +42,7 @@ const std::map<std::string, Names>& study_rooms() {
                                                      {"store", {}},
                                                      {"quantity", {"design", "rre", "inspect", "fabrication"}},
                                                      {"sweep", {"design", "store", "quantity"}},
-                                                     {"optimise", {"design", "store", "quantity"}},
+                                                     {"optimise", {"design", "store", "quantity", "sweep"}},
                                                      {"tolerance", {"design", "store", "quantity", "sweep"}}};
   return rooms;
 }

@@ -1,8 +1,8 @@
 retrace_test(sweep_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/cells_test.cpp ${CMAKE_CURRENT_LIST_DIR}/machining_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sampling_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/store_test.cpp ${CMAKE_CURRENT_LIST_DIR}/study_reader_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/sweep_test.cpp
-  LIBRARIES retrace::sweep retrace::quantity retrace::store SQLiteCpp)
+          ${CMAKE_CURRENT_LIST_DIR}/optimise_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sweep_test.cpp
+  LIBRARIES retrace::optimise retrace::sweep retrace::quantity retrace::store SQLiteCpp)
 
 # The program: runs that are killed, interrupted, shared and refused.
 set(sweep_app_sources sweep_command_test.cpp)

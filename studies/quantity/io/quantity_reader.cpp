@@ -37,6 +37,7 @@ constexpr std::array kKinds = {
     Choice<KindOf>{"entrance_area_mm2", plain(PlainQuantity::entrance_area_mm2)},
     Choice<KindOf>{"full_element_share", plain(PlainQuantity::full_element_share)},
     Choice<KindOf>{"tir_limit_deg", plain(PlainQuantity::tir_limit_deg)},
+    Choice<KindOf>{"tool_fit_mm", plain(PlainQuantity::tool_fit_mm)},
     Choice<KindOf>{"machining_time_h", plain(PlainQuantity::machining_time_h)},
     Choice<KindOf>{"machining_time_per_element_s", plain(PlainQuantity::machining_time_per_element_s)},
     Choice<KindOf>{"area_rate_mm2_per_h", plain(PlainQuantity::area_rate_mm2_per_h)}};

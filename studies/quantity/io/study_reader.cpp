@@ -25,8 +25,8 @@ constexpr std::array<std::string_view, 11> kTopLevel = {"schema",   "title",    
                                                         "quantity", "analysis",   "machining", "sweep",
                                                         "optimize", "constraint", "tolerance"};
 /// Parts of a study that decide what its points are.
-constexpr std::array<std::string_view, 7> kParts = {"parameter", "quantity",  "analysis",  "machining",
-                                                    "sweep",     "tolerance", "constraint"};
+constexpr std::array<std::string_view, 8> kParts = {"parameter", "quantity",  "analysis",   "machining",
+                                                    "sweep",     "tolerance", "constraint", "optimize"};
 constexpr std::array<std::string_view, 2> kSettingTables = {"analysis", "machining"};
 constexpr std::array<std::string_view, 6> kAnalysisKeys = {"incidence_deg", "azimuth_deg", "engine",
                                                            "target_error",  "samples",     "cutoff"};

@@ -1,0 +1,132 @@
+#include "studies/optimise/bands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "core/number_format.h"
+#include "studies/optimise/evaluator.h"
+#include "studies/quantity/io/study_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+/// The value of a key in a design; nothing for keys without one number.
+std::optional<double> nominal_of(const std::string& key, const Design& design) {
+  const geometry::PartSpec& part = design.part;
+  constexpr double um_per_mm = 1e3;
+  if (key == "surface.dihedral_error_arcmin") return part.angle_errors.dihedral_error_arcmin[0];
+  if (key == "surface.root_radius_um") return um_per_mm * part.edges.root_radius_mm;
+  if (key == "surface.root_chamfer_um") return um_per_mm * part.edges.root_chamfer_mm;
+  if (key == "surface.rim_radius_um") return um_per_mm * part.edges.rim_radius_mm;
+  if (key == "surface.roughness_sq_nm") return design.texture.roughness_sq_nm;
+  if (key == "body.thickness_mm") return part.thickness_mm;
+  if (key == "body.refractive_index") return design.refractive_index;
+  const auto* prism = std::get_if<geometry::RtpElement>(&part.element);
+  if (key == "element.apex_angle_deg" && prism != nullptr) return prism->apex_angle_deg;
+  if (key == "element.base_mm" && prism != nullptr) return prism->base_mm;
+  if (key == "element.width_mm" && prism != nullptr) return prism->width_mm;
+  return std::nullopt;
+}
+
+/// A first step that loses little, by the unit in the key's name.
+double first_step(const std::string& key, double nominal) {
+  if (key.ends_with("_arcmin") || key.ends_with("_um") || key.ends_with("_nm")) return 0.01;
+  if (key.ends_with("_deg")) return 1e-4;
+  return 1e-6 * std::max(1.0, std::abs(nominal));
+}
+
+/// Tells the quantity of a design whose key is off.
+class OffDesign {
+ public:
+  OffDesign(const Study& study, const OptimiseRequest& request, const Variant& best, const std::string& key,
+            const Cancellation* cancel)
+      : study_(study), values_(best.values), key_(key), cancel_(cancel) {
+    const auto& [name, weight] = request.objective.weights.front();
+    sign_ = weight < 0.0 ? -1.0 : 1.0;
+    for (const auto& quantity : study.quantities)
+      if (quantity->name() == name) quantity_ = quantity.get();
+    for (std::size_t k = 0; k < study.parameters.size(); ++k)
+      if (std::find(study.parameters[k].keys.begin(), study.parameters[k].keys.end(), key) !=
+          study.parameters[k].keys.end())
+        parameter_ = k;
+  }
+
+  std::optional<double> nominal() const {
+    if (parameter_) {
+      const double* const number = std::get_if<double>(&values_[*parameter_].shown);
+      return number != nullptr ? std::optional(*number) : std::nullopt;
+    }
+    return nominal_of(key_, make_candidate(study_, values_).design());
+  }
+
+  /// Nothing where there is no such design. Larger is better.
+  std::optional<double> at(double value) const {
+    Study study = study_;
+    PointValues values = values_;
+    if (parameter_)
+      values[*parameter_] = Parameter::value_of(value);
+    else
+      study.overrides.push_back(fmt::format("{}={}", key_, shortest(value)));
+    try {
+      const std::optional<Measured> measured = quantity_->measure(make_candidate(study, values), cancel_);
+      if (!measured) throw Interrupted{};
+      return measured->value ? std::optional(sign_ * *measured->value) : std::nullopt;
+    } catch (const Error&) {
+      return std::nullopt;
+    }
+  }
+
+ private:
+  const Study& study_;
+  PointValues values_;
+  const std::string& key_;
+  const Cancellation* cancel_;
+  double sign_ = 1.0;
+  const Quantity* quantity_ = nullptr;
+  std::optional<std::size_t> parameter_;
+};
+
+/// The change towards one side at which the loss is reached; nothing if the designs end first.
+std::optional<double> band_to(const OffDesign& off, double nominal, double direction, double step, double loss) {
+  constexpr int most_doublings = 40;
+  constexpr int bisections = 30;
+  const std::optional<double> whole = off.at(nominal);
+  if (!whole) return std::nullopt;
+  const auto is_lost = [&](double change) -> std::optional<bool> {
+    const std::optional<double> value = off.at(nominal + direction * change);
+    return value ? std::optional(*whole - *value >= loss * std::abs(*whole)) : std::nullopt;
+  };
+  double good = 0.0;
+  double bad = step;
+  for (int doubling = 0;; ++doubling, bad *= 2.0) {
+    const std::optional<bool> lost = is_lost(bad);
+    if (!lost || doubling == most_doublings) return std::nullopt;
+    if (*lost) break;
+    good = bad;
+  }
+  for (int k = 0; k < bisections && bad - good > 1e-4 * bad; ++k) {
+    const double middle = 0.5 * (good + bad);
+    (is_lost(middle).value_or(true) ? bad : good) = middle;
+  }
+  return good;
+}
+
+}  // namespace
+
+ToleranceBand tolerance_band(const Study& study, const OptimiseRequest& request, const Variant& best,
+                             const std::string& key, const Cancellation* cancel) {
+  const OffDesign off(study, request, best, key, cancel);
+  ToleranceBand band{key, 0.0, {}, {}};
+  const std::optional<double> nominal = off.nominal();
+  if (!nominal) return band;
+  band.nominal = *nominal;
+  const double step = first_step(key, *nominal);
+  band.down = band_to(off, *nominal, -1.0, step, request.band_loss);
+  band.up = band_to(off, *nominal, 1.0, step, request.band_loss);
+  return band;
+}
+
+}  // namespace retrace::studies

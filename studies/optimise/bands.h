@@ -1,0 +1,13 @@
+#pragma once
+
+// Internal to studies/optimise.
+
+#include "studies/optimise/optimise.h"
+
+namespace retrace::studies {
+
+/// How far a key of a design may be off before the first quantity of the objective has lost `band_loss` of its value.
+ToleranceBand tolerance_band(const Study& study, const OptimiseRequest& request, const Variant& best,
+                             const std::string& key, const Cancellation* cancel);
+
+}  // namespace retrace::studies

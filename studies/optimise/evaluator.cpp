@@ -1,0 +1,148 @@
+#include "studies/optimise/evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "core/number_format.h"
+#include "raytrace/threads.h"
+#include "studies/quantity/io/study_reader.h"
+#include "studies/sweep/sweep.h"
+
+namespace retrace::studies {
+namespace {
+
+std::string text_of(const std::variant<double, std::string>& value) {
+  const double* const number = std::get_if<double>(&value);
+  return number != nullptr ? shortest(*number) : std::get<std::string>(value);
+}
+
+}  // namespace
+
+std::string Evaluator::key_of(const PointValues& design) {
+  std::string key;
+  for (const ParameterValue& value : design) key += text_of(value.shown) + '\n';
+  return key;
+}
+
+Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
+                     const Cancellation* cancel)
+    : study_(study), request_(request), store_(store), observer_(observer), cancel_(cancel) {
+  for (StoredPoint& point : store.points()) {
+    std::string key;
+    for (const StoredValue& value : point.inputs) key += text_of(value) + '\n';
+    next_ = std::max(next_, point.point + 1);
+    stored_.emplace(std::move(key), std::move(point));
+  }
+}
+
+std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs) {
+  std::vector<PointValues> open;
+  std::vector<std::string> keys;
+  std::set<std::string> asked;
+  for (const PointValues& design : designs) {
+    std::string key = key_of(design);
+    if (numbers_.contains(key) || !asked.insert(key).second) continue;
+    open.push_back(design);
+    keys.push_back(std::move(key));
+  }
+  std::vector<std::uint64_t> number(open.size());
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    const auto found = stored_.find(keys[k]);
+    number[k] = found != stored_.end() ? found->second.point : next_++;
+  }
+  std::vector<std::optional<StoredPoint>> points(open.size());
+  raytrace::for_each_in_parallel(open.size(), [&](std::size_t k) {
+    const auto found = stored_.find(keys[k]);
+    if (found != stored_.end()) {
+      points[k] = found->second;
+      return;
+    }
+    points[k] = compute_point(study_, number[k], open[k], cancel_);
+    if (points[k]) store_.record(*points[k]);
+  });
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    if (!points[k]) throw Interrupted{};
+    numbers_[keys[k]] = seen_.size();
+    seen_.push_back(variant_of(*points[k], open[k]));
+  }
+  if (observer_ != nullptr) observer_->at(seen_.size());
+  if (cancel_ != nullptr && cancel_->requested()) throw Interrupted{};
+  std::vector<Variant> found;
+  for (const PointValues& design : designs) found.push_back(seen_[numbers_.at(key_of(design))]);
+  return found;
+}
+
+Variant Evaluator::variant_of(const StoredPoint& point, const PointValues& design) const {
+  Variant variant;
+  variant.number = point.point;
+  variant.values = design;
+  variant.failed = point.failed;
+  variant.reason = point.reason;
+  variant.outputs = point.outputs;
+  judge(variant);
+  return variant;
+}
+
+std::optional<double> Evaluator::value(const Variant& variant, const std::string& quantity) const {
+  for (std::size_t k = 0; k < variant.outputs.size(); ++k)
+    if (study_.quantities[k]->name() == quantity) return variant.outputs[k].value;
+  return std::nullopt;
+}
+
+void Evaluator::judge(Variant& variant) const {
+  if (variant.failed) return;
+  double sum = 0.0;
+  bool has_all = true;
+  for (const auto& [quantity, weight] : request_.objective.weights) {
+    const std::optional<double> term = value(variant, quantity);
+    has_all = has_all && term;
+    if (term) sum += weight * *term;
+  }
+  if (has_all) variant.objective = sum;
+  for (std::size_t k = 0; k < request_.constraints.size(); ++k)
+    if (request_.constraints[k].violation(value(variant, request_.constraints[k].quantity)) > 0.0)
+      variant.broken.push_back(k);
+}
+
+namespace {
+
+/// The parameter of RRE that a parameter of a study is, and how much of it one unit is.
+std::optional<std::pair<RreParameter, double>> rre_parameter(const Parameter& parameter, const Design& design) {
+  const std::vector<std::string>& keys = parameter.keys;
+  const bool prism = std::holds_alternative<geometry::RtpElement>(design.part.element);
+  const auto is = [&](std::initializer_list<const char*> names) {
+    return std::set<std::string>(keys.begin(), keys.end()) == std::set<std::string>(names.begin(), names.end());
+  };
+  if (is({"element.base_mm", "element.width_mm"}) || is({"element.aperture_mm"})) return {{RreParameter::size_mm, 1.0}};
+  if (is({"element.apex_angle_deg"})) return {{RreParameter::apex_angle_deg, 1.0}};
+  if (is({"body.refractive_index"})) return {{RreParameter::refractive_index, 1.0}};
+  if (is({"body.thickness_mm"})) return {{RreParameter::thickness_mm, 1.0}};
+  if (is({"surface.dihedral_error_arcmin"}))
+    return {{prism ? RreParameter::apex_angle_deg : RreParameter::dihedral_error_deg, 1.0 / 60.0}};
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> Evaluator::slope(const PointValues& design, std::size_t parameter) const {
+  try {
+    const Candidate candidate = make_candidate(study_, design);
+    const auto by = rre_parameter(study_.parameters[parameter], candidate.design());
+    if (!by) return std::nullopt;
+    double sum = 0.0;
+    for (const auto& [name, weight] : request_.objective.weights) {
+      const auto quantity = std::find_if(study_.quantities.begin(), study_.quantities.end(),
+                                         [&name = name](const auto& q) { return q->name() == name; });
+      const std::optional<double> term = (*quantity)->slope(candidate, by->first, cancel_);
+      if (!term) return std::nullopt;
+      sum += weight * *term * by->second;
+    }
+    return sum;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace retrace::studies

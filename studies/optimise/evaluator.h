@@ -1,0 +1,50 @@
+#pragma once
+
+// Internal to studies/optimise.
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "studies/optimise/optimise.h"
+
+namespace retrace::studies {
+
+/// Ends an optimisation that was cancelled.
+struct Interrupted {};
+
+/// Looks designs up in the store, computes what it lacks, and judges them.
+class Evaluator {
+ public:
+  Evaluator(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
+            const Cancellation* cancel);
+
+  /// The designs, in the order given; several are computed at a time. \throw Interrupted, OutputError
+  std::vector<Variant> look_at(const std::vector<PointValues>& designs);
+  Variant look_at(const PointValues& design) { return look_at(std::vector<PointValues>{design}).front(); }
+
+  /// Everything looked at so far, in the order of its first look.
+  const std::vector<Variant>& seen() const { return seen_; }
+  /// What a quantity came to; nothing if it has no value.
+  std::optional<double> value(const Variant& variant, const std::string& quantity) const;
+  /// Slope of the objective by a parameter, where every quantity in it knows one.
+  std::optional<double> slope(const PointValues& design, std::size_t parameter) const;
+
+ private:
+  static std::string key_of(const PointValues& design);
+  void judge(Variant& variant) const;
+  Variant variant_of(const StoredPoint& point, const PointValues& design) const;
+
+  const Study& study_;
+  const OptimiseRequest& request_;
+  ResultStore& store_;
+  OptimiseObserver* observer_;
+  const Cancellation* cancel_;
+  std::map<std::string, std::size_t> numbers_;  ///< in seen_, by values
+  std::map<std::string, StoredPoint> stored_;   ///< of a run that is resumed
+  std::vector<Variant> seen_;
+  std::uint64_t next_ = 0;
+};
+
+}  // namespace retrace::studies

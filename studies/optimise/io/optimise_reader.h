@@ -1,0 +1,10 @@
+#pragma once
+
+#include "studies/optimise/optimise.h"
+
+namespace retrace::studies {
+
+/// What [optimize] and [[constraint]] of a study ask. \throw InputError
+OptimiseRequest read_optimise(const Study& study);
+
+}  // namespace retrace::studies

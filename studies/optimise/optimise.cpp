@@ -1,0 +1,398 @@
+#include "studies/optimise/optimise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/number_format.h"
+#include "studies/optimise/bands.h"
+#include "studies/optimise/evaluator.h"
+#include "studies/optimise/refine.h"
+#include "studies/sweep/sampling.h"
+
+namespace retrace::studies {
+namespace {
+
+/// Combinations of discrete values that are refined.
+constexpr std::size_t kRefined = 3;
+/// What rounder numbers may cost, as a share of the objective.
+constexpr double kForRoundness = 1e-6;
+/// What a cheaper design may cost, likewise.
+constexpr double kNearlyAsGood = 0.01;
+/// What it must gain, as a share of what the chosen one has.
+constexpr double kWorthIt = 1e-3;
+constexpr std::uint64_t kMostCombinations = 10'000;
+
+}  // namespace
+
+double Constraint::violation(const std::optional<double>& value) const {
+  if (!value) return std::numeric_limits<double>::infinity();
+  double violation = 0.0;
+  if (least) violation = std::max(violation, *least - *value);
+  if (most) violation = std::max(violation, *value - *most);
+  return violation;
+}
+
+std::string Constraint::text() const {
+  std::string text = quantity;
+  if (least) text = shortest(*least) + " <= " + text;
+  if (most) text += " <= " + shortest(*most);
+  return text;
+}
+
+StoreLayout optimise_layout(const Study& study) {
+  StoreLayout layout{"retrace.optimum/1", study.source, study.parts, {}, {}};
+  for (const Parameter& parameter : study.parameters) layout.inputs.push_back(parameter.name);
+  for (const auto& quantity : study.quantities) layout.outputs.push_back(quantity->name());
+  return layout;
+}
+
+namespace {
+
+bool is_better(const Variant& a, const Variant& b) {
+  return *a.objective > *b.objective;
+}
+
+/// One search, from the first look to the last.
+class Search {
+ public:
+  Search(const Study& study, const OptimiseRequest& request, Evaluator& evaluator)
+      : study_(study), request_(request), evaluator_(evaluator) {
+    for (std::size_t k = 0; k < study.parameters.size(); ++k)
+      if (study.parameters[k].interval) continuous_.push_back(k);
+  }
+
+  /// The best design there is; nothing if none is feasible.
+  std::optional<Variant> run(Optimum& optimum) {
+    std::vector<Variant> starts;
+    for (const PointValues& combination : combinations()) {
+      const std::vector<Variant> scanned = evaluator_.look_at(scan(combination));
+      look_at_edges(scanned);
+      std::optional<Variant> best;
+      for (const Variant& variant : scanned)
+        if (variant.feasible() && (!best || is_better(variant, *best))) best = variant;
+      if (best) starts.push_back(*best);
+    }
+    std::stable_sort(starts.begin(), starts.end(), is_better);
+    if (starts.size() > kRefined) starts.resize(kRefined);
+    bool by_slopes = !starts.empty() && !continuous_.empty();
+    for (const Variant& start : starts) by_slopes = refine(study_, request_, evaluator_, start) && by_slopes;
+    optimum.method = by_slopes ? "exact slopes" : "no slopes";
+    const std::optional<Variant> best = best_seen();
+    return best ? std::optional(rounded(*best)) : std::nullopt;
+  }
+
+  /// The designs beside the best one, each by one step of one parameter.
+  std::vector<Rejected> neighbours(const Variant& best) {
+    std::vector<Rejected> found;
+    for (std::size_t k = 0; k < study_.parameters.size(); ++k)
+      for (const int step : {-1, 1}) {
+        const std::optional<ParameterValue> value = beside(k, best.values[k], step);
+        if (!value) continue;
+        PointValues design = best.values;
+        design[k] = *value;
+        found.push_back({evaluator_.look_at(design),
+                         fmt::format("{} {}", step < 0 ? "lower" : "higher", study_.parameters[k].name), ""});
+      }
+    return found;
+  }
+
+  std::optional<Variant> best_seen() const {
+    std::optional<Variant> best;
+    for (const Variant& variant : evaluator_.seen())
+      if (variant.feasible() && (!best || is_better(variant, *best))) best = variant;
+    return best;
+  }
+
+ private:
+  /// Discrete values, each with every other; continuous ones are set to their middle.
+  std::vector<PointValues> combinations() const {
+    std::vector<PointValues> all(1);
+    for (const Parameter& parameter : study_.parameters) {
+      std::vector<PointValues> longer;
+      for (const PointValues& begun : all) {
+        if (parameter.interval) {
+          longer.push_back(begun);
+          longer.back().push_back(Parameter::value_of(parameter.interval->at(0.5)));
+          continue;
+        }
+        for (const ParameterValue& value : parameter.values) {
+          longer.push_back(begun);
+          longer.back().push_back(value);
+        }
+      }
+      if (longer.size() > kMostCombinations)
+        throw InputError(parameter.location,
+                         fmt::format("more than {} combinations of discrete values", kMostCombinations));
+      all = std::move(longer);
+    }
+    return all;
+  }
+
+  PointValues with(PointValues design, const std::vector<double>& shares) const {
+    for (std::size_t k = 0; k < continuous_.size(); ++k)
+      design[continuous_[k]] = Parameter::value_of(study_.parameters[continuous_[k]].interval->at(shares[k]));
+    return design;
+  }
+
+  /// A line from end to end for one continuous parameter; for more, their corners and Sobol points.
+  std::vector<PointValues> scan(const PointValues& combination) const {
+    const std::size_t dimensions = continuous_.size();
+    if (dimensions == 0) return {combination};
+    std::vector<PointValues> designs;
+    if (dimensions == 1) {
+      for (std::size_t k = 0; k < request_.scan; ++k)
+        designs.push_back(with(combination, {static_cast<double>(k) / static_cast<double>(request_.scan - 1)}));
+      return designs;
+    }
+    constexpr std::size_t most_corners = 6;
+    for (std::size_t corner = 0; dimensions <= most_corners && corner < (std::size_t{1} << dimensions); ++corner) {
+      std::vector<double> shares;
+      for (std::size_t k = 0; k < dimensions; ++k) shares.push_back((corner >> k) % 2 == 0 ? 0.0 : 1.0);
+      designs.push_back(with(combination, shares));
+    }
+    const UnitSamples samples(UnitSamples::Kind::sobol, dimensions, request_.scan, study_.seed);
+    for (std::size_t k = 0; k < request_.scan; ++k) designs.push_back(with(combination, samples.at(k)));
+    return designs;
+  }
+
+  /// Where feasibility ends between two designs of a line, the last feasible one may be the best: it is looked at.
+  void look_at_edges(const std::vector<Variant>& line) {
+    if (continuous_.size() != 1) return;
+    for (std::size_t k = 0; k + 1 < line.size(); ++k)
+      if (line[k].feasible() != line[k + 1].feasible())
+        look_at_edge(line[k].feasible() ? line[k] : line[k + 1], line[k].feasible() ? line[k + 1] : line[k]);
+  }
+
+  void look_at_edge(Variant inside, Variant outside) {
+    constexpr int most_bisections = 50;
+    const std::size_t k = continuous_.front();
+    const Interval& interval = *study_.parameters[k].interval;
+    for (int bisection = 0; bisection < most_bisections; ++bisection) {
+      const double a = share_of(interval, std::get<double>(inside.values[k].shown));
+      const double b = share_of(interval, std::get<double>(outside.values[k].shown));
+      if (std::abs(a - b) < 1e-9) return;
+      const Variant middle = evaluator_.look_at(with(inside.values, {0.5 * (a + b)}));
+      (middle.feasible() ? inside : outside) = middle;
+    }
+  }
+
+  /// The design in as few digits as serve as well.
+  Variant rounded(const Variant& best) {
+    constexpr int most_digits = 9;
+    for (int digits = 1; digits <= most_digits && !continuous_.empty(); ++digits) {
+      PointValues design = best.values;
+      for (const std::size_t k : continuous_) {
+        const Interval& interval = *study_.parameters[k].interval;
+        const double value = std::stod(fmt::format("{:.{}e}", std::get<double>(design[k].shown), digits - 1));
+        design[k] = Parameter::value_of(std::clamp(value, interval.from, interval.to));
+      }
+      const Variant variant = evaluator_.look_at(design);
+      if (variant.feasible() && *variant.objective >= *best.objective - kForRoundness * std::abs(*best.objective))
+        return variant;
+    }
+    return best;
+  }
+
+  std::optional<ParameterValue> beside(std::size_t parameter, const ParameterValue& value, int step) const {
+    const Parameter& p = study_.parameters[parameter];
+    if (p.interval) {
+      const double here = share_of(*p.interval, std::get<double>(value.shown));
+      const double there = std::clamp(here + step / static_cast<double>(request_.scan - 1), 0.0, 1.0);
+      if (std::abs(there - here) < 1e-12) return std::nullopt;
+      return Parameter::value_of(p.interval->at(there));
+    }
+    const auto same = [&](const ParameterValue& other) { return other.toml == value.toml; };
+    const auto found = std::find_if(p.values.begin(), p.values.end(), same) - p.values.begin();
+    const auto other = found + step;
+    if (other < 0 || other >= static_cast<std::ptrdiff_t>(p.values.size())) return std::nullopt;
+    return p.values[static_cast<std::size_t>(other)];
+  }
+
+  const Study& study_;
+  const OptimiseRequest& request_;
+  Evaluator& evaluator_;
+  std::vector<std::size_t> continuous_;
+};
+
+/// Why a design was not chosen.
+std::string why_not(const Variant& variant, const Variant& best, const OptimiseRequest& request,
+                    const Evaluator& evaluator) {
+  if (variant.failed) return variant.reason;
+  std::string why;
+  for (const std::size_t k : variant.broken) {
+    const Constraint& constraint = request.constraints[k];
+    const std::optional<double> value = evaluator.value(variant, constraint.quantity);
+    why += fmt::format(
+        "{}{} breaks {}", why.empty() ? "" : "; ",
+        value ? fmt::format("{} = {:.6g}", constraint.quantity, *value) : constraint.quantity + " has no value and",
+        constraint.text());
+  }
+  if (!why.empty()) return why;
+  if (!variant.objective) return "a quantity of the objective has no value";
+  const double less = *best.objective - *variant.objective;
+  if (less <= 0.0) return "as good, in more digits or found later";
+  return fmt::format("objective lower by {:.3g}", less);
+}
+
+/// The best of the designs that only some constraints keep from being chosen. \param excluded whether a design is one
+template <class Excluded>
+std::optional<Variant> best_excluded(const Evaluator& evaluator, Excluded excluded) {
+  std::optional<Variant> found;
+  for (const Variant& variant : evaluator.seen())
+    if (variant.objective && excluded(variant) && (!found || is_better(variant, *found))) found = variant;
+  return found;
+}
+
+std::vector<Rejected> excluded_designs(const OptimiseRequest& request, const Evaluator& evaluator,
+                                       const Variant& best) {
+  std::vector<Rejected> rejected;
+  const auto better = [&](const Variant& variant) { return *variant.objective > *best.objective; };
+  const auto any = best_excluded(evaluator, [&](const Variant& v) { return !v.broken.empty() && better(v); });
+  if (any) rejected.push_back({*any, "best but for its constraints", ""});
+  for (std::size_t k = 0; k < request.constraints.size(); ++k) {
+    const auto one =
+        best_excluded(evaluator, [&](const Variant& v) { return v.broken == std::vector{k} && better(v); });
+    if (one && one->number != any->number)
+      rejected.push_back({*one, "best but for " + request.constraints[k].text(), ""});
+  }
+  return rejected;
+}
+
+/// Values of the axes of the front, signed so that more is better; nothing if one has no value.
+std::optional<std::vector<double>> merits(const Variant& variant, const OptimiseRequest& request,
+                                          const Evaluator& evaluator) {
+  std::vector<double> merits;
+  for (const FrontAxis& axis : request.front) {
+    const std::optional<double> value = evaluator.value(variant, axis.quantity);
+    if (!value) return std::nullopt;
+    merits.push_back(axis.largest ? *value : -*value);
+  }
+  return merits;
+}
+
+/// Whether a is at least as good in everything and better in something.
+bool dominates(const std::vector<double>& a, const std::vector<double>& b) {
+  bool better = false;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (a[k] < b[k]) return false;
+    better = better || a[k] > b[k];
+  }
+  return better;
+}
+
+std::vector<Variant> front_of(const OptimiseRequest& request, const Evaluator& evaluator) {
+  std::vector<std::pair<std::vector<double>, const Variant*>> open;
+  for (const Variant& variant : evaluator.seen()) {
+    if (!variant.feasible()) continue;
+    if (auto m = merits(variant, request, evaluator)) open.emplace_back(std::move(*m), &variant);
+  }
+  // Best first on the first axis: what dominates a design comes before it.
+  std::stable_sort(open.begin(), open.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Variant> front;
+  std::vector<std::vector<double>> kept;
+  for (const auto& [merit, variant] : open) {
+    const auto loses = [&m = merit](const std::vector<double>& other) { return other == m || dominates(other, m); };
+    if (std::any_of(kept.begin(), kept.end(), loses)) continue;
+    kept.push_back(merit);
+    front.push_back(*variant);
+  }
+  return front;
+}
+
+/// Of the front, the design within 1 % of the objective that is best on an axis that the objective does not have.
+std::optional<Variant> cheaper_than(const Optimum& optimum, const OptimiseRequest& request,
+                                    const Evaluator& evaluator) {
+  const auto axis = std::find_if(request.front.begin(), request.front.end(), [&](const FrontAxis& a) {
+    return std::none_of(request.objective.weights.begin(), request.objective.weights.end(),
+                        [&](const auto& weight) { return weight.first == a.quantity; });
+  });
+  if (axis == request.front.end()) return std::nullopt;
+  const double sign = axis->largest ? 1.0 : -1.0;
+  const auto merit = [&](const Variant& v) { return sign * evaluator.value(v, axis->quantity).value(); };
+  const double least = *optimum.best->objective - kNearlyAsGood * std::abs(*optimum.best->objective);
+  std::optional<Variant> found;
+  for (const Variant& variant : optimum.front)
+    if (*variant.objective >= least && (!found || merit(variant) > merit(*found))) found = variant;
+  if (!found) return std::nullopt;
+  const std::optional<double> chosen = evaluator.value(*optimum.best, axis->quantity);
+  const bool is_worth_it = !chosen || merit(*found) - sign * *chosen > kWorthIt * std::abs(*chosen);
+  return is_worth_it ? found : std::nullopt;
+}
+
+/// What keeps every design from being feasible.
+std::string why_none(const OptimiseRequest& request, const Evaluator& evaluator) {
+  std::vector<std::size_t> broken_by(request.constraints.size(), 0);
+  std::vector<double> nearest(request.constraints.size(), std::numeric_limits<double>::infinity());
+  std::size_t judged = 0;
+  const Variant* failed = nullptr;
+  for (const Variant& variant : evaluator.seen()) {
+    if (variant.failed) failed = &variant;
+    if (variant.failed) continue;
+    ++judged;
+    for (const std::size_t k : variant.broken) ++broken_by[k];
+    for (std::size_t k = 0; k < nearest.size(); ++k)
+      nearest[k] = std::min(
+          nearest[k], request.constraints[k].violation(evaluator.value(variant, request.constraints[k].quantity)));
+  }
+  if (judged == 0) return fmt::format("no design can be computed: {}", failed != nullptr ? failed->reason : "none");
+  std::string text;
+  for (std::size_t k = 0; k < broken_by.size(); ++k)
+    if (broken_by[k] == judged) {
+      text += fmt::format("{}{} excludes all {} designs", text.empty() ? "" : ", and ", request.constraints[k].text(),
+                          judged);
+      if (std::isfinite(nearest[k])) text += fmt::format(" (the nearest misses it by {:.3g})", nearest[k]);
+    }
+  if (!text.empty()) return text;
+  for (std::size_t k = 0; k < broken_by.size(); ++k)
+    if (broken_by[k] > 0)
+      text += fmt::format("{}{} excludes {} of {} designs", text.empty() ? "" : ", ", request.constraints[k].text(),
+                          broken_by[k], judged);
+  return text.empty() ? "the objective has no value anywhere" : text + ": none is left";
+}
+
+void search(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Cancellation* cancel,
+            Optimum& optimum) {
+  Search searching(study, request, evaluator);
+  optimum.best = searching.run(optimum);
+  if (!optimum.best) {
+    optimum.none_because = why_none(request, evaluator);
+    return;
+  }
+  std::vector<Rejected> neighbours = searching.neighbours(*optimum.best);
+  // A neighbour may turn out to be better than what the search found.
+  if (const auto best = searching.best_seen();
+      *best->objective > *optimum.best->objective + kForRoundness * std::abs(*optimum.best->objective)) {
+    optimum.best = best;
+    neighbours = searching.neighbours(*best);
+  }
+  optimum.rejected = excluded_designs(request, evaluator, *optimum.best);
+  optimum.rejected.insert(optimum.rejected.end(), neighbours.begin(), neighbours.end());
+  for (Rejected& rejected : optimum.rejected)
+    rejected.why = why_not(rejected.variant, *optimum.best, request, evaluator);
+  optimum.front = front_of(request, evaluator);
+  optimum.cheaper = cheaper_than(optimum, request, evaluator);
+  for (const std::string& key : request.bands_of)
+    optimum.bands.push_back(tolerance_band(study, request, *optimum.best, key, cancel));
+}
+
+}  // namespace
+
+Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
+                 const Cancellation* cancel) {
+  Optimum optimum;
+  Evaluator evaluator(study, request, store, observer, cancel);
+  try {
+    search(study, request, evaluator, cancel, optimum);
+  } catch (const Interrupted&) {
+    optimum = {};
+    optimum.complete = false;
+  }
+  optimum.evaluations = evaluator.seen().size();
+  return optimum;
+}
+
+}  // namespace retrace::studies

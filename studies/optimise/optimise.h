@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/progress.h"
+#include "studies/quantity/study.h"
+#include "studies/store/store.h"
+
+namespace retrace::studies {
+
+/// A limit on a quantity of the study.
+struct Constraint {
+  std::string quantity;
+  std::optional<double> least;
+  std::optional<double> most;
+
+  /// By how much a value breaks it; 0 if it holds. What has no value breaks it by infinity.
+  double violation(const std::optional<double>& value) const;
+  /// "lens_thickness_mm <= 5"
+  std::string text() const;
+};
+
+/// What is to be as large as it can be: a weighted sum of quantities, negative weights for what is to be small.
+struct Objective {
+  std::vector<std::pair<std::string, double>> weights;
+};
+
+/// A quantity of the Pareto front.
+struct FrontAxis {
+  std::string quantity;
+  bool largest = true;  ///< is best
+};
+
+struct OptimiseRequest {
+  Objective objective;
+  std::vector<Constraint> constraints;
+  std::vector<FrontAxis> front;
+  std::size_t scan = 65;              ///< designs of the first look, for each combination of discrete values
+  std::vector<std::string> bands_of;  ///< keys whose tolerance bands are asked for
+  double band_loss = 0.01;            ///< relative loss of the objective that ends a band
+};
+
+/// A design that was looked at.
+struct Variant {
+  std::uint64_t number = 0;  ///< of its point in the store
+  PointValues values;        ///< of the parameters, in their order
+  bool failed = false;
+  std::string reason;  ///< why it failed
+  std::vector<StoredOutput> outputs;
+  std::optional<double> objective;  ///< none if it failed or a quantity of it has no value
+  std::vector<std::size_t> broken;  ///< constraints, by number
+  bool feasible() const { return objective.has_value() && broken.empty(); }
+};
+
+/// A design that was not chosen, and why.
+struct Rejected {
+  Variant variant;
+  std::string role;  ///< how it stands to the chosen one
+  std::string why;
+};
+
+/// How far a key may be off before the objective has lost `band_loss`.
+struct ToleranceBand {
+  std::string key;
+  double nominal = 0.0;
+  std::optional<double> down;  ///< largest loss-free change to smaller values; none: no loss that far, or not possible
+  std::optional<double> up;
+};
+
+struct Optimum {
+  std::optional<Variant> best;  ///< none if no design is feasible
+  std::string none_because;     ///< which constraint excludes all
+  std::vector<Variant> front;   ///< feasible designs that no other dominates
+  std::vector<Rejected> rejected;
+  std::optional<Variant> cheaper;  ///< within 1 % of the objective, the best of the front's other axes
+  std::vector<ToleranceBand> bands;
+  std::string method;  ///< of the refinement: "exact slopes" or "no slopes"
+  std::size_t evaluations = 0;
+  bool complete = true;
+};
+
+/// Told how many designs have been looked at.
+class OptimiseObserver {
+ public:
+  virtual ~OptimiseObserver() = default;
+  virtual void at(std::size_t evaluated) = 0;
+};
+
+StoreLayout optimise_layout(const Study& study);
+
+/// Looks for the best design: every combination of discrete values over a scan of the continuous ones, the edges of
+/// what is feasible, a refinement within bounds and constraints, and rounder numbers where they are as good. What the
+/// store has is not computed again. \throw OutputError as ResultStore::record()
+Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
+                 const Cancellation* cancel);
+
+}  // namespace retrace::studies

@@ -1,0 +1,180 @@
+#include "studies/optimise/optimise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "core/error.h"
+#include "studies/optimise/io/optimise_reader.h"
+#include "studies/quantity/io/study_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
+
+/// A function of the plate's thickness and of what lies behind the facets, in place of something that is traced.
+class Analytic : public Quantity {
+ public:
+  using Function = std::function<double(double x, double y)>;
+  Analytic(std::string name, Function f) : Quantity(std::move(name)), f_(std::move(f)) {}
+  std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
+    return Measured{f_(candidate.design().part.thickness_mm, candidate.design().back_index), 0.0};
+  }
+
+ private:
+  Function f_;
+};
+
+/// A study of x = thickness in 0.5..3 and y = index behind in 1..3, with these keys of the optimisation.
+Study analytic_study(const std::string& keys,
+                     const std::vector<std::pair<std::string, Analytic::Function>>& functions) {
+  std::string text =
+      "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 0.5\nto = 3\n"
+      "[[parameter]]\nkey = \"body.back_index\"\nfrom = 1\nto = 3\n";
+  for (const auto& [name, f] : functions) text += "[[quantity]]\nkind = \"elements_full\"\nname = \"" + name + "\"\n";
+  Study study = parse_study(text + keys, kFolder + "study.toml");
+  study.quantities.clear();
+  for (const auto& [name, f] : functions) study.quantities.push_back(std::make_shared<Analytic>(name, f));
+  return study;
+}
+
+Optimum optimum_of(const Study& study) {
+  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  return optimise(study, read_optimise(study), store, nullptr, nullptr);
+}
+
+double number(const ParameterValue& value) {
+  return std::get<double>(value.shown);
+}
+
+TEST(Optimise, ReachesTheTopOfAParaboloid) {
+  const Study study = analytic_study(
+      "[optimize]\nmaximize = \"f\"\n",
+      {{"f", [](double x, double y) { return 1.0 - std::pow(x - 1.7, 2) - 2.0 * std::pow(y - 2.2, 2); }}});
+  const Optimum optimum = optimum_of(study);
+  ASSERT_TRUE(optimum.best.has_value());
+  EXPECT_NEAR(number(optimum.best->values[0]), 1.7, 2e-3);
+  EXPECT_NEAR(number(optimum.best->values[1]), 2.2, 2e-3);
+  EXPECT_NEAR(*optimum.best->objective, 1.0, 2e-6);
+}
+
+TEST(Optimise, ReachesAnOptimumOnAConstraint) {
+  // The nearest point of x + y <= 3 to (2, 2).
+  const Study study =
+      analytic_study("[optimize]\nminimize = \"f\"\n[[constraint]]\nquantity = \"g\"\nmax = 3\n",
+                     {{"f", [](double x, double y) { return std::pow(x - 2.0, 2) + std::pow(y - 2.0, 2); }},
+                      {"g", [](double x, double y) { return x + y; }}});
+  const Optimum optimum = optimum_of(study);
+  ASSERT_TRUE(optimum.best.has_value());
+  EXPECT_NEAR(number(optimum.best->values[0]), 1.5, 5e-3);
+  EXPECT_NEAR(number(optimum.best->values[1]), 1.5, 5e-3);
+  EXPECT_NEAR(-*optimum.best->objective, 0.5, 1e-4);
+  EXPECT_LE(*optimum.best->outputs[1].value, 3.0);
+  ASSERT_FALSE(optimum.rejected.empty());
+  EXPECT_EQ(optimum.rejected.front().role, "best but for its constraints");
+  EXPECT_NE(optimum.rejected.front().why.find("breaks g <= 3"), std::string::npos) << optimum.rejected.front().why;
+}
+
+TEST(Optimise, TheFrontHasNoDominatedPoint) {
+  const Study study =
+      analytic_study("[optimize]\nmaximize = {f = 1, g = -0.5}\nfront = {f = \"most\", g = \"least\"}\n",
+                     {{"f", [](double x, double y) { return x + std::sin(3.0 * y); }},
+                      {"g", [](double x, double y) { return x * y; }}});
+  const Optimum optimum = optimum_of(study);
+  ASSERT_GE(optimum.front.size(), 3U);
+  const auto f = [](const Variant& v) { return *v.outputs[0].value; };
+  const auto g = [](const Variant& v) { return *v.outputs[1].value; };
+  for (const Variant& a : optimum.front)
+    for (const Variant& b : optimum.front) EXPECT_FALSE(f(a) >= f(b) && g(a) <= g(b) && (f(a) > f(b) || g(a) < g(b)));
+  // A weighted sum is at its best on the front.
+  for (const Variant& v : optimum.front) EXPECT_GE(*optimum.best->objective, f(v) - 0.5 * g(v) - 1e-5);
+}
+
+TEST(Optimise, DiscreteAndContinuousTogether) {
+  Study study = parse_study(
+      "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nvalues = [1, 2, 3]\n"
+      "[[parameter]]\nkey = \"body.back_index\"\nfrom = 1\nto = 3\n"
+      "[[quantity]]\nkind = \"elements_full\"\nname = \"f\"\n[optimize]\nmaximize = \"f\"\n",
+      kFolder + "study.toml");
+  study.quantities = {std::make_shared<Analytic>(
+      "f", [](double x, double y) { return -std::pow(x - 2.2, 2) - std::pow(y - 0.5 * x - 0.3, 2); })};
+  const Optimum optimum = optimum_of(study);
+  EXPECT_EQ(number(optimum.best->values[0]), 2.0);
+  EXPECT_NEAR(number(optimum.best->values[1]), 1.3, 1e-3);
+  for (const Rejected& rejected : optimum.rejected) EXPECT_FALSE(rejected.why.empty()) << rejected.role;
+}
+
+TEST(Optimise, SaysWhichConstraintExcludesAll) {
+  const Study study = analytic_study("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\nmin = 7\n",
+                                     {{"f", [](double x, double) { return x; }}});
+  const Optimum optimum = optimum_of(study);
+  EXPECT_FALSE(optimum.best.has_value());
+  EXPECT_EQ(optimum.none_because.substr(0, optimum.none_because.find(" all ")), "7 <= f excludes");
+  EXPECT_NE(optimum.none_because.find("(the nearest misses it by 4)"), std::string::npos) << optimum.none_because;
+}
+
+TEST(Optimise, AResumedSearchComputesNothingAgain) {
+  int computed = 0;
+  const Study study = analytic_study("[optimize]\nmaximize = \"f\"\nscan = 20\n", {{"f", [&](double x, double y) {
+                                                                                      ++computed;
+                                                                                      return -x * x - y;
+                                                                                    }}});
+  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  const OptimiseRequest request = read_optimise(study);
+  const Optimum first = optimise(study, request, store, nullptr, nullptr);
+  const int once = std::exchange(computed, 0);
+  EXPECT_GT(once, 20);
+  const Optimum second = optimise(study, request, store, nullptr, nullptr);
+  EXPECT_EQ(computed, 0);
+  EXPECT_EQ(second.best->number, first.best->number);
+}
+
+/// The example, with fewer sizes that the tool cannot cut.
+TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByTheLens) {
+  const Study whole = read_study(kFolder + "element_size.toml", std::vector<std::string>{});
+  Study study = whole;
+  study.parameters[0].interval->from = 0.8;
+  OptimiseRequest request = read_optimise(study);
+  request.scan = 21;
+  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  const Optimum optimum = optimise(study, request, store, nullptr, nullptr);
+  ASSERT_TRUE(optimum.best.has_value()) << optimum.none_because;
+  EXPECT_EQ(number(optimum.best->values[0]), 1.0);
+  EXPECT_NEAR(*optimum.best->objective, 0.953748, 1e-6);
+  const Rejected& single = optimum.rejected.at(0);
+  EXPECT_EQ(single.role, "best but for its constraints");
+  EXPECT_EQ(number(single.variant.values[0]), 10.0);
+  // Light that the entrance face sends round a second time, R (1 - R) of it, misses the source by 4 n e and leaves the
+  // acceptance of 0.5 degrees first.
+  ASSERT_EQ(optimum.bands.size(), 1U);
+  EXPECT_NEAR(optimum.bands[0].up.value(), 60.0 * 0.5 / (4.0 * 1.4917), 2e-3);
+  EXPECT_NEAR(optimum.bands[0].down.value(), 60.0 * 0.5 / (4.0 * 1.4917), 2e-3);
+  EXPECT_EQ(single.why, "lens_thickness_mm = 7 breaks lens_thickness_mm <= 5");
+}
+
+TEST(Optimise, WhatIsWrongIsSaidWithItsLine) {
+  const auto message = [](const std::string& keys) -> std::string {
+    try {
+      read_optimise(analytic_study(keys, {{"f", [](double x, double) { return x; }}}));
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(kFolder.size());
+    }
+    return "";
+  };
+  EXPECT_EQ(message(""), "study.toml: optimize: missing, must be a table that says what to maximize");
+  EXPECT_EQ(message("[optimize]\nmaximize = \"ff\"\n"),
+            "study.toml:14: optimize.maximize: must be a quantity of the study (\"f\"), got \"ff\"");
+  EXPECT_TRUE(
+      message("[optimize]\nscan = 5\n").starts_with("study.toml:13: optimize.maximize: either maximize or minimize"));
+  EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\nscan = 2\n").substr(0, 36), "study.toml:15: optimize.scan: must b");
+  EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\n"),
+            "study.toml:15: constraint.max: missing: a constraint has min, max or both");
+  EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\nmin = 2\nmax = 1\n"),
+            "study.toml:18: constraint.max: must be >= min (2), got 1");
+}
+
+}  // namespace
+}  // namespace retrace::studies
