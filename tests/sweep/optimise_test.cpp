@@ -165,8 +165,9 @@ TEST(Optimise, WhatIsWrongIsSaidWithItsLine) {
     return "";
   };
   EXPECT_EQ(message(""), "study.toml: optimize: missing, must be a table that says what to maximize");
-  EXPECT_EQ(message("[optimize]\nmaximize = \"ff\"\n"),
-            "study.toml:14: optimize.maximize: must be a quantity of the study (\"f\"), got \"ff\"");
+  EXPECT_EQ(
+      message("[optimize]\nmaximize = \"ff\"\n"),
+      "study.toml:14: optimize.maximize: must be a quantity of the study (\"f\"), got \"ff\"; did you mean \"f\"?");
   EXPECT_TRUE(
       message("[optimize]\nscan = 5\n").starts_with("study.toml:13: optimize.maximize: either maximize or minimize"));
   EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\nscan = 2\n").substr(0, 36), "study.toml:15: optimize.scan: must b");

@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect roughness metrology sweep job fabricate init list'
+  local commands='rre inspect roughness metrology sweep optimize job fabricate init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -119,7 +119,7 @@ _retrace() {
         _retrace_words "$word" "$common --form --cutoff-um --pixel-um --height-unit --lateral-unit --channel \
           --feed-mm-per-min --edge"
         ;;
-      sweep) _retrace_words "$word" "$common --resume --overwrite" ;;
+      sweep | optimize) _retrace_words "$word" "$common --resume --overwrite" ;;
       job)
         _retrace_words "$word" "$common --machine --tool-width-mm --strategy --process --workpiece --shrinkage-percent"
         ;;
@@ -132,7 +132,7 @@ _retrace() {
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect | roughness | sweep | job | fabricate) _retrace_files "$word" .toml ;;
+    rre | inspect | roughness | sweep | optimize | job | fabricate) _retrace_files "$word" .toml ;;
     metrology) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
     list) _retrace_words "$word" 'materials machines processes' ;;
