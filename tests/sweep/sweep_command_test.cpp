@@ -170,6 +170,33 @@ TEST(SweepCommand, ItsDocumentHasWhatScriptsCountOn) {
   for (const char* key : {"version", "warnings", "elapsed_s", "seed"}) EXPECT_TRUE(json.contains(key)) << key;
 }
 
+TEST(OptimizeCommand, ChoosesResumesAndSaysNo) {
+  const TemporaryFolder folder;
+  const auto study = [](const std::string& most_mm) {
+    return "design = \"" + example("rtp_brick_1mm.toml") +
+           "\"\n[[parameter]]\nkey = \"element.base_mm\"\nvalues = [0.5, 1, 2]\n[[quantity]]\nkind = \"rre\"\n"
+           "[[quantity]]\nkind = \"lens_thickness_mm\"\n[[constraint]]\nquantity = \"lens_thickness_mm\"\nmax = " +
+           most_mm + "\n[optimize]\nmaximize = \"rre\"\n";
+  };
+  folder.write("study.toml", study("2.6"));
+  const Json json = retrace_json(folder, {"optimize", "study.toml", "-o", "out", "--quiet"});
+  EXPECT_EQ(json["schema"], "retrace.optimum/1");
+  EXPECT_EQ(json["best"]["element.base_mm"], 0.5);
+  for (const char* key : {"pareto", "rejected", "bands", "version", "warnings", "complete"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  const Outcome again = retrace(folder, {"optimize", "study.toml", "-o", "out"});
+  EXPECT_EQ(again.code, 2);
+  EXPECT_TRUE(again.err.starts_with("retrace: out/optimum.sqlite: exists: --resume")) << again.err;
+  EXPECT_EQ(without_elapsed(retrace(folder, {"optimize", "study.toml", "-o", "out", "--resume", "--json", "-"}).out),
+            without_elapsed(folder.read("out/optimum.json")));
+  folder.write("none.toml", study("2"));
+  const Outcome none = retrace(folder, {"optimize", "none.toml"});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_EQ(none.err,
+            "retrace: no feasible design: lens_thickness_mm <= 2 excludes all 3 designs (the nearest misses it by "
+            "0.25)\n");
+}
+
 TEST(SweepCommand, TheSameBytesAtAnyNumberOfThreads) {
   const TemporaryFolder folder;
   folder.write("study.toml", sweep_study(12, 5000));
