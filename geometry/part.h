@@ -40,6 +40,12 @@ struct Part {
   std::int64_t elements_partial = 0;
   double entrance_area_mm2 = 0.0;     ///< infinite: of one period
   double retro_facet_area_mm2 = 0.0;  ///< infinite: of one period
+
+  /// Tells the cells of its patches apart. \pre `cell` is one of `patch`, which is one of `patches`
+  std::uint64_t number_of(const SurfacePatch& patch, const PatchCell& cell) const {
+    const auto p = static_cast<std::uint64_t>(&patch - patches.data());
+    return (p << 32) | static_cast<std::uint64_t>(&cell - patch.cells.data());
+  }
 };
 
 /// Builds the part. `origin_mm` moves it in the plane (finite parts), for tests of numerical robustness.

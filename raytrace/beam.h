@@ -3,10 +3,11 @@
 #include <Eigen/Geometry>
 #include <boost/container/small_vector.hpp>
 #include <cstdint>
+#include <optional>
 
 #include "geometry/lattice.h"
+#include "raytrace/coherent_light.h"
 #include "raytrace/flat_polygon.h"
-#include "raytrace/light.h"
 
 namespace retrace::raytrace {
 
@@ -50,11 +51,34 @@ struct EntryPoint {
   }
 };
 
+/// A cell of the back surface, wherever it stands.
+struct CellPlace {
+  std::uint64_t id = 0;           ///< the same for all copies of a patch
+  Vec2 offset_mm = Vec2::Zero();  ///< by which this copy is moved
+
+  friend bool operator==(const CellPlace& a, const CellPlace& b) {
+    return a.id == b.id && (a.offset_mm - b.offset_mm).squaredNorm() == 0.0;
+  }
+};
+
+/// Which cells light has met on its way.
+struct CellTrail {
+  std::optional<CellPlace> first;
+  bool is_mixed = false;  ///< others as well
+
+  void meet(const CellPlace& cell) {
+    if (!first) first = cell;
+    is_mixed = is_mixed || !(*first == cell);
+  }
+};
+
 /// Light of one direction and polarisation through a polygon.
 struct Beam {
   Corners corners;  ///< of the cross-section, on the plane it starts from
   Vec3 direction = Vec3::UnitZ();
-  Light light;             ///< before absorption
+  CoherentLight light;    ///< before absorption
+  double phase_mm = 0.0;  ///< of the field at the origin, with the wave continued there: an optical path
+  CellTrail trail;
   double share = 1.0;      ///< of the entrance's cross-section
   PathLength path_length;  ///< in the material
   EntryPoint entry;        ///< where it came in

@@ -64,6 +64,7 @@ Box box_of(const Points& points) {
 struct Candidate {
   Plane plane;
   FacetRole role = FacetRole::retro_facet;
+  CellPlace cell;
   Distance distance;
   FlatPolygon piece;  ///< as far as it stands in the beam, hidden or not
   Box box;
@@ -115,7 +116,7 @@ class BeamWalk {
   std::pair<double, double> distances_to_hull(const Beam& beam) const;
   void find_candidates(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon);
   void consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Box& box, const Plane* far,
-                const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift);
+                const SurfacePatch& patch, const PatchFacet& facet, const CellPlace& cell);
   FlatPolygons visible_pieces(std::size_t k) const;
   FlatPolygons visible_on_plane_of(std::size_t k);
   void pass_by(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share, const Horizon& horizon);
@@ -126,12 +127,16 @@ class BeamWalk {
                   double share);
   void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
                  FacetRole role);
-  void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Light& light, bool inside);
+  void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,
+            bool inside);
   /// Light of a beam that found no facet for want of digits. Signed: pieces may overlap by rounding as well.
   void book_rest(const Beam& beam, double share) {
     tally_.other[Account::truncated] += share / beam.share * power_of(beam);
   }
-  void leave_through_entrance(const Beam& beam, const Light& light, const Vec3& direction);
+  void leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction);
+  ReturnedBeam returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const;
+  /// Of where a beam travels behind the entrance face.
+  double index_at(bool inside) const { return inside ? setup_.optics.index : setup_.optics.back_index; }
   void observe_front() const;
   [[noreturn]] void fail_on_budget() const;
 
@@ -161,6 +166,8 @@ void BeamWalk::enter(const geometry::Polygon& entrance) {
   Beam whole;
   whole.direction = entry.direction;
   whole.light = entry.light;
+  // Continuous on the face with the incident wave, whose phase is 0 at the origin.
+  whole.phase_mm = (-setup_.to_source - setup_.optics.index * entry.direction).z() * setup_.thickness_mm;
   whole.start = {-Vec3::UnitZ(), -setup_.thickness_mm};
   whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
   whole.entry.constant_mm = centre_mm_;
@@ -334,14 +341,15 @@ void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatP
   const Plane far{-beam.direction, -(nearest + horizon.t)};
   const Box box = box_of(whole);
   cells_.visit(plan.lower, plan.upper, [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset) {
+    const CellPlace place{part_.number_of(patch, cell), offset};
     for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
-      consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f],
-               Vec3(offset.x(), offset.y(), 0.0));
+      consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f], place);
   });
 }
 
 void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Box& box,
-                        const Plane* far, const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift) {
+                        const Plane* far, const SurfacePatch& patch, const PatchFacet& facet, const CellPlace& cell) {
+  const Vec3 shift(cell.offset_mm.x(), cell.offset_mm.y(), 0.0);
   const double towards = facet.normal.dot(beam.direction);
   if (beam.inside ? towards <= kGrazing : towards >= -kGrazing) return;
   Corners corners;
@@ -362,7 +370,7 @@ void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon&
   FlatPolygon piece = intersection(whole, seen, merge_mm_);
   if (piece.size() < 3 || area(piece) <= least_area_) return;
   const Box piece_box = box_of(piece);
-  candidates_.push_back({plane, facet.role, Distance(frame, plane), std::move(piece), piece_box, false});
+  candidates_.push_back({plane, facet.role, cell, Distance(frame, plane), std::move(piece), piece_box, false});
 }
 
 /// What of a candidate's piece no nearer candidate covers.
@@ -393,10 +401,12 @@ FlatPolygons BeamWalk::visible_on_plane_of(std::size_t k) {
   if (candidates_[k].is_met) return visible;
   const Plane plane = candidates_[k].plane;
   const FacetRole role = candidates_[k].role;
+  const CellPlace cell = candidates_[k].cell;
   for (std::size_t j = k; j < candidates_.size(); ++j) {
     Candidate& other = candidates_[j];
     const bool is_one_plane = other.role == role && other.plane.normal.isApprox(plane.normal, 1e-14) &&
-                              std::abs(other.plane.offset_mm - plane.offset_mm) <= merge_mm_;
+                              std::abs(other.plane.offset_mm - plane.offset_mm) <= merge_mm_ &&
+                              (!policy_.by_cell || other.cell == cell);
     if (other.is_met || !is_one_plane) continue;
     other.is_met = true;
     for (FlatPolygon& piece : visible_pieces(j)) visible.push_back(std::move(piece));
@@ -499,8 +509,11 @@ Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& 
 }
 
 /// Sends light on from an interface. \param ahead the plane's normal on the side it goes to
-void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const Light& light,
+void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,
                     bool inside) {
+  // Fields are continuous on the plane: their wave vectors differ only along its normal.
+  beam.phase_mm +=
+      (index_at(beam.inside) * beam.direction - index_at(inside) * direction).dot(plane.normal) * plane.offset_mm;
   beam.path_length = beam.path_length.continued(plane, direction, inside ? 1.0 : 0.0);
   beam.entry = beam.entry.continued(plane, direction);
   beam.start = {ahead, ahead.dot(plane.normal) * plane.offset_mm};
@@ -522,6 +535,7 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   const double ratio = setup_.optics.ratio_at_back(from.inside);
   const double cos_incidence = -against.dot(from.direction);
   const materials::FresnelCoefficients f = fresnel_at_back(setup_.optics, candidate.role, from.inside, cos_incidence);
+  beam.trail.meet(candidate.cell);
   beam.light.turn_to(from.direction, against);
   if (!f.total_reflection) {
     Beam through = beam;
@@ -530,7 +544,7 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
          refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), beam.light.transmitted(f),
          !from.inside);
   }
-  const Light reflected = beam.light.reflected(f);
+  const CoherentLight reflected = beam.light.reflected(f);
   if (setup_.optics.coating_index && candidate.role == FacetRole::retro_facet)
     tally_.other[Account::absorbed] += transmission_of(beam) * (beam.light.power() - reflected.power());
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), reflected, from.inside);
@@ -558,24 +572,34 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
     return;
   }
   if (!f.total_reflection) {
-    const Light through = beam.light.transmitted(f);
+    const CoherentLight through = beam.light.transmitted(f);
     if (is_entrance)
       leave_through_entrance(beam, through, out);
     else
       tally_.other[account_of_exit(role)] += transmission_of(beam) * through.power();
   }
-  const Light reflected = beam.light.reflected(f);
+  const CoherentLight reflected = beam.light.reflected(f);
   send(std::move(beam), plane, against, mirrored(from.direction, against), reflected, true);
 }
 
 /// \param direction in air
-void BeamWalk::leave_through_entrance(const Beam& beam, const Light& light, const Vec3& direction) {
-  const double transmission = transmission_of(beam);
+void BeamWalk::leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction);
-  const Stokes stokes = transmission * seen_from_above(light, direction);
+  const Stokes stokes = transmission_of(beam) * seen_from_above(light, direction);
   tally_.returned[cone] += stokes;
   if (!observer_) return;
-  ReturnedBeam returned{direction, stokes, stokes.i / beam.share, beam.depth, cone, {}, {}};
+  ReturnedBeam returned = returned_beam(beam, light, direction);
+  returned.stokes = stokes;
+  returned.efficiency = stokes.i / beam.share;
+  returned.cone = cone;
+  observer_(returned);
+}
+
+/// Where it goes and came from, and its field.
+ReturnedBeam BeamWalk::returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const {
+  ReturnedBeam returned;
+  returned.direction = direction;
+  returned.depth = beam.depth;
   for (const Vec3& p : beam.corners) {
     returned.entered_mm.push_back(beam.entry.of(p));
     returned.left_mm.push_back(p.head<2>() + centre_mm_);
@@ -583,12 +607,19 @@ void BeamWalk::leave_through_entrance(const Beam& beam, const Light& light, cons
   // Light that is reflected an odd number of times sees its polygon turned over.
   for (geometry::Polygon* polygon : {&returned.entered_mm, &returned.left_mm})
     if (geometry::area(*polygon) < 0.0) std::reverse(polygon->begin(), polygon->end());
-  observer_(returned);
+  light.turn_to_axis(direction, source_axis(direction));
+  returned.jones = light.jones;
+  returned.transmission = transmission_of(beam);
+  // Continuous on the face, and counted in its plane.
+  returned.phase_mm = beam.phase_mm + setup_.optics.index * beam.direction.z() * setup_.thickness_mm;
+  returned.centre_mm = centre_mm_;
+  returned.trail = beam.trail;
+  return returned;
 }
 
 void BeamWalk::observe_front() const {
   ReturnedBeam front;
-  front.direction = mirrored(-setup_.to_source, Vec3::UnitZ());
+  front.direction = setup_.entry.front_direction;
   front.stokes = setup_.entry.front;
   front.efficiency = front.stokes.i;
   front.cone = setup_.entry.front_cone;

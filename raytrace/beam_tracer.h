@@ -7,6 +7,7 @@
 
 #include "core/progress.h"
 #include "geometry/part.h"
+#include "raytrace/beam.h"
 #include "raytrace/cell_index.h"
 #include "raytrace/light_setup.h"
 
@@ -19,6 +20,9 @@ struct BeamPolicy {
   std::optional<double> cutoff;
   double truncated_goal = 1e-10;
   std::uint64_t max_beams = 100'000'000;  ///< followed in all, while the cut-off is being found
+  /// Facets of neighbouring cells are kept apart even where they lie in one plane, so that every returned beam belongs
+  /// to its cell.
+  bool by_cell = false;
 };
 
 struct BeamResult {
@@ -41,6 +45,15 @@ struct ReturnedBeam {
   /// infinite part's light enters within the central period. Empty if it never entered.
   geometry::Polygon entered_mm;
   geometry::Polygon left_mm;
+  /// Of the field: along source_axis() and the axis across it, of its own direction, for unit amplitudes along those
+  /// of the source.
+  JonesMatrix jones = JonesMatrix::Identity();
+  double transmission = 0.0;  ///< share of the incident power that a matrix of unit gain would bring here
+  /// The field on the face is that at left_mm times exp(2 pi i (phase_mm + direction . p) / wavelength), p in the plane
+  /// of the face, relative to the part's centre as the incident wave is: exp(-2 pi i to_source . p / wavelength).
+  double phase_mm = 0.0;
+  geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< that centre
+  CellTrail trail;
 };
 
 /// Called for every returned beam, as it is found. With a cut-off that has to be found first, that takes a run of its

@@ -18,6 +18,9 @@ using geometry::Vec3;
 /// Averaging reflectances of s and p at every interface would be wrong after the second one: the first interface
 /// polarises, and the next has another plane of incidence.
 struct Light {
+  /// Squared sine of the incidence below which s and p are alike and any axis serves.
+  static constexpr double kNormalIncidence = 1e-16;
+
   Stokes stokes = kUnpolarised;
   Vec3 s_axis = Vec3::UnitX();
 
@@ -40,7 +43,7 @@ struct Light {
   void turn_to(const Vec3& direction, const Vec3& normal) {
     const Vec3 across = direction.cross(normal);
     const double norm2 = across.squaredNorm();
-    if (norm2 < 1e-16) return;  // normal incidence: s and p are alike, any axis serves
+    if (norm2 < kNormalIncidence) return;
     turn_to_axis(direction, across / std::sqrt(norm2));
   }
 

@@ -53,6 +53,7 @@ void Tally::add(const Tally& more) {
   for (std::size_t k = 0; k < returned.size(); ++k) returned[k] += more.returned[k];
   for (std::size_t k = 0; k < scattered.size(); ++k) scattered[k] += more.scattered[k];
   for (std::size_t k = 0; k < front.size(); ++k) front[k] += more.front[k];
+  for (std::size_t k = 0; k < score.size(); ++k) score[k] += more.score[k];
   for (std::size_t k = 0; k < kAccountCount; ++k) other.power[k] += more.other.power[k];
   segments += more.segments;
   misses += more.misses;
@@ -108,16 +109,17 @@ LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
   const Vec3 incident = -to_source;
   const double ratio = 1.0 / optics.index;
   const materials::FresnelCoefficients f = materials::fresnel(ratio, to_source.z());
-  Light light;
+  CoherentLight light;
   light.stokes = stokes;
   light.stokes.u = -stokes.u;  // p = direction x s is the second axis of the source reversed
+  light.jones(1, 1) = -1.0;
   light.s_axis = source_axis(to_source);
   light.turn_to(incident, Vec3::UnitZ());
   Entry entered;
   entered.direction = refracted(incident, Vec3::UnitZ(), ratio, to_source.z(), f.cos_refracted);
-  const Vec3 front_direction = mirrored(incident, Vec3::UnitZ());
-  entered.front_cone = cone_of(front_direction);
-  if (!optics.lossless_entrance) entered.front = seen_from_above(light.reflected(f), front_direction);
+  entered.front_direction = mirrored(incident, Vec3::UnitZ());
+  entered.front_cone = cone_of(entered.front_direction);
+  if (!optics.lossless_entrance) entered.front = seen_from_above(light.reflected(f), entered.front_direction);
   entered.light = optics.lossless_entrance ? light : light.transmitted(f);
   return entered;
 }

@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "geometry/part.h"
+#include "raytrace/coherent_light.h"
+#include "raytrace/farfield/direction_score.h"
 #include "raytrace/ledger.h"
-#include "raytrace/light.h"
 #include "raytrace/optics.h"
 
 namespace retrace::raytrace {
@@ -29,6 +30,7 @@ struct LightSetup {
   double top_mm = 0.0;
   std::vector<Side> sides;  ///< empty for an infinite part
   Vec3 to_source = Vec3::UnitZ();
+  const DirectionScore* score = nullptr;  ///< of the directions in which light leaves; none: nobody asks
   std::vector<double> cone_chord2;  ///< squared distance of unit vectors at each cone's edge from the one to the source
 
   bool infinite() const { return sides.empty(); }
@@ -39,9 +41,10 @@ struct LightSetup {
   /// What the entrance face makes of the incident light.
   struct Entry {
     Vec3 direction = -Vec3::UnitZ();  ///< of what enters
-    Light light;
-    std::size_t front_cone = 0;  ///< that holds what is reflected
-    Stokes front;                ///< of what is reflected, along source_axis()
+    CoherentLight light;
+    Vec3 front_direction = Vec3::UnitZ();  ///< of what is reflected
+    std::size_t front_cone = 0;            ///< that holds it
+    Stokes front;                          ///< of it, along source_axis()
   };
   Entry entry;
 
@@ -52,12 +55,13 @@ struct LightSetup {
 /// Sums of power over paths or beams. What leaves through the entrance face is kept by acceptance cone, so that one run
 /// serves several cones.
 struct Tally {
-  explicit Tally(std::size_t cone_count = 0)
-      : returned(cone_count + 1), scattered(cone_count + 1), front(cone_count + 1) {}
+  explicit Tally(std::size_t cone_count = 0, std::size_t score_size = 0)
+      : returned(cone_count + 1), scattered(cone_count + 1), front(cone_count + 1), score(score_size, 0.0) {}
 
   std::vector<Stokes> returned;   ///< through the entrance, by the narrowest cone that holds it; last: outside all
   std::vector<Stokes> scattered;  ///< the same for light with a non-specular event on its way
   std::vector<Stokes> front;      ///< first-surface reflection, likewise
+  std::vector<double> score;      ///< of LightSetup::score; empty without one
   Ledger other;                   ///< the remaining accounts
   std::uint64_t segments = 0;     ///< straight pieces traced
   std::uint64_t misses = 0;       ///< rays that missed every face although the part or its surface surrounds them

@@ -49,6 +49,10 @@ class FlushDenormals {
   unsigned saved_;
 };
 
+std::size_t score_size(const LightSetup& setup) {
+  return setup.score != nullptr ? setup.score->size() : 0;
+}
+
 /// Of the scrambles of a replicate's entry points.
 std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t replicate) {
   const auto words = philox({seed, kScrambleStream}, replicate, 0);
@@ -79,6 +83,22 @@ ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double
   return result;
 }
 
+/// Means and standard errors of what was scored.
+void add_score(const std::vector<Tally>& replicates, double rays, MonteCarloResult& result) {
+  const std::size_t size = replicates.front().score.size();
+  result.score.assign(size, 0.0);
+  result.score_error.assign(size, 0.0);
+  for (std::size_t k = 0; k < size; ++k) {
+    for (const Tally& tally : replicates) result.score[k] += tally.score[k] / rays / kReplicates;
+    double squares = 0.0;
+    for (const Tally& tally : replicates) {
+      const double off = tally.score[k] / rays - result.score[k];
+      squares += off * off;
+    }
+    result.score_error[k] = std::sqrt(squares / (kReplicates - 1.0) / kReplicates);
+  }
+}
+
 MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t rays_per_replicate,
                            const std::vector<double>& cones_deg) {
   MonteCarloResult result;
@@ -89,6 +109,7 @@ MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t r
   }
   for (std::size_t cone = 0; cone < cones_deg.size(); ++cone)
     result.cones.push_back(cone_result(replicates, rays_per_replicate, cones_deg[cone], cone));
+  add_score(replicates, rays_per_replicate, result);
   return result;
 }
 
@@ -140,7 +161,7 @@ MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, const Sampl
   return [this, &setup, seed = sampling.seed, is_plain = sampling.kind == Sampling::Kind::plain,
           cancel](const Task& task) -> std::optional<Tally> {
     const FlushDenormals flush;
-    Tally tally(setup.cone_chord2.size());
+    Tally tally(setup.cone_chord2.size(), score_size(setup));
     const auto keys = scramble_keys(seed, task.replicate);
     const SobolSquare square(keys[0], keys[1]);
     PathWalker walker(setup, tally);
@@ -164,7 +185,7 @@ MonteCarlo::TraceTask MonteCarlo::by_cells(const LightSetup& setup, const PathSe
   return [walkers, &setup, paths, entrance, seed, cancel](const Task& task) -> std::optional<Tally> {
     if (cancel != nullptr && cancel->requested()) return std::nullopt;
     const FlushDenormals flush;
-    Tally tally(setup.cone_chord2.size());
+    Tally tally(setup.cone_chord2.size(), score_size(setup));
     const auto keys = scramble_keys(seed, task.replicate);
     const RandomKey key{seed, kChoiceStream};
     CellWalker& walker = walkers->local();
@@ -198,7 +219,8 @@ bool MonteCarlo::trace_range(const TraceTask& trace_task, std::uint32_t from, st
 
 MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& illumination,
                                    const std::vector<double>& cones_deg, const Sampling& sampling,
-                                   const PathPolicy& policy, const Cancellation* cancel) const {
+                                   const PathPolicy& policy, const Cancellation* cancel,
+                                   const DirectionScore* score) const {
   std::optional<LightSetup> light;
   std::optional<PathSetup> paths;
   TraceTask trace_task;
@@ -206,10 +228,12 @@ MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& ill
   if (sampling.kind == Sampling::Kind::plain) how.split_power = std::numeric_limits<double>::infinity();
   const Vec2 centre = scene_->entrance.centre_mm();
   if (scene_->surface) paths.emplace(scene_->part, *scene_->surface, centre, optics, illumination, cones_deg, how);
+  if (paths) paths->score = score;
   if (scene_->cells && paths) {
     trace_task = by_cells(*paths, &*paths, policy, sampling.seed, cancel);
   } else if (scene_->cells) {
     light.emplace(scene_->part, centre, optics, illumination, cones_deg);
+    light->score = score;
     trace_task = by_cells(*light, nullptr, policy, sampling.seed, cancel);
   } else {
     trace_task = one_by_one(*paths, sampling, cancel);
@@ -217,7 +241,7 @@ MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& ill
   const std::uint64_t rays = sampling.rays.value_or(sampling.max_rays);
   const auto goal = static_cast<std::uint32_t>(
       std::min<std::uint64_t>((rays + kReplicates - 1) / kReplicates, kMostRaysPerReplicate));
-  std::vector<Tally> replicates(kReplicates, Tally(cones_deg.size()));
+  std::vector<Tally> replicates(kReplicates, Tally(cones_deg.size(), score != nullptr ? score->size() : 0));
   MonteCarloResult result;
   for (std::uint32_t done = 0; done < goal;) {
     // Doubling keeps every round's points the first 2^k of their sequence, where they are best stratified.

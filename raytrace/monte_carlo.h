@@ -40,6 +40,9 @@ struct ConeResult {
 
 struct MonteCarloResult {
   std::vector<ConeResult> cones;  ///< in the order given
+  /// Of the directions that were scored: sums over what leaves, per unit of incident power, and standard errors.
+  std::vector<double> score;
+  std::vector<double> score_error;
   std::uint64_t rays = 0;
   std::uint64_t segments = 0;
   std::uint64_t misses = 0;
@@ -66,10 +69,11 @@ class MonteCarlo {
   ~MonteCarlo();
 
   /// Traces in the calling thread's TBB arena. \pre for Engine::cell: cell_serves()
+  /// \param score what is asked of the directions in which light leaves the entrance face; null: nothing
   /// \throw BudgetError if power is lost: a ray missed every face from inside
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
-                         const Sampling& sampling, const PathPolicy& policy,
-                         const Cancellation* cancel = nullptr) const;
+                         const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
+                         const DirectionScore* score = nullptr) const;
 
  private:
   struct Scene;

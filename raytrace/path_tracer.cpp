@@ -66,6 +66,7 @@ void PathWalker::follow_pending() {
 void PathWalker::enter(const Vec2& entry_mm) {
   const LightSetup::Entry& entry = setup_.entry;
   tally_.front[entry.front_cone] += entry.front;
+  if (setup_.score != nullptr) setup_.score->add(entry.front_direction, entry.front.i, tally_.score);
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
   state.direction = entry.direction;
@@ -292,18 +293,24 @@ bool PathWalker::meet_entrance(State& state) {
     if (f.total_reflection)
       returned.back().i += state.light.power();
     else
-      returned[setup_.cone_of(out)] += seen_from_above(state.light, out);
+      leave(returned, state.light, out);
     return false;
   }
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
-  if (branch != Branch::reflected) returned[setup_.cone_of(out)] += seen_from_above(transmitted, out);
+  if (branch != Branch::reflected) leave(returned, transmitted, out);
   state.light = reflected;
   state.direction = mirrored(state.direction, down);
   state.source = {};
   state.near_edge = false;
   return branch != Branch::transmitted;
+}
+
+/// Books light that leaves through the entrance face. \param direction in air
+void PathWalker::leave(std::vector<Stokes>& returned, const Light& light, const Vec3& direction) {
+  returned[setup_.cone_of(direction)] += seen_from_above(light, direction);
+  if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 
 bool PathWalker::meet_side(State& state, const Vec3& normal) {

@@ -75,6 +75,7 @@ class PathWalker {
   bool is_over_part(const Vec3& position) const;
 
   bool meet_entrance(State& state);
+  void leave(std::vector<Stokes>& returned, const Light& light, const Vec3& direction);
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
   bool meet_textured(State& state, const Vec3& normal);

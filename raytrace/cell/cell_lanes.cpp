@@ -516,7 +516,7 @@ std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& mee
 }
 
 Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeting, const Entrance& entrance,
-                       const Rays& reflected, std::span<Stokes> returned) {
+                       const Rays& reflected, std::span<Stokes> returned, const Rays* left_rays) {
   const D tag;
   const V zero = hn::Zero(tag);
   Arrivals arrivals;
@@ -554,6 +554,10 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     const V3 x{hn::NegMulAdd(out.x, out.x, splat(1.0)), hn::Neg(hn::Mul(out.x, out.y)), hn::Neg(hn::Mul(out.x, out.z))};
     const V axes2 = hn::Mul(dot(face.axis, face.axis), dot(x, x));
     const S seen = turned(face.transmitted, out, face.axis, x, hn::Div(splat(1.0), axes2));
+    if (left_rays != nullptr && !hn::AllFalse(tag, take.transmitted)) {
+      append_ray(place, out, seen, x, take.transmitted, *left_rays, arrivals.left);
+      arrivals.left += hn::CountTrue(tag, take.transmitted);
+    }
     const V3 off{hn::Sub(out.x, to_source.x), hn::Sub(out.y, to_source.y), hn::Sub(out.z, to_source.z)};
     const V chord2 = dot(off, off);
     M left = take.transmitted;
@@ -738,8 +742,8 @@ std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& mee
   return HWY_DYNAMIC_DISPATCH(meet_mirrors)(rays, count, meeting, reflected);
 }
 Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeting, const Entrance& entrance,
-                       const Rays& reflected, std::span<Stokes> returned) {
-  return HWY_DYNAMIC_DISPATCH(meet_entrance)(rays, count, meeting, entrance, reflected, returned);
+                       const Rays& reflected, std::span<Stokes> returned, const Rays* left) {
+  return HWY_DYNAMIC_DISPATCH(meet_entrance)(rays, count, meeting, entrance, reflected, returned, left);
 }
 double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm, const geometry::Vec2& period_mm,
             double absorption_per_mm) {

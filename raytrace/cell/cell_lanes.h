@@ -136,11 +136,13 @@ struct Entrance {
 struct Arrivals {
   std::size_t count = 0;
   std::size_t reflected = 0;
+  std::size_t left = 0;
   double absorbed = 0.0;  ///< power, on the way up
 };
 /// \param reflected at the entrance \param returned one for each cone, and one for outside all
+/// \param left what leaves through the entrance; null: nobody asks
 Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeting, const Entrance& entrance,
-                       const Rays& reflected, std::span<Stokes> returned);
+                       const Rays& reflected, std::span<Stokes> returned, const Rays* left);
 
 /// Rays down by a height, back into the period that starts at the origin, to z = `top_mm`. \return the power absorbed
 double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm, const geometry::Vec2& period_mm,

@@ -129,6 +129,8 @@ void CellWalker::trace(const geometry::Rectangle& entrance_mm, std::uint64_t key
   handed_over_.clear();
   const LightSetup::Entry& entry = setup_.entry;
   tally.front[entry.front_cone] += static_cast<double>(count) * entry.front;
+  if (setup_.score != nullptr)
+    setup_.score->add(entry.front_direction, static_cast<double>(count) * entry.front.i, tally.score);
   reserve(count);
   chosen_.resize(count);
   const lanes::Rays rays = chosen_.rays();
@@ -429,9 +431,15 @@ void CellWalker::meet_entrance(bool scattered) {
   const lanes::Entrance entrance = {
       height_mm,        optics.index,      optics.absorption_per_mm, optics.lossless_entrance,
       setup_.to_source, setup_.cone_chord2};
+  const bool is_scored = setup_.score != nullptr;
+  if (is_scored) left_.reserve(moved_.size());
+  const lanes::Rays left = left_.rays();
   const lanes::Arrivals arrivals =
       lanes::meet_entrance(rays, moved_.size(), meeting(kTopOrNothing, true), entrance, chosen_.rays(),
-                           scattered ? tally_->scattered : tally_->returned);
+                           scattered ? tally_->scattered : tally_->returned, is_scored ? &left : nullptr);
+  for (std::size_t k = 0; k < arrivals.left; ++k)
+    setup_.score->add({left[lanes::kDx][k], left[lanes::kDy][k], left[lanes::kDz][k]}, left[lanes::kI][k],
+                      tally_->score);
   tally_->segments += arrivals.count;
   tally_->other[Account::absorbed] += arrivals.absorbed;
   chosen_.resize(arrivals.reflected);

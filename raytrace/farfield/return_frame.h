@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "geometry/vec.h"
+
+namespace retrace::raytrace {
+
+/// Directions around the one back to the source, as angles to the right and upwards: the polar angles of the deviation
+/// drawn as a plane radius (azimuthal equidistant), which keeps observation angles.
+struct ReturnFrame {
+  geometry::Vec3 to_source = geometry::Vec3::UnitZ();
+  geometry::Vec3 right = geometry::Vec3::UnitX();
+  geometry::Vec3 up = geometry::Vec3::UnitY();
+
+  geometry::Vec2 angles_rad(const geometry::Vec3& direction) const {
+    const geometry::Vec2 across(direction.dot(right), direction.dot(up));
+    const double sine = across.norm();
+    if (sine == 0.0) return {direction.dot(to_source) < 0.0 ? EIGEN_PI : 0.0, 0.0};
+    return across * (std::atan2(sine, direction.dot(to_source)) / sine);
+  }
+
+  geometry::Vec3 direction(const geometry::Vec2& angles_rad) const {
+    const double angle = angles_rad.norm();
+    if (angle == 0.0) return to_source;
+    const double factor = std::sin(angle) / angle;
+    return (std::cos(angle) * to_source + factor * (angles_rad.x() * right + angles_rad.y() * up)).normalized();
+  }
+};
+
+}  // namespace retrace::raytrace

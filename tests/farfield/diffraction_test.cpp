@@ -1,0 +1,305 @@
+// Diffraction against the patterns of Airy and of a rectangle, direct quadrature, and a pixelwise model of a cube
+// corner.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "core/random.h"
+#include "materials/fresnel.h"
+#include "raytrace/farfield/far_field.h"
+#include "tests/support/closed_forms.h"
+#include "tests/support/designs.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+using std::numbers::pi;
+using Complex = std::complex<double>;
+
+Polygon regular(std::size_t corners, double radius_mm, const Vec2& centre = Vec2::Zero()) {
+  Polygon polygon;
+  for (std::size_t k = 0; k < corners; ++k) {
+    const double a = 2.0 * pi * static_cast<double>(k) / static_cast<double>(corners);
+    polygon.push_back(centre + radius_mm * Vec2(std::cos(a), std::sin(a)));
+  }
+  return polygon;
+}
+
+/// A plane wave through a polygon back to the source at normal incidence.
+FarField field_of(const Polygon& polygon, double wavelength_nm, const Vec3& direction = Vec3::UnitZ()) {
+  const Part part = build_part(single(HexagonalCube{1.0}, 1.0));
+  FarFieldPolicy policy;
+  policy.wavelength_nm = wavelength_nm;
+  policy.window_rad = 0.1;
+  FarFieldCollector collector(part, {}, policy);
+  ReturnedBeam beam;
+  beam.direction = direction;
+  beam.stokes.i = 1.0;
+  beam.transmission = 1.0;
+  beam.left_mm = polygon;
+  beam.entered_mm = polygon;
+  beam.trail.first = CellPlace{};
+  collector.add(beam);
+  return collector.finish();
+}
+
+Vec3 tilted(double x, double y = 0.0) {
+  return {x, y, std::sqrt(1.0 - x * x - y * y)};
+}
+
+// Gauss rules over triangles: exact for all that is smooth.
+Complex quadrature(const Polygon& polygon, const Vec2& kappa) {
+  const GaussRule rule = gauss_legendre(24);
+  Complex sum = 0.0;
+  for (std::size_t k = 2; k < polygon.size(); ++k) {
+    const Vec2 a = polygon[k - 1] - polygon[0];
+    const Vec2 b = polygon[k] - polygon[0];
+    const double twice = a.x() * b.y() - a.y() * b.x();
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i)
+      for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
+        const double u = rule.nodes[i];
+        const Vec2 p = polygon[0] + u * ((1.0 - rule.nodes[j]) * a + rule.nodes[j] * b);
+        const double phase = kappa.dot(p);
+        sum += rule.weights[i] * rule.weights[j] * u * twice * Complex(std::cos(phase), -std::sin(phase));
+      }
+  }
+  return sum;
+}
+
+TEST(PolygonTransform, AgreesWithQuadrature) {
+  for (std::uint32_t k = 0; k < 200; ++k) {
+    const auto u = [k](std::uint32_t which) { return unit_interval(philox({3, which}, k, 0)[0]); };
+    Polygon polygon;
+    double angle = 0.0;
+    while ((angle += 0.2 + 1.6 * u(static_cast<std::uint32_t>(polygon.size()))) < 2.0 * pi)
+      polygon.push_back(Vec2(3.0 * u(90), -2.0) + Vec2(std::cos(angle), 0.6 * std::sin(angle)));
+    if (polygon.size() < 3) continue;
+    const double scale = std::pow(10.0, 4.5 * u(91) - 3.0);
+    const Vec2 kappa = scale * Vec2(std::cos(7.0 * u(92)), std::sin(7.0 * u(92)));
+    const Complex expected = quadrature(polygon, kappa);
+    EXPECT_NEAR(std::abs(PolygonTransform(polygon).at(kappa) - expected), 0.0, 1e-11) << k << " " << scale;
+  }
+}
+
+TEST(PolygonTransform, IsSmoothWhereItsSeriesBegins) {
+  const PolygonTransform hexagon(regular(6, 1.0, {0.3, -0.2}));
+  for (const double direction : {0.0, pi / 6.0, pi / 2.0, 1.0})
+    for (const double k : {1e-7, 0.99e-5, 1.01e-5, 0.99e-3, 1.01e-3}) {
+      const Vec2 kappa = k * Vec2(std::cos(direction), std::sin(direction));
+      EXPECT_NEAR(std::abs(hexagon.at(kappa) - quadrature(hexagon.polygon(), kappa)), 0.0, 3e-10);
+    }
+  EXPECT_EQ(hexagon.at(Vec2::Zero()), Complex(hexagon.area_mm2()));
+}
+
+// The first dark ring of a disc of 1 mm at 550 nm: 1.2197 wavelengths over the diameter (first zero of J1 over pi), and
+// the peak area / wavelength^2.
+TEST(Diffraction, FirstNullOfADiscIsThatOfAiry) {
+  constexpr double kWave = 550e-6;
+  const FarField field = field_of(regular(2000, 0.5), 550.0);
+  double angle = 1.0 * kWave;
+  double least = field.diffracted_per_sr(tilted(angle));
+  for (double s = 1.0; s < 1.4; s += 1e-4) {
+    const double here = field.diffracted_per_sr(tilted(s * kWave));
+    if (here < least) {
+      least = here;
+      angle = s * kWave;
+    }
+  }
+  const double peak = field.diffracted_per_sr(Vec3::UnitZ());
+  EXPECT_NEAR(angle / kWave, 1.21967, 2e-4);
+  EXPECT_LT(least, 1e-8 * peak);
+  EXPECT_NEAR(peak, 0.25 * pi / (kWave * kWave), 1e-5 * peak);
+  // The pattern [2 J1(x) / x]^2.
+  for (const double s : {0.3, 0.8, 1.6, 2.7}) {
+    const double x = pi * s;
+    const double airy = std::pow(2.0 * std::cyl_bessel_j(1.0, x) / x, 2.0);
+    EXPECT_NEAR(field.diffracted_per_sr(tilted(s * kWave)) / peak, airy, 1e-5);
+  }
+}
+
+TEST(Diffraction, SquareApertureIsSincSquared) {
+  constexpr double kWave = 587.56e-6;
+  const Polygon square = {{0.0, 0.0}, {0.7, 0.0}, {0.7, 0.4}, {0.0, 0.4}};
+  const FarField field = field_of(square, 587.56);
+  const auto sinc2 = [](double x) { return x == 0.0 ? 1.0 : std::pow(std::sin(x) / x, 2.0); };
+  const double peak = 0.28 / (kWave * kWave);
+  for (const double x : {0.0, 3e-4, 1.1e-3, 4e-3})
+    for (const double y : {0.0, 5e-4, 2e-3}) {
+      const Vec3 d = tilted(x, y);
+      const double expected = d.z() * peak * sinc2(pi * 0.7 * x / kWave) * sinc2(pi * 0.4 * y / kWave);
+      EXPECT_NEAR(field.diffracted_per_sr(d), expected, 1e-10 * peak);
+    }
+}
+
+// Obliquely: over the cosines of directions the pattern is the same, so that per steradian it grows with the cosine.
+TEST(Diffraction, ObliquePatternIsOneOverTheCosines) {
+  const Polygon hexagon = regular(6, 0.5);
+  const Vec3 oblique = tilted(0.05, 0.02);
+  const FarField straight = field_of(hexagon, 550.0);
+  const FarField turned = field_of(hexagon, 550.0, oblique);
+  for (const double x : {0.0, 4e-4, 1.5e-3}) {
+    const Vec3 a = tilted(x, 0.3e-3);
+    const Vec3 b = tilted(0.05 + x, 0.02 + 0.3e-3);
+    EXPECT_NEAR(turned.diffracted_per_sr(b) / b.z(), straight.diffracted_per_sr(a) / a.z(),
+                1e-9 * straight.diffracted_per_sr(a) + 1e-3);
+  }
+}
+
+// The window and its surroundings are integrated apart: a lattice inside, the tails outside.
+TEST(Diffraction, WindowAndOutsideAddUpToThePower) {
+  for (const double size : {0.05, 0.2, 1.0})
+    for (const Polygon& shape : {regular(6, 0.5 * size), regular(3, 0.5 * size), regular(400, 0.5 * size)}) {
+      const FarField field = field_of(shape, 550.0);
+      const FarField::Split split = field.split(ReturnFrame{}, 0.035);
+      EXPECT_NEAR(split.inside + split.outside, 1.0, 1e-3) << size << " " << shape.size();
+      EXPECT_GT(split.outside, 1e-4);
+    }
+}
+
+/// One cube corner, pixel by pixel: rays and field vectors in space through three plane facets, nothing shared with the
+/// engine but the formulas of Fresnel.
+class PixelCube {
+ public:
+  PixelCube(double aperture_mm, double index, bool mirrors) : index_(index), mirrors_(mirrors) {
+    edge_ = aperture_mm / (2.0 * std::sqrt(2.0 / 3.0));
+    for (int k = 0; k < 3; ++k) {
+      // Facet between the dihedral edges at 120 k and 120 (k + 1) degrees: its normal is the opposite edge.
+      const double a = (120.0 * k + 60.0 + 180.0) * kDeg;
+      normals_[static_cast<std::size_t>(k)] =
+          Vec3(std::sqrt(2.0 / 3.0) * std::cos(a), std::sqrt(2.0 / 3.0) * std::sin(a), 1.0 / std::sqrt(3.0));
+    }
+  }
+
+  /// Both fields, for E along x and along y, of light that comes straight down at a place; false if it misses.
+  bool trace(const Vec2& place, Eigen::Matrix<Complex, 3, 2>& field, Vec2& out) const {
+    Vec3 p(place.x(), place.y(), 10.0);
+    Vec3 d = -Vec3::UnitZ();
+    field.setZero();
+    field(0, 0) = 1.0;
+    field(1, 1) = 1.0;
+    std::array<bool, 3> met{};
+    for (int bounce = 0; bounce < 3; ++bounce) {
+      double nearest = 1e9;
+      std::size_t facet = 3;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (met[k] || normals_[k].dot(d) >= -1e-12) continue;
+        const double t = -normals_[k].dot(p) / normals_[k].dot(d);
+        if (t < nearest) {
+          nearest = t;
+          facet = k;
+        }
+      }
+      if (facet == 3) return false;
+      met[facet] = true;
+      p += nearest * d;
+      reflect(normals_[facet], d, field);
+    }
+    out = p.head<2>();
+    return true;
+  }
+
+  /// Whether a place lies over the cube's own hexagonal aperture: all three of its coordinates along the edges are
+  /// below that of the facets' far ends.
+  bool in_aperture(const Vec2& p) const {
+    for (int k = 0; k < 3; ++k) {
+      const double a = (60.0 * k + 30.0) * kDeg;
+      if (std::abs(p.x() * std::cos(a) + p.y() * std::sin(a)) > edge_ / std::numbers::sqrt2) return false;
+    }
+    return true;
+  }
+
+ private:
+  void reflect(const Vec3& normal, Vec3& d, Eigen::Matrix<Complex, 3, 2>& field) const {
+    const double c = -normal.dot(d);
+    Complex rs = -1.0;
+    Complex rp = 1.0;
+    if (!mirrors_) {
+      // Born and Wolf, 1.5.2 (20), with the root of total reflection for exp(-i w t).
+      const Complex root = std::sqrt(Complex(1.0 / (index_ * index_) - (1.0 - c * c)));
+      const double m = 1.0 / (index_ * index_);
+      rs = (c - root) / (c + root);
+      rp = (m * c - root) / (m * c + root);
+    }
+    const Vec3 s = d.cross(-normal).normalized();
+    const Vec3 p_in = d.cross(s);
+    const Vec3 d_out = d + 2.0 * c * normal;
+    const Vec3 p_out = d_out.cross(s);
+    const Eigen::Matrix<Complex, 1, 2> along_s = s.transpose().cast<Complex>() * field;
+    const Eigen::Matrix<Complex, 1, 2> along_p = p_in.transpose().cast<Complex>() * field;
+    field = rs * s.cast<Complex>() * along_s + rp * p_out.cast<Complex>() * along_p;
+    d = d_out;
+  }
+
+  double index_;
+  bool mirrors_;
+  double edge_ = 0.0;
+  std::array<Vec3, 3> normals_;
+};
+
+// The six sub-beams of a full cube corner, for mirrors and for total reflection, whose phases split the pattern.
+TEST(Diffraction, SixSectorsOfACubeCornerAgreeWithAPixelModel) {
+  constexpr double kAperture = 0.5;
+  const Part part = build_part(single(HexagonalCube{kAperture}, 0.3));
+  for (const bool mirrors : {true, false}) {
+    Optics optics = pmma();
+    optics.mirror_facets = mirrors;
+    optics.lossless_entrance = true;
+    FarFieldPolicy policy;
+    policy.wavelength_nm = 550.0;
+    FarFieldCollector collector(part, {}, policy);
+    BeamPolicy beams;
+    beams.truncated_goal = 1e-6;
+    beams.by_cell = true;
+    BeamTracer(part).trace(optics, {}, {0.5}, beams, nullptr, [&](const ReturnedBeam& b) { collector.add(b); });
+    const FarField field = collector.finish();
+    ASSERT_EQ(field.groups().size(), 1U);
+    // Mirrors make pairs of neighbours alike, which are joined.
+    EXPECT_EQ(field.groups()[0].polygons.size(), mirrors ? 3U : 6U);
+
+    const PixelCube cube(kAperture, kPmma, mirrors);
+    constexpr int kPixels = 400;
+    constexpr double kWave = 550e-6;
+    const double step = kAperture / kPixels;
+    struct Pixel {
+      Vec2 out;
+      Eigen::Matrix<Complex, 3, 2> field;
+    };
+    std::vector<Pixel> pixels;
+    for (int j = 0; j < kPixels; ++j)
+      for (int i = 0; i < kPixels; ++i) {
+        const Vec2 p = step * Vec2(i + 0.5 - 0.5 * kPixels, j + 0.5 - 0.5 * kPixels);
+        Pixel pixel;
+        if (cube.in_aperture(p) && cube.trace(p, pixel.field, pixel.out)) pixels.push_back(pixel);
+      }
+    EXPECT_NEAR(static_cast<double>(pixels.size()) * step * step, area(part.outline), 2e-3 * area(part.outline));
+    const double whole = static_cast<double>(pixels.size()) * step * step;
+    const double peak = whole / (kWave * kWave);
+    double least = 1e9;
+    double most = 0.0;
+    for (const double radius : {0.0, 0.5, 1.0, 1.5, 2.2})
+      for (const double turn : {0.0, 30.0, 75.0, 140.0, 222.0, 300.0}) {
+        const Vec2 q = radius * kWave / kAperture * Vec2(std::cos(turn * kDeg), std::sin(turn * kDeg));
+        Eigen::Matrix<Complex, 3, 2> sum = Eigen::Matrix<Complex, 3, 2>::Zero();
+        for (const Pixel& pixel : pixels) {
+          const double phase = -2.0 * pi / kWave * q.dot(pixel.out);
+          sum += Complex(std::cos(phase), std::sin(phase)) * pixel.field;
+        }
+        const double expected = 0.5 * sum.squaredNorm() * std::pow(step * step / kWave, 2.0) / whole;
+        const double found = field.diffracted_per_sr(tilted(q.x(), q.y()));
+        EXPECT_NEAR(found / peak, expected / peak, 3e-3) << radius << " " << turn << " " << mirrors;
+        least = std::min(least, found / peak);
+        most = std::max(most, found / peak);
+      }
+    // Total reflection takes the light out of the middle.
+    EXPECT_GT(most, mirrors ? 0.99 : 0.2);
+    EXPECT_LT(field.diffracted_per_sr(Vec3::UnitZ()) / peak, mirrors ? 1.01 : 0.5);
+  }
+}
+
+}  // namespace
+}  // namespace retrace::testing

@@ -1,0 +1,114 @@
+// The angles of CIE 54.2 and ASTM E808 against their published relations and against each other.
+#include "raytrace/farfield/photometric_geometry.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+#include "tests/support/closed_forms.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace raytrace;
+
+double uniform(std::uint32_t k, std::uint32_t which, double low, double high) {
+  return low + (high - low) * unit_interval(philox({7, which}, k, 0)[0]);
+}
+
+PhotometricGeometry random_geometry(std::uint32_t k) {
+  return {Angle::from_deg(uniform(k, 0, 0.05, 20.0)), Angle::from_deg(uniform(k, 1, -85.0, 85.0)),
+          Angle::from_deg(uniform(k, 2, -85.0, 85.0)), Angle::from_deg(uniform(k, 3, -179.0, 179.0))};
+}
+
+void expect_equal(const PhotometricGeometry& a, const PhotometricGeometry& b) {
+  EXPECT_NEAR(a.alpha.deg(), b.alpha.deg(), 1e-9);
+  EXPECT_NEAR(a.beta1.deg(), b.beta1.deg(), 1e-9);
+  EXPECT_NEAR(a.beta2.deg(), b.beta2.deg(), 1e-9);
+  EXPECT_NEAR(a.epsilon.deg(), b.epsilon.deg(), 1e-9);
+}
+
+TEST(PhotometricGeometry, RoundTripsOverRandomGeometries) {
+  for (std::uint32_t k = 0; k < 5000; ++k) {
+    const PhotometricGeometry g = random_geometry(k);
+    expect_equal(geometry_of(directions_of(g)), g);
+    expect_equal(geometry_from(intrinsic_of(g)), g);
+    expect_equal(geometry_from(entrance_angles(g), g.alpha, g.epsilon), g);
+    const geometry::Vec3 to_source = directions_of(g).to_source;
+    EXPECT_NEAR((direction_from(source_angles(to_source)) - to_source).norm(), 0.0, 1e-14);
+  }
+}
+
+TEST(PhotometricGeometry, IntrinsicAnglesRoundTrip) {
+  for (std::uint32_t k = 0; k < 5000; ++k) {
+    const IntrinsicGeometry i{Angle::from_deg(uniform(k, 4, 0.0, 20.0)), Angle::from_deg(uniform(k, 5, 0.5, 88.0)),
+                              Angle::from_deg(uniform(k, 6, -179.0, 179.0)),
+                              Angle::from_deg(uniform(k, 7, -179.0, 179.0))};
+    const IntrinsicGeometry back = intrinsic_of(geometry_from(i));
+    EXPECT_NEAR(back.alpha.deg(), i.alpha.deg(), 1e-9);
+    EXPECT_NEAR(back.beta.deg(), i.beta.deg(), 1e-9);
+    EXPECT_NEAR(back.gamma.deg(), i.gamma.deg(), 1e-9);
+    EXPECT_NEAR(back.omega_s.deg(), i.omega_s.deg(), 1e-9);
+  }
+}
+
+// The direction to the source of the regulations: V about the fixed horizontal axis, H about the axis that moves with
+// it.
+TEST(PhotometricGeometry, SourceAndObserverOfVAndH) {
+  for (std::uint32_t k = 0; k < 1000; ++k) {
+    const double v = uniform(k, 8, -60.0, 60.0) * kDeg;
+    const double h = uniform(k, 9, -60.0, 60.0) * kDeg;
+    const double alpha = uniform(k, 10, 0.0, 3.0) * kDeg;
+    const auto [s, o] =
+        directions_of(geometry_from({Angle::from_rad(v), Angle::from_rad(h)}, Angle::from_rad(alpha), Angle()));
+    const geometry::Vec3 source(std::sin(h) * std::cos(v), std::sin(v), std::cos(h) * std::cos(v));
+    const geometry::Vec3 observer(std::sin(h) * std::cos(v + alpha), std::sin(v + alpha),
+                                  std::cos(h) * std::cos(v + alpha));
+    EXPECT_NEAR((s - source).norm(), 0.0, 1e-14);
+    EXPECT_NEAR((o - observer).norm(), 0.0, 1e-14);
+  }
+}
+
+// Relations of ASTM E808 between the two systems, and of both to the entrance and the viewing angle.
+TEST(PhotometricGeometry, PublishedRelationsHold) {
+  for (std::uint32_t k = 0; k < 1000; ++k) {
+    const PhotometricGeometry g = random_geometry(k);
+    const IntrinsicGeometry i = intrinsic_of(g);
+    const double b1 = g.beta1.rad();
+    const double b2 = g.beta2.rad();
+    EXPECT_NEAR(std::cos(i.beta.rad()), std::cos(b1) * std::cos(b2), 1e-14);
+    EXPECT_NEAR(entrance_angle(g).rad(), i.beta.rad(), 1e-12);
+    EXPECT_NEAR(std::sin(b2), std::sin(i.beta.rad()) * std::sin(i.gamma.rad()), 1e-12);
+    EXPECT_NEAR(std::tan(b1), std::tan(i.beta.rad()) * std::cos(i.gamma.rad()), 1e-9);
+    EXPECT_NEAR(std::cos(viewing_angle(g).rad()), std::cos(b2) * std::cos(b1 - g.alpha.rad()), 1e-12);
+  }
+}
+
+// A turn by epsilon moves source and observer backwards about the part's normal, and its datum mark with them.
+TEST(PhotometricGeometry, EpsilonTurnsThePartAboutItsNormal) {
+  PhotometricGeometry g{Angle::from_deg(0.33), Angle::from_deg(-10.0), Angle::from_deg(20.0), Angle()};
+  const auto still = directions_of(g);
+  const double omega_still = intrinsic_of(g).omega_s.deg();
+  g.epsilon = Angle::from_deg(30.0);
+  const auto turned = directions_of(g);
+  const Eigen::Matrix3d back = Eigen::AngleAxisd(-30.0 * kDeg, geometry::Vec3::UnitZ()).toRotationMatrix();
+  EXPECT_NEAR((turned.to_source - back * still.to_source).norm(), 0.0, 1e-14);
+  EXPECT_NEAR((turned.to_observer - back * still.to_observer).norm(), 0.0, 1e-14);
+  EXPECT_NEAR(intrinsic_of(g).omega_s.deg() - omega_still, 30.0, 1e-9);
+}
+
+TEST(PhotometricGeometry, ReturnFrameKeepsObservationAngles) {
+  for (std::uint32_t k = 0; k < 1000; ++k) {
+    const PhotometricGeometry g = random_geometry(k);
+    const ReturnFrame frame = return_frame(g);
+    const geometry::Vec2 at = frame.angles_rad(directions_of(g).to_observer);
+    EXPECT_NEAR(at.x(), 0.0, 1e-12);
+    EXPECT_NEAR(at.y(), g.alpha.rad(), 1e-12);
+    const geometry::Vec2 any(uniform(k, 11, -1.0, 1.0), uniform(k, 12, -1.0, 1.0));
+    EXPECT_NEAR((frame.angles_rad(frame.direction(any)) - any).norm(), 0.0, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace retrace::testing
