@@ -143,6 +143,60 @@ void add_roughness(CLI::App& app, RoughnessOptions& roughness) {
       ->excludes(samples);
 }
 
+void add_photometry(CLI::App& app, PhotometryOptions& photometry) {
+  CLI::App* command = app.add_subcommand("photometry", "coefficients of retroreflection against a standard");
+  command->add_option("DESIGN", photometry.design, "design file; - is standard input")->required()->check(not_empty());
+  command->add_option("--standard", photometry.standard, "r150, j594, bicycle, or a limits file")
+      ->type_name("NAME|FILE")
+      ->required()
+      ->check(not_empty());
+  command->add_option("--class", photometry.part_class, "class of the part, such as IA [the only one there is]")
+      ->type_name("CLASS");
+  command->add_option("--colour", photometry.colour, "white, amber, red, ... [the only one there is]")
+      ->type_name("COLOUR");
+  command->add_option("--area-cm2", photometry.area_cm2, "area of the part that the design shows the make of")
+      ->type_name("A")
+      ->required()
+      ->check(real_number());
+  command
+      ->add_option("--rotation", photometry.rotation,
+                   "turns of the part about its normal in degrees; the least value counts [the standard's]")
+      ->type_name("LIST");
+  command
+      ->add_option(
+          "--dye", photometry.dye,
+          "none, red, amber (illustrative) or a file [by the colour, unless the design's absorption is spectral]")
+      ->type_name("NAME|FILE")
+      ->check(not_empty());
+  command->add_option("--source-arcmin", photometry.source_arcmin, "diameter of the source [the standard's]")
+      ->type_name("D")
+      ->check(real_number());
+  command->add_option("--receiver-arcmin", photometry.receiver_arcmin, "diameter of the receiver [the standard's]")
+      ->type_name("D")
+      ->check(real_number());
+  command->add_option("--window-deg", photometry.window_deg, "half angle of the far field that is computed")
+      ->type_name("W")
+      ->capture_default_str()
+      ->check(real_number());
+  command->add_option("--light", photometry.light, "a: CIE A as the eye sees it; design: what the design says")
+      ->type_name("LIGHT")
+      ->capture_default_str();
+  command->add_option("--engine", photometry.engine, "exact, montecarlo (embree), or auto: exact where it serves")
+      ->type_name("ENGINE")
+      ->capture_default_str();
+  command->add_option("--samples", photometry.samples, "rays for each direction, by Monte Carlo")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(whole_number(1, std::uint64_t{1} << 36));
+  command
+      ->add_option("--cutoff", photometry.cutoff,
+                   "exact: least power that is followed, as a share of what falls on an element [1e-6]")
+      ->type_name("W")
+      ->check(real_number());
+  command->add_flag("--no-diffraction", photometry.no_diffraction, "geometric far field alone");
+  command->add_flag("--no-advice", photometry.no_advice, "do not look for what to change if a point fails");
+}
+
 void add_metrology(CLI::App& app, MetrologyOptions& metrology) {
   CLI::App* command = app.add_subcommand("metrology", "roughness, waviness and edge radius of a measured surface");
   command->add_option("FILE", metrology.file, "height map or profile: text, SDF, GSF or GWY")
@@ -238,7 +292,8 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
   for (const std::string& word : unknown)
     if (word.starts_with('-')) return "unknown option " + word;
   if (!app.get_subcommands().empty()) return otherwise;
-  const std::string commands = "rre, inspect, roughness, metrology, sweep, optimize, job, fabricate, init and list";
+  const std::string commands =
+      "rre, inspect, photometry, roughness, metrology, sweep, optimize, job, fabricate, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -264,6 +319,7 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
       ->add_option("DESIGN", line.design, "design file; - is standard input")
       ->required()
       ->check(not_empty());
+  add_photometry(app, line.photometry);
   add_roughness(app, line.roughness);
   add_metrology(app, line.metrology);
   add_study(app, line.study, "sweep", "designs and directions over ranges, as a study file says");
@@ -274,7 +330,7 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
       ->required();
   app.add_subcommand("list", "what is shipped")
-      ->add_option("WHAT", line.what, "materials, machines or processes")
+      ->add_option("WHAT", line.what, "materials, machines, processes or standards")
       ->required();
   for (CLI::App* command : app.get_subcommands({})) {
     command->fallthrough();

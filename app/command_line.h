@@ -43,6 +43,25 @@ struct RoughnessOptions {
   double target_error = 1e-3;
 };
 
+struct PhotometryOptions {
+  std::string design;
+  std::string standard;
+  std::optional<std::string> part_class;
+  std::optional<std::string> colour;
+  std::optional<double> area_cm2;
+  std::optional<std::string> rotation;
+  std::optional<std::string> dye;
+  std::optional<double> source_arcmin;
+  std::optional<double> receiver_arcmin;
+  double window_deg = 2.0;
+  std::string light = "a";
+  std::string engine = "auto";
+  std::uint64_t samples = 1U << 20;
+  std::optional<double> cutoff;
+  bool no_diffraction = false;
+  bool no_advice = false;
+};
+
 struct MetrologyOptions {
   std::string file;
   std::string form = "plane";
@@ -87,6 +106,7 @@ struct CommandLine {
   CommonOptions common;
   RreOptions rre;
   RoughnessOptions roughness;
+  PhotometryOptions photometry;
   MetrologyOptions metrology;
   StudyOptions study;
   JobOptions job;

@@ -8,6 +8,7 @@ namespace retrace::app {
 // One function a command. Each returns the exit code or throws retrace::Error.
 
 ExitCode run_rre_command(const CommandLine& line);
+ExitCode run_photometry_command(const CommandLine& line);
 ExitCode run_roughness_command(const CommandLine& line);
 ExitCode run_inspect_command(const CommandLine& line);
 ExitCode run_metrology_command(const CommandLine& line);

@@ -1,15 +1,20 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/output.h"
+#include "core/data_directory.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
 #include "core/version.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "materials/io/material_library.h"
+#include "studies/photometry/io/limits_reader.h"
+#include "studies/photometry/standards.h"
 
 namespace retrace::app {
 namespace {
@@ -81,7 +86,7 @@ ExitCode list_processes(const CommandLine& line) {
 ExitCode list_materials(const CommandLine& line) {
   const auto library = materials::MaterialLibrary::shipped();
   std::string text = fmt::format("{:<16} {:<10} {:<12} {}\n", "name", "n 588 nm", "data (nm)", "description");
-  nlohmann::ordered_json json = {{"schema", "retrace.materials/1"}, {"materials", nlohmann::ordered_json::array()}};
+  Json json = {{"schema", "retrace.materials/1"}, {"materials", Json::array()}};
   for (const materials::Material& m : library.all()) {
     const double n = materials::refractive_index(m.dispersion, kShownWavelengthNm);
     const std::string range = shortest(m.valid_from_nm) + "-" + shortest(m.valid_to_nm);
@@ -96,7 +101,7 @@ ExitCode list_materials(const CommandLine& line) {
                                  {"absorption_per_mm", m.absorption_per_mm},
                                  {"source", m.source}});
   }
-  json["metals"] = nlohmann::ordered_json::array();
+  json["metals"] = Json::array();
   for (const materials::Metal& m : library.metals()) {
     const std::complex<double> n = materials::complex_index(m.model, kShownWavelengthNm);
     const std::string range = shortest(m.valid_from_nm) + "-" + shortest(m.valid_to_nm);
@@ -115,13 +120,57 @@ ExitCode list_materials(const CommandLine& line) {
   return write_list(line, std::move(json), text);
 }
 
+/// What the shipped table holds of a standard: its classes and colours.
+Json standard_json(const studies::ShippedStandard& standard, const studies::LimitTable& table) {
+  std::vector<std::string> classes;
+  std::vector<std::string> colours;
+  const auto add = [](std::vector<std::string>& names, const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  const auto add_row = [&](const auto& row) {
+    if (row.standard != standard.in_table) return;
+    for (const std::string& name : row.classes) add(classes, name);
+    add(colours, row.colour == "clear" ? "white" : row.colour);
+  };
+  for (const studies::LimitRow& row : table.rows) add_row(row);
+  for (const studies::LimitFactor& factor : table.factors) add_row(factor);
+  const bool is_complete = std::none_of(table.gaps.begin(), table.gaps.end(),
+                                        [&](const auto& gap) { return gap.standard == standard.in_table; });
+  return {{"name", standard.name},
+          {"description", standard.description},
+          {"classes", classes},
+          {"colours", colours},
+          {"limits_complete", is_complete},
+          {"source_arcmin", 60.0 * standard.apertures.source.deg()},
+          {"receiver_arcmin", 60.0 * standard.apertures.receiver.deg()},
+          {"rotation_deg", standard.rotation_deg},
+          {"conditions", standard.conditions}};
+}
+
+ExitCode list_standards(const CommandLine& line) {
+  const studies::LimitTable table = studies::read_limits(data_directory() / "photometry_limits.csv");
+  std::string text = fmt::format("{:<9} {:<22} {:<17} {}\n", "name", "classes", "colours", "description");
+  Json json = {{"schema", "retrace.standards/1"}, {"standards", Json::array()}};
+  for (const studies::ShippedStandard& standard : studies::shipped_standards()) {
+    json["standards"].push_back(standard_json(standard, table));
+    const auto& one = json["standards"].back();
+    const auto classes = one["classes"].get<std::vector<std::string>>();
+    const auto colours = one["colours"].get<std::vector<std::string>>();
+    text += fmt::format("{:<9} {:<22} {:<17} {}{}\n", standard.name, fmt::format("{}", fmt::join(classes, " ")),
+                        fmt::format("{}", fmt::join(colours, " ")), standard.description,
+                        one["limits_complete"].get<bool>() ? "" : " (limits incomplete)");
+  }
+  return write_list(line, std::move(json), text);
+}
+
 }  // namespace
 
 ExitCode run_list_command(const CommandLine& line) {
   if (line.what == "materials") return list_materials(line);
   if (line.what == "machines") return list_machines(line);
   if (line.what == "processes") return list_processes(line);
-  throw InputError(fmt::format("list: must be materials, machines or processes, got {}", line.what));
+  if (line.what == "standards") return list_standards(line);
+  throw InputError(fmt::format("list: must be materials, machines, processes or standards, got {}", line.what));
 }
 
 }  // namespace retrace::app

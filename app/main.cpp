@@ -20,6 +20,7 @@ ExitCode run(int argc, const char* const* argv) {
   const auto line = app::read_command_line(argc, argv);
   if (!line) return ExitCode::done;
   if (line->command == "rre") return app::run_rre_command(*line);
+  if (line->command == "photometry") return app::run_photometry_command(*line);
   if (line->command == "roughness") return app::run_roughness_command(*line);
   if (line->command == "inspect") return app::run_inspect_command(*line);
   if (line->command == "metrology") return app::run_metrology_command(*line);

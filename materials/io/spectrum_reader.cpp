@@ -143,15 +143,31 @@ CieTable read_cie_table(const fs::path& file) {
   return {{columns[0], columns[1]}, {columns[0], columns[2]}, {columns[0], columns[3]}};
 }
 
+namespace {
+
+SpectralCurve parse_curve(std::string_view text, const std::string& name, std::string_view quantity) {
+  if (text.size() > kMostBytes)
+    throw InputError({name, 0, ""}, fmt::format("must have at most {} bytes, got more", kMostBytes));
+  auto columns = ColumnReader(name, {"wavelength_nm", quantity}).read(text);
+  return {std::move(columns[0]), std::move(columns[1])};
+}
+
+}  // namespace
+
 SpectralCurve read_spectral_power(const fs::path& file) {
   return parse_spectral_power(read_short_file(file), file.string());
 }
 
 SpectralCurve parse_spectral_power(std::string_view text, const std::string& name) {
-  if (text.size() > kMostBytes)
-    throw InputError({name, 0, ""}, fmt::format("must have at most {} bytes, got more", kMostBytes));
-  auto columns = ColumnReader(name, {"wavelength_nm", "power"}).read(text);
-  return {std::move(columns[0]), std::move(columns[1])};
+  return parse_curve(text, name, "power");
+}
+
+SpectralCurve read_spectral_absorption(const fs::path& file) {
+  return parse_spectral_absorption(read_short_file(file), file.string());
+}
+
+SpectralCurve parse_spectral_absorption(std::string_view text, const std::string& name) {
+  return parse_curve(text, name, "absorption_per_mm");
 }
 
 }  // namespace retrace::materials

@@ -29,4 +29,11 @@ SpectralCurve read_spectral_power(const std::filesystem::path& file);
 /// The same of a text. \param name of the file, for messages
 SpectralCurve parse_spectral_power(std::string_view text, const std::string& name);
 
+/// Reads the absorption of a dyed material, likewise: header wavelength_nm,absorption_per_mm; Napierian, for power, >=
+/// 0. \throw InputError naming file, line and column
+SpectralCurve read_spectral_absorption(const std::filesystem::path& file);
+
+/// The same of a text. \param name of the file, for messages
+SpectralCurve parse_spectral_absorption(std::string_view text, const std::string& name);
+
 }  // namespace retrace::materials

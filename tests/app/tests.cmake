@@ -7,6 +7,7 @@ retrace_test(app_test
     app/fabricate_test.cpp
     app/metrology_test.cpp
     app/number_list_test.cpp
+    app/photometry_test.cpp
     app/program.cpp
     app/readme_test.cpp
     app/returned_light_test.cpp

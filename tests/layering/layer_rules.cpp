@@ -36,6 +36,7 @@ const std::map<std::string, Names>& study_rooms() {
   static const std::map<std::string, Names> rooms = {{"design", {}},
                                                      {"rre", {"design"}},
                                                      {"roughness", {"design", "rre"}},
+                                                     {"photometry", {"design", "rre"}},
                                                      {"inspect", {"design"}},
                                                      {"metrology", {}},
                                                      {"fabrication", {"design"}},

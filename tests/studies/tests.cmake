@@ -6,3 +6,6 @@ retrace_test(studies_rre_test
           ${CMAKE_CURRENT_LIST_DIR}/rre_files_test.cpp ${CMAKE_CURRENT_LIST_DIR}/roughness_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/spectrum_of_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp
   LIBRARIES retrace::roughness retrace::rre retrace::inspect)
+retrace_test(studies_photometry_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/photometry_test.cpp
+  LIBRARIES retrace::photometry)

@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect roughness metrology sweep optimize job fabricate init list'
+  local commands='rre inspect photometry roughness metrology sweep optimize job fabricate init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -61,6 +61,25 @@ _retrace() {
       _retrace_words "$word" 'stratified plain'
       return
       ;;
+    --standard)
+      _retrace_files "$word" .csv
+      mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'r150 j594 bicycle' -- "$word")
+      return
+      ;;
+    --colour)
+      _retrace_words "$word" 'white amber red'
+      return
+      ;;
+    --dye)
+      _retrace_files "$word" .csv
+      mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'none red amber' -- "$word")
+      return
+      ;;
+    --light)
+      _retrace_words "$word" 'a design'
+      return
+      ;;
+    --class | --area-cm2 | --rotation | --source-arcmin | --receiver-arcmin | --window-deg) return ;;
     --form)
       _retrace_words "$word" 'none plane poly2 poly3 poly4 poly5 poly6 poly7 poly8'
       return
@@ -111,6 +130,10 @@ _retrace() {
   if [[ $word == -* ]]; then
     case $command in
       rre) _retrace_words "$word" "$common --incidence --azimuth --engine --sampling --samples --target-error --cutoff --derivatives --footprint --far-field" ;;
+      photometry)
+        _retrace_words "$word" "$common --standard --class --colour --area-cm2 --rotation --dye --source-arcmin \
+          --receiver-arcmin --window-deg --light --engine --samples --cutoff --no-diffraction --no-advice"
+        ;;
       roughness)
         _retrace_words "$word" "$common --sa --correlation-length-um --waviness-length-um --facets --incidence \
           --azimuth --samples --target-error"
@@ -132,10 +155,10 @@ _retrace() {
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect | roughness | sweep | optimize | job | fabricate) _retrace_files "$word" .toml ;;
+    rre | inspect | photometry | roughness | sweep | optimize | job | fabricate) _retrace_files "$word" .toml ;;
     metrology) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
-    list) _retrace_words "$word" 'materials machines processes' ;;
+    list) _retrace_words "$word" 'materials machines processes standards' ;;
   esac
 }
 

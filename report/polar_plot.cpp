@@ -1,0 +1,169 @@
+#include "report/polar_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/number_format.h"
+#include "report/axis_ticks.h"
+#include "report/canvas.h"
+
+namespace retrace::report {
+namespace {
+
+constexpr Colour kWhite{1.0, 1.0, 1.0};
+constexpr Colour kText{0.13, 0.13, 0.13};
+constexpr Colour kRing{0.85, 0.85, 0.85};
+constexpr Colour kHolds{1.0, 1.0, 1.0};
+constexpr Colour kFails{0.902, 0.624, 0.0};  // Okabe and Ito's orange
+constexpr Colour kOutline{0.0, 0.0, 0.0};
+// Viridis (Smith and van der Walt 2015), as the other pictures of grids.
+constexpr std::array<Colour, 9> kScale = {{{0.267, 0.005, 0.329},
+                                           {0.279, 0.175, 0.483},
+                                           {0.230, 0.322, 0.546},
+                                           {0.173, 0.449, 0.558},
+                                           {0.128, 0.567, 0.551},
+                                           {0.158, 0.684, 0.502},
+                                           {0.369, 0.789, 0.383},
+                                           {0.678, 0.864, 0.190},
+                                           {0.993, 0.906, 0.144}}};
+constexpr Font kTitleFont{16.0, true};
+constexpr Font kPanelFont{12.5, true};
+constexpr Font kLabelFont{12.0, false};
+constexpr Font kTickFont{10.0, false};
+constexpr double kMargin = 22.0;
+constexpr double kDisc = 250.0;  ///< diameter
+constexpr Size kCell{290.0, 304.0};
+constexpr double kBarRoom = 96.0;
+constexpr double kBarWidth = 14.0;
+constexpr std::size_t kMostAbreast = 3;
+/// Decades below the largest value that colours tell apart.
+constexpr double kDecades = 4.0;
+
+Colour colour_at(double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kScale.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(at), kScale.size() - 2);
+  const double t = at - static_cast<double>(k);
+  const Colour& a = kScale[k];
+  const Colour& b = kScale[k + 1];
+  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
+}
+
+std::vector<Point> circle(Point centre, double radius) {
+  constexpr int kCorners = 120;
+  std::vector<Point> points;
+  for (int k = 0; k <= kCorners; ++k) {
+    const double a = 2.0 * std::numbers::pi * k / kCorners;
+    points.push_back({centre.x + radius * std::cos(a), centre.y - radius * std::sin(a)});
+  }
+  return points;
+}
+
+/// The decades of the colours, from the largest value down.
+Range decades_of(const PolarPlot& plot) {
+  double largest = 0.0;
+  for (const PolarPanel& panel : plot.panels)
+    for (const double v : panel.values)
+      if (std::isfinite(v)) largest = std::max(largest, v);
+  if (!(largest > 0.0)) return {-kDecades, 0.0};
+  const double top = std::log10(largest);
+  return {top - kDecades, top};
+}
+
+void draw_disc(Canvas& canvas, const PolarPanel& panel, Point centre, Range decades) {
+  const double radius = 0.5 * kDisc;
+  std::vector<Colour> colours;
+  for (std::size_t row = panel.columns; row-- > 0;)
+    for (std::size_t column = 0; column < panel.columns; ++column) {
+      const double v = panel.values[row * panel.columns + column];
+      colours.push_back(colour_at(v > 0.0 ? (std::log10(v) - decades.low) / decades.span() : 0.0));
+    }
+  if (colours.empty()) return;
+  canvas.clip(circle(centre, radius));
+  canvas.image({centre.x - radius, centre.y - radius}, {kDisc, kDisc}, panel.columns, colours);
+  canvas.end_clip();
+}
+
+void draw_rings(Canvas& canvas, const PolarPanel& panel, Point centre) {
+  const double scale = 0.5 * kDisc / panel.radius_deg;
+  const Ticks ticks = make_ticks({0.0, panel.radius_deg}, 4);
+  for (std::size_t k = 0; k < ticks.positions.size(); ++k) {
+    if (!(ticks.positions[k] > 0.0)) continue;
+    canvas.line(circle(centre, scale * ticks.positions[k]), {kRing, 0.7, {3.0, 3.0}});
+    canvas.text({centre.x + 0.7071 * scale * ticks.positions[k] - 2.0, centre.y + 0.7071 * scale * ticks.positions[k]},
+                ticks.labels[k] + "°", kTickFont, kRing, Align::right);
+  }
+  canvas.line({{centre.x - 5.0, centre.y}, {centre.x + 5.0, centre.y}}, {kRing, 0.8, {}});
+  canvas.line({{centre.x, centre.y - 5.0}, {centre.x, centre.y + 5.0}}, {kRing, 0.8, {}});
+  canvas.line(circle(centre, 0.5 * kDisc), {kText, 1.0, {}});
+}
+
+void draw_marks(Canvas& canvas, const PolarPanel& panel, Point centre) {
+  const double scale = 0.5 * kDisc / panel.radius_deg;
+  for (const PolarMark& mark : panel.marks) {
+    const Point at{centre.x + scale * mark.right_deg, centre.y - scale * mark.up_deg};
+    const Marker shape = mark.holds ? Marker::circle : Marker::triangle;
+    canvas.marker(at, shape, mark.holds ? 4.6 : 6.2, kOutline);
+    canvas.marker(at, shape, mark.holds ? 3.4 : 4.6, mark.holds ? kHolds : kFails);
+    canvas.text({at.x + 8.0, at.y + 3.6}, mark.label, kTickFont, kWhite, Align::left);
+  }
+}
+
+void draw_bar(Canvas& canvas, Point corner, Range decades, std::string_view label) {
+  constexpr std::size_t kSteps = 128;
+  std::vector<Colour> colours;
+  for (std::size_t i = 0; i < kSteps; ++i)
+    colours.push_back(colour_at(1.0 - static_cast<double>(i) / static_cast<double>(kSteps - 1)));
+  canvas.image(corner, {kBarWidth, kDisc}, 1, colours);
+  const AxisScale scale{decades, corner.y + kDisc, corner.y};
+  for (int e = static_cast<int>(std::ceil(decades.low)); e <= static_cast<int>(std::floor(decades.high)); ++e) {
+    canvas.line({{corner.x + kBarWidth, scale.at(e)}, {corner.x + kBarWidth + 4.0, scale.at(e)}}, {kText, 1.0, {}});
+    const std::string text = e >= -3 && e <= 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e);
+    canvas.text({corner.x + kBarWidth + 7.0, scale.at(e) + 3.6}, text, kTickFont, kText, Align::left);
+  }
+  canvas.text({corner.x + kBarRoom - 24.0, corner.y + 0.5 * kDisc}, label, kLabelFont, kText, Align::centre, true);
+}
+
+std::string render(const PolarPlot& plot, Canvas::Format format, double scale) {
+  const std::size_t abreast = std::clamp<std::size_t>(plot.panels.size(), 1, kMostAbreast);
+  const std::size_t rows = std::max<std::size_t>(1, (plot.panels.size() + abreast - 1) / abreast);
+  const Size size{2.0 * kMargin + static_cast<double>(abreast) * kCell.width + kBarRoom,
+                  2.0 * kMargin + 24.0 + static_cast<double>(rows) * kCell.height};
+  Canvas canvas(format, size, scale);
+  canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
+  const auto title = canvas.fitted(plot.title, kTitleFont, size.width - 2.0 * kMargin, 1, Ellipsis::middle);
+  if (!title.empty())
+    canvas.text({0.5 * size.width, kMargin + kTitleFont.size}, title.front(), kTitleFont, kText, Align::centre);
+  const Range decades = decades_of(plot);
+  for (std::size_t k = 0; k < plot.panels.size(); ++k) {
+    const PolarPanel& panel = plot.panels[k];
+    const Point cell{kMargin + kCell.width * static_cast<double>(k % abreast),
+                     kMargin + 24.0 + kCell.height * static_cast<double>(k / abreast)};
+    const Point centre{cell.x + 0.5 * kCell.width, cell.y + 34.0 + 0.5 * kDisc};
+    canvas.text({centre.x, cell.y + 24.0}, panel.title, kPanelFont, kText, Align::centre);
+    draw_disc(canvas, panel, centre, decades);
+    draw_rings(canvas, panel, centre);
+    draw_marks(canvas, panel, centre);
+  }
+  draw_bar(canvas, {kMargin + static_cast<double>(abreast) * kCell.width + 10.0, kMargin + 58.0}, decades,
+           plot.value_label);
+  return canvas.finish();
+}
+
+}  // namespace
+
+std::string render_svg(const PolarPlot& plot) {
+  return render(plot, Canvas::Format::svg, 1.0);
+}
+
+std::string render_png(const PolarPlot& plot, double scale) {
+  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
+  return render(plot, Canvas::Format::png, scale);
+}
+
+}  // namespace retrace::report

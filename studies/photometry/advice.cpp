@@ -1,0 +1,166 @@
+#include "studies/photometry/advice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/error.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::HexagonalCube;
+using geometry::RtpElement;
+using geometry::TriangularCube;
+
+constexpr std::size_t kSearchParts = 1;
+// Changes of the angle errors that are tried, in arc minutes, and of the size, as factors.
+constexpr std::array<double, 14> kAngleSteps = {0.5,  -0.5, 1.0,  -1.0, 1.5,  -1.5, 2.0,
+                                                -2.0, 3.0,  -3.0, 4.5,  -4.5, 7.0,  -7.0};
+constexpr std::array<double, 8> kSizeFactors = {0.7, 1.4, 0.5, 2.0, 0.35, 2.8, 0.25, 4.0};
+constexpr int kBisections = 4;
+// What the few wavelengths of the search may be wrong by.
+constexpr double kSearchMargin = 0.01;
+constexpr double kMostErrorArcmin = 300.0;
+
+/// A parameter of the design and how it is changed.
+struct Knob {
+  std::string key;
+  double from = 0.0;
+  std::vector<double> tries;
+  std::function<Design(double)> with;
+};
+
+Knob angle_knob(const Design& design) {
+  Knob knob;
+  knob.key = "surface.dihedral_error_arcmin";
+  const auto& errors = design.part.angle_errors.dihedral_error_arcmin;
+  const bool is_prism = std::holds_alternative<RtpElement>(design.part.element);
+  knob.from = is_prism ? errors[0] : (errors[0] + errors[1] + errors[2]) / 3.0;
+  for (const double step : kAngleSteps)
+    if (std::abs(knob.from + step) <= kMostErrorArcmin) knob.tries.push_back(knob.from + step);
+  knob.with = [design, is_prism](double value) {
+    Design changed = design;
+    if (is_prism)
+      changed.part.angle_errors.dihedral_error_arcmin[0] = value;
+    else
+      changed.part.angle_errors.dihedral_error_arcmin.fill(value);
+    return changed;
+  };
+  return knob;
+}
+
+Knob size_knob(const Design& design) {
+  Knob knob;
+  if (const auto* prism = std::get_if<RtpElement>(&design.part.element)) {
+    knob.key = "element.base_mm";
+    knob.from = prism->base_mm;
+    knob.with = [design](double value) {
+      Design changed = design;
+      auto& element = std::get<RtpElement>(changed.part.element);
+      element.width_mm *= value / element.base_mm;
+      element.base_mm = value;
+      return changed;
+    };
+  } else {
+    knob.key = "element.aperture_mm";
+    knob.from = std::holds_alternative<HexagonalCube>(design.part.element)
+                    ? std::get<HexagonalCube>(design.part.element).aperture_mm
+                    : std::get<TriangularCube>(design.part.element).aperture_mm;
+    knob.with = [design](double value) {
+      Design changed = design;
+      if (auto* cube = std::get_if<HexagonalCube>(&changed.part.element)) cube->aperture_mm = value;
+      if (auto* cube = std::get_if<TriangularCube>(&changed.part.element)) cube->aperture_mm = value;
+      return changed;
+    };
+  }
+  for (const double factor : kSizeFactors) knob.tries.push_back(factor * knob.from);
+  return knob;
+}
+
+double least_ratio(const std::vector<PhotometricPoint>& points) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const PhotometricPoint& point : points) least = std::min(least, 1.0 + point.margin());
+  return least;
+}
+
+class Search {
+ public:
+  Search(const Knob& knob, const TestProgramme& programme, const TableOfDesign& table)
+      : knob_(knob), programme_(programme), table_(table) {}
+
+  /// The least change that passes, or the best; nothing if it was cancelled or nothing could be made.
+  std::optional<PhotometricChange> run() {
+    double best = knob_.from;
+    double best_ratio = -1.0;
+    for (const double value : knob_.tries) {
+      const double ratio = ratio_at(value);
+      if (ratio > best_ratio) {
+        best = value;
+        best_ratio = ratio;
+      }
+      if (ratio < 1.0 + kSearchMargin) continue;
+      best = nearest_that_passes(value);
+      break;
+    }
+    if (best_ratio < 0.0) return std::nullopt;
+    return told(best);
+  }
+
+ private:
+  /// The least of value over limit; -1 if such a part cannot be made.
+  double ratio_at(double value) const {
+    try {
+      const auto points = table_(knob_.with(value), kSearchParts);
+      return points ? least_ratio(*points) : -1.0;
+    } catch (const InputError&) {
+      return -1.0;
+    }
+  }
+
+  double nearest_that_passes(double passing) const {
+    double failing = knob_.from;
+    for (int k = 0; k < kBisections; ++k) {
+      const double middle = 0.5 * (failing + passing);
+      (ratio_at(middle) >= 1.0 + kSearchMargin ? passing : failing) = middle;
+    }
+    return passing;
+  }
+
+  /// To three digits of the change, with all wavelengths.
+  std::optional<PhotometricChange> told(double value) const {
+    const double change = value - knob_.from;
+    const double scale = std::pow(10.0, 2.0 - std::floor(std::log10(std::abs(change))));
+    PhotometricChange found;
+    found.key = knob_.key;
+    found.from = knob_.from;
+    found.to = std::round((knob_.from + change) * scale) / scale;
+    const auto points = table_(knob_.with(found.to), materials::kSpectralParts);
+    if (!points) return std::nullopt;
+    found.points = *points;
+    found.verdict = verdict_of(found.points, programme_);
+    return found;
+  }
+
+  const Knob& knob_;
+  const TestProgramme& programme_;
+  const TableOfDesign& table_;
+};
+
+}  // namespace
+
+std::vector<PhotometricChange> changes_that_pass(const Design& design, const TestProgramme& programme,
+                                                 const TableOfDesign& table) {
+  std::vector<PhotometricChange> tried;
+  for (const Knob& knob : {angle_knob(design), size_knob(design)}) {
+    const auto found = Search(knob, programme, table).run();
+    if (!found) continue;
+    if (found->verdict != Verdict::fail) return {*found};
+    tried.push_back(*found);
+  }
+  return tried;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "studies/photometry/photometry.h"
+
+namespace retrace::studies {
+
+/// The whole table of a changed design, with two wavelengths for each of `parts` spans of the lamp; nothing if it was
+/// cancelled. May throw InputError for a design that cannot be made.
+using TableOfDesign =
+    std::function<std::optional<std::vector<PhotometricPoint>>(const Design& design, std::size_t parts)>;
+
+/// Looks for what makes a failing design pass, one parameter at a time: first the error of the angles between facets,
+/// then the size of the elements. The first that passes ends the search, at the least change that does; if none does,
+/// the best of each is told. Found with few wavelengths, told with all.
+std::vector<PhotometricChange> changes_that_pass(const Design& design, const TestProgramme& programme,
+                                                 const TableOfDesign& table);
+
+}  // namespace retrace::studies

@@ -1,0 +1,326 @@
+#include "studies/photometry/photometer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+
+#include "core/error.h"
+#include "materials/io/spectrum_reader.h"
+#include "raytrace/farfield/coefficients.h"
+#include "raytrace/threads.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+using raytrace::PhotometricGeometry;
+
+// Least power of a beam that is followed, as a share of what falls on an element: some 1e-4 is left behind.
+constexpr double kCutoff = 1e-6;
+// Beams of a direction and wavelength beyond which the choice is Monte Carlo.
+constexpr std::uint64_t kMostBeams = 4'000'000;
+// Patterns that are finer than this share of the discs of source and receiver are not computed.
+constexpr double kFinestShare = 1.0 / 64.0;
+// Lattice points of the window, beyond which its power is not integrated.
+constexpr double kMostLatticePoints = 300'000.0;
+
+Angle deg(double value) {
+  return Angle::from_deg(value);
+}
+
+PhotometricGeometry geometry_at(const PhotometerSetting& s, double observation_deg) {
+  return raytrace::geometry_from({deg(s.v_deg), deg(s.h_deg)}, deg(observation_deg), deg(s.rotation_deg));
+}
+
+/// Wavelengths to trace, and the share of the flux that each stands for - without the dye.
+struct WeighedLight {
+  std::vector<double> wavelengths_nm;
+  std::vector<double> weights;
+};
+
+/// Where a dye takes most of the light, wavelengths are best placed where some is left: by the flux behind the dye on a
+/// way through the part and back, which the weights take out again.
+WeighedLight lamp_light(const materials::CieTable& cie, const PhotometryRequest& request, double way_mm,
+                        std::size_t parts) {
+  const materials::SpectralCurve& dye = request.dye_absorption_per_mm;
+  materials::SpectralCurve power = cie.illuminant_a;
+  const auto transmittance = [&](double w) { return dye.values.empty() ? 1.0 : std::exp(-dye.at(w) * way_mm); };
+  double before = 0.0;
+  double behind = 0.0;
+  for (std::size_t k = 0; k < power.values.size(); ++k) {
+    const double w = power.wavelengths_nm[k];
+    const double flux = power.values[k] * cie.photopic_efficiency.at(w);
+    power.values[k] *= transmittance(w);
+    before += flux;
+    behind += flux * transmittance(w);
+  }
+  const materials::Spectrum traced =
+      materials::traced_spectrum(materials::resolved_spectrum(power, &cie.photopic_efficiency), parts);
+  WeighedLight light;
+  for (std::size_t k = 0; k < traced.size(); ++k) {
+    light.wavelengths_nm.push_back(traced.wavelengths_nm[k]);
+    light.weights.push_back(traced.weights[k] * behind / before / transmittance(traced.wavelengths_nm[k]));
+  }
+  return light;
+}
+
+/// The design in the light of the photometer.
+Design lit(Design design, const PhotometryRequest& request, const WeighedLight& light) {
+  LightSpectrum spectrum;
+  spectrum.kind = LightSpectrum::Kind::lines;
+  spectrum.photopic = false;
+  for (const double w : light.wavelengths_nm) spectrum.lines.push_back({w, 1.0});
+  design.spectrum = spectrum;
+  design.absorption_location = {request.dye, 0, "absorption_per_mm"};
+  return design;
+}
+
+Design dyed(Design design, const PhotometryRequest& request) {
+  const materials::SpectralCurve& dye = request.dye_absorption_per_mm;
+  if (dye.values.empty()) return design;
+  design.absorption_per_mm.reset();
+  design.absorption_by_wavelength.clear();
+  for (std::size_t k = 0; k < dye.values.size(); ++k)
+    design.absorption_by_wavelength.push_back({dye.wavelengths_nm[k], dye.values[k]});
+  return design;
+}
+
+/// Calls work(k) for every k on the threads at hand and tells how far it is.
+void for_each_told(std::size_t count, Progress* progress, const std::function<void(std::size_t)>& work) {
+  std::mutex mutex;
+  double done = 0.0;
+  raytrace::for_each_in_parallel(count, [&](std::size_t k) {
+    work(k);
+    const std::lock_guard lock(mutex);
+    done += 1.0;
+    if (progress != nullptr) progress->at(done / static_cast<double>(count));
+  });
+}
+
+/// What the discs make of a map, by the kernel's values on its own pixels.
+std::vector<double> blurred(const std::vector<double>& map, std::size_t columns, double step_rad,
+                            const raytrace::ApertureKernel& kernel) {
+  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(kernel.reach_rad() / step_rad));
+  struct Weight {
+    std::ptrdiff_t i, j;
+    double value;
+  };
+  std::vector<Weight> weights;
+  double sum = 0.0;
+  for (std::ptrdiff_t j = -reach; j <= reach; ++j)
+    for (std::ptrdiff_t i = -reach; i <= reach; ++i) {
+      const double value = kernel.per_sr(step_rad * std::hypot(static_cast<double>(i), static_cast<double>(j)));
+      if (value > 0.0) weights.push_back({i, j, value});
+      sum += value;
+    }
+  const auto n = static_cast<std::ptrdiff_t>(columns);
+  std::vector<double> result(map.size(), 0.0);
+  for (std::ptrdiff_t row = 0; row < n; ++row)
+    for (std::ptrdiff_t column = 0; column < n; ++column)
+      for (const Weight& w : weights) {
+        const std::ptrdiff_t j = row + w.j;
+        const std::ptrdiff_t i = column + w.i;
+        if (i < 0 || j < 0 || i >= n || j >= n) continue;
+        result[static_cast<std::size_t>(row * n + column)] += w.value / sum * map[static_cast<std::size_t>(j * n + i)];
+      }
+  return result;
+}
+
+}  // namespace
+
+struct Photometer::Piece {
+  std::vector<double> per_sr;
+  std::vector<double> error_per_sr;
+  std::vector<double> map_per_sr;
+  double rre = 0.0;
+  double std_error = 0.0;
+  double truncated = 0.0;
+  std::optional<PhotometricDirection::Split> split;
+  bool complete = false;
+};
+
+Photometer::Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts)
+    : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
+  const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
+  if (request.own_light) {
+    model_ = make_model(design_, library);
+    for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
+  } else {
+    const geometry::Part part = geometry::build_part(design_.part);
+    const WeighedLight light =
+        lamp_light(materials::shipped_cie_table(), request, 2.0 * (part.thickness_mm + part.element_depth_mm), parts);
+    model_ = make_model(lit(design_, request, light), library);
+    weights_ = light.weights;
+  }
+  is_exact_ = model_.optics.is_smooth() && (request.engine == Engine::exact || request.engine == Engine::automatic);
+}
+
+std::vector<double> Photometer::wavelengths_nm() const {
+  std::vector<double> all;
+  for (const SpectralOptics& light : model_.spectral) all.push_back(light.wavelength_nm);
+  return all;
+}
+
+std::size_t Photometer::middle_wavelength() const {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < model_.spectral.size(); ++k)
+    if (std::abs(model_.spectral[k].wavelength_nm - model_.wavelength_nm) <
+        std::abs(model_.spectral[best].wavelength_nm - model_.wavelength_nm))
+      best = k;
+  return best;
+}
+
+Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, const SpectralOptics& light, bool split,
+                                              const raytrace::BeamTracer& tracer, const Cancellation* cancel) const {
+  const PhotometricGeometry geometry = geometry_at(setting, 0.0);
+  const raytrace::ReturnFrame frame = raytrace::return_frame(geometry);
+  const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
+  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.polarisation};
+  raytrace::FarFieldPolicy policy;
+  policy.diffraction = request_.diffraction;
+  policy.wavelength_nm = light.wavelength_nm;
+  policy.window_rad = deg(1.5 * request_.window_deg).rad();
+  policy.finest_detail_rad = kFinestShare * kernel_.reach_rad();
+  raytrace::BeamPolicy beams;
+  beams.cutoff = request_.cutoff.value_or(kCutoff) /
+                 std::max(1.0, static_cast<double>(model_.part.period_mm ? 1 : model_.part.elements_full));
+  beams.by_cell = request_.diffraction;
+  if (request_.engine != Engine::exact) beams.max_beams = kMostBeams;
+  raytrace::FarFieldCollector collector(model_.part, illumination, policy);
+  const raytrace::BeamResult traced =
+      tracer.trace(light.optics, illumination, design_.acceptance_half_angle_deg, beams, cancel,
+                   [&](const raytrace::ReturnedBeam& beam) { collector.add(beam); });
+  Piece piece;
+  if (!traced.complete) return piece;
+  const raytrace::FarField field = collector.finish();
+  piece.rre = traced.ledgers.back()[raytrace::Account::retroreflected];
+  piece.truncated = traced.ledgers.back()[raytrace::Account::truncated];
+  for (const double observation_deg : setting.observation_deg)
+    piece.per_sr.push_back(field.intensity_per_sr(frame.direction({0.0, deg(observation_deg).rad()}), kernel_));
+  piece.error_per_sr.assign(piece.per_sr.size(), 0.0);
+  if (setting.map_columns > 0) {
+    const raytrace::DirectionGrid grid(raytrace::DirectionGrid::Layout::square, deg(request_.window_deg).rad(),
+                                       setting.map_columns, setting.map_columns);
+    piece.map_per_sr = field.binned(frame, grid);
+    piece.map_per_sr.pop_back();
+    for (std::size_t bin = 0; bin < grid.size(); ++bin) piece.map_per_sr[bin] /= grid.solid_angle_sr(bin);
+  }
+  const double window_rad = deg(request_.window_deg).rad();
+  const double points = std::numbers::pi * std::pow(1.5 * window_rad / field.detail_rad(), 2.0);
+  if (split && points < kMostLatticePoints) {
+    const raytrace::FarField::Split parts = field.split(frame, window_rad);
+    piece.split = {light.wavelength_nm, parts.inside, parts.outside, field.total_power()};
+  }
+  piece.complete = true;
+  return piece;
+}
+
+Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
+                                              const raytrace::MonteCarlo& tracer, const Cancellation* cancel) const {
+  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
+  const SpectralOptics& light = model_.spectral[wavelength];
+  const raytrace::ReturnFrame frame = raytrace::return_frame(geometry_at(setting, 0.0));
+  const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
+  raytrace::DirectionScore score{frame, kernel_, {}, {}};
+  for (const double observation_deg : setting.observation_deg)
+    score.receivers.push_back(frame.direction({0.0, deg(observation_deg).rad()}));
+  if (setting.map_columns > 0)
+    score.grid.emplace(raytrace::DirectionGrid::Layout::square, deg(request_.window_deg).rad(), setting.map_columns,
+                       setting.map_columns);
+  raytrace::Sampling sampling;
+  sampling.seed = request_.seed + kGolden * static_cast<std::uint32_t>(wavelength);
+  sampling.rays = std::max<std::uint64_t>(1, request_.rays / model_.spectral.size());
+  const raytrace::MonteCarloResult traced =
+      tracer.trace(light.optics, {source.incidence, source.azimuth, design_.polarisation},
+                   design_.acceptance_half_angle_deg, sampling, {}, cancel, &score);
+  Piece piece;
+  if (!traced.complete) return piece;
+  const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
+  piece.rre = traced.cones.back().rre;
+  piece.std_error = traced.cones.back().std_error;
+  piece.truncated = traced.cones.back().ledger[raytrace::Account::truncated];
+  piece.per_sr.assign(traced.score.begin(), traced.score.begin() + receivers);
+  piece.error_per_sr.assign(traced.score_error.begin(), traced.score_error.begin() + receivers);
+  if (score.grid)
+    for (std::size_t bin = 0; bin < score.grid->size(); ++bin)
+      piece.map_per_sr.push_back(traced.score[score.receivers.size() + bin] / score.grid->solid_angle_sr(bin));
+  piece.complete = true;
+  return piece;
+}
+
+PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const {
+  PhotometerReading reading;
+  const raytrace::SourceAngles source =
+      raytrace::source_angles(raytrace::directions_of(geometry_at(setting, 0.0)).to_source);
+  PhotometricDirection& at = reading.direction;
+  at.v_deg = setting.v_deg;
+  at.h_deg = setting.h_deg;
+  at.rotation_deg = setting.rotation_deg;
+  at.incidence_deg = source.incidence.deg();
+  at.azimuth_deg = source.azimuth.deg();
+  std::vector<double> map(setting.map_columns * setting.map_columns, 0.0);
+  double variance = 0.0;
+  for (std::size_t w = 0; w < pieces.size(); ++w) {
+    at.rre += weights_[w] * pieces[w].rre;
+    at.truncated += weights_[w] * pieces[w].truncated;
+    variance += std::pow(weights_[w] * pieces[w].std_error, 2.0);
+    if (pieces[w].split) at.split = pieces[w].split;
+    for (std::size_t k = 0; k < map.size(); ++k) map[k] += weights_[w] * pieces[w].map_per_sr[k];
+  }
+  at.std_error = std::sqrt(variance);
+  const double cos_beta = std::cos(source.incidence.rad());
+  for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
+    double per_sr = 0.0;
+    double squares = 0.0;
+    for (std::size_t w = 0; w < pieces.size(); ++w) {
+      per_sr += weights_[w] * pieces[w].per_sr[k];
+      squares += std::pow(weights_[w] * pieces[w].error_per_sr[k], 2.0);
+    }
+    const PhotometricGeometry geometry = geometry_at(setting, setting.observation_deg[k]);
+    reading.r_a.push_back(raytrace::coefficient_of_retroreflection(per_sr, source.incidence));
+    reading.r_l.push_back(raytrace::coefficient_of_luminance(reading.r_a.back(), raytrace::viewing_angle(geometry)));
+    reading.r_a_error.push_back(cos_beta * std::sqrt(squares));
+  }
+  if (map.empty()) return reading;
+  const double step_rad = 2.0 * deg(request_.window_deg).rad() / static_cast<double>(setting.map_columns);
+  reading.map_r_a = blurred(map, setting.map_columns, step_rad, kernel_);
+  for (double& value : reading.map_r_a) value *= cos_beta;
+  return reading;
+}
+
+std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vector<PhotometerSetting>& settings,
+                                                                  Progress* progress,
+                                                                  const Cancellation* cancel) const {
+  const std::size_t wavelengths = model_.spectral.size();
+  std::vector<std::vector<Piece>> pieces(settings.size(), std::vector<Piece>(wavelengths));
+  if (is_exact_) {
+    const raytrace::BeamTracer tracer(model_.part);
+    const std::size_t middle = middle_wavelength();
+    for_each_told(settings.size() * wavelengths, progress, [&](std::size_t k) {
+      const PhotometerSetting& setting = settings[k / wavelengths];
+      const std::size_t w = k % wavelengths;
+      pieces[k / wavelengths][w] =
+          measure_exactly(setting, model_.spectral[w], setting.split && w == middle, tracer, cancel);
+    });
+  } else {
+    const raytrace::MonteCarlo tracer(model_.part);
+    for (std::size_t k = 0; k < settings.size() * wavelengths; ++k) {
+      if (cancel != nullptr && cancel->requested()) return std::nullopt;
+      pieces[k / wavelengths][k % wavelengths] =
+          measure_by_rays(settings[k / wavelengths], k % wavelengths, tracer, cancel);
+      if (progress != nullptr)
+        progress->at(static_cast<double>(k + 1) / static_cast<double>(settings.size() * wavelengths));
+    }
+  }
+  std::vector<PhotometerReading> readings;
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    for (const Piece& piece : pieces[k])
+      if (!piece.complete) return std::nullopt;
+    readings.push_back(reading_of(settings[k], pieces[k]));
+  }
+  return readings;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/farfield/far_field.h"
+#include "raytrace/farfield/photometric_geometry.h"
+#include "studies/design/optical_model.h"
+#include "studies/photometry/photometry.h"
+
+namespace retrace::studies {
+
+/// A design lit from one direction and looked at from several.
+struct PhotometerSetting {
+  double v_deg = 0.0;
+  double h_deg = 0.0;
+  double rotation_deg = 0.0;
+  std::vector<double> observation_deg;
+  std::size_t map_columns = 0;  ///< 0: no map
+  bool split = false;
+};
+
+struct PhotometerReading {
+  std::vector<double> r_a;  ///< by observation angle, cd/(lx m^2)
+  std::vector<double> r_l;
+  std::vector<double> r_a_error;
+  PhotometricDirection direction;
+  std::vector<double> map_r_a;
+};
+
+/// Measures the coefficients of retroreflection of a design, as a goniophotometer does: one direction of incidence at a
+/// time, all its wavelengths weighed by the lamp and the eye.
+class Photometer {
+ public:
+  /// \param parts spans of the lamp's spectrum, two wavelengths each \throw InputError as make_model()
+  Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts);
+
+  /// In the order of the settings; nothing if it was cancelled.
+  std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
+                                                        Progress* progress, const Cancellation* cancel) const;
+
+  const std::vector<std::string>& warnings() const { return model_.warnings; }
+  std::vector<double> wavelengths_nm() const;
+  std::string engine_name() const { return is_exact_ ? "exact" : "embree"; }
+  bool has_diffraction() const { return is_exact_ && request_.diffraction; }
+  /// From now on by Monte Carlo.
+  void leave_exact() { is_exact_ = false; }
+  bool is_exact() const { return is_exact_; }
+
+ private:
+  struct Piece;  ///< what one wavelength adds
+  Piece measure_exactly(const PhotometerSetting& setting, const SpectralOptics& light, bool split,
+                        const raytrace::BeamTracer& tracer, const Cancellation* cancel) const;
+  Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo& tracer,
+                        const Cancellation* cancel) const;
+  PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
+  std::size_t middle_wavelength() const;
+
+  Design design_;
+  PhotometryRequest request_;
+  OpticalModel model_;
+  std::vector<double> weights_;  ///< of the wavelengths: of flux without the dye, which the tracer applies
+  raytrace::ApertureKernel kernel_;
+  bool is_exact_ = true;
+};
+
+}  // namespace retrace::studies

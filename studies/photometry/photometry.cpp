@@ -1,0 +1,248 @@
+#include "studies/photometry/photometry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "studies/photometry/advice.h"
+#include "studies/photometry/photometer.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr double kLeastWindowDeg = 0.05;
+constexpr double kMostWindowDeg = 10.0;
+constexpr double kMostAreaCm2 = 1e6;
+constexpr double kMostApertureDeg = 5.0;
+// Wavelengths for figures, and for pictures.
+constexpr std::size_t kPictureParts = 1;
+constexpr std::size_t kMapColumns = 97;
+constexpr std::size_t kMostMaps = 6;
+// Entrance angles and observation angles of the curves.
+constexpr std::array<double, 4> kCurveEntranceDeg = {0.0, 10.0, 20.0, 30.0};
+constexpr std::size_t kCurvePoints = 41;
+
+void check_number(double value, double low, double high, const std::string& option) {
+  if (!(value >= low && value <= high))
+    throw InputError({"", 0, option},
+                     fmt::format("must be a number from {} to {}, got {}", shortest(low), shortest(high), value));
+}
+
+void check(const PhotometryRequest& request) {
+  if (!(request.area_cm2 > 0.0 && request.area_cm2 <= kMostAreaCm2))
+    throw InputError({"", 0, "--area-cm2"},
+                     fmt::format("must be a number above 0, to {}, got {}", shortest(kMostAreaCm2), request.area_cm2));
+  check_number(request.window_deg, kLeastWindowDeg, kMostWindowDeg, "--window-deg");
+  check_number(request.apertures.source.deg(), 0.0, kMostApertureDeg, "--source-arcmin");
+  check_number(request.apertures.receiver.deg(), 0.0, kMostApertureDeg, "--receiver-arcmin");
+  if (!(std::max(request.apertures.source.deg(), request.apertures.receiver.deg()) > 1e-4))
+    throw InputError(
+        {"", 0, "--source-arcmin"},
+        "must be above 0 unless --receiver-arcmin is: two points see an infinite intensity or none, got 0");
+  if (request.engine == Engine::cell)
+    throw InputError({"", 0, "--engine"}, "must be auto, exact, montecarlo or embree, got cell");
+  for (const TestPoint& point : request.programme.points)
+    if (!(point.observation_deg <= request.window_deg))
+      throw InputError({request.limits_source, point.line, "observation_deg"},
+                       fmt::format("must lie within the far field that is computed, --window-deg {}, got {}",
+                                   shortest(request.window_deg), shortest(point.observation_deg)));
+}
+
+/// One setting for every direction, with all its observation angles.
+struct Plan {
+  std::vector<PhotometerSetting> settings;
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> readings_of_point;  ///< setting, observation angle
+};
+
+std::size_t index_of(std::vector<double>& values, double value) {
+  const auto found = std::find(values.begin(), values.end(), value);
+  if (found != values.end()) return static_cast<std::size_t>(found - values.begin());
+  values.push_back(value);
+  return values.size() - 1;
+}
+
+Plan plan_of(const PhotometryRequest& request) {
+  Plan plan;
+  std::map<std::tuple<double, double, double>, std::size_t> known;
+  for (const TestPoint& point : request.programme.points) {
+    auto& readings = plan.readings_of_point.emplace_back();
+    for (const double rotation_deg : request.rotation_deg) {
+      const auto [it, is_new] = known.try_emplace({point.v_deg, point.h_deg, rotation_deg}, plan.settings.size());
+      if (is_new) plan.settings.push_back({point.v_deg, point.h_deg, rotation_deg, {}, 0, true});
+      readings.emplace_back(it->second, index_of(plan.settings[it->second].observation_deg, point.observation_deg));
+    }
+  }
+  return plan;
+}
+
+/// The reading of least value of each point.
+std::vector<PhotometricPoint> points_of(const PhotometryRequest& request, const Plan& plan,
+                                        const std::vector<PhotometerReading>& readings) {
+  std::vector<PhotometricPoint> points;
+  for (std::size_t k = 0; k < request.programme.points.size(); ++k) {
+    const TestPoint& asked = request.programme.points[k];
+    PhotometricPoint least;
+    least.r_a = std::numeric_limits<double>::infinity();
+    for (const auto& [setting, angle] : plan.readings_of_point[k]) {
+      const PhotometerReading& reading = readings[setting];
+      if (!(reading.r_a[angle] < least.r_a)) continue;
+      least.r_a = reading.r_a[angle];
+      least.r_l = reading.r_l[angle];
+      least.rotation_deg = plan.settings[setting].rotation_deg;
+      least.std_error_mcd_per_lx =
+          in_mcd_per_lx(reading.r_a_error[angle], PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
+    }
+    least.asked = asked;
+    least.r_i_mcd_per_lx = in_mcd_per_lx(least.r_a, PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
+    least.limit_mcd_per_lx = in_mcd_per_lx(asked.minimum, asked.unit, request.area_cm2);
+    points.push_back(least);
+  }
+  return points;
+}
+
+/// One map for each entrance angle of the programme.
+std::vector<PhotometerSetting> map_settings(const PhotometryRequest& request) {
+  std::vector<PhotometerSetting> settings;
+  for (const TestPoint& point : request.programme.points) {
+    const bool is_known = std::any_of(settings.begin(), settings.end(), [&](const PhotometerSetting& s) {
+      return s.v_deg == point.v_deg && s.h_deg == point.h_deg;
+    });
+    if (!is_known && settings.size() < kMostMaps)
+      settings.push_back({point.v_deg, point.h_deg, request.rotation_deg.front(), {}, kMapColumns, false});
+  }
+  return settings;
+}
+
+std::vector<PhotometerSetting> curve_settings(const PhotometryRequest& request) {
+  std::vector<PhotometerSetting> settings;
+  for (const double entrance_deg : kCurveEntranceDeg) {
+    PhotometerSetting setting{0.0, -entrance_deg, request.rotation_deg.front(), {}, 0, false};
+    for (std::size_t k = 0; k < kCurvePoints; ++k)
+      setting.observation_deg.push_back(request.window_deg * static_cast<double>(k) / (kCurvePoints - 1));
+    settings.push_back(std::move(setting));
+  }
+  return settings;
+}
+
+bool add_pictures(const Design& design, const PhotometryRequest& request, bool exact, const Cancellation* cancel,
+                  PhotometryResult& result) {
+  Photometer photometer(design, request, kPictureParts);
+  if (!exact) photometer.leave_exact();
+  const std::vector<PhotometerSetting> maps = map_settings(request);
+  const std::vector<PhotometerSetting> curves = curve_settings(request);
+  std::vector<PhotometerSetting> all = maps;
+  all.insert(all.end(), curves.begin(), curves.end());
+  const auto readings = photometer.measure(all, nullptr, cancel);
+  if (!readings) return false;
+  for (std::size_t k = 0; k < maps.size(); ++k)
+    result.maps.push_back(
+        {maps[k].v_deg, maps[k].h_deg, request.window_deg, maps[k].map_columns, (*readings)[k].map_r_a});
+  for (std::size_t k = 0; k < curves.size(); ++k)
+    result.curves.push_back({-curves[k].h_deg, curves[k].observation_deg, (*readings)[maps.size() + k].r_a});
+  return true;
+}
+
+/// The table of a design; nothing if it was cancelled.
+std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photometer, const PhotometryRequest& request,
+                                                      Plan plan, const Cancellation* cancel) {
+  for (PhotometerSetting& setting : plan.settings) setting.split = false;
+  const auto readings = photometer.measure(plan.settings, nullptr, cancel);
+  if (!readings) return std::nullopt;
+  return points_of(request, plan, *readings);
+}
+
+}  // namespace
+
+std::string_view verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::unconfirmed:
+      return "unconfirmed";
+    case Verdict::fail:
+      return "fail";
+  }
+  return {};
+}
+
+Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme) {
+  if (!std::all_of(points.begin(), points.end(), [](const PhotometricPoint& p) { return p.passes(); }))
+    return Verdict::fail;
+  const bool is_confirmed = std::none_of(
+      points.begin(), points.end(), [](const PhotometricPoint& p) { return p.asked.status == LimitStatus::recalled; });
+  return is_confirmed && programme.is_complete ? Verdict::pass : Verdict::unconfirmed;
+}
+
+struct PhotometryStudy::Prepared {
+  Design design;
+  PhotometryRequest request;
+  std::unique_ptr<Photometer> photometer;
+  Plan plan;
+};
+
+PhotometryStudy::PhotometryStudy(Design design, PhotometryRequest request) : prepared_(std::make_unique<Prepared>()) {
+  check(request);
+  prepared_->photometer = std::make_unique<Photometer>(design, request, materials::kSpectralParts);
+  if (request.engine == Engine::exact && !prepared_->photometer->is_exact())
+    throw InputError({"", 0, "--engine"}, fmt::format("exact needs plane smooth facets, and those of {} scatter: use "
+                                                      "--engine montecarlo",
+                                                      design.source_name()));
+  prepared_->plan = plan_of(request);
+  prepared_->design = std::move(design);
+  prepared_->request = std::move(request);
+}
+
+PhotometryStudy::~PhotometryStudy() = default;
+
+PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* cancel) const {
+  const auto start = std::chrono::steady_clock::now();
+  const auto& [design, request, prepared_photometer, plan] = *prepared_;
+  Photometer photometer = *prepared_photometer;
+  PhotometryResult result;
+  result.design = design;
+  result.request = request;
+  result.warnings = photometer.warnings();
+  result.wavelengths_nm = photometer.wavelengths_nm();
+  std::optional<std::vector<PhotometerReading>> readings;
+  try {
+    readings = photometer.measure(plan.settings, progress, cancel);
+  } catch (const BudgetError&) {
+    if (request.engine == Engine::exact || !photometer.is_exact()) throw;
+    photometer.leave_exact();
+    readings = photometer.measure(plan.settings, nullptr, cancel);
+  }
+  result.engine = photometer.engine_name();
+  result.has_diffraction = photometer.has_diffraction();
+  if (request.diffraction && !result.has_diffraction)
+    result.warnings.push_back(
+        fmt::format("{}: the Monte-Carlo engine has no diffraction, which spreads the light of "
+                    "cells under about 1 mm",
+                    design.source_name()));
+  result.complete = readings.has_value();
+  if (readings) {
+    result.points = points_of(request, plan, *readings);
+    for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);
+    result.verdict = verdict_of(result.points, request.programme);
+    if (request.pictures) result.complete = add_pictures(design, request, photometer.is_exact(), cancel, result);
+    if (result.verdict == Verdict::fail && request.advice && result.complete) {
+      const auto measure = [&](const Design& changed, std::size_t parts) {
+        Photometer other(changed, request, parts);
+        if (!photometer.is_exact()) other.leave_exact();
+        return table_of(other, request, plan, cancel);
+      };
+      result.changes = changes_that_pass(design, request.programme, measure);
+    }
+  }
+  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "materials/spectrum.h"
+#include "raytrace/farfield/aperture_kernel.h"
+#include "studies/design/design.h"
+#include "studies/photometry/limits.h"
+#include "studies/rre/rre.h"
+
+namespace retrace::studies {
+
+/// What is asked: the coefficients of retroreflection of a part at the test points of a standard.
+struct PhotometryRequest {
+  TestProgramme programme;
+  std::string limits_source;                 ///< of the programme: a name or a file
+  double area_cm2 = 0.0;                     ///< of the part, > 0; the design shows how it is made
+  std::vector<double> rotation_deg = {0.0};  ///< epsilon; the least value over them counts
+  raytrace::PhotometricApertures apertures;
+  double window_deg = 2.0;                         ///< half angle of the far field that is computed; 0.05 to 10
+  bool own_light = false;                          ///< the design's [light] in place of CIE A seen by the eye
+  std::string dye;                                 ///< what the dye is called; empty: none
+  materials::SpectralCurve dye_absorption_per_mm;  ///< empty: none
+  bool diffraction = true;
+  Engine engine = Engine::automatic;  ///< cell is not one of them
+  std::optional<double> cutoff;       ///< least power followed by the exact engine, as a share of an element's
+  std::uint64_t rays = 1U << 20;      ///< of a direction, by Monte Carlo
+  std::uint32_t seed = 1;
+  bool pictures = false;  ///< maps and curves
+  bool advice = true;     ///< what to change if it fails
+};
+
+/// A test point and what was found there.
+struct PhotometricPoint {
+  TestPoint asked;
+  double rotation_deg = 0.0;  ///< at which the value is least
+  double r_i_mcd_per_lx = 0.0;
+  double r_a = 0.0;  ///< cd/(lx m^2)
+  double r_l = 0.0;  ///< cd/(lx m^2)
+  double std_error_mcd_per_lx = 0.0;
+  double limit_mcd_per_lx = 0.0;
+
+  double margin() const { return r_i_mcd_per_lx / limit_mcd_per_lx - 1.0; }  ///< >= 0: it passes
+  bool passes() const { return r_i_mcd_per_lx >= limit_mcd_per_lx; }
+};
+
+/// One direction of incidence.
+struct PhotometricDirection {
+  double v_deg = 0.0;
+  double h_deg = 0.0;
+  double rotation_deg = 0.0;
+  double incidence_deg = 0.0;
+  double azimuth_deg = 0.0;
+  double rre = 0.0;        ///< geometric, of the design's widest cone; of the light that is weighed
+  double std_error = 0.0;  ///< of it
+  double truncated = 0.0;  ///< by how much it may be too low
+  /// Power within the window and outside of it, through the entrance face, at one wavelength; nothing by Monte Carlo,
+  /// or where cells are so large that it would take long.
+  struct Split {
+    double wavelength_nm = 0.0;
+    double window = 0.0;
+    double outside = 0.0;
+    double geometric = 0.0;  ///< what both must add up to
+  };
+  std::optional<Split> split;
+};
+
+/// R_A around the return, for one direction of incidence.
+struct FarFieldMap {
+  double v_deg = 0.0;
+  double h_deg = 0.0;
+  double half_width_deg = 0.0;
+  std::size_t columns = 0;  ///< and rows
+  std::vector<double> r_a;  ///< row by row from below, as source and receiver see it
+};
+
+/// R_A over the observation angle at one entrance angle.
+struct ObservationCurve {
+  double entrance_deg = 0.0;  ///< beta2
+  std::vector<double> observation_deg;
+  std::vector<double> r_a;
+};
+
+enum class Verdict { pass, unconfirmed, fail };
+std::string_view verdict_name(Verdict verdict);
+
+/// A change of the design that passes, or comes nearest to it.
+struct PhotometricChange {
+  std::string key;  ///< of the design file
+  double from = 0.0;
+  double to = 0.0;
+  std::vector<PhotometricPoint> points;  ///< the whole table again
+  Verdict verdict = Verdict::fail;
+};
+
+struct PhotometryResult {
+  Design design;
+  PhotometryRequest request;
+  std::string engine;
+  std::vector<double> wavelengths_nm;
+  bool has_diffraction = true;
+  std::vector<PhotometricPoint> points;
+  std::vector<PhotometricDirection> directions;
+  Verdict verdict = Verdict::fail;
+  std::vector<PhotometricChange> changes;  ///< if it fails: the one that passes, or what was tried
+  std::vector<FarFieldMap> maps;
+  std::vector<ObservationCurve> curves;
+  double elapsed_s = 0.0;
+  std::vector<std::string> warnings;
+  bool complete = true;
+};
+
+/// What points say together. Points of recalled limits, and programmes that are not complete, confirm nothing.
+Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme);
+
+/// A checked request, ready to run.
+class PhotometryStudy {
+ public:
+  /// \throw InputError for numbers out of range, an observation angle outside the window, an unknown material
+  PhotometryStudy(Design design, PhotometryRequest request);
+  ~PhotometryStudy();
+
+  /// \throw BudgetError if power was lost
+  PhotometryResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
+
+ private:
+  struct Prepared;
+  std::unique_ptr<Prepared> prepared_;
+};
+
+}  // namespace retrace::studies

@@ -1,0 +1,56 @@
+#include "studies/photometry/standards.h"
+
+#include <algorithm>
+#include <array>
+
+namespace retrace::studies {
+namespace {
+
+raytrace::PhotometricApertures arcmin(double source, double receiver) {
+  return {Angle::from_deg(source / 60.0), Angle::from_deg(receiver / 60.0)};
+}
+
+/// A turn in twelve steps: of a part that may be mounted any way up.
+std::vector<double> all_round() {
+  std::vector<double> turns;
+  for (int k = 0; k < 12; ++k) turns.push_back(30.0 * k);
+  return turns;
+}
+
+}  // namespace
+
+std::span<const ShippedStandard> shipped_standards() {
+  // 50 mm and 13 x 25 mm at 30.5 m, the rectangle as the disc of its area.
+  static const std::array<ShippedStandard, 3> all = {{
+      {"r150",
+       "UN R3 / R150",
+       "UN Regulations 3 and 150, reflex reflectors",
+       arcmin(10.0, 10.0),
+       {0.0},
+       "apertures of 10 minutes of arc; rotation 0"},
+      {"j594", "SAE J594 / FMVSS 108 XVI-a", "SAE J594 and FMVSS 108 table XVI-a, reflex reflectors", arcmin(5.6, 2.3),
+       all_round(),
+       "recalled, unconfirmed: source of 50 mm and receiver of 13 x 25 mm at 30.5 m; the least value over a whole "
+       "turn"},
+      {"bicycle",
+       "16 CFR 1512",
+       "16 CFR 1512.16, bicycle reflectors",
+       arcmin(10.0, 10.0),
+       {0.0},
+       "apertures of 10 minutes of arc, as CIE 54.2; rotation 0"},
+  }};
+  return all;
+}
+
+const ShippedStandard* find_standard(std::string_view name) {
+  const auto all = shipped_standards();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const ShippedStandard& standard) { return standard.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+raytrace::PhotometricApertures default_apertures() {
+  return arcmin(10.0, 10.0);
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,202 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/app/program.h"
+
+// retrace photometry: verdicts and exit codes, its files, and what it refuses.
+
+namespace retrace::test {
+namespace {
+
+const std::string kDesign =
+    "title = \"Cubes\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = 0.5\n[array]\nextent = "
+    "\"infinite\"\n[body]\n"
+    "thickness_mm = 1.5\nrefractive_index = 1.4917\n[light]\nwavelength_nm = 600\n";
+const std::string kHeader = "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n";
+
+/// Of one wavelength and without diffraction, where nothing else is asked.
+Arguments photometry(const Arguments& more) {
+  Arguments arguments = {"photometry", "d.toml", "--area-cm2=30", "--light=design"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+Outcome run_limits(const TemporaryFolder& folder, const std::string& rows, const Arguments& more = {}) {
+  folder.write("l.csv", kHeader + rows);
+  Arguments arguments = {"--standard=l.csv", "--no-advice", "--no-diffraction", "--source-arcmin=60"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return retrace(folder, photometry(arguments));
+}
+
+TEST(Photometry, AnswersWithItsExitCode) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign);
+  const Outcome pass = run_limits(folder, "S,,red,0.2,0,0,1,mcd/lx,read\n");
+  EXPECT_EQ(pass.code, 0) << pass.err;
+  EXPECT_NE(pass.out.find("verdict: pass"), std::string::npos) << pass.out;
+  const Outcome fail = run_limits(folder, "S,,red,0.2,0,0,1e8,mcd/lx,read\n");
+  EXPECT_EQ(fail.code, 1) << fail.err;
+  EXPECT_NE(fail.out.find("verdict: FAIL"), std::string::npos) << fail.out;
+  const Outcome recalled = run_limits(folder, "S,,red,0.2,0,0,1,mcd/lx,recalled\n");
+  EXPECT_EQ(recalled.code, 0);
+  EXPECT_NE(recalled.out.find("pass (limit unconfirmed)"), std::string::npos) << recalled.out;
+  EXPECT_NE(recalled.out.find("verdict: unconfirmed"), std::string::npos) << recalled.out;
+  const Outcome incomplete = run_limits(folder, "S,,red,0.2,0,0,1,cd/lx/m2,confirmed\nS,,,,,,,,incomplete\n");
+  EXPECT_EQ(incomplete.code, 0);
+  EXPECT_NE(incomplete.out.find("not all that the standard asks"), std::string::npos) << incomplete.out;
+}
+
+TEST(Photometry, ShippedStandardsAreMeasured) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign);
+  const Outcome outcome = retrace(folder, photometry({"--standard=r150", "--class=IA", "--colour=red", "--dye=none",
+                                                      "--no-advice", "--no-diffraction", "--json=-"}));
+  EXPECT_EQ(outcome.code, 1) << "perfect cubes send nothing to 1.5 degrees";
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json["schema"], "retrace.photometry/1");
+  EXPECT_EQ(json["verdict"], "fail");
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["engine"], "exact");
+  EXPECT_EQ(json["diffraction"], false);
+  ASSERT_EQ(json["points"].size(), 14U);
+  for (const std::string key :
+       {"observation_deg", "v_deg", "h_deg", "value_mcd_per_lx", "limit_mcd_per_lx", "margin", "limit_status", "pass"})
+    EXPECT_TRUE(json["points"][0].contains(key)) << key;
+  EXPECT_EQ(json["points"][0]["limit_mcd_per_lx"], 300);
+  EXPECT_EQ(json["points"][7]["pass"], false);
+  ASSERT_EQ(json["directions"].size(), 7U);
+  EXPECT_NEAR(json["directions"][3]["incidence_deg"].get<double>(), 20.5907, 1e-4);
+  EXPECT_TRUE(json.contains("version"));
+  EXPECT_TRUE(json["warnings"].is_array());
+}
+
+TEST(Photometry, WritesItsFilesTheSameAtAnyThreadCount) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign);
+  for (const std::string out : {"a", "b"})
+    ASSERT_EQ(run_limits(folder, "S,,red,0.2,0,+-10,1,mcd/lx,read\nS,,red,1,0,0,1e-9,mcd/lx,recalled\n",
+                         {"-o", out, "--quiet", "--window-deg=1", "--threads", out == "a" ? "1" : "3"})
+                  .code,
+              1);
+  for (const std::string file :
+       {"photometry.csv", "far_field.csv", "far_field.svg", "far_field.png", "r_a.svg", "r_a.png"})
+    EXPECT_EQ(folder.read("a/" + file), folder.read("b/" + file)) << file;
+  EXPECT_EQ(without_elapsed(folder.read("a/photometry.json")), without_elapsed(folder.read("b/photometry.json")));
+  const std::vector<std::string> lines = lines_of(folder.read("a/photometry.csv"));
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_TRUE(lines[0].starts_with("observation_deg,v_deg,h_deg,rotation_deg,value_mcd_per_lx")) << lines[0];
+  EXPECT_TRUE(lines[2].starts_with("0.2,0,-10,0,")) << lines[2];
+}
+
+TEST(Photometry, DyesAndRotationsAreTaken) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign);
+  folder.write("grey.csv", "wavelength_nm,absorption_per_mm\n300,0.5\n900,0.5\n");
+  const std::string row = "S,,red,0.1,0,0,1e-9,mcd/lx,read\n";
+  const auto value = [&](const Arguments& more) {
+    Arguments arguments = more;
+    arguments.push_back("--json=-");
+    const Outcome outcome = run_limits(folder, row, arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Json::parse(outcome.out)["points"][0]["value_mcd_per_lx"].get<double>();
+  };
+  const double clear = value({"--dye=none"});
+  EXPECT_LT(value({"--dye=grey.csv"}), 0.3 * clear);
+  EXPECT_LT(value({}), clear) << "red by the colour";
+  EXPECT_NEAR(value({"--dye=none", "--rotation=0:90:30"}), clear, 1e-6 * clear);
+}
+
+TEST(Photometry, RoughDesignsAreTracedByMonteCarlo) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign + "[surface]\nroughness_sq_nm = 20\ncorrelation_length_um = 20\n");
+  const Outcome outcome = run_limits(folder, "S,,white,0.33,0,0,1e-9,mcd/lx,read\n", {"--samples=32768", "--json=-"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json["engine"], "embree");
+  EXPECT_GT(json["points"][0]["std_error_mcd_per_lx"].get<double>(), 0.0);
+}
+
+struct Refused {
+  Arguments arguments;
+  std::string message;
+};
+
+TEST(Photometry, RefusesBadInputInOneLine) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign);
+  folder.write("unit.csv", kHeader + "S,,red,0.2,0,0,1,lux,read\n");
+  folder.write("far.csv", kHeader + "S,,red,3,0,0,1,mcd/lx,read\n");
+  folder.write("two.csv", kHeader + "S,,red,1,0,0,1,mcd/lx,read\nT,,red,1,0,0,1,mcd/lx,read\n");
+  folder.write("dye.csv", "wavelength_nm,absorption_per_mm\n400,-1\n");
+  folder.write("short.csv", "wavelength_nm,absorption_per_mm\n610,1\n620,1\n");
+  const Arguments before = folder.names();
+  const Arguments r150 = {"photometry", "d.toml", "--standard=r150", "--class=IA", "--colour=red", "--area-cm2=30"};
+  const auto with = [&](std::size_t k, const std::string& word) {
+    Arguments arguments = r150;
+    arguments[k] = word;
+    return arguments;
+  };
+  const auto also = [&](const std::string& word) {
+    Arguments arguments = r150;
+    arguments.push_back(word);
+    return arguments;
+  };
+  const std::vector<Refused> cases = {
+      {with(2, "--standard=r151"), "--standard: must be r150, j594, bicycle or a file that exists, got \"r151\""},
+      {with(3, "--class=XX"), "--class: must be IA, IB, IIIA, IIIB, IVA for UN R3 / R150, got \"XX\""},
+      {with(4, "--colour=green"), "--colour: must be red, amber, white for UN R3 / R150, got \"green\""},
+      {{"photometry", "d.toml", "--standard=r150", "--colour=red", "--area-cm2=30"}, "--class: is required"},
+      {{"photometry", "d.toml", "--standard=j594", "--class=IA", "--colour=red", "--area-cm2=1"}, "--class: SAE J594"},
+      {with(5, "--area-cm2=0"), "--area-cm2: must be a number above 0, to 1e+06, got 0"},
+      {with(5, "--area-cm2=-3"), "--area-cm2: must be"},
+      {with(5, "--area-cm2=big"), "--area-cm2: "},
+      {also("--window-deg=1"), "r150:8: observation_deg: must lie within the far field that is computed"},
+      {also("--rotation=a"), "--rotation: "},
+      {also("--dye=blue"), "--dye: must be none, red, amber or a file that exists, got \"blue\""},
+      {also("--dye=dye.csv"), "dye.csv:2: absorption_per_mm: must be >= 0"},
+      {also("--dye=short.csv"), "short.csv: absorption_per_mm: must reach all wavelengths"},
+      {also("--light=sun"), "--light: must be a or design, got \"sun\""},
+      {also("--engine=cell"), "--engine: must be auto, exact, montecarlo or embree, got cell"},
+      {also("--source-arcmin=-1"), "--source-arcmin: must be"},
+      {also("--cutoff=2"), "--cutoff: must lie between 0 and 1"},
+      {{"photometry", "d.toml", "--standard=unit.csv", "--area-cm2=30"}, "unit.csv:2: unit: must be"},
+      {{"photometry", "d.toml", "--standard=far.csv", "--area-cm2=30"}, "far.csv:2: observation_deg: must lie within"},
+      {{"photometry", "d.toml", "--standard=two.csv", "--area-cm2=30"}, "--standard: is required for two.csv: S, T"},
+  };
+  for (const Refused& refused : cases) {
+    Arguments arguments = refused.arguments;
+    arguments.insert(arguments.end(), {"-o", "out"});
+    const Outcome outcome = retrace(folder, arguments);
+    EXPECT_EQ(outcome.code, 2) << refused.message;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(refused.message), std::string::npos) << outcome.err << " lacks: " << refused.message;
+    EXPECT_EQ(outcome.out, "");
+  }
+  EXPECT_EQ(folder.names(), before);
+}
+
+TEST(Photometry, ItsOutputReplacesNoInput) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign);
+  const Outcome outcome = run_limits(folder, "S,,red,0.2,0,0,1,mcd/lx,read\n", {"--json=l.csv"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("would be overwritten"), std::string::npos) << outcome.err;
+}
+
+TEST(List, ShowsTheStandards) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"list", "standards", "--json=-"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json["schema"], "retrace.standards/1");
+  ASSERT_EQ(json["standards"].size(), 3U);
+  EXPECT_EQ(json["standards"][0]["name"], "r150");
+  EXPECT_EQ(json["standards"][0]["classes"], (Json{"IA", "IB", "IIIA", "IIIB", "IVA"}));
+  EXPECT_EQ(json["standards"][2]["limits_complete"], false);
+  EXPECT_NE(retrace(folder, {"list", "standards"}).out.find("bicycle"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace retrace::test

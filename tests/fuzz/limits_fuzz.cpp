@@ -1,0 +1,52 @@
+// Whatever a limits file holds, the reader either returns limits that keep its promises or throws an InputError of one
+// line; and so does every programme that can be chosen from it.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "core/error.h"
+#include "studies/photometry/io/limits_reader.h"
+
+namespace {
+
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < 0x20;
+}
+
+void check_message(const retrace::InputError& error) {
+  const std::string message = error.what();
+  if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+}
+
+void check_programme(const retrace::studies::LimitTable& table, const retrace::studies::LimitRow& row) {
+  using namespace retrace::studies;
+  try {
+    const std::optional<std::string> part_class =
+        row.classes.empty() ? std::nullopt : std::optional(row.classes.front());
+    const TestProgramme programme = programme_of(table, row.standard, part_class, row.colour);
+    for (const TestPoint& point : programme.points)
+      if (!(point.minimum > 0.0) || !std::isfinite(point.minimum) || !(std::abs(point.v_deg) <= 85.0) ||
+          !(std::abs(point.h_deg) <= 85.0) || !(point.observation_deg >= 0.0 && point.observation_deg <= 20.0))
+        std::abort();
+  } catch (const retrace::InputError& error) {
+    check_message(error);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const auto table = retrace::studies::parse_limits({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    if (table.rows.empty()) std::abort();
+    for (std::size_t k = 0; k < std::min<std::size_t>(table.rows.size(), 20); ++k)
+      check_programme(table, table.rows[k]);
+  } catch (const retrace::InputError& error) {
+    check_message(error);
+  }
+  return 0;
+}

@@ -1,0 +1,68 @@
+#include "report/polar_plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "report/photometry_plot.h"
+
+namespace retrace::report {
+namespace {
+
+PolarPlot sample() {
+  PolarPanel panel{"V 0°, H 0°", 2.0, 21, {}, {{0.0, 0.33, "300 mcd/lx", true}, {0.0, 1.5, "2 mcd/lx", false}}};
+  for (int k = 0; k < 441; ++k) panel.values.push_back(std::exp(-0.01 * k));
+  return {"A far field", "R_A", {panel, panel, panel, panel}};
+}
+
+TEST(PolarPlot, GivesTheSameBytesAgainInOneProcess) {
+  const std::string svg = render_svg(sample());
+  EXPECT_TRUE(svg.starts_with("<?xml"));
+  EXPECT_EQ(svg, render_svg(sample()));
+  const std::string png = render_png(sample());
+  EXPECT_TRUE(png.starts_with("\x89PNG"));
+  EXPECT_EQ(png, render_png(sample()));
+}
+
+TEST(PolarPlot, DrawsWhatHasNoValues) {
+  EXPECT_FALSE(render_svg(PolarPlot{}).empty());
+  PolarPlot plot = sample();
+  plot.panels[0].values.assign(441, 0.0);
+  plot.panels[1].values.assign(441, std::numeric_limits<double>::quiet_NaN());
+  plot.panels[2].columns = 0;
+  plot.panels[2].values.clear();
+  EXPECT_FALSE(render_svg(plot).empty());
+  EXPECT_THROW(render_png(plot, 0.0), std::invalid_argument);
+}
+
+TEST(PhotometryPlot, MarksTheTestPointsOfEachDirection) {
+  studies::PhotometryResult result;
+  result.design.title = "Cubes";
+  result.maps = {{0.0, 0.0, 2.0, 2, {1.0, 2.0, 3.0, 4.0}}, {10.0, 0.0, 2.0, 2, {1.0, 2.0, 3.0, 4.0}}};
+  result.curves = {{20.0, {0.0, 1.0}, {1000.0, 0.0}}};
+  for (const double v : {0.0, 10.0, 10.0}) {
+    studies::PhotometricPoint point;
+    point.asked.v_deg = v;
+    point.asked.observation_deg = 0.33;
+    point.r_i_mcd_per_lx = 12.3;
+    point.limit_mcd_per_lx = 20.0;
+    result.points.push_back(point);
+  }
+  const PolarPlot field = far_field_plot(result);
+  ASSERT_EQ(field.panels.size(), 2U);
+  EXPECT_EQ(field.panels[1].title, "V 10°, H 0°");
+  ASSERT_EQ(field.panels[1].marks.size(), 2U);
+  EXPECT_EQ(field.panels[1].marks[0].label, "12 mcd/lx");
+  EXPECT_EQ(field.panels[1].marks[0].up_deg, 0.33);
+  EXPECT_FALSE(field.panels[1].marks[0].holds);
+  const LinePlot curves = observation_plot(result);
+  ASSERT_EQ(curves.series.size(), 1U);
+  EXPECT_EQ(curves.series[0].label, "entrance angle β = 20°");
+  EXPECT_DOUBLE_EQ(curves.series[0].y[0], 3.0);
+  EXPECT_FALSE(std::isfinite(curves.series[0].y[1]));
+}
+
+}  // namespace
+}  // namespace retrace::report
