@@ -555,7 +555,7 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     const V axes2 = hn::Mul(dot(face.axis, face.axis), dot(x, x));
     const S seen = turned(face.transmitted, out, face.axis, x, hn::Div(splat(1.0), axes2));
     if (left_rays != nullptr && !hn::AllFalse(tag, take.transmitted)) {
-      append_ray(place, out, seen, x, take.transmitted, *left_rays, arrivals.left);
+      append_ray(place, out, seen, x, take.transmitted, rays, k, *left_rays, arrivals.left);
       arrivals.left += hn::CountTrue(tag, take.transmitted);
     }
     const V3 off{hn::Sub(out.x, to_source.x), hn::Sub(out.y, to_source.y), hn::Sub(out.z, to_source.z)};

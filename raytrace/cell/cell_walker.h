@@ -122,11 +122,11 @@ class CellWalker {
   std::vector<std::vector<std::uint32_t>> waiting_;  ///< streams by the binary logarithm of their rays
   std::vector<lanes::LinearForm> pieces_;            ///< edges of the array's pieces
   std::vector<std::uint32_t> piece_starts_;
-  RayStore moved_;                ///< of the stream at hand
-  RayStore chosen_;               ///< those of them that meet the same
-  RayStore left_;                 ///< what leaves through the entrance, if it is scored
-  std::vector<double> met_;       ///< by `moved_`: number, normal
-  std::vector<double> branches_;  ///< marks of `chosen_`, or of weak rays
+  RayStore moved_;                           ///< of the stream at hand
+  RayStore chosen_;                          ///< those of them that meet the same
+  RayStore left_{lanes::kNumbersOfEndless};  ///< what leaves through the entrance, if it is scored
+  std::vector<double> met_;                  ///< by `moved_`: number, normal
+  std::vector<double> branches_;             ///< marks of `chosen_`, or of weak rays
   std::size_t capacity_ = 0;
   std::uint64_t batches_ = 0;
   RandomKey key_;
