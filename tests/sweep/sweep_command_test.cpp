@@ -134,9 +134,9 @@ TEST(SweepCommand, AFullDiskLosesNothing) {
   const TemporaryFolder folder;
   folder.write("study.toml", sweep_study(300, 1000));
   const std::string expected = whole_run(folder);
-  // A limit on the size of files stands for the disk; 64 blocks of 512 or 1024 bytes.
+  // A limit on the size of files stands for the disk; 256 blocks of 512 or 1024 bytes, a few times an empty store.
   const Outcome outcome = Child(folder.path(), {"/bin/sh", "-c",
-                                                std::string("trap '' XFSZ; ulimit -f 64; exec '") + RETRACE_PROGRAM +
+                                                std::string("trap '' XFSZ; ulimit -f 256; exec '") + RETRACE_PROGRAM +
                                                     "' sweep study.toml -o full --quiet"})
                               .wait();
   EXPECT_EQ(outcome.code, 3) << outcome.err;
