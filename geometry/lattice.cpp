@@ -6,28 +6,28 @@
 namespace retrace::geometry {
 namespace {
 
-Cell flat_land(const Rectangle& rectangle) {
-  Cell cell;
-  cell.is_element = false;
-  cell.outline = to_polygon(rectangle);
-  cell.facets.push_back({cell.outline, HeightPlane{}});
-  return cell;
-}
-
 void add_element(Lattice& lattice, Cell cell) {
   lattice.cells.push_back(std::move(cell));
   ++lattice.elements_per_period;
 }
 
-/// One prism and the land that separates it from the next in x and y.
+/// One prism and the land that separates it from the next in x and y. In a checker the next ones are turned.
 void add_prism_with_gaps(Lattice& lattice, const PartSpec& spec, const Vec2& corner, bool turned) {
   const auto& element = std::get<RtpElement>(spec.element);
   const Vec2 gap(spec.x_gap_mm, spec.y_gap_mm);
   const Vec2 size(element.base_mm, element.width_mm);
+  const bool next_turned = turned != (spec.arrangement == Arrangement::checker);
+  const Vec2 end = corner + size;
   add_element(lattice, rtp_cell(element, spec.angle_errors, corner, turned));
   if (gap.x() > 0.0)
-    lattice.cells.push_back(flat_land({corner + Vec2(size.x(), 0.0), corner + Vec2(size.x() + gap.x(), size.y())}));
-  if (gap.y() > 0.0) lattice.cells.push_back(flat_land({corner + Vec2(0.0, size.y()), corner + size + gap}));
+    lattice.cells.push_back(
+        land_cell({{end.x(), corner.y()}, {end.x() + gap.x(), end.y()}}, spec, 0, !turned, !next_turned));
+  if (gap.y() <= 0.0) return;
+  const bool rims_face_it = spec.arrangement == Arrangement::checker && spec.edges.rounds_rims();
+  const double beside = rims_face_it ? end.x() : end.x() + gap.x();
+  lattice.cells.push_back(
+      land_cell({{corner.x(), end.y()}, {beside, end.y() + gap.y()}}, spec, 1, turned, next_turned));
+  if (rims_face_it && gap.x() > 0.0) lattice.cells.push_back(land_cell({end, end + gap}, spec));
 }
 
 Lattice rtp_lattice(const PartSpec& spec, bool rows_are_shifted) {
@@ -90,7 +90,7 @@ Lattice sharp_lattice(const PartSpec& spec, bool rows_are_shifted) {
 
 Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted) {
   Lattice lattice = sharp_lattice(spec, rows_are_shifted);
-  for (Cell& cell : lattice.cells) cell = with_edges(cell, spec.edges);
+  for (Cell& cell : lattice.cells) cell = with_edges(cell, spec);
   return lattice;
 }
 

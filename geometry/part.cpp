@@ -139,12 +139,11 @@ void add_cell(std::vector<Tile>& tiles, const Layout& layout, const Rectangle& e
     Tile tile;
     tile.cell = number;
     tile.owned = owned;
-    if (cell.is_element && !omitted) {
+    if (!omitted) {
       tile.plane = cell.facets[k].plane;
       tile.plane.height_mm -= tile.plane.slope.dot(shift);
-    } else {
-      tile.role = FacetRole::flat_back;
     }
+    if (omitted || !(cell.is_element || cell.facets[k].is_edge)) tile.role = FacetRole::flat_back;
     tile.outline = whole ? outline : clip(outline, block, layout.tolerance_mm);
     if (!tile.outline.empty()) tiles.push_back(tile);
     if (whole) continue;
@@ -170,10 +169,10 @@ std::vector<Tile> tiles_of(const Layout& layout, const IndexRange& range, const 
       for (std::uint32_t c = 0; c < layout.lattice.cells.size(); ++c) {
         const Cell& cell = layout.lattice.cells[c];
         if (cell.is_element && layout.spec.random_tilts.sigma_arcmin > 0.0)
-          add_cell(tiles, layout, extent, block,
-                   with_edges(element_in_place_of(cell, layout.spec.element, errors_of(layout.spec, i, j, c)),
-                              layout.spec.edges),
-                   shift, number++, owned);
+          add_cell(
+              tiles, layout, extent, block,
+              with_edges(element_in_place_of(cell, layout.spec.element, errors_of(layout.spec, i, j, c)), layout.spec),
+              shift, number++, owned);
         else
           add_cell(tiles, layout, extent, block, cell, shift, number++, owned);
       }
@@ -274,7 +273,7 @@ void build_single(Part& part, const Vec2& origin) {
   const Polygon outline = aperture_outline(part.spec.element);
   const bool is_random = part.spec.random_tilts.sigma_arcmin > 0.0;
   const AngleErrors errors = is_random ? errors_of(part.spec, 0, 0, 0) : part.spec.angle_errors;
-  const Cell cell = with_edges(element_cell(part.spec.element, errors), part.spec.edges);
+  const Cell cell = with_edges(element_cell(part.spec.element, errors), part.spec);
   const Vec2 shift = -bounding_box(cell.outline).lower;
   std::vector<Tile> tiles;
   for (std::size_t k = 0; k < cell.facets.size(); ++k) {
@@ -320,9 +319,6 @@ void measure_layer(Part& part) {
     }
   part.element_depth_mm = -lowest;
   part.top_mm = highest;
-  if (highest >= part.thickness_mm)
-    throw InputError(
-        fmt::format("body.thickness_mm must be above {} mm, the highest rim, got {}", highest, part.thickness_mm));
 }
 
 void measure(Part& part) {
@@ -369,7 +365,10 @@ Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
     count_elements(part, layout);
     if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   }
-  if (spec.random_tilts.sigma_arcmin > 0.0 || spec.edges != EdgeShape{}) measure_layer(part);
+  if (spec.random_tilts.sigma_arcmin > 0.0 || !spec.edges.is_sharp()) measure_layer(part);
+  if (part.thickness_mm <= part.top_mm)
+    throw InputError(
+        fmt::format("body.thickness_mm must be above {} mm, the highest rim, got {}", part.top_mm, part.thickness_mm));
   measure(part);
   return part;
 }

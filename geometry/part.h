@@ -50,7 +50,7 @@ struct Part {
 
 /// Builds the part. `origin_mm` moves it in the plane (finite parts), for tests of numerical robustness.
 /// \pre the specification is consistent (studies::parse_design checks it)
-/// \throw InputError when it holds no whole element
+/// \throw InputError when it holds no whole element, or when a rim reaches the entrance face
 Part build_part(const PartSpec& spec, const Vec2& origin_mm = Vec2::Zero());
 
 /// Area of a facet of a patch.

@@ -53,13 +53,18 @@ struct RandomTilts {
   std::uint32_t seed = 1;
 };
 
-/// What wear and the tool's tip make of edges, in mm across the facets of all elements; 0: sharp. Arcs are 16 chords
-/// with their corners on the circle, so that they take exactly the width of the arc.
+/// What wear and the tool's tip make of edges, in mm across the facets of all elements; 0: sharp. Arcs are chords with
+/// their corners on the circle, so that they take exactly the width of the arc.
 struct EdgeShape {
   double root_radius_mm = 0.0;   ///< where facets of one element meet
   double root_chamfer_mm = 0.0;  ///< width of a flat in their place; not both
-  double rim_radius_mm = 0.0;    ///< where facets of neighbouring prisms meet; RTP without gaps
+  double rim_radius_mm = 0.0;    ///< where neighbouring elements meet, or an element and the land beside it
+  double rim_chamfer_mm = 0.0;   ///< width of a flat in their place; not both
+  int chords = 16;               ///< of an arc across an edge; even, 4..64
 
+  bool rounds_roots() const { return root_radius_mm > 0.0 || root_chamfer_mm > 0.0; }
+  bool rounds_rims() const { return rim_radius_mm > 0.0 || rim_chamfer_mm > 0.0; }
+  bool is_sharp() const { return !rounds_roots() && !rounds_rims(); }
   friend bool operator==(const EdgeShape&, const EdgeShape&) = default;
 };
 

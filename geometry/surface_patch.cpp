@@ -53,8 +53,22 @@ class PatchBuilder {
         const std::uint32_t vertex = index_.add(p);
         if (ring.empty() || (ring.back() != vertex && ring.front() != vertex)) ring.push_back(vertex);
       }
-      outlines_.push_back(std::move(ring));
+      outlines_.push_back(without_straight_corners(ring));
     }
+  }
+
+  /// A corner inside a straight side would make a flat triangle: subdivided() puts it back as a vertex of the side.
+  Ring without_straight_corners(const Ring& ring) const {
+    constexpr double rounding = 1e-3;  // of the tolerance within which vertices lie on a side
+    Ring kept;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vec2& before = index_[ring[(i + ring.size() - 1) % ring.size()]];
+      const Vec2 along = index_[ring[(i + 1) % ring.size()]] - before;
+      const Vec2 to = index_[ring[i]] - before;
+      if (std::abs(along.x() * to.y() - along.y() * to.x()) > rounding * tolerance_mm_ * along.norm())
+        kept.push_back(ring[i]);
+    }
+    return kept.size() < 3 ? ring : kept;
   }
 
   /// The outline with every vertex of another tile that lies on it.

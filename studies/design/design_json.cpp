@@ -124,6 +124,8 @@ Json surface_json(const Design& design) {
   if (part.edges.root_radius_mm > 0.0) json["root_radius_um"] = 1e3 * part.edges.root_radius_mm;
   if (part.edges.root_chamfer_mm > 0.0) json["root_chamfer_um"] = 1e3 * part.edges.root_chamfer_mm;
   if (part.edges.rim_radius_mm > 0.0) json["rim_radius_um"] = 1e3 * part.edges.rim_radius_mm;
+  if (part.edges.rim_chamfer_mm > 0.0) json["rim_chamfer_um"] = 1e3 * part.edges.rim_chamfer_mm;
+  if (!part.edges.is_sharp()) json["edge_chords"] = part.edges.chords;
   return json;
 }
 

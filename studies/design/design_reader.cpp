@@ -220,18 +220,45 @@ double widest_edge_um(const PartSpec& part) {
   return 1e3 * (rtp != nullptr ? 0.25 * rtp->base_mm : 0.1 * box.size().minCoeff());
 }
 
+/// Rims that land keeps apart are rounded against it, so that it must be wide enough.
+void check_land(const TableReader& surface, const PartSpec& part) {
+  if (!part.edges.rounds_rims() || !std::holds_alternative<geometry::RtpElement>(part.element)) return;
+  const bool is_checker = part.arrangement == Arrangement::checker;
+  const double reach_mm = geometry::rim_reach_over_land_mm(part);
+  const double needed_mm = is_checker ? reach_mm : 2.0 * reach_mm;  // in a checker one of two neighbours is turned
+  const auto check = [&](std::string_view gap, double gap_mm) {
+    if (gap_mm <= 0.0 || gap_mm >= needed_mm) return;
+    surface.fail(part.edges.rim_radius_mm > 0.0 ? "rim_radius_um" : "rim_chamfer_um",
+                 fmt::format("rims of that shape need an array.{} of 0 or >= {} mm, got {}", gap, shortest(needed_mm),
+                             shortest(gap_mm)));
+  };
+  check("x_gap_mm", part.x_gap_mm);
+  if (is_checker) check("y_gap_mm", part.y_gap_mm);
+}
+
+int read_chords(TableReader& surface) {
+  constexpr std::string_view key = "edge_chords";
+  constexpr Range range{.low = 4.0, .high = 64.0};
+  const double given = surface.number(key, range).value_or(geometry::EdgeShape{}.chords);
+  if (std::fmod(given, 2.0) != 0.0)
+    surface.fail(key, fmt::format("must be an even number {}, got {}", range.text(), shortest(given)));
+  return static_cast<int>(given);
+}
+
 void read_edges(TableReader& surface, PartSpec& part) {
   const Range range{.low = 0.0, .high = widest_edge_um(part)};
-  const auto read_um = [&](std::string_view key) { return surface.number(key, range).value_or(0.0); };
-  part.edges.root_radius_mm = 1e-3 * read_um("root_radius_um");
-  part.edges.root_chamfer_mm = 1e-3 * read_um("root_chamfer_um");
-  part.edges.rim_radius_mm = 1e-3 * read_um("rim_radius_um");
-  if (part.edges.root_radius_mm > 0.0 && part.edges.root_chamfer_mm > 0.0)
+  const auto read_mm = [&](std::string_view key) { return 1e-3 * surface.number(key, range).value_or(0.0); };
+  geometry::EdgeShape& edges = part.edges;
+  edges.root_radius_mm = read_mm("root_radius_um");
+  edges.root_chamfer_mm = read_mm("root_chamfer_um");
+  edges.rim_radius_mm = read_mm("rim_radius_um");
+  edges.rim_chamfer_mm = read_mm("rim_chamfer_um");
+  edges.chords = read_chords(surface);
+  if (edges.root_radius_mm > 0.0 && edges.root_chamfer_mm > 0.0)
     surface.fail("root_chamfer_um", "must be 0 where root_radius_um is given");
-  if (part.edges.rim_radius_mm <= 0.0) return;
-  if (!std::holds_alternative<geometry::RtpElement>(part.element))
-    surface.fail("rim_radius_um", "not available in this version for cube corners, which takes only 0");
-  if (part.x_gap_mm > 0.0) surface.fail("rim_radius_um", "must be 0 where x_gap_mm keeps the rims of neighbours apart");
+  if (edges.rim_radius_mm > 0.0 && edges.rim_chamfer_mm > 0.0)
+    surface.fail("rim_chamfer_um", "must be 0 where rim_radius_um is given");
+  check_land(surface, part);
 }
 
 /// Errors of angle must not let a facet of a canted cube stand upright.

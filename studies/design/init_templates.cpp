@@ -86,7 +86,8 @@ acceptance_half_angle_deg = 0.5   # in air; a list such as [0.2, 0.5, 1] gives R
 
 [surface]
 # roughness_sq_nm = 0             # of the retro facets; needs correlation_length_um
-# root_radius_um = 0              # rounded roots; or root_chamfer_um
+# root_radius_um = 0              # rounded roots, where facets of one element meet; or root_chamfer_um
+# rim_radius_um = 0               # rounded rims, where elements meet; or rim_chamfer_um
 # dihedral_error_arcmin = 0       # opens the angle between facets; cube corners: one value or three
 # facet_tilt_arcmin = 0           # or a list with one value for each facet
 

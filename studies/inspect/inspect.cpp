@@ -234,7 +234,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.tir_limit_deg = tir_limit_deg(design.part, least_index(model.spectral), model.optics.back_index);
   if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part);
   result.dead_zone_share = geometry::edge_share(
-      geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part.edges));
+      geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part));
   result.boundary = boundary_finding(design.part, part.size_mm);
   result.warnings = model.warnings;
   add_warnings(result, part);

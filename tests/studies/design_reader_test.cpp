@@ -699,13 +699,40 @@ TEST(DesignReader, EdgesMustFitIntoTheFacets) {
   const Design design = parse_design(design_of(kRtp, "extent = \"infinite\""), "d",
                                      std::vector<std::string>{"surface.root_radius_um=5", "surface.rim_radius_um=2"});
   EXPECT_EQ(design.part.edges, (geometry::EdgeShape{5e-3, 0.0, 2e-3}));
-  for (const std::string key : {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um"})
-    for (const std::string value : {"-1", "1e6"})
-      EXPECT_NE(set_complaint({key + "=" + value}).find(key + ": must be >= 0 and <= "), std::string::npos);
+  for (const std::string key :
+       {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um", "surface.rim_chamfer_um"})
+    for (const std::string value : {"-1", "1e6", "nan", "wide"})
+      EXPECT_NE(set_complaint({key + "=" + value}).find(key + ": must be "), std::string::npos)
+          << set_complaint({key + "=" + value});
   EXPECT_NE(set_complaint({"surface.root_radius_um=1", "surface.root_chamfer_um=1"}).find("root_chamfer_um: must be 0"),
             std::string::npos);
-  EXPECT_NE(complaint(design_of(kHexagonal, "extent = \"infinite\"") + "[surface]\nrim_radius_um = 1")
-                .find("rim_radius_um: not available in this version for cube corners"),
+  EXPECT_NE(set_complaint({"surface.rim_radius_um=1", "surface.rim_chamfer_um=1"})
+                .find("surface.rim_chamfer_um: must be 0 where rim_radius_um is given"),
+            std::string::npos);
+  for (const std::string value : {"2", "66", "7", "8.5", "-8"})
+    EXPECT_NE(set_complaint({"surface.edge_chords=" + value}).find("surface.edge_chords: must be "), std::string::npos)
+        << value;
+}
+
+TEST(DesignReader, RimsOfEveryKindAndWhatTheyNeed) {
+  const auto rims = [](const std::string& element, const std::string& array, const std::string& lines) {
+    return parse_design(design_of(element, array) + "[surface]\n" + lines, "d.toml", {}).part.edges;
+  };
+  EXPECT_EQ(rims(kHexagonal, "extent = \"infinite\"", "rim_radius_um = 1"), (geometry::EdgeShape{0.0, 0.0, 1e-3}));
+  EXPECT_EQ(rims(kTriangular, "extent = \"infinite\"", "rim_chamfer_um = 2\nedge_chords = 8"),
+            (geometry::EdgeShape{0.0, 0.0, 0.0, 2e-3, 8}));
+  const std::string apart = "extent = \"infinite\"\nx_gap_mm = 0.01";
+  EXPECT_EQ(rims(kRtp, apart, "rim_radius_um = 12"), (geometry::EdgeShape{0.0, 0.0, 12e-3}));
+  // tan(22.5 degrees) 20 um on either side
+  EXPECT_NE(complaint(design_of(kRtp, apart) + "[surface]\nrim_radius_um = 20")
+                .find("surface.rim_radius_um: rims of that shape need an array.x_gap_mm of 0 or >= 0.0165"),
+            std::string::npos);
+  EXPECT_NE(complaint(design_of(kRtp, apart) + "[surface]\nrim_chamfer_um = 20")
+                .find("surface.rim_chamfer_um: rims of that shape need an array.x_gap_mm of 0 or >= 0.0216"),
+            std::string::npos);
+  EXPECT_NE(complaint(design_of(kRtp, "arrangement = \"checker\"\nextent = \"infinite\"\ny_gap_mm = 0.001") +
+                      "[surface]\nrim_radius_um = 20")
+                .find("surface.rim_radius_um: rims of that shape need an array.y_gap_mm of 0 or >= 0.0082"),
             std::string::npos);
 }
 
