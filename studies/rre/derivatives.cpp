@@ -181,14 +181,8 @@ class TraceByParameter {
     else if (parameter_ == RreParameter::refractive_index)
       optics.index = value;
     else
-      return trace(build(changed(at_.design.part, parameter_, value)));
+      return trace(geometry::build_part(changed(at_.design.part, parameter_, value)));
     return trace(at_.tracer, optics, illumination);
-  }
-
-  static geometry::Part build(const PartSpec& spec) {
-    geometry::Part part = geometry::build_part(spec);
-    if (part.top_mm >= spec.thickness_mm) throw InputError("the rims reach the entrance face");
-    return part;
   }
 
   raytrace::BeamResult trace(const geometry::Part& part) const {

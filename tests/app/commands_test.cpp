@@ -57,6 +57,28 @@ TEST(Inspect, OddRowsShiftedGiveTheCountOfThePaper) {
   EXPECT_EQ(json["warnings"].size(), 1U) << "elements that the border cuts";
 }
 
+// Strips of r / sqrt(2) on either side of three roots of length a sqrt(2/3), and beside the six rims of a hexagon; of
+// sqrt(2/3) r beside the three rims of a triangle. What is left over, where strips meet, is of second order.
+TEST(Inspect, TellsWhatEdgesTakeOfCubeCorners) {
+  const auto share = [](const std::string& kind, const std::string& key, double radius_um) {
+    return inspect(infinite_cubes(kind, 1.5) + "[surface]\n" + key + " = " +
+                   std::to_string(radius_um))["dead_zone_share"]
+        .get<double>();
+  };
+  const double r = 1e-3;  // of an edge of 1 mm
+  const double hexagon = std::sqrt(3.0);
+  const double triangle = 0.5 * std::sqrt(3.0);
+  const double root = 3.0 * std::sqrt(2.0 / 3.0) * std::sqrt(2.0) * r;
+  const auto slope = [&](const std::string& kind, const std::string& key) {
+    return 2.0 * share(kind, key, 1.0) - 0.5 * share(kind, key, 2.0);
+  };
+  EXPECT_NEAR(slope("hexagonal_icc", "root_radius_um"), root / hexagon, 1e-7);
+  EXPECT_NEAR(slope("triangular_icc", "root_radius_um"), root / triangle, 1e-7);
+  EXPECT_NEAR(slope("hexagonal_icc", "rim_radius_um"), root / hexagon, 1e-7);
+  EXPECT_NEAR(slope("triangular_icc", "rim_radius_um"), 3.0 * std::sqrt(2.0) * std::sqrt(2.0 / 3.0) * r / triangle,
+              1e-7);
+}
+
 TEST(Inspect, CubeCornersHaveTheLimitsOfTheirIndex) {
   for (const std::string kind : {"hexagonal_icc", "triangular_icc"}) {
     EXPECT_NEAR(inspect(infinite_cubes(kind, 1.4906))["tir_limit_deg"].get<double>(), 19.0, 0.05) << kind;

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "geometry/lattice.h"
 #include "geometry/part.h"
 #include "tests/geometry/part_checks.h"
@@ -88,6 +90,29 @@ TEST(Cant, TopIsTheHighestRimOfThePart) {
     spec.thickness_mm = 10.0;
     EXPECT_NEAR(build_part(spec).top_mm, element_top_mm(spec.element, {}), 1e-9) << cant.deg;
     EXPECT_GT(element_top_mm(spec.element, {}), 0.0);
+  }
+}
+
+// Whoever builds a part without reading a design is told as well.
+TEST(Cant, RimsMayNotReachTheEntranceFace) {
+  PartSpec spec;
+  spec.element = HexagonalCube{1.0, {20.0, 35.0}};
+  const double top_mm = element_top_mm(spec.element, {});
+  for (const Extent extent : {Extent::finite, Extent::infinite}) {
+    spec.arrangement = Arrangement::honeycomb;
+    spec.extent = extent;
+    spec.x_length_mm = spec.y_length_mm = 3.0;
+    for (const double thickness_mm : {1e-3, 0.5 * top_mm, top_mm}) {
+      spec.thickness_mm = thickness_mm;
+      try {
+        build_part(spec);
+        ADD_FAILURE() << thickness_mm;
+      } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("body.thickness_mm must be above"), std::string::npos);
+      }
+    }
+    spec.thickness_mm = 1.0001 * top_mm;
+    EXPECT_NEAR(build_part(spec).top_mm, top_mm, 1e-12);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "geometry/lattice.h"
 #include "studies/rre/rre.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
@@ -161,6 +162,37 @@ TEST(RreDerivatives, SizeAndThicknessAreInProportion) {
   EXPECT_NEAR(0.45 * size.derivative.value + 0.5 * thickness.derivative.value, 0.0,
               0.45 * size.derivative.error + 0.5 * thickness.derivative.error);
   EXPECT_GT(std::abs(size.derivative.value), 1e-3);
+}
+
+// Straight down and up again through the plate, whatever happens below it: exp(-2 a h) times what does not know of h.
+TEST(RreDerivatives, ThicknessAboveCantedCubes) {
+  for (const double cant_deg : {4.0, 12.0}) {
+    Design design = idealised(design_of(infinite(HexagonalCube{1.0, {cant_deg, 25.0}}, Arrangement::honeycomb, 0.9)));
+    design.absorption_per_mm = 0.3;
+    const RrePoint point = point_of(design, exactly(0.0));
+    EXPECT_GT(point.rre, 0.2);
+    expect_derivative(point, RreParameter::thickness_mm, -2.0 * 0.3 * point.rre);
+  }
+}
+
+TEST(RreDerivatives, SizeAndThicknessOfACantedCubeAreInProportion) {
+  const Design design = idealised(design_of(single(TriangularCube{0.8, {7.0, 40.0}}, 0.5)));
+  const RrePoint point = point_of(design, exactly(8.0, 70.0));
+  const RreDerivative size = by(RreParameter::size_mm, point);
+  const RreDerivative thickness = by(RreParameter::thickness_mm, point);
+  ASSERT_EQ(size.left_out + thickness.left_out, "");
+  EXPECT_NEAR(0.8 * size.derivative.value + 0.5 * thickness.derivative.value, 0.0,
+              0.8 * size.derivative.error + 0.5 * thickness.derivative.error);
+  EXPECT_GT(std::abs(size.derivative.value), 1e-3);
+}
+
+// A canted rim close under the entrance face: thinner plates and larger cubes than that are no parts.
+TEST(RreDerivatives, EndAtPartsThatCannotBeBuilt) {
+  const HexagonalCube cube{1.0, {10.0, 0.0}};
+  const double top_mm = element_top_mm(cube, {});
+  const Design design = idealised(design_of(infinite(cube, Arrangement::honeycomb, top_mm * (1.0 + 1e-7))));
+  const RrePoint point = point_of(design, exactly(0.0));
+  EXPECT_NE(by(RreParameter::size_mm, point).left_out, "");
 }
 
 TEST(RreDerivatives, ApexAngleAgainstRoughDifferences) {

@@ -38,5 +38,25 @@ TEST(DesignJson, AngleErrorsAreQuotedByKind) {
             R"({"dihedral_error_arcmin":[2.0,2.0,2.0],"facet_tilt_arcmin":[0.0,0.0,0.0]})");
 }
 
+TEST(DesignJson, EdgesAreQuotedWhereThereAreAny) {
+  const auto surface = [](const std::vector<std::string>& overrides) {
+    return quoted("triangular_icc", overrides)["surface"];
+  };
+  EXPECT_FALSE(surface({}).contains("edge_chords"));
+  EXPECT_EQ(surface({"surface.root_radius_um=2", "surface.rim_chamfer_um=3"}).dump(),
+            R"({"dihedral_error_arcmin":[0.0,0.0,0.0],"facet_tilt_arcmin":[0.0,0.0,0.0],"root_radius_um":2.0,)"
+            R"("rim_chamfer_um":3.0,"edge_chords":16})");
+  EXPECT_EQ(surface({"surface.root_chamfer_um=2", "surface.rim_radius_um=3", "surface.edge_chords=32"}).dump(),
+            R"({"dihedral_error_arcmin":[0.0,0.0,0.0],"facet_tilt_arcmin":[0.0,0.0,0.0],"root_chamfer_um":2.0,)"
+            R"("rim_radius_um":3.0,"edge_chords":32})");
+}
+
+TEST(DesignJson, CantIsQuoted) {
+  const nlohmann::ordered_json element =
+      quoted("hexagonal_icc", {"element.cant_deg=7", "element.cant_azimuth_deg=-90"})["element"];
+  EXPECT_EQ(element["cant_deg"], 7.0);
+  EXPECT_EQ(element["cant_azimuth_deg"], -90.0);
+}
+
 }  // namespace
 }  // namespace retrace::studies

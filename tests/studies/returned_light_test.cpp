@@ -67,6 +67,27 @@ TEST(Footprint, OfIdealCubesIsTheEffectiveAperture) {
   }
 }
 
+// The honeycomb has the symmetry of its cubes: footprints turn with the cant and the light by 120 degrees, and are
+// their own mirror image where cant and light lie in the mirror plane.
+TEST(Footprint, OfCantedCubesTurnsWithThem) {
+  const auto footprint = [](double cant_azimuth_deg, double incidence_deg, double azimuth_deg) {
+    const geometry::HexagonalCube cube{kCubeAperture, {8.0, cant_azimuth_deg}};
+    const RreResult result =
+        run(design_of(infinite(cube, Arrangement::honeycomb, 1.5), true), {incidence_deg}, {azimuth_deg});
+    const Footprint& shown = *result.returned.at(0).footprint;
+    EXPECT_NEAR(shown.rre_shown(), result.points.at(0).rre, 2e-3) << "faint paths are left out";
+    EXPECT_GT(shown.active_share(), 0.3);
+    return shown;
+  };
+  const Footprint here = footprint(20.0, 9.0, 50.0);
+  const Footprint turned = footprint(140.0, 9.0, 170.0);
+  EXPECT_NEAR(here.active_share(), turned.active_share(), 1e-9);
+  EXPECT_NEAR(here.rre_shown(), turned.rre_shown(), 1e-9);
+  EXPECT_GT(std::abs(here.active_share() - footprint(80.0, 9.0, 110.0).active_share()), 1e-3)
+      << "not by 60 degrees, which takes roots to rims";
+  EXPECT_NEAR(footprint(25.0, 9.0, 70.0).active_share(), footprint(-25.0, 9.0, -70.0).active_share(), 1e-9);
+}
+
 TEST(Footprint, OfPrismsAtNormalIncidenceIsTheWholeFace) {
   for (const geometry::PartSpec& spec : {single(geometry::RtpElement{0.45, 0.45, 90.0}, 0.5),
                                          infinite(geometry::RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 0.6)}) {
