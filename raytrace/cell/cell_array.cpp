@@ -13,6 +13,8 @@ namespace {
 
 // Periods in which the neighbours of a cell are looked for: a cell reaches less than one beyond its own.
 constexpr int kReach = 2;
+// Rounded rims of cube corners make thousands of small columns, which no ray crosses quickly.
+constexpr std::size_t kMostColumns = 512;
 
 CellArray::Facet facet_of(const geometry::HeightPlane& plane, geometry::FacetRole role) {
   const double length = std::sqrt(1.0 + plane.slope.squaredNorm());
@@ -21,9 +23,11 @@ CellArray::Facet facet_of(const geometry::HeightPlane& plane, geometry::FacetRol
 
 CellArray::Column column_of(const geometry::Cell& cell) {
   CellArray::Column column;
-  for (const geometry::CellFacet& facet : cell.facets)
+  for (const geometry::CellFacet& facet : cell.facets) {
+    const bool is_retro = cell.is_element || facet.is_edge;  // rims reach over the land beside them
     column.facets.push_back(
-        facet_of(facet.plane, cell.is_element ? geometry::FacetRole::retro_facet : geometry::FacetRole::flat_back));
+        facet_of(facet.plane, is_retro ? geometry::FacetRole::retro_facet : geometry::FacetRole::flat_back));
+  }
   for (std::size_t k = 0; k < cell.outline.size(); ++k) {
     const Vec2& from = cell.outline[k];
     const Vec2 along = (cell.outline[(k + 1) % cell.outline.size()] - from).normalized();
@@ -98,6 +102,7 @@ std::optional<CellArray> CellArray::make(const geometry::Part& part) {
   geometry::Lattice lattice = geometry::make_lattice(part.spec, true);
   const double tolerance_mm = 1e-9 * lattice.period_mm.maxCoeff();
   lattice.cells = convex_cells(lattice.cells, tolerance_mm);
+  if (lattice.cells.size() > kMostColumns) return std::nullopt;
   CellArray array;
   array.period_mm_ = lattice.period_mm;
   if (!part.period_mm) {

@@ -207,7 +207,10 @@ void read_facet_tilt(TableReader& surface, PartSpec& part) {
 void read_random_tilts(TableReader& surface, PartSpec& part) {
   constexpr std::string_view key = "angle_error_sigma_arcmin";
   part.random_tilts.sigma_arcmin = surface.number(key, kRandomTilt).value_or(0.0);
-  part.random_tilts.seed = static_cast<std::uint32_t>(surface.number("angle_error_seed", kSeed).value_or(1.0));
+  const double seed = surface.number("angle_error_seed", kSeed).value_or(1.0);
+  if (seed != std::floor(seed))
+    surface.fail("angle_error_seed", fmt::format("must be a whole number {}, got {}", kSeed.text(), shortest(seed)));
+  part.random_tilts.seed = static_cast<std::uint32_t>(seed);
   if (part.random_tilts.sigma_arcmin > 0.0 && part.extent == Extent::infinite)
     surface.fail(key, "must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
 }

@@ -173,19 +173,23 @@ materials::Spectrum wavelengths_to_trace(const Design& design) {
   }
 }
 
-/// Says so where an index is not backed by data.
-void warn_of_extrapolation(const Design& design, const materials::Material& material, OpticalModel& model) {
-  if (design.refractive_index) return;
+bool is_valid_at(const materials::Metal& metal, double wavelength_nm) {
+  return wavelength_nm >= metal.valid_from_nm && wavelength_nm <= metal.valid_to_nm;
+}
+
+/// Says so where the index of a material or a metal is not backed by data.
+template <class Substance>
+void warn_of_extrapolation(const Design& design, const Substance& substance, OpticalModel& model) {
   std::vector<double> outside_nm;
   double share = 0.0;
   for (const SpectralOptics& at : model.spectral) {
-    if (materials::is_valid_at(material, at.wavelength_nm)) continue;
+    if (is_valid_at(substance, at.wavelength_nm)) continue;
     outside_nm.push_back(at.wavelength_nm);
     share += at.weight;
   }
   if (outside_nm.empty()) return;
   const std::string data = fmt::format("{}: the data of {} reach from {} to {} nm; its index ", design.source_name(),
-                                       material.name, material.valid_from_nm, material.valid_to_nm);
+                                       substance.name, substance.valid_from_nm, substance.valid_to_nm);
   model.warnings.push_back(
       model.spectral.size() == 1
           ? data + fmt::format("at {} nm is extrapolated", outside_nm.front())
@@ -232,7 +236,8 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
         {light.wavelengths_nm[k], light.weights[k], optics_at(design, library, map, light.wavelengths_nm[k])});
   model.wavelength_nm = light.centroid_nm();
   model.optics = nearest(model.spectral, model.wavelength_nm).optics;
-  warn_of_extrapolation(design, material, model);
+  if (!design.refractive_index) warn_of_extrapolation(design, material, model);
+  if (design.aluminised_facets) warn_of_extrapolation(design, library.find_metal("aluminium"), model);
   add_texture_warnings(design, model);
   model.part = geometry::build_part(design.part);
   return model;

@@ -107,6 +107,7 @@ std::vector<Case> cases() {
           {"triangles askew", triangles, 20.0, 75.0},
           {"triangles, errors, glue", with(triangles, {{10.0, -5.0, 20.0}, {}}), 30.0, 10.0, glue},
           {"aligned, round edges", rounded(aligned, 0.01, 0.03), 10.0, 20.0},
+          {"gaps, round edges, aluminised", rounded(gapped(bricks, 0.05, 0.03), 0.01, 0.02), 12.0, 30.0, metal},
           {"few bricks", few_bricks, 15.0, 25.0, absorbing(0.1)},
           {"few bricks, partial ones omitted, black walls", omitting(few_bricks), 20.0, 70.0, black_walls},
           {"few bricks in water", few_bricks, 5.0, 70.0, water},

@@ -650,6 +650,9 @@ TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
   EXPECT_EQ(design.part.random_tilts.sigma_arcmin, 1.5);
   EXPECT_EQ(design.part.random_tilts.seed, 7U);
   EXPECT_EQ(set_complaint({key + "=-1"}), "--set " + key + "=-1: " + key + ": must be >= 0 and <= 60, got -1");
+  EXPECT_EQ(set_complaint({"surface.angle_error_seed=1.5"}),
+            "--set surface.angle_error_seed=1.5: surface.angle_error_seed: must be a whole number >= 0 and <= "
+            "4294967295, got 1.5");
   EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"") + "[surface]\nangle_error_sigma_arcmin = 1"),
             "d.toml:10: " + key +
                 ": must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");

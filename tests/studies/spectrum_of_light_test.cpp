@@ -351,6 +351,16 @@ TEST(SpectrumOfLight, ExtrapolatedIndicesAreTold) {
             "wavelengths from 405 to 410 nm");
 }
 
+// Of aluminium as of the material, which is not asked where an index is given.
+TEST(SpectrumOfLight, ExtrapolatedMetalsAreTold) {
+  const std::vector<std::string> metal = {"body.facet_coating=aluminium", "body.refractive_index=1.5",
+                                          "light.wavelength_nm=50"};
+  const RreResult result = RreStudy({design(metal)}, exactly(0.0)).run();
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_TRUE(result.warnings[0].starts_with("d.toml: the data of aluminium reach from ")) << result.warnings[0];
+  EXPECT_TRUE(result.warnings[0].ends_with("nm; its index at 50 nm is extrapolated")) << result.warnings[0];
+}
+
 TEST(SpectrumOfLight, JsonHoldsWavelengthsAndWhatEachBringsBack) {
   const RreResult result = RreStudy({design({"light.spectrum=A"}), design({})}, exactly(10.0)).run();
   const auto json = nlohmann::ordered_json::parse(rre_json(result));
