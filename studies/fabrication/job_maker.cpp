@@ -62,8 +62,7 @@ fabrication::Array array_of(const Design& design) {
 /// Whether the design has tilts or edges that a job does not know.
 bool has_errors(const PartSpec& part) {
   const std::array<double, 3> none{};
-  return part.edges != geometry::EdgeShape{} || part.angle_errors.facet_tilt_arcmin != none ||
-         part.random_tilts.sigma_arcmin > 0.0;
+  return !part.edges.is_sharp() || part.angle_errors.facet_tilt_arcmin != none || part.random_tilts.sigma_arcmin > 0.0;
 }
 
 /// Partial elements of the array, whether or not a mask is to leave out others.

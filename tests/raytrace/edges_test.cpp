@@ -162,7 +162,7 @@ TEST(Edges, EnginesAgree) {
 // The wider the edge the less comes back, and none of it at a radius of nothing.
 TEST(Edges, EffectGrowsFromNothing) {
   const auto rre = [](const PartSpec& spec) {
-    return MonteCarlo(build_part(spec)).trace(pmma(), from(0.0), {0.5}, rays(1U << 12), {}).cones[0];
+    return MonteCarlo(build_part(spec)).trace(pmma(), from(0.0), {0.5}, rays(1U << 13), {}).cones[0];
   };
   const std::vector<PartSpec> sharp = all_kinds({});
   for (std::size_t k = 0; k < sharp.size(); ++k) {
@@ -173,7 +173,7 @@ TEST(Edges, EffectGrowsFromNothing) {
     const ConeResult faint = rre(all_kinds({1e-6, 0.0, 1e-6, 0.0, 8})[k]);
     EXPECT_NEAR(faint.rre, before, 4.0 * faint.std_error + exact[Account::truncated] + 5e-5) << k;
     if (before < 0.5) continue;  // angles so wrong that edges do no harm
-    for (const double radius : {0.01, 0.02}) {
+    for (const double radius : {0.01, 0.03}) {
       const ConeResult worn = rre(all_kinds({radius, 0.0, radius, 0.0, 8})[k]);
       EXPECT_LT(worn.rre + 4.0 * worn.std_error, before) << k << ": " << radius;
       before = worn.rre - 4.0 * worn.std_error;
