@@ -13,8 +13,6 @@ namespace {
 
 // Periods in which the neighbours of a cell are looked for: a cell reaches less than one beyond its own.
 constexpr int kReach = 2;
-// Rounded rims of cube corners make thousands of small columns, which no ray crosses quickly.
-constexpr std::size_t kMostColumns = 512;
 
 CellArray::Facet facet_of(const geometry::HeightPlane& plane, geometry::FacetRole role) {
   const double length = std::sqrt(1.0 + plane.slope.squaredNorm());
@@ -101,8 +99,11 @@ std::optional<CellArray> CellArray::make(const geometry::Part& part) {
   if (!part.period_mm && !part.lattice_region_mm) return std::nullopt;
   geometry::Lattice lattice = geometry::make_lattice(part.spec, true);
   const double tolerance_mm = 1e-9 * lattice.period_mm.maxCoeff();
+  const std::size_t cells = lattice.cells.size();
   lattice.cells = convex_cells(lattice.cells, tolerance_mm);
-  if (lattice.cells.size() > kMostColumns) return std::nullopt;
+  // Rounded rims of cube corners make many small columns, which no ray crosses quickly.
+  if (lattice.cells.size() > cells && !std::holds_alternative<geometry::RtpElement>(part.spec.element))
+    return std::nullopt;
   CellArray array;
   array.period_mm_ = lattice.period_mm;
   if (!part.period_mm) {

@@ -52,8 +52,8 @@ class CellArray {
     geometry::Vec2 anchor_mm = geometry::Vec2::Zero();  ///< where on the part the lattice starts
   };
 
-  /// Nothing for a single element, an array whose elements differ, one too small to have an inner piece, and one of too
-  /// many strips, such as cube corners with rounded rims.
+  /// Nothing for a single element, an array whose elements differ, one too small to have an inner piece, and cube
+  /// corners with rounded rims.
   static std::optional<CellArray> make(const geometry::Part& part);
 
   const std::vector<Column>& columns() const { return columns_; }

@@ -271,6 +271,8 @@ TEST(CellKernel, ServesEqualElementsFarFromBorders) {
   few.random_tilts.sigma_arcmin = 1.0;
   EXPECT_FALSE(MonteCarlo::cell_serves(build_part(few)));
   EXPECT_FALSE(MonteCarlo::cell_serves(build_part(finite(prism, Arrangement::aligned, 2.0, 2.5, 0.5))));
+  EXPECT_FALSE(MonteCarlo::cell_serves(
+      build_part(rounded(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0), 0.0, 0.02))));
 }
 
 }  // namespace
