@@ -17,7 +17,7 @@ retrace_test(fabrication_read_back_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/read_back_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::nc_read rapidcheck)
 retrace_test(fabrication_verify_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/cutting_test.cpp ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::verify rapidcheck)
 retrace_test(fabrication_planned_jobs_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp

@@ -1,0 +1,118 @@
+#include "studies/closed_loop/io/verification_files.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/json_text.h"
+#include "core/number_format.h"
+#include "core/version.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kShownFindings = 20;
+
+Json findings_json(const Verification& result) {
+  Json findings = Json::array();
+  for (const Finding& f : result.findings) {
+    Json json = {{"kind", f.kind}, {"program", f.program}};
+    if (f.line > 0) json["line"] = f.line;
+    if (f.element >= 0) json["element"] = f.element;
+    json["message"] = f.message;
+    json["value"] = f.value;
+    json["limit"] = f.limit;
+    json["count"] = f.count;
+    findings.push_back(std::move(json));
+  }
+  return findings;
+}
+
+Json programs_json(const VerificationRun& run) {
+  Json programs = Json::array();
+  for (std::size_t i = 0; i < run.request.programs.size(); ++i)
+    programs.push_back(
+        {{"file", run.request.programs[i]}, {"dialect", kNcDialectWords[static_cast<std::size_t>(run.dialects[i])]}});
+  return programs;
+}
+
+Json poses_json(const Verification& result) {
+  Json poses = Json::array();
+  for (const RotaryPose& pose : result.poses) poses.push_back({{"a_deg", pose.a_deg}, {"c_deg", pose.c_deg}});
+  return poses;
+}
+
+std::string place_of(const Finding& finding) {
+  std::string place = finding.program;
+  if (finding.line > 0) place += fmt::format(":{}", finding.line);
+  return place;
+}
+
+}  // namespace
+
+std::string verification_json(const VerificationRun& run, double elapsed_s) {
+  const Verification& r = run.result;
+  const Json json = {{"schema", "retrace.verification/1"},
+                     {"verdict", r.passes() ? "pass" : "fail"},
+                     {"job", run.request.job},
+                     {"machine", run.machine.name},
+                     {"programs", programs_json(run)},
+                     {"findings", findings_json(r)},
+                     {"tolerance_nm", r.tolerance_nm},
+                     {"elements", r.elements.size()},
+                     {"elements_cut", r.elements_cut},
+                     {"facet_distance_nm_max", r.facet_distance_nm_max},
+                     {"facet_angle_arcmin_max", r.facet_angle_arcmin_max},
+                     {"apex_error_arcmin_max", r.apex_error_arcmin_max},
+                     {"root_residual_nm_max", r.root_residual_nm_max},
+                     {"root_residual_nm_predicted", r.root_residual_nm_predicted},
+                     {"root_radius_um", r.root_radius_um},
+                     {"wall_overcut_nm_max", r.wall_overcut_nm_max},
+                     {"wall_overcut_nm_predicted", r.wall_overcut_nm_predicted},
+                     {"removed_volume_mm3", r.removed_volume_mm3},
+                     {"free_tool_length_mm", r.free_tool_length_mm},
+                     {"poses", poses_json(r)},
+                     {"time_s", r.time.total_s()},
+                     {"time_feed_s", r.time.feed_s},
+                     {"time_rapid_s", r.time.rapid_s},
+                     {"time_rotary_s", r.time.rotary_s},
+                     {"time_dwell_s", r.time.dwell_s},
+                     {"elapsed_s", elapsed_s},
+                     {"version", kVersion},
+                     {"warnings", run.warnings},
+                     {"complete", true}};
+  return to_text(json);
+}
+
+std::string verification_table(const VerificationRun& run) {
+  const Verification& r = run.result;
+  std::string text =
+      fmt::format("{} on machine {}: {}\n", run.request.job, run.machine.name, r.passes() ? "pass" : "fail");
+  const auto row = [&](const char* name, const std::string& value) {
+    text += fmt::format("  {:<28} {}\n", name, value);
+  };
+  row("elements cut", fmt::format("{} of {}", r.elements_cut, r.elements.size()));
+  row("facet distance", fixed(r.facet_distance_nm_max, 2) + " nm");
+  row("facet angle", fixed(r.facet_angle_arcmin_max, 4) + " arcmin");
+  row("apex error", fixed(r.apex_error_arcmin_max, 4) + " arcmin");
+  row("left at the root",
+      fmt::format("{} nm, {} unavoidable", fixed(r.root_residual_nm_max, 1), fixed(r.root_residual_nm_predicted, 1)));
+  row("cut into walls",
+      fmt::format("{} nm, {} unavoidable", fixed(r.wall_overcut_nm_max, 1), fixed(r.wall_overcut_nm_predicted, 1)));
+  row("removed", fixed(r.removed_volume_mm3, 6) + " mm3");
+  row("free tool length", fixed(r.free_tool_length_mm, 2) + " mm needed");
+  row("time", fixed(r.time.total_s(), 1) + " s");
+  for (std::size_t i = 0; i < r.findings.size() && i < kShownFindings; ++i) {
+    const Finding& f = r.findings[i];
+    text += fmt::format("{}: {}: {}{}\n", place_of(f), f.kind, f.message,
+                        f.count > 1 ? fmt::format(" ({} times)", f.count) : std::string());
+  }
+  if (r.findings.size() > kShownFindings)
+    text += fmt::format("and {} more findings\n", r.findings.size() - kShownFindings);
+  return text;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,50 @@
+#include "studies/closed_loop/verification.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "fabrication/job/io/job_files.h"
+#include "fabrication/machine/io/machine_files.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+
+NcDialect dialect_of(const std::string& word, std::string_view text, const std::string& file) {
+  if (word == "auto") return recognise_dialect(text, file);
+  const auto* const found = std::find(std::begin(kNcDialectWords), std::end(kNcDialectWords), word);
+  if (found == std::end(kNcDialectWords))
+    throw InputError({"", 0, "--dialect"},
+                     fmt::format("must be \"auto\", {}, got {}", alternatives(kNcDialectWords), in_quotes(word)));
+  return static_cast<NcDialect>(found - std::begin(kNcDialectWords));
+}
+
+}  // namespace
+
+VerificationRun run_verification(const VerificationRequest& request, const Cancellation* cancellation) {
+  if (!(request.tolerance_nm > 0.0) || !std::isfinite(request.tolerance_nm))
+    throw InputError({"", 0, "--tolerance-nm"}, "must be > 0, got " + shortest(request.tolerance_nm));
+  VerificationRun run;
+  run.request = request;
+  run.job = read_job(request.job);
+  run.machine = load_machine(run.job.machine, {request.job, 0, "machine"});
+  std::vector<NcProgram> programs;
+  for (const std::string& file : request.programs) {
+    const std::string text = read_file(file);
+    run.dialects.push_back(dialect_of(request.dialect, text, file));
+    programs.push_back(parse_nc(text, file, run.dialects.back()));
+  }
+  VerifyOptions options;
+  options.tolerance_nm = request.tolerance_nm;
+  run.result = verify_programs(run.job, run.machine, programs, options, shipped_machines(), cancellation);
+  return run;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "fabrication/job/job.h"
+#include "fabrication/machine/machine.h"
+#include "fabrication/read/nc_program.h"
+#include "fabrication/verify/verify.h"
+
+namespace retrace::studies {
+
+/// What to verify.
+struct VerificationRequest {
+  std::string job;                    ///< file
+  std::vector<std::string> programs;  ///< files, in the order in which they run
+  std::string dialect = "auto";       ///< a word of fabrication::kNcDialectWords, or told from the text
+  double tolerance_nm = 10.0;
+};
+
+struct VerificationRun {
+  VerificationRequest request;
+  fabrication::Job job;
+  fabrication::Machine machine;
+  std::vector<fabrication::NcDialect> dialects;  ///< of the programs
+  fabrication::Verification result;
+  std::vector<std::string> warnings;
+};
+
+/// Reads the job, its machine and the programs, and carries the programs out.
+/// \throw InputError for a file that cannot be read or understood, with its line
+VerificationRun run_verification(const VerificationRequest& request, const Cancellation* cancellation = nullptr);
+
+}  // namespace retrace::studies

@@ -1,0 +1,266 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/plan/plan.h"
+#include "fabrication/post/post.h"
+#include "fabrication/verify/dexel.h"
+#include "fabrication/verify/verify.h"
+#include "tests/fabrication/jobs.h"
+
+// Cutting by planes against analytic shapes, against dexels that clip polyhedra, and against random faults.
+
+namespace retrace::fabrication::test {
+namespace {
+
+using geometry::Arrangement;
+using geometry::Vec3;
+
+Machine machine(const std::string& name) {
+  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
+}
+
+Sweep sweep_of(const Vec3& from, const Vec3& to, std::uint32_t pose = 0) {
+  return {pose, {1, 0}, false, from, to};
+}
+
+/// Volume removed from the blank z < 0 below a rectangle, by lines along z: lines are exact, and the integrand is
+/// piecewise linear across x and y with corners where the test puts the cells' borders.
+double volume_by_lines(const std::vector<Sweep>& sweeps, const std::vector<RigidMotion>& poses, const ToolWedge& wedge,
+                       double x_end, double y_low, double y_high, int cells) {
+  double volume = 0.0;
+  std::vector<LineSpan> spans;
+  const double dy = (y_high - y_low) / cells;
+  for (int i = 0; i < cells; ++i) {
+    const Vec3 p(0.3 * x_end, y_low + (i + 0.5) * dy, 0.0);
+    spans.clear();
+    for (const Sweep& s : sweeps)
+      if (const auto span = swept_span(wedge, s, poses[s.pose].point(p), poses[s.pose].direction(Vec3(0, 0, 1))))
+        spans.push_back(*span);
+    volume += -std::min(0.0, surface_along(spans, 0.0).top) * dy * 2.0 * x_end;
+  }
+  return volume;
+}
+
+Tool tool_of_width(double width_mm) {
+  Tool tool;
+  tool.width_mm = width_mm;
+  return tool;
+}
+
+/// At A = 0 the tool plunges to a depth and ploughs: a slot with the clearance face at one end and the rake face at the
+/// other.
+TEST(Cutting, VolumeOfASlot) {
+  const Machine ideal = machine("ideal");
+  const ToolWedge wedge = tool_wedge(tool_of_width(1.0), ideal);
+  const double depth = 0.1;
+  const std::vector<Sweep> sweeps = {sweep_of({0, 0, 0.2}, {0, 0, -depth}),
+                                     sweep_of({0, 0, -depth}, {0, -0.6, -depth})};
+  const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {0, 0})};
+  // Plunging leaves a vertical wall at y = 0; ploughing ends with the rake face, 53 degrees from the vertical.
+  const double analytic = depth * 0.6 + 0.5 * depth * depth * std::tan(Angle::from_deg(53).rad());
+  const double end = -0.6 - depth * std::tan(Angle::from_deg(53).rad());
+  const double whole = volume_by_lines(sweeps, poses, wedge, 0.5, -0.6, 0.0, 1);
+  const double ramp = volume_by_lines(sweeps, poses, wedge, 0.5, end, -0.6, 1);
+  EXPECT_NEAR(whole + ramp, analytic, 1e-9 * analytic);
+}
+
+/// Two plunges of an ideal machine leave a right prism: base^2 / 4 times the width.
+TEST(Cutting, VolumeOfAPrism) {
+  const Machine ideal = machine("ideal");
+  const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal);
+  const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {45, 0}),
+                                          machine_from_workpiece(ideal, {45, 180})};
+  const double base = 0.5;
+  const Vec3 root(0, 0, -0.25);
+  const std::vector<Sweep> sweeps = {sweep_of(poses[0].point(root) + Vec3(0, 0, 0.6), poses[0].point(root), 0),
+                                     sweep_of(poses[1].point(root) + Vec3(0, 0, 0.6), poses[1].point(root), 1)};
+  const double left = volume_by_lines(sweeps, poses, wedge, 0.25, -0.25, 0.0, 1);
+  const double right = volume_by_lines(sweeps, poses, wedge, 0.25, 0.0, 0.25, 1);
+  EXPECT_NEAR(left + right, 0.25 * base * base * 0.5, 1e-9 * 0.03125);
+}
+
+/// Prisms whose apertures overlap by a quarter of their base share a smaller prism.
+TEST(Cutting, VolumeOfOverlappingPrisms) {
+  const Machine ideal = machine("ideal");
+  const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal);
+  const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {45, 0}),
+                                          machine_from_workpiece(ideal, {45, 180})};
+  const double base = 0.5;
+  const double shift = 0.75 * base;
+  std::vector<Sweep> sweeps;
+  for (const double y : {0.0, shift})
+    for (std::uint32_t pose : {0U, 1U}) {
+      const Vec3 tip = poses[pose].point(Vec3(0, y, -0.25));
+      sweeps.push_back(sweep_of(tip + Vec3(0, 0, 0.6), tip, pose));
+    }
+  const double shared = base - shift;
+  const double analytic = (2.0 * 0.25 * base * base - 0.25 * shared * shared) * 0.5;
+  double volume = 0.0;
+  for (const auto& [from, to] : {std::pair{-0.25, 0.0}, {0.0, 0.1875}, {0.1875, 0.375}, {0.375, 0.625}})
+    volume += volume_by_lines(sweeps, poses, wedge, 0.25, from, to, 1);
+  EXPECT_NEAR(volume, analytic, 1e-9 * analytic);
+}
+
+/// A line's part within a swept body, against membership: a point is swept if some place of the travel has it.
+RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
+  const ToolWedge wedge = tool_wedge(tool_of_width(0.5), machine("ideal"));
+  const auto coordinate = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
+  const auto vector = [&] {
+    const double x = coordinate();
+    const double y = coordinate();
+    return Vec3(x, y, coordinate());
+  };
+  const Sweep sweep = sweep_of(vector(), vector());
+  const Vec3 point = vector();
+  const Vec3 direction = (vector() + Vec3(0, 0, 2)).normalized();
+  const auto span = swept_span(wedge, sweep, point, direction);
+  const auto is_swept = [&](const Vec3& p) {
+    // The bound on t from each side of the wedge: the reverse order of elimination.
+    double low = 0.0;
+    double high = 1.0;
+    for (const auto& side : wedge.sides) {
+      const double room = side.bound_mm - side.outward.dot(p - sweep.from_mm);
+      const double rate = side.outward.dot(sweep.to_mm - sweep.from_mm);
+      if (rate > 0.0)
+        low = std::max(low, -room / rate);
+      else if (rate < 0.0)
+        high = std::min(high, room / -rate);
+      else if (room < 0.0)
+        return false;
+    }
+    return low <= high;
+  };
+  for (int i = -20; i <= 20; ++i) {
+    const double s = 0.15 * i + 0.0123;
+    const bool in_span = span && s >= span->low && s <= span->high;
+    const bool near_end = span && (std::abs(s - span->low) < 1e-9 || std::abs(s - span->high) < 1e-9);
+    RC_ASSERT(near_end || in_span == is_swept(point + s * direction));
+  }
+}
+
+/// Collects the sweeps of programs, for dexels.
+struct Cut {
+  std::vector<Sweep> sweeps;
+  std::vector<RigidMotion> poses;
+  ToolWedge wedge;
+};
+
+struct SweepSink : NcSink {
+  explicit SweepSink(const Machine& m) : machine_of(m) {}
+  void motion(const NcMotion& m, const NcSettings&) override {
+    if ((m.known | m.moved) != 31 || (m.moved & 24) != 0) return;
+    cut.poses.push_back(machine_from_workpiece(machine_of, {m.to.a_deg, m.to.c_deg}));
+    cut.sweeps.push_back(sweep_of(machine_point(machine_of, m.from), machine_point(machine_of, m.to),
+                                  static_cast<std::uint32_t>(cut.poses.size() - 1)));
+  }
+  void dwell(double, const NcPlace&, const AxisPositions&) override {}
+  const Machine& machine_of;
+  Cut cut;
+};
+
+Cut cut_of(const std::string& text, const Job& job, const Machine& m) {
+  SweepSink sink(m);
+  sink.cut.wedge = tool_wedge(job.tool, m);
+  run_nc(parse_nc(text, "p", NcDialect::rs274ngc), sink);
+  return sink.cut;
+}
+
+DexelBox box_around(double half_x, double half_y, double depth) {
+  return {{-half_x, -half_y, -depth}, {half_x, half_y, 0.0}};
+}
+
+/// Dexels along all three axes agree with the volume that the planes leave, to their resolution.
+TEST(Cutting, DexelsAgreeInVolume) {
+  Job job = square_job(2, Arrangement::checker);
+  job.process.roughing_depth_um = 50;
+  const Machine paper = machine("paper");
+  std::string text;
+  for (const Program& program : make_plan(job, paper).programs) text += nc_text(program, "rs274ngc");
+  const Verification v = verify_programs(job, paper, {parse_nc(text, "p", NcDialect::rs274ngc)}, {}, {});
+  ASSERT_TRUE(v.passes());
+  const Cut cut = cut_of(text, job, paper);
+  for (const int axis : {0, 1, 2}) {
+    const DexelField field = cut_dexels(cut.sweeps, cut.poses, cut.wedge, box_around(0.451, 0.451, 0.2255), axis, 100);
+    // Cells of 9 um: half of one along the slopes, which errs to both sides.
+    EXPECT_NEAR(field.volume_mm3(), v.removed_volume_mm3, 0.005 * v.removed_volume_mm3) << "axis " << axis;
+  }
+}
+
+/// Single tokens of a program changed at random. Whatever moves the surface by more than 10 nm is refused or found.
+TEST(Cutting, NoMutationThatMovesTheSurfaceGoesUnreported) {
+  Job job = square_job(2, Arrangement::checker);
+  job.process.roughing_depth_um = 50;
+  job.process.finishing_cuts = 1;
+  const Machine paper = machine("paper");
+  std::string text;
+  for (const Program& program : make_plan(job, paper).programs) text += nc_text(program, "rs274ngc");
+  const auto field_of = [&](const std::string& program) {
+    const Cut cut = cut_of(program, job, paper);
+    return cut_dexels(cut.sweeps, cut.poses, cut.wedge, box_around(0.6, 0.6, 1.0), 2, 120);
+  };
+  const DexelField before = field_of(text);
+  std::uint64_t state = 12345;
+  const auto draw = [&](std::size_t below) {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<std::size_t>((state >> 33) % below);
+  };
+  // Comments are no tokens of the program.
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0, depth = 0; i < text.size(); ++i) {
+    if (text[i] == '(') ++depth;
+    if (depth == 0 && text[i] != '\n' && text[i] != ' ' && text[i] != '%') places.push_back(i);
+    if (text[i] == ')') --depth;
+  }
+  int refused = 0;
+  int found = 0;
+  int moved = 0;
+  int harmless = 0;
+  for (int trial = 0; trial < 150; ++trial) {
+    std::string mutant = text;
+    const std::size_t at = places[draw(places.size())];
+    const char old = mutant[at];
+    if (old >= '0' && old <= '9')
+      mutant[at] = static_cast<char>('0' + (static_cast<std::size_t>(old - '0') + 1 + draw(9)) % 10);
+    else if (old == '-')
+      mutant.erase(at, 1);
+    else if (old == '.')
+      mutant.erase(at, 1);
+    else
+      mutant[at] = "GXYZACFMPo"[draw(10)];
+    if (mutant == text) continue;
+    bool is_reported = false;
+    try {
+      const Verification v = verify_programs(job, paper, {parse_nc(mutant, "p", NcDialect::rs274ngc)}, {}, {});
+      is_reported = !v.passes();
+      is_reported ? ++found : ++harmless;
+    } catch (const InputError&) {
+      ++refused;
+      continue;
+    }
+    const DexelField after = field_of(mutant);
+    double worst_mm = 0.0;
+    for (std::size_t i = 0; i < before.lowest_mm.size(); ++i) {
+      worst_mm = std::max(worst_mm, std::abs(before.lowest_mm[i] - after.lowest_mm[i]));
+      worst_mm = std::max(worst_mm, std::abs(before.removed_mm[i] - after.removed_mm[i]));
+    }
+    // Along z a facet's distance counts sqrt 2 times.
+    if (worst_mm > 1e-5 * std::sqrt(2.0)) ++moved;
+    EXPECT_TRUE(is_reported || worst_mm <= 1e-5 * std::sqrt(2.0))
+        << "trial " << trial << ": " << text.substr(at > 20 ? at - 20 : 0, 40) << " became "
+        << mutant.substr(at > 20 ? at - 20 : 0, 40) << ", which moves the surface by " << worst_mm * 1e6 << " nm";
+  }
+  EXPECT_GT(moved, 20) << "the mutations do something";
+  EXPECT_GT(found, 20);
+  EXPECT_GT(refused, 5);
+  EXPECT_GT(harmless, 0);
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::test
