@@ -22,3 +22,6 @@ retrace_test(fabrication_verify_test
 retrace_test(fabrication_planned_jobs_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::nc_read retrace::verify)
+retrace_test(fabrication_forces_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/forces_test.cpp
+  LIBRARIES retrace::forces)

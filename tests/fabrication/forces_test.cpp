@@ -1,0 +1,145 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/forces/forces.h"
+#include "fabrication/forces/io/force_table.h"
+
+namespace retrace::fabrication {
+namespace {
+
+std::vector<MeasuredForce> table() {
+  return parse_forces(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/cutting_forces.csv"), "cutting_forces.csv");
+}
+
+/// Experiment 1: 1 mm prism, third last of 142 cuts at 5 um and second last of 71 at 10 um, both 0.697 mm long.
+CutConditions experiment_1(double depth_um) {
+  CutConditions cut;
+  cut.depth_of_cut_um = depth_um;
+  cut.width_mm = 0.982;
+  cut.plunge_mm = (5.23 - 1.0) * 10.0 / 60.0;  // as recorded: accelerations and rounding included
+  cut.plough_mm = 0.25;
+  return cut;
+}
+
+CutConditions experiment_2() {
+  CutConditions cut = experiment_1(5);
+  cut.width_mm = 0.818;
+  cut.configuration = Configuration::orthogonal;
+  return cut;
+}
+
+TEST(Forces, SpecificForceIsTheSameAtBothDepths) {
+  const ForceModel model = calibrate(table());
+  for (const double depth : {5.0, 10.0})
+    EXPECT_NEAR(model.chip_fz_n_per_mm.at(depth) / (1e-3 * depth), 319.8, 0.1) << "N/mm2";
+  EXPECT_NEAR(model.chip_fz_n_per_mm.at_zero, 0.0, 1e-12) << "no force of the edge";
+}
+
+TEST(Forces, FrictionOfTheSideWalls) {
+  const ForceModel model = calibrate(table());
+  EXPECT_NEAR(model.friction_n_per_mm.at(5), 3.2, 0.05);
+  EXPECT_NEAR(model.friction_n_per_mm.at(10), 4.2, 0.05);
+}
+
+TEST(Forces, ExperimentOneAsMeasuredWithItsSigns) {
+  const ForceModel model = calibrate(table());
+  const ForceEvents five = force_events(model, experiment_1(5));
+  EXPECT_NEAR(five.full_chip_fz_n, -1.57, 1e-9);
+  EXPECT_NEAR(five.full_chip_fy_n, -0.66, 1e-9);
+  EXPECT_NEAR(five.before_root_fz_n, -3.76, 1e-9);
+  EXPECT_NEAR(five.root_fz_n, -5.34, 1e-9);
+  EXPECT_NEAR(five.root_fx_n, -0.95, 1e-9);
+  EXPECT_NEAR(five.peak_fy_n, -3.33, 1e-9);
+  const ForceEvents ten = force_events(model, experiment_1(10));
+  EXPECT_NEAR(ten.full_chip_fz_n, -3.14, 1e-9);
+  EXPECT_NEAR(ten.root_fz_n, -9.82, 1e-9);
+  EXPECT_NEAR(ten.peak_fy_n, -5.81, 1e-9);
+}
+
+/// Experiment 2 was not used for the calibration: the full chip load comes out, the peaks do not, and are not tuned.
+TEST(Forces, ExperimentTwoIsPredicted) {
+  const ForceEvents two = force_events(calibrate(table()), experiment_2());
+  EXPECT_NEAR(two.full_chip_fz_n, -1.31, 0.005);
+  EXPECT_NEAR(two.full_chip_fz_n, -1.29, 0.02 * 1.29) << "measured";
+  EXPECT_EQ(two.before_root_fz_n, two.full_chip_fz_n) << "nothing rubs";
+  EXPECT_EQ(two.root_fx_n, 0.0);
+  EXPECT_NEAR(two.root_fz_n, -2.62, 0.005) << "measured -4.06";
+  EXPECT_NEAR(two.peak_fy_n, -2.77, 0.005) << "measured -1.73";
+}
+
+TEST(Forces, ExperimentThreeHasItsOwnCalibration) {
+  const ForceModel model = calibrate(table());
+  CutConditions cut = experiment_1(5);
+  cut.width_mm = 1.032;
+  cut.strategy = Strategy::bidirectional;
+  EXPECT_NEAR(force_events(model, cut).root_fz_n, -26.29, 1e-9);
+  EXPECT_NEAR(force_events(model, cut).peak_fy_n, -11.43, 1e-9);
+  cut.facet = 2;
+  EXPECT_NEAR(force_events(model, cut).root_fz_n, -15.74, 1e-9);
+  EXPECT_NEAR(force_events(model, cut).peak_fy_n, -6.21, 1e-9);
+}
+
+/// The events of Figure 4.8 at their times: contact 1.00, full chip 1.07, before the root 5.18, root 5.23, ploughing
+/// from 5.33 with its peak at 5.36 s.
+TEST(Forces, ProfileOverTheEventsOfTheThesis) {
+  CutConditions cut = experiment_1(5);
+  cut.clearance_mm = 10.0 / 60.0;  // one second
+  const std::vector<ForceSample> profile = force_profile(calibrate(table()), cut);
+  const auto at = [&](double time_s, auto force) {
+    for (std::size_t i = 1; i < profile.size(); ++i)
+      if (profile[i].time_s >= time_s - 1e-9 && profile[i].time_s > profile[i - 1].time_s) {
+        const double t = (time_s - profile[i - 1].time_s) / (profile[i].time_s - profile[i - 1].time_s);
+        return force(profile[i - 1]) * (1 - t) + force(profile[i]) * t;
+      }
+    return 0.0;
+  };
+  const auto fz = [](const ForceSample& s) { return s.fz_n; };
+  const auto fy = [](const ForceSample& s) { return s.fy_n; };
+  EXPECT_EQ(at(0.5, fz), 0.0);
+  EXPECT_NEAR(at(1.07, fz), -1.57, 1e-6);
+  EXPECT_NEAR(at(1.16, fy), -0.66, 1e-6);
+  EXPECT_NEAR(at(5.18, fz), -3.76, 1e-6);
+  EXPECT_NEAR(at(5.23, fz), -5.34, 1e-6);
+  EXPECT_NEAR(at(5.30, fy), -0.66, 1e-6) << "Y stays level until the plough";
+  EXPECT_NEAR(at(5.36, fy), -3.33, 1e-6);
+  EXPECT_EQ(profile.back().fz_n, 0.0);
+  EXPECT_TRUE(std::is_sorted(profile.begin(), profile.end(),
+                             [](const ForceSample& a, const ForceSample& b) { return a.time_s < b.time_s; }));
+}
+
+TEST(Forces, WarnsWhereTheLinearLawIsNotShown) {
+  const ForceModel model = calibrate(table());
+  const auto warns_of = [&](double depth, const std::string& what) {
+    for (const std::string& w : force_warnings(model, experiment_1(depth)))
+      if (w.find(what) != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_TRUE(warns_of(4.9, "below 5 um"));
+  EXPECT_FALSE(warns_of(5.0, "below 5 um"));
+  EXPECT_TRUE(warns_of(15.0, "beyond the 10 um"));
+}
+
+TEST(Forces, BadTablesAreRefused) {
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      parse_forces(text, "f.csv");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string header = "experiment,strategy,configuration,doc_um,width_mm,event,time_s,fx_n,fy_n,fz_n\n";
+  EXPECT_EQ(refusal(""), "f.csv: must hold forces, is empty");
+  EXPECT_EQ(refusal(header + "1,a,b,5,1,root,,,\n"), "f.csv:2: must have 10 columns, got 9");
+  EXPECT_EQ(refusal(header + "1,a,b,0,1,root,,,,1\n"), "f.csv:2: doc_um: must be a number > 0, got \"0\"");
+  EXPECT_EQ(refusal(header + "1,a,b,5,1,root,,,,x\n"), "f.csv:2: fz_n: must be a number or empty, got \"x\"");
+  EXPECT_THROW(calibrate(parse_forces(header + "1,a,b,5,1,root,,,,1\n", "f.csv")), InputError);
+}
+
+}  // namespace
+}  // namespace retrace::fabrication
