@@ -1,0 +1,57 @@
+// Verification of NC text: time against the number of elements, for the process of the published samples.
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "fabrication/job/job.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/plan/plan.h"
+#include "fabrication/post/post.h"
+#include "fabrication/verify/verify.h"
+
+namespace retrace::benchmarks {
+namespace {
+
+using namespace fabrication;
+
+/// Rows of 50 prisms of 0.451 mm, roughed by 22 cuts and finished by two cuts a facet.
+Job job_of(std::int64_t elements) {
+  Job job;
+  job.element.base_mm = job.element.width_mm = 0.451;
+  job.array.arrangement = geometry::Arrangement::aligned;
+  job.array.x_length_mm = 0.451 * 50;
+  job.array.y_length_mm = 0.451 * static_cast<double>(elements) / 50.0;
+  job.tool.width_mm = 0.451;
+  job.strategy = Strategy::two_step;
+  job.process.name = "benchmark";
+  return job;
+}
+
+/// Arg: elements.
+void verify(benchmark::State& state) {
+  const Job job = job_of(state.range(0));
+  Machine machine = load_machine("paper", {});
+  // Room for arrays of any length.
+  machine.x.limits_mm.value = machine.y.limits_mm.value = machine.z.limits_mm.value = {-1e4, 1e4};
+  std::vector<std::string> texts;
+  for (const Program& program : make_plan(job, machine).programs) texts.push_back(nc_text(program, "rs274ngc"));
+  std::size_t bytes = 0;
+  for (auto _ : state) {
+    std::vector<NcProgram> programs;
+    bytes = 0;
+    for (const std::string& text : texts) {
+      programs.push_back(parse_nc(text, "p.ngc", NcDialect::rs274ngc));
+      bytes += text.size();
+    }
+    const Verification result = verify_programs(job, machine, programs, {}, {});
+    if (!result.passes()) state.SkipWithError(result.findings.front().message.c_str());
+  }
+  state.counters["bytes"] = static_cast<double>(bytes);
+  state.counters["time/element"] = benchmark::Counter(static_cast<double>(state.range(0) * state.iterations()),
+                                                      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(verify)->Arg(250)->Arg(1250)->Arg(5000)->Arg(50000)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+
+}  // namespace
+}  // namespace retrace::benchmarks
