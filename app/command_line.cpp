@@ -286,6 +286,41 @@ void add_fabricate(CLI::App& app, FabricateOptions& fabricate) {
       ->check(real_number());
 }
 
+void add_verify(CLI::App& app, VerifyOptions& verify) {
+  CLI::App* command = app.add_subcommand("verify", "what NC programs really cut, against their fabrication job");
+  command->add_option("JOB", verify.job, "job file")->required()->check(not_empty());
+  command->add_option("PROGRAM", verify.programs, "NC programs, in the order in which they run")
+      ->required()
+      ->check(not_empty());
+  command->add_option("--dialect", verify.dialect, "rs274ngc, sinumerik, fanuc or pmac, or auto: told from the text")
+      ->type_name("DIALECT")
+      ->capture_default_str();
+  command->add_option("--tolerance-nm", verify.tolerance_nm, "that facet planes may differ from the design by")
+      ->type_name("T")
+      ->capture_default_str()
+      ->check(real_number());
+  command->add_option("--as-machined", verify.as_machined, "write the part that is left as a design to FILE")
+      ->type_name("FILE")
+      ->check(not_empty());
+}
+
+void add_forces(CLI::App& app, ForcesOptions& forces) {
+  CLI::App* command = app.add_subcommand("forces", "cutting forces of a fabrication job over one cycle");
+  command->add_option("JOB", forces.job, "job file")->required()->check(not_empty());
+  command
+      ->add_option("--configuration", forces.configuration,
+                   "isolated: between walls that rub, or orthogonal: with the edge alone")
+      ->type_name("WORD")
+      ->capture_default_str();
+  command->add_option("--facet", forces.facet, "of a bidirectional job: 1 or 2")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(whole_number(1, 2));
+  command->add_option("--plunge-mm", forces.plunge_mm, "length of the plunge [that of the last cut]")
+      ->type_name("L")
+      ->check(real_number());
+}
+
 /// What to say if a command or what it needs is missing: a word that nobody knows explains it better.
 std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::vector<std::string> unknown = app.remaining(true);
@@ -293,7 +328,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
     if (word.starts_with('-')) return "unknown option " + word;
   if (!app.get_subcommands().empty()) return otherwise;
   const std::string commands =
-      "rre, inspect, photometry, roughness, metrology, sweep, optimize, job, fabricate, init and list";
+      "rre, inspect, photometry, roughness, metrology, sweep, optimize, job, fabricate, verify, forces, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -326,6 +361,8 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_job(app, line.job);
   add_fabricate(app, line.fabricate);
   add_study(app, line.study, "optimize", "the best design within constraints, as a study file says");
+  add_verify(app, line.verify);
+  add_forces(app, line.forces);
   app.add_subcommand("init", "a commented design file to start from")
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
       ->required();

@@ -100,6 +100,21 @@ struct FabricateOptions {
   std::optional<double> split_hours;
 };
 
+struct VerifyOptions {
+  std::string job;
+  std::vector<std::string> programs;
+  std::string dialect = "auto";
+  double tolerance_nm = 10.0;
+  std::string as_machined;  ///< design file to write; empty: none
+};
+
+struct ForcesOptions {
+  std::string job;
+  std::string configuration = "isolated";
+  std::uint64_t facet = 1;
+  std::optional<double> plunge_mm;
+};
+
 /// What the user typed.
 struct CommandLine {
   std::string command;
@@ -111,6 +126,8 @@ struct CommandLine {
   StudyOptions study;
   JobOptions job;
   FabricateOptions fabricate;
+  VerifyOptions verify;
+  ForcesOptions forces;
   std::string design;  ///< inspect
   std::string kind;    ///< init
   std::string what;    ///< list

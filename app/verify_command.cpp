@@ -1,27 +1,59 @@
 #include <chrono>
+#include <filesystem>
 
 #include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/output.h"
+#include "core/atomic_file.h"
+#include "raytrace/threads.h"
+#include "studies/closed_loop/as_machined.h"
 #include "studies/closed_loop/io/verification_files.h"
 #include "studies/closed_loop/verification.h"
 
 namespace retrace::app {
+namespace {
 
-ExitCode run_verify_command(const CommandLine& line) {
-  if (!line.common.overrides.empty()) throw InputError({"", 0, "--set"}, "verify reads no design");
+namespace fs = std::filesystem;
+
+studies::VerificationRun verified(const CommandLine& line, double& elapsed_s) {
   studies::VerificationRequest request;
   request.job = line.verify.job;
   request.programs = line.verify.programs;
   request.dialect = line.verify.dialect;
   request.tolerance_nm = line.verify.tolerance_nm;
-  std::vector<std::string> files_read = request.programs;
-  files_read.push_back(request.job);
+  studies::VerificationRun run;
   const auto start = std::chrono::steady_clock::now();
-  const studies::VerificationRun run = studies::run_verification(request);
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  const std::string json = studies::verification_json(run, elapsed.count());
+  raytrace::run_with_threads(line.common.threads.value_or(0), [&] { run = studies::run_verification(request); });
+  elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return run;
+}
+
+void check_as_machined(const std::string& out, const std::vector<std::string>& files_read) {
+  if (out.empty()) return;
+  for (const std::string& file : files_read) {
+    std::error_code ignored;
+    if (fs::equivalent(file, out, ignored))
+      throw InputError({"", 0, "--as-machined"}, out + " is a file that is read; it would be overwritten");
+  }
+}
+
+}  // namespace
+
+ExitCode run_verify_command(const CommandLine& line) {
+  if (!line.common.overrides.empty()) throw InputError({"", 0, "--set"}, "verify reads no design");
+  std::vector<std::string> files_read = line.verify.programs;
+  files_read.push_back(line.verify.job);
+  check_as_machined(line.verify.as_machined, files_read);
+  double elapsed_s = 0.0;
+  studies::VerificationRun run = verified(line, elapsed_s);
+  std::string design;
+  if (!line.verify.as_machined.empty()) {
+    const studies::AsMachined part = studies::as_machined(run);
+    run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());
+    design = studies::as_machined_toml(run, part);
+  }
+  const std::string json = studies::verification_json(run, elapsed_s);
   prepare_outputs(line.common, {files_read, "verification.json", {}});
+  if (!design.empty()) write_file_atomically(line.verify.as_machined, design);
   std::vector<OutputFile> files;
   if (!line.common.out.empty()) files = {{"verification.json", json}};
   write_outputs(line.common, json, files, studies::verification_table(run));

@@ -14,5 +14,6 @@ retrace_test(app_test
     app/roughness_test.cpp
     app/rre_test.cpp
     app/texture_test.cpp
+    app/verify_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 add_dependencies(app_test retrace)

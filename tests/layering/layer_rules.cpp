@@ -40,6 +40,8 @@ const std::map<std::string, Names>& study_rooms() {
                                                      {"inspect", {"design"}},
                                                      {"metrology", {}},
                                                      {"fabrication", {"design"}},
+                                                     {"forces", {}},
+                                                     {"closed_loop", {"design"}},
                                                      {"store", {}},
                                                      {"quantity", {"design", "rre", "inspect", "fabrication"}},
                                                      {"sweep", {"design", "store", "quantity"}},

@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect photometry roughness metrology sweep optimize job fabricate init list'
+  local commands='rre inspect photometry roughness metrology sweep optimize job fabricate verify forces init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -123,6 +123,15 @@ _retrace() {
       _retrace_files "$word" .csv
       return
       ;;
+    --configuration)
+      _retrace_words "$word" 'isolated orthogonal'
+      return
+      ;;
+    --as-machined)
+      _retrace_files "$word" .toml
+      return
+      ;;
+    --tolerance-nm | --facet | --plunge-mm) return ;;
     --sa | --correlation-length-um | --waviness-length-um) return ;;
     --cutoff-um | --pixel-um | --channel | --feed-mm-per-min) return ;;
   esac
@@ -149,14 +158,16 @@ _retrace() {
       fabricate)
         _retrace_words "$word" "$common --dialect --phase --from-element --stop-every --split-hours"
         ;;
+      verify) _retrace_words "$word" "$common --dialect --tolerance-nm --as-machined" ;;
+      forces) _retrace_words "$word" "$common --configuration --facet --plunge-mm" ;;
       *) _retrace_words "$word" "$common" ;;
     esac
     return
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect | photometry | roughness | sweep | optimize | job | fabricate) _retrace_files "$word" .toml ;;
-    metrology) _retrace_files "$word" '' ;;
+    rre | inspect | photometry | roughness | sweep | optimize | job | fabricate | forces) _retrace_files "$word" .toml ;;
+    metrology | verify) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
     list) _retrace_words "$word" 'materials machines processes standards' ;;
   esac

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "studies/closed_loop/verification.h"
+
+namespace retrace::studies {
+
+/// Texture that a strategy leaves, in the terms of a design's [surface]: published Sa of facets by motion, shared
+/// between roughness and feed marks (docs/theory/verification.md).
+struct PredictedTexture {
+  double sa_nm = 0.0;
+  double roughness_sq_nm = 0.0;
+  double correlation_length_um = 0.0;
+  double waviness_sq_nm = 0.0;
+  double waviness_length_um = 0.0;  ///< of the feed marks
+};
+PredictedTexture predicted_texture(const fabrication::Job& job);
+
+/// The part that programs leave, moulded in it or cut directly, as far as a design file can say it: all elements alike,
+/// with the mean of their facets' tilts.
+struct AsMachined {
+  std::array<double, 2> facet_tilt_arcmin{};  ///< towards -x and +x of the part, opening is positive
+  double root_radius_um = 0.0;
+  PredictedTexture texture;
+  std::string body;  ///< the table [body] of the job's design, or a default
+  std::vector<std::string> warnings;
+};
+
+/// \throw InputError if no element was cut whose facets could be measured
+AsMachined as_machined(const VerificationRun& run);
+
+/// The design file of it (retrace.design/1), for `retrace rre`.
+std::string as_machined_toml(const VerificationRun& run, const AsMachined& part);
+
+}  // namespace retrace::studies
