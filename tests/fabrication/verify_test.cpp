@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,22 @@ TEST(Verify, CorrectProgramsOfEveryStrategyAndMachine) {
             << what;
         EXPECT_EQ(v.elements_cut, static_cast<std::int64_t>(v.elements.size())) << what;
       }
+}
+
+/// Golden programs: passes side by side, another apex angle, masks, direct cutting, every dialect.
+TEST(Verify, GoldenProgramsOfEveryDialect) {
+  int count = 0;
+  for (const auto& folder : std::filesystem::directory_iterator(RETRACE_SOURCE_DIR "/tests/fabrication/golden")) {
+    const Job job = read_job(folder.path() / "job.toml");
+    for (const char* ending : {"ngc", "mpf", "nc", "pmc"}) {
+      const std::string text = read_file(folder.path() / ("program." + std::string(ending)));
+      const NcProgram program = parse_nc(text, "p", recognise_dialect(text, "p"));
+      const Verification v = verify_programs(job, machine(job.machine), {program}, {}, {});
+      EXPECT_TRUE(v.passes()) << folder.path().filename() << " " << ending << "\n" << listed(v);
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 28);
 }
 
 /// A small job on the machine with the largest errors: four prisms in a checker, finished with one cut a facet.
