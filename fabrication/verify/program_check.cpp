@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -114,6 +115,7 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   }
   check_settings(settings, motion.place);
   check_holder(sweep);
+  if (is_deep(sweep)) check_fixtures(sweep);
   const std::optional<std::size_t> element = element_of(sweep);
   if (!element) {
     close_plunge();
@@ -196,6 +198,13 @@ void ProgramCheck::find_corners(const Sweep& sweep) {
   }
 }
 
+bool ProgramCheck::is_deep(const Sweep& sweep) const {
+  const double deepest_mm =
+      std::min(back_[sweep.pose].point(sweep.from_mm).z(), back_[sweep.pose].point(sweep.to_mm).z());
+  // No groove comes this far down: what does may meet the fixture.
+  return workpiece_.grooves.empty() || deepest_mm < 2.0 * workpiece_.grooves.front().root_mm.z();
+}
+
 std::optional<std::size_t> ProgramCheck::element_of(const Sweep& sweep) const {
   const Vec3 from = back_[sweep.pose].point(sweep.from_mm);
   const Vec3 to = back_[sweep.pose].point(sweep.to_mm);
@@ -230,6 +239,24 @@ void ProgramCheck::check_feed(const NcMotion& motion, double allowed) {
            fmt::format("a cut has a feed of {} mm/min, the process allows {}", shortest(motion.feed_mm_per_min),
                        shortest(allowed)),
            motion.feed_mm_per_min, allowed);
+}
+
+/// Table and cradle are boxes: the tip, or a corner of what moves with it, must stay outside of them.
+void ProgramCheck::check_fixtures(const Sweep& sweep) {
+  for (const MachineBody& body : machine_.bodies) {
+    if (body.carrier == Carrier::tool) continue;
+    Eigen::AlignedBox3d box;
+    for (const Vec3& corner : body.points_mm.value) box.extend(corner);
+    const double c_deg = body.carrier == Carrier::workpiece ? pose_words_[sweep.pose].c_deg : 0.0;
+    const RigidMotion back = machine_from_workpiece(machine_, {pose_words_[sweep.pose].a_deg, c_deg}).inverse();
+    const auto is_inside = [&](const Vec3& p) { return box.contains(back.point(p)); };
+    bool collides =
+        is_inside(sweep.from_mm) || is_inside(sweep.to_mm) || is_inside(0.5 * (sweep.from_mm + sweep.to_mm));
+    for (const MachineBody& carried : machine_.bodies)
+      if (carried.carrier == Carrier::tool)
+        for (const Vec3& corner : carried.points_mm.value) collides = collides || is_inside(sweep.to_mm + corner);
+    if (collides) report("fixture_collision", sweep.place, -1, "the tool runs into the " + body.name, 0, 0);
+  }
 }
 
 void ProgramCheck::check_holder(const Sweep& sweep) {

@@ -86,6 +86,8 @@ class ProgramCheck : public NcSink {
   void check_rapid(const NcMotion& motion, const Sweep& sweep);
   void check_feed(const NcMotion& motion, double allowed);
   void check_holder(const Sweep& sweep);
+  void check_fixtures(const Sweep& sweep);
+  bool is_deep(const Sweep& sweep) const;
   void check_cut(const NcMotion& motion, const Sweep& sweep, std::size_t element);
   void check_outside(const Sweep& sweep);
   void check_plunge(const NcMotion& motion, const Sweep& sweep, std::size_t element);

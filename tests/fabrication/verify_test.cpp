@@ -227,6 +227,29 @@ TEST_F(Faults, SignFlippedInOneLineOfASubroutine) {
   EXPECT_TRUE(has(v, "clearance_face_leads", line)) << listed(v);
 }
 
+TEST_F(Faults, TheTableAndTheHolder) {
+  const std::size_t call = find("o101 call");
+  lines_.insert(lines_.begin() + static_cast<std::ptrdiff_t>(call), "G1 Z-20. F10");
+  const Verification v = verified();
+  EXPECT_TRUE(has(v, "fixture_collision", call)) << listed(v);
+  EXPECT_TRUE(has(v, "holder_collision", call)) << listed(v);
+  EXPECT_TRUE(has(v, "gouge", call)) << listed(v);
+}
+
+TEST_F(Faults, BeyondAnAxisLimit) {
+  const std::size_t line = find("G0 Z");
+  lines_[line] = "G0 Z151.";
+  const Verification v = verified();
+  EXPECT_TRUE(has(v, "axis_limit", line)) << listed(v);
+}
+
+TEST_F(Faults, TheTableTurnsBelowTheTool) {
+  const std::size_t turn = find("G0 A", find("o101 call"));
+  lines_[turn - 1] = "(no lift)";
+  const Verification v = verified();
+  EXPECT_TRUE(has(v, "turn_too_low", turn)) << listed(v);
+}
+
 TEST_F(Faults, ShiftedOrigin) {
   for (std::string& line : lines_)
     if (line.starts_with("G0 X")) {
