@@ -229,7 +229,7 @@ TEST_F(Faults, SignFlippedInOneLineOfASubroutine) {
 
 TEST_F(Faults, TheTableAndTheHolder) {
   const std::size_t call = find("o101 call");
-  lines_.insert(lines_.begin() + static_cast<std::ptrdiff_t>(call), "G1 Z-20. F10");
+  lines_.insert(lines_.begin() + static_cast<std::ptrdiff_t>(call), "G1 Z-22. F10");
   const Verification v = verified();
   EXPECT_TRUE(has(v, "fixture_collision", call)) << listed(v);
   EXPECT_TRUE(has(v, "holder_collision", call)) << listed(v);
