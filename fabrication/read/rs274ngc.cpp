@@ -61,6 +61,8 @@ class Reader {
       read_line_that_may_be_cut(lines_, program_, [&] { read(without_comments(line, lines_)); });
     program_.lines = lines_.number();
     program_.main_last = program_.blocks.size();
+    // Of a file that stops within a subroutine there is no main program to carry out.
+    if (open_ >= 0) program_.main_first = program_.main_last;
     if (open_ >= 0 && !program_.truncated) program_.truncated = "a subroutine has no endsub";
     if (percent_signs_ == 1 && !program_.truncated) program_.truncated = "the % at the end is missing";
     return std::move(program_);

@@ -434,10 +434,11 @@ void ProgramCheck::count_time(const NcMotion& motion) {
                                                   axes[i]->acceleration_mm_per_s2.value));
     time_.rapid_s += slowest_s;
   }
-  const double a_s = trapezoid_s(known(3) ? std::abs(motion.to.a_deg - motion.from.a_deg) : 0.0,
-                                 machine_.a.speed_deg_per_s.value, machine_.a.acceleration_deg_per_s2.value);
-  const double c_s = trapezoid_s(known(4) ? std::abs(motion.to.c_deg - motion.from.c_deg) : 0.0,
-                                 machine_.c.speed_deg_per_s.value, machine_.c.acceleration_deg_per_s2.value);
+  // The tool is touched off at A = C = 0, from where the first turn starts.
+  const double a_s = trapezoid_s(std::abs(motion.to.a_deg - motion.from.a_deg), machine_.a.speed_deg_per_s.value,
+                                 machine_.a.acceleration_deg_per_s2.value);
+  const double c_s = trapezoid_s(std::abs(motion.to.c_deg - motion.from.c_deg), machine_.c.speed_deg_per_s.value,
+                                 machine_.c.acceleration_deg_per_s2.value);
   time_.rotary_s += std::max(a_s, c_s);
 }
 
