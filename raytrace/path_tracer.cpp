@@ -376,19 +376,18 @@ bool PathWalker::meet_textured(State& state, const Vec3& normal) {
                           setup_.policy.split_power, random);
   tally_.other[Account::truncated] += back.truncated;
   tally_.other[Account::absorbed] += back.absorbed;
-  const bool was_inside = state.inside;
-  const auto goes_on = [&](const Ray& ray) {
-    State next = state;
-    next.direction = ray.direction;
-    next.light = ray.light;
-    next.inside = ray.inside;
-    next.scattered = ray.scattered;
-    if (was_inside && !ray.inside) next.left_through = FacetRole::retro_facet;
-    return next;
-  };
-  if (back.transmitted) pending_.push_back(goes_on(*back.transmitted));
-  if (back.reflected) state = goes_on(*back.reflected);
-  return back.reflected.has_value();
+  const State before = state;
+  for (std::size_t k = 0; k < back.count; ++k) {
+    const Ray& ray = back.rays[k];
+    state = before;
+    state.direction = ray.direction;
+    state.light = ray.light;
+    state.inside = ray.inside;
+    state.scattered = ray.scattered;
+    if (before.inside && !ray.inside) state.left_through = FacetRole::retro_facet;
+    if (k + 1 < back.count) pending_.push_back(state);
+  }
+  return back.count > 0;
 }
 
 Branch PathWalker::choose(Light& reflected, Light& transmitted) {

@@ -28,20 +28,32 @@ LocalEvent local_event(const Optics& optics, const Vec3& normal, const Ray& ray,
   return local;
 }
 
-/// Turns a ray that has left the facet as from a plane one; nothing if the texture keeps it.
-std::optional<Ray> scattered(Ray ray, const Optics& optics, const LocalEvent& local, Lobe lobe, TexturedReturn& result,
-                             surface_models::RandomStream& random) {
-  const auto out = surface_models::sample(optics.facet_scatter, local.event, local.piece, lobe, random);
-  result.truncated += (1.0 - (out ? out->weight : 0.0)) * ray.light.power();
-  if (!out) return std::nullopt;
-  ray.light.scale(out->weight);
-  if (!out->is_specular) {
-    const Vec3 direction = (local.world_from_local * out->direction).normalized();
+/// Adds a ray that has left the facet as from a plane one, turned as the texture scatters it.
+void add(Ray ray, const LocalEvent& local, const surface_models::ScatterSample& out, TexturedReturn& result) {
+  ray.light.scale(out.weight);
+  result.truncated -= ray.light.power();
+  if (!out.is_specular) {
+    const Vec3 direction = (local.world_from_local * out.direction).normalized();
     ray.light.s_axis = Eigen::Quaterniond::FromTwoVectors(ray.direction, direction) * ray.light.s_axis;
     ray.direction = direction;
   }
-  ray.scattered = ray.scattered || !out->is_specular || local.piece.is_tilted;
-  return ray;
+  ray.scattered = ray.scattered || !out.is_specular || local.piece.is_tilted;
+  result.rays[result.count++] = ray;
+}
+
+void scatter(const Ray& ray, const Optics& optics, const LocalEvent& local, Lobe lobe, double split_power,
+             TexturedReturn& result, surface_models::RandomStream& random) {
+  const double power = ray.light.power();
+  result.truncated += power;
+  if (power > 0.0)
+    if (const auto both = surface_models::sample_split(optics.facet_scatter, local.event, local.piece, lobe,
+                                                       split_power / power, random)) {
+      if (both->specular) add(ray, local, *both->specular, result);
+      if (both->scattered) add(ray, local, *both->scattered, result);
+      return;
+    }
+  if (const auto out = surface_models::sample(optics.facet_scatter, local.event, local.piece, lobe, random))
+    add(ray, local, *out, result);
 }
 
 }  // namespace
@@ -61,10 +73,8 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
   TexturedReturn result;
   if (optics.coating_index) result.absorbed = light.power() - reflected.light.power();
   const Branch branch = choose_branch(reflected.light, transmitted.light, split_power, [&] { return random.next(); });
-  if (branch != Branch::reflected)
-    result.transmitted = scattered(transmitted, optics, local, Lobe::transmission, result, random);
-  if (branch != Branch::transmitted)
-    result.reflected = scattered(reflected, optics, local, Lobe::reflection, result, random);
+  if (branch != Branch::reflected) scatter(transmitted, optics, local, Lobe::transmission, split_power, result, random);
+  if (branch != Branch::transmitted) scatter(reflected, optics, local, Lobe::reflection, split_power, result, random);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <optional>
+#include <array>
+#include <cstddef>
 
 #include "raytrace/light_setup.h"
 #include "surface_models/scatter/random_stream.h"
@@ -35,13 +36,14 @@ Branch choose_branch(Light& reflected, Light& transmitted, double split_power, c
 
 /// What a textured facet makes of a ray.
 struct TexturedReturn {
-  std::optional<Ray> reflected;
-  std::optional<Ray> transmitted;
+  std::array<Ray, 4> rays;  ///< the first `count` of them
+  std::size_t count = 0;
   double truncated = 0.0;  ///< power that the texture keeps, or gives (negative)
   double absorbed = 0.0;   ///< power that a coating takes
 };
 
-/// Fresnel's branches at a piece of the texture, each scattered by Optics::facet_scatter.
+/// Fresnel's branches at a piece of the texture, each scattered by Optics::facet_scatter. What stays specular and what
+/// does not are followed both while each has at least `split_power`, as the branches are.
 /// \param normal of the facet, unit, out of the part
 TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
                                    surface_models::RandomStream& random);

@@ -390,8 +390,7 @@ void CellWalker::meet_texture(const Stream& stream) {
         setup_.optics, normal, ray_of(rays, k, was_inside, stream.scattered), policy_.split_power, random);
     tally_->other[Account::truncated] += back.truncated;
     tally_->other[Account::absorbed] += back.absorbed;
-    if (back.reflected) send(k, *back.reflected);
-    if (back.transmitted) send(k, *back.transmitted);
+    for (std::size_t n = 0; n < back.count; ++n) send(k, back.rays[n]);
   }
 }
 

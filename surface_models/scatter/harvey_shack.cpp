@@ -86,11 +86,22 @@ double HarveyShack::specular_share(const ScatterEvent& event, const Facet& facet
   return phase_lobe ? phase_lobe->specular_share() : 0.0;
 }
 
+double HarveyShack::scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
+  const auto phase_lobe = PhaseLobe::make(event, lobe, band(event, facet, lobe).sq_nm);
+  return phase_lobe ? phase_lobe->scattered_share() : 0.0;
+}
+
 std::optional<Vec2> HarveyShack::sample_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                                   RandomStream& random) const {
+  if (random.next() >= scattered_share(event, facet, lobe)) return std::nullopt;
+  return draw_scattered(event, facet, lobe, random);
+}
+
+std::optional<Vec2> HarveyShack::draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                                RandomStream& random) const {
   const Band what = band(event, facet, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, what.sq_nm);
-  if (!phase_lobe || random.next() >= phase_lobe->scattered_share()) return std::nullopt;
+  if (!phase_lobe) return std::nullopt;
   return phase_lobe->sample_scattered(random, [&](int order, RandomStream& numbers) -> Vec2 {
     int rough = order;
     if (what.roughness_share < 1.0) {

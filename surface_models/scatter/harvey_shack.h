@@ -39,6 +39,11 @@ class HarveyShack {
   /// \param event in the frame of the mean surface
   Facet sample_facet(const ScatterEvent& event, RandomStream& random) const;
   double specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
+  /// One less the same, to full precision where that is small.
+  double scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
+  /// The same as sample_scattered() given that the light scatters. Nothing if no direction can be found.
+  std::optional<Vec2> draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                     RandomStream& random) const;
   /// Draws the direction of light that scatters; nothing for light that is specular.
   std::optional<Vec2> sample_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                        RandomStream& random) const;

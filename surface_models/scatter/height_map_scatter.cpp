@@ -261,12 +261,24 @@ double HeightMapScatter::specular_share(const ScatterEvent& event, const Facet& 
   return phase_lobe ? phase_lobe->specular_share() : 0.0;
 }
 
+double HeightMapScatter::scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
+  if (facet.is_tilted) return 0.0;
+  const auto phase_lobe = PhaseLobe::make(event, lobe, Band(*texture_, event, lobe).sq_nm);
+  return phase_lobe ? phase_lobe->scattered_share() : 0.0;
+}
+
 std::optional<Vec2> HeightMapScatter::sample_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                                        RandomStream& random) const {
+  if (random.next() >= scattered_share(event, facet, lobe)) return std::nullopt;
+  return draw_scattered(event, facet, lobe, random);
+}
+
+std::optional<Vec2> HeightMapScatter::draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                                     RandomStream& random) const {
   if (facet.is_tilted) return std::nullopt;
   const Band band(*texture_, event, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, band.sq_nm);
-  if (!phase_lobe || random.next() >= phase_lobe->scattered_share()) return std::nullopt;
+  if (!phase_lobe) return std::nullopt;
   return phase_lobe->sample_scattered(
       random, [&](int order, RandomStream& numbers) { return band.sample_shift(order, numbers); });
 }

@@ -36,6 +36,11 @@ class HeightMapScatter {
   /// \param event in the frame of the mean surface
   Facet sample_facet(const ScatterEvent& event, RandomStream& random) const;
   double specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
+  /// One less the same, to full precision where that is small.
+  double scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
+  /// The same as sample_scattered() given that the light scatters. Nothing if no direction can be found.
+  std::optional<Vec2> draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                     RandomStream& random) const;
   std::optional<Vec2> sample_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                        RandomStream& random) const;
   double scattered_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;

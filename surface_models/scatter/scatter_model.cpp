@@ -55,6 +55,33 @@ std::optional<ScatterSample> sample(const ScatterModel& model, const ScatterEven
       model);
 }
 
+std::optional<ScatterSplit> sample_split(const ScatterModel& model, const ScatterEvent& event, const Facet& facet,
+                                         Lobe lobe, double least_share, RandomStream& random) {
+  const auto specular = specular_direction(event, facet.normal, lobe);
+  if (!specular) return std::nullopt;
+  return std::visit(
+      [&](const auto& m) -> std::optional<ScatterSplit> {
+        if constexpr (requires { m.scattered_share(event, facet, lobe); }) {
+          const FacetFrame frame(facet);
+          const ScatterEvent seen = frame.to_facet(event);
+          const double share = m.scattered_share(seen, facet, lobe);
+          if (share < least_share || 1.0 - share < least_share) return std::nullopt;
+          const auto beta = m.draw_scattered(seen, facet, lobe, random);
+          if (!beta) return std::nullopt;
+          const auto part = [&](const Vec3& direction, double weight,
+                                bool is_specular) -> std::optional<ScatterSample> {
+            if (!is_on_side(direction, lobe)) return std::nullopt;
+            const double unmasked = facet.is_tilted ? m.unmasked_share(direction) : 1.0;
+            return ScatterSample{direction, *specular, weight * unmasked, is_specular};
+          };
+          return ScatterSplit{part(*specular, 1.0 - share, true),
+                              part(frame.to_mean(direction_of(*beta, lobe)), share, false)};
+        }
+        return std::nullopt;
+      },
+      model);
+}
+
 double specular_share(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe) {
   if (!specular_direction(event, facet.normal, lobe)) return 0.0;
   return std::visit([&](const auto& m) { return m.specular_share(FacetFrame(facet).to_facet(event), facet, lobe); },
