@@ -38,6 +38,42 @@ TEST(HarveyShack, SamplesFollowTheDensity) {
     }
 }
 
+// Both shares drawn at once are those of one draw: the power of each, and the mean and spread of where light scatters.
+TEST(HarveyShack, SharesDrawnApartAreThoseOfOneDraw) {
+  constexpr std::uint32_t kDraws = 40000;
+  const HarveyShack model({40.0, 2.0, 0.0, 0.0});
+  const ScatterEvent event = inside(45.0);
+  const double share = specular_share(model, event, {}, Lobe::reflection);
+  std::array<double, 2> mean{};
+  std::array<double, 2> square{};
+  std::array<double, 2> count{};
+  for (std::uint32_t k = 0; k < kDraws; ++k) {
+    RandomStream random = stream(77, k);
+    const auto both = sample_split(model, event, {}, Lobe::reflection, 0.01, random);
+    ASSERT_TRUE(both && both->specular && both->scattered);
+    EXPECT_NEAR(both->specular->weight, share, 1e-12);
+    EXPECT_NEAR(both->scattered->weight, 1.0 - share, 1e-12);
+    EXPECT_TRUE(both->specular->is_specular);
+    RandomStream other = stream(78, k);
+    const auto one = sample(model, event, {}, Lobe::reflection, other);
+    const auto add = [&](std::size_t which, const ScatterSample& drawn) {
+      const double off = drawn.direction.x() - drawn.specular_direction.x();
+      mean[which] += off;
+      square[which] += off * off;
+      count[which] += 1.0;
+    };
+    add(0, *both->scattered);
+    if (one && !one->is_specular) add(1, *one);
+  }
+  EXPECT_NEAR(count[1] / kDraws, 1.0 - share, 4.0 * std::sqrt(share * (1.0 - share) / kDraws));
+  const double sigma = std::sqrt(square[0] / count[0]);
+  EXPECT_NEAR(mean[0] / count[0], mean[1] / count[1], 4.0 * sigma * std::sqrt(1.0 / count[0] + 1.0 / count[1]));
+  EXPECT_NEAR(std::sqrt(square[1] / count[1]) / sigma, 1.0, 0.05);
+  RandomStream random = stream(79, 0);
+  EXPECT_FALSE(sample_split(model, event, {}, Lobe::reflection, 0.9, random));
+  EXPECT_FALSE(sample_split(Smooth{}, event, {}, Lobe::reflection, 0.01, random));
+}
+
 TEST(HarveyShack, ConservesEnergy) {
   for (const Roughness& r : {roughnesses()[1], roughnesses()[2]})
     for (const Case& c : cases()) {

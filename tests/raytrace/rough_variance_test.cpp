@@ -1,0 +1,65 @@
+// Less chance with textured facets: what stays specular and what does not are followed apart.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "raytrace/monte_carlo.h"
+#include "tests/support/designs.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+const PartSpec kCubes = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
+const std::vector<double> kCones = {0.5, 8.0};
+
+Optics rough_pmma() {
+  Optics optics = pmma();
+  optics.facet_scatter = surface_models::HarveyShack({10.0, 5.0, 0.0, 0.0});
+  return optics;
+}
+
+MonteCarloResult trace(const Part& part, std::uint64_t count, std::uint32_t seed, const PathPolicy& policy) {
+  return MonteCarlo(part, MonteCarlo::Engine::cell)
+      .trace(rough_pmma(), from(12.0, 30.0), kCones, rays(count, seed), policy);
+}
+
+// 95 % intervals of many short runs hold what one long run with other points says.
+TEST(RoughVariance, ErrorsAreTrue) {
+  constexpr std::uint32_t kSeeds = 60;
+  const Part part = build_part(kCubes);
+  const ConeResult truth = trace(part, 1U << 20, 1000, {}).cones[0];
+  const double t95 = student_bound_of(0.05, MonteCarlo::kReplicates);
+  int within = 0;
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    const ConeResult run = trace(part, 1U << 13, seed, {}).cones[0];
+    within += std::abs(run.rre - truth.rre) <= t95 * std::hypot(run.std_error, truth.std_error) ? 1 : 0;
+  }
+  // Of 60 runs 57 on average; fewer than 50 by chance once in a thousand suites.
+  EXPECT_GE(within, 50);
+}
+
+// The same on average, and fewer rays for the same error.
+TEST(RoughVariance, SharesAreFollowedApart) {
+  const Part part = build_part(kCubes);
+  PathPolicy one_by_chance;
+  one_by_chance.split_power = 1.0;
+  const MonteCarloResult chance = trace(part, 1U << 18, 1, one_by_chance);
+  const MonteCarloResult apart = trace(part, 1U << 16, 2, {});
+  const double z = student_bound(kCones.size());
+  for (std::size_t k = 0; k < kCones.size(); ++k) {
+    const ConeResult& a = apart.cones[k];
+    const ConeResult& b = chance.cones[k];
+    EXPECT_NEAR(a.rre, b.rre, z * std::hypot(a.std_error, b.std_error)) << k;
+    for (std::size_t n = 0; n < kAccountCount; ++n)
+      EXPECT_NEAR(a.ledger.power[n], b.ledger.power[n], 4.0 * 0.5 / 256.0) << kAccountNames[n];
+  }
+  // In the narrow cone, which scattered light misses, with a quarter of the rays.
+  EXPECT_LT(apart.cones[0].std_error, chance.cones[0].std_error);
+}
+
+}  // namespace
+}  // namespace retrace::testing
