@@ -76,6 +76,24 @@ RTCIntersectContext context() {
   return c;
 }
 
+RTCRayHit query_of(const SurfaceRay& ray) {
+  RTCRayHit query;
+  query.ray.org_x = static_cast<float>(ray.origin.x());
+  query.ray.org_y = static_cast<float>(ray.origin.y());
+  query.ray.org_z = static_cast<float>(ray.origin.z());
+  query.ray.dir_x = static_cast<float>(ray.direction.x());
+  query.ray.dir_y = static_cast<float>(ray.direction.y());
+  query.ray.dir_z = static_cast<float>(ray.direction.z());
+  query.ray.tnear = kNear;
+  query.ray.tfar = 1e30F;
+  query.ray.time = 0.0F;
+  query.ray.mask = UINT32_MAX;
+  query.ray.flags = 0;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return query;
+}
+
 /// Fills lane k of a packet; P is RTCRayHit8 or RTCRayHit16.
 template <class P>
 void load(P& packet, unsigned k, const SurfaceRay& ray) {
@@ -115,22 +133,23 @@ std::size_t RawEmbree::trace1(const std::vector<SurfaceRay>& rays) const {
   RTCIntersectContext c = context();
   std::size_t hits = 0;
   for (const SurfaceRay& ray : rays) {
-    alignas(16) RTCRayHit query;
-    query.ray.org_x = static_cast<float>(ray.origin.x());
-    query.ray.org_y = static_cast<float>(ray.origin.y());
-    query.ray.org_z = static_cast<float>(ray.origin.z());
-    query.ray.dir_x = static_cast<float>(ray.direction.x());
-    query.ray.dir_y = static_cast<float>(ray.direction.y());
-    query.ray.dir_z = static_cast<float>(ray.direction.z());
-    query.ray.tnear = kNear;
-    query.ray.tfar = 1e30F;
-    query.ray.time = 0.0F;
-    query.ray.mask = UINT32_MAX;
-    query.ray.flags = 0;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCRayHit query = query_of(ray);
     rtcIntersect1(impl_->scene, &c, &query);
     hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+  }
+  return hits;
+}
+
+std::size_t RawEmbree::trace_streams(const std::vector<SurfaceRay>& rays) const {
+  constexpr std::size_t kStream = 1024;
+  std::vector<RTCRayHit> stream(kStream);
+  RTCIntersectContext c = context();
+  std::size_t hits = 0;
+  for (std::size_t first = 0; first < rays.size(); first += kStream) {
+    const std::size_t count = std::min(kStream, rays.size() - first);
+    for (std::size_t k = 0; k < count; ++k) stream[k] = query_of(rays[first + k]);
+    rtcIntersect1M(impl_->scene, &c, stream.data(), static_cast<unsigned>(count), sizeof(RTCRayHit));
+    for (std::size_t k = 0; k < count; ++k) hits += stream[k].hit.geomID != RTC_INVALID_GEOMETRY_ID;
   }
   return hits;
 }

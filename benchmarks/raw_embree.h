@@ -13,10 +13,11 @@ class RawEmbree {
   explicit RawEmbree(const Scene& scene);
   ~RawEmbree();
 
-  /// Each traces all rays in packets of 1, 8 or 16 and returns how many hit.
+  /// Each traces all rays in packets of 1, 8 or 16, or streams of 1024, and returns how many hit.
   std::size_t trace1(const std::vector<raytrace::SurfaceRay>& rays) const;
   std::size_t trace8(const std::vector<raytrace::SurfaceRay>& rays) const;
   std::size_t trace16(const std::vector<raytrace::SurfaceRay>& rays) const;
+  std::size_t trace_streams(const std::vector<raytrace::SurfaceRay>& rays) const;
 
  private:
   struct Impl;

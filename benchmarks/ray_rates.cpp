@@ -134,6 +134,10 @@ void raw_embree_16(benchmark::State& state) {
   run_raw(state, [](const RawEmbree& raw, const auto& rays) { return raw.trace16(rays); });
 }
 
+void raw_embree_streams(benchmark::State& state) {
+  run_raw(state, [](const RawEmbree& raw, const auto& rays) { return raw.trace_streams(rays); });
+}
+
 /// The tracer's search on the same rays: Embree, the source excluded by name, the plane met again in double precision.
 void surface_search(benchmark::State& state) {
   static const BackSurface small(scene_of(20).part, scene_of(20).centre_mm);
@@ -177,6 +181,7 @@ void surface_args(benchmark::internal::Benchmark* b) {
 BENCHMARK(raw_embree_1)->Apply(surface_args);
 BENCHMARK(raw_embree_8)->Apply(surface_args);
 BENCHMARK(raw_embree_16)->Apply(surface_args);
+BENCHMARK(raw_embree_streams)->Apply(surface_args);
 BENCHMARK(surface_search)->Apply(surface_args);
 BENCHMARK(whole_paths)
     ->ArgNames({"side", "incidence", "threads"})
