@@ -14,20 +14,35 @@ struct RawEmbree::Impl {
   RTCScene scene = nullptr;
   std::vector<RTCScene> patches;
 
-  RTCScene mesh(const geometry::SurfacePatch& patch, const geometry::Vec2& offset) const {
+  /// One mesh of the pieces that are placed.
+  RTCScene mesh(const geometry::Part& part, const std::vector<geometry::Placement>& placements,
+                const geometry::Vec2& origin) const {
     RTCScene s = rtcNewScene(device);
     rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(
-        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, patch.vertices.size()));
-    for (const Vec3& p : patch.vertices) {
-      *v++ = static_cast<float>(p.x() + offset.x());
-      *v++ = static_cast<float>(p.y() + offset.y());
-      *v++ = static_cast<float>(p.z());
+    std::size_t vertex_count = 0;
+    std::size_t triangle_count = 0;
+    for (const auto& placement : placements) {
+      vertex_count += part.patches[placement.patch].vertices.size();
+      triangle_count += part.patches[placement.patch].triangles.size();
     }
+    auto* v =
+        static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertex_count));
     auto* t = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, patch.triangles.size()));
-    for (const auto& triangle : patch.triangles) t = std::copy(triangle.begin(), triangle.end(), t);
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangle_count));
+    std::uint32_t first = 0;
+    for (const auto& placement : placements) {
+      const geometry::SurfacePatch& patch = part.patches[placement.patch];
+      const geometry::Vec2 offset = placement.offset_mm - origin;
+      for (const Vec3& p : patch.vertices) {
+        *v++ = static_cast<float>(p.x() + offset.x());
+        *v++ = static_cast<float>(p.y() + offset.y());
+        *v++ = static_cast<float>(p.z());
+      }
+      for (const auto& triangle : patch.triangles)
+        for (const auto corner : triangle) *t++ = first + static_cast<std::uint32_t>(corner);
+      first += static_cast<std::uint32_t>(patch.vertices.size());
+    }
     rtcCommitGeometry(g);
     rtcAttachGeometry(s, g);
     rtcReleaseGeometry(g);
@@ -36,13 +51,17 @@ struct RawEmbree::Impl {
   }
 };
 
-RawEmbree::RawEmbree(const Scene& from) : impl_(std::make_unique<Impl>()) {
+RawEmbree::RawEmbree(const Scene& from, Build build) : impl_(std::make_unique<Impl>()) {
   const geometry::Part& part = from.part;
-  if (part.placements.size() == 1) {
-    impl_->scene = impl_->mesh(part.patches[0], part.placements[0].offset_mm - from.centre_mm);
+  if (part.placements.size() == 1 || build == Build::flat) {
+    impl_->scene = impl_->mesh(part, part.placements, from.centre_mm);
     return;
   }
-  for (const auto& patch : part.patches) impl_->patches.push_back(impl_->mesh(patch, geometry::Vec2::Zero()));
+  for (std::uint32_t patch = 0; patch < part.patches.size(); ++patch) {
+    geometry::Placement placement;
+    placement.patch = patch;
+    impl_->patches.push_back(impl_->mesh(part, {placement}, geometry::Vec2::Zero()));
+  }
   impl_->scene = rtcNewScene(impl_->device);
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
   for (const auto& placement : part.placements) {

@@ -138,6 +138,15 @@ void raw_embree_streams(benchmark::State& state) {
   run_raw(state, [](const RawEmbree& raw, const auto& rays) { return raw.trace_streams(rays); });
 }
 
+void raw_embree_flat(benchmark::State& state) {
+  static const RawEmbree small(scene_of(20), RawEmbree::Build::flat);
+  static const RawEmbree large(scene_of(222), RawEmbree::Build::flat);
+  const RawEmbree& raw = state.range(0) == 20 ? small : large;
+  const auto& rays = rays_of(state.range(0), state.range(1) != 0);
+  for (auto _ : state) benchmark::DoNotOptimize(raw.trace1(rays));
+  report(state, rays.size());
+}
+
 /// The tracer's search on the same rays: Embree, the source excluded by name, the plane met again in double precision.
 void surface_search(benchmark::State& state) {
   static const BackSurface small(scene_of(20).part, scene_of(20).centre_mm);
@@ -179,6 +188,7 @@ void surface_args(benchmark::internal::Benchmark* b) {
 }
 
 BENCHMARK(raw_embree_1)->Apply(surface_args);
+BENCHMARK(raw_embree_flat)->Apply(surface_args);
 BENCHMARK(raw_embree_8)->Apply(surface_args);
 BENCHMARK(raw_embree_16)->Apply(surface_args);
 BENCHMARK(raw_embree_streams)->Apply(surface_args);
