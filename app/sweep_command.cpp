@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <thread>
 
@@ -106,7 +109,11 @@ ExitCode run_sweep_command(const CommandLine& line) {
   check_study_options(line);
   if (!studies::MpiSession::is_launched()) return sweep_with(line, nullptr);
   studies::MpiSession session;
-  return session.rank() == 0 ? sweep_with(line, &session) : serve(line, session);
+  const ExitCode code = session.rank() == 0 ? sweep_with(line, &session) : serve(line, session);
+  if (session.end()) return code;
+  // Ranks are gone, and MPI may wait for them for ever: what is left is not its to tidy up.
+  std::fflush(nullptr);
+  ::_exit(static_cast<int>(code));
 }
 
 }  // namespace retrace::app

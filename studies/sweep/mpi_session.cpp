@@ -1,12 +1,13 @@
 #include "studies/sweep/mpi_session.h"
 
 #include <fmt/format.h>
-#include <mpi.h>
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <deque>
 #include <exception>
 #include <map>
@@ -14,10 +15,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <thread>
 #include <utility>
 
+#include "core/error.h"
 #include "raytrace/threads.h"
+#include "studies/sweep/mpi_mailbox.h"
 
 namespace retrace::studies {
 namespace {
@@ -25,21 +29,36 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;
 
-constexpr std::chrono::microseconds kPoll{100};
-constexpr std::chrono::milliseconds kHeartbeat{500};
-/// A rank of which nothing is heard for so long is given up.
-constexpr std::chrono::seconds kSilence{15};
-/// So long rank 0 waits for the others to leave after an interrupt or an error.
+/// A rank of which nothing is heard for so long is given up, unless the environment says otherwise.
+constexpr double kSilenceS = 15.0;
+constexpr const char* kSilenceVariable = "RETRACE_MPI_SILENCE_S";
+/// So long rank 0 waits for the others to leave, and everybody for MPI to end.
 constexpr std::chrono::seconds kPatience{10};
 constexpr std::chrono::milliseconds kWaitForOthers{50};
+constexpr std::chrono::milliseconds kLook{20};
+/// Batches that take less are asked for while the one before is computed.
+constexpr std::chrono::seconds kQuick{1};
 
 enum Tag : int {
   ask = 1,  ///< to rank 0: how many points are wanted
   result,   ///< to rank 0: a finished point
-  alive,    ///< to rank 0: still at work
   leaving,  ///< to rank 0: gone after this, and why
-  deal      ///< from rank 0: numbers of points; none: there is no more
+  deal,     ///< from rank 0: numbers of points
+  go        ///< from rank 0: there is no more; says whether all ranks are there to end MPI together
 };
+constexpr std::string_view kAllAreThere = "all";
+
+/// \throw InputError
+std::chrono::duration<double> silence_limit() {
+  const char* const text = std::getenv(kSilenceVariable);
+  if (text == nullptr) return std::chrono::duration<double>(kSilenceS);
+  double seconds = 0.0;
+  const char* const end = text + std::strlen(text);
+  const auto [rest, error] = std::from_chars(text, end, seconds);
+  if (error != std::errc() || rest != end || !(seconds >= 1.0 && seconds <= 86400.0))
+    throw InputError(fmt::format("{}: must be a number of seconds in 1..86400, got \"{}\"", kSilenceVariable, text));
+  return std::chrono::duration<double>(seconds);
+}
 
 std::string to_message(const StoredPoint& point) {
   Json outputs = Json::array();
@@ -69,12 +88,6 @@ StoredPoint from_message(const std::string& message, const Sweep& sweep) {
   return point;
 }
 
-struct Message {
-  int rank = 0;
-  int tag = 0;
-  std::string bytes;
-};
-
 bool is_cancelled(const Cancellation* cancel) {
   return cancel != nullptr && cancel->requested();
 }
@@ -82,57 +95,69 @@ bool is_cancelled(const Cancellation* cancel) {
 }  // namespace
 
 struct MpiSession::State {
-  int rank = 0;
-  int size = 1;
-  std::mutex mutex;         ///< MPI is called by one thread at a time
-  std::set<int> present;    ///< rank 0: the others that have not left
-  bool lost_ranks = false;  ///< some were given up: MPI cannot be ended in order
+  std::chrono::duration<double> silence = silence_limit();
+  MpiMailbox mailbox{
+      std::chrono::milliseconds(static_cast<long>(std::min(500.0, 1000.0 * silence_limit().count() / 6.0)))};
+  std::set<int> there;      ///< rank 0: the others that were not given up
+  std::set<int> at_work;    ///< rank 0: those of them that have not said that they leave
+  bool lost_ranks = false;  ///< MPI cannot be ended in order
+  bool may_go = false;      ///< the others: rank 0 has said so
+  bool has_ended = false;
+  bool ended_well = true;
   std::vector<std::string> remarks;
-  std::map<int, Clock::time_point> heard;
+  Clock::time_point looked_last = Clock::now();
 
-  void send(int to, int tag, const std::string& bytes) {
-    const std::lock_guard lock(mutex);
-    MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD);
-  }
+  bool is_silent(int rank) const { return mailbox.silence(rank) > silence; }
 
-  /// A message that has come, if one has.
-  std::optional<Message> receive() {
-    const std::lock_guard lock(mutex);
-    int is_there = 0;
-    MPI_Status status;
-    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &is_there, &status);
-    if (is_there == 0) return std::nullopt;
-    int size_of_message = 0;
-    MPI_Get_count(&status, MPI_BYTE, &size_of_message);
-    Message message{status.MPI_SOURCE, status.MPI_TAG, std::string(static_cast<std::size_t>(size_of_message), '\0')};
-    MPI_Recv(message.bytes.data(), size_of_message, MPI_BYTE, message.rank, message.tag, MPI_COMM_WORLD,
-             MPI_STATUS_IGNORE);
-    return message;
+  /// A process that was stopped for a while, or waited for its disk, has heard nothing meanwhile.
+  void look() {
+    const auto now = Clock::now();
+    if (now - looked_last > std::chrono::seconds(1)) mailbox.forgive_silence();
+    looked_last = now;
   }
 
   void send_points(int to, const std::vector<std::uint64_t>& points) {
-    send(to, Tag::deal,
-         std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(std::uint64_t)));
+    mailbox.post(to, Tag::deal,
+                 std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(std::uint64_t)));
   }
 
-  /// Whoever asks is sent away, until nobody is left or patience ends. \param on_result takes what was still finished
-  template <class OnResult>
-  void dismiss(OnResult on_result) {
-    const auto deadline = Clock::now() + kPatience;
-    while (!present.empty() && Clock::now() < deadline) {
-      const std::optional<Message> message = receive();
-      if (!message) {
-        std::this_thread::sleep_for(kPoll);
-        continue;
-      }
-      if (message->tag == Tag::result) on_result(message->bytes);
-      if (message->tag == Tag::ask) send_points(message->rank, {});
-      if (message->tag == Tag::ask || message->tag == Tag::leaving) present.erase(message->rank);
-    }
-    lost_ranks = lost_ranks || !present.empty();
-    present.clear();
+  void give_up(int rank) {
+    there.erase(rank);
+    at_work.erase(rank);
+    lost_ranks = true;
+    mailbox.forget(rank);
   }
+
+  void end_rank_0();
+  void end_other();
 };
+
+/// Everybody is sent away; who does not answer in time is given up.
+void MpiSession::State::end_rank_0() {
+  for (const int rank : there) mailbox.post(rank, Tag::go, lost_ranks ? "" : std::string(kAllAreThere));
+  const auto deadline = Clock::now() + kPatience;
+  std::set<int> open = there;
+  while (!open.empty() && Clock::now() < deadline) {
+    const std::optional<Letter> letter = mailbox.take(kLook);
+    if (letter && letter->tag == Tag::leaving && letter->bytes.empty()) open.erase(letter->rank);
+  }
+  for (const int rank : open) give_up(rank);
+}
+
+void MpiSession::State::end_other() {
+  while (!may_go) {
+    look();
+    const std::optional<Letter> letter = mailbox.take(kLook);
+    if (letter && letter->tag == Tag::go) {
+      may_go = true;
+      lost_ranks = letter->bytes != kAllAreThere;
+    } else if (!letter && is_silent(0)) {
+      may_go = true;
+      lost_ranks = true;
+    }
+  }
+  mailbox.post(0, Tag::leaving, "");
+}
 
 bool MpiSession::is_launched() {
   const auto is_set = [](const char* name) { return std::getenv(name) != nullptr; };
@@ -140,27 +165,33 @@ bool MpiSession::is_launched() {
 }
 
 MpiSession::MpiSession() : state_(std::make_unique<State>()) {
-  int provided = 0;
-  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
-  MPI_Comm_rank(MPI_COMM_WORLD, &state_->rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &state_->size);
-  // A rank that dies must not take this one along.
-  MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
-  if (state_->rank != 0) return;
-  for (int other = 1; other < state_->size; ++other) {
-    state_->present.insert(other);
-    state_->heard[other] = Clock::now();
+  if (rank() != 0) return;
+  for (int other = 1; other < state_->mailbox.size(); ++other) {
+    state_->there.insert(other);
+    state_->at_work.insert(other);
   }
 }
 
 MpiSession::~MpiSession() {
-  if (state_->rank == 0) state_->dismiss([](const std::string&) {});
+  end();
+}
+
+bool MpiSession::end() {
+  State& state = *state_;
+  if (state.has_ended) return state.ended_well;
+  state.has_ended = true;
+  if (rank() == 0)
+    state.end_rank_0();
+  else
+    state.end_other();
+  const bool has_gone = state.mailbox.flush(std::chrono::seconds(2));
   // With ranks gone astray MPI would wait for them for ever.
-  if (!state_->lost_ranks) MPI_Finalize();
+  state.ended_well = has_gone && !state.lost_ranks && state.mailbox.close(kPatience);
+  return state.ended_well;
 }
 
 int MpiSession::rank() const {
-  return state_->rank;
+  return state_->mailbox.rank();
 }
 
 std::vector<std::string> MpiSession::remarks() const {
@@ -209,6 +240,12 @@ class Dealer {
       open_.push_front(entry->first);
       entry = dealt_.erase(entry);
     }
+  }
+
+  /// Whether a rank has points that it has not told the results of.
+  bool has_points(int rank) {
+    const std::lock_guard lock(mutex_);
+    return std::any_of(dealt_.begin(), dealt_.end(), [rank](const auto& entry) { return entry.second == rank; });
   }
 
   bool nothing_open() {
@@ -288,76 +325,97 @@ bool MpiSession::deal(const Sweep& sweep, ResultStore& store, std::size_t slots,
                       const Cancellation* cancel) {
   State& state = *state_;
   Dealer dealer(sweep, store, observer);
-  const OwnShare own(sweep, dealer, slots, cancel);
   Waiting waiting;
-  const auto lose = [&](int rank, const std::string& why) {
+  const auto leaves = [&](int rank, const std::string& why) {
     dealer.take_back(rank);
-    state.present.erase(rank);
+    state.at_work.erase(rank);
     waiting.erase(rank);
     state.remarks.push_back(fmt::format("rank {} {}; its points went to others", rank, why));
   };
-  while (!is_cancelled(cancel)) {
-    own.rethrow();
-    bool idle = true;
-    while (const std::optional<Message> message = state.receive()) {
-      idle = false;
-      state.heard[message->rank] = Clock::now();
-      if (message->tag == Tag::ask) waiting[message->rank] = std::stoul(message->bytes);
-      if (message->tag == Tag::result) dealer.record(from_message(message->bytes, sweep));
-      if (message->tag == Tag::leaving) lose(message->rank, "left: " + message->bytes);
+  const auto read = [&](const Letter& letter) {
+    if (!state.there.contains(letter.rank)) return;  // was given up, and is not dead after all
+    if (letter.tag == Tag::ask) waiting[letter.rank] = std::stoul(letter.bytes);
+    if (letter.tag == Tag::result) dealer.record(from_message(letter.bytes, sweep));
+    if (letter.tag == Tag::leaving) leaves(letter.rank, "left: " + letter.bytes);
+  };
+  const auto give_up_silent = [&] {
+    const std::set<int> there = state.there;
+    for (const int rank : there) {
+      if (!state.is_silent(rank)) continue;
+      if (state.at_work.contains(rank)) leaves(rank, fmt::format("was silent for {:g} s", state.silence.count()));
+      state.give_up(rank);
     }
+  };
+  const auto deal_out = [&] {
     for (auto entry = waiting.begin(); entry != waiting.end();) {
       const std::vector<std::uint64_t> points = dealer.take(entry->first, entry->second);
       if (points.empty()) break;
       state.send_points(entry->first, points);
       entry = waiting.erase(entry);
     }
-    const std::set<int> present = state.present;
-    for (const int rank : present)
-      if (Clock::now() - state.heard[rank] > kSilence) {
-        lose(rank, fmt::format("was silent for {} s", kSilence.count()));
-        state.lost_ranks = true;
-      }
-    if (dealer.nothing_open() && dealer.finished()) break;
-    if (idle) std::this_thread::sleep_for(kPoll);
+  };
+  {
+    const OwnShare own(sweep, dealer, slots, cancel);
+    while (!is_cancelled(cancel)) {
+      own.rethrow();
+      state.look();
+      if (const std::optional<Letter> letter = state.mailbox.take(kLook)) read(*letter);
+      deal_out();
+      give_up_silent();
+      if (dealer.nothing_open() && dealer.finished()) break;
+    }
   }
-  for (const auto& [rank, wanted] : waiting) {
-    state.send_points(rank, {});
-    state.present.erase(rank);
-  }
-  state.dismiss([&](const std::string& message) { dealer.record(from_message(message, sweep)); });
+  // What the others have in work when everything is to stop may still come in.
+  const auto deadline = Clock::now() + kPatience;
+  const auto has_points = [&](int rank) { return dealer.has_points(rank); };
+  while (is_cancelled(cancel) && std::any_of(state.at_work.begin(), state.at_work.end(), has_points) &&
+         Clock::now() < deadline)
+    if (const std::optional<Letter> letter = state.mailbox.take(kLook)) read(*letter);
   return unfinished(sweep, store).empty();
 }
 
+namespace {
+
+std::vector<std::uint64_t> points_of(const Letter& letter) {
+  std::vector<std::uint64_t> points(letter.bytes.size() / sizeof(std::uint64_t));
+  std::memcpy(points.data(), letter.bytes.data(), points.size() * sizeof(std::uint64_t));
+  return points;
+}
+
+}  // namespace
+
 void MpiSession::serve(const Sweep& sweep, std::size_t slots, const Cancellation* cancel) {
   State& state = *state_;
-  // A point may take long; rank 0 is to know that this one is at work.
-  const std::jthread heart([&](const std::stop_token& stop) {
-    while (!stop.stop_requested()) {
-      state.send(0, Tag::alive, "");
-      for (int k = 0; k < 10 && !stop.stop_requested(); ++k) std::this_thread::sleep_for(kHeartbeat / 10);
-    }
-  });
-  while (true) {
-    state.send(0, Tag::ask, std::to_string(slots));
-    std::optional<Message> message;
-    while (!(message = state.receive())) std::this_thread::sleep_for(kPoll);
-    std::vector<std::uint64_t> points(message->bytes.size() / sizeof(std::uint64_t));
-    std::copy(message->bytes.begin(), message->bytes.end(), reinterpret_cast<char*>(points.data()));
-    if (points.empty()) return;
-    raytrace::for_each_in_parallel(points.size(), [&](std::size_t k) {
-      const auto point = compute_point(sweep.study(), points[k], sweep.values(points[k]), cancel);
-      if (point) state.send(0, Tag::result, to_message(*point));
-    });
-    if (is_cancelled(cancel)) {
-      leave("interrupted");
+  const auto ask = [&] { state.mailbox.post(0, Tag::ask, std::to_string(slots)); };
+  ask();
+  bool is_quick = false;
+  while (!is_cancelled(cancel)) {
+    state.look();
+    const std::optional<Letter> letter = state.mailbox.take(kLook);
+    if (!letter && state.is_silent(0)) return;
+    if (!letter) continue;
+    if (letter->tag == Tag::go) {
+      state.may_go = true;
+      state.lost_ranks = letter->bytes != kAllAreThere;
       return;
     }
+    const std::vector<std::uint64_t> points = points_of(*letter);
+    // With the next points on their way nobody waits for letters; slow points are better kept for who is free.
+    if (is_quick) ask();
+    const auto start = Clock::now();
+    raytrace::for_each_in_parallel(points.size(), [&](std::size_t k) {
+      const auto point = compute_point(sweep.study(), points[k], sweep.values(points[k]), cancel);
+      if (point) state.mailbox.post(0, Tag::result, to_message(*point));
+    });
+    if (!is_quick && !is_cancelled(cancel)) ask();
+    is_quick = Clock::now() - start < kQuick;
+    state.looked_last = Clock::now();
   }
+  leave("interrupted");
 }
 
 void MpiSession::leave(const std::string& why) {
-  state_->send(0, Tag::leaving, why);
+  state_->mailbox.post(0, Tag::leaving, why);
 }
 
 }  // namespace retrace::studies

@@ -29,5 +29,8 @@ std::vector<std::string> MpiSession::remarks() const {
 }
 void MpiSession::serve(const Sweep&, std::size_t, const Cancellation*) {}
 void MpiSession::leave(const std::string&) {}
+bool MpiSession::end() {
+  return true;
+}
 
 }  // namespace retrace::studies

@@ -12,6 +12,7 @@
 #include <regex>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 namespace retrace::test {
 namespace fs = std::filesystem;
@@ -99,6 +100,25 @@ Outcome Child::wait() {
   ::waitpid(process_, &status, 0);
   process_ = -1;
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(out_.get()), content(err_.get())};
+}
+
+bool Child::has_ended() const {
+  siginfo_t what = {};
+  return ::waitid(P_PID, static_cast<id_t>(process_), &what, WEXITED | WNOHANG | WNOWAIT) == 0 && what.si_pid != 0;
+}
+
+Outcome Child::wait(std::chrono::seconds limit) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  while (!has_ended() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  if (!has_ended()) {
+    ADD_FAILURE() << "still running after " << limit.count() << " s";
+    // mpirun takes its ranks along if it is asked.
+    ::kill(process_, SIGTERM);
+    for (int k = 0; k < 100 && !has_ended(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    ::kill(process_, SIGKILL);
+  }
+  return wait();
 }
 
 Outcome retrace(const TemporaryFolder& folder, Arguments arguments, const std::string& input, const std::string& out) {

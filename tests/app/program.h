@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -58,6 +59,10 @@ class Child {
 
   void interrupt() const;
   Outcome wait();
+  /// The same for a child that must end in time: one that does not is a failure of the test, and is killed.
+  Outcome wait(std::chrono::seconds limit);
+  /// Whether it has ended; what it left behind is still told by wait().
+  bool has_ended() const;
 
  private:
   using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
