@@ -20,6 +20,7 @@ if(RETRACE_WITH_MPI)
 endif()
 find_path(RETRACE_RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus>=3.3)
+pkg_check_modules(CCD REQUIRED IMPORTED_TARGET ccd>=2.0)
 pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3>=3.3)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo>=1.16 cairo-svg cairo-png)
 

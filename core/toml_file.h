@@ -41,6 +41,9 @@ class TomlTable {
   /// A list of exactly `count` numbers.
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const NumberRange& range = {});
   std::vector<double> required_numbers(std::string_view key, std::size_t count, const NumberRange& range = {});
+  /// A list of lists of exactly `columns` numbers.
+  std::vector<std::vector<double>> required_number_rows(std::string_view key, std::size_t columns,
+                                                        const NumberRange& range = {});
   /// A number without fraction. \pre the range's ends are whole and within 2^53
   std::optional<long long> whole(std::string_view key, const NumberRange& range);
   std::optional<bool> flag(std::string_view key);

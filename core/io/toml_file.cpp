@@ -150,6 +150,25 @@ std::vector<double> TomlTable::required_numbers(std::string_view key, std::size_
   return *std::move(values);
 }
 
+std::vector<std::vector<double>> TomlTable::required_number_rows(std::string_view key, std::size_t columns,
+                                                                 const NumberRange& range) {
+  const toml::node* const node = hidden_->take(key);
+  const std::string allowed = fmt::format("must be a list of lists of {} numbers", columns);
+  if (node == nullptr) fail(key, "missing, " + allowed);
+  const toml::array* const list = node->as_array();
+  if (list == nullptr) fail(key, allowed + ", got " + shown(*node));
+  std::vector<std::vector<double>> rows;
+  for (const toml::node& item : *list) {
+    const toml::array* const row = item.as_array();
+    if (row == nullptr || row->size() != columns)
+      fail(key,
+           fmt::format("{}, got {}", allowed, row != nullptr ? fmt::format("one of {}", row->size()) : shown(item)));
+    rows.emplace_back();
+    for (const toml::node& value : *row) rows.back().push_back(hidden_->checked(key, value, range));
+  }
+  return rows;
+}
+
 std::optional<long long> TomlTable::whole(std::string_view key, const NumberRange& range) {
   const std::optional<double> value = number(key, range);
   if (!value) return std::nullopt;

@@ -15,9 +15,11 @@ constexpr double kOffCornerMm = 2e-7;
 constexpr double kLeastStripMm = 2e-6;
 /// Where what is left at the root is taken.
 constexpr double kAtRootMm = 1.5e-6;
-/// Margin on what is predicted of the region at the root, for apex angles other than 90 degrees.
-constexpr double kRootMargin = 1.2;
+/// Margin on what is predicted of the region at the root: rounding of poses and positions.
+constexpr double kRootMargin = 1.05;
 constexpr int kEvenLines = 12;
+/// Passes of the tool whose middles are this close are one: what ploughing leaves differs by picometres then.
+constexpr double kSamePassMm = 3e-6;
 /// Inner part of the width from which a facet's plane is taken.
 constexpr double kPlaneShare = 0.8;
 
@@ -34,7 +36,7 @@ class Measurer {
       : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
     for (const RigidMotion& pose : poses) back_.push_back(pose.inverse());
     find_stations();
-    strip_mm_ = std::max(1.05 * prediction.root_mm, kLeastStripMm);
+    strip_mm_ = std::max(kRootMargin * prediction.root_mm, kLeastStripMm);
     find_burr();
   }
 
@@ -58,10 +60,10 @@ class Measurer {
       double previous_top = 0.0;
       for (const double slant : slants) {
         const double floor_mm =
-            is_other_ploughed && slant == kAtRootMm ? ploughed_height(1 - facet, along) / sine_between() : 0.0;
-        if (!is_clear_of_other(slant + floor_mm)) continue;
+            is_other_ploughed && slant == kAtRootMm ? ploughed_height(1 - facet, along).high / sine_between() : 0.0;
+        if (!is_clear_of_other(slant)) continue;
         const LineSurface surface = surface_at(facet, along, slant + floor_mm);
-        take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along) : 0.0);
+        take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along) : Interval{});
         if (is_for_plane(slant, along)) sums.add(slant, along, surface.lowest);
         figures.residual_mm3 += 0.5 * (surface.top + previous_top) * (slant - previous_slant) * width_mm;
         previous_slant = slant;
@@ -114,25 +116,39 @@ class Measurer {
            slant <= 0.98 * groove_.facet_length_mm;
   }
 
-  /// Plunges along the two facets whose tips end up to t above the other facet leave a burr between their rake faces,
-  /// free of the facets beyond the strip: t + v / r < height < (v - t) r with r the rake face's slope.
+  /// Plunges along the two facets whose tips end up to t up the facets leave a burr between their rake faces, free of
+  /// the facets beyond the strip (docs/theory/verification.md). Rake faces that do not cross leave a fin, which no
+  /// prediction excuses.
   void find_burr() {
     const double up = wedge_.rake_direction.dot(wedge_.clearance_direction);
     const double slope = std::tan(std::acos(std::clamp(up, -1.0, 1.0)) + std::asin(wedge_.sides[0].outward.z()));
-    const double t = prediction_.root_mm;
-    burr_end_mm_ = strip_mm_ + kRootMargin * t * (1.0 + slope) / std::max(slope - 1.0 / slope, 0.05);
-    burr_height_mm_ = kRootMargin * (t + burr_end_mm_ / slope);
+    const double sine = sine_between();
+    const double cosine = groove_.facets[0].up_slope.dot(groove_.facets[1].up_slope);
+    const double across = slope * sine + cosine;
+    const double slope_of_other = (sine - slope * cosine) / across;
+    if (slope <= slope_of_other) return;
+    const double t = kRootMargin * prediction_.root_mm;
+    const double end_mm = t * slope * (1.0 + 1.0 / across) / (slope - slope_of_other);
+    burr_end_mm_ = strip_mm_ + end_mm;
+    burr_height_mm_ = strip_mm_ + end_mm * slope;
+  }
+
+  /// Where the plane in which the middle of the edge moves meets the root line, along it.
+  double middle_of(const Sweep& sweep) const {
+    const Vec3& across = wedge_.edge;
+    const RigidMotion& pose = poses_[sweep.pose];
+    return across.dot(sweep.to_mm - pose.point(groove_.root_mm)) / across.dot(pose.direction(groove_.root_direction));
   }
 
   void find_stations() {
     for (const Sweep& sweep : sweeps_) {
-      const double middle = groove_.along_mm(back_[sweep.pose].point(sweep.to_mm));
-      const auto is_same = [&](double known) { return std::abs(known - middle) < 0.02 * wedge_.half_width_mm; };
+      const double middle = middle_of(sweep);
+      const auto is_same = [&](double known) { return std::abs(known - middle) < kSamePassMm; };
       if (std::none_of(stations_.pass_middles_mm.begin(), stations_.pass_middles_mm.end(), is_same))
         stations_.pass_middles_mm.push_back(middle);
     }
     // The ends of a tilted edge leave slivers at the walls, which the neighbours' cuts take.
-    const double margin = prediction_.wall_mm + 10.0 * kOffCornerMm;
+    const double margin = prediction_.wall_mm + 2.0 * kSamePassMm;
     const double end = groove_.half_width_mm - margin;
     stations_.along_mm = {-end, -kPlaneShare * end, kPlaneShare * end, end};
     plane_end_mm_ = kPlaneShare * groove_.half_width_mm;
@@ -174,16 +190,19 @@ class Measurer {
 
   LineSurface surface_at(std::size_t facet, double along, double slant) {
     const DesignFacet& design = groove_.facets[facet];
+    const bool is_at_root = slant <= strip_mm_;
     const Vec3 point = groove_.root_mm + along * groove_.root_direction + slant * design.up_slope;
+    // What is left at the root is told along the other facet: how far up that its cuts end.
+    const Vec3& direction = is_at_root ? groove_.facets[1 - facet].up_slope : design.normal;
     spans_.clear();
     for (std::size_t pose = 0; pose < poses_.size(); ++pose) {
       const Vec3 p = poses_[pose].point(point);
-      const Vec3 d = poses_[pose].direction(design.normal);
+      const Vec3 d = poses_[pose].direction(direction);
       for (const Sweep& sweep : sweeps_)
         if (sweep.pose == pose)
           if (const auto span = swept_span(wedge_, sweep, p, d)) spans_.push_back(*span);
     }
-    return surface_along(spans_, exit_of(facet, point, slant));
+    return surface_along(spans_, is_at_root ? -point.z() / direction.z() : exit_of(facet, point));
   }
 
   /// Height over the other facet for each mm up a facet: the sine of the angle that they include.
@@ -207,37 +226,45 @@ class Measurer {
   }
 
   /// Where a line normal to a facet leaves what the design takes away: at the blank's face, or before the other facet.
-  double exit_of(std::size_t facet, const Vec3& point, double slant) const {
+  double exit_of(std::size_t facet, const Vec3& point) const {
     const DesignFacet& design = groove_.facets[facet];
     const double at_face = -point.z() / design.normal.z();
     const double towards = approach_of_other();
     if (towards <= 0.0) return at_face;
-    const double height = groove_.facets[1 - facet].height_mm(point);
-    const double free = slant <= strip_mm_ ? 0.5 * height : height - residue_of_other_mm();
+    const double free = groove_.facets[1 - facet].height_mm(point) - residue_of_other_mm();
     return std::min(at_face, free / towards);
   }
 
-  /// What ploughing must leave: 0 at the deeper end of the edge, which touches the design's facet.
-  double ploughed_height(std::size_t facet, double along) const {
+  /// What ploughing must leave at a station: 0 at the deeper end of the edge, which touches the design's facet. The
+  /// ends of a tilted edge wander by up to wall_mm along a facet: within that of an end the pass may or may not have
+  /// been there.
+  Interval ploughed_height(std::size_t facet, double along) const {
     const double slope = prediction_.plough_slope[facet];
     const double half = wedge_.half_width_mm;
-    double least = 2.0 * half * std::abs(slope);
-    for (const double middle : stations_.pass_middles_mm)
-      if (std::abs(along - middle) <= half * (1.0 + 1e-9))
-        least = std::min(least, half * std::abs(slope) + slope * (along - middle));
-    return least;
+    const double most = 2.0 * half * std::abs(slope);
+    Interval height{most, most};
+    for (const double middle : stations_.pass_middles_mm) {
+      const double off = std::abs(along - middle);
+      const double left = std::clamp(half * std::abs(slope) + slope * (along - middle), 0.0, most);
+      if (off <= half + prediction_.wall_mm + kSamePassMm) height.low = std::min(height.low, left);
+      if (off <= half - prediction_.wall_mm - 0.5 * kSamePassMm) height.high = std::min(height.high, left);
+    }
+    return height;
   }
 
-  void take(FacetFigures& figures, const LineSurface& surface, double slant, double predicted) const {
-    const double lowest_nm = (std::min(surface.lowest, surface.top) - predicted) * kNmPerMm;
+  /// \param predicted heights over the design's facet between which the surface must lie
+  void take(FacetFigures& figures, const LineSurface& surface, double slant, const Interval& predicted) const {
+    const double lowest_mm = std::min(surface.lowest, surface.top);
     if (slant <= strip_mm_) {
-      if (lowest_nm > figures.root.nm) figures.root = {lowest_nm, surface.lowest_line};
+      const double left_nm = (surface.top - predicted.high / sine_between()) * kNmPerMm;
+      if (left_nm > figures.root.nm) figures.root = {left_nm, surface.top_line};
       return;
     }
     const bool is_under_burr = slant < burr_end_mm_ && surface.top < burr_height_mm_;
-    const double above_nm = is_under_burr ? lowest_nm : (surface.top - predicted) * kNmPerMm;
+    const double above_nm = ((is_under_burr ? lowest_mm : surface.top) - predicted.high) * kNmPerMm;
+    const double below_nm = (lowest_mm - predicted.low) * kNmPerMm;
     if (above_nm > figures.highest.nm) figures.highest = {above_nm, surface.top_line};
-    if (lowest_nm < figures.deepest.nm) figures.deepest = {lowest_nm, surface.lowest_line};
+    if (below_nm < figures.deepest.nm) figures.deepest = {below_nm, surface.lowest_line};
   }
 
   const Groove& groove_;

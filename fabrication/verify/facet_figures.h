@@ -24,7 +24,7 @@ struct FacetFigures {
   double distance_nm = 0.0;   ///< largest deviation from the prediction outside of the strip along the root, unsigned
   FacetDeviation highest;     ///< outside of the strip
   FacetDeviation deepest;     ///< likewise
-  FacetDeviation root;        ///< highest within the strip
+  FacetDeviation root;        ///< left at the root, up the other facet
   double mean_nm = 0.0;       ///< of the deviations from the design outside of the strip
   double slope_up = 0.0;      ///< of the plane through the surface against the design: up the slope
   double slope_along = 0.0;   ///< and along the root

@@ -14,7 +14,7 @@ struct Prediction {
   /// By how much facet f rises from one end of the tool's edge to the other, per mm, when it is ploughed in the pose of
   /// the other facet; signed along the root direction of the groove.
   std::array<double, 2> plough_slope{};
-  double root_mm = 0.0;  ///< what the tilted edge leaves at the root at most, at right angles to a facet
+  double root_mm = 0.0;  ///< by which the ends of the tilted edge stay up a facet at the root at most
   double wall_mm = 0.0;  ///< by which the tilted edge's ends cut into the walls at most
 };
 

@@ -29,6 +29,12 @@ Vec3 interpolated(const Vec3& a, const Vec3& b, double a_height, double b_height
   return a + (b - a) * (a_height / (a_height - b_height));
 }
 
+/// How much of the diamond counts as a body: more than the deepest groove; what holds it, the machine file says.
+double diamond_mm(const Workpiece3d& workpiece) {
+  constexpr double kDepths = 2.0;
+  return workpiece.grooves.empty() ? 1.0 : -kDepths * workpiece.grooves.front().root_mm.z();
+}
+
 /// Time of a move that starts and ends at rest.
 double trapezoid_s(double distance, double speed_per_s, double acceleration_per_s2) {
   if (!(distance > 0.0)) return 0.0;
@@ -49,7 +55,8 @@ ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings)
       machine_(*workpiece.machine),
       findings_(findings),
       map_(workpiece.grooves),
-      wedge_(tool_wedge(workpiece.job->tool, machine_)),
+      wedge_(tool_wedge(workpiece.job->tool, machine_, Angle::from_deg(workpiece.job->element.apex_angle_deg))),
+      tool_bodies_(tool_bodies(machine_, wedge_, diamond_mm(workpiece))),
       sweeps_(workpiece.grooves.size()),
       states_(workpiece.grooves.size()) {}
 
@@ -73,6 +80,7 @@ std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
   pose_words_.push_back(pose);
   poses_.push_back(machine_from_workpiece(machine_, pose));
   back_.push_back(poses_.back().inverse());
+  standing_.push_back(standing_bodies(machine_, pose));
   return poses_.size() - 1;
 }
 
@@ -104,9 +112,10 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   sweep.pose = static_cast<std::uint32_t>(pose_index({motion.to.a_deg, motion.to.c_deg}));
   sweep.place = motion.place;
   sweep.is_rapid = motion.move == NcMove::rapid;
-  sweep.from_mm = machine_point(machine_, motion.from);
-  sweep.to_mm = machine_point(machine_, motion.to);
+  sweep.from_mm = machine_point(machine_, motion.from) + wedge_.tip_mm;
+  sweep.to_mm = machine_point(machine_, motion.to) + wedge_.tip_mm;
   find_corners(sweep);
+  check_fixtures(sweep);
   if (sweep.is_rapid) check_rapid(motion, sweep);
   if (corners_.empty()) {
     close_plunge();
@@ -115,7 +124,6 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   }
   check_settings(settings, motion.place);
   check_holder(sweep);
-  if (is_deep(sweep)) check_fixtures(sweep);
   const std::optional<std::size_t> element = element_of(sweep);
   if (!element) {
     close_plunge();
@@ -158,6 +166,7 @@ void ProgramCheck::check_turn(const NcMotion& motion) {
     return;
   }
   const geometry::Vec2 half = 0.5 * blank_extent_mm(job_);
+  const Vec3 tip = machine_point(machine_, motion.from) + wedge_.tip_mm;
   double highest_mm = -std::numeric_limits<double>::infinity();
   constexpr int steps = 24;
   for (int i = 0; i <= steps; ++i) {
@@ -167,8 +176,11 @@ void ProgramCheck::check_turn(const NcMotion& motion) {
     const RigidMotion turn = machine_from_workpiece(machine_, pose);
     for (const double x : {-half.x(), half.x()})
       for (const double y : {-half.y(), half.y()}) highest_mm = std::max(highest_mm, turn.point(Vec3(x, y, 0)).z());
+    if ((motion.known & kLinearBits) != kLinearBits) continue;
+    for (const BodyContact& contact : contacts(tool_bodies_, standing_bodies(machine_, pose), tip, tip))
+      report_contact(contact, motion.place);
   }
-  const double z_mm = machine_point(machine_, motion.from).z();
+  const double z_mm = tip.z();
   if (z_mm < highest_mm)
     report("turn_too_low", motion.place, -1,
            fmt::format("the turning blank comes up to Z {} mm while the tool stands at Z {} mm", fixed(highest_mm, 3),
@@ -196,13 +208,6 @@ void ProgramCheck::find_corners(const Sweep& sweep) {
     }
     if ((a.z() < 0.0) != (b.z() < 0.0)) corners_.push_back(interpolated(a, b, a.z(), b.z()));
   }
-}
-
-bool ProgramCheck::is_deep(const Sweep& sweep) const {
-  const double deepest_mm =
-      std::min(back_[sweep.pose].point(sweep.from_mm).z(), back_[sweep.pose].point(sweep.to_mm).z());
-  // No groove comes this far down: what does may meet the fixture.
-  return workpiece_.grooves.empty() || deepest_mm < 2.0 * workpiece_.grooves.front().root_mm.z();
 }
 
 std::optional<std::size_t> ProgramCheck::element_of(const Sweep& sweep) const {
@@ -241,22 +246,14 @@ void ProgramCheck::check_feed(const NcMotion& motion, double allowed) {
            motion.feed_mm_per_min, allowed);
 }
 
-/// Table and cradle are boxes: the tip, or a corner of what moves with it, must stay outside of them.
+/// The tool against table, cradle and fixtures, all of them convex.
 void ProgramCheck::check_fixtures(const Sweep& sweep) {
-  for (const MachineBody& body : machine_.bodies) {
-    if (body.carrier == Carrier::tool) continue;
-    Eigen::AlignedBox3d box;
-    for (const Vec3& corner : body.points_mm.value) box.extend(corner);
-    const double c_deg = body.carrier == Carrier::workpiece ? pose_words_[sweep.pose].c_deg : 0.0;
-    const RigidMotion back = machine_from_workpiece(machine_, {pose_words_[sweep.pose].a_deg, c_deg}).inverse();
-    const auto is_inside = [&](const Vec3& p) { return box.contains(back.point(p)); };
-    bool collides =
-        is_inside(sweep.from_mm) || is_inside(sweep.to_mm) || is_inside(0.5 * (sweep.from_mm + sweep.to_mm));
-    for (const MachineBody& carried : machine_.bodies)
-      if (carried.carrier == Carrier::tool)
-        for (const Vec3& corner : carried.points_mm.value) collides = collides || is_inside(sweep.to_mm + corner);
-    if (collides) report("fixture_collision", sweep.place, -1, "the tool runs into the " + body.name, 0, 0);
-  }
+  for (const BodyContact& contact : contacts(tool_bodies_, standing_[sweep.pose], sweep.from_mm, sweep.to_mm))
+    report_contact(contact, sweep.place);
+}
+
+void ProgramCheck::report_contact(const BodyContact& contact, const NcPlace& place) {
+  report("fixture_collision", place, -1, "the " + contact.tool + " runs into the " + contact.other, 0, 0);
 }
 
 void ProgramCheck::check_holder(const Sweep& sweep) {

@@ -10,6 +10,7 @@
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_motion.h"
+#include "fabrication/verify/bodies.h"
 #include "fabrication/verify/findings.h"
 #include "fabrication/verify/groove.h"
 #include "fabrication/verify/prediction.h"
@@ -87,7 +88,7 @@ class ProgramCheck : public NcSink {
   void check_feed(const NcMotion& motion, double allowed);
   void check_holder(const Sweep& sweep);
   void check_fixtures(const Sweep& sweep);
-  bool is_deep(const Sweep& sweep) const;
+  void report_contact(const BodyContact& contact, const NcPlace& place);
   void check_cut(const NcMotion& motion, const Sweep& sweep, std::size_t element);
   void check_outside(const Sweep& sweep);
   void check_plunge(const NcMotion& motion, const Sweep& sweep, std::size_t element);
@@ -106,10 +107,12 @@ class ProgramCheck : public NcSink {
   FindingList& findings_;
   GrooveMap map_;
   ToolWedge wedge_;
+  std::vector<PlacedBody> tool_bodies_;
   std::string program_;
   std::vector<RotaryPose> pose_words_;
   std::vector<RigidMotion> poses_;
   std::vector<RigidMotion> back_;
+  std::vector<std::vector<PlacedBody>> standing_;  ///< table, cradle and fixtures in each pose
   std::vector<std::vector<Sweep>> sweeps_;
   std::vector<CutState> states_;
   std::optional<OpenPlunge> open_;

@@ -34,7 +34,7 @@ bool narrow(double a, double c, double& low, double& high) {
 
 }  // namespace
 
-ToolWedge tool_wedge(const Tool& tool, const Machine& machine) {
+ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex) {
   const Vec3 x = machine.x.direction.value;
   const Vec3 z = (machine.z.direction.value - x * x.dot(machine.z.direction.value)).normalized();
   const Vec3 y = z.cross(x);
@@ -43,6 +43,11 @@ ToolWedge tool_wedge(const Tool& tool, const Machine& machine) {
   ToolWedge wedge;
   wedge.edge = x;
   wedge.half_width_mm = 0.5 * tool.width_mm;
+  // The reference point is the crossing of the circle's vertical tangent, the plunged facet, and its horizontal one.
+  // The tangent in the other facet, at the apex angle to the vertical, crosses the vertical one below or above it.
+  const double radius_mm = 1e-3 * tool.edge_radius_um;
+  const double below_mm = radius_mm * (1.0 - std::sin(apex.rad()) + std::cos(apex.rad())) / std::sin(apex.rad());
+  wedge.tip_mm = -below_mm * z;
   wedge.clearance_direction = -std::sin(clearance) * y + std::cos(clearance) * z;
   wedge.rake_direction = -std::sin(rake) * y + std::cos(rake) * z;
   wedge.sides = {{{std::cos(clearance) * y + std::sin(clearance) * z, 0.0},

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/angle.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_motion.h"
@@ -14,9 +15,10 @@
 
 namespace retrace::fabrication {
 
-/// The diamond as an endless wedge, in the frame of the machine relative to the tool reference point: between clearance
-/// face and rake face, and between two planes at the ends of its edge. Its tip is sharp: an edge radius leaves both
-/// swept planes where they are, as the reference point is the crossing of the edge circle's tangents.
+/// The diamond as an endless wedge, in the frame of the machine relative to its tip: between clearance face and rake
+/// face, and between two planes at the ends of its edge. The tip is the crossing of those two tangents of the edge's
+/// circle that lie in the facets, so that a rounded edge sweeps the same two planes as the sharp one
+/// (docs/theory/verification.md).
 struct ToolWedge {
   /// inward . p <= bound
   struct Side {
@@ -28,11 +30,14 @@ struct ToolWedge {
   geometry::Vec3 clearance_direction = geometry::Vec3::UnitZ();  ///< up the clearance face
   geometry::Vec3 rake_direction = geometry::Vec3::UnitZ();       ///< up the rake face
   double half_width_mm = 0.0;
+  geometry::Vec3 tip_mm = geometry::Vec3::Zero();  ///< from the tool reference point; 0 at an apex of 90 degrees
 };
 
-ToolWedge tool_wedge(const Tool& tool, const Machine& machine);
+/// \param apex included angle of the two facets that are cut; the other tangent is the one in the facet that the tool
+/// does not plunge
+ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex);
 
-/// A straight move of the tool in one pose, as points of the machine frame.
+/// A straight move of the tool's tip in one pose, as points of the machine frame.
 struct Sweep {
   std::uint32_t pose = 0;
   NcPlace place;

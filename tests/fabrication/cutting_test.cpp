@@ -10,6 +10,7 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
+#include "fabrication/verify/bodies.h"
 #include "fabrication/verify/dexel.h"
 #include "fabrication/verify/verify.h"
 #include "tests/fabrication/jobs.h"
@@ -58,7 +59,7 @@ Tool tool_of_width(double width_mm) {
 /// other.
 TEST(Cutting, VolumeOfASlot) {
   const Machine ideal = machine("ideal");
-  const ToolWedge wedge = tool_wedge(tool_of_width(1.0), ideal);
+  const ToolWedge wedge = tool_wedge(tool_of_width(1.0), ideal, Angle::from_deg(90));
   const double depth = 0.1;
   const std::vector<Sweep> sweeps = {sweep_of({0, 0, 0.2}, {0, 0, -depth}),
                                      sweep_of({0, 0, -depth}, {0, -0.6, -depth})};
@@ -74,7 +75,7 @@ TEST(Cutting, VolumeOfASlot) {
 /// Two plunges of an ideal machine leave a right prism: base^2 / 4 times the width.
 TEST(Cutting, VolumeOfAPrism) {
   const Machine ideal = machine("ideal");
-  const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal);
+  const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal, Angle::from_deg(90));
   const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {45, 0}),
                                           machine_from_workpiece(ideal, {45, 180})};
   const double base = 0.5;
@@ -89,7 +90,7 @@ TEST(Cutting, VolumeOfAPrism) {
 /// Prisms whose apertures overlap by a quarter of their base share a smaller prism.
 TEST(Cutting, VolumeOfOverlappingPrisms) {
   const Machine ideal = machine("ideal");
-  const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal);
+  const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal, Angle::from_deg(90));
   const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {45, 0}),
                                           machine_from_workpiece(ideal, {45, 180})};
   const double base = 0.5;
@@ -110,7 +111,7 @@ TEST(Cutting, VolumeOfOverlappingPrisms) {
 
 /// A line's part within a swept body, against membership: a point is swept if some place of the travel has it.
 RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
-  const ToolWedge wedge = tool_wedge(tool_of_width(0.5), machine("ideal"));
+  const ToolWedge wedge = tool_wedge(tool_of_width(0.5), machine("ideal"), Angle::from_deg(90));
   const auto coordinate = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
   const auto vector = [&] {
     const double x = coordinate();
@@ -145,6 +146,50 @@ RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
   }
 }
 
+/// Hulls against points: a tetrahedron and a box that comes near to one of its faces.
+TEST(Bodies, HullsMeetWhereTheyDo) {
+  const std::vector<Vec3> tetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const auto cube_at = [](double corner) {
+    std::vector<Vec3> cube;
+    for (int i = 0; i < 8; ++i)
+      cube.emplace_back(corner + ((i & 1) != 0 ? 0.5 : 0.0), corner + ((i & 2) != 0 ? 0.5 : 0.0),
+                        corner + ((i & 4) != 0 ? 0.5 : 0.0));
+    return cube;
+  };
+  // The face x + y + z = 1 is met where 3 corner = 1, though the boxes overlap up to corner = 1.
+  for (const double corner : {0.0, 0.2, 0.333}) EXPECT_TRUE(hulls_meet(tetrahedron, cube_at(corner))) << corner;
+  for (const double corner : {0.334, 0.4, 0.9, 1.5}) EXPECT_FALSE(hulls_meet(tetrahedron, cube_at(corner))) << corner;
+  EXPECT_FALSE(hulls_meet(cube_at(-0.501), tetrahedron));
+  EXPECT_TRUE(hulls_meet(cube_at(-0.499), tetrahedron));
+}
+
+/// Random hulls: a plane between them (they are built on either side of one), or a common point.
+RC_GTEST_PROP(Bodies, HullsAgreeWithPlanesBetweenThem, ()) {
+  const auto coordinate = [] { return 1e-3 * *rc::gen::resize(100, rc::gen::inRange(-1000, 1001)); };
+  const auto vector = [&] {
+    const double x = coordinate();
+    const double y = coordinate();
+    return Vec3(x, y, coordinate());
+  };
+  const Vec3 normal = (vector() + Vec3(0, 0, 2)).normalized();
+  const double gap = 1e-3 * *rc::gen::inRange(1, 500);
+  std::vector<Vec3> below;
+  std::vector<Vec3> above;
+  for (int i = 0; i < 6; ++i) {
+    const Vec3 a = vector();
+    const Vec3 b = vector();
+    below.push_back(a - normal * (std::max(normal.dot(a), 0.0) + 0.5 * gap));
+    above.push_back(b + normal * (std::max(-normal.dot(b), 0.0) + 0.5 * gap));
+  }
+  RC_ASSERT(!hulls_meet(below, above));
+  // A common point within both.
+  const Vec3 to = above[0] - (below[0] + below[1] + below[2] + below[3]) * 0.25;
+  for (Vec3& p : below) p += to;
+  above.push_back(above[0] + Vec3(0.1, 0, 0));
+  above.push_back(above[0] - Vec3(0.1, 0, 0));
+  RC_ASSERT(hulls_meet(below, above));
+}
+
 /// Collects the sweeps of programs, for dexels.
 struct Cut {
   std::vector<Sweep> sweeps;
@@ -167,7 +212,7 @@ struct SweepSink : NcSink {
 
 Cut cut_of(const std::string& text, const Job& job, const Machine& m) {
   SweepSink sink(m);
-  sink.cut.wedge = tool_wedge(job.tool, m);
+  sink.cut.wedge = tool_wedge(job.tool, m, Angle::from_deg(job.element.apex_angle_deg));
   run_nc(parse_nc(text, "p", NcDialect::rs274ngc), sink);
   return sink.cut;
 }

@@ -206,8 +206,29 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
   EXPECT_EQ(refusal("[z]", "[w]"), "m.toml: z: missing, must be a table");
   EXPECT_EQ(refusal("moves_with = \"tool\"", "moves_with = \"spindle\""),
             "m.toml:51: body.moves_with: must be \"workpiece\", \"cradle\" or \"tool\", got \"spindle\"");
+  const std::string box = "box_mm = { value = [-60, -60, -40, 60, 60, -15]";
+  EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]"),
+            "m.toml:47: body.points_mm.value: must be 4 to 1000 points, got 3");
+  EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]"),
+            "m.toml:47: body.points_mm.value: must be points that do not lie in one plane");
+  EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0], [1, 0], [0, 1], [1, 1]]"),
+            "m.toml:47: body.points_mm.value: must be a list of lists of 3 numbers, got one of 2");
+  EXPECT_EQ(refusal(box, "points_mm = { value = 5"),
+            "m.toml:47: body.points_mm.value: must be a list of lists of 3 numbers, got 5");
   EXPECT_EQ(refusal("retrace.machine/1", "retrace.machine/2"),
             "m.toml:3: schema: must be \"retrace.machine/1\", got \"retrace.machine/2\"");
+}
+
+TEST(MachineFile, BodiesAreBoxesOrHulls) {
+  std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml");
+  EXPECT_EQ(parse_machine(text, "m.toml").bodies[0].points_mm.value.size(), 8U);
+  text +=
+      "[[body]]\nname = \"ramp\"\nmoves_with = \"cradle\"\npoints_mm = { value = [[0, 0, 0], [1, 0, 0], [0, 1, "
+      "0], [0, 0, 2.5]], assumed = \"a test\" }\n";
+  const Machine m = parse_machine(text, "m.toml");
+  ASSERT_EQ(m.bodies.back().points_mm.value.size(), 4U);
+  EXPECT_EQ(m.bodies.back().points_mm.value[3], Vec3(0, 0, 2.5));
+  EXPECT_EQ(m.bodies.back().carrier, Carrier::cradle);
 }
 
 TEST(MachineFile, UnknownKeysAreRefused) {

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/atomic_file.h"
@@ -24,12 +28,37 @@ Machine machine(const std::string& name) {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
 }
 
-/// What programs planned for one job leave, judged by another.
-Verification verified(const Job& planned, const Job& job, const Machine& m) {
+Verification verified(const std::vector<Program>& planned, const Job& job, const Machine& m) {
   std::vector<NcProgram> programs;
-  for (const Program& program : make_plan(planned, m).programs)
+  for (const Program& program : planned)
     programs.push_back(parse_nc(nc_text(program, "rs274ngc"), "p.ngc", NcDialect::rs274ngc));
   return verify_programs(job, m, programs, {}, {});
+}
+
+/// What programs planned for one job leave, judged by another.
+Verification verified(const Job& planned, const Job& job, const Machine& m) {
+  return verified(make_plan(planned, m).programs, job, m);
+}
+
+/// The programs with all visits of an element in one subroutine, or in all, moved along Z.
+std::vector<Program> raised(std::vector<Program> programs, std::int32_t element, Nanometres by_nm,
+                            const std::string& title = "") {
+  int moved = 0;
+  for (Program& program : programs)
+    for (Item& item : program.items)
+      if (auto* visit = std::get_if<Visit>(&item))
+        if (visit->element == element && program.subroutines[visit->subroutine].title.starts_with(title)) {
+          visit->z_nm += by_nm;
+          ++moved;
+        }
+  EXPECT_GT(moved, 0);
+  return programs;
+}
+
+bool has_kind(const Verification& v, const std::string& kind) {
+  for (const Finding& f : v.findings)
+    if (f.kind == kind) return true;
+  return false;
 }
 
 std::string listed(const Verification& v) {
@@ -59,6 +88,21 @@ const std::vector<Variant>& variants() {
          job.tool.edge_radius_um = 0.5;
          job.element.apex_angle_deg = 90.05;
        }},
+      {"blunt edge, wide apex",
+       [](Job& job) {
+         job.tool.edge_radius_um = 1.0;
+         job.element.apex_angle_deg = 95.0;
+       }},
+      {"blunt edge, narrow apex",
+       [](Job& job) {
+         job.tool.edge_radius_um = 5.0;
+         job.element.apex_angle_deg = 80.0;
+       }},
+      {"apex of 100", [](Job& job) { job.element.apex_angle_deg = 100.0; }},
+      {"two passes 20 nm apart", [](Job& job) { job.element.width_mm += 2e-5; }},
+      {"two passes 0.3 um apart", [](Job& job) { job.element.width_mm += 3e-4; }},
+      {"two passes 4 um apart", [](Job& job) { job.element.width_mm += 4e-3; }},
+      {"two passes 100 um apart", [](Job& job) { job.element.width_mm += 0.1; }},
       {"direct", [](Job& job) { job.workpiece.kind = WorkpieceKind::direct; }},
       {"shrinkage",
        [](Job& job) {
@@ -90,6 +134,7 @@ TEST(PlannedJobs, EveryKeyIsCutAsDesigned) {
         job.strategy = strategy;
         job.process.roughing_depth_um = 40.0;
         variant.change(job);
+        job.array.y_length_mm = std::max(job.array.y_length_mm, 3.0 * job.element.width_mm);
         const Verification v = verified(job, job, m);
         const std::string what = fmt::format("{}, {}, strategy {}", variant.what, name, static_cast<int>(strategy));
         EXPECT_TRUE(v.passes()) << what << "\n" << listed(v);
@@ -110,6 +155,63 @@ TEST(PlannedJobs, AnotherApexIsFound) {
     planned.element.apex_angle_deg = apex_deg + 0.02;
     job.element.apex_angle_deg = apex_deg;
     EXPECT_FALSE(verified(planned, job, machine("ideal")).passes()) << apex_deg;
+  }
+}
+
+/// An edge of radius r reaches r (1 - sin a + cos a) less far towards the floor than a sharp one: a program for a sharp
+/// tool that a blunt one runs gouges where that is positive and leaves material where it is negative.
+TEST(PlannedJobs, AnEdgeThatTheProgramForgotIsFound) {
+  for (const auto& [apex_deg, kind] : {std::pair{85.0, "gouge"}, {95.0, "excess"}}) {
+    Job planned = square_job(2, Arrangement::aligned);
+    planned.strategy = Strategy::unidirectional;
+    planned.process.roughing_depth_um = 40.0;
+    planned.element.apex_angle_deg = apex_deg;
+    Job job = planned;
+    job.tool.edge_radius_um = 1.0;
+    for (const char* name : {"ideal", "paper"}) {
+      const Verification v = verified(planned, job, machine(name));
+      EXPECT_TRUE(has_kind(v, kind)) << name << " " << apex_deg << "\n" << listed(v);
+      const double apex = Angle::from_deg(apex_deg).rad();
+      const double missed_nm = 1e3 * (1.0 - std::sin(apex) + std::cos(apex));
+      // Of the floor; lines normal to the wall skim over it close to the root and tell more.
+      double found_nm = 1e9;
+      for (const Finding& f : v.findings)
+        if (f.kind == kind) found_nm = std::min(found_nm, std::abs(f.value));
+      EXPECT_NEAR(found_nm, std::abs(missed_nm), 2.0) << name << " " << apex_deg << "\n" << listed(v);
+    }
+  }
+}
+
+/// Ploughed floors of passes side by side are known to a nanometre: 15 nm more or less are found.
+TEST(PlannedJobs, PassesAtAnotherHeightAreFound) {
+  for (const double wider_mm : {2e-5, 3e-4, 4e-3, 0.1}) {
+    Job job = square_job(2, Arrangement::aligned);
+    job.strategy = Strategy::unidirectional;
+    job.process.roughing_depth_um = 40.0;
+    job.element.width_mm += wider_mm;
+    job.array.y_length_mm = 2.0 * job.element.width_mm;
+    const Machine paper = machine("paper");
+    const std::vector<Program> programs = make_plan(job, paper).programs;
+    EXPECT_TRUE(verified(programs, job, paper).passes()) << wider_mm;
+    EXPECT_TRUE(has_kind(verified(raised(programs, 1, 15), job, paper), "excess")) << wider_mm;
+    EXPECT_TRUE(has_kind(verified(raised(programs, 1, -15), job, paper), "gouge")) << wider_mm;
+  }
+}
+
+/// What tilted edges must leave at the root is the same at every apex angle, w tan(delta) up the facet; 20 nm more are
+/// found.
+TEST(PlannedJobs, RootsAreAsPredictedAtEveryApex) {
+  for (const double apex_deg : {80.0, 90.0, 95.0, 100.0}) {
+    Job job = square_job(2, Arrangement::aligned);
+    job.process.roughing_depth_um = 40.0;
+    job.element.apex_angle_deg = apex_deg;
+    const Machine paper = machine("paper");
+    const std::vector<Program> programs = make_plan(job, paper).programs;
+    const Verification v = verified(programs, job, paper);
+    EXPECT_TRUE(v.passes()) << apex_deg << "\n" << listed(v);
+    EXPECT_NEAR(v.root_residual_nm_max, v.root_residual_nm_predicted, 3.0) << apex_deg;
+    const Verification high = verified(raised(programs, 0, 20, "finishing-2-facet-2"), job, paper);
+    EXPECT_TRUE(has_kind(high, "root_residual")) << apex_deg << "\n" << listed(high);
   }
 }
 

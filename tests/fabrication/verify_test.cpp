@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/atomic_file.h"
@@ -21,6 +23,7 @@ namespace retrace::fabrication::test {
 namespace {
 
 using geometry::Arrangement;
+using geometry::Vec3;
 
 Machine machine(const std::string& name) {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
@@ -33,11 +36,14 @@ std::vector<std::string> texts_of(const Job& job, const std::string& machine_nam
   return texts;
 }
 
-Verification verify_texts(const Job& job, const std::string& machine_name, const std::vector<std::string>& texts) {
+Verification verify_texts(const Job& job, const Machine& m, const std::vector<std::string>& texts) {
   std::vector<NcProgram> programs;
   for (const std::string& text : texts) programs.push_back(parse_nc(text, "p.ngc", NcDialect::rs274ngc));
-  return verify_programs(job, machine(machine_name), programs, {},
-                         {machine("ideal"), machine("paper"), machine("thesis")});
+  return verify_programs(job, m, programs, {}, {machine("ideal"), machine("paper"), machine("thesis")});
+}
+
+Verification verify_texts(const Job& job, const std::string& machine_name, const std::vector<std::string>& texts) {
+  return verify_texts(job, machine(machine_name), texts);
 }
 
 std::string listed(const Verification& v) {
@@ -234,6 +240,69 @@ TEST_F(Faults, TheTableAndTheHolder) {
   EXPECT_TRUE(has(v, "fixture_collision", call)) << listed(v);
   EXPECT_TRUE(has(v, "holder_collision", call)) << listed(v);
   EXPECT_TRUE(has(v, "gouge", call)) << listed(v);
+}
+
+/// A convex body that the machine file adds to the paper's machine.
+Machine machine_with(const std::string& moves_with, const std::vector<Vec3>& points) {
+  Machine m = machine("paper");
+  MachineBody body;
+  body.name = "clamp";
+  body.carrier = moves_with == "cradle" ? Carrier::cradle : Carrier::workpiece;
+  body.points_mm.value = points;
+  m.bodies.push_back(body);
+  return m;
+}
+
+std::vector<Vec3> box(const Vec3& low, const Vec3& high) {
+  std::vector<Vec3> corners;
+  for (const double x : {low.x(), high.x()})
+    for (const double y : {low.y(), high.y()})
+      for (const double z : {low.z(), high.z()}) corners.emplace_back(x, y, z);
+  return corners;
+}
+
+/// Beside the blank, 10 to 30 mm towards +Y: a ramp that rises away from the tool stays parallel to the holder, 7 mm
+/// from its axis, while A stands at 45 degrees; the box around it reaches into the holder, which is 5 mm wide to a
+/// side.
+TEST_F(Faults, FixturesAreConvexBodiesAndNotTheirBoxes) {
+  std::vector<Vec3> ramp;
+  for (const double x : {-20.0, 20.0})
+    for (const auto& [y, z] : {std::pair{10.0, 0.0}, {30.0, 0.0}, {30.0, 20.0}}) ramp.emplace_back(x, y, z);
+  const std::vector<std::string> texts = {text_of(lines_)};
+  const Verification beside = verify_texts(job_, machine_with("workpiece", ramp), texts);
+  EXPECT_TRUE(beside.passes()) << listed(beside);
+  const Verification v = verify_texts(job_, machine_with("workpiece", box({-20, 10, 0}, {20, 30, 20})), texts);
+  ASSERT_TRUE(has_kind(v, "fixture_collision")) << listed(v);
+  // The holder meets it at the first move of the first pose, and with C at 180 not at all.
+  const auto first_call = static_cast<std::int32_t>(find("o101 call"));
+  std::int32_t first = std::numeric_limits<std::int32_t>::max();
+  for (const Finding& f : v.findings) {
+    EXPECT_EQ(f.kind, "fixture_collision") << listed(v);
+    EXPECT_EQ(f.message, "the tool holder runs into the clamp");
+    first = std::min(first, f.line);
+  }
+  EXPECT_LE(first, first_call) << listed(v);
+}
+
+TEST_F(Faults, TheDiamondRunsIntoAFixtureWithinTheArray) {
+  // A pin of 0.1 mm beside the last element, as high as the clearance plane.
+  const Verification v =
+      verify_texts(job_, machine_with("workpiece", box({0.2, 0.2, 0.0}, {0.3, 0.3, 0.3})), {text_of(lines_)});
+  ASSERT_TRUE(has_kind(v, "fixture_collision")) << listed(v);
+  bool by_diamond = false;
+  for (const Finding& f : v.findings) by_diamond = by_diamond || f.message == "the diamond runs into the clamp";
+  EXPECT_TRUE(by_diamond) << listed(v);
+}
+
+TEST_F(Faults, WhatTurnsMeetsTheHolder) {
+  // A post of the table that passes below the holder at neither end of the turn, but on the way from C 0 to C 90.
+  const std::size_t turn = find("G0 A", find("o101 call"));
+  const Verification v =
+      verify_texts(job_, machine_with("workpiece", box({24, 24, 0}, {26, 26, 60})), {text_of(lines_)});
+  EXPECT_TRUE(has(v, "fixture_collision", turn)) << listed(v);
+  // What C does not turn stays away.
+  EXPECT_FALSE(has(verify_texts(job_, machine_with("cradle", box({24, 24, 0}, {26, 26, 60})), {text_of(lines_)}),
+                   "fixture_collision", turn));
 }
 
 TEST_F(Faults, BeyondAnAxisLimit) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -114,12 +115,30 @@ std::vector<Vec3> box_corners(TomlTable& entry) {
   return corners;
 }
 
+/// Points that span a body: at least four, not in one plane.
+std::vector<Vec3> hull_points(TomlTable& entry) {
+  constexpr std::size_t kMost = 1000;
+  constexpr double kLeastVolumeMm3 = 1e-6;
+  std::vector<Vec3> points;
+  for (const std::vector<double>& row : entry.required_number_rows("value", 3, kLength))
+    points.push_back(vector_of(row));
+  if (points.size() < 4 || points.size() > kMost)
+    entry.fail("value", fmt::format("must be 4 to {} points, got {}", kMost, points.size()));
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : points) spread += (p - points.front()) * (p - points.front()).transpose();
+  if (!(std::sqrt(std::max(spread.determinant(), 0.0)) > kLeastVolumeMm3))
+    entry.fail("value", "must be points that do not lie in one plane");
+  return points;
+}
+
 MachineBody body(TomlTable table) {
   static constexpr std::string_view kCarriers[] = {"workpiece", "cradle", "tool"};
   MachineBody result;
   result.name = table.required_text("name");
   result.carrier = static_cast<Carrier>(table.required_choice("moves_with", kCarriers));
-  result.points_mm = sourced<std::vector<Vec3>>(table, "box_mm", box_corners);
+  if (table.has("points_mm") && table.has("box_mm")) table.fail("points_mm", "must not be given together with box_mm");
+  result.points_mm = table.has("points_mm") ? sourced<std::vector<Vec3>>(table, "points_mm", hull_points)
+                                            : sourced<std::vector<Vec3>>(table, "box_mm", box_corners);
   return result;
 }
 
