@@ -8,7 +8,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "studies/design/message_text.h"
+#include "core/message_text.h"
 
 namespace retrace::app {
 namespace fs = std::filesystem;
@@ -98,7 +98,7 @@ void say(std::string_view text) {
   std::string line(text);
   // An error is one line, whatever a file is called.
   std::replace(line.begin(), line.end(), '\n', ' ');
-  line = studies::printable(line, std::string::npos) + "\n";
+  line = printable(line, std::string::npos) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

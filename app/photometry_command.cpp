@@ -9,12 +9,12 @@
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "core/data_directory.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/threads.h"
 #include "report/photometry_plot.h"
 #include "studies/design/design_reader.h"
-#include "studies/design/message_text.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/standards.h"
@@ -29,7 +29,7 @@ std::filesystem::path limits_file(const PhotometryOptions& options) {
   if (studies::find_standard(options.standard) != nullptr) return data_directory() / "photometry_limits.csv";
   if (!std::filesystem::exists(options.standard))
     throw InputError({"", 0, "--standard"}, fmt::format("must be r150, j594, bicycle or a file that exists, got {}",
-                                                        studies::in_quotes(options.standard)));
+                                                        in_quotes(options.standard)));
   return options.standard;
 }
 
@@ -49,7 +49,7 @@ std::filesystem::path dye_file(const PhotometryOptions& options, const studies::
   if (name == "none" || !is_told) return {};
   if (!std::filesystem::exists(name))
     throw InputError({"", 0, "--dye"},
-                     fmt::format("must be none, red, amber or a file that exists, got {}", studies::in_quotes(name)));
+                     fmt::format("must be none, red, amber or a file that exists, got {}", in_quotes(name)));
   return name;
 }
 
@@ -84,7 +84,7 @@ studies::PhotometryRequest request_of(const CommandLine& line, studies::TestProg
   request.apertures = apertures_of(options);
   request.window_deg = options.window_deg;
   if (options.light != "a" && options.light != "design")
-    throw InputError({"", 0, "--light"}, fmt::format("must be a or design, got {}", studies::in_quotes(options.light)));
+    throw InputError({"", 0, "--light"}, fmt::format("must be a or design, got {}", in_quotes(options.light)));
   request.own_light = options.light == "design";
   if (!dye.empty()) {
     request.dye = options.dye.value_or(request.programme.colour);

@@ -28,7 +28,7 @@ constexpr std::uint32_t kRaysPerSlice = 64 * kRaysPerTask;
 // The Sobol sequence has 2^32 points; one is kept back so that counters do not wrap.
 constexpr std::uint32_t kMostRaysPerReplicate = UINT32_MAX - kRaysPerSlice;
 // Rays of a replicate before its error is looked at for the first time.
-constexpr std::uint32_t kFirstRound = 1024;
+constexpr std::uint32_t kFirstRound = 256;
 // Power that may be missing before the run counts as unsound.
 constexpr double kLostLimit = 1e-9;
 

@@ -2,12 +2,14 @@
 
 #include <cairo-svg.h>
 #include <cairo.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <numbers>
+#include <stdexcept>
 
 #include "core/error.h"
 
@@ -25,6 +27,7 @@ namespace {
 constexpr std::string_view kEllipsis = "\u2026";
 /// Points of 1/72 inch, cairo's unit of SVG, to the drawing unit.
 constexpr double kPointsPerUnit = 0.75;
+constexpr double kLargestScale = 16.0;
 
 struct Release {
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
@@ -138,6 +141,8 @@ struct Canvas::Hidden {
 };
 
 Canvas::Canvas(Format format, Size size, double scale) : hidden_(std::make_unique<Hidden>()) {
+  if (!(scale > 0.0 && scale <= kLargestScale))
+    throw std::invalid_argument(fmt::format("plot scale {}: not in (0, {}]", scale, kLargestScale));
   Hidden& hidden = *hidden_;
   hidden.format = format;
   if (format == Format::svg) {

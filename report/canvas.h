@@ -51,6 +51,7 @@ std::string printable(std::string_view text);
 class Canvas {
  public:
   enum class Format { svg, png };
+  /// \param scale pixels a unit of a PNG, > 0 and <= 16 \throw std::invalid_argument for another scale
   Canvas(Format format, Size size, double scale);
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;

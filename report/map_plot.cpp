@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 #include <utility>
 
 #include "report/axis_ticks.h"
 #include "report/canvas.h"
+#include "report/style.h"
 
 namespace retrace::report {
 namespace {
@@ -19,10 +19,6 @@ using geometry::Polygon;
 using geometry::Rectangle;
 using geometry::Vec2;
 
-constexpr Colour kWhite{1.0, 1.0, 1.0};
-constexpr Colour kAxis{0.35, 0.35, 0.35};
-constexpr Colour kText{0.13, 0.13, 0.13};
-constexpr Colour kFaint{0.42, 0.42, 0.42};
 constexpr Colour kRest{0.945, 0.945, 0.945};
 constexpr Colour kHatch{0.80, 0.80, 0.80};
 constexpr Colour kLine{0.55, 0.55, 0.55};  ///< seen on the palest and the darkest region
@@ -39,13 +35,10 @@ constexpr std::array<Colour, 9> kScale = {{{1.000, 1.000, 0.851},
                                            {0.031, 0.114, 0.345}}};
 constexpr int kColourSteps = 200;
 
-constexpr Font kTitleFont{16.0, true};
-constexpr Font kPanelFont{12.5, true};
 constexpr Font kRemarkFont{11.0, false};
 constexpr Font kLabelFont{13.0, false};
 constexpr Font kTickFont{11.0, false};
 
-constexpr double kMargin = 22.0;
 constexpr double kTickLength = 4.0;
 constexpr double kPlanLeft = 40.0;  ///< in its cell: room for the labels of the axis
 constexpr double kBarWidth = 16.0;
@@ -380,7 +373,6 @@ std::string render_svg(const MapPlot& plot) {
 }
 
 std::string render_png(const MapPlot& plot, double scale) {
-  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
   return render(plot, Canvas::Format::png, scale);
 }
 

@@ -2,29 +2,24 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 
 #include "report/axis_ticks.h"
 #include "report/canvas.h"
+#include "report/style.h"
 
 namespace retrace::report {
 namespace {
 
 using geometry::Vec2;
 
-constexpr Colour kWhite{1.0, 1.0, 1.0};
-constexpr Colour kText{0.13, 0.13, 0.13};
-constexpr Colour kFaint{0.42, 0.42, 0.42};
 constexpr Colour kMaterial{0.88, 0.88, 0.88};
 constexpr Colour kOutline{0.35, 0.35, 0.35};
 // Okabe and Ito (2008): blue, vermillion, bluish green, reddish purple, black.
 constexpr std::array<Colour, 5> kColours = {
     {{0.0, 0.447, 0.698}, {0.835, 0.369, 0.0}, {0.0, 0.620, 0.451}, {0.8, 0.475, 0.655}, {0.0, 0.0, 0.0}}};
-constexpr Font kTitleFont{16.0, true};
 constexpr Font kRemarkFont{11.5, false};
 constexpr Font kLabelFont{13.0, false};
 constexpr Font kTickFont{11.0, false};
-constexpr double kMargin = 22.0;
 constexpr double kPlanWidth = 560.0;
 constexpr double kLeft = 74.0;
 constexpr double kBelow = 52.0;
@@ -124,7 +119,6 @@ std::string render_svg(const PathPlot& plot) {
 }
 
 std::string render_png(const PathPlot& plot, double scale) {
-  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument("scale must be > 0 and <= 16");
   return draw(plot, Canvas::Format::png, scale);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "report/canvas.h"
+#include "report/style.h"
 
 namespace retrace::report {
 namespace {
@@ -26,19 +27,14 @@ const std::array<std::vector<double>, 4> kDashes = {{{}, {7.0, 3.5}, {2.0, 2.5},
 constexpr std::array kMarkers = {Marker::circle, Marker::square, Marker::triangle, Marker::diamond,
                                  Marker::inverted_triangle};
 
-constexpr Colour kWhite{1.0, 1.0, 1.0};
 constexpr Colour kGrid{0.90, 0.90, 0.90};
-constexpr Colour kAxis{0.35, 0.35, 0.35};
-constexpr Colour kText{0.13, 0.13, 0.13};
 
-constexpr Font kTitleFont{16.0, true};
 constexpr Font kLabelFont{13.5, false};
 constexpr Font kTickFont{12.0, false};
 constexpr Font kLegendFont{12.0, false};
 
 constexpr double kPlotWidth = 620.0;  ///< of the area inside the axes
 constexpr double kPlotHeight = 370.0;
-constexpr double kMargin = 22.0;
 constexpr double kTickLength = 5.0;
 constexpr double kLineSpacing = 1.3;
 constexpr double kLegendRow = 19.0;
@@ -358,7 +354,6 @@ std::string render_svg(const LinePlot& plot) {
 }
 
 std::string render_png(const LinePlot& plot, double scale) {
-  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
   return render(plot, Canvas::Format::png, scale);
 }
 

@@ -7,17 +7,15 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include "core/number_format.h"
 #include "report/axis_ticks.h"
 #include "report/canvas.h"
+#include "report/style.h"
 
 namespace retrace::report {
 namespace {
 
-constexpr Colour kWhite{1.0, 1.0, 1.0};
-constexpr Colour kText{0.13, 0.13, 0.13};
 constexpr Colour kRing{0.85, 0.85, 0.85};
 constexpr Colour kHolds{1.0, 1.0, 1.0};
 constexpr Colour kFails{0.902, 0.624, 0.0};  // Okabe and Ito's orange
@@ -32,11 +30,8 @@ constexpr std::array<Colour, 9> kScale = {{{0.267, 0.005, 0.329},
                                            {0.369, 0.789, 0.383},
                                            {0.678, 0.864, 0.190},
                                            {0.993, 0.906, 0.144}}};
-constexpr Font kTitleFont{16.0, true};
-constexpr Font kPanelFont{12.5, true};
 constexpr Font kLabelFont{12.0, false};
 constexpr Font kTickFont{10.0, false};
-constexpr double kMargin = 22.0;
 constexpr double kDisc = 250.0;  ///< diameter
 constexpr Size kCell{290.0, 304.0};
 constexpr double kBarRoom = 96.0;
@@ -162,7 +157,6 @@ std::string render_svg(const PolarPlot& plot) {
 }
 
 std::string render_png(const PolarPlot& plot, double scale) {
-  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
   return render(plot, Canvas::Format::png, scale);
 }
 

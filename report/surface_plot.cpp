@@ -6,17 +6,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "report/axis_ticks.h"
 #include "report/canvas.h"
+#include "report/style.h"
 
 namespace retrace::report {
 namespace {
 
-constexpr Colour kWhite{1.0, 1.0, 1.0};
-constexpr Colour kAxis{0.35, 0.35, 0.35};
-constexpr Colour kText{0.13, 0.13, 0.13};
 constexpr Colour kGrid{0.88, 0.88, 0.88};
 constexpr Colour kMissingColour{0.75, 0.75, 0.75};
 // Okabe and Ito (2008), as the other plots.
@@ -32,12 +29,9 @@ constexpr std::array<Colour, 9> kScale = {{{0.267, 0.005, 0.329},
                                            {0.678, 0.864, 0.190},
                                            {0.993, 0.906, 0.144}}};
 
-constexpr Font kTitleFont{16.0, true};
-constexpr Font kPanelFont{12.5, true};
 constexpr Font kLabelFont{12.0, false};
 constexpr Font kTickFont{10.5, false};
 
-constexpr double kMargin = 22.0;
 constexpr Size kCell{430.0, 390.0};  ///< of one panel with its texts
 constexpr Size kPlotArea{290.0, 290.0};
 constexpr double kLeft = 62.0;  ///< of the plot area in its cell
@@ -294,7 +288,6 @@ std::string render_svg(const SurfacePlot& plot) {
 }
 
 std::string render_png(const SurfacePlot& plot, double scale) {
-  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
   return render(plot, Canvas::Format::png, scale);
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/io/toml_node.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
 
@@ -16,16 +17,6 @@ namespace {
 /// toml++ recurses once per level of a tree when it destroys it: dotted keys could make more of them than the stack
 /// holds. No line needs as many dots.
 constexpr std::size_t kMostDotsInALine = 64;
-
-std::string shown(const toml::node& node) {
-  if (const auto* text = node.as_string()) return in_quotes(text->get());
-  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
-  if (const auto* number = node.as_floating_point())
-    return std::isfinite(number->get()) ? shortest(number->get()) : fmt::format("{}", number->get());
-  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
-  if (const auto* list = node.as_array()) return list->empty() ? "an empty list" : "a list";
-  return node.is_table() ? "a table" : "a date or time";
-}
 
 void check_nesting(std::string_view text, const std::string& file) {
   int line = 1;
@@ -41,6 +32,16 @@ void check_nesting(std::string_view text, const std::string& file) {
 }
 
 }  // namespace
+
+std::string shown(const toml::node& node) {
+  if (const auto* text = node.as_string()) return in_quotes(text->get());
+  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+  if (const auto* number = node.as_floating_point())
+    return std::isfinite(number->get()) ? shortest(number->get()) : fmt::format("{}", number->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  if (const auto* list = node.as_array()) return list->empty() ? "an empty list" : "a list";
+  return node.is_table() ? "a table" : "a date or time";
+}
 
 bool NumberRange::contains(double value) const {
   return (low_included ? value >= low : value > low) && (high_included ? value <= high : value < high);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "studies/design/message_text.h"
+#include "core/message_text.h"
 
 namespace retrace::studies {
 namespace {

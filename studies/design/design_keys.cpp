@@ -9,8 +9,9 @@
 #include <variant>
 #include <vector>
 
+#include "core/io/toml_node.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/message_text.h"
 #include "studies/design/table_reader.h"
 
 namespace retrace::studies {

@@ -12,11 +12,11 @@
 
 #include "core/angle.h"
 #include "core/atomic_file.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "geometry/lattice.h"
 #include "studies/design/array_checks.h"
 #include "studies/design/design_keys.h"
-#include "studies/design/message_text.h"
 #include "studies/design/spectrum_reader.h"
 #include "studies/design/table_reader.h"
 #include "studies/design/texture_reader.h"

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/message_text.h"
 
 namespace retrace::studies {
 namespace {

@@ -6,34 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "core/io/toml_node.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/message_text.h"
 
 namespace retrace::studies {
-
-bool Range::contains(double value) const {
-  const bool above = low_included ? value >= low : value > low;
-  const bool below = high_included ? value <= high : value < high;
-  return above && below;
-}
-
-std::string Range::text() const {
-  std::string result;
-  if (std::isfinite(low)) result += (low_included ? ">= " : "> ") + shortest(low);
-  if (std::isfinite(low) && std::isfinite(high)) result += " and ";
-  if (std::isfinite(high)) result += (high_included ? "<= " : "< ") + shortest(high);
-  return result;
-}
-
-std::string shown(const toml::node& node) {
-  if (const auto* text = node.as_string()) return in_quotes(text->get());
-  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
-  if (const auto* number = node.as_floating_point())
-    return std::isfinite(number->get()) ? shortest(number->get()) : fmt::format("{}", number->get());
-  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
-  if (const auto* list = node.as_array()) return list->empty() ? "an empty list" : "a list";
-  return node.is_table() ? "a table" : "a date or time";
-}
 
 TableReader::TableReader(const DesignDocument& document, std::string_view name)
     : document_(document),

@@ -12,21 +12,12 @@
 #include <string_view>
 #include <vector>
 
+#include "core/toml_file.h"
 #include "studies/design/design_document.h"
 
 namespace retrace::studies {
 
-/// What a number may be. Infinite bounds are not named in messages.
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  bool low_included = true;
-  double high = std::numeric_limits<double>::infinity();
-  bool high_included = true;
-
-  bool contains(double value) const;
-  /// "> 0", ">= 60 and <= 120"
-  std::string text() const;
-};
+using Range = NumberRange;
 
 inline constexpr Range kPositive{.low = 0.0, .low_included = false};
 inline constexpr Range kNotNegative{.low = 0.0};
@@ -37,9 +28,6 @@ struct Choice {
   std::string_view name;
   Value value;
 };
-
-/// A value of the tree as a message shows it: -3, "text", a table, a list.
-std::string shown(const toml::node& node);
 
 /// Reads one table of a design, checks every value it hands out and remembers which keys were asked for.
 /// Every function throws InputError with file, line and key if what was given is not what is allowed.

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "studies/design/message_text.h"
+#include "core/message_text.h"
 
 namespace retrace::studies {
 namespace {

@@ -6,9 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "core/io/toml_node.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "studies/design/design_keys.h"
-#include "studies/design/message_text.h"
 #include "studies/design/table_reader.h"
 
 namespace retrace::studies {

@@ -10,8 +10,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/message_text.h"
 
 namespace retrace::studies {
 namespace {

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/message_text.h"
 
 namespace retrace::studies {
 namespace {

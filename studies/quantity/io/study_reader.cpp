@@ -9,10 +9,11 @@
 #include <sstream>
 
 #include "core/atomic_file.h"
+#include "core/io/toml_node.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "studies/design/design_keys.h"
 #include "studies/design/design_reader.h"
-#include "studies/design/message_text.h"
 #include "studies/design/table_reader.h"
 #include "studies/quantity/io/quantity_reader.h"
 

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/version.h"
 #include "studies/design/design_json.h"
-#include "studies/design/message_text.h"
 
 namespace retrace::studies {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/version.h"
-#include "studies/design/message_text.h"
 
 namespace retrace::studies {
 namespace {

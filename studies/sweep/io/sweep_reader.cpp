@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/io/toml_node.h"
 #include "core/number_format.h"
 #include "studies/design/table_reader.h"
 
