@@ -1,0 +1,86 @@
+// The module that is loaded for pictures. The one place that names OpenImageIO.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "core/pictures.h"
+
+namespace retrace {
+namespace {
+
+[[noreturn]] void fail(const std::string& why) {
+  throw std::runtime_error(why);
+}
+
+std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
+  auto input = OIIO::ImageInput::open(file.string());
+  if (!input) fail(OIIO::geterror());
+  return input;
+}
+
+/// The file of a format as bytes. \param pixels interleaved, of type `type`
+std::string encoded(const char* name, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const auto output = OIIO::ImageOutput::create(name, &memory);
+  if (!output) fail(OIIO::geterror());
+  if (!output->open(name, spec) || !output->write_image(type, pixels) || !output->close()) fail(output->geterror());
+  return {bytes.begin(), bytes.end()};
+}
+
+class OpenImageIo final : public PictureFiles {
+ public:
+  Size size(const std::filesystem::path& file) const override {
+    const OIIO::ImageSpec spec = opened(file)->spec();
+    return {static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height)};
+  }
+
+  BytePicture read(const std::filesystem::path& file) const override {
+    const auto input = opened(file);
+    const OIIO::ImageSpec& spec = input->spec();
+    BytePicture picture{static_cast<std::size_t>(spec.width),
+                        static_cast<std::size_t>(spec.height),
+                        static_cast<std::size_t>(spec.nchannels),
+                        spec.alpha_channel,
+                        {}};
+    picture.values.resize(picture.columns * picture.rows * picture.channels);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, picture.values.data()))
+      fail(input->geterror());
+    return picture;
+  }
+
+  std::string exr(const FloatPicture& picture) const override {
+    auto channels = picture.channels;
+    std::sort(channels.begin(), channels.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    OIIO::ImageSpec spec(static_cast<int>(picture.columns), static_cast<int>(picture.rows),
+                         static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+    spec.channelnames.clear();
+    for (const auto& [name, values] : channels) spec.channelnames.push_back(name);
+    spec.attribute("compression", "zip");
+    for (const auto& [key, value] : picture.texts) spec.attribute(key, value);
+    for (const auto& [key, value] : picture.numbers) spec.attribute(key, static_cast<float>(value));
+    const std::size_t pixels = picture.columns * picture.rows;
+    std::vector<float> interleaved(pixels * channels.size());
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      for (std::size_t k = 0; k < pixels; ++k)
+        interleaved[k * channels.size() + c] = static_cast<float>(channels[c].second[k]);
+    return encoded("picture.exr", spec, OIIO::TypeDesc::FLOAT, interleaved.data());
+  }
+
+  std::string png(const BytePicture& picture) const override {
+    OIIO::ImageSpec spec(static_cast<int>(picture.columns), static_cast<int>(picture.rows), 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return encoded("picture.png", spec, OIIO::TypeDesc::UINT8, picture.values.data());
+  }
+};
+
+}  // namespace
+}  // namespace retrace
+
+extern "C" __attribute__((visibility("default"))) const retrace::PictureFiles* retrace_picture_files() {
+  static const retrace::OpenImageIo files;
+  return &files;
+}
