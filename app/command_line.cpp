@@ -227,11 +227,41 @@ void add_metrology(CLI::App& app, MetrologyOptions& metrology) {
   command->add_flag("--edge", metrology.edge, "rows are profiles across an edge: fit its radius and chamfer");
 }
 
-void add_study(CLI::App& app, StudyOptions& study, const char* name, const char* what) {
+CLI::App* add_study(CLI::App& app, StudyOptions& study, const char* name, const char* what) {
   CLI::App* command = app.add_subcommand(name, what);
   command->add_option("STUDY", study.study, "study file; - is standard input")->required()->check(not_empty());
   auto* resume = command->add_flag("--resume", study.resume, "go on with the store that is in the output folder");
   command->add_flag("--overwrite", study.overwrite, "replace the store that is in the output folder")->excludes(resume);
+  return command;
+}
+
+/// How a job is made, for every command that makes one. \return the options
+std::vector<CLI::Option*> add_making(CLI::App& command, JobOptions& job) {
+  std::vector<CLI::Option*> options;
+  options.push_back(command.add_option("--machine", job.machine, "ideal, paper, thesis or a file")
+                        ->type_name("MACHINE")
+                        ->capture_default_str()
+                        ->check(not_empty()));
+  options.push_back(command.add_option("--tool-width-mm", job.tool_width_mm, "width of the tool's edge, 0.1 to 2")
+                        ->type_name("W")
+                        ->check(real_number()));
+  options.push_back(command.add_option("--strategy", job.strategy, "unidirectional, bidirectional or two-step")
+                        ->type_name("STRATEGY")
+                        ->capture_default_str());
+  options.push_back(
+      command.add_option("--process", job.process, "depths, feeds and dwells: a shipped process or a file")
+          ->type_name("PROCESS")
+          ->capture_default_str()
+          ->check(not_empty()));
+  options.push_back(command.add_option("--workpiece", job.workpiece, "mould, or direct: the optic itself is cut")
+                        ->type_name("KIND")
+                        ->capture_default_str());
+  options.push_back(
+      command.add_option("--shrinkage-percent", job.shrinkage_percent, "by which the mould is larger than the part")
+          ->type_name("S")
+          ->capture_default_str()
+          ->check(real_number()));
+  return options;
 }
 
 void add_job(CLI::App& app, JobOptions& job) {
@@ -239,28 +269,16 @@ void add_job(CLI::App& app, JobOptions& job) {
   command->add_option("DESIGN", job.design, "design file of prisms; - is standard input")
       ->required()
       ->check(not_empty());
-  command->add_option("--machine", job.machine, "ideal, paper, thesis or a file")
-      ->type_name("MACHINE")
-      ->capture_default_str()
-      ->check(not_empty());
-  command->add_option("--tool-width-mm", job.tool_width_mm, "width of the tool's edge, 0.1 to 2")
-      ->type_name("W")
-      ->required()
-      ->check(real_number());
-  command->add_option("--strategy", job.strategy, "unidirectional, bidirectional or two-step")
-      ->type_name("STRATEGY")
-      ->capture_default_str();
-  command->add_option("--process", job.process, "depths, feeds and dwells: a shipped process or a file")
-      ->type_name("PROCESS")
-      ->capture_default_str()
-      ->check(not_empty());
-  command->add_option("--workpiece", job.workpiece, "mould, or direct: the optic itself is cut")
-      ->type_name("KIND")
-      ->capture_default_str();
-  command->add_option("--shrinkage-percent", job.shrinkage_percent, "by which the mould is larger than the part")
-      ->type_name("S")
-      ->capture_default_str()
-      ->check(real_number());
+  add_making(*command, job);
+  command->get_option("--tool-width-mm")->required();
+}
+
+void add_optimize(CLI::App& app, StudyOptions& study, JobOptions& job) {
+  CLI::App* command = add_study(app, study, "optimize", "the best design within constraints, as a study file says");
+  CLI::Option* const file = command->add_option("--job", study.job, "write the fabrication job of the chosen design")
+                                ->type_name("FILE")
+                                ->check(not_empty());
+  for (CLI::Option* const option : add_making(*command, job)) option->needs(file);
 }
 
 void add_fabricate(CLI::App& app, FabricateOptions& fabricate) {
@@ -328,7 +346,9 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
     if (word.starts_with('-')) return "unknown option " + word;
   if (!app.get_subcommands().empty()) return otherwise;
   const std::string commands =
-      "rre, inspect, photometry, roughness, metrology, sweep, optimize, job, fabricate, verify, forces, init and list";
+      "rre, inspect, photometry, roughness, metrology, sweep, optimize, tolerance, job, fabricate, verify, forces, "
+      "init and "
+      "list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -360,7 +380,8 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_study(app, line.study, "sweep", "designs and directions over ranges, as a study file says");
   add_job(app, line.job);
   add_fabricate(app, line.fabricate);
-  add_study(app, line.study, "optimize", "the best design within constraints, as a study file says");
+  add_optimize(app, line.study, line.job);
+  add_study(app, line.study, "tolerance", "what becomes of a design in manufacture, as a study file says");
   add_verify(app, line.verify);
   add_forces(app, line.forces);
   app.add_subcommand("init", "a commented design file to start from")

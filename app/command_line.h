@@ -79,12 +79,13 @@ struct StudyOptions {
   std::string study;
   bool resume = false;
   bool overwrite = false;
+  std::string job;  ///< optimize: job file to write of the chosen design, with JobOptions; empty: none
 };
 
 struct JobOptions {
   std::string design;
   std::string machine = "ideal";
-  double tool_width_mm = 0.0;
+  std::optional<double> tool_width_mm;  ///< job: required; optimize: otherwise that of the study
   std::string strategy = "two-step";
   std::string process = "thesis-acrylic";
   std::string workpiece = "mould";

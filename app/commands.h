@@ -16,6 +16,7 @@ ExitCode run_sweep_command(const CommandLine& line);
 ExitCode run_job_command(const CommandLine& line);
 ExitCode run_fabricate_command(const CommandLine& line);
 ExitCode run_optimize_command(const CommandLine& line);
+ExitCode run_tolerance_command(const CommandLine& line);
 ExitCode run_verify_command(const CommandLine& line);
 ExitCode run_forces_command(const CommandLine& line);
 ExitCode run_init_command(const CommandLine& line);

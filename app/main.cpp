@@ -28,6 +28,7 @@ ExitCode run(int argc, const char* const* argv) {
   if (line->command == "job") return app::run_job_command(*line);
   if (line->command == "fabricate") return app::run_fabricate_command(*line);
   if (line->command == "optimize") return app::run_optimize_command(*line);
+  if (line->command == "tolerance") return app::run_tolerance_command(*line);
   if (line->command == "verify") return app::run_verify_command(*line);
   if (line->command == "forces") return app::run_forces_command(*line);
   if (line->command == "init") return app::run_init_command(*line);

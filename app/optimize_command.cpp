@@ -2,11 +2,15 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/job_output.h"
 #include "app/output.h"
+#include "app/progress_bar.h"
 #include "app/study_options.h"
+#include "core/atomic_file.h"
 #include "raytrace/threads.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
@@ -17,6 +21,35 @@ namespace {
 
 constexpr const char* kStore = "optimum.sqlite";
 
+/// The job of the chosen design; the tool is that of the command line, or that of the study at that design.
+studies::MadeJob job_of(const CommandLine& line, const studies::Study& study, const studies::Variant& best) {
+  const studies::Candidate candidate = studies::make_candidate(study, best.values);
+  const std::optional<double> width_mm =
+      line.job.tool_width_mm ? line.job.tool_width_mm : candidate.machining().tool_width_mm;
+  if (!width_mm)
+    throw InputError({"", 0, "--tool-width-mm"},
+                     "is required with --job where the study has no machining.tool_width_mm");
+  return studies::make_job(candidate.design(), job_request(line.job, *width_mm));
+}
+
+/// What would otherwise be found wrong only after the search.
+void check_job_options(const CommandLine& line, const studies::Study& study) {
+  if (line.study.job.empty()) return;
+  studies::check_making(job_request(line.job, line.job.tool_width_mm.value_or(1.0)));
+  std::vector<std::string> read = files_of_study(study);
+  for (const std::string& file : files_of_making(line.job)) read.push_back(file);
+  check_job_file(line.common, line.study.job, read, "--job");
+}
+
+class LooksBar : public studies::OptimiseObserver {
+ public:
+  explicit LooksBar(bool enabled) : bar_("looking", enabled) {}
+  void at(std::size_t evaluated) override { bar_.count(fmt::format("{} designs looked at", evaluated)); }
+
+ private:
+  ProgressBar bar_;
+};
+
 }  // namespace
 
 ExitCode run_optimize_command(const CommandLine& line) {
@@ -24,19 +57,29 @@ ExitCode run_optimize_command(const CommandLine& line) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = studies::read_study(line.study.study, line.common.overrides, line.common.seed);
   const studies::OptimiseRequest request = studies::read_optimise(study);
+  check_job_options(line, study);
   const OrderlyInterrupt interrupt;
   prepare_outputs(line.common, {files_of_study(study), "optimum.json", {"front.csv", kStore}});
   const std::filesystem::path file =
       line.common.out.empty() ? std::filesystem::path() : std::filesystem::path(line.common.out) / kStore;
   studies::ResultStore store(file, studies::optimise_layout(study), if_exists_of(line.study));
   studies::Optimum optimum;
-  raytrace::run_with_threads(line.common.threads.value_or(0), [&] {
-    optimum = studies::optimise(study, request, store, nullptr, &interrupt.cancellation());
-  });
+  {
+    LooksBar bar(!line.common.quiet);
+    raytrace::run_with_threads(line.common.threads.value_or(0), [&] {
+      optimum = studies::optimise(study, request, store, &bar, &interrupt.cancellation());
+    });
+  }
+  std::optional<studies::MadeJob> made;
+  if (optimum.best && !line.study.job.empty()) made = job_of(line, study, *optimum.best);
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string json = studies::optimum_json(study, request, optimum, elapsed_s);
   write_outputs(line.common, json, {{"optimum.json", json}, {"front.csv", studies::front_csv(study, optimum)}},
                 studies::optimum_text(study, request, optimum));
+  if (made) {
+    write_file_atomically(line.study.job, job_text_at(*made, line.study.job));
+    print_warnings(line.common, made->warnings);
+  }
   if (!optimum.complete) {
     say(fmt::format("retrace: interrupted; designs looked at: {}", optimum.evaluations));
     return ExitCode::interrupted;

@@ -40,4 +40,13 @@ void ProgressBar::at(double share, const std::string& remark) {
   std::fflush(stderr);
 }
 
+void ProgressBar::count(const std::string& done) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!enabled_ || (drawn_ && now - last_ < kRedraw)) return;
+  last_ = now;
+  drawn_ = true;
+  fmt::print(stderr, "\r\033[K{}: {}, {:.0f} s", what_, done, std::chrono::duration<double>(now - start_).count());
+  std::fflush(stderr);
+}
+
 }  // namespace retrace::app

@@ -19,6 +19,8 @@ class ProgressBar : public Progress {
   void at(double share) override;
   /// The same, with a remark behind it.
   void at(double share, const std::string& remark);
+  /// Work whose end is not known: what has been done so far, with the time it took.
+  void count(const std::string& done);
 
  private:
   std::string what_;

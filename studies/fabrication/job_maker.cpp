@@ -91,6 +91,18 @@ void add_warnings(const Design& design, MadeJob& made) {
 
 }  // namespace
 
+void check_making(const JobRequest& request) {
+  strategy_of(request.strategy);
+  word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords);
+  if (!(request.shrinkage_percent >= 0.0 && request.shrinkage_percent <= 10.0))
+    throw InputError({"", 0, "--shrinkage-percent"},
+                     "must be >= 0 and <= 10, got " + shortest(request.shrinkage_percent));
+  if (!(request.tool_width_mm >= 0.1 && request.tool_width_mm <= 2.0))
+    throw InputError({"", 0, "--tool-width-mm"}, "must be >= 0.1 and <= 2, got " + shortest(request.tool_width_mm));
+  fabrication::load_machine(request.machine, {"", 0, "--machine"});
+  fabrication::load_process(request.process, {"", 0, "--process"});
+}
+
 MadeJob make_job(const Design& design, const JobRequest& request) {
   MadeJob made;
   Job& job = made.job;
@@ -99,15 +111,11 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.element = prism_of(design);
   job.element.apex_angle_deg += design.part.angle_errors.dihedral_error_arcmin[0] / 60.0;
   job.array = array_of(design);
+  check_making(request);
   job.strategy = strategy_of(request.strategy);
   job.workpiece.kind = static_cast<fabrication::WorkpieceKind>(
       word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords));
-  if (!(request.shrinkage_percent >= 0.0 && request.shrinkage_percent <= 10.0))
-    throw InputError({"", 0, "--shrinkage-percent"},
-                     "must be >= 0 and <= 10, got " + shortest(request.shrinkage_percent));
   job.workpiece.shrinkage_percent = request.shrinkage_percent;
-  if (!(request.tool_width_mm >= 0.1 && request.tool_width_mm <= 2.0))
-    throw InputError({"", 0, "--tool-width-mm"}, "must be >= 0.1 and <= 2, got " + shortest(request.tool_width_mm));
   job.tool.width_mm = request.tool_width_mm;
   const double element_width_mm = fabrication::blank_element(job).width_mm;
   if (request.tool_width_mm > element_width_mm + 1e-6)
@@ -115,7 +123,6 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
                      fmt::format("must be <= {}, the element's width, got {}", shortest(element_width_mm),
                                  shortest(request.tool_width_mm)));
   job.machine = request.machine;
-  fabrication::load_machine(request.machine, {"", 0, "--machine"});
   job.process = fabrication::load_process(request.process, {"", 0, "--process"});
   if (design.mask)
     job.array.pattern =

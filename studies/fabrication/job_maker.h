@@ -28,6 +28,9 @@ struct MadeJob {
   std::vector<std::string> warnings;
 };
 
+/// What can be told of a request without a design: its words, machine and process. \throw InputError
+void check_making(const JobRequest& request);
+
 /// The fabrication job of a design: prisms of its array its dihedral error included, other errors and edges of
 /// [surface] not; partial elements are left out. \throw InputError for designs and requests that cannot be cut
 MadeJob make_job(const Design& design, const JobRequest& request);

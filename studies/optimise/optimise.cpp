@@ -28,21 +28,6 @@ constexpr std::uint64_t kMostCombinations = 10'000;
 
 }  // namespace
 
-double Constraint::violation(const std::optional<double>& value) const {
-  if (!value) return std::numeric_limits<double>::infinity();
-  double violation = 0.0;
-  if (least) violation = std::max(violation, *least - *value);
-  if (most) violation = std::max(violation, *value - *most);
-  return violation;
-}
-
-std::string Constraint::text() const {
-  std::string text = quantity;
-  if (least) text = shortest(*least) + " <= " + text;
-  if (most) text += " <= " + shortest(*most);
-  return text;
-}
-
 StoreLayout optimise_layout(const Study& study) {
   StoreLayout layout{"retrace.optimum/1", study.source, study.parts, {}, {}};
   for (const Parameter& parameter : study.parameters) layout.inputs.push_back(parameter.name);

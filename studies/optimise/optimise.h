@@ -8,22 +8,11 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "studies/quantity/constraint.h"
 #include "studies/quantity/study.h"
 #include "studies/store/store.h"
 
 namespace retrace::studies {
-
-/// A limit on a quantity of the study.
-struct Constraint {
-  std::string quantity;
-  std::optional<double> least;
-  std::optional<double> most;
-
-  /// By how much a value breaks it; 0 if it holds. What has no value breaks it by infinity.
-  double violation(const std::optional<double>& value) const;
-  /// "lens_thickness_mm <= 5"
-  std::string text() const;
-};
 
 /// What is to be as large as it can be: a weighted sum of quantities, negative weights for what is to be small.
 struct Objective {

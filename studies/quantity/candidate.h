@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "geometry/part.h"
@@ -36,12 +39,21 @@ class Candidate {
     if (!part_) part_ = geometry::build_part(design_.part);
     return *part_;
   }
+  /// What several quantities need, made when it is first asked for. \param key says what it is, with its type \param
+  /// make gives a shared pointer to it
+  template <class Value, class Make>
+  std::shared_ptr<const Value> shared(const std::string& key, Make make) const {
+    std::shared_ptr<const void>& kept = shared_[key];
+    if (!kept) kept = std::shared_ptr<const Value>(make());
+    return std::static_pointer_cast<const Value>(kept);
+  }
 
  private:
   Design design_;
   AnalysisSettings analysis_;
   MachiningProcess machining_;
   mutable std::optional<geometry::Part> part_;
+  mutable std::map<std::string, std::shared_ptr<const void>> shared_;
 };
 
 }  // namespace retrace::studies

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/number_format.h"
+#include "studies/closed_loop/as_machined.h"
+
 namespace retrace::studies {
 namespace {
 
@@ -40,6 +43,37 @@ double plunges_s(double cuts, double depths_mm, double step_mm, double feed_mm_p
 }
 
 }  // namespace
+
+namespace {
+
+PredictedTexture texture_of(const MachiningProcess& process) {
+  fabrication::Job job;
+  job.strategy = process.strategy;
+  job.process.roughing_feed_mm_per_min = process.roughing_feed_mm_per_min;
+  job.process.finishing_feed_mm_per_min = process.finishing_feed_mm_per_min;
+  return predicted_texture(job);
+}
+
+}  // namespace
+
+double process_sa_nm(const MachiningProcess& process) {
+  return texture_of(process).sa_nm;
+}
+
+std::vector<std::string> surface_overrides(const MachiningProcess& process) {
+  if (!process.surface_as_cut) return {};
+  const PredictedTexture texture = texture_of(process);
+  std::vector<std::string> overrides;
+  const auto set = [&](const char* key, double value) {
+    overrides.push_back(std::string("surface.") + key + "=" + shortest(value));
+  };
+  set("roughness_sq_nm", texture.roughness_sq_nm);
+  set("correlation_length_um", texture.correlation_length_um);
+  set("waviness_sq_nm", texture.waviness_sq_nm);
+  set("waviness_length_um", texture.waviness_length_um);
+  if (process.edge_radius_um > 0.0) set("root_radius_um", process.edge_radius_um);
+  return overrides;
+}
 
 double roughing_cuts(const geometry::RtpElement& element, const MachiningProcess& process) {
   const double cuts = (facet_length_mm(element) - allowance_mm(process)) / (process.roughing_depth_um / kUmPerMm);

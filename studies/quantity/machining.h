@@ -1,7 +1,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "fabrication/job/job.h"
 #include "geometry/part_spec.h"
 
 namespace retrace::studies {
@@ -19,7 +22,17 @@ struct MachiningProcess {
   double traverse_feed_mm_per_min = 200.0;
   double plough_length_um = 100.0;
   double dwell_s = 0.1;  ///< at every root
+  /// two_step, or unidirectional: then no facet is finished
+  fabrication::Strategy strategy = fabrication::Strategy::two_step;
+  double edge_radius_um = 0.0;  ///< of the tool's cutting edge, which the roots get
+  bool surface_as_cut = false;  ///< facets have the texture and roots the radius that cutting leaves
 };
+
+/// Areal roughness Sa that the process leaves on facets, in nm: studies/closed_loop, predicted_texture().
+double process_sa_nm(const MachiningProcess& process);
+
+/// The surface that the process leaves, as texts of --set for a design; empty unless it is asked for.
+std::vector<std::string> surface_overrides(const MachiningProcess& process);
 
 /// Roughing cuts of a facet: its length less what is left for finishing, by the depth of a cut.
 double roughing_cuts(const geometry::RtpElement& element, const MachiningProcess& process);

@@ -159,6 +159,7 @@ double tool_fit_mm(const Candidate& candidate) {
 }
 
 std::optional<double> plain_value(PlainQuantity which, const Candidate& candidate) {
+  constexpr double um_per_mm = 1e3;
   const geometry::PartSpec& spec = candidate.design().part;
   switch (which) {
     case PlainQuantity::elements_full:
@@ -188,6 +189,10 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
       return seconds_per_element(prism_of(candidate), candidate.machining());
     case PlainQuantity::area_rate_mm2_per_h:
       return 3600.0 * full_element_area_mm2(spec) / seconds_per_element(prism_of(candidate), candidate.machining());
+    case PlainQuantity::process_sa_nm:
+      return process_sa_nm(candidate.machining());
+    case PlainQuantity::root_radius_um:
+      return um_per_mm * spec.edges.root_radius_mm;
   }
   return std::nullopt;
 }

@@ -74,7 +74,9 @@ enum class PlainQuantity {
   tool_fit_mm,
   machining_time_h,
   machining_time_per_element_s,
-  area_rate_mm2_per_h
+  area_rate_mm2_per_h,
+  process_sa_nm,
+  root_radius_um
 };
 std::shared_ptr<const Quantity> make_plain(std::string name, PlainQuantity which);
 

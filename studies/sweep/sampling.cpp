@@ -13,6 +13,7 @@ namespace {
 constexpr std::uint32_t kScramble = 0x53776501U;
 constexpr std::uint32_t kShuffle = 0x53776502U;
 constexpr std::uint32_t kJitter = 0x53776503U;
+constexpr std::uint32_t kIndependent = 0x53776504U;
 
 std::uint32_t reversed(std::uint32_t v) {
   v = (v >> 16) | (v << 16);
@@ -57,7 +58,15 @@ UnitSamples::UnitSamples(Kind kind, std::size_t dimensions, std::uint64_t count,
 }
 
 std::vector<double> UnitSamples::at(std::uint64_t point) const {
-  return kind_ == Kind::sobol ? sobol(point) : latin_hypercube(point);
+  switch (kind_) {
+    case Kind::sobol:
+      return sobol(point);
+    case Kind::latin_hypercube:
+      return latin_hypercube(point);
+    case Kind::monte_carlo:
+      break;
+  }
+  return monte_carlo(point);
 }
 
 std::vector<double> UnitSamples::sobol(std::uint64_t point) const {
@@ -79,6 +88,14 @@ std::vector<double> UnitSamples::latin_hypercube(std::uint64_t point) const {
     const auto word = philox({seed_, kJitter}, static_cast<std::uint32_t>(point), static_cast<std::uint32_t>(axis))[0];
     coordinates[axis] = (permutations_[axis][point] + middle(word)) / static_cast<double>(count_);
   }
+  return coordinates;
+}
+
+std::vector<double> UnitSamples::monte_carlo(std::uint64_t point) const {
+  std::vector<double> coordinates(dimensions_);
+  for (std::size_t axis = 0; axis < dimensions_; ++axis)
+    coordinates[axis] =
+        middle(philox({seed_, kIndependent}, static_cast<std::uint32_t>(point), static_cast<std::uint32_t>(axis))[0]);
   return coordinates;
 }
 

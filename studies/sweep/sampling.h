@@ -10,8 +10,9 @@ namespace retrace::studies {
 class UnitSamples {
  public:
   enum class Kind {
-    sobol,           ///< Owen-scrambled by hashes (Laine and Karras 2011): best with a power of two
-    latin_hypercube  ///< one point in each of `count` equal parts of every axis (McKay et al. 1979)
+    sobol,            ///< Owen-scrambled by hashes (Laine and Karras 2011): best with a power of two
+    latin_hypercube,  ///< one point in each of `count` equal parts of every axis (McKay et al. 1979)
+    monte_carlo       ///< each by itself
   };
   /// \pre 1 <= dimensions <= most_dimensions, 1 <= count <= 2^31
   UnitSamples(Kind kind, std::size_t dimensions, std::uint64_t count, std::uint32_t seed);
@@ -24,6 +25,7 @@ class UnitSamples {
  private:
   std::vector<double> sobol(std::uint64_t point) const;
   std::vector<double> latin_hypercube(std::uint64_t point) const;
+  std::vector<double> monte_carlo(std::uint64_t point) const;
 
   Kind kind_;
   std::size_t dimensions_;

@@ -20,8 +20,20 @@ namespace {
 
 constexpr std::chrono::milliseconds kWaitForOthers{50};
 
-bool is_sampled(Combine combine) {
-  return combine == Combine::sobol || combine == Combine::latin_hypercube;
+/// Nothing for points that are not sampled.
+std::optional<UnitSamples::Kind> samples_of(Combine combine) {
+  switch (combine) {
+    case Combine::sobol:
+      return UnitSamples::Kind::sobol;
+    case Combine::latin_hypercube:
+      return UnitSamples::Kind::latin_hypercube;
+    case Combine::monte_carlo:
+      return UnitSamples::Kind::monte_carlo;
+    case Combine::grid:
+    case Combine::zipped:
+      break;
+  }
+  return std::nullopt;
 }
 
 std::uint64_t grid_size(const Study& study) {
@@ -48,22 +60,25 @@ std::uint64_t zipped_size(const Study& study) {
 }  // namespace
 
 Sweep::Sweep(Study study, Combine combine, std::uint64_t samples) : study_(std::move(study)), combine_(combine) {
-  if (is_sampled(combine)) {
+  if (const auto kind = samples_of(combine)) {
     size_ = samples;
-    const auto kind = combine == Combine::sobol ? UnitSamples::Kind::sobol : UnitSamples::Kind::latin_hypercube;
-    samples_.emplace(kind, study_.parameters.size(), size_, study_.seed);
+    samples_.emplace(*kind, study_.parameters.size(), size_, study_.seed);
     return;
   }
   for (const Parameter& parameter : study_.parameters)
     if (parameter.values.empty())
       throw InputError(parameter.location,
                        "a grid needs values, or a range with step or count; an interval or a distribution is for "
-                       "sweep.combine = \"sobol\" and \"latin_hypercube\"");
+                       "sweep.combine = \"sobol\", \"latin_hypercube\" and \"monte_carlo\"");
   size_ = combine == Combine::grid ? grid_size(study_) : zipped_size(study_);
 }
 
+Sweep::Sweep(Study study, std::string kind, std::shared_ptr<const PointPlan> plan)
+    : study_(std::move(study)), kind_(std::move(kind)), plan_(std::move(plan)), size_(plan_->size()) {}
+
 PointValues Sweep::values(std::uint64_t point) const {
-  if (samples_) return sampled(point);
+  if (plan_) return plan_->values(point);
+  if (samples_) return values_at(study_, samples_->at(point));
   PointValues values(study_.parameters.size());
   for (std::size_t k = values.size(); k-- > 0;) {
     const std::vector<ParameterValue>& choices = study_.parameters[k].values;
@@ -73,25 +88,24 @@ PointValues Sweep::values(std::uint64_t point) const {
   return values;
 }
 
-PointValues Sweep::sampled(std::uint64_t point) const {
-  const std::vector<double> share = samples_->at(point);
+PointValues values_at(const Study& study, const std::vector<double>& shares) {
   PointValues values;
-  for (std::size_t k = 0; k < share.size(); ++k) {
-    const Parameter& parameter = study_.parameters[k];
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const Parameter& parameter = study.parameters[k];
     if (parameter.distribution) {
-      values.push_back(Parameter::value_of(parameter.distribution->quantile(share[k])));
+      values.push_back(Parameter::value_of(parameter.distribution->quantile(shares[k])));
     } else if (parameter.interval) {
-      values.push_back(Parameter::value_of(parameter.interval->at(share[k])));
+      values.push_back(Parameter::value_of(parameter.interval->at(shares[k])));
     } else {
       const double count = static_cast<double>(parameter.values.size());
-      values.push_back(parameter.values[static_cast<std::size_t>(share[k] * count)]);
+      values.push_back(parameter.values[static_cast<std::size_t>(shares[k] * count)]);
     }
   }
   return values;
 }
 
 StoreLayout Sweep::layout() const {
-  StoreLayout layout{"retrace.sweep/1", study_.source, study_.parts, {}, {}};
+  StoreLayout layout{kind_, study_.source, study_.parts, {}, {}};
   for (const Parameter& parameter : study_.parameters) layout.inputs.push_back(parameter.name);
   for (const auto& quantity : study_.quantities) layout.outputs.push_back(quantity->name());
   return layout;

@@ -18,15 +18,30 @@ enum class Combine {
   grid,    ///< every value with every other; the last parameter varies fastest
   zipped,  ///< the first values of all, the second of all, ...
   sobol,
-  latin_hypercube
+  latin_hypercube,
+  monte_carlo  ///< each point drawn by itself
 };
+
+/// Which values the points of a study have, each told by its number alone.
+class PointPlan {
+ public:
+  virtual ~PointPlan() = default;
+  virtual std::uint64_t size() const = 0;
+  /// \pre point < size()
+  virtual PointValues values(std::uint64_t point) const = 0;
+};
+
+/// Values of parameters at shares 0..1 of their distributions, intervals or lists. \pre one share for each
+PointValues values_at(const Study& study, const std::vector<double>& shares);
 
 /// A study whose points are known before any is computed.
 class Sweep {
  public:
-  /// \param samples of `sobol` and `latin_hypercube`
+  /// \param samples of `sobol`, `latin_hypercube` and `monte_carlo`
   /// \throw InputError if the parameters cannot be combined so, or make more than most_points
   Sweep(Study study, Combine combine, std::uint64_t samples);
+  /// Points of another making. \param kind of the store, such as "retrace.tolerance/1" \param plan for this study
+  Sweep(Study study, std::string kind, std::shared_ptr<const PointPlan> plan);
 
   static constexpr std::uint64_t most_points = 10'000'000;
 
@@ -37,10 +52,10 @@ class Sweep {
   StoreLayout layout() const;
 
  private:
-  PointValues sampled(std::uint64_t point) const;
-
   Study study_;
-  Combine combine_;
+  std::string kind_ = "retrace.sweep/1";
+  std::shared_ptr<const PointPlan> plan_;  ///< null: as `combine_` says
+  Combine combine_ = Combine::grid;
   std::uint64_t size_ = 0;
   std::optional<UnitSamples> samples_;
 };

@@ -43,7 +43,7 @@ const std::map<std::string, Names>& study_rooms() {
                                                      {"forces", {}},
                                                      {"closed_loop", {"design"}},
                                                      {"store", {}},
-                                                     {"quantity", {"design", "rre", "inspect", "fabrication"}},
+                                                     {"quantity", {"design", "rre", "inspect", "photometry", "fabrication", "closed_loop"}},
                                                      {"sweep", {"design", "store", "quantity"}},
                                                      {"optimise", {"design", "store", "quantity", "sweep"}},
                                                      {"tolerance", {"design", "store", "quantity", "sweep"}}};

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <utility>
 
 #include "core/error.h"
@@ -59,6 +61,64 @@ TEST(Optimise, ReachesTheTopOfAParaboloid) {
   EXPECT_NEAR(number(optimum.best->values[0]), 1.7, 2e-3);
   EXPECT_NEAR(number(optimum.best->values[1]), 2.2, 2e-3);
   EXPECT_NEAR(*optimum.best->objective, 1.0, 2e-6);
+}
+
+/// A quantity that knows its slope by the thickness, and counts how often it is asked.
+class WithSlope : public Quantity {
+ public:
+  using Function = std::function<double(double thickness_mm)>;
+  WithSlope(Function f, Function slope) : Quantity("f"), f_(std::move(f)), slope_(std::move(slope)) {}
+  std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
+    return Measured{f_(candidate.design().part.thickness_mm), 0.0};
+  }
+  std::optional<double> slope(const Candidate& candidate, RreParameter parameter, const Cancellation*) const override {
+    EXPECT_EQ(parameter, RreParameter::thickness_mm);
+    ++asked;
+    return slope_(candidate.design().part.thickness_mm);
+  }
+  mutable int asked = 0;
+
+ private:
+  Function f_;
+  Function slope_;
+};
+
+TEST(Optimise, SlopesServeWhereThereAreAny) {
+  Study study = parse_study(
+      "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 0.5\nto = 3\n"
+      "[[quantity]]\nkind = \"elements_full\"\nname = \"f\"\n[optimize]\nmaximize = \"f\"\nscan = 4\n",
+      kFolder + "study.toml");
+  constexpr double top_mm = 1.2345678;
+  const auto f = [](double x) { return 1.0 - std::pow(x - top_mm, 2); };
+  const auto quantity = std::make_shared<WithSlope>(f, [](double x) { return -2.0 * (x - top_mm); });
+  study.quantities = {quantity};
+  const Optimum optimum = optimum_of(study);
+  EXPECT_EQ(optimum.method, "exact slopes");
+  EXPECT_GT(quantity->asked, 1);
+  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  const OptimiseRequest request = read_optimise(study);
+  optimise(study, request, store, nullptr, nullptr);
+  // What was looked at along slopes comes to the top itself; the chosen design is the roundest that is as good.
+  double nearest_mm = 1.0;
+  for (const StoredPoint& point : store.points())
+    nearest_mm = std::min(nearest_mm, std::abs(std::get<double>(point.inputs[0]) - top_mm));
+  EXPECT_LT(nearest_mm, 1e-7);
+  EXPECT_NEAR(number(optimum.best->values[0]), top_mm, 1e-3);
+}
+
+/// RRE at normal incidence rises with the index by the light that the faces of half elements return: it goes to its
+/// end, along slopes of the exact engine.
+TEST(Optimise, SlopesOfTheExactEngineServe) {
+  const Study study = parse_study(
+      "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.refractive_index\"\nfrom = 1.45\nto = 1.6\n"
+      "[[quantity]]\nkind = \"rre\"\n[analysis]\nengine = \"exact\"\n[optimize]\nmaximize = \"rre\"\nscan = 3\n",
+      kFolder + "study.toml");
+  const Optimum optimum = optimum_of(study);
+  ASSERT_TRUE(optimum.best.has_value());
+  EXPECT_EQ(optimum.method, "exact slopes");
+  EXPECT_EQ(number(optimum.best->values[0]), 1.6);
+  const double r = std::pow(0.6 / 2.6, 2);
+  EXPECT_NEAR(*optimum.best->objective, 0.95 + 0.05 * 2.0 * r / (1.0 + r), 1e-9);
 }
 
 TEST(Optimise, ReachesAnOptimumOnAConstraint) {

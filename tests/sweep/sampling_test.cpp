@@ -32,6 +32,22 @@ TEST(Sampling, EveryAxisIsFilledEvenly) {
   }
 }
 
+TEST(Sampling, IndependentPointsAreSpreadAsChanceHasIt) {
+  constexpr std::uint64_t count = 4096;
+  constexpr std::size_t bins = 16;
+  const UnitSamples samples(Kind::monte_carlo, 3, count, 1);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> hits(bins, 0.0);
+    for (std::uint64_t k = 0; k < count; ++k) hits[static_cast<std::size_t>(bins * samples.at(k)[axis])] += 1.0;
+    double chi_square = 0.0;
+    const double expected = static_cast<double>(count) / bins;
+    for (const double hit : hits) chi_square += (hit - expected) * (hit - expected) / expected;
+    // 15 degrees of freedom, 0.1 % on either side.
+    EXPECT_LT(chi_square, 37.7);
+    EXPECT_GT(chi_square, 3.5) << "too even for chance";
+  }
+}
+
 TEST(Sampling, SobolFillsThePlaneEvenlyWhateverTheSeed) {
   for (const std::uint32_t seed : {1U, 2U, 77U}) {
     const UnitSamples samples(Kind::sobol, 2, 256, seed);
@@ -45,7 +61,7 @@ TEST(Sampling, SobolFillsThePlaneEvenlyWhateverTheSeed) {
 }
 
 TEST(Sampling, PointsAreToldByTheirNumberAndSeed) {
-  for (const Kind kind : {Kind::sobol, Kind::latin_hypercube}) {
+  for (const Kind kind : {Kind::sobol, Kind::latin_hypercube, Kind::monte_carlo}) {
     const UnitSamples samples(kind, 3, 64, 5);
     const auto late = samples.at(40);
     samples.at(3);

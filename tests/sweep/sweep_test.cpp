@@ -1,11 +1,18 @@
 #include "studies/sweep/sweep.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <limits>
+#include <optional>
 
 #include "core/error.h"
+#include "studies/design/design_reader.h"
+#include "studies/photometry/io/standard_reader.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_files.h"
 #include "studies/sweep/io/sweep_reader.h"
@@ -120,6 +127,138 @@ TEST(Sweep, TheLedgerAddsUpAndTheFarFieldIsWhatWiderConesBring) {
   EXPECT_EQ(output(result, 0, "rre"), output(result, 0, "retroreflected"));
   EXPECT_GT(output(result, 0, "far_field"), 0.0);
   EXPECT_NEAR(output(result, 0, "far_field"), output(result, 0, "wide") - output(result, 0, "rre"), 1e-9);
+}
+
+/// Cubes lit by one wavelength, without diffraction: quick, and with light at every test point of the limits.
+const std::string kCubes =
+    "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 0.5\n[array]\nextent = \"infinite\"\n[body]\n"
+    "thickness_mm = 1.5\nrefractive_index = 1.4917\n[light]\nwavelength_nm = 600\n";
+const std::string kLimits =
+    "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n"
+    "S,,red,0.2,0,0,1000,mcd/lx,read\nS,,red,0.2,10,0,1000,mcd/lx,read\nS,,red,0.2,0,20,10,mcd/lx,read\n";
+
+/// A folder with those two files.
+class PhotometricStudy : public testing::Test {
+ protected:
+  PhotometricStudy()
+      : folder_(std::filesystem::temp_directory_path() / ("retrace_sweep_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "d.toml") << kCubes;
+    std::ofstream(folder_ / "l.csv") << kLimits;
+  }
+  ~PhotometricStudy() override { std::filesystem::remove_all(folder_); }
+
+  std::string text(const std::string& quantities) const {
+    std::string all = "design = \"d.toml\"\n[[parameter]]\nkey = \"surface.dihedral_error_arcmin\"\nvalues = [1]\n";
+    const std::string standard =
+        "kind = \"photometry\"\nstandard = \"l.csv\"\narea_cm2 = 30\nlight = \"design\"\nfar_field = \"geometric\"\n";
+    for (std::size_t at = 0; at < quantities.size();) {
+      const std::size_t end = quantities.find('|', at);
+      all += "[[quantity]]\n" + standard + quantities.substr(at, end - at);
+      at = end == std::string::npos ? quantities.size() : end + 1;
+    }
+    return all;
+  }
+  SweepResult swept_of(const std::string& quantities) {
+    sweep_.emplace(read_sweep(parse_study(text(quantities), (folder_ / "study.toml").string())));
+    return swept(*sweep_);
+  }
+  std::string message(const std::string& keys) const {
+    try {
+      parse_study(text(keys), (folder_ / "study.toml").string());
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.exit_code(), ExitCode::bad_input);
+      return std::string(error.what()).substr(folder_.string().size() + 1);
+    }
+    return "";
+  }
+
+  std::filesystem::path folder_;
+  std::optional<Sweep> sweep_;
+};
+
+TEST_F(PhotometricStudy, QuantitiesAreThoseOfTheTable) {
+  const SweepResult result = swept_of(
+      "name = \"worst\"\n|name = \"m\"\npoints = \"each\"\n|name = \"second\"\npoints = 2\nfigure = "
+      "\"r_i_mcd_per_lx\"\n|name = \"r_a\"\npoints = 2\nfigure = \"r_a\"\n");
+  ASSERT_FALSE(result.points.at(0).failed) << result.points[0].reason;
+  // What `retrace photometry` measures of the same design.
+  PhotometryRequest request = photometry_request({(folder_ / "l.csv").string(), {}, {}});
+  request.area_cm2 = 30.0;
+  request.own_light = true;
+  request.diffraction = false;
+  request.advice = false;
+  set_dye(request, {}, dye_file_of({}, false, request.programme.colour));
+  const std::vector<std::string> overrides = {"surface.dihedral_error_arcmin=1"};
+  const PhotometryResult table = PhotometryStudy(parse_design(kCubes, "d.toml", overrides), request).run();
+  ASSERT_EQ(table.points.size(), 3U);
+  double worst = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(output(result, 0, "m." + std::to_string(k + 1)), table.points[k].margin());
+    worst = std::min(worst, table.points[k].margin());
+  }
+  EXPECT_EQ(output(result, 0, "worst"), worst);
+  EXPECT_EQ(output(result, 0, "second"), table.points[1].r_i_mcd_per_lx);
+  EXPECT_GT(output(result, 0, "second"), 0.0);
+  // R_A times the area is R_I.
+  EXPECT_NEAR(output(result, 0, "r_a") * 30e-4 * 1e3, output(result, 0, "second"), 1e-9 * output(result, 0, "second"));
+  EXPECT_EQ(result.sweep.layout().outputs.size(), 6U);
+}
+
+TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
+  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "study.toml:12: quantity.points: must be >= 1 and <= 3, got 4");
+  EXPECT_EQ(message("name = \"q\"\npoints = 1.5\n"), "study.toml:12: quantity.points: must be a whole number, got 1.5");
+  EXPECT_TRUE(message("name = \"q\"\npoints = \"all\"\n").starts_with("study.toml:12: quantity.points: must be "));
+  EXPECT_TRUE(message("name = \"q\"\nfigure = \"R\"\n").starts_with("study.toml:12: quantity.figure: must be "));
+  EXPECT_TRUE(message("name = \"q\"\ncolour = \"green\"\n").starts_with("study.toml:12: quantity.colour: must be "))
+      << message("name = \"q\"\ncolour = \"green\"\n");
+  EXPECT_TRUE(message("name = \"q\"\ndye = \"no.csv\"\n").starts_with("study.toml:12: quantity.dye: must be "))
+      << message("name = \"q\"\ndye = \"no.csv\"\n");
+  EXPECT_TRUE(
+      message("name = \"q\"\nwindow_deg = 0.1\n").starts_with("study.toml:12: quantity.window_deg: must be >= 0.2"));
+  EXPECT_EQ(message("name = \"q\"\nwidth = 1\n"), "study.toml:12: quantity.width: has no meaning in this design");
+}
+
+/// What cutting leaves comes into the design; what the study says itself counts more.
+TEST(MachiningLoop, SurfacesAreThoseThatTheStrategyLeaves) {
+  const auto design = [](const std::string& machining, const std::vector<std::string>& overrides = {}) {
+    const Study study = parse_study(
+        "design = \"rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nvalues = "
+        "[2]\n[[quantity]]\nkind = \"rre\"\n[machining]\n" +
+            machining,
+        kFolder + "study.toml", overrides);
+    return make_candidate(study, study.parameters[0].values).design();
+  };
+  const Design drawn = design("edge_radius_um = 3\n");
+  EXPECT_EQ(drawn.texture.roughness_sq_nm, 0.0);
+  EXPECT_EQ(drawn.part.edges.root_radius_mm, 0.0);
+  const Design cut = design("edge_radius_um = 3\nsurface = \"as_cut\"\n");
+  EXPECT_NEAR(cut.part.edges.root_radius_mm, 3e-3, 1e-15);
+  // 48.9 nm as finished, of which 19.7 are roughness; Sq of Gaussian heights is sqrt(pi / 2) Sa.
+  EXPECT_NEAR(cut.texture.roughness_sq_nm, 19.7 * std::sqrt(M_PI / 2.0), 1e-9);
+  EXPECT_NEAR(cut.texture.waviness_sq_nm, 29.9 * std::sqrt(M_PI / 2.0), 1e-9);
+  const Design rough = design("strategy = \"unidirectional\"\nsurface = \"as_cut\"\n");
+  EXPECT_GT(rough.texture.roughness_sq_nm, 5.0 * cut.texture.roughness_sq_nm);
+  const std::vector<std::string> smoother = {"surface.roughness_sq_nm=7"};
+  EXPECT_EQ(design("surface = \"as_cut\"\n", smoother).texture.roughness_sq_nm, 7.0);
+}
+
+/// A process that leaves too much is excluded by what it leaves.
+TEST(MachiningLoop, TheProcessIsAQuantity) {
+  const Sweep sweep = read_sweep(parse_study(
+      "design = \"rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"machining.strategy\"\nvalues = [\"two-step\", "
+      "\"unidirectional\"]\n[[quantity]]\nkind = \"process_sa_nm\"\n[[quantity]]\nkind = \"machining_time_h\"\n"
+      "[[quantity]]\nkind = \"root_radius_um\"\n[machining]\nedge_radius_um = 2\nsurface = \"as_cut\"\n",
+      kFolder + "study.toml"));
+  const SweepResult result = swept(sweep);
+  ASSERT_EQ(result.points.size(), 2U);
+  ASSERT_FALSE(result.points[0].failed) << result.points[0].reason;
+  ASSERT_FALSE(result.points[1].failed) << result.points[1].reason;
+  EXPECT_NEAR(output(result, 0, "process_sa_nm"), 48.9, 1e-9);
+  // Half of the facets are ploughed and half plunged, at 468.19 and 114.55 nm.
+  EXPECT_NEAR(output(result, 1, "process_sa_nm"), std::sqrt(0.5 * (468.19 * 468.19 + 114.55 * 114.55)), 1e-9);
+  EXPECT_LT(output(result, 1, "machining_time_h"), output(result, 0, "machining_time_h")) << "nothing is finished";
+  EXPECT_NEAR(output(result, 0, "root_radius_um"), 2.0, 1e-12);
 }
 
 TEST(Sweep, ResultsDoNotDependOnWhatIsAlreadyThere) {

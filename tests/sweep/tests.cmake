@@ -5,7 +5,7 @@ retrace_test(sweep_test
   LIBRARIES retrace::optimise retrace::sweep retrace::quantity retrace::store SQLiteCpp)
 
 # The program: runs that are killed, interrupted, shared and refused.
-set(sweep_app_sources sweep_command_test.cpp)
+set(sweep_app_sources sweep_command_test.cpp tolerance_command_test.cpp)
 if(RETRACE_WITH_MPI)
   list(APPEND sweep_app_sources mpi_command_test.cpp)
 endif()

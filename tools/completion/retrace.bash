@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect photometry roughness metrology sweep optimize job fabricate verify forces init list'
+  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -44,6 +44,10 @@ _retrace() {
   done
 
   case $previous in
+    --job)
+      _retrace_files "$word" .toml
+      return
+      ;;
     --json)
       _retrace_files "$word" .json
       return
@@ -151,7 +155,11 @@ _retrace() {
         _retrace_words "$word" "$common --form --cutoff-um --pixel-um --height-unit --lateral-unit --channel \
           --feed-mm-per-min --edge"
         ;;
-      sweep | optimize) _retrace_words "$word" "$common --resume --overwrite" ;;
+      sweep | tolerance) _retrace_words "$word" "$common --resume --overwrite" ;;
+      optimize)
+        _retrace_words "$word" "$common --resume --overwrite --job --machine --tool-width-mm --strategy --process \
+          --workpiece --shrinkage-percent"
+        ;;
       job)
         _retrace_words "$word" "$common --machine --tool-width-mm --strategy --process --workpiece --shrinkage-percent"
         ;;
@@ -166,7 +174,7 @@ _retrace() {
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect | photometry | roughness | sweep | optimize | job | fabricate | forces) _retrace_files "$word" .toml ;;
+    rre | inspect | photometry | roughness | sweep | optimize | tolerance | job | fabricate | forces) _retrace_files "$word" .toml ;;
     metrology | verify) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
     list) _retrace_words "$word" 'materials machines processes standards' ;;

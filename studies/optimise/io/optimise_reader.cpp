@@ -11,6 +11,7 @@
 #include "core/number_format.h"
 #include "studies/design/design_keys.h"
 #include "studies/design/table_reader.h"
+#include "studies/quantity/io/constraint_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -26,22 +27,6 @@ constexpr std::array<std::string_view, 10> kBandKeys = {"surface.dihedral_error_
                                                         "element.apex_angle_deg",
                                                         "element.base_mm",
                                                         "element.width_mm"};
-
-std::vector<std::string_view> names_of(const Study& study) {
-  std::vector<std::string_view> names;
-  for (const auto& quantity : study.quantities) names.push_back(quantity->name());
-  return names;
-}
-
-/// \return the name, if the study has a quantity of that name
-std::string checked_quantity(const Study& study, const std::string& name, const InputLocation& where) {
-  const std::vector<std::string_view> names = names_of(study);
-  if (std::find(names.begin(), names.end(), name) != names.end()) return name;
-  const std::string_view meant = closest(name, names);
-  throw InputError(where,
-                   fmt::format("must be a quantity of the study ({}), got {}{}", alternatives(names), in_quotes(name),
-                               meant.empty() ? "" : fmt::format("; did you mean {}?", in_quotes(meant))));
-}
 
 /// `key = "rre"` or `key = {rre = 1, machining_time_h = -0.001}`
 Objective read_objective(const DesignDocument& document, TableReader& table, const Study& study) {
@@ -81,34 +66,6 @@ std::vector<FrontAxis> read_front(const DesignDocument& document, TableReader& t
     front.push_back({quantity, reader.required_choice(name.str(), std::span<const Choice<bool>>(choices))});
   }
   return front;
-}
-
-std::vector<Constraint> read_constraints(const DesignDocument& document, const Study& study) {
-  std::vector<Constraint> constraints;
-  const toml::node* const node = document.root().get("constraint");
-  if (node == nullptr) return constraints;
-  const toml::array* const list = node->as_array();
-  const auto refuse = [&](const toml::node& where) -> InputError {
-    return {document.location(where, "constraint"), "must be one or more tables [[constraint]], got " + shown(where)};
-  };
-  if (list == nullptr) throw refuse(*node);
-  for (const toml::node& entry : *list) {
-    if (!entry.is_table()) throw refuse(entry);
-    TableReader table(document, "constraint", *entry.as_table());
-    Constraint constraint;
-    const std::optional<std::string> name = table.text("quantity");
-    if (!name) table.fail("quantity", "missing, must be a quantity of the study");
-    constraint.quantity = checked_quantity(study, *name, table.where("quantity"));
-    constraint.least = table.number("min", Range{});
-    constraint.most = table.number("max", Range{});
-    if (!constraint.least && !constraint.most) table.fail("max", "missing: a constraint has min, max or both");
-    if (constraint.least && constraint.most && *constraint.least > *constraint.most)
-      table.fail("max",
-                 fmt::format("must be >= min ({}), got {}", shortest(*constraint.least), shortest(*constraint.most)));
-    table.finish();
-    constraints.push_back(constraint);
-  }
-  return constraints;
 }
 
 std::vector<std::string> read_band_keys(const DesignDocument& document, TableReader& table, const Study& study) {
@@ -157,7 +114,7 @@ OptimiseRequest read_optimise(const Study& study) {
   request.band_loss =
       table.number("band_loss_percent", {.low = 0.0, .low_included = false, .high = 100.0}).value_or(1.0) / percent;
   table.finish();
-  request.constraints = read_constraints(document, study);
+  request.constraints = read_constraints(study);
   return request;
 }
 

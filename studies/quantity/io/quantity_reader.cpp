@@ -8,11 +8,14 @@
 
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "studies/photometry/io/standard_reader.h"
+#include "studies/photometry/standards.h"
+#include "studies/quantity/photometric.h"
 
 namespace retrace::studies {
 namespace {
 
-enum class Kind { share, plain };
+enum class Kind { share, plain, photometry };
 struct KindOf {
   Kind kind = Kind::plain;
   PlainQuantity plain = PlainQuantity::elements_full;
@@ -28,6 +31,7 @@ constexpr std::array kKinds = {
     Choice<KindOf>{"rre", {Kind::share, PlainQuantity::elements_full, false, false}},
     Choice<KindOf>{"ledger", {Kind::share, PlainQuantity::elements_full, false, true}},
     Choice<KindOf>{"far_field", {Kind::share, PlainQuantity::elements_full, true, false}},
+    Choice<KindOf>{"photometry", {Kind::photometry, PlainQuantity::elements_full, false, false}},
     Choice<KindOf>{"elements_full", plain(PlainQuantity::elements_full)},
     Choice<KindOf>{"elements_partial", plain(PlainQuantity::elements_partial)},
     Choice<KindOf>{"element_depth_mm", plain(PlainQuantity::element_depth_mm)},
@@ -40,10 +44,18 @@ constexpr std::array kKinds = {
     Choice<KindOf>{"tool_fit_mm", plain(PlainQuantity::tool_fit_mm)},
     Choice<KindOf>{"machining_time_h", plain(PlainQuantity::machining_time_h)},
     Choice<KindOf>{"machining_time_per_element_s", plain(PlainQuantity::machining_time_per_element_s)},
-    Choice<KindOf>{"area_rate_mm2_per_h", plain(PlainQuantity::area_rate_mm2_per_h)}};
+    Choice<KindOf>{"area_rate_mm2_per_h", plain(PlainQuantity::area_rate_mm2_per_h)},
+    Choice<KindOf>{"process_sa_nm", plain(PlainQuantity::process_sa_nm)},
+    Choice<KindOf>{"root_radius_um", plain(PlainQuantity::root_radius_um)}};
 constexpr std::array kReductions = {Choice<Reduction>{"mean", Reduction::mean},
                                     Choice<Reduction>{"least", Reduction::least}};
 constexpr std::array kWeightings = {Choice<bool>{"uniform", false}, Choice<bool>{"solid_angle", true}};
+constexpr std::array kFigures = {Choice<PhotometricFigure>{"margin", PhotometricFigure::margin},
+                                 Choice<PhotometricFigure>{"r_i_mcd_per_lx", PhotometricFigure::r_i_mcd_per_lx},
+                                 Choice<PhotometricFigure>{"r_a", PhotometricFigure::r_a}};
+constexpr std::array kPoints = {Choice<bool>{"worst", false}, Choice<bool>{"each", true}};
+constexpr std::array kLights = {Choice<bool>{"a", false}, Choice<bool>{"design", true}};
+constexpr std::array kFarFields = {Choice<bool>{"geometric", false}, Choice<bool>{"diffracted", true}};
 constexpr Range kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
 constexpr Range kAnyAngle{};
 constexpr Range kHalfAngle{.low = 0.0, .low_included = false, .high = 90.0};
@@ -104,6 +116,69 @@ ShareSpec read_share(const DesignDocument& document, TableReader& quantity, cons
   return spec;
 }
 
+/// \throw InputError that says `--class` as the key `class` of the quantity
+template <class Work>
+auto with_keys(const TableReader& quantity, Work work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    const std::size_t end = text.find(": ");
+    if (!text.starts_with("--") || end == std::string::npos) throw;
+    std::string key = text.substr(2, end - 2);
+    std::replace(key.begin(), key.end(), '-', '_');
+    quantity.fail(key, text.substr(end + 2));
+  }
+}
+
+std::shared_ptr<const PhotometricTable> read_photometric_table(TableReader& quantity) {
+  PhotometricTable table;
+  StandardChoice choice;
+  // A word is a shipped standard; anything else a file.
+  const std::optional<std::string> standard = quantity.text("standard");
+  if (!standard) quantity.fail("standard", "missing, must be r150, j594, bicycle or the name of a limits file");
+  choice.standard = find_standard(*standard) != nullptr ? *standard : quantity.file("standard")->string();
+  choice.part_class = quantity.text("class");
+  choice.colour = quantity.text("colour");
+  table.request = with_keys(quantity, [&] { return photometry_request(choice); });
+  PhotometryRequest& request = table.request;
+  request.area_cm2 = quantity.required_number("area_cm2", {.low = 0.0, .low_included = false, .high = 1e6});
+  if (const auto turns = quantity.numbers("rotation_deg", Range{})) request.rotation_deg = *turns;
+  request.window_deg = quantity.number("window_deg", {.low = 0.05, .high = 10.0}).value_or(request.window_deg);
+  for (const TestPoint& point : request.programme.points)
+    if (point.observation_deg > request.window_deg)
+      quantity.fail("window_deg", fmt::format("must be >= {}, an observation angle of the standard, got {}",
+                                              shortest(point.observation_deg), shortest(request.window_deg)));
+  request.own_light = quantity.choice("light", all(kLights)).value_or(false);
+  request.diffraction = quantity.choice("far_field", all(kFarFields)).value_or(true);
+  request.advice = false;
+  const std::optional<std::string> dye = quantity.text("dye");
+  set_dye(request, dye, with_keys(quantity, [&] { return dye_file_of(dye, false, request.programme.colour); }));
+  table.dye_unless_coloured = !dye;
+  table.key = fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", choice.standard, choice.part_class.value_or(""),
+                          request.programme.colour, request.area_cm2, fmt::join(request.rotation_deg, " "),
+                          request.window_deg, request.own_light, request.diffraction, dye.value_or("(by colour)"));
+  return std::make_shared<const PhotometricTable>(std::move(table));
+}
+
+Quantities read_photometric(TableReader& quantity, const std::string& name) {
+  const PhotometricFigure figure = quantity.choice("figure", all(kFigures)).value_or(PhotometricFigure::margin);
+  const auto table = read_photometric_table(quantity);
+  const std::size_t points = table->request.programme.points.size();
+  Quantities result;
+  if (quantity.is_text("points")) {
+    if (!quantity.required_choice("points", all(kPoints))) return {make_photometric(name, table, {}, figure)};
+    for (std::size_t k = 0; k < points; ++k)
+      result.push_back(make_photometric(fmt::format("{}.{}", name, k + 1), table, k, figure));
+    return result;
+  }
+  const std::optional<double> point = quantity.number("points", {.low = 1.0, .high = static_cast<double>(points)});
+  if (point && *point != std::floor(*point))
+    quantity.fail("points", fmt::format("must be a whole number, got {}", shortest(*point)));
+  return {make_photometric(name, table, point ? std::optional(static_cast<std::size_t>(*point) - 1) : std::nullopt,
+                           figure)};
+}
+
 bool is_name(const std::string& text) {
   constexpr std::size_t longest = 64;
   const auto fits = [](char c) {
@@ -115,15 +190,25 @@ bool is_name(const std::string& text) {
 
 }  // namespace
 
-std::shared_ptr<const Quantity> read_quantity(const DesignDocument& document, const toml::table& table) {
+Quantities read_quantity(const DesignDocument& document, const toml::table& table) {
   TableReader quantity(document, "quantity", table);
   const KindOf kind = quantity.required_choice("kind", all(kKinds));
   const std::string name = quantity.text("name").value_or(quantity.text("kind").value_or(""));
   if (!is_name(name))
     quantity.fail("name",
                   fmt::format("must be of letters, digits, \"_\" and \".\", at most 64, got {}", in_quotes(name)));
-  std::shared_ptr<const Quantity> result =
-      kind.kind == Kind::share ? make_share(name, read_share(document, quantity, kind)) : make_plain(name, kind.plain);
+  Quantities result;
+  switch (kind.kind) {
+    case Kind::share:
+      result.push_back(make_share(name, read_share(document, quantity, kind)));
+      break;
+    case Kind::plain:
+      result.push_back(make_plain(name, kind.plain));
+      break;
+    case Kind::photometry:
+      result = read_photometric(quantity, name);
+      break;
+  }
   quantity.finish();
   return result;
 }

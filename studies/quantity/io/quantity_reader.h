@@ -5,7 +5,7 @@
 
 namespace retrace::studies {
 
-/// One [[quantity]] of a study. \throw InputError
-std::shared_ptr<const Quantity> read_quantity(const DesignDocument& document, const toml::table& table);
+/// One [[quantity]] of a study, which may stand for several, such as every point of a standard. \throw InputError
+Quantities read_quantity(const DesignDocument& document, const toml::table& table);
 
 }  // namespace retrace::studies

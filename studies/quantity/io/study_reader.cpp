@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 8> kParts = {"parameter", "quantity",  "a
 constexpr std::array<std::string_view, 2> kSettingTables = {"analysis", "machining"};
 constexpr std::array<std::string_view, 6> kAnalysisKeys = {"incidence_deg", "azimuth_deg", "engine",
                                                            "target_error",  "samples",     "cutoff"};
-constexpr std::array<std::string_view, 10> kMachiningKeys = {"tool_width_mm",
+constexpr std::array<std::string_view, 13> kMachiningKeys = {"tool_width_mm",
                                                              "clearance_um",
                                                              "roughing_depth_um",
                                                              "finishing_depth_um",
@@ -40,10 +40,17 @@ constexpr std::array<std::string_view, 10> kMachiningKeys = {"tool_width_mm",
                                                              "roughing_feed_mm_per_min",
                                                              "finishing_feed_mm_per_min",
                                                              "traverse_feed_mm_per_min",
-                                                             "dwell_s"};
+                                                             "dwell_s",
+                                                             "strategy",
+                                                             "edge_radius_um",
+                                                             "surface"};
 constexpr std::array kEngines = {Choice<Engine>{"auto", Engine::automatic}, Choice<Engine>{"exact", Engine::exact},
                                  Choice<Engine>{"montecarlo", Engine::montecarlo}, Choice<Engine>{"cell", Engine::cell},
                                  Choice<Engine>{"embree", Engine::embree}};
+constexpr std::array kStrategies = {
+    Choice<fabrication::Strategy>{"two-step", fabrication::Strategy::two_step},
+    Choice<fabrication::Strategy>{"unidirectional", fabrication::Strategy::unidirectional}};
+constexpr std::array kSurfaces = {Choice<bool>{"as_designed", false}, Choice<bool>{"as_cut", true}};
 constexpr std::array kScales = {Choice<bool>{"linear", false}, Choice<bool>{"log", true}};
 constexpr std::array kDistributions = {Choice<Distribution::Kind>{"normal", Distribution::Kind::normal},
                                        Choice<Distribution::Kind>{"uniform", Distribution::Kind::uniform},
@@ -97,6 +104,13 @@ MachiningProcess read_machining(const DesignDocument& document) {
   read("finishing_feed_mm_per_min", kSane, process.finishing_feed_mm_per_min);
   read("traverse_feed_mm_per_min", kSane, process.traverse_feed_mm_per_min);
   read("dwell_s", {.low = 0.0, .high = 3600.0}, process.dwell_s);
+  process.strategy = table.choice("strategy", all(kStrategies)).value_or(process.strategy);
+  if (process.strategy == fabrication::Strategy::unidirectional) {
+    table.refuse({"finishing_cuts"}, "not allowed for strategy = \"unidirectional\", which finishes no facet");
+    process.finishing_cuts = 0;
+  }
+  read("edge_radius_um", {.low = 0.0, .high = 1000.0}, process.edge_radius_um);
+  process.surface_as_cut = table.choice("surface", all(kSurfaces)).value_or(false);
   table.finish();
   return process;
 }
@@ -308,18 +322,16 @@ std::string lower(std::string text) {
 }
 
 /// Columns of a table are told apart by their names, whatever their case.
-void check_columns(const DesignDocument& document, const Study& study) {
+void check_columns(const Study& study, const std::vector<InputLocation>& quantity_locations) {
   std::set<std::string> taken = {"point", "failed", "reason", "elapsed_s", "version", "status"};
   const auto take = [&](const std::string& name, const InputLocation& where, std::string_view what) {
     if (name.empty() || name.size() > 128 || printable(name, 200) != name || !taken.insert(lower(name)).second)
       throw InputError(where, fmt::format("{} {} is taken or no name: give another name", what, in_quotes(name)));
   };
   for (const Parameter& parameter : study.parameters) take(parameter.name, parameter.location, "the column");
-  const std::vector<const toml::table*> tables = tables_of(document, "quantity");
-  for (std::size_t k = 0; k < tables.size(); ++k) {
-    const InputLocation where = document.location(*tables[k], "quantity.name");
-    take(study.quantities[k]->name(), where, "the column");
-    take(study.quantities[k]->name() + "_std_error", where, "the column");
+  for (std::size_t k = 0; k < study.quantities.size(); ++k) {
+    take(study.quantities[k]->name(), quantity_locations[k], "the column");
+    take(study.quantities[k]->name() + "_std_error", quantity_locations[k], "the column");
   }
 }
 
@@ -417,11 +429,15 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
   study.title = top.text("title").value_or("");
   for (const toml::table* table : tables_of(document, "parameter"))
     study.parameters.push_back(read_parameter(document, *table));
+  std::vector<InputLocation> quantity_locations;
   for (const toml::table* table : tables_of(document, "quantity"))
-    study.quantities.push_back(read_quantity(document, *table));
+    for (auto& quantity : read_quantity(document, *table)) {
+      study.quantities.push_back(std::move(quantity));
+      quantity_locations.push_back(document.location(*table, "quantity.name"));
+    }
   if (study.parameters.empty()) top.fail("parameter", "missing, must be one or more tables [[parameter]]");
   if (study.quantities.empty()) top.fail("quantity", "missing, must be one or more tables [[quantity]]");
-  check_columns(document, study);
+  check_columns(study, quantity_locations);
   check_keys_once(study);
   read_analysis(document, seed);
   read_machining(document);
@@ -446,8 +462,12 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
         (is_setting(key) ? for_study : for_design).push_back(fmt::format("{}={}", key, values[k].toml));
     }
   const DesignDocument document(study.text, study.source, for_study);
+  const MachiningProcess machining = read_machining(document);
+  // What the study says of the surface counts more than what cutting leaves.
+  const std::vector<std::string> as_cut = surface_overrides(machining);
+  for_design.insert(for_design.begin(), as_cut.begin(), as_cut.end());
   return {parse_design(study.design_texts.at(design), design, for_design), read_analysis(document, study.seed),
-          read_machining(document)};
+          machining};
 }
 
 }  // namespace retrace::studies

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::array kCombinations = {
     Choice<Combine>{"grid", Combine::grid}, Choice<Combine>{"zipped", Combine::zipped},
-    Choice<Combine>{"sobol", Combine::sobol}, Choice<Combine>{"latin_hypercube", Combine::latin_hypercube}};
+    Choice<Combine>{"sobol", Combine::sobol}, Choice<Combine>{"latin_hypercube", Combine::latin_hypercube},
+    Choice<Combine>{"monte_carlo", Combine::monte_carlo}};
 constexpr Range kSamples{.low = 1.0, .high = 1'000'000.0};
 
 }  // namespace
@@ -28,14 +29,14 @@ Sweep read_sweep(Study study) {
   const Combine combine =
       table.choice("combine", std::span<const Choice<Combine>>(kCombinations)).value_or(Combine::grid);
   double samples = 0.0;
-  if (combine == Combine::sobol || combine == Combine::latin_hypercube) {
+  if (combine != Combine::grid && combine != Combine::zipped) {
     samples = table.required_number("samples", kSamples);
     if (samples != std::floor(samples))
       table.fail("samples", fmt::format("must be a whole number, got {}", shortest(samples)));
     if (study.parameters.size() > UnitSamples::most_dimensions)
       table.fail("combine", fmt::format("takes at most {} parameters", UnitSamples::most_dimensions));
   } else {
-    table.refuse({"samples"}, "only allowed for combine = \"sobol\" and \"latin_hypercube\"");
+    table.refuse({"samples"}, "only allowed for combine = \"sobol\", \"latin_hypercube\" and \"monte_carlo\"");
   }
   table.finish();
   return {std::move(study), combine, static_cast<std::uint64_t>(samples)};

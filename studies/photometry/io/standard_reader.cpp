@@ -1,0 +1,51 @@
+#include "studies/photometry/io/standard_reader.h"
+
+#include <fmt/format.h>
+
+#include "core/data_directory.h"
+#include "core/error.h"
+#include "core/message_text.h"
+#include "materials/io/spectrum_reader.h"
+#include "studies/photometry/io/limits_reader.h"
+#include "studies/photometry/standards.h"
+
+namespace retrace::studies {
+namespace fs = std::filesystem;
+
+fs::path limits_file_of(const std::string& standard) {
+  if (find_standard(standard) != nullptr) return data_directory() / "photometry_limits.csv";
+  if (!fs::exists(standard))
+    throw InputError({"", 0, "--standard"}, fmt::format("must be r150, j594, bicycle or a file that exists, got {}",
+                                                        in_quotes(standard)));
+  return standard;
+}
+
+PhotometryRequest photometry_request(const StandardChoice& choice) {
+  const fs::path file = limits_file_of(choice.standard);
+  const ShippedStandard* const shipped = find_standard(choice.standard);
+  const auto in_table = shipped != nullptr ? std::optional(std::string(shipped->in_table)) : std::nullopt;
+  PhotometryRequest request;
+  request.programme = programme_of(read_limits(file), in_table, choice.part_class, choice.colour);
+  request.limits_source = shipped != nullptr ? choice.standard : file.string();
+  request.apertures = shipped != nullptr ? shipped->apertures : default_apertures();
+  if (shipped != nullptr) request.rotation_deg = shipped->rotation_deg;
+  return request;
+}
+
+fs::path dye_file_of(const std::optional<std::string>& dye, bool design_is_coloured, const std::string& colour) {
+  const std::string name = dye ? *dye : (design_is_coloured ? "none" : colour);
+  if (name == "red" || name == "amber") return data_directory() / ("dye_" + name + ".csv");
+  if (name == "none" || !dye) return {};
+  if (!fs::exists(name))
+    throw InputError({"", 0, "--dye"},
+                     fmt::format("must be none, red, amber or a file that exists, got {}", in_quotes(name)));
+  return name;
+}
+
+void set_dye(PhotometryRequest& request, const std::optional<std::string>& dye, const fs::path& file) {
+  if (file.empty()) return;
+  request.dye = dye.value_or(request.programme.colour);
+  request.dye_absorption_per_mm = materials::read_spectral_absorption(file);
+}
+
+}  // namespace retrace::studies

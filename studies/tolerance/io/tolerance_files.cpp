@@ -1,0 +1,139 @@
+#include "studies/tolerance/io/tolerance_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <vector>
+
+#include "core/json_text.h"
+#include "core/message_text.h"
+#include "core/version.h"
+
+namespace retrace::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kPercent = 100.0;
+
+Json estimate_json(const Estimate& estimate) {
+  return {{"value", estimate.value}, {"low", estimate.low}, {"high", estimate.high}};
+}
+
+Json quantity_json(const Study& study, const QuantityTolerance& quantity) {
+  Json json = {{"quantity", quantity.quantity}};
+  if (quantity.nominal) json["nominal"] = *quantity.nominal;
+  json["parts"] = quantity.parts;
+  json["without_value"] = quantity.without;
+  if (quantity.spread) {
+    const Spread& spread = *quantity.spread;
+    json["mean"] = estimate_json(spread.mean_interval);
+    json["standard_deviation"] = spread.deviation;
+    json["least"] = spread.least;
+    json["most"] = spread.most;
+  }
+  json["percentiles"] = Json::array();
+  for (const auto& [share, value] : quantity.percentiles)
+    json["percentiles"].push_back({{"percent", kPercent * share}, {"value", value}});
+  if (quantity.noise) json["noise"] = *quantity.noise;
+  json["index_rows"] = quantity.rows;
+  json["indices"] = Json::array();
+  for (std::size_t k = 0; k < quantity.indices.size(); ++k)
+    json["indices"].push_back({{"parameter", study.parameters[k].name},
+                               {"first_order", estimate_json(quantity.indices[k].first_order)},
+                               {"total", estimate_json(quantity.indices[k].total)}});
+  return json;
+}
+
+const char* sampling_name(UnitSamples::Kind kind) {
+  switch (kind) {
+    case UnitSamples::Kind::sobol:
+      return "sobol";
+    case UnitSamples::Kind::latin_hypercube:
+      return "latin_hypercube";
+    case UnitSamples::Kind::monte_carlo:
+      break;
+  }
+  return "monte_carlo";
+}
+
+std::string percent_text(const Estimate& share, double confidence) {
+  return fmt::format("{:.2f} % ({:g} % confidence: {:.2f} to {:.2f} %)", kPercent * share.value, kPercent * confidence,
+                     kPercent * share.low, kPercent * share.high);
+}
+
+/// Parameters by their total index, the largest first.
+std::vector<std::size_t> by_contribution(const std::vector<SobolIndex>& indices) {
+  std::vector<std::size_t> order(indices.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return indices[a].total.value > indices[b].total.value; });
+  return order;
+}
+
+std::string quantity_text(const Study& study, const QuantityTolerance& quantity) {
+  std::string text = quantity.quantity + ":";
+  if (quantity.nominal) text += fmt::format("  nominal {:.6g}", *quantity.nominal);
+  if (quantity.spread)
+    text += fmt::format("  mean {:.6g}  deviation {:.3g}  {:.6g} to {:.6g}", quantity.spread->mean,
+                        quantity.spread->deviation, quantity.spread->least, quantity.spread->most);
+  text += "\n";
+  if (!quantity.percentiles.empty()) {
+    text += " ";
+    for (const auto& [share, value] : quantity.percentiles)
+      text += fmt::format("  {:g} %: {:.6g}", kPercent * share, value);
+    text += "\n";
+  }
+  for (const std::size_t k : by_contribution(quantity.indices)) {
+    const SobolIndex& index = quantity.indices[k];
+    text += fmt::format("    {:<36} alone {:6.3f} ({:.3f} to {:.3f})   with others {:6.3f} ({:.3f} to {:.3f})\n",
+                        printable(study.parameters[k].name, 36), index.first_order.value, index.first_order.low,
+                        index.first_order.high, index.total.value, index.total.low, index.total.high);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& request, const ToleranceResult& result) {
+  const Study& study = swept.sweep.study();
+  Json json = {{"schema", "retrace.tolerance/1"}, {"study", study.source}};
+  if (!study.title.empty()) json["title"] = study.title;
+  json["parameters"] = Json::array();
+  for (const Parameter& parameter : study.parameters) json["parameters"].push_back(parameter.name);
+  json["sampling"] = sampling_name(request.sampling);
+  json["samples"] = request.samples;
+  json["confidence"] = request.confidence;
+  json["points_in_all"] = swept.sweep.size();
+  json["parts"] = result.parts;
+  json["failed"] = result.failed;
+  if (result.yield) json["yield"] = estimate_json(*result.yield);
+  if (request.least_yield) json["least_yield"] = *request.least_yield;
+  if (request.least_yield) json["verdict"] = result.is_enough ? "pass" : "fail";
+  json["limits"] = Json::array();
+  for (const LimitYield& limit : result.limits)
+    json["limits"].push_back({{"limit", limit.text}, {"yield", estimate_json(limit.yield)}});
+  json["quantities"] = Json::array();
+  for (const QuantityTolerance& quantity : result.quantities)
+    json["quantities"].push_back(quantity_json(study, quantity));
+  json["seed"] = study.seed;
+  json["elapsed_s"] = swept.elapsed_s;
+  json["version"] = kVersion;
+  json["warnings"] = swept.warnings;
+  json["complete"] = swept.complete;
+  return to_text(json);
+}
+
+std::string tolerance_text(const Study& study, const ToleranceRequest& request, const ToleranceResult& result) {
+  std::string text;
+  for (const QuantityTolerance& quantity : result.quantities) text += quantity_text(study, quantity);
+  for (const LimitYield& limit : result.limits)
+    text += fmt::format("{}:  {}\n", limit.text, percent_text(limit.yield, request.confidence));
+  if (result.yield) text += fmt::format("yield:  {}\n", percent_text(*result.yield, request.confidence));
+  text += fmt::format("{} parts, {} could not be computed\n", result.parts, result.failed);
+  return text;
+}
+
+}  // namespace retrace::studies

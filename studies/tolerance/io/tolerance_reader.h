@@ -1,0 +1,11 @@
+#pragma once
+
+#include "studies/tolerance/tolerance.h"
+
+namespace retrace::studies {
+
+/// What [tolerance] and [[constraint]] of a study ask; without that table, the defaults. Parameters must have
+/// distributions. \throw InputError
+ToleranceRequest read_tolerance(const Study& study);
+
+}  // namespace retrace::studies
