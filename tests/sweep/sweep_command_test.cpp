@@ -73,7 +73,7 @@ TEST(SweepCommand, TwoProcessesShareOneStore) {
   Child first(folder.path(), sweep_arguments("shared", true));
   Child second(folder.path(), sweep_arguments("shared", true));
   for (Child* child : {&first, &second}) {
-    const Outcome outcome = child->wait();
+    const Outcome outcome = child->wait(std::chrono::seconds(120));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
   EXPECT_EQ(folder.read("shared/sweep.csv"), expected);
@@ -87,10 +87,14 @@ TEST(SweepCommand, AnInterruptedRunIsValidAndGoesOn) {
   const TemporaryFolder folder;
   folder.write("study.toml", sweep_study(400));
   Child child(folder.path(), sweep_arguments("out", false));
-  while (stored_points(folder.path() / "out/sweep.sqlite").size() < 5)
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (stored_points(folder.path() / "out/sweep.sqlite").size() < 5) {
+    ASSERT_FALSE(child.has_ended()) << "it was over too soon";
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "no points were stored";
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
   child.interrupt();
-  const Outcome outcome = child.wait();
+  const Outcome outcome = child.wait(std::chrono::seconds(60));
   EXPECT_EQ(outcome.code, 130);
   const Json json = folder.json("out/sweep.json");
   EXPECT_EQ(json["complete"], false);

@@ -1,0 +1,92 @@
+// Whatever a study file holds, every command either takes it or refuses it in one line that names the place. Designs
+// are those of a folder of its own; what quantities and processes compute is left out.
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "core/error.h"
+#include "studies/optimise/io/optimise_reader.h"
+#include "studies/photometry/io/standard_reader.h"
+#include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/photometric.h"
+#include "studies/sweep/io/sweep_reader.h"
+#include "studies/tolerance/io/tolerance_reader.h"
+
+namespace retrace::studies {
+
+class NoQuantity final : public Quantity {
+ public:
+  using Quantity::Quantity;
+  std::optional<Measured> measure(const Candidate&, const Cancellation*) const override { return Measured{}; }
+};
+std::optional<double> Quantity::slope(const Candidate&, RreParameter, const Cancellation*) const {
+  return std::nullopt;
+}
+std::shared_ptr<const Quantity> make_share(std::string name, const ShareSpec&) {
+  return std::make_shared<NoQuantity>(std::move(name));
+}
+std::shared_ptr<const Quantity> make_plain(std::string name, PlainQuantity) {
+  return std::make_shared<NoQuantity>(std::move(name));
+}
+std::shared_ptr<const Quantity> make_photometric(std::string name, std::shared_ptr<const PhotometricTable>,
+                                                 std::optional<std::size_t>, PhotometricFigure) {
+  return std::make_shared<NoQuantity>(std::move(name));
+}
+std::vector<std::string> surface_overrides(const MachiningProcess&) {
+  return {};
+}
+
+}  // namespace retrace::studies
+
+namespace {
+
+using namespace retrace;
+
+template <class Work>
+void refused_in_one_line(Work work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    const std::string_view message = error.what();
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  std::string folder = "/tmp/retrace_study_fuzz_XXXXXX";
+  if (::mkdtemp(folder.data()) == nullptr || ::chdir(folder.c_str()) != 0) std::abort();
+  std::ofstream("d.toml") << "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nx_length_mm = 10\n"
+                             "y_length_mm = 10\n[body]\nthickness_mm = 2\nrefractive_index = 1.4917\n";
+  std::ofstream("l.csv") << "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n"
+                            "S,,white,0.2,0,0,1,mcd/lx,read\n";
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  // No files but those of the folder: some others never end.
+  if (text.find('/') != std::string::npos || text.find('\\') != std::string::npos) return 0;
+  refused_in_one_line([&] {
+    const studies::Study study = studies::parse_study(text, "study.toml");
+    refused_in_one_line([&] {
+      const studies::Sweep sweep = studies::read_sweep(study);
+      if (sweep.size() == 0) std::abort();
+      refused_in_one_line([&] { studies::make_candidate(study, sweep.values(sweep.size() - 1)); });
+    });
+    refused_in_one_line([&] { studies::read_optimise(study); });
+    refused_in_one_line([&] {
+      const studies::ToleranceRequest request = studies::read_tolerance(study);
+      if (request.samples <= 1000) studies::TolerancePlan(study, request).values(0);
+    });
+  });
+  return 0;
+}
