@@ -12,6 +12,8 @@
 
 #include "core/error.h"
 #include "studies/design/design_reader.h"
+#include "studies/optimise/io/optimise_reader.h"
+#include "studies/optimise/optimise.h"
 #include "studies/photometry/io/standard_reader.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_files.h"
@@ -203,6 +205,28 @@ TEST_F(PhotometricStudy, QuantitiesAreThoseOfTheTable) {
   // R_A times the area is R_I.
   EXPECT_NEAR(output(result, 0, "r_a") * 30e-4 * 1e3, output(result, 0, "second"), 1e-9 * output(result, 0, "second"));
   EXPECT_EQ(result.sweep.layout().outputs.size(), 6U);
+}
+
+/// The worst margin as an objective: of some angle errors the one whose worst point is best.
+TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
+  std::string keys = text("name = \"worst\"\n|name = \"m\"\npoints = \"each\"\n");
+  keys.replace(keys.find("values = [1]"), 12, "values = [0, 0.5, 1, 2, 3]");
+  const Study study = parse_study(keys + "[optimize]\nmaximize = \"worst\"\n", (folder_ / "study.toml").string());
+  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  const Optimum optimum = optimise(study, read_optimise(study), store, nullptr, nullptr);
+  ASSERT_TRUE(optimum.best.has_value()) << optimum.none_because;
+  std::optional<double> best;
+  std::optional<StoredValue> at;
+  for (const StoredPoint& point : store.points()) {
+    double worst = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 1; k <= 3; ++k) worst = std::min(worst, point.outputs.at(k).value.value());
+    if (best && worst <= *best) continue;
+    best = worst;
+    at = point.inputs.at(0);
+  }
+  EXPECT_EQ(optimum.best->values[0].shown, at.value());
+  EXPECT_EQ(optimum.best->objective, best);
+  EXPECT_EQ(optimum.evaluations, 5U);
 }
 
 TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
