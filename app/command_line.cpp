@@ -317,6 +317,9 @@ void add_verify(CLI::App& app, VerifyOptions& verify) {
       ->type_name("T")
       ->capture_default_str()
       ->check(real_number());
+  command->add_option("--map", verify.map, "draw what the programs leave over the facets to a PNG FILE")
+      ->type_name("FILE")
+      ->check(not_empty());
   command->add_option("--as-machined", verify.as_machined, "write the part that is left as a design to FILE")
       ->type_name("FILE")
       ->check(not_empty());

@@ -107,6 +107,7 @@ struct VerifyOptions {
   std::string dialect = "auto";
   double tolerance_nm = 10.0;
   std::string as_machined;  ///< design file to write; empty: none
+  std::string map;          ///< PNG to write; empty: none
 };
 
 struct ForcesOptions {

@@ -5,9 +5,12 @@
 #include "app/output.h"
 #include "core/atomic_file.h"
 #include "raytrace/threads.h"
+#include "report/error_map_plot.h"
 #include "studies/closed_loop/as_machined.h"
+#include "studies/closed_loop/error_map.h"
 #include "studies/closed_loop/io/verification_files.h"
 #include "studies/closed_loop/verification.h"
+#include "studies/design/facet_planes_reader.h"
 
 namespace retrace::app {
 namespace {
@@ -27,13 +30,18 @@ studies::VerificationRun verified(const CommandLine& line, double& elapsed_s) {
   return run;
 }
 
-void check_as_machined(const std::string& out, const std::vector<std::string>& files_read) {
+void check_output(const char* option, const std::string& out, const std::vector<std::string>& files_read) {
   if (out.empty()) return;
   for (const std::string& file : files_read) {
     std::error_code ignored;
     if (fs::equivalent(file, out, ignored))
-      throw InputError({"", 0, "--as-machined"}, out + " is a file that is read; it would be overwritten");
+      throw InputError({"", 0, option}, out + " is a file that is read; it would be overwritten");
   }
+}
+
+/// The table of planes that goes with an as-machined design: part.toml -> part_facets.csv.
+fs::path facets_file_of(const fs::path& design) {
+  return design.parent_path() / (design.stem().string() + "_facets.csv");
 }
 
 }  // namespace
@@ -42,18 +50,27 @@ ExitCode run_verify_command(const CommandLine& line) {
   if (!line.common.overrides.empty()) throw InputError({"", 0, "--set"}, "verify reads no design");
   std::vector<std::string> files_read = line.verify.programs;
   files_read.push_back(line.verify.job);
-  check_as_machined(line.verify.as_machined, files_read);
+  const fs::path facets_file = facets_file_of(line.verify.as_machined);
+  check_output("--as-machined", line.verify.as_machined, files_read);
+  if (!line.verify.as_machined.empty()) check_output("--as-machined", facets_file.string(), files_read);
+  check_output("--map", line.verify.map, files_read);
   double elapsed_s = 0.0;
   studies::VerificationRun run = verified(line, elapsed_s);
   std::string design;
+  std::string facets;
   if (!line.verify.as_machined.empty()) {
     const studies::AsMachined part = studies::as_machined(run);
     run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());
-    design = studies::as_machined_toml(run, part);
+    design = studies::as_machined_toml(run, part, facets_file.filename().string());
+    if (part.planes) facets = studies::facet_planes_text(*part.planes);
   }
+  std::string map;
+  if (!line.verify.map.empty()) map = report::render_png(report::error_map_plot(studies::error_map(run)));
   const std::string json = studies::verification_json(run, elapsed_s);
   prepare_outputs(line.common, {files_read, "verification.json", {}});
+  if (!facets.empty()) write_file_atomically(facets_file, facets);
   if (!design.empty()) write_file_atomically(line.verify.as_machined, design);
+  if (!map.empty()) write_file_atomically(line.verify.map, map);
   std::vector<OutputFile> files;
   if (!line.common.out.empty()) files = {{"verification.json", json}};
   write_outputs(line.common, json, files, studies::verification_table(run));

@@ -7,8 +7,25 @@
 #include <optional>
 
 #include "geometry/lattice.h"
+#include "geometry/plane_polygon.h"
 
 namespace retrace::geometry {
+
+Polygon where_higher(const Polygon& polygon, const HeightPlane& plane, const HeightPlane& other) {
+  Polygon kept;
+  const auto excess = [&](const Vec2& p) { return plane.at(p) - other.at(p); };
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2& a = polygon[i];
+    const Vec2& b = polygon[(i + 1) % polygon.size()];
+    const double at_a = excess(a);
+    const double at_b = excess(b);
+    if (at_a >= 0.0) kept.push_back(a);
+    if ((at_a > 0.0 && at_b < 0.0) || (at_a < 0.0 && at_b > 0.0)) kept.push_back(a + (b - a) * (at_a / (at_a - at_b)));
+  }
+  if (kept.size() < 3) kept.clear();
+  return kept;
+}
+
 namespace {
 
 // Of an element's size: what is narrower cannot be told from rounding, and no edge of that width is built.
@@ -37,22 +54,6 @@ CellFacet face_through(const Vec3& point, const Vec3& normal) {
   face.plane.slope = -normal.head<2>() / normal.z();
   face.plane.height_mm = point.z() - face.plane.slope.dot(point.head<2>());
   return face;
-}
-
-/// The part of a convex polygon where one plane is at least as high as another.
-Polygon where_higher(const Polygon& polygon, const HeightPlane& plane, const HeightPlane& other) {
-  Polygon kept;
-  const auto excess = [&](const Vec2& p) { return plane.at(p) - other.at(p); };
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2& a = polygon[i];
-    const Vec2& b = polygon[(i + 1) % polygon.size()];
-    const double at_a = excess(a);
-    const double at_b = excess(b);
-    if (at_a >= 0.0) kept.push_back(a);
-    if ((at_a > 0.0 && at_b < 0.0) || (at_a < 0.0 && at_b > 0.0)) kept.push_back(a + (b - a) * (at_a / (at_a - at_b)));
-  }
-  if (kept.size() < 3) kept.clear();
-  return kept;
 }
 
 bool is_sliver(const Polygon& polygon, double width_mm) {

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "geometry/facet_planes.h"
 
 namespace retrace::geometry {
 namespace {
@@ -30,7 +31,16 @@ struct Layout {
   PartialElements partial = PartialElements::cut;
   double tolerance_mm = 0.0;
   PartSpec spec;
+  const FacetPlanes* planes = nullptr;  ///< of prisms that have their own
+
+  /// Whether no element is like another.
+  bool elements_differ() const { return spec.random_tilts.sigma_arcmin > 0.0 || planes != nullptr; }
 };
+
+Vec2 middle_of(const Polygon& outline) {
+  const Rectangle box = bounding_box(outline);
+  return 0.5 * (box.lower + box.upper);
+}
 
 /// The errors of one element: those of all, and its own random tilts.
 AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std::uint32_t number) {
@@ -156,6 +166,19 @@ void add_cell(std::vector<Tile>& tiles, const Layout& layout, const Rectangle& e
   }
 }
 
+/// The element of the lattice with its own planes, or level land where there is none.
+Cell own_cell(const Layout& layout, const Cell& cell, std::int64_t i, std::int64_t j) {
+  const Vec2 index(static_cast<double>(i), static_cast<double>(j));
+  const Vec2 middle = middle_of(cell.outline);
+  const ElementPlanes* const planes =
+      layout.planes->at(layout.anchor + index.cwiseProduct(layout.lattice.period_mm) + middle);
+  if (planes != nullptr) return with_edges(cell_with_planes(cell, *planes, middle), layout.spec);
+  Cell land = cell;
+  land.is_element = false;
+  land.facets = {CellFacet{cell.outline, HeightPlane{}, false}};
+  return land;
+}
+
 /// The tiles of a range of the lattice and of one more cell all round, local to the range's lower corner.
 std::vector<Tile> tiles_of(const Layout& layout, const IndexRange& range, const Rectangle& extent,
                            const Rectangle& block) {
@@ -168,7 +191,9 @@ std::vector<Tile> tiles_of(const Layout& layout, const IndexRange& range, const 
       const Vec2 shift = index.cwiseProduct(layout.lattice.period_mm);
       for (std::uint32_t c = 0; c < layout.lattice.cells.size(); ++c) {
         const Cell& cell = layout.lattice.cells[c];
-        if (cell.is_element && layout.spec.random_tilts.sigma_arcmin > 0.0)
+        if (cell.is_element && layout.planes != nullptr)
+          add_cell(tiles, layout, extent, block, own_cell(layout, cell, i, j), shift, number++, owned);
+        else if (cell.is_element && layout.spec.random_tilts.sigma_arcmin > 0.0)
           add_cell(
               tiles, layout, extent, block,
               with_edges(element_in_place_of(cell, layout.spec.element, errors_of(layout.spec, i, j, c)), layout.spec),
@@ -224,7 +249,7 @@ void add_surface(Part& part, const Layout& layout, const Vec2& origin) {
           layout.anchor + Vec2(static_cast<double>(i), static_cast<double>(j)).cwiseProduct(layout.lattice.period_mm);
       const Rectangle extent = relative_to(layout.extent, corner);
       const Rectangle block = relative_to(layout.block, corner);
-      if (layout.spec.random_tilts.sigma_arcmin > 0.0) known.clear();  // no piece is like another
+      if (layout.elements_differ()) known.clear();  // no piece is like another
       const auto [it, is_new] = known.try_emplace(piece_key(layout, extent, block, range), 0U);
       if (is_new) {
         const std::vector<Tile> tiles = tiles_of(layout, range, extent, block);
@@ -238,7 +263,7 @@ void add_surface(Part& part, const Layout& layout, const Vec2& origin) {
 
 /// Where the surface is nowhere cut off or left out.
 void find_lattice_region(Part& part, const Layout& layout, const Vec2& origin) {
-  if (layout.spec.random_tilts.sigma_arcmin > 0.0) return;
+  if (layout.elements_differ()) return;
   Rectangle region{layout.block.lower + origin, layout.block.upper + origin};
   if (layout.partial == PartialElements::omit)
     for (const Cell& cell : layout.lattice.cells) {
@@ -260,6 +285,7 @@ void count_elements(Part& part, const Layout& layout) {
       for (const Cell& cell : layout.lattice.cells) {
         if (!cell.is_element) continue;
         const Polygon outline = moved(cell.outline, shift);
+        if (layout.planes != nullptr && layout.planes->at(middle_of(outline)) == nullptr) continue;
         if (contains(layout.block, outline, layout.tolerance_mm))
           ++part.elements_full;
         else if (area(clip(outline, layout.block, layout.tolerance_mm)) > 0.0)
@@ -269,11 +295,16 @@ void count_elements(Part& part, const Layout& layout) {
   }
 }
 
-void build_single(Part& part, const Vec2& origin) {
+void build_single(Part& part, const Vec2& origin, const FacetPlanes* planes) {
   const Polygon outline = aperture_outline(part.spec.element);
   const bool is_random = part.spec.random_tilts.sigma_arcmin > 0.0;
   const AngleErrors errors = is_random ? errors_of(part.spec, 0, 0, 0) : part.spec.angle_errors;
-  const Cell cell = with_edges(element_cell(part.spec.element, errors), part.spec);
+  Cell sharp = element_cell(part.spec.element, errors);
+  if (planes != nullptr) {
+    const ElementPlanes* const own = planes->at(middle_of(outline));
+    if (own != nullptr) sharp = cell_with_planes(sharp, *own, middle_of(sharp.outline));
+  }
+  const Cell cell = with_edges(sharp, part.spec);
   const Vec2 shift = -bounding_box(cell.outline).lower;
   std::vector<Tile> tiles;
   for (std::size_t k = 0; k < cell.facets.size(); ++k) {
@@ -345,7 +376,9 @@ double facet_area(const SurfacePatch& patch, const PatchFacet& facet) {
   return 0.5 * twice.norm();
 }
 
-Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
+namespace {
+
+Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* planes) {
   Part part;
   part.spec = spec;
   part.thickness_mm = spec.thickness_mm;
@@ -353,23 +386,39 @@ Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
   part.top_mm = element_top_mm(spec.element, spec.angle_errors);
   part.size_mm = element_size(spec.element);
   if (spec.arrangement == Arrangement::single) {
-    build_single(part, origin_mm);
+    build_single(part, origin_mm, planes);
   } else if (spec.extent == Extent::infinite) {
     build_infinite(part);
   } else {
     Layout layout = finite_layout(spec, part.size_mm);
     layout.spec = spec;
+    layout.planes = planes;
     part.outline = moved(to_polygon(layout.extent), origin_mm);
     add_surface(part, layout, origin_mm);
     find_lattice_region(part, layout, origin_mm);
     count_elements(part, layout);
     if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   }
-  if (spec.random_tilts.sigma_arcmin > 0.0 || !spec.edges.is_sharp()) measure_layer(part);
+  if (planes != nullptr || spec.random_tilts.sigma_arcmin > 0.0 || !spec.edges.is_sharp()) measure_layer(part);
   if (part.thickness_mm <= part.top_mm)
     throw InputError(
         fmt::format("body.thickness_mm must be above {} mm, the highest rim, got {}", part.top_mm, part.thickness_mm));
   measure(part);
+  return part;
+}
+
+}  // namespace
+
+Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
+  return build(spec, origin_mm, nullptr);
+}
+
+Part build_part(const PartSpec& spec, const FacetPlanes& planes) {
+  Part part = build(spec, Vec2::Zero(), &planes);
+  const auto given = static_cast<std::int64_t>(planes.size());
+  if (part.elements_full != given)
+    throw InputError(
+        fmt::format("{} of the {} elements are no whole elements of the array", given - part.elements_full, given));
   return part;
 }
 

@@ -94,6 +94,8 @@ class Measurer {
         vt += d.y() * d.z();
       }
       figures.mean_nm = mean.z() * kNmPerMm;
+      figures.mean_up_mm = mean.x();
+      figures.mean_along_mm = mean.y();
       const double determinant = uu * vv - uv * uv;
       if (!(determinant > 1e-12 * uu * vv)) return;
       figures.slope_up = (ut * vv - vt * uv) / determinant;

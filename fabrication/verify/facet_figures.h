@@ -21,14 +21,16 @@ struct FacetDeviation {
 /// along lines normal to the design's facet at the corners of that envelope and between them.
 struct FacetFigures {
   bool is_ploughed = false;
-  double distance_nm = 0.0;   ///< largest deviation from the prediction outside of the strip along the root, unsigned
-  FacetDeviation highest;     ///< outside of the strip
-  FacetDeviation deepest;     ///< likewise
-  FacetDeviation root;        ///< left at the root, up the other facet
-  double mean_nm = 0.0;       ///< of the deviations from the design outside of the strip
-  double slope_up = 0.0;      ///< of the plane through the surface against the design: up the slope
-  double slope_along = 0.0;   ///< and along the root
-  double residual_mm3 = 0.0;  ///< volume that is left above the design's facet, less what was removed below it
+  double distance_nm = 0.0;    ///< largest deviation from the prediction outside of the strip along the root, unsigned
+  FacetDeviation highest;      ///< outside of the strip
+  FacetDeviation deepest;      ///< likewise
+  FacetDeviation root;         ///< left at the root, up the other facet
+  double mean_nm = 0.0;        ///< of the deviations from the design outside of the strip
+  double mean_up_mm = 0.0;     ///< where that mean lies: from the root
+  double mean_along_mm = 0.0;  ///< and along it
+  double slope_up = 0.0;       ///< of the plane through the surface against the design: up the slope
+  double slope_along = 0.0;    ///< and along the root
+  double residual_mm3 = 0.0;   ///< volume that is left above the design's facet, less what was removed below it
 };
 
 struct ElementFigures {

@@ -17,20 +17,6 @@ namespace {
 constexpr double kNmPerMm = 1e6;
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 
-Workpiece3d workpiece_of(const Job& job, const Machine& machine, const VerifyOptions& options) {
-  Workpiece3d workpiece;
-  workpiece.job = &job;
-  workpiece.machine = &machine;
-  workpiece.tolerance_mm = options.tolerance_nm / kNmPerMm;
-  const geometry::RtpElement size = blank_element(job);
-  for (const CutElement& element : cut_elements(job)) {
-    workpiece.grooves.push_back(groove_of(element, size));
-    auto& prediction = workpiece.predictions[element.turned ? 1 : 0];
-    if (!prediction) prediction = predict(machine, workpiece.grooves.back(), job.tool.width_mm);
-  }
-  return workpiece;
-}
-
 bool has_poses_of(const Machine& machine, const Workpiece3d& workpiece, const std::vector<RotaryPose>& words) {
   // Poses are written with seven digits; between the shipped machines they differ by far more.
   constexpr double same_deg = 1e-5;
@@ -124,6 +110,20 @@ double design_volume_mm3(const Groove& groove) {
 }
 
 }  // namespace
+
+Workpiece3d workpiece_of(const Job& job, const Machine& machine, const VerifyOptions& options) {
+  Workpiece3d workpiece;
+  workpiece.job = &job;
+  workpiece.machine = &machine;
+  workpiece.tolerance_mm = options.tolerance_nm / kNmPerMm;
+  const geometry::RtpElement size = blank_element(job);
+  for (const CutElement& element : cut_elements(job)) {
+    workpiece.grooves.push_back(groove_of(element, size));
+    auto& prediction = workpiece.predictions[element.turned ? 1 : 0];
+    if (!prediction) prediction = predict(machine, workpiece.grooves.back(), job.tool.width_mm);
+  }
+  return workpiece;
+}
 
 Verification verify_programs(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                              const VerifyOptions& options, const std::vector<Machine>& others,

@@ -49,6 +49,10 @@ struct Verification {
   bool passes() const { return findings.empty(); }
 };
 
+/// What must be known to judge programs of a job. Job and machine must outlive it.
+/// \throw InputError if the machine cannot plunge a facet
+Workpiece3d workpiece_of(const Job& job, const Machine& machine, const VerifyOptions& options);
+
 /// Carries out the programs one after the other, cuts the blank and compares. Nothing of planner or writers is used:
 /// predictions come from job and machine.
 /// \param others machines that a program might have been made for by mistake

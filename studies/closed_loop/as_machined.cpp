@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -17,30 +18,31 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace fabrication;
+using geometry::Vec3;
 
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 
-// Sa of facets by the motion that made them, in nm: Hamilton et al. (2017), Figure 15, for roughing; mean of five
-// facets finished by plunging in Milliken (2017), Table 3.4.
-constexpr double kPloughSaNm = 468.19;
-constexpr double kRoughPlungeSaNm = 114.55;
-constexpr double kFinishPlungeSaNm = 48.9;
-// Of those five facets the roughness below an 80 um cut-off has a mean Sa of 19.7 nm, the waviness above of 29.9 nm.
+// Of five facets finished by plunging, with a mean Sa of 48.9 nm, the roughness below an 80 um cut-off has a mean Sa of
+// 19.7 nm, the waviness above of 29.9 nm (Milliken 2017, Table 3.4). Other motions are shared in the same way.
 constexpr double kRoughnessShare = 19.7 / 48.9;
 constexpr double kWavinessShare = 29.9 / 48.9;
 // Oscillation across the feed: 42.4 per mm at 10 mm/min (Milliken, 3.3.5), so 7.07 Hz.
 constexpr double kFeedMarksHz = 7.07;
-constexpr double kCorrelationLengthUm = 5.0;                // assumed: the profilometer resolved no less
+constexpr double kCorrelationLengthUm = 5.0;  // assumed: the profilometer resolved no less
+/// Less than this of angle is not told.
+constexpr double kShownArcmin = 0.05;
 const double kSqPerSa = std::sqrt(0.5 * std::numbers::pi);  // of Gaussian heights
 
+/// Sa of the facets that the last cuts leave. Where one of the two is ploughed, that of both together.
 double sa_of(const Job& job) {
+  const Process& p = job.process;
   switch (job.strategy) {
     case Strategy::unidirectional:
-      return std::sqrt(0.5 * (kPloughSaNm * kPloughSaNm + kRoughPlungeSaNm * kRoughPlungeSaNm));
+      return std::sqrt(0.5 * (p.plough_sa_nm * p.plough_sa_nm + p.roughing_plunge_sa_nm * p.roughing_plunge_sa_nm));
     case Strategy::bidirectional:
-      return kRoughPlungeSaNm;
+      return p.roughing_plunge_sa_nm;
     case Strategy::two_step:
-      return kFinishPlungeSaNm;
+      return p.finishing_plunge_sa_nm;
   }
   return 0.0;
 }
@@ -108,51 +110,149 @@ PredictedTexture predicted_texture(const Job& job) {
   return texture;
 }
 
+namespace {
+
+/// Tilts of one element's facets, opening is positive.
+std::array<double, 2> tilts_of(const ElementResult& element) {
+  std::array<double, 2> tilt{};
+  // A facet that rises above the design up its slope leans into the groove and closes it.
+  for (std::size_t f = 0; f < 2; ++f) tilt[f] = -std::atan(element.figures.facets[f].slope_up) * kArcminPerRad;
+  return tilt;
+}
+
+/// By how much the elements differ from one that a design can name.
+struct Unlikeness {
+  double along_arcmin = 0.0;   ///< turned along the root, at most
+  double spread_arcmin = 0.0;  ///< of tilts, from their mean
+  std::int64_t missing = 0;
+};
+
+Unlikeness unlikeness_of(const VerificationRun& run, const std::array<double, 2>& mean_arcmin) {
+  Unlikeness unlike;
+  const geometry::Arrangement arrangement = run.job.array.arrangement;
+  const bool is_whole = arrangement == geometry::Arrangement::single || run.job.array.pattern.empty();
+  if (!is_whole) ++unlike.missing;
+  for (const ElementResult& element : run.result.elements) {
+    if (!element.figures.is_cut) {
+      ++unlike.missing;
+      continue;
+    }
+    const std::array<double, 2> tilt = tilts_of(element);
+    for (std::size_t f = 0; f < 2; ++f) {
+      const double along = std::abs(std::atan(element.figures.facets[f].slope_along)) * kArcminPerRad;
+      unlike.along_arcmin = std::max(unlike.along_arcmin, along);
+      unlike.spread_arcmin = std::max(unlike.spread_arcmin, std::abs(tilt[f] - mean_arcmin[f]));
+    }
+  }
+  return unlike;
+}
+
+/// Turns points of a mould's blank into those of the part that is moulded in it.
+class PartFrame {
+ public:
+  explicit PartFrame(const Job& job) : scale_(1.0 / blank_scale(job.workpiece)) {
+    const geometry::Vec2 extent_w = scale_ * blank_extent_mm(job);
+    corner_ = {0.5 * extent_w.y(), 0.5 * extent_w.x(), 0.0};
+  }
+  Vec3 point(const Vec3& p) const { return corner_ + scale_ * Vec3(-p.y(), p.x(), p.z()); }
+
+ private:
+  double scale_ = 1.0;
+  Vec3 corner_ = Vec3::Zero();
+};
+
+/// The plane through three points, its height told over `centre`.
+geometry::HeightPlane plane_through(const std::array<Vec3, 3>& points, const geometry::Vec2& centre) {
+  const Vec3 normal = (points[1] - points[0]).cross(points[2] - points[0]);
+  geometry::HeightPlane plane;
+  plane.slope = -normal.head<2>() / normal.z();
+  plane.height_mm = points[0].z() + plane.slope.dot(centre - points[0].head<2>());
+  return plane;
+}
+
+/// The planes that verification fitted to an element's facets, in the part's frame.
+geometry::ElementPlanes planes_of(const Groove& groove, const ElementFigures& figures, const PartFrame& frame,
+                                  bool turned) {
+  geometry::ElementPlanes planes;
+  planes.centre_mm = frame.point(groove.root_mm).head<2>();
+  for (std::size_t f = 0; f < 2; ++f) {
+    const FacetFigures& facet = figures.facets[f];
+    const DesignFacet& design = groove.facets[f];
+    const auto surface = [&](double up_mm, double along_mm) {
+      const double height_mm = 1e-6 * facet.mean_nm + facet.slope_up * (up_mm - facet.mean_up_mm) +
+                               facet.slope_along * (along_mm - facet.mean_along_mm);
+      return frame.point(groove.root_mm + up_mm * design.up_slope + along_mm * groove.root_direction +
+                         height_mm * design.normal);
+    };
+    const geometry::HeightPlane plane =
+        plane_through({surface(0.0, 0.0), surface(groove.facet_length_mm, 0.0), surface(0.0, groove.half_width_mm)},
+                      planes.centre_mm);
+    planes.planes[plane.slope[turned ? 1 : 0] < 0.0 ? 0 : 1] = plane;
+  }
+  return planes;
+}
+
+geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
+  const std::vector<CutElement> elements = cut_elements(run.job);
+  const geometry::RtpElement size = blank_element(run.job);
+  const PartFrame frame(run.job);
+  std::vector<geometry::ElementPlanes> planes;
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    if (run.result.elements[i].figures.is_cut)
+      planes.push_back(
+          planes_of(groove_of(elements[i], size), run.result.elements[i].figures, frame, elements[i].turned));
+  return {std::move(planes), std::min(run.job.element.base_mm, run.job.element.width_mm)};
+}
+
+/// What a design with all elements alike leaves out.
+void warn_of(const Unlikeness& unlike, AsMachined& part) {
+  if (unlike.along_arcmin > kShownArcmin)
+    part.warnings.push_back(
+        fmt::format("facets are turned by up to {} arcmin along the root: left out of a part that is "
+                    "cut directly",
+                    fixed(unlike.along_arcmin, 2)));
+  if (unlike.spread_arcmin > kShownArcmin)
+    part.warnings.push_back(fmt::format("facets of single elements differ from the mean by up to {} arcmin",
+                                        fixed(unlike.spread_arcmin, 2)));
+  if (unlike.missing > 0)
+    part.warnings.push_back(
+        "elements that are not cut are there in the as-machined design of a part that is cut directly");
+}
+
+}  // namespace
+
 AsMachined as_machined(const VerificationRun& run) {
   AsMachined part;
-  double worst_along_arcmin = 0.0;
-  double spread_arcmin = 0.0;
   std::int64_t cut = 0;
-  std::vector<std::array<double, 2>> tilts;
   for (const ElementResult& element : run.result.elements) {
     if (!element.figures.is_cut) continue;
     ++cut;
-    std::array<double, 2> tilt{};
-    for (std::size_t f = 0; f < 2; ++f) {
-      // A facet that rises above the design up its slope leans into the groove and closes it.
-      tilt[f] = -std::atan(element.figures.facets[f].slope_up) * kArcminPerRad;
-      part.facet_tilt_arcmin[f] += tilt[f];
-      worst_along_arcmin =
-          std::max(worst_along_arcmin, std::abs(std::atan(element.figures.facets[f].slope_along)) * kArcminPerRad);
-    }
-    tilts.push_back(tilt);
+    const std::array<double, 2> tilt = tilts_of(element);
+    for (std::size_t f = 0; f < 2; ++f) part.facet_tilt_arcmin[f] += tilt[f];
   }
   if (cut == 0) throw InputError({"", 0, "--as-machined"}, "the programs cut no element of the job");
   for (double& tilt : part.facet_tilt_arcmin) tilt /= static_cast<double>(cut);
-  for (const auto& tilt : tilts)
-    for (std::size_t f = 0; f < 2; ++f)
-      spread_arcmin = std::max(spread_arcmin, std::abs(tilt[f] - part.facet_tilt_arcmin[f]));
+  const Unlikeness unlike = unlikeness_of(run, part.facet_tilt_arcmin);
+  const bool is_direct = run.job.workpiece.kind == WorkpieceKind::direct;
   // Facet 1 lies at -x of a moulded part; a blank that is cut directly is turned about y.
-  if (run.job.workpiece.kind == WorkpieceKind::direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
-  constexpr double shown_arcmin = 0.05;
-  if (worst_along_arcmin > shown_arcmin)
+  if (is_direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
+  if (is_direct)
+    warn_of(unlike, part);
+  else if (unlike.along_arcmin > kShownArcmin || unlike.spread_arcmin > kShownArcmin || unlike.missing > 0)
+    part.planes = facet_planes_of(run);
+  if (run.job.strategy == Strategy::unidirectional &&
+      run.job.process.plough_sa_nm != run.job.process.roughing_plunge_sa_nm)
     part.warnings.push_back(
-        fmt::format("facets are turned by up to {} arcmin along the root, which a design cannot say: "
-                    "it is left out",
-                    fixed(worst_along_arcmin, 2)));
-  if (spread_arcmin > shown_arcmin)
-    part.warnings.push_back(
-        fmt::format("facets of single elements differ from the mean by up to {} arcmin", fixed(spread_arcmin, 2)));
-  const auto missing = static_cast<std::int64_t>(run.result.elements.size()) - cut;
-  if (missing > 0 || !run.job.array.pattern.empty())
-    part.warnings.push_back("elements that are not cut are there in the as-machined design");
+        fmt::format("plunged and ploughed facets differ in roughness (Sa {} and {} nm), which a design "
+                    "cannot say: it has the root of the mean of their squares",
+                    shortest(run.job.process.roughing_plunge_sa_nm), shortest(run.job.process.plough_sa_nm)));
   part.root_radius_um = run.result.root_radius_um;
   part.texture = predicted_texture(run.job);
   part.body = body_of(run, part.warnings);
   return part;
 }
 
-std::string as_machined_toml(const VerificationRun& run, const AsMachined& part) {
+std::string as_machined_toml(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
   const auto nonzero = [](double v) { return std::abs(v) < 1e-6 ? 0.0 : v; };
   std::string text = "schema = \"retrace.design/1\"\n";
   text += fmt::format("title = {}\n", toml_text((run.job.title.empty() ? "Part" : run.job.title) + ", as machined"));
@@ -161,10 +261,14 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part)
                       shortest(run.job.element.apex_angle_deg));
   text += "\n[array]\n" + array_text(run.job);
   text += "\n[body]\n" + part.body;
-  text += fmt::format(
-      "\n# Facets as the programs leave them; the mean over the elements.\n[surface]\n"
-      "facet_tilt_arcmin = [{}, {}]\n",
-      shortest(nonzero(part.facet_tilt_arcmin[0])), shortest(nonzero(part.facet_tilt_arcmin[1])));
+  if (part.planes)
+    text += fmt::format("\n# Facets as the programs leave them: a plane each.\n[part]\nfacets = {}\n\n[surface]\n",
+                        toml_text(facets_file));
+  else
+    text += fmt::format(
+        "\n# Facets as the programs leave them; the mean over the elements.\n[surface]\n"
+        "facet_tilt_arcmin = [{}, {}]\n",
+        shortest(nonzero(part.facet_tilt_arcmin[0])), shortest(nonzero(part.facet_tilt_arcmin[1])));
   if (part.root_radius_um > 0.0) text += fmt::format("root_radius_um = {}\n", shortest(part.root_radius_um));
   const PredictedTexture& t = part.texture;
   text += fmt::format(

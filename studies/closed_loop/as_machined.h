@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "geometry/facet_planes.h"
 #include "studies/closed_loop/verification.h"
 
 namespace retrace::studies {
@@ -19,10 +21,11 @@ struct PredictedTexture {
 };
 PredictedTexture predicted_texture(const fabrication::Job& job);
 
-/// The part that programs leave, moulded in it or cut directly, as far as a design file can say it: all elements alike,
-/// with the mean of their facets' tilts.
+/// The part that programs leave, moulded in it or cut directly. Where its elements are alike, a design file says it
+/// with the mean tilts of their facets; else every facet of a moulded part has a plane of its own.
 struct AsMachined {
   std::array<double, 2> facet_tilt_arcmin{};  ///< towards -x and +x of the part, opening is positive
+  std::optional<geometry::FacetPlanes> planes;
   double root_radius_um = 0.0;
   PredictedTexture texture;
   std::string body;  ///< the table [body] of the job's design, or a default
@@ -32,7 +35,8 @@ struct AsMachined {
 /// \throw InputError if no element was cut whose facets could be measured
 AsMachined as_machined(const VerificationRun& run);
 
-/// The design file of it (retrace.design/1), for `retrace rre`.
-std::string as_machined_toml(const VerificationRun& run, const AsMachined& part);
+/// The design file of it (retrace.design/1), for `retrace rre`. \param facets_file name of the table of its planes, if
+/// it has some
+std::string as_machined_toml(const VerificationRun& run, const AsMachined& part, const std::string& facets_file);
 
 }  // namespace retrace::studies

@@ -35,15 +35,14 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
   run.request = request;
   run.job = read_job(request.job);
   run.machine = load_machine(run.job.machine, {request.job, 0, "machine"});
-  std::vector<NcProgram> programs;
   for (const std::string& file : request.programs) {
     const std::string text = read_file(file);
     run.dialects.push_back(dialect_of(request.dialect, text, file));
-    programs.push_back(parse_nc(text, file, run.dialects.back()));
+    run.programs.push_back(parse_nc(text, file, run.dialects.back()));
   }
   VerifyOptions options;
   options.tolerance_nm = request.tolerance_nm;
-  run.result = verify_programs(run.job, run.machine, programs, options, shipped_machines(), cancellation);
+  run.result = verify_programs(run.job, run.machine, run.programs, options, shipped_machines(), cancellation);
   return run;
 }
 

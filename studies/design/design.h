@@ -70,12 +70,20 @@ struct ArrayMask {
   InputLocation location;      ///< where it was given, for whoever cannot use it
 };
 
+/// A table of planes that single facets lie in, in place of the element's.
+struct FacetPlanesFile {
+  std::string name;            ///< as given
+  std::filesystem::path file;  ///< the same, from the working directory; checked only when it is read, by part_of()
+  InputLocation location;      ///< where it was given, for whoever cannot use it
+};
+
 /// Everything a design file says, checked and with its defaults filled in.
 struct Design {
   std::string source;  ///< file name as given, "-" for standard input
   std::string title;   ///< empty if none was given
   geometry::PartSpec part;
   std::optional<ArrayMask> mask;
+  std::optional<FacetPlanesFile> facet_planes;  ///< finite parts of prisms only
   std::string material = "PMMA";
   InputLocation material_location;          ///< where the material was named, for whoever finds that it is not shipped
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1

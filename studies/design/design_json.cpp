@@ -184,6 +184,7 @@ nlohmann::ordered_json to_json(const Design& design) {
   if (!design.title.empty()) json["title"] = design.title;
   json["element"] = std::visit(ElementJson{}, design.part.element);
   json["array"] = array_json(design.part);
+  if (design.facet_planes) json["part"] = {{"facets", design.facet_planes->name}};
   json["body"] = body;
   json["light"] = light_json(design);
   json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};

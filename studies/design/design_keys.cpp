@@ -71,7 +71,7 @@ constexpr std::array kSurfaceKeys = {KeyRule{"model"},
                                      KeyRule{"angle_error_sigma_arcmin"},
                                      KeyRule{"angle_error_seed"}};
 constexpr std::array kIdealisationKeys = {KeyRule{"facets"}, KeyRule{"entrance"}};
-constexpr std::array kPartKeys = {KeyRule{"mesh", NotAvailable{}}, KeyRule{"facets", NotAvailable{}}};
+constexpr std::array kPartKeys = {KeyRule{"mesh", NotAvailable{}}, KeyRule{"facets"}};
 
 struct TableRule {
   std::string_view name;
@@ -130,8 +130,7 @@ std::string unknown_top_level(const Entry& entry) {
       return fmt::format("unknown key at the top level, it belongs in [{}]", table.name);
   std::vector<std::string_view> known;
   if (!entry.node->is_table()) known.assign(kTopLevelKeys.begin(), kTopLevelKeys.end());
-  for (const TableRule& table : kTables)
-    if (table.name != "part") known.push_back(table.name);
+  for (const TableRule& table : kTables) known.push_back(table.name);
   return unknown(entry.node->is_table() ? "table" : "key", entry.name, known, known);
 }
 
@@ -174,7 +173,6 @@ std::string complaint(const Entry& entry) {
   }
   if (std::find(kTopLevelKeys.begin(), kTopLevelKeys.end(), entry.name) != kTopLevelKeys.end()) return {};
   if (find_rule(std::span<const TableRule>(kTables), entry.name) == nullptr) return unknown_top_level(entry);
-  if (entry.name == "part") return "not available in this version, which takes only [element] and [array]";
   return entry.node->is_table() ? std::string() : "must be a table, got " + shown(*entry.node);
 }
 

@@ -450,6 +450,22 @@ std::optional<ArrayMask> read_mask(const DesignDocument& document, const PartSpe
   return mask;
 }
 
+/// Planes of single facets. What else turns or shapes all facets alike has no place beside them.
+std::optional<FacetPlanesFile> read_facet_planes(const DesignDocument& document, const PartSpec& part) {
+  TableReader table(document, "part");
+  const auto file = table.file("facets");
+  std::optional<FacetPlanesFile> planes;
+  if (file) planes = FacetPlanesFile{*table.text("facets"), *file, table.where("facets")};
+  table.finish();
+  if (!planes) return planes;
+  if (!std::holds_alternative<geometry::RtpElement>(part.element))
+    table.fail("facets", "only allowed for kind = \"rtp\"");
+  if (part.extent == Extent::infinite) table.fail("facets", "only allowed for finite arrays");
+  if (!(part.angle_errors == geometry::AngleErrors{}) || part.random_tilts.sigma_arcmin > 0.0)
+    table.fail("facets", "not allowed together with errors of angle, which its planes hold");
+  return planes;
+}
+
 }  // namespace
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
@@ -463,6 +479,7 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   design.part = read_part(document);
   design.mask = read_mask(document, design.part);
   design.texture = read_surface(document, design.part);
+  design.facet_planes = read_facet_planes(document, design.part);
   TableReader body(document, "body");
   read_body(body, design);
   read_light_and_detector(document, design);

@@ -104,6 +104,8 @@ void check_making(const JobRequest& request) {
 }
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
+  if (design.facet_planes)
+    throw InputError(design.facet_planes->location, "planes of single facets are traced, not cut, in this version");
   MadeJob made;
   Job& job = made.job;
   job.title = design.title;

@@ -10,6 +10,7 @@
 #include "core/angle.h"
 #include "core/number_format.h"
 #include "geometry/check/boundary_check.h"
+#include "studies/design/design_part.h"
 #include "studies/design/optical_model.h"
 
 namespace retrace::studies {
@@ -71,9 +72,10 @@ geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_
   return small;
 }
 
-std::string boundary_finding(const geometry::PartSpec& spec, double element_mm) {
-  bool is_whole = false;
-  const geometry::Part part = geometry::build_part(part_to_check(spec, element_mm, is_whole));
+std::string boundary_finding(const Design& design, double element_mm) {
+  bool is_whole = design.facet_planes.has_value();
+  const geometry::Part part =
+      is_whole ? part_of(design) : geometry::build_part(part_to_check(design.part, element_mm, is_whole));
   if (part.placements.size() != 1) return "not checked: the elements differ too much in size from their array";
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
   // Errors of angle and cant may leave neighbours at such heights that the part touches itself where more than three
@@ -235,7 +237,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part);
   result.dead_zone_share = geometry::edge_share(
       geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part));
-  result.boundary = boundary_finding(design.part, part.size_mm);
+  result.boundary = boundary_finding(design, part.size_mm);
   result.warnings = model.warnings;
   add_warnings(result, part);
   return result;

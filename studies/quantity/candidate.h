@@ -9,6 +9,7 @@
 
 #include "geometry/part.h"
 #include "studies/design/design.h"
+#include "studies/design/design_part.h"
 #include "studies/quantity/machining.h"
 #include "studies/rre/rre.h"
 
@@ -34,9 +35,9 @@ class Candidate {
   const Design& design() const { return design_; }
   const AnalysisSettings& analysis() const { return analysis_; }
   const MachiningProcess& machining() const { return machining_; }
-  /// Built when it is first asked for. \throw InputError as geometry::build_part()
+  /// Built when it is first asked for. \throw InputError as part_of()
   const geometry::Part& part() const {
-    if (!part_) part_ = geometry::build_part(design_.part);
+    if (!part_) part_ = part_of(design_);
     return *part_;
   }
   /// What several quantities need, made when it is first asked for. \param key says what it is, with its type \param

@@ -53,6 +53,12 @@ void check(const RreRequest& request) {
       throw InputError({"", 0, "--incidence"}, fmt::format("must lie between -90 and 90 degrees, got {}", shortest(t)));
 }
 
+/// A slope asks for the part at neighbouring sizes, which planes of single facets do not say.
+void check_planes(const Design& design, const RreRequest& request) {
+  if (request.derivatives && design.facet_planes)
+    throw InputError(design.facet_planes->location, "has no derivatives: leave out --derivatives");
+}
+
 /// A slope, a footprint or a far field is that of one wavelength: a mean of them over others would show none of them.
 void check_light(const Design& design, const OpticalModel& model, const RreRequest& request) {
   if (model.spectral.size() < 2) return;
@@ -104,6 +110,7 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
   for (const Design& design : designs) {
     prepared_->models.push_back(make_model(design, library));
     check_light(design, prepared_->models.back(), request);
+    check_planes(design, request);
     if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
       throw InputError(design.texture.location,
                        "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "

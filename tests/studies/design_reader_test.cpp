@@ -324,10 +324,10 @@ TEST(DesignReader, UnknownKeysAreNamedWithASuggestion) {
             "absorption_per_mm, back_index, facet_coating)");
   EXPECT_EQ(complaint(with_line(11, "[boddy]\nx = 1")),
             "d.toml:11: boddy: unknown table, did you mean \"body\"? (allowed: element, array, body, light, detector, "
-            "surface, idealisation)");
+            "surface, part, idealisation)");
   EXPECT_EQ(complaint("titel = \"x\"\n" + joined(kLines)),
             "d.toml:1: titel: unknown key, did you mean \"title\"? (allowed: schema, title, element, array, body, "
-            "light, detector, surface, idealisation)");
+            "light, detector, surface, part, idealisation)");
   EXPECT_EQ(complaint("thickness_mm = 2\n" + joined(kLines)),
             "d.toml:1: thickness_mm: unknown key at the top level, it belongs in [body]");
 }
@@ -508,10 +508,32 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
   EXPECT_EQ(
       refused("body.facet_coating=silver"),
       "--set body.facet_coating=silver: body.facet_coating: must be one of \"none\" or \"aluminium\", got \"silver\"");
-  EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")),
-            "d.toml:11: part" + no + ", which takes only [element] and [array]");
+  EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")), "d.toml:12: part.mesh" + no);
   EXPECT_EQ(refused("surface.roughness_sq_nm=rough"),
             "--set surface.roughness_sq_nm=rough: surface.roughness_sq_nm: must be a number, got \"rough\"");
+}
+
+TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
+  const std::string text =
+      "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 1\ny_length_mm = 1\n"
+      "[body]\nthickness_mm = 1\n[part]\nfacets = \"planes.csv\"\n";
+  const Design design = parse_design(text, "folder/d.toml");
+  ASSERT_TRUE(design.facet_planes);
+  EXPECT_EQ(design.facet_planes->name, "planes.csv");
+  EXPECT_EQ(design.facet_planes->file, std::filesystem::path("folder/planes.csv"));
+  const auto refused = [&](const std::vector<std::string>& sets) {
+    try {
+      parse_design(text, "d.toml", sets);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refused({"surface.facet_tilt_arcmin=[1,1]"}),
+            "d.toml:11: part.facets: not allowed together with errors of angle, which its planes hold");
+  EXPECT_NE(refused({"surface.angle_error_sigma_arcmin=1"}), "accepted");
+  EXPECT_NE(refused({"part.facets=3"}), "accepted");
+  EXPECT_NE(refused({"part.facet=a.csv"}), "accepted");
 }
 
 TEST(DesignReader, SpectrumIsANameAFileOrLines) {
@@ -832,7 +854,7 @@ TEST(DesignReader, ErrorsInOverridesNameTheOverride) {
   EXPECT_EQ(set_complaint({"element.base_mm="}), "--set element.base_mm=: element.base_mm: must be a number, got \"\"");
   EXPECT_EQ(set_complaint({"elemnt.base_mm=1"}),
             "--set elemnt.base_mm=1: elemnt: unknown table, did you mean \"element\"? (allowed: element, array, body, "
-            "light, detector, surface, idealisation)");
+            "light, detector, surface, part, idealisation)");
   EXPECT_EQ(set_complaint({"element=3"}), "--set element=3: element: must be a table, got 3");
   const std::string form = ": must be of the form KEY=VALUE, such as element.base_mm=0.5";
   for (const std::string text : {"", "x", "=3", "[body]", "# x", "a b=3"})

@@ -135,6 +135,10 @@ _retrace() {
       _retrace_files "$word" .toml
       return
       ;;
+    --map)
+      _retrace_files "$word" .png
+      return
+      ;;
     --tolerance-nm | --facet | --plunge-mm) return ;;
     --sa | --correlation-length-um | --waviness-length-um) return ;;
     --cutoff-um | --pixel-um | --channel | --feed-mm-per-min) return ;;
@@ -166,7 +170,7 @@ _retrace() {
       fabricate)
         _retrace_words "$word" "$common --dialect --phase --from-element --stop-every --split-hours"
         ;;
-      verify) _retrace_words "$word" "$common --dialect --tolerance-nm --as-machined" ;;
+      verify) _retrace_words "$word" "$common --dialect --tolerance-nm --as-machined --map" ;;
       forces) _retrace_words "$word" "$common --configuration --facet --plunge-mm" ;;
       *) _retrace_words "$word" "$common" ;;
     esac

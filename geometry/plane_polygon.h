@@ -1,0 +1,11 @@
+#pragma once
+
+#include "geometry/lattice.h"
+#include "geometry/polygon.h"
+
+namespace retrace::geometry {
+
+/// The part of a convex polygon where one plane is at least as high as another; empty if it has no area.
+Polygon where_higher(const Polygon& polygon, const HeightPlane& plane, const HeightPlane& other);
+
+}  // namespace retrace::geometry

@@ -1,0 +1,72 @@
+#include "studies/design/facet_planes_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/error.h"
+
+namespace retrace::studies {
+namespace {
+
+geometry::PartSpec prisms(geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
+  geometry::PartSpec spec;
+  spec.element = geometry::RtpElement{0.5, 0.5, 90.0};
+  spec.arrangement = arrangement;
+  spec.x_length_mm = spec.y_length_mm = 1.0;
+  spec.thickness_mm = 1.0;
+  return spec;
+}
+
+const std::string kHead = "# planes\nx_mm,y_mm,facet,height_mm,x_slope,y_slope\n";
+const std::string kElement = "0.25,0.25,1,-0.25,-1,0.001\n0.25,0.25,2,-0.2500001,1.0002,0\n";
+
+std::string refused(const std::string& text, geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
+  try {
+    parse_facet_planes(text, "p.csv", prisms(arrangement));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(FacetPlanesReader, ReadsWhatItWrites) {
+  const geometry::FacetPlanes planes = parse_facet_planes(kHead + "\n" + kElement, "p.csv", prisms());
+  ASSERT_EQ(planes.size(), 1U);
+  const geometry::ElementPlanes& element = planes.elements()[0];
+  EXPECT_EQ(element.centre_mm, geometry::Vec2(0.25, 0.25));
+  EXPECT_EQ(element.planes[0].slope, geometry::Vec2(-1, 0.001));
+  EXPECT_EQ(element.planes[1].height_mm, -0.2500001);
+  EXPECT_EQ(facet_planes_text(planes), "x_mm,y_mm,facet,height_mm,x_slope,y_slope\n" + kElement);
+}
+
+TEST(FacetPlanesReader, TurnedElementsOnlyInACheckers) {
+  const std::string turned = kHead + "0.75,0.25,1,-0.25,0,-1\n0.75,0.25,2,-0.25,0,1\n";
+  EXPECT_EQ(refused(turned, geometry::Arrangement::checker), "accepted");
+  EXPECT_EQ(refused(turned),
+            "p.csv:3: x_slope: the plane must lie within 5 degrees of facet 1 of the design's element");
+}
+
+TEST(FacetPlanesReader, SaysWhereAndWhatIsAllowed) {
+  EXPECT_EQ(refused(""),
+            "p.csv: must have the header x_mm,y_mm,facet,height_mm,x_slope,y_slope and two lines for each element");
+  EXPECT_EQ(refused("x,y\n"), "p.csv:1: must be the header x_mm,y_mm,facet,height_mm,x_slope,y_slope");
+  EXPECT_EQ(refused(kHead + "1,2,3\n"), "p.csv:3: must have the 6 fields of the heading, got 3");
+  EXPECT_EQ(refused(kHead + "1,2,3,4,5,6,7\n"), "p.csv:3: must have the 6 fields of the heading, got 7");
+  EXPECT_EQ(refused(kHead + "0.25,0.25,1,-0.25,-1,wide\n"),
+            "p.csv:3: y_slope: must be a number from -1e+06 to 1e+06, got \"wide\"");
+  EXPECT_EQ(refused(kHead + "nan,0.25,1,-0.25,-1,0\n"),
+            "p.csv:3: x_mm: must be a number from -1e+06 to 1e+06, got \"nan\"");
+  EXPECT_EQ(refused(kHead + "0.25,0.25,3,-0.25,-1,0\n"), "p.csv:3: facet: must be 1 or 2, got 3");
+  EXPECT_EQ(refused(kHead + "0.25,0.25,1,0.25,-1,0\n"),
+            "p.csv:3: height_mm: must be -0.275000 to -0.225000, near the root of the design's element, got 0.25");
+  EXPECT_EQ(refused(kHead + "0.25,0.25,1,-0.25,1,0\n"),
+            "p.csv:3: x_slope: the plane must lie within 5 degrees of facet 1 of the design's element");
+  EXPECT_EQ(refused(kHead + "0.25,0.25,1,-0.25,-1,0\n"), "p.csv:3: must be followed by the other facet of its element");
+  EXPECT_EQ(refused(kHead + "0.25,0.25,1,-0.25,-1,0\n0.25,0.25,1,-0.25,-1,0\n"),
+            "p.csv:4: must be the other facet of the element of the line before");
+  EXPECT_EQ(refused(kHead + kElement + kElement), "p.csv: two elements lie in one place");
+}
+
+}  // namespace
+}  // namespace retrace::studies
