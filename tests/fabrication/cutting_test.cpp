@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/atomic_file.h"
@@ -12,6 +13,7 @@
 #include "fabrication/post/post.h"
 #include "fabrication/verify/bodies.h"
 #include "fabrication/verify/dexel.h"
+#include "fabrication/verify/error_field.h"
 #include "fabrication/verify/verify.h"
 #include "tests/fabrication/jobs.h"
 
@@ -210,10 +212,10 @@ struct SweepSink : NcSink {
   Cut cut;
 };
 
-Cut cut_of(const std::string& text, const Job& job, const Machine& m) {
+Cut cut_of(const std::string& text, const Job& job, const Machine& m, NcDialect dialect = NcDialect::rs274ngc) {
   SweepSink sink(m);
   sink.cut.wedge = tool_wedge(job.tool, m, Angle::from_deg(job.element.apex_angle_deg));
-  run_nc(parse_nc(text, "p", NcDialect::rs274ngc), sink);
+  run_nc(parse_nc(text, "p", dialect), sink);
   return sink.cut;
 }
 
@@ -238,36 +240,87 @@ TEST(Cutting, DexelsAgreeInVolume) {
   }
 }
 
-/// Single tokens of a program changed at random. Whatever moves the surface by more than 10 nm is refused or found.
-TEST(Cutting, NoMutationThatMovesTheSurfaceGoesUnreported) {
-  Job job = square_job(2, Arrangement::checker);
+/// The picture shows what the exact figures say: nothing beyond the unavoidable, and a raised element where it is.
+TEST(Cutting, TheErrorFieldShowsFaultsWhereTheyAre) {
+  Job job = square_job(2, Arrangement::aligned);
+  job.process.roughing_depth_um = 50;
+  const Machine ideal = machine("ideal");
+  std::vector<Program> programs = make_plan(job, ideal).programs;
+  const auto field_of = [&] {
+    std::vector<NcProgram> parsed;
+    for (const Program& program : programs)
+      parsed.push_back(parse_nc(nc_text(program, "rs274ngc"), "p", NcDialect::rs274ngc));
+    return error_field(job, ideal, parsed, 40);
+  };
+  const ErrorField right = field_of();
+  EXPECT_EQ(right.columns, 40U);
+  EXPECT_EQ(right.rows, 40U);
+  for (const double nm : right.height_nm) EXPECT_NEAR(nm, 0.0, 1.5);
+  // Element 1 lies at larger x of the part, which is -y of the workpiece: the lower half of the picture, x_w < 0.
+  for (Program& program : programs)
+    for (Item& item : program.items)
+      if (auto* visit = std::get_if<Visit>(&item))
+        if (visit->element == 1) visit->y_nm += 200;
+  const ErrorField wrong = field_of();
+  double inside_nm = 0.0;
+  double outside_nm = 0.0;
+  for (std::size_t row = 0; row < wrong.rows; ++row)
+    for (std::size_t column = 0; column < wrong.columns; ++column) {
+      const double nm = std::abs(wrong.height_nm[row * wrong.columns + column]);
+      double& worst = row >= 20 && column < 20 ? inside_nm : outside_nm;
+      worst = std::max(worst, nm);
+    }
+  EXPECT_NEAR(inside_nm, 200.0, 2.0);
+  EXPECT_LT(outside_nm, 1.5);
+}
+
+/// A program whose single tokens are changed at random.
+struct Mutated {
+  Arrangement arrangement;
+  Strategy strategy;
+  std::string machine;
+  NcDialect dialect;
+  std::uint64_t seed;
+};
+
+class Mutations : public ::testing::TestWithParam<Mutated> {};
+
+/// Whatever moves the surface by more than 10 nm is refused or found.
+TEST_P(Mutations, NoneThatMovesTheSurfaceGoesUnreported) {
+  const Mutated& p = GetParam();
+  Job job = square_job(p.arrangement == Arrangement::single ? 1 : 2, p.arrangement);
+  job.strategy = p.strategy;
   job.process.roughing_depth_um = 50;
   job.process.finishing_cuts = 1;
-  const Machine paper = machine("paper");
+  const Machine m = machine(p.machine);
+  const std::string word(kNcDialectWords[static_cast<std::size_t>(p.dialect)]);
   std::string text;
-  for (const Program& program : make_plan(job, paper).programs) text += nc_text(program, "rs274ngc");
+  for (const Program& program : make_plan(job, m).programs) text += nc_text(program, word);
   const auto field_of = [&](const std::string& program) {
-    const Cut cut = cut_of(program, job, paper);
+    const Cut cut = cut_of(program, job, m, p.dialect);
     return cut_dexels(cut.sweeps, cut.poses, cut.wedge, box_around(0.6, 0.6, 1.0), 2, 120);
   };
   const DexelField before = field_of(text);
-  std::uint64_t state = 12345;
+  std::uint64_t state = p.seed;
   const auto draw = [&](std::size_t below) {
     state = state * 6364136223846793005ULL + 1442695040888963407ULL;
     return static_cast<std::size_t>((state >> 33) % below);
   };
-  // Comments are no tokens of the program.
+  // Comments and messages are no tokens of the program.
   std::vector<std::size_t> places;
+  bool is_comment = false;
   for (std::size_t i = 0, depth = 0; i < text.size(); ++i) {
     if (text[i] == '(') ++depth;
-    if (depth == 0 && text[i] != '\n' && text[i] != ' ' && text[i] != '%') places.push_back(i);
+    if (text[i] == ';' || text.compare(i, 2, "//") == 0) is_comment = true;
+    if (text[i] == '\n') is_comment = false;
+    if (depth == 0 && !is_comment && text[i] != '\n' && text[i] != ' ' && text[i] != '%') places.push_back(i);
     if (text[i] == ')') --depth;
   }
   int refused = 0;
   int found = 0;
   int moved = 0;
   int harmless = 0;
-  for (int trial = 0; trial < 150; ++trial) {
+  for (int trial = 0; trial < 100; ++trial) {
     std::string mutant = text;
     const std::size_t at = places[draw(places.size())];
     const char old = mutant[at];
@@ -282,7 +335,7 @@ TEST(Cutting, NoMutationThatMovesTheSurfaceGoesUnreported) {
     if (mutant == text) continue;
     bool is_reported = false;
     try {
-      const Verification v = verify_programs(job, paper, {parse_nc(mutant, "p", NcDialect::rs274ngc)}, {}, {});
+      const Verification v = verify_programs(job, m, {parse_nc(mutant, "p", p.dialect)}, {}, {});
       is_reported = !v.passes();
       is_reported ? ++found : ++harmless;
     } catch (const InputError&) {
@@ -301,11 +354,17 @@ TEST(Cutting, NoMutationThatMovesTheSurfaceGoesUnreported) {
         << "trial " << trial << ": " << text.substr(at > 20 ? at - 20 : 0, 40) << " became "
         << mutant.substr(at > 20 ? at - 20 : 0, 40) << ", which moves the surface by " << worst_mm * 1e6 << " nm";
   }
-  EXPECT_GT(moved, 20) << "the mutations do something";
-  EXPECT_GT(found, 20);
+  EXPECT_GT(moved, 10) << "the mutations do something";
+  EXPECT_GT(found, 10);
   EXPECT_GT(refused, 5);
-  EXPECT_GT(harmless, 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Programs, Mutations,
+    ::testing::Values(Mutated{Arrangement::checker, Strategy::two_step, "paper", NcDialect::rs274ngc, 12345},
+                      Mutated{Arrangement::offset, Strategy::unidirectional, "thesis", NcDialect::sinumerik, 2},
+                      Mutated{Arrangement::single, Strategy::bidirectional, "paper", NcDialect::fanuc, 3},
+                      Mutated{Arrangement::aligned, Strategy::two_step, "ideal", NcDialect::pmac, 4}));
 
 }  // namespace
 }  // namespace retrace::fabrication::test

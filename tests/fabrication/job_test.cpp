@@ -132,6 +132,7 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
   job.tool.width_mm = real(0.1, 0.451);
   job.tool.edge_radius_um = real(0.0, 5.0);
+  job.tool.side_clearance_deg = real(0.1, 1.0);
   job.process.clearance_mm = real(0.01, 1.0);
   job.process.roughing_depth_um = real(1.0, 50.0);
   job.process.finishing_cuts = *rc::gen::inRange(1, 5);
@@ -160,7 +161,11 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
       {"\nwidth_mm = 0.451\nwedge", "\nwidth_mm = 0.46\nwedge",
        "tool.width_mm: must be <= 0.451, the element's width, got 0.46"},
       {"wedge_deg = 50", "wedge_deg = 80", "tool.wedge_deg: with clearance_deg must be <= 77.5 for chips"},
-      {"clearance_deg = 3", "clearance_deg = 1", "tool.clearance_deg: must be >= 2 and <= 15, got 1"},
+      {"side_clearance_deg = 2", "side_clearance_deg = 25", "tool.side_clearance_deg: must be > 0 and <= 20, got 25"},
+      {"\nwidth_mm = 0.451\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 2",
+       "\nwidth_mm = 0.1\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 9",
+       "tool.side_clearance_deg: must be < 8.911, or the diamond ends in a point within its element, got 9"},
+      {"\nclearance_deg = 3", "\nclearance_deg = 1", "tool.clearance_deg: must be >= 2 and <= 15, got 1"},
       {"strategy = \"two-step\"", "strategy = \"two-steps\"", "strategy: must be"},
       {"arrangement = \"offset\"", "arrangement = \"honeycomb\"", "array.arrangement: must be"},
       {"x_gap_mm = 0", "x_gap_m = 0", "array.x_gap_m: unknown key, did you mean \"x_gap_mm\"?"},

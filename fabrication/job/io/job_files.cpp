@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/angle.h"
 #include "core/atomic_file.h"
 #include "core/data_directory.h"
 #include "core/message_text.h"
@@ -135,6 +136,7 @@ struct Places {
   InputLocation element_width;
   InputLocation tool_width;
   InputLocation tool_wedge;
+  InputLocation tool_side;
   InputLocation x_length;
   InputLocation y_length;
   InputLocation pattern;
@@ -156,6 +158,14 @@ void check_tool(const Job& job, const Places& at) {
     throw InputError(at.tool_wedge, fmt::format("with clearance_deg must be <= {} for chips to leave between rake face "
                                                 "and facet, got {}",
                                                 shortest(apex_deg - kChipRoomDeg), shortest(taken_deg)));
+  // The diamond narrows towards its shank and must still be there where it leaves the element.
+  const double half_apex_rad = 0.5 * Angle::from_deg(apex_deg).rad();
+  const double facet_mm = 0.5 * blank_element(job).base_mm / std::sin(half_apex_rad);
+  const double side_limit_deg = Angle::from_rad(std::atan(0.5 * job.tool.width_mm / facet_mm)).deg();
+  if (job.tool.side_clearance_deg >= side_limit_deg)
+    throw InputError(at.tool_side,
+                     fmt::format("must be < {}, or the diamond ends in a point within its element, got {}",
+                                 fixed(side_limit_deg, 3), shortest(job.tool.side_clearance_deg)));
 }
 
 void check_pattern(const Job& job, const Places& at) {
@@ -268,8 +278,8 @@ void write_process(TextWriter& out, const Process& p) {
 
 void check_job(const Job& job, const InputLocation& where) {
   const auto at = [&](std::string key) { return InputLocation{where.file, where.line, std::move(key)}; };
-  check_together(job, {at("element.width_mm"), at("tool.width_mm"), at("tool.wedge_deg"), at("array.x_length_mm"),
-                       at("array.y_length_mm"), at("array.pattern")});
+  check_together(job, {at("element.width_mm"), at("tool.width_mm"), at("tool.wedge_deg"), at("tool.side_clearance_deg"),
+                       at("array.x_length_mm"), at("array.y_length_mm"), at("array.pattern")});
 }
 
 Job parse_job(std::string_view text, const std::string& source_name) {
@@ -295,7 +305,8 @@ Job parse_job(std::string_view text, const std::string& source_name) {
   job.process = read_process(process);
   root.finish();
   check_together(job, {element.where("width_mm"), tool.where("width_mm"), tool.where("wedge_deg"),
-                       array.where("x_length_mm"), array.where("y_length_mm"), array.where("pattern")});
+                       tool.where("side_clearance_deg"), array.where("x_length_mm"), array.where("y_length_mm"),
+                       array.where("pattern")});
   return job;
 }
 

@@ -1,0 +1,51 @@
+// Whatever a table of planes holds, the reader either returns planes near to the design's or throws an InputError of
+// one line; and what it returns reads back from its own text.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+#include "studies/design/facet_planes_reader.h"
+
+namespace {
+
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < 0x20;
+}
+
+retrace::geometry::PartSpec checker() {
+  retrace::geometry::PartSpec spec;
+  spec.element = retrace::geometry::RtpElement{0.5, 0.5, 90.0};
+  spec.arrangement = retrace::geometry::Arrangement::checker;
+  spec.x_length_mm = spec.y_length_mm = 1.0;
+  spec.thickness_mm = 1.0;
+  return spec;
+}
+
+void check(const retrace::geometry::FacetPlanes& planes) {
+  for (const auto& element : planes.elements())
+    for (const auto& plane : element.planes)
+      if (!(std::abs(plane.height_mm + 0.25) <= 0.026) || !(plane.slope.norm() < 1.3)) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace retrace::studies;
+  try {
+    const auto planes = parse_facet_planes({reinterpret_cast<const char*>(data), size}, "fuzz.csv", checker());
+    if (planes.size() == 0) std::abort();
+    check(planes);
+    const std::string text = facet_planes_text(planes);
+    if (facet_planes_text(parse_facet_planes(text, "again.csv", checker())) != text) std::abort();
+  } catch (const retrace::InputError& error) {
+    const std::string message = error.what();
+    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+  }
+  return 0;
+}
