@@ -197,6 +197,8 @@ class Reader {
       const auto first = labels_.find(sections_[i].first_label);
       const auto last = labels_.find(sections_[i].last_label);
       if (first == labels_.end() || last == labels_.end() || last->second < first->second) continue;
+      // A file that stops within the line of a label has the label and not its block.
+      if (last->second >= program_.blocks.size()) continue;
       program_.subroutines[i].first = first->second;
       program_.subroutines[i].last = last->second + 1;
       program_.subroutines[i].is_whole = true;

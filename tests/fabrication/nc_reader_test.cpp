@@ -246,5 +246,12 @@ TEST(NcReader, EveryCutOffFileIsRecognised) {
   }
 }
 
+/// The label is there, its block is not: no subroutine ends with it.
+TEST(NcReader, AFileThatStopsInTheLineOfALabelLacksItsSubroutine) {
+  const std::string text = "G0 A45. C=-0.1\nCALL BLOCK RT101 TO RE101\nM30\nRT101:\nG91\nG1 F50. Z-0.25\nRE101:1.5 Y";
+  const std::string outcome = refusal(text, NcDialect::sinumerik);
+  EXPECT_NE(outcome.find("does not hold the whole of subroutine RT101 TO RE101"), std::string::npos) << outcome;
+}
+
 }  // namespace
 }  // namespace retrace::fabrication
