@@ -1,8 +1,11 @@
 #include "studies/quantity/io/study_reader.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "core/error.h"
@@ -205,6 +208,23 @@ TEST(StudyReader, WhatIsWrongIsSaidWithItsLine) {
 TEST(StudyReader, AnOverrideOfAVariedKeyIsRefused) {
   EXPECT_EQ(message(kDesign + kParameter + kQuantity, {"element.base_mm=3"}),
             "--set element.base_mm=3: the study varies this key");
+}
+
+/// A store is of another study once a file that its design names has changed.
+TEST(StudyReader, PlanesOfFacetsArePartOfTheStudy) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("retrace_study_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "d.toml") << "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nx_length_mm = 2\n"
+                                      "y_length_mm = 2\n[body]\nthickness_mm = 1\n[part]\nfacets = \"p.csv\"\n";
+  const auto parts = [&](const std::string& planes) {
+    std::ofstream(folder / "p.csv") << planes;
+    return parse_study("design = \"d.toml\"\n" + kParameter + kQuantity, (folder / "study.toml").string()).parts;
+  };
+  const auto first = parts("one");
+  EXPECT_EQ(parts("one"), first);
+  EXPECT_NE(parts("another"), first);
+  fs::remove_all(folder);
 }
 
 }  // namespace
