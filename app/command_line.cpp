@@ -350,8 +350,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
   if (!app.get_subcommands().empty()) return otherwise;
   const std::string commands =
       "rre, inspect, photometry, roughness, metrology, sweep, optimize, tolerance, job, fabricate, verify, forces, "
-      "init and "
-      "list";
+      "image, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -387,6 +386,7 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_study(app, line.study, "tolerance", "what becomes of a design in manufacture, as a study file says");
   add_verify(app, line.verify);
   add_forces(app, line.forces);
+  add_image(app, line.image);
   app.add_subcommand("init", "a commented design file to start from")
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
       ->required();

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "app/image_options.h"
+
 namespace retrace::app {
 
 /// Options that every command has.
@@ -130,6 +132,7 @@ struct CommandLine {
   FabricateOptions fabricate;
   VerifyOptions verify;
   ForcesOptions forces;
+  ImageOptions image;
   std::string design;  ///< inspect
   std::string kind;    ///< init
   std::string what;    ///< list

@@ -19,6 +19,7 @@ ExitCode run_optimize_command(const CommandLine& line);
 ExitCode run_tolerance_command(const CommandLine& line);
 ExitCode run_verify_command(const CommandLine& line);
 ExitCode run_forces_command(const CommandLine& line);
+ExitCode run_image_command(const CommandLine& line);
 ExitCode run_init_command(const CommandLine& line);
 ExitCode run_list_command(const CommandLine& line);
 

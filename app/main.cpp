@@ -31,6 +31,7 @@ ExitCode run(int argc, const char* const* argv) {
   if (line->command == "tolerance") return app::run_tolerance_command(*line);
   if (line->command == "verify") return app::run_verify_command(*line);
   if (line->command == "forces") return app::run_forces_command(*line);
+  if (line->command == "image") return app::run_image_command(*line);
   if (line->command == "init") return app::run_init_command(*line);
   return app::run_list_command(*line);
 }

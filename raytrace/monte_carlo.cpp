@@ -1,9 +1,7 @@
 #include "raytrace/monte_carlo.h"
 
 #include <fmt/format.h>
-#include <pmmintrin.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "raytrace/back_surface.h"
 #include "raytrace/cell/cell_walker.h"
 #include "raytrace/entrance_sampler.h"
+#include "raytrace/flush_denormals.h"
 #include "raytrace/path_tracer.h"
 #include "raytrace/sobol.h"
 #include "raytrace/threads.h"
@@ -36,18 +35,6 @@ constexpr double kLostLimit = 1e-9;
 constexpr std::uint32_t kScrambleStream = 1;
 constexpr std::uint32_t kChoiceStream = 2;
 constexpr std::uint32_t kEntryStream = 3;  // plain sampling
-
-/// Embree wants denormals flushed; done here for the whole task so that every task computes alike.
-class FlushDenormals {
- public:
-  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); }
-  ~FlushDenormals() { _mm_setcsr(saved_); }
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  unsigned saved_;
-};
 
 std::size_t score_size(const LightSetup& setup) {
   return setup.score != nullptr ? setup.score->size() : 0;

@@ -288,18 +288,17 @@ bool PathWalker::meet_entrance(State& state) {
   const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, cos_incidence);
   const Vec3 out = refracted(state.direction, down, setup_.optics.index, cos_incidence, f.cos_refracted);
   state.light.turn_to(state.direction, down);
-  std::vector<Stokes>& returned = state.scattered ? tally_.scattered : tally_.returned;
   if (setup_.optics.lossless_entrance) {
     if (f.total_reflection)
-      returned.back().i += state.light.power();
+      (state.scattered ? tally_.scattered : tally_.returned).back().i += state.light.power();
     else
-      leave(returned, state.light, out);
+      leave(state, state.light, out);
     return false;
   }
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
-  if (branch != Branch::reflected) leave(returned, transmitted, out);
+  if (branch != Branch::reflected) leave(state, transmitted, out);
   state.light = reflected;
   state.direction = mirrored(state.direction, down);
   state.source = {};
@@ -307,9 +306,11 @@ bool PathWalker::meet_entrance(State& state) {
   return branch != Branch::transmitted;
 }
 
-/// Books light that leaves through the entrance face. \param direction in air
-void PathWalker::leave(std::vector<Stokes>& returned, const Light& light, const Vec3& direction) {
+/// Books light that leaves through the entrance face. \param state where it does \param direction in air
+void PathWalker::leave(const State& state, const Light& light, const Vec3& direction) {
+  std::vector<Stokes>& returned = state.scattered ? tally_.scattered : tally_.returned;
   returned[setup_.cone_of(direction)] += seen_from_above(light, direction);
+  if (observer_ != nullptr) observer_->leaves(state.position, direction, light.power());
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 

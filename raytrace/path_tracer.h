@@ -7,6 +7,7 @@
 #include "core/random.h"
 #include "geometry/part.h"
 #include "raytrace/back_surface.h"
+#include "raytrace/exit_observer.h"
 #include "raytrace/light_setup.h"
 #include "raytrace/path_policy.h"
 #include "raytrace/textured_facet.h"
@@ -29,7 +30,9 @@ struct PathSetup : LightSetup {
 /// both matter, one chosen at random with the whole power where not. One walker serves one thread.
 class PathWalker {
  public:
-  PathWalker(const PathSetup& setup, Tally& tally) : setup_(setup), tally_(tally) {}
+  /// \param observer told of all that leaves through the entrance face from within; null: nobody
+  PathWalker(const PathSetup& setup, Tally& tally, ExitObserver* observer = nullptr)
+      : setup_(setup), tally_(tally), observer_(observer) {}
 
   /// Traces all light that enters at a point of the entrance face, as power 1. Random choices depend on `key`,
   /// `replicate` and `sample` alone.
@@ -75,7 +78,7 @@ class PathWalker {
   bool is_over_part(const Vec3& position) const;
 
   bool meet_entrance(State& state);
-  void leave(std::vector<Stokes>& returned, const Light& light, const Vec3& direction);
+  void leave(const State& state, const Light& light, const Vec3& direction);
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
   bool meet_textured(State& state, const Vec3& normal);
@@ -85,6 +88,7 @@ class PathWalker {
 
   const PathSetup& setup_;
   Tally& tally_;
+  ExitObserver* observer_;
   std::vector<State> pending_;
   RandomKey key_;
   std::uint32_t replicate_ = 0;

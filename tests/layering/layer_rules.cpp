@@ -37,6 +37,7 @@ const std::map<std::string, Names>& study_rooms() {
                                                      {"rre", {"design"}},
                                                      {"roughness", {"design", "rre"}},
                                                      {"photometry", {"design", "rre"}},
+                                                     {"image", {"design", "rre", "photometry"}},
                                                      {"inspect", {"design"}},
                                                      {"metrology", {}},
                                                      {"fabrication", {"design"}},

@@ -1,0 +1,166 @@
+#include "report/image_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/number_format.h"
+#include "report/axis_ticks.h"
+#include "report/canvas.h"
+#include "report/colour_scale.h"
+
+namespace retrace::report {
+namespace {
+
+constexpr Colour kWhite{1.0, 1.0, 1.0};
+constexpr Colour kAxis{0.35, 0.35, 0.35};
+constexpr Colour kText{0.13, 0.13, 0.13};
+constexpr Font kTitleFont{16.0, true};
+constexpr Font kPanelFont{12.5, true};
+constexpr Font kLabelFont{11.5, false};
+constexpr Font kTickFont{10.5, false};
+
+constexpr double kMargin = 22.0;
+constexpr double kRemarkHeight = 17.0;
+constexpr double kPicture = 340.0;  ///< longer side of a picture
+constexpr double kPanelTop = 30.0;  ///< for its title
+constexpr double kBelow = 40.0;     ///< for its scale bar
+constexpr double kBarGap = 14.0;
+constexpr double kBarWidth = 14.0;
+constexpr double kBarTexts = 86.0;
+constexpr int kBarSteps = 128;
+constexpr double kDecades = 4.0;
+
+/// How values become shares of the colour scale.
+struct ValueScale {
+  double full = 1.0;
+  bool is_logarithmic = false;
+
+  double share(double value) const {
+    if (!is_logarithmic) return value / full;
+    return value > 0.0 ? 1.0 + std::log10(value / full) / kDecades : 0.0;
+  }
+};
+
+ValueScale scale_of(const ImagePanel& panel) {
+  double full = panel.full_value;
+  if (!(full > 0.0) && !panel.values.empty()) full = *std::max_element(panel.values.begin(), panel.values.end());
+  return {full > 0.0 ? full : 1.0, panel.is_logarithmic};
+}
+
+Colour colour_of(double share) {
+  const auto [r, g, b] = cubehelix(share);
+  return {r, g, b};
+}
+
+Size picture_size(const ImagePanel& panel) {
+  const double aspect = static_cast<double>(panel.columns) / static_cast<double>(panel.rows);
+  // A strip keeps a visible width.
+  return aspect >= 1.0 ? Size{kPicture, std::max(8.0, kPicture / aspect)}
+                       : Size{std::max(8.0, kPicture * aspect), kPicture};
+}
+
+double panel_width(const ImagePanel& panel) {
+  return std::max(200.0, picture_size(panel).width) + kBarGap + kBarWidth + kBarTexts;
+}
+
+void draw_frame(Canvas& canvas, Point corner, Size size) {
+  const Point far{corner.x + size.width, corner.y + size.height};
+  canvas.line({corner, {far.x, corner.y}, far, {corner.x, far.y}, corner}, {kAxis, 1.0, {}});
+}
+
+void draw_tick(Canvas& canvas, Point at, const std::string& label) {
+  canvas.line({at, {at.x + 4.0, at.y}}, {kAxis, 1.0, {}});
+  canvas.text({at.x + 7.0, at.y + 3.6}, label, kTickFont, kText, Align::left);
+}
+
+void draw_value_bar(Canvas& canvas, const ImagePanel& panel, const ValueScale& scale, Point corner, double height) {
+  std::vector<Colour> colours;
+  for (int k = 0; k < kBarSteps; ++k) colours.push_back(colour_of(1.0 - (k + 0.5) / kBarSteps));
+  canvas.image(corner, {kBarWidth, height}, 1, colours);
+  draw_frame(canvas, corner, {kBarWidth, height});
+  const auto y_at = [&](double value) { return corner.y + height * (1.0 - scale.share(value)); };
+  const double x = corner.x + kBarWidth;
+  if (scale.is_logarithmic) {
+    const int top = static_cast<int>(std::floor(std::log10(scale.full) + 1e-9));
+    for (int e = top; e > std::log10(scale.full) - kDecades - 1e-9; --e)
+      draw_tick(canvas, {x, y_at(std::pow(10.0, e))},
+                std::abs(e) < 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e));
+  } else {
+    const Ticks ticks = make_ticks({0.0, scale.full}, height > 150.0 ? 5 : 2);
+    for (std::size_t k = 0; k < ticks.positions.size(); ++k)
+      draw_tick(canvas, {x, y_at(ticks.positions[k])}, ticks.labels[k]);
+  }
+  if (height > 150.0)
+    canvas.text({x + kBarTexts - 22.0, corner.y + 0.5 * height}, panel.value_label, kLabelFont, kText, Align::centre,
+                true);
+}
+
+void draw_scale_bar(Canvas& canvas, const ImagePanel& panel, Point corner, double picture_width) {
+  if (panel.length_unit.empty()) return;
+  const double length = scale_bar_length(panel.width);
+  const double drawn = picture_width * length / panel.width;
+  const double y = corner.y + 16.0;
+  canvas.line({{corner.x, y}, {corner.x + drawn, y}}, {kText, 3.0, {}});
+  const std::string gap = panel.length_unit == "°" ? "" : " ";
+  canvas.text({corner.x + drawn + 8.0, y + 4.0}, shortest(length) + gap + panel.length_unit, kLabelFont, kText,
+              Align::left);
+}
+
+void draw(Canvas& canvas, const ImagePanel& panel, Point corner) {
+  canvas.text({corner.x, corner.y + 16.0}, panel.title, kPanelFont, kText, Align::left);
+  const ValueScale scale = scale_of(panel);
+  std::vector<Colour> colours;
+  colours.reserve(panel.values.size());
+  for (const double value : panel.values) colours.push_back(colour_of(scale.share(value)));
+  const Point at{corner.x, corner.y + kPanelTop};
+  const Size size = picture_size(panel);
+  canvas.image(at, size, panel.columns, colours);
+  draw_frame(canvas, at, size);
+  draw_value_bar(canvas, panel, scale, {at.x + size.width + kBarGap, at.y}, size.height);
+  draw_scale_bar(canvas, panel, {at.x, at.y + size.height}, size.width);
+}
+
+}  // namespace
+
+double scale_bar_length(double width) {
+  const double wanted = 0.25 * width;
+  const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
+  double best = decade;
+  for (const double step : {2.0, 5.0, 10.0})
+    if (std::abs(std::log(step * decade / wanted)) < std::abs(std::log(best / wanted))) best = step * decade;
+  return best;
+}
+
+std::string render_png(const ImagePlot& plot, double scale) {
+  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
+  double width = 2.0 * kMargin;
+  double height = 0.0;
+  for (const ImagePanel& panel : plot.panels) {
+    width += panel_width(panel);
+    height = std::max(height, kPanelTop + picture_size(panel).height + kBelow);
+  }
+  width = std::max(width, 420.0);
+  const double head = kMargin + 26.0 + kRemarkHeight * static_cast<double>(plot.remarks.size());
+  const Size size{std::ceil(width), std::ceil(head + height + 8.0)};
+  Canvas canvas(Canvas::Format::png, size, scale);
+  canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
+  const auto line = [&](const std::string& text, Font font, double y) {
+    const auto fitted = canvas.fitted(text, font, size.width - 2.0 * kMargin, 1, Ellipsis::end);
+    if (!fitted.empty()) canvas.text({kMargin, y}, fitted.front(), font, kText, Align::left);
+  };
+  line(plot.title, kTitleFont, kMargin + 12.0);
+  for (std::size_t k = 0; k < plot.remarks.size(); ++k)
+    line(plot.remarks[k], kLabelFont, kMargin + 32.0 + kRemarkHeight * static_cast<double>(k));
+  double x = kMargin;
+  for (const ImagePanel& panel : plot.panels) {
+    draw(canvas, panel, {x, head});
+    x += panel_width(panel);
+  }
+  return canvas.finish();
+}
+
+}  // namespace retrace::report

@@ -1,0 +1,207 @@
+#include "studies/image/camera_study.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "raytrace/farfield/photometric_geometry.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+// The picture shows this much more than the part.
+constexpr double kMargin = 1.15;
+
+void require(bool holds, std::string_view option, std::string_view allowed, double given) {
+  if (!holds || !std::isfinite(given))
+    throw InputError({"", 0, std::string(option)}, fmt::format("must {}, got {}", allowed, shortest(given)));
+}
+
+void check_picture(const CameraRequest& r) {
+  const bool fits = r.columns >= 1 && r.rows >= 1 && r.columns <= CameraStudy::kMostSide &&
+                    r.rows <= CameraStudy::kMostSide && r.columns * r.rows <= CameraStudy::kMostPixels;
+  if (!fits)
+    throw InputError({"", 0, "--pixels"},
+                     fmt::format("must be 1x1 to {}x{} and at most {} in all, got {}x{}", CameraStudy::kMostSide,
+                                 CameraStudy::kMostSide, CameraStudy::kMostPixels, r.columns, r.rows));
+  if (r.field_mm) require(*r.field_mm > 0.0, "--field-mm", "be > 0", *r.field_mm);
+  require(r.noise > 0.0 && r.noise < 1.0, "--noise", "lie between 0 and 1", r.noise);
+  if (r.passes)
+    require(*r.passes >= 2 && *r.passes <= CameraStudy::kMostPasses, "--passes", "be 2 to 65536", *r.passes);
+}
+
+void check(const CameraRequest& r) {
+  check_picture(r);
+  require(r.distance_m > 0.0 && r.distance_m <= 1e6, "--distance-m", "be above 0 and at most 1e6", r.distance_m);
+  require(r.observation_deg >= 0.0 && r.observation_deg < 180.0, "--observation-deg", "be 0 to 180", r.observation_deg);
+  require(std::abs(r.v_deg) < 90.0, "--v-deg", "lie between -90 and 90", r.v_deg);
+  require(std::abs(r.h_deg) < 90.0, "--h-deg", "lie between -90 and 90", r.h_deg);
+  require(r.lamp_arcmin > 0.0 && r.lamp_arcmin <= 600.0, "--lamp-arcmin", "be above 0 and at most 600", r.lamp_arcmin);
+  require(r.pupil_arcmin >= 0.0 && r.pupil_arcmin <= 600.0, "--pupil-arcmin", "be 0 to 600", r.pupil_arcmin);
+  require(r.illuminance_lx >= 0.0, "--illuminance-lx", "be >= 0", r.illuminance_lx);
+  require(r.ambient_lx >= 0.0, "--ambient-lx", "be >= 0", r.ambient_lx);
+  require(r.backlight_lx >= 0.0, "--backlight-lx", "be >= 0", r.backlight_lx);
+  for (const double length : r.film_mm) require(length > 0.0 && length <= 1e5, "--film-mm", "be above 0", length);
+}
+
+/// Width over height of the sheet must not go round more than half the cylinder.
+void check_film(const CameraRequest& r, bool is_infinite) {
+  if (!is_infinite) {
+    if (r.cylinder_mm)
+      throw InputError({"", 0, "--cylinder-mm"},
+                       "needs a design with extent = \"infinite\": finite parts are plane in this version");
+    return;
+  }
+  if (!r.cylinder_mm) return;
+  require(std::abs(*r.cylinder_mm) >= r.film_mm[0] / std::numbers::pi, "--cylinder-mm",
+          fmt::format("be at least {} or at most its negative, so that the sheet goes half round",
+                      shortest(r.film_mm[0] / std::numbers::pi)),
+          *r.cylinder_mm);
+}
+
+Vec3 to_vec(const std::array<double, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
+
+std::string text_of(const Vec3& p) {
+  return fmt::format("{},{},{}", shortest(p.x()), shortest(p.y()), shortest(p.z()));
+}
+
+bool is_inside(const geometry::Part& part, const Vec3& p) {
+  if (p.z() > part.thickness_mm || p.z() < -part.element_depth_mm) return false;
+  const geometry::Rectangle box = geometry::bounding_box(part.outline);
+  const Vec2 at = p.head<2>() + 0.5 * (box.lower + box.upper);
+  for (std::size_t k = 0; k < part.outline.size(); ++k) {
+    const Vec2& a = part.outline[k];
+    const Vec2 along = part.outline[(k + 1) % part.outline.size()] - a;
+    if (along.x() * (at.y() - a.y()) - along.y() * (at.x() - a.x()) < 0.0) return false;
+  }
+  return true;
+}
+
+/// Whether a place is behind the face of a sheet, where there is the body.
+bool is_behind(const raytrace::Film& film, double thickness_mm, const Vec3& p) {
+  if (!film.radius_mm) return p.z() <= thickness_mm;
+  const double from_axis = std::hypot(p.x(), p.z() - thickness_mm + *film.radius_mm);
+  return *film.radius_mm > 0.0 ? from_axis <= *film.radius_mm : from_axis >= -*film.radius_mm;
+}
+
+void check_place(const geometry::Part& part, const raytrace::CameraScene& scene, const Vec3& place,
+                 const std::string& option, const char* what) {
+  const bool bad = scene.film ? is_behind(*scene.film, part.thickness_mm, place) : is_inside(part, place);
+  if (bad)
+    throw InputError({"", 0, option}, fmt::format("the {} must be outside the {}, got {} mm", what,
+                                                  scene.film ? "body, in front of its face" : "part", text_of(place)));
+  require((place - scene.view.target_mm).norm() > 0.0, option, "be away from what is looked at", 0.0);
+}
+
+double shown_width(const CameraRequest& r, const geometry::Part& part) {
+  if (r.field_mm) return *r.field_mm;
+  const Vec2 size = part.period_mm ? Vec2(r.film_mm[0], r.film_mm[1]) : geometry::bounding_box(part.outline).size();
+  const double aspect = static_cast<double>(r.columns) / static_cast<double>(r.rows);
+  return kMargin * std::max(size.x(), size.y() * aspect);
+}
+
+raytrace::CameraScene scene_of(const CameraRequest& r, const geometry::Part& part) {
+  raytrace::CameraScene scene;
+  const raytrace::PhotometricGeometry geometry =
+      raytrace::geometry_from({Angle::from_deg(r.v_deg), Angle::from_deg(r.h_deg)}, Angle::from_deg(r.observation_deg),
+                              Angle::from_deg(r.rotation_deg));
+  const raytrace::PhotometricDirections towards = raytrace::directions_of(geometry);
+  const Vec3 target(0.0, 0.0, part.thickness_mm);
+  const double distance_mm = 1e3 * r.distance_m;
+  scene.view.target_mm = target;
+  scene.view.eye_mm = r.eye_mm ? to_vec(*r.eye_mm) : Vec3(target + distance_mm * towards.to_observer);
+  scene.view.up = raytrace::return_frame(geometry).up;
+  scene.view.columns = r.columns;
+  scene.view.rows = r.rows;
+  scene.view.width_mm = shown_width(r, part);
+  scene.view.pupil = Angle::from_deg(r.pupil_arcmin / 60.0);
+  scene.lamp.position_mm = r.lamp_mm ? to_vec(*r.lamp_mm) : Vec3(target + distance_mm * towards.to_source);
+  scene.lamp.illuminance_lx = r.illuminance_lx;
+  scene.lamp.diameter = Angle::from_deg(r.lamp_arcmin / 60.0);
+  // A half space of even luminance L lights a plane with pi L.
+  scene.surroundings = {r.ambient_lx / std::numbers::pi, r.backlight_lx / std::numbers::pi};
+  if (part.period_mm) scene.film = raytrace::Film{r.film_mm[0], r.film_mm[1], r.cylinder_mm};
+  scene.discs = r.discs;
+  return scene;
+}
+
+double angle_deg(const Vec3& a, const Vec3& b) {
+  return Angle::from_rad(std::atan2(a.cross(b).norm(), a.dot(b))).deg();
+}
+
+bool is_unpolarised(const raytrace::Stokes& s) {
+  return s.q == 0.0 && s.u == 0.0 && s.v == 0.0;
+}
+
+}  // namespace
+
+CameraStudy::CameraStudy(Design design, CameraRequest request)
+    : design_(std::move(design)), request_(std::move(request)) {
+  check(request_);
+  if (!is_unpolarised(design_.polarisation))
+    throw InputError({design_.source, 0, "light.polarisation"},
+                     "cameras take unpolarised light in this version: leave it out");
+  check_film(request_, design_.part.extent == geometry::Extent::infinite);
+  model_ = make_model(design_, materials::MaterialLibrary::shipped());
+  scene_ = scene_of(request_, model_.part);
+  check_place(model_.part, scene_, scene_.view.eye_mm, request_.eye_mm ? "--eye-mm" : "--observation-deg", "camera");
+  check_place(model_.part, scene_, scene_.lamp.position_mm, request_.lamp_mm ? "--lamp-mm" : "--v-deg", "lamp");
+  const Vec3 view = (scene_.view.target_mm - scene_.view.eye_mm).normalized();
+  if (view.cross(scene_.view.up).norm() < 1e-6) scene_.view.up = view.unitOrthogonal();
+}
+
+CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
+                              const std::function<void(const raytrace::CameraImage&)>& after_pass) const {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<raytrace::WeighedOptics> light;
+  for (const SpectralOptics& at : model_.spectral) light.push_back({at.optics, at.weight});
+  const raytrace::CameraTracer tracer(model_.part, light, scene_, {}, request_.seed);
+  CameraResult result;
+  result.design = design_;
+  result.request = request_;
+  result.scene = scene_;
+  result.warnings = model_.warnings;
+  const Vec3 to_eye = scene_.view.eye_mm - scene_.view.target_mm;
+  const Vec3 to_lamp = scene_.lamp.position_mm - scene_.view.target_mm;
+  result.observation_deg = angle_deg(to_eye, to_lamp);
+  result.entrance_deg = angle_deg(to_lamp, Vec3::UnitZ());
+  result.viewing_deg = angle_deg(to_eye, Vec3::UnitZ());
+  result.image = tracer.empty_image();
+  const std::uint32_t goal = request_.passes.value_or(kMostPasses);
+  double furthest = 0.0;
+  while (result.image.passes < goal) {
+    if (!tracer.add_pass(result.image, cancel)) {
+      result.complete = false;
+      break;
+    }
+    if (after_pass) after_pass(result.image);
+    double share = static_cast<double>(result.image.passes) / goal;
+    if (!request_.passes) {
+      const double noise = result.image.passes > 1 ? result.image.relative_noise() : 1.0;
+      if (result.image.passes >= kFewestPasses && noise <= request_.noise) break;
+      share = result.image.passes > 1 ? std::min(0.99, std::pow(request_.noise / std::max(noise, 1e-300), 2.0)) : 0.0;
+    }
+    furthest = std::max(furthest, share);
+    if (progress != nullptr) progress->at(furthest);
+  }
+  if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
+    result.warnings.push_back(fmt::format("{}: the noise of {} is above the target of {} after {} passes",
+                                          design_.source_name(), shortest(result.image.relative_noise()),
+                                          shortest(request_.noise), result.image.passes));
+  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace retrace::studies

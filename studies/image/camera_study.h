@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/image/camera.h"
+#include "studies/design/optical_model.h"
+
+namespace retrace::studies {
+
+/// What is asked of a camera: a picture of the part in the light of a lamp. Positions are those of CameraScene.
+struct CameraRequest {
+  double distance_m = 10.0;       ///< of lamp and eye from the middle of the face; > 0
+  double observation_deg = 0.33;  ///< by which the eye is above the lamp; 0 to 180
+  double v_deg = 0.0;             ///< where the lamp is, as regulations say it; -90 to 90
+  double h_deg = 0.0;
+  double rotation_deg = 0.0;                     ///< of the part about its normal
+  std::optional<std::array<double, 3>> eye_mm;   ///< in place of distance and angles
+  std::optional<std::array<double, 3>> lamp_mm;  ///< likewise
+  double lamp_arcmin = 10.0;                     ///< diameter of its disc; > 0, up to 600
+  double pupil_arcmin = 10.0;                    ///< likewise, of the eye's pupil; >= 0
+  double illuminance_lx = 10.0;                  ///< of the lamp across its beam, at the part
+  double ambient_lx = 0.0;                       ///< of even light from all of the half space in front, on the face
+  double backlight_lx = 0.0;                     ///< likewise from behind and round the part
+  std::size_t columns = 400;
+  std::size_t rows = 300;
+  std::optional<double> field_mm;  ///< what the picture's width shows at the part; none: the part and some margin
+  std::array<double, 2> film_mm{100.0, 100.0};  ///< width and height of a sheet of an infinite part
+  std::optional<double> cylinder_mm;    ///< radius of the cylinder that the sheet is bent over; < 0: its hollow side
+  double noise = 0.02;                  ///< relative, of a pixel, to reach
+  std::optional<std::uint32_t> passes;  ///< in place of it
+  std::uint32_t seed = 1;
+  raytrace::DiscAverage discs = raytrace::DiscAverage::kernel;
+};
+
+struct CameraResult {
+  Design design;
+  CameraRequest request;
+  raytrace::CameraScene scene;
+  raytrace::CameraImage image;
+  double observation_deg = 0.0;  ///< as seen from the middle of the face
+  double entrance_deg = 0.0;
+  double viewing_deg = 0.0;
+  double elapsed_s = 0.0;
+  std::vector<std::string> warnings;
+  bool complete = true;  ///< false: fewer passes than asked for
+};
+
+/// A checked request, ready to run.
+class CameraStudy {
+ public:
+  static constexpr std::size_t kMostSide = 16384;        ///< pixels along a side
+  static constexpr std::size_t kMostPixels = 1U << 26U;  ///< in all
+  static constexpr std::uint32_t kFewestPasses = 8;      ///< before the noise is looked at
+  static constexpr std::uint32_t kMostPasses = 65536;
+
+  /// \throw InputError for numbers out of range, an eye or a lamp inside the part, polarised light
+  CameraStudy(Design design, CameraRequest request);
+
+  /// \param after_pass told of the picture after every pass, from one thread
+  CameraResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
+                   const std::function<void(const raytrace::CameraImage&)>& after_pass = {}) const;
+
+  const raytrace::CameraScene& scene() const { return scene_; }
+
+ private:
+  Design design_;
+  CameraRequest request_;
+  OpticalModel model_;
+  raytrace::CameraScene scene_;
+};
+
+}  // namespace retrace::studies

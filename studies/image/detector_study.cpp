@@ -1,0 +1,156 @@
+#include "studies/image/detector_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/number_format.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Rectangle;
+using geometry::Vec2;
+using geometry::Vec3;
+
+constexpr std::size_t kMostPixels = 8192;
+constexpr std::size_t kMostAnglePixels = 2049;
+// What beams leave behind is invisible in a picture at this share of the power.
+constexpr double kTruncatedGoal = 1e-5;
+// Beams up to which the choice is the exact engine: some seconds.
+constexpr std::uint64_t kBeamsOfAutomatic = 1'000'000;
+
+void check(const DetectorRequest& request) {
+  if (!(std::abs(request.incidence_deg) < 90.0))
+    throw InputError({"", 0, "--incidence"},
+                     fmt::format("must lie between -90 and 90 degrees, got {}", shortest(request.incidence_deg)));
+  if (request.pixels < 1 || request.pixels > kMostPixels)
+    throw InputError({"", 0, "--pixels"},
+                     fmt::format("must be 1 to {} along the longer side, got {}", kMostPixels, request.pixels));
+  if (request.angle_pixels < 1 || request.angle_pixels > kMostAnglePixels)
+    throw InputError({"", 0, "--angle-pixels"},
+                     fmt::format("must be 1 to {}, got {}", kMostAnglePixels, request.angle_pixels));
+  if (!(request.window_deg > 0.0 && request.window_deg <= 90.0))
+    throw InputError({"", 0, "--window-deg"},
+                     fmt::format("must be above 0 and at most 90 degrees, got {}", shortest(request.window_deg)));
+  if (request.engine == Engine::cell)
+    throw InputError({"", 0, "--engine"}, "must be auto, exact, montecarlo or embree for pictures, got cell");
+}
+
+raytrace::Illumination illumination_of(const Design& design, const DetectorRequest& request) {
+  return {Angle::from_deg(request.incidence_deg), Angle::from_deg(request.azimuth_deg), design.polarisation};
+}
+
+raytrace::ReturnFrame frame_of(const raytrace::Illumination& light) {
+  const double t = light.incidence.rad();
+  const double p = light.azimuth.rad();
+  raytrace::ReturnFrame frame;
+  frame.to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+  frame.right = raytrace::source_axis(frame.to_source);
+  frame.up = frame.to_source.cross(frame.right);
+  return frame;
+}
+
+/// Square pixels, `longer` of them along the longer side.
+raytrace::PixelGrid face_grid(const geometry::Part& part, std::size_t longer) {
+  const Rectangle bounds =
+      part.period_mm ? Rectangle{Vec2::Zero(), *part.period_mm} : geometry::bounding_box(part.outline);
+  const double pixel = bounds.size().maxCoeff() / static_cast<double>(longer);
+  const auto count = [&](double length) {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(length / pixel)));
+  };
+  return {bounds, count(bounds.size().x()), count(bounds.size().y())};
+}
+
+void add(std::vector<double>& sum, const std::vector<double>& more, double weight) {
+  if (sum.empty()) sum.assign(more.size(), 0.0);
+  for (std::size_t k = 0; k < more.size(); ++k) sum[k] += weight * more[k];
+}
+
+void add(raytrace::PixelValues& sum, const raytrace::PixelValues& more, double weight) {
+  add(sum.value, more.value, weight);
+  if (more.std_error.empty()) return;
+  if (sum.std_error.empty()) sum.std_error.assign(more.value.size(), 0.0);
+  for (std::size_t k = 0; k < more.std_error.size(); ++k)
+    sum.std_error[k] = std::hypot(sum.std_error[k], weight * more.std_error[k]);
+}
+
+void add(raytrace::DetectorMaps& sum, const raytrace::DetectorMaps& more, double weight) {
+  add(sum.leaving, more.leaving, weight);
+  add(sum.entering, more.entering, weight);
+  add(sum.per_sr, more.per_sr, weight);
+  sum.outside += weight * more.outside;
+  sum.rre += weight * more.rre;
+  sum.truncated += weight * more.truncated;
+  sum.std_error = std::hypot(sum.std_error, weight * more.std_error);
+  sum.rays += more.rays;
+  sum.complete = sum.complete && more.complete;
+}
+
+}  // namespace
+
+DetectorStudy::DetectorStudy(Design design, DetectorRequest request)
+    : design_(std::move(design)), request_(std::move(request)) {
+  check(request_);
+  model_ = make_model(design_, materials::MaterialLibrary::shipped());
+  if (request_.engine == Engine::exact && !model_.optics.is_smooth())
+    throw InputError(design_.texture.location, "rough facets cannot be traced exactly: use --engine montecarlo");
+}
+
+raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const raytrace::DetectorSetting& setting,
+                                            std::size_t number, bool exact, Progress* progress,
+                                            const Cancellation* cancel) const {
+  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
+  const raytrace::Illumination illumination = illumination_of(design_, request_);
+  if (!exact)
+    return raytrace::sampled_detector_maps(model_.part, light.optics, illumination, setting,
+                                           std::max<std::uint64_t>(1, request_.rays / model_.spectral.size()),
+                                           request_.seed + kGolden * static_cast<std::uint32_t>(number), {}, progress,
+                                           cancel);
+  raytrace::BeamPolicy policy;
+  policy.cutoff = request_.cutoff;
+  policy.truncated_goal = kTruncatedGoal;
+  if (request_.engine == Engine::automatic) policy.max_beams = kBeamsOfAutomatic;
+  return raytrace::exact_detector_maps(model_.part, light.optics, illumination, setting, policy, cancel);
+}
+
+DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel) const {
+  const auto start = std::chrono::steady_clock::now();
+  DetectorResult result;
+  result.design = design_;
+  result.request = request_;
+  result.warnings = model_.warnings;
+  result.acceptance_half_angle_deg = design_.acceptance_half_angle_deg.back();
+  result.face = face_grid(model_.part, request_.pixels);
+  result.is_period = model_.part.period_mm.has_value();
+  const raytrace::DetectorSetting setting{
+      result.face,
+      {raytrace::DirectionGrid::Layout::square, Angle::from_deg(request_.window_deg).rad(), request_.angle_pixels,
+       request_.angle_pixels},
+      frame_of(illumination_of(design_, request_)),
+      result.acceptance_half_angle_deg};
+  bool exact = model_.optics.is_smooth() && (request_.engine == Engine::exact || request_.engine == Engine::automatic);
+  const auto trace_all = [&] {
+    result.maps = {};
+    for (std::size_t k = 0; k < model_.spectral.size() && result.maps.complete; ++k)
+      add(result.maps,
+          trace(model_.spectral[k], setting, k, exact, model_.spectral.size() == 1 ? progress : nullptr, cancel),
+          model_.spectral[k].weight);
+  };
+  try {
+    trace_all();
+  } catch (const BudgetError&) {
+    if (!exact || request_.engine == Engine::exact) throw;
+    exact = false;  // too many beams
+    trace_all();
+  }
+  result.engine = exact ? "exact" : "embree";
+  result.complete = result.maps.complete;
+  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/image/detector.h"
+#include "studies/design/optical_model.h"
+#include "studies/rre/rre.h"
+
+namespace retrace::studies {
+
+/// What is asked of a detector: maps of the light that comes back, for one direction of incidence.
+struct DetectorRequest {
+  double incidence_deg = 0.0;  ///< in (-90, 90)
+  double azimuth_deg = 0.0;
+  std::size_t pixels = 400;           ///< along the longer side of the face; 1 to 8192
+  std::size_t angle_pixels = 201;     ///< along either side of the angular map; 1 to 2049
+  double window_deg = 1.0;            ///< half width of the angular map; > 0, up to 90
+  Engine engine = Engine::automatic;  ///< cell is not one of them
+  std::optional<double> cutoff;       ///< exact engine: least power of a beam, as a share of the incident
+  std::uint64_t rays = 1U << 22;      ///< Monte Carlo
+  std::uint32_t seed = 1;
+};
+
+struct DetectorResult {
+  Design design;
+  DetectorRequest request;
+  std::string engine;
+  double acceptance_half_angle_deg = 0.0;
+  raytrace::PixelGrid face{{geometry::Vec2::Zero(), geometry::Vec2::Ones()}, 1, 1};
+  bool is_period = false;  ///< the face is one period of an endless part
+  raytrace::DetectorMaps maps;
+  double elapsed_s = 0.0;
+  std::vector<std::string> warnings;
+  bool complete = true;
+};
+
+/// A checked request, ready to run.
+class DetectorStudy {
+ public:
+  /// \throw InputError for numbers out of range, an unknown material, light or facets that the engine cannot trace
+  DetectorStudy(Design design, DetectorRequest request);
+
+  /// \throw BudgetError if power was lost, or too many beams are needed
+  DetectorResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
+
+ private:
+  raytrace::DetectorMaps trace(const SpectralOptics& light, const raytrace::DetectorSetting& setting,
+                               std::size_t number, bool exact, Progress* progress, const Cancellation* cancel) const;
+
+  Design design_;
+  DetectorRequest request_;
+  OpticalModel model_;
+};
+
+}  // namespace retrace::studies

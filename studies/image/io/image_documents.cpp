@@ -1,0 +1,121 @@
+#include "studies/image/io/image_documents.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/json_text.h"
+#include "core/number_format.h"
+#include "core/version.h"
+#include "studies/design/design_json.h"
+
+namespace retrace::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+Json place(const geometry::Vec3& p) {
+  return Json::array({p.x(), p.y(), p.z()});
+}
+
+Json header(const char* kind, const Design& design, std::uint32_t seed) {
+  Json json = {{"schema", "retrace.image/1"}, {"kind", kind}};
+  json["design"] = to_json(design);
+  json["seed"] = seed;
+  return json;
+}
+
+void add_footer(Json& json, double elapsed_s, const std::vector<std::string>& warnings, bool complete) {
+  json["elapsed_s"] = elapsed_s;
+  json["version"] = kVersion;
+  json["warnings"] = warnings;
+  json["complete"] = complete;
+}
+
+}  // namespace
+
+std::string detector_json(const DetectorResult& result) {
+  Json json = header("detector", result.design, result.request.seed);
+  json["engine"] = result.engine;
+  json["engine_requested"] = engine_name(result.request.engine);
+  json["incidence_deg"] = result.request.incidence_deg;
+  json["azimuth_deg"] = result.request.azimuth_deg;
+  json["acceptance_half_angle_deg"] = result.acceptance_half_angle_deg;
+  const geometry::Rectangle& bounds = result.face.bounds_mm();
+  json["face"] = {{"x_from_mm", bounds.lower.x()}, {"y_from_mm", bounds.lower.y()},    {"x_to_mm", bounds.upper.x()},
+                  {"y_to_mm", bounds.upper.y()},   {"columns", result.face.columns()}, {"rows", result.face.rows()},
+                  {"is_period", result.is_period}};
+  json["angles"] = {{"half_width_deg", result.request.window_deg},
+                    {"columns", result.request.angle_pixels},
+                    {"rows", result.request.angle_pixels},
+                    {"outside", result.maps.outside}};
+  json["rre"] = result.maps.rre;
+  json["std_error"] = result.maps.std_error;
+  json["truncated"] = result.maps.truncated;
+  json["relative_irradiance_max"] = largest(result.maps.leaving.value);
+  json["per_sr_max"] = largest(result.maps.per_sr.value);
+  json[result.engine == "exact" ? "beams" : "rays"] = result.maps.rays;
+  add_footer(json, result.elapsed_s, result.warnings, result.complete);
+  return to_text(json);
+}
+
+std::string camera_json(const CameraResult& result) {
+  const CameraRequest& asked = result.request;
+  Json json = header("camera", result.design, asked.seed);
+  json["engine"] = "embree";
+  json["columns"] = asked.columns;
+  json["rows"] = asked.rows;
+  json["width_mm"] = result.scene.view.width_mm;
+  json["eye_mm"] = place(result.scene.view.eye_mm);
+  json["lamp_mm"] = place(result.scene.lamp.position_mm);
+  json["target_mm"] = place(result.scene.view.target_mm);
+  json["observation_deg"] = result.observation_deg;
+  json["entrance_deg"] = result.entrance_deg;
+  json["viewing_deg"] = result.viewing_deg;
+  json["rotation_deg"] = asked.rotation_deg;
+  json["lamp_arcmin"] = asked.lamp_arcmin;
+  json["pupil_arcmin"] = asked.pupil_arcmin;
+  json["illuminance_lx"] = asked.illuminance_lx;
+  json["ambient_lx"] = asked.ambient_lx;
+  json["backlight_lx"] = asked.backlight_lx;
+  if (result.scene.film) {
+    json["film_mm"] = asked.film_mm;
+    if (asked.cylinder_mm) json["cylinder_mm"] = *asked.cylinder_mm;
+  }
+  json["passes"] = result.image.passes;
+  json["paths"] = result.image.paths;
+  if (result.image.passes > 1) {
+    if (result.image.part_means.size() > 1) {
+      json["part_luminance_cd_per_m2"] = result.image.part_mean();
+      json["part_std_error_cd_per_m2"] = result.image.part_error();
+    }
+    json["noise"] = result.image.relative_noise();
+  }
+  json["luminance_max_cd_per_m2"] = largest(result.image.luminance);
+  add_footer(json, result.elapsed_s, result.warnings, result.complete);
+  return to_text(json);
+}
+
+std::string detector_table(const DetectorResult& result) {
+  return fmt::format("RRE {} % ({}); relative irradiance up to {}; {} % of the light leaves beyond {} degrees\n",
+                     fixed(100.0 * result.maps.rre, 3), result.engine, fixed(largest(result.maps.leaving.value), 3),
+                     fixed(100.0 * result.maps.outside, 2), shortest(result.request.window_deg));
+}
+
+std::string camera_table(const CameraResult& result) {
+  std::string table =
+      fmt::format("{} x {} pixels, {} passes, noise {} %\n", result.image.columns, result.image.rows,
+                  result.image.passes, fixed(result.image.passes > 1 ? 100.0 * result.image.relative_noise() : 0.0, 2));
+  if (result.image.part_means.size() > 1)
+    table += fmt::format("luminance of the part {} +- {} cd/m2, of the brightest pixel {} cd/m2\n",
+                         fixed(result.image.part_mean(), 4), fixed(result.image.part_error(), 4),
+                         fixed(largest(result.image.luminance), 4));
+  return table;
+}
+
+}  // namespace retrace::studies
