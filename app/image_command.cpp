@@ -8,12 +8,16 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/number_list.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "core/atomic_file.h"
+#include "core/data_directory.h"
 #include "core/message_text.h"
+#include "materials/io/spectrum_reader.h"
 #include "raytrace/threads.h"
 #include "report/picture_plot.h"
+#include "report/road_plot.h"
 #include "studies/design/design_reader.h"
 #include "studies/image/io/image_documents.h"
 
@@ -191,14 +195,58 @@ ExitCode run_camera(const CommandLine& line, studies::Design design) {
   return exit_code_of(result.complete);
 }
 
+/// The dye's file; empty for none.
+std::filesystem::path dye_file(const std::string& name) {
+  if (name == "none") return {};
+  if (name == "red" || name == "amber") return data_directory() / ("dye_" + name + ".csv");
+  if (!std::filesystem::exists(name))
+    throw InputError({"", 0, "--dye"},
+                     fmt::format("must be none, red, amber or a file that exists, got {}", in_quotes(name)));
+  return name;
+}
+
+ExitCode run_road(const CommandLine& line, studies::Design design) {
+  std::vector<std::string> inputs = files_read({design});
+  studies::RoadRequest request;
+  request.distance_m = read_number_list(line.image.road_distance_m, "--road-distance-m");
+  request.lamp_cd = line.image.lamp_cd;
+  const std::filesystem::path dye = dye_file(line.image.dye);
+  if (!dye.empty()) {
+    request.dye = line.image.dye;
+    request.dye_absorption_per_mm = materials::read_spectral_absorption(dye);
+    inputs.push_back(dye.string());
+  }
+  const studies::RoadStudy study(std::move(design), std::move(request), line.common.seed);
+  const OrderlyInterrupt interrupt;
+  prepare_outputs(line.common, {inputs, "image.json", {"road.png", "road.exr"}});
+  studies::RoadResult result;
+  {
+    ProgressBar bar("tracing", !line.common.quiet);
+    raytrace::run_with_threads(line.common.threads.value_or(0),
+                               [&] { result = study.run(&bar, &interrupt.cancellation()); });
+  }
+  const std::string json = studies::road_json(result);
+  std::vector<OutputFile> files;
+  if (!line.common.out.empty()) files.push_back({"image.json", json});
+  if (!line.common.out.empty() && !result.views.empty()) {
+    files.push_back({"road.png", report::road_png(result)});
+    files.push_back({"road.exr", report::exr_file(report::road_picture(result))});
+  }
+  write_outputs(line.common, json, files, studies::road_table(result));
+  print_warnings(line.common, result.warnings);
+  return exit_code_of(result.complete);
+}
+
 }  // namespace
 
 ExitCode run_image_command(const CommandLine& line) {
-  if (static_cast<int>(line.image.detector) + static_cast<int>(line.image.camera) != 1)
-    throw InputError("image: one of --detector and --camera is required; see retrace image --help");
+  const ImageOptions& asked = line.image;
+  if (static_cast<int>(asked.detector) + static_cast<int>(asked.camera) + static_cast<int>(asked.road) != 1)
+    throw InputError("image: one of --detector, --camera and --road is required; see retrace image --help");
   check_can_write(line);
   studies::Design design = studies::read_design(line.image.design, line.common.overrides);
-  return line.image.detector ? run_detector(line, std::move(design)) : run_camera(line, std::move(design));
+  if (asked.road) return run_road(line, std::move(design));
+  return asked.detector ? run_detector(line, std::move(design)) : run_camera(line, std::move(design));
 }
 
 }  // namespace retrace::app

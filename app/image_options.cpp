@@ -72,6 +72,17 @@ void add_camera(CLI::App& command, ImageOptions& image) {
   command.add_flag("--false-colour", image.false_colour, "camera: luminance as colours too");
 }
 
+void add_road(CLI::App& command, ImageOptions& image) {
+  command.add_flag("--road", image.road, "two such reflectors on a car ahead at night, from a driver's eye");
+  command.add_option("--road-distance-m", image.road_distance_m, "road: distances of the car ahead")
+      ->type_name("LIST")
+      ->capture_default_str();
+  real(command, "--lamp-cd", image.lamp_cd, "I", "road: intensity of each headlamp towards the reflectors");
+  command.add_option("--dye", image.dye, "road: none, red, amber (illustrative) or a file")
+      ->type_name("NAME|FILE")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_image(CLI::App& app, ImageOptions& image) {
@@ -85,6 +96,7 @@ void add_image(CLI::App& app, ImageOptions& image) {
       ->type_name("N|CxR");
   add_detector(*command, image);
   add_camera(*command, image);
+  add_road(*command, image);
 }
 
 }  // namespace retrace::app

@@ -15,6 +15,7 @@ struct ImageOptions {
   std::string design;
   bool detector = false;
   bool camera = false;
+  bool road = false;
 
   // Detector.
   double incidence_deg = 0.0;
@@ -44,6 +45,11 @@ struct ImageOptions {
   double noise = 0.02;
   std::optional<std::uint32_t> passes;
   bool false_colour = false;
+
+  // Road.
+  std::string road_distance_m = "10,30,100";
+  double lamp_cd = 10'000.0;
+  std::string dye = "none";
 
   std::optional<std::string> pixels;
 };

@@ -217,16 +217,14 @@ double CameraImage::part_error() const {
 }
 
 double CameraImage::relative_noise() const {
-  double variance = 0.0;
-  double mean = 0.0;
+  double errors = 0.0;
+  double sum = 0.0;
   for (std::size_t k = 0; k < luminance.size(); ++k) {
     if (coverage[k] < 1.0 - 1e-9) continue;
-    variance += std::pow(std_error(k), 2.0);
-    mean += luminance[k];
+    errors += std_error(k);
+    sum += luminance[k];
   }
-  const auto whole = static_cast<double>(
-      std::count_if(coverage.begin(), coverage.end(), [](double share) { return share >= 1.0 - 1e-9; }));
-  return mean > 0.0 ? std::sqrt(variance / whole) / (mean / whole) : 0.0;
+  return sum > 0.0 ? errors / sum : 0.0;
 }
 
 struct CameraTracer::Hidden {

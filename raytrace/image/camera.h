@@ -81,7 +81,7 @@ struct CameraImage {
   /// Of the part as a whole, with its standard error.
   double part_mean() const;
   double part_error() const;
-  /// Root mean square of the standard errors over the mean luminance, over pixels wholly of the part.
+  /// Mean standard error over mean luminance, of pixels wholly of the part.
   double relative_noise() const;
 };
 

@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces init list'
+  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces image init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -172,13 +172,19 @@ _retrace() {
         ;;
       verify) _retrace_words "$word" "$common --dialect --tolerance-nm --as-machined --map" ;;
       forces) _retrace_words "$word" "$common --configuration --facet --plunge-mm" ;;
+      image)
+        _retrace_words "$word" "$common --detector --camera --road --pixels --incidence --azimuth --engine --cutoff \
+          --samples --window-deg --angle-pixels --distance-m --observation-deg --v-deg --h-deg --rotation-deg \
+          --eye-mm --lamp-mm --lamp-arcmin --pupil-arcmin --illuminance-lx --ambient-lx --backlight-lx --field-mm \
+          --film-mm --cylinder-mm --noise --passes --false-colour --road-distance-m --lamp-cd --dye"
+        ;;
       *) _retrace_words "$word" "$common" ;;
     esac
     return
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect | photometry | roughness | sweep | optimize | tolerance | job | fabricate | forces) _retrace_files "$word" .toml ;;
+    rre | inspect | photometry | roughness | sweep | optimize | tolerance | job | fabricate | forces | image) _retrace_files "$word" .toml ;;
     metrology | verify) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
     list) _retrace_words "$word" 'materials machines processes standards' ;;

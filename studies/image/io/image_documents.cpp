@@ -101,6 +101,53 @@ std::string camera_json(const CameraResult& result) {
   return to_text(json);
 }
 
+std::string road_json(const RoadResult& result) {
+  Json json = {{"schema", "retrace.image/1"}, {"kind", "road"}};
+  json["design"] = to_json(result.design);
+  json["engine"] = result.engine;
+  json["lamp_cd"] = result.request.lamp_cd;
+  json["dye"] = result.request.dye;
+  json["columns"] = result.request.columns;
+  json["rows"] = result.request.rows;
+  json["field_deg"] = result.request.field_deg;
+  const RoadScene& s = result.scene;
+  json["scene"] = {{"lamp_height_m", s.lamp_height},
+                   {"lamp_half_gap_m", s.lamp_half_gap},
+                   {"lamp_diameter_m", s.lamp_diameter},
+                   {"eye_height_m", s.eye_height},
+                   {"eye_right_m", s.eye_right},
+                   {"eye_behind_m", s.eye_behind},
+                   {"reflector_height_m", s.reflector_height},
+                   {"reflector_half_gap_m", s.reflector_half_gap},
+                   {"reflector_width_m", s.reflector_width},
+                   {"reflector_tall_m", s.reflector_tall}};
+  json["views"] = Json::array();
+  for (const RoadView& view : result.views) {
+    Json reflectors = Json::array();
+    for (const RoadReflector& r : view.reflectors)
+      reflectors.push_back({{"observation_deg", Json::array({r.observation_deg[0], r.observation_deg[1]})},
+                            {"r_a_cd_per_lx_m2", Json::array({r.r_a[0], r.r_a[1]})},
+                            {"illuminance_lx", Json::array({r.illuminance_lx[0], r.illuminance_lx[1]})},
+                            {"luminance_cd_per_m2", r.luminance}});
+    json["views"].push_back({{"distance_m", view.distance_m}, {"reflectors", std::move(reflectors)}});
+  }
+  add_footer(json, result.elapsed_s, result.warnings, result.complete);
+  return to_text(json);
+}
+
+std::string road_table(const RoadResult& result) {
+  std::string table = fmt::format("{:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>12}\n", "distance_m", "reflector",
+                                  "alpha_l", "alpha_r", "R_A_l", "R_A_r", "L_cd_per_m2");
+  for (const RoadView& view : result.views)
+    for (std::size_t side = 0; side < 2; ++side) {
+      const RoadReflector& r = view.reflectors[side];
+      table += fmt::format("{:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>12}\n", shortest(view.distance_m),
+                           side == 0 ? "left" : "right", fixed(r.observation_deg[0], 2), fixed(r.observation_deg[1], 2),
+                           fixed(r.r_a[0], 2), fixed(r.r_a[1], 2), fixed(r.luminance, 2));
+    }
+  return table;
+}
+
 std::string detector_table(const DetectorResult& result) {
   return fmt::format("RRE {} % ({}); relative irradiance up to {}; {} % of the light leaves beyond {} degrees\n",
                      fixed(100.0 * result.maps.rre, 3), result.engine, fixed(largest(result.maps.leaving.value), 3),

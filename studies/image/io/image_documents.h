@@ -4,15 +4,18 @@
 
 #include "studies/image/camera_study.h"
 #include "studies/image/detector_study.h"
+#include "studies/image/road_study.h"
 
 namespace retrace::studies {
 
-/// The JSON documents `retrace.image/1` of the two kinds of picture: all but the pixels.
+/// The JSON documents `retrace.image/1` of the kinds of picture: all but the pixels.
 std::string detector_json(const DetectorResult& result);
 std::string camera_json(const CameraResult& result);
+std::string road_json(const RoadResult& result);
 
 /// For the terminal.
 std::string detector_table(const DetectorResult& result);
 std::string camera_table(const CameraResult& result);
+std::string road_table(const RoadResult& result);
 
 }  // namespace retrace::studies

@@ -1,0 +1,311 @@
+#include "studies/image/road_study.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "raytrace/farfield/photometric_geometry.h"
+#include "raytrace/threads.h"
+#include "studies/photometry/photometer.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+using std::numbers::pi;
+
+constexpr std::size_t kMostViews = 6;
+// Points of a pixel along either side.
+constexpr int kFiner = 4;
+
+// Diffuse reflectances, typical of dark paint, glass, tyres, asphalt, and white paint on plates and lines.
+constexpr double kPaint = 0.025;
+constexpr double kGlass = 0.004;
+constexpr double kTyre = 0.012;
+constexpr double kAsphalt = 0.05;
+constexpr double kWhite = 0.3;
+constexpr double kNightSky = 0.002;   ///< cd/m^2, overcast over inhabited land
+constexpr double kNightLight = 0.02;  ///< lx, all round
+
+/// Scattered light in the eye, as a share of the illuminance at the pupil per steradian: 10 / theta^2 with theta in
+/// degrees (W. S. Stiles 1929, L. L. Holladay 1927; CIE 146:2002), of light from theta > 0.2 degrees.
+double veil_per_lx(double theta_deg) {
+  constexpr double kLeast = 0.2;
+  return 10.0 / std::pow(std::max(theta_deg, kLeast), 2.0);
+}
+
+struct Quad {
+  Vec2 lower;
+  Vec2 upper;
+  bool holds(const Vec2& p) const {
+    return p.x() >= lower.x() && p.y() >= lower.y() && p.x() <= upper.x() && p.y() <= upper.y();
+  }
+};
+
+Quad quad(double x, double y, double half_width, double half_height) {
+  return {{x - half_width, y - half_height}, {x + half_width, y + half_height}};
+}
+
+std::array<Vec3, 2> lamps_at(const RoadScene& s, double distance_m) {
+  return {Vec3(-s.lamp_half_gap, s.lamp_height, distance_m), Vec3(s.lamp_half_gap, s.lamp_height, distance_m)};
+}
+
+Vec3 eye_at(const RoadScene& s, double distance_m) {
+  return {s.eye_right, s.eye_height, distance_m + s.eye_behind};
+}
+
+Vec3 reflector_place(const RoadScene& s, std::size_t side) {
+  return {side == 0 ? -s.reflector_half_gap : s.reflector_half_gap, s.reflector_height, 0.0};
+}
+
+/// The rear of the car by the reflectance of its parts; nothing beside it.
+std::optional<double> car_reflectance(const RoadScene& s, const Vec2& p) {
+  const double half = 0.5 * s.car_width;
+  for (const double side : {-1.0, 1.0})
+    if (quad(side * (half - 0.16), 0.16, 0.11, 0.16).holds(p)) return kTyre;
+  const double sill = 0.22;
+  const double shoulder = 0.92;
+  if (p.y() < sill || p.y() > s.car_tall) return std::nullopt;
+  // The cabin narrows towards the roof.
+  const double slope = p.y() > shoulder ? 0.28 * (p.y() - shoulder) / (s.car_tall - shoulder) : 0.0;
+  // Round corners.
+  const double corner = 0.12;
+  const double down = std::max(0.0, sill + corner - p.y());
+  const double up = std::max(0.0, p.y() - s.car_tall + corner);
+  const double inset = corner - std::sqrt(std::max(0.0, corner * corner - std::pow(std::max(down, up), 2.0)));
+  if (std::abs(p.x()) > half - slope - inset) return std::nullopt;
+  if (p.y() > shoulder + 0.06 && p.y() < s.car_tall - 0.09 && std::abs(p.x()) < half - slope - 0.13) return kGlass;
+  if (quad(0.0, 0.72, 0.26, 0.055).holds(p)) return kWhite;  // licence plate
+  for (const double side : {-1.0, 1.0})
+    if (quad(side * (half - 0.17), 0.78, 0.13, 0.10).holds(p)) return 0.5 * kPaint;  // unlit lamps
+  return kPaint;
+}
+
+double road_reflectance(const RoadScene& s, const Vec3& p) {
+  const double lane = 3.5;
+  const bool on_edge = std::abs(p.x() - 0.5 * lane) < 0.06;
+  const bool on_middle = std::abs(p.x() + 0.5 * lane) < 0.06 && std::fmod(std::abs(p.z()) + 1000.0, 12.0) < 4.0;
+  static_cast<void>(s);
+  return on_edge || on_middle ? kWhite : kAsphalt;
+}
+
+/// Illuminance of a surface by the headlamps, dipped: above the horizon they send a tenth.
+double illuminance(const RoadRequest& r, const std::array<Vec3, 2>& lamps, const Vec3& at, const Vec3& normal) {
+  double sum = kNightLight;
+  for (const Vec3& lamp : lamps) {
+    const Vec3 way = lamp - at;
+    const double cosine = std::max(0.0, normal.dot(way.normalized()));
+    const double rise_deg = std::atan2(at.y() - lamp.y(), std::abs(way.z())) * 180.0 / pi;
+    const double share = std::clamp(0.55 - 1.5 * rise_deg, 0.1, 1.0);
+    if (way.z() > 0.0) sum += share * r.lamp_cd * cosine / way.squaredNorm();
+  }
+  return sum;
+}
+
+struct Seen {
+  double luminance = 0.0;
+  double coloured = 0.0;
+};
+
+Seen seen_along(const RoadScene& s, const RoadRequest& r, const RoadView& view, const std::array<Vec3, 2>& lamps,
+                const Vec3& eye, const Vec3& direction) {
+  if (direction.z() < 0.0) {
+    const Vec3 at = eye - eye.z() / direction.z() * direction;
+    const Vec2 on_rear = at.head<2>();
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Vec3 place = reflector_place(s, side);
+      if (quad(place.x(), place.y(), 0.5 * s.reflector_width, 0.5 * s.reflector_tall).holds(on_rear))
+        return {view.reflectors[side].luminance, view.reflectors[side].luminance};
+    }
+    if (const auto reflectance = car_reflectance(s, on_rear))
+      return {*reflectance / pi * illuminance(r, lamps, at, Vec3::UnitZ()), 0.0};
+  }
+  if (direction.y() >= 0.0) return {kNightSky, 0.0};
+  const Vec3 ground = eye - eye.y() / direction.y() * direction;
+  return {road_reflectance(s, ground) / pi * illuminance(r, lamps, ground, Vec3::UnitY()), 0.0};
+}
+
+/// Adds the light that the eye scatters of the reflectors.
+void add_veil(const RoadScene& s, const RoadRequest& r, RoadView& view, double degrees_per_pixel,
+              const std::function<Vec2(const Vec3&)>& pixel_of) {
+  const Vec3 eye = eye_at(s, view.distance_m);
+  const double area = s.reflector_width * s.reflector_tall;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Vec3 place = reflector_place(s, side);
+    const Vec3 way = place - eye;
+    const double at_pupil_lx =
+        view.reflectors[side].luminance * area * std::abs(way.normalized().z()) / way.squaredNorm();
+    const Vec2 centre = pixel_of(place);
+    for (std::size_t k = 0; k < view.luminance.size(); ++k) {
+      const Vec2 pixel(static_cast<double>(k % r.columns) + 0.5, static_cast<double>(k / r.columns) + 0.5);
+      const double veil = at_pupil_lx * veil_per_lx((pixel - centre).norm() * degrees_per_pixel);
+      view.luminance[k] += veil;
+      view.coloured[k] += veil;
+    }
+  }
+}
+
+void check(const RoadRequest& r) {
+  if (r.distance_m.empty() || r.distance_m.size() > kMostViews)
+    throw InputError({"", 0, "--road-distance-m"},
+                     fmt::format("must be 1 to {} distances, got {}", kMostViews, r.distance_m.size()));
+  for (const double d : r.distance_m)
+    if (!(d >= 5.0 && d <= 1000.0))
+      throw InputError({"", 0, "--road-distance-m"}, fmt::format("must lie between 5 and 1000, got {}", shortest(d)));
+  if (!(r.lamp_cd > 0.0 && r.lamp_cd <= 1e6))
+    throw InputError({"", 0, "--lamp-cd"}, fmt::format("must be above 0 and at most 1e6, got {}", shortest(r.lamp_cd)));
+}
+
+}  // namespace
+
+void draw_road(const RoadScene& s, const RoadRequest& r, RoadView& view) {
+  const std::array<Vec3, 2> lamps = lamps_at(s, view.distance_m);
+  const Vec3 eye = eye_at(s, view.distance_m);
+  // Level, towards the middle of the car; the horizon a little above the middle of the picture.
+  const double pixel = 2.0 * std::tan(0.5 * r.field_deg * pi / 180.0) / static_cast<double>(r.columns);
+  const double middle_row = 0.42 * static_cast<double>(r.rows);
+  const double half_columns = 0.5 * static_cast<double>(r.columns);
+  const Vec3 forward = Vec3(-eye.x(), 0.0, -eye.z()).normalized();
+  const Vec3 right = forward.cross(Vec3::UnitY());
+  const Vec2 level(half_columns, middle_row);
+  view.luminance.assign(r.columns * r.rows, 0.0);
+  view.coloured.assign(r.columns * r.rows, 0.0);
+  raytrace::for_each_in_parallel(r.rows, [&](std::size_t row) {
+    for (std::size_t column = 0; column < r.columns; ++column) {
+      Seen sum;
+      for (int k = 0; k < kFiner * kFiner; ++k) {
+        const Vec2 at(static_cast<double>(column) + (k % kFiner + 0.5) / kFiner,
+                      static_cast<double>(row) + (k / kFiner + 0.5) / kFiner);
+        const Vec2 off = pixel * (at - level);
+        const Vec3 direction = (forward + off.x() * right - off.y() * Vec3::UnitY()).normalized();
+        const Seen seen = seen_along(s, r, view, lamps, eye, direction);
+        sum.luminance += seen.luminance / (kFiner * kFiner);
+        sum.coloured += seen.coloured / (kFiner * kFiner);
+      }
+      view.luminance[row * r.columns + column] = sum.luminance;
+      view.coloured[row * r.columns + column] = sum.coloured;
+    }
+  });
+  add_veil(s, r, view, r.field_deg / static_cast<double>(r.columns), [&](const Vec3& place) {
+    const Vec3 way = place - eye;
+    const double along = way.dot(forward);
+    return Vec2(level + Vec2(way.dot(right), -way.y()) / along / pixel);
+  });
+}
+
+RoadStudy::RoadStudy(Design design, RoadRequest request, std::uint32_t seed)
+    : design_(std::move(design)), request_(std::move(request)), seed_(seed) {
+  check(request_);
+}
+
+namespace {
+
+struct Pair {
+  std::size_t side = 0;
+  std::size_t lamp = 0;
+};
+
+/// The reflector as it hangs on the car: its frame is that of the scene.
+PhotometerSetting setting_of(const Vec3& reflector, const Vec3& lamp, const Vec3& eye) {
+  const raytrace::PhotometricGeometry geometry =
+      raytrace::geometry_of({(lamp - reflector).normalized(), (eye - reflector).normalized()});
+  const raytrace::EntranceAngles entrance = raytrace::entrance_angles(geometry);
+  PhotometerSetting setting;
+  setting.v_deg = entrance.v.deg();
+  setting.h_deg = entrance.h.deg();
+  setting.rotation_deg = geometry.epsilon.deg();
+  setting.observation_deg = {geometry.alpha.deg()};
+  return setting;
+}
+
+PhotometryRequest photometry_at(const RoadRequest& r, const RoadScene& s, double distance_m, std::uint32_t seed) {
+  PhotometryRequest request;
+  request.area_cm2 = 1e4 * s.reflector_width * s.reflector_tall;
+  request.dye = r.dye;
+  request.dye_absorption_per_mm = r.dye_absorption_per_mm;
+  request.apertures.source = Angle::from_rad(s.lamp_diameter / distance_m);
+  request.apertures.receiver = Angle::from_rad(s.pupil_diameter / (distance_m + s.eye_behind));
+  request.window_deg = 10.0;
+  request.seed = seed;
+  return request;
+}
+
+/// Tells a share of a whole.
+class PartOfProgress : public Progress {
+ public:
+  PartOfProgress(Progress* whole, double from, double share) : whole_(whole), from_(from), share_(share) {}
+  void at(double share) override {
+    if (whole_ != nullptr) whole_->at(from_ + share_ * share);
+  }
+
+ private:
+  Progress* whole_;
+  double from_;
+  double share_;
+};
+
+/// Exactly, or by Monte Carlo where that takes too many beams.
+std::optional<std::vector<PhotometerReading>> measured(Photometer& photometer,
+                                                       const std::vector<PhotometerSetting>& settings,
+                                                       Progress& progress, const Cancellation* cancel) {
+  try {
+    return photometer.measure(settings, &progress, cancel);
+  } catch (const BudgetError&) {
+    if (!photometer.is_exact()) throw;
+    photometer.leave_exact();
+    return photometer.measure(settings, &progress, cancel);
+  }
+}
+
+}  // namespace
+
+RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const {
+  const auto start = std::chrono::steady_clock::now();
+  RoadResult result;
+  result.design = design_;
+  result.request = request_;
+  const double share = 1.0 / static_cast<double>(request_.distance_m.size());
+  for (const double distance_m : request_.distance_m) {
+    Photometer photometer(design_, photometry_at(request_, result.scene, distance_m, seed_), 1);
+    const std::array<Vec3, 2> lamps = lamps_at(result.scene, distance_m);
+    const Vec3 eye = eye_at(result.scene, distance_m);
+    std::vector<PhotometerSetting> settings;
+    for (const auto& [side, lamp] : {Pair{0, 0}, Pair{0, 1}, Pair{1, 0}, Pair{1, 1}})
+      settings.push_back(setting_of(reflector_place(result.scene, side), lamps[lamp], eye));
+    PartOfProgress part(progress, share * static_cast<double>(result.views.size()), share);
+    const auto readings = measured(photometer, settings, part, cancel);
+    if (!readings) {
+      result.complete = false;
+      break;
+    }
+    RoadView view;
+    view.distance_m = distance_m;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t side = k / 2;
+      const std::size_t lamp = k % 2;
+      RoadReflector& reflector = view.reflectors[side];
+      reflector.observation_deg[lamp] = settings[k].observation_deg.front();
+      reflector.r_a[lamp] = (*readings)[k].r_a.front();
+      reflector.illuminance_lx[lamp] =
+          request_.lamp_cd / (lamps[lamp] - reflector_place(result.scene, side)).squaredNorm();
+      reflector.luminance += (*readings)[k].r_l.front() * reflector.illuminance_lx[lamp];
+    }
+    draw_road(result.scene, request_, view);
+    result.views.push_back(std::move(view));
+    result.engine = photometer.engine_name();
+    result.warnings = photometer.warnings();
+  }
+  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace retrace::studies

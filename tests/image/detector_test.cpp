@@ -1,0 +1,171 @@
+// Maps of a detector: closed forms, the ledger, engines against each other.
+#include "raytrace/image/detector.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/monte_carlo.h"
+#include "raytrace/threads.h"
+#include "studies/image/detector_study.h"
+#include "studies/rre/rre.h"
+#include "tests/support/designs.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+constexpr double kTruncated = 1e-4;
+
+DetectorSetting setting_of(const Part& part, std::size_t columns, std::size_t rows, const Illumination& light = {}) {
+  const Rectangle bounds = part.period_mm ? Rectangle{Vec2::Zero(), *part.period_mm} : bounding_box(part.outline);
+  const double t = light.incidence.rad();
+  const double p = light.azimuth.rad();
+  ReturnFrame frame;
+  frame.to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
+  frame.right = source_axis(frame.to_source);
+  frame.up = frame.to_source.cross(frame.right);
+  return {{bounds, columns, rows}, {DirectionGrid::Layout::square, 0.02, 21, 21}, frame, 0.5};
+}
+
+double mean_over_face(const Part& part, const DetectorSetting& setting, const std::vector<double>& irradiance) {
+  double sum = 0.0;
+  for (const double e : irradiance) sum += e;
+  return sum * setting.face.pixel_area_mm2() / part.entrance_area_mm2;
+}
+
+DetectorMaps exact(const Part& part, const Optics& optics, const Illumination& light, const DetectorSetting& setting) {
+  BeamPolicy policy;
+  policy.truncated_goal = kTruncated;
+  return exact_detector_maps(part, optics, light, setting, policy);
+}
+
+TEST(DetectorMaps, MeansAreRre) {
+  const std::vector<PartSpec> specs = {
+      finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0),
+      infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0),
+      infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0),
+  };
+  for (const PartSpec& spec : specs)
+    for (const double incidence : {0.0, 5.0}) {
+      const Part part = build_part(spec);
+      const DetectorSetting setting = setting_of(part, 37, 31, from(incidence));
+      const DetectorMaps maps = exact(part, pmma(), from(incidence), setting);
+      BeamPolicy policy;
+      policy.truncated_goal = kTruncated;
+      const BeamResult whole = BeamTracer(part).trace(pmma(), from(incidence), {0.5}, policy);
+      const double rre = whole.ledgers.front()[Account::retroreflected];
+      EXPECT_NEAR(maps.rre, rre, 1e-9);
+      EXPECT_NEAR(mean_over_face(part, setting, maps.leaving.value), maps.rre, 1e-9);
+      EXPECT_NEAR(mean_over_face(part, setting, maps.entering.value), maps.rre, 1e-9);
+      double power = maps.outside;
+      for (std::size_t k = 0; k < setting.angles.size(); ++k)
+        power += maps.per_sr.value[k] * setting.angles.solid_angle_sr(k);
+      const Ledger& ledger = whole.ledgers.front();
+      EXPECT_NEAR(power, rre + ledger[Account::front_specular] + ledger[Account::returned_elsewhere], 1e-9);
+    }
+}
+
+/// At normal incidence the triangle of a cube corner sends back what its point reflection about the apex covers: a
+/// hexagon of two thirds of its area, evenly (Eckhardt 1971); the three corners are dead.
+TEST(DetectorMaps, TriangleIsAliveInItsHexagonAlone) {
+  const Part part = build_part(single(TriangularCube{kCubeAperture}, 1.0));
+  const DetectorSetting setting = setting_of(part, 120, 104);
+  const DetectorMaps maps = exact(part, ideal(), {}, setting);
+  EXPECT_NEAR(maps.rre, 2.0 / 3.0, 1e-9);
+  const Vec2 apex = centroid(part.outline);
+  const auto depth_in_triangle = [&](const Vec2& p) {
+    double least = 1e9;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 a = part.outline[k];
+      const Vec2 along = (part.outline[(k + 1) % 3] - a).normalized();
+      least = std::min(least, along.x() * (p.y() - a.y()) - along.y() * (p.x() - a.x()));
+    }
+    return least;
+  };
+  std::size_t judged = 0;
+  for (std::size_t row = 0; row < setting.face.rows(); ++row)
+    for (std::size_t column = 0; column < setting.face.columns(); ++column) {
+      const Rectangle pixel = setting.face.pixel_mm(column, row);
+      const Vec2 p = 0.5 * (pixel.lower + pixel.upper);
+      const double inside = std::min(depth_in_triangle(p), depth_in_triangle(2.0 * apex - p));
+      if (std::abs(inside) < pixel.size().norm()) continue;  // on its edge
+      ++judged;
+      const double expected = inside > 0.0 ? 1.0 : 0.0;
+      const std::size_t k = row * setting.face.columns() + column;
+      ASSERT_NEAR(maps.entering.value[k], expected, 1e-9) << p.transpose();
+      ASSERT_NEAR(maps.leaving.value[k], expected, 1e-9) << p.transpose();
+    }
+  EXPECT_GT(judged, 9000U);
+}
+
+/// Light leaves a prism where the mirror image of its entry about the roof lies: halves that return nothing there and
+/// halves that were never lit.
+TEST(DetectorMaps, PathsAndBeamsRecordTheSame) {
+  const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 1.0));
+  for (const double incidence : {0.0, 4.0}) {
+    const Illumination light = from(incidence, 20.0);
+    const DetectorSetting setting = setting_of(part, 24, 24, light);
+    const DetectorMaps beams = exact(part, pmma(), light, setting);
+    const DetectorMaps paths = sampled_detector_maps(part, pmma(), light, setting, 1U << 19, 3, {});
+    EXPECT_EQ(paths.rays, 1U << 19);
+    EXPECT_NEAR(paths.rre, beams.rre, student_bound(2) * paths.std_error + beams.truncated);
+    std::size_t compared = 0;
+    double most = 0.0;
+    for (const auto& [mine, theirs] :
+         {std::pair{&paths.leaving, &beams.leaving}, std::pair{&paths.entering, &beams.entering}})
+      for (std::size_t k = 0; k < mine->value.size(); ++k) {
+        ++compared;
+        // Pixels that few rays meet have no error to speak of.
+        most = std::max(most, std::abs(mine->value[k] - theirs->value[k]) / (mine->std_error[k] + 1e-4));
+      }
+    EXPECT_LT(most, student_bound(2 * compared)) << "at incidence " << incidence;
+  }
+}
+
+TEST(DetectorMaps, AreTheSameWithAnyNumberOfThreads) {
+  const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0));
+  const DetectorSetting setting = setting_of(part, 16, 16, from(10.0));
+  const auto traced = [&](unsigned threads) {
+    DetectorMaps maps;
+    run_with_threads(threads, [&] { maps = sampled_detector_maps(part, pmma(), from(10.0), setting, 70'000, 5, {}); });
+    return maps;
+  };
+  const DetectorMaps one = traced(1);
+  const DetectorMaps five = traced(5);
+  EXPECT_EQ(one.leaving.value, five.leaving.value);
+  EXPECT_EQ(one.leaving.std_error, five.leaving.std_error);
+  EXPECT_EQ(one.entering.value, five.entering.value);
+  EXPECT_EQ(one.per_sr.value, five.per_sr.value);
+}
+
+/// Table 1 of Hamilton et al. 2017: the dead spots of brick rows along two borders take away what RRE misses.
+TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
+  studies::Design design;
+  design.part = finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0);
+  design.part.shifted_rows = RowParity::odd;
+  design.refractive_index = kPmma;
+  studies::RreRequest asked;
+  asked.engine = studies::Engine::exact;
+  const double rre = studies::RreStudy({design}, asked).run().points.front().rre;
+  studies::DetectorRequest request;
+  request.pixels = 50;
+  const studies::DetectorResult result = studies::DetectorStudy(design, request).run();
+  EXPECT_EQ(result.engine, "exact");
+  EXPECT_EQ(result.face.columns(), 50U);
+  double sum = 0.0;
+  for (const double e : result.maps.leaving.value) sum += e;
+  EXPECT_NEAR(sum / 2500.0, rre, 2e-5);
+  // The halves of elements at both ends of the shifted rows send all light straight on to the border wall. What comes
+  // back is what a plate reflects: R + T^2 R / (1 - R^2) = 2 R / (1 + R).
+  const double r = std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0);
+  EXPECT_NEAR(result.maps.entering.value[45 * 50 + 1], 2.0 * r / (1.0 + r), 1e-4);
+  EXPECT_GT(result.maps.entering.value[25 * 50 + 25], 0.9);
+}
+
+}  // namespace
+}  // namespace retrace::testing
