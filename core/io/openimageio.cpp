@@ -60,6 +60,7 @@ class OpenImageIo final : public PictureFiles {
     spec.channelnames.clear();
     for (const auto& [name, values] : channels) spec.channelnames.push_back(name);
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // otherwise the time of day, and no two files are alike
     for (const auto& [key, value] : picture.texts) spec.attribute(key, value);
     for (const auto& [key, value] : picture.numbers) spec.attribute(key, static_cast<float>(value));
     const std::size_t pixels = picture.columns * picture.rows;
