@@ -46,7 +46,7 @@ void add_common(CLI::App& app, CommonOptions& common) {
   app.add_option("--json", common.json, "write the result as JSON to FILE; - is standard output")
       ->type_name("FILE")
       ->check(not_empty());
-  app.add_option("-o,--out", common.out, "write the result's files to folder DIR (init and job: to file FILE)")
+  app.add_option("-o,--out", common.out, "write the result's files to folder DIR (init, job, export: to file FILE)")
       ->type_name("DIR")
       ->check(not_empty());
   app.add_option("--threads", common.threads, "threads to use [all cores the process may use]")
@@ -342,6 +342,27 @@ void add_forces(CLI::App& app, ForcesOptions& forces) {
       ->check(real_number());
 }
 
+void add_export(CLI::App& app, ExportOptions& solid) {
+  CLI::App* command = app.add_subcommand("export", "a design's solid as STL, OBJ or STEP");
+  command->add_option("DESIGN", solid.design, "design file; - is standard input")->required()->check(not_empty());
+  command->add_option("FILE", solid.file, "file to write: .stl, .obj, .step or .stp; the same as --out FILE")
+      ->check(not_empty());
+  command->add_option("--what", solid.what, "element, array or mould: the block behind the part's back")
+      ->type_name("WHAT")
+      ->capture_default_str();
+  command->add_option("--block-mm", solid.block_mm, "of a mould, below its deepest point [the plate's thickness]")
+      ->type_name("T")
+      ->check(real_number());
+}
+
+void add_report(CLI::App& app, ReportOptions& report) {
+  CLI::App* command = app.add_subcommand("report", "one self-contained HTML page of a folder of results");
+  command->add_option("DIR", report.folder, "folder that other commands wrote with --out")
+      ->required()
+      ->check(not_empty());
+  command->add_option("--title", report.title, "of the page [that of the design]")->type_name("TEXT");
+}
+
 /// What to say if a command or what it needs is missing: a word that nobody knows explains it better.
 std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::vector<std::string> unknown = app.remaining(true);
@@ -350,7 +371,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
   if (!app.get_subcommands().empty()) return otherwise;
   const std::string commands =
       "rre, inspect, photometry, roughness, metrology, sweep, optimize, tolerance, job, fabricate, verify, forces, "
-      "image, init and list";
+      "image, export, report, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -387,6 +408,8 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_verify(app, line.verify);
   add_forces(app, line.forces);
   add_image(app, line.image);
+  add_export(app, line.solid);
+  add_report(app, line.report);
   app.add_subcommand("init", "a commented design file to start from")
       ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
       ->required();

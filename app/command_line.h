@@ -119,6 +119,18 @@ struct ForcesOptions {
   std::optional<double> plunge_mm;
 };
 
+struct ExportOptions {
+  std::string design;
+  std::string file;  ///< the same as --out
+  std::string what = "array";
+  std::optional<double> block_mm;
+};
+
+struct ReportOptions {
+  std::string folder;
+  std::string title;  ///< empty: that of the design
+};
+
 /// What the user typed.
 struct CommandLine {
   std::string command;
@@ -133,6 +145,8 @@ struct CommandLine {
   VerifyOptions verify;
   ForcesOptions forces;
   ImageOptions image;
+  ExportOptions solid;
+  ReportOptions report;
   std::string design;  ///< inspect
   std::string kind;    ///< init
   std::string what;    ///< list

@@ -32,6 +32,8 @@ ExitCode run(int argc, const char* const* argv) {
   if (line->command == "verify") return app::run_verify_command(*line);
   if (line->command == "forces") return app::run_forces_command(*line);
   if (line->command == "image") return app::run_image_command(*line);
+  if (line->command == "export") return app::run_export_command(*line);
+  if (line->command == "report") return app::run_report_command(*line);
   if (line->command == "init") return app::run_init_command(*line);
   return app::run_list_command(*line);
 }

@@ -29,6 +29,23 @@ if(RETRACE_WITH_OPENIMAGEIO)
   pkg_check_modules(OPENIMAGEIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
 endif()
 
+if(RETRACE_WITH_OPENCASCADE)
+  # No version: its package takes only the very one that it has; 7.6 is what is asked for.
+  find_package(OpenCASCADE CONFIG REQUIRED)
+  if(OpenCASCADE_VERSION VERSION_LESS 7.6)
+    message(FATAL_ERROR "OpenCASCADE 7.6 or later is needed, found ${OpenCASCADE_VERSION}")
+  endif()
+  # Its targets name no include folder; as a system one, because its headers warn. STEP has another name from 7.8 on.
+  add_library(RetraceOpenCASCADE INTERFACE)
+  target_include_directories(RetraceOpenCASCADE SYSTEM INTERFACE "${OpenCASCADE_INCLUDE_DIR}")
+  if(TARGET TKDESTEP)
+    target_link_libraries(RetraceOpenCASCADE INTERFACE TKDESTEP)
+  else()
+    target_link_libraries(RetraceOpenCASCADE INTERFACE TKSTEP TKSTEPBase TKSTEPAttr)
+  endif()
+  target_link_libraries(RetraceOpenCASCADE INTERFACE TKXSBase TKTopAlgo TKBRep TKGeomBase TKG3d TKMath TKernel)
+endif()
+
 if(RETRACE_BUILD_TESTS)
   find_package(GTest 1.12 CONFIG REQUIRED)
   find_package(rapidcheck CONFIG REQUIRED)

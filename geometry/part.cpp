@@ -11,12 +11,14 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "geometry/facet_planes.h"
+#include "geometry/welded_part.h"
 
 namespace retrace::geometry {
 namespace {
 
 // Up to this many elements the surface is one patch; beyond, blocks of at most this many are shared.
 constexpr double kElementsPerPatch = 2048.0;
+constexpr double kAllInOnePatch = 1e18;
 // An infinite array is a patch of this many periods round the central one: rays seldom have to be brought back.
 constexpr int kPeriodsBeyond = 2;
 // Lengths this close to a whole number of elements (relative) are whole.
@@ -232,9 +234,9 @@ PieceKey piece_key(const Layout& layout, const Rectangle& extent, const Rectangl
   return key;
 }
 
-void add_surface(Part& part, const Layout& layout, const Vec2& origin) {
+void add_surface(Part& part, const Layout& layout, const Vec2& origin, double elements_per_patch) {
   const IndexRange all = indices_over(layout);
-  const double periods = std::max(1.0, kElementsPerPatch / std::max(1, layout.lattice.elements_per_period));
+  const double periods = std::max(1.0, elements_per_patch / std::max(1, layout.lattice.elements_per_period));
   const Vec2 span = layout.extent.size().cwiseQuotient(layout.lattice.period_mm);
   const bool one_patch = span.x() * span.y() <= periods;
   const auto block_side = static_cast<std::int64_t>(std::max(1.0, std::floor(std::sqrt(periods))));
@@ -378,7 +380,7 @@ double facet_area(const SurfacePatch& patch, const PatchFacet& facet) {
 
 namespace {
 
-Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* planes) {
+Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* planes, double elements_per_patch) {
   Part part;
   part.spec = spec;
   part.thickness_mm = spec.thickness_mm;
@@ -394,7 +396,7 @@ Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* plane
     layout.spec = spec;
     layout.planes = planes;
     part.outline = moved(to_polygon(layout.extent), origin_mm);
-    add_surface(part, layout, origin_mm);
+    add_surface(part, layout, origin_mm, elements_per_patch);
     find_lattice_region(part, layout, origin_mm);
     count_elements(part, layout);
     if (part.elements_full < 1) throw InputError("the array is smaller than one element");
@@ -410,16 +412,20 @@ Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* plane
 }  // namespace
 
 Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
-  return build(spec, origin_mm, nullptr);
+  return build(spec, origin_mm, nullptr, kElementsPerPatch);
 }
 
 Part build_part(const PartSpec& spec, const FacetPlanes& planes) {
-  Part part = build(spec, Vec2::Zero(), &planes);
+  Part part = build(spec, Vec2::Zero(), &planes, kElementsPerPatch);
   const auto given = static_cast<std::int64_t>(planes.size());
   if (part.elements_full != given)
     throw InputError(
         fmt::format("{} of the {} elements are no whole elements of the array", given - part.elements_full, given));
   return part;
+}
+
+Part build_welded_part(const PartSpec& spec) {
+  return build(spec, Vec2::Zero(), nullptr, kAllInOnePatch);
 }
 
 }  // namespace retrace::geometry

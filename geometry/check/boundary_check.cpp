@@ -8,6 +8,7 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <utility>
 #include <vector>
@@ -32,12 +33,22 @@ bool passes_edges_both_ways(const BoundaryMesh& mesh) {
 }  // namespace
 
 BoundaryReport check_boundary(const BoundaryMesh& mesh) {
+  // Vertices that no triangle has are left out: CGAL 5.5 falls over them.
+  constexpr std::size_t unused = SIZE_MAX;
+  std::vector<std::size_t> number(mesh.vertices.size(), unused);
   std::vector<Kernel::Point_3> points;
-  points.reserve(mesh.vertices.size());
-  for (const Vec3& p : mesh.vertices) points.emplace_back(p.x(), p.y(), p.z());
   std::vector<std::vector<std::size_t>> polygons;
   polygons.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) polygons.push_back({t[0], t[1], t[2]});
+  for (const auto& t : mesh.triangles) {
+    polygons.emplace_back();
+    for (const std::uint32_t v : t) {
+      if (number[v] == unused) {
+        number[v] = points.size();
+        points.emplace_back(mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z());
+      }
+      polygons.back().push_back(number[v]);
+    }
+  }
 
   BoundaryReport report;
   report.is_closed = passes_edges_both_ways(mesh);

@@ -77,11 +77,20 @@ struct FacetPlanesFile {
   InputLocation location;      ///< where it was given, for whoever cannot use it
 };
 
+/// A mesh in place of element and array.
+struct PartMesh {
+  std::string name;            ///< of the STL file, as given
+  std::filesystem::path file;  ///< the same, from the working directory; read by part_of_design()
+  bool allow_open = false;     ///< trace it although it is not closed: openings are closed by flat pieces
+  InputLocation location;      ///< where it was given, for whoever cannot use it
+};
+
 /// Everything a design file says, checked and with its defaults filled in.
 struct Design {
-  std::string source;  ///< file name as given, "-" for standard input
-  std::string title;   ///< empty if none was given
-  geometry::PartSpec part;
+  std::string source;            ///< file name as given, "-" for standard input
+  std::string title;             ///< empty if none was given
+  geometry::PartSpec part;       ///< means little where there is a mesh: thickness_mm is then 0 or what was given
+  std::optional<PartMesh> mesh;  ///< in place of element and array
   std::optional<ArrayMask> mask;
   std::optional<FacetPlanesFile> facet_planes;  ///< finite parts of prisms only
   std::string material = "PMMA";
@@ -104,6 +113,8 @@ struct Design {
 
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }
+  /// \throw InputError if the shape is a mesh. \param what does not take it, such as "retrace job"
+  void require_elements(const std::string& what) const;
   /// Whether the retro facets rely on total reflection.
   bool needs_total_reflection() const { return !idealisation.mirror_facets && !aluminised_facets; }
 };

@@ -110,6 +110,12 @@ void add_texture(Json& json, const FacetTexture& t) {
     json.update({{"waviness_sq_nm", t.waviness_sq_nm}, {"waviness_length_um", t.waviness_length_um}});
 }
 
+Json texture_json(const FacetTexture& texture) {
+  Json json = Json::object();
+  add_texture(json, texture);
+  return json;
+}
+
 Json surface_json(const Design& design) {
   const PartSpec& part = design.part;
   const auto& [dihedral, tilt] = part.angle_errors;
@@ -173,7 +179,9 @@ struct ElementName {
 }  // namespace
 
 nlohmann::ordered_json to_json(const Design& design) {
-  Json body = {{"thickness_mm", design.part.thickness_mm}, {"material", design.material}};
+  Json body = Json::object();
+  if (design.part.thickness_mm > 0.0) body["thickness_mm"] = design.part.thickness_mm;
+  body["material"] = design.material;
   if (design.refractive_index) body["refractive_index"] = *design.refractive_index;
   if (design.absorption_per_mm) body["absorption_per_mm"] = *design.absorption_per_mm;
   for (const auto& [wavelength_nm, per_mm] : design.absorption_by_wavelength)
@@ -182,13 +190,17 @@ nlohmann::ordered_json to_json(const Design& design) {
   if (design.back_index != 1.0) body["back_index"] = design.back_index;
   Json json = {{"source", design.source}};
   if (!design.title.empty()) json["title"] = design.title;
-  json["element"] = std::visit(ElementJson{}, design.part.element);
-  json["array"] = array_json(design.part);
+  if (design.mesh) {
+    json["part"] = {{"mesh", design.mesh->name}, {"allow_open", design.mesh->allow_open}};
+  } else {
+    json["element"] = std::visit(ElementJson{}, design.part.element);
+    json["array"] = array_json(design.part);
+  }
   if (design.facet_planes) json["part"] = {{"facets", design.facet_planes->name}};
   json["body"] = body;
   json["light"] = light_json(design);
   json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};
-  json["surface"] = surface_json(design);
+  json["surface"] = design.mesh ? texture_json(design.texture) : surface_json(design);
   json["idealisation"] = {{"facets", design.idealisation.mirror_facets ? "mirror" : "real"},
                           {"entrance", design.idealisation.lossless_entrance ? "lossless" : "real"}};
   return json;
@@ -213,6 +225,7 @@ nlohmann::ordered_json spectrum_json(const std::vector<SpectralOptics>& light) {
 
 std::string short_name(const Design& design) {
   if (!design.title.empty()) return design.title;
+  if (design.mesh) return design.mesh->name;
   const std::string element = std::visit(ElementName{}, design.part.element);
   return fmt::format("{}, {}", element, name_of(design.part.arrangement));
 }

@@ -71,7 +71,7 @@ constexpr std::array kSurfaceKeys = {KeyRule{"model"},
                                      KeyRule{"angle_error_sigma_arcmin"},
                                      KeyRule{"angle_error_seed"}};
 constexpr std::array kIdealisationKeys = {KeyRule{"facets"}, KeyRule{"entrance"}};
-constexpr std::array kPartKeys = {KeyRule{"mesh", NotAvailable{}}, KeyRule{"facets"}};
+constexpr std::array kPartKeys = {KeyRule{"mesh"}, KeyRule{"allow_open"}, KeyRule{"facets"}};
 
 struct TableRule {
   std::string_view name;

@@ -12,6 +12,7 @@
 
 #include "core/angle.h"
 #include "core/atomic_file.h"
+#include "core/io/toml_node.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "geometry/lattice.h"
@@ -278,6 +279,19 @@ void check_steepness(const TableReader& surface, const PartSpec& part) {
                                 steepest_deg, fixed(deg, 2)));
 }
 
+/// The texture of a mesh's facets: everything else about them is in the mesh.
+FacetTexture read_mesh_surface(const DesignDocument& document) {
+  TableReader surface(document, "surface");
+  FacetTexture texture = read_texture(surface);
+  const std::string why = "not allowed with [part], whose mesh has the angles and edges that it has";
+  surface.refuse_unless_zero({"dihedral_error_arcmin", "facet_tilt_arcmin", "angle_error_sigma_arcmin",
+                              "root_radius_um", "root_chamfer_um", "rim_radius_um", "rim_chamfer_um"},
+                             why);
+  surface.refuse({"edge_chords", "angle_error_seed"}, why);
+  surface.finish();
+  return texture;
+}
+
 /// What the retro facets are like.
 FacetTexture read_surface(const DesignDocument& document, PartSpec& part) {
   TableReader surface(document, "surface");
@@ -315,6 +329,33 @@ PartSpec read_part(const DesignDocument& document) {
   return part;
 }
 
+/// A mesh in place of element and array; none if there is no such table.
+std::optional<PartMesh> read_mesh(const DesignDocument& document) {
+  const toml::node* const table = document.root().get("part");
+  if (table == nullptr) return std::nullopt;
+  TableReader part(document, "part");
+  if (!part.has("mesh")) {
+    // With an element it is for planes of single facets.
+    if (document.root().contains("element")) return std::nullopt;
+    throw InputError(document.location_of_missing(table, "part.mesh"), "missing, must name an STL file");
+  }
+  for (const char* other : {"element", "array"})
+    if (const toml::node* const node = document.root().get(other))
+      throw InputError(document.location(*node, other), "not allowed beside part.mesh, which is the whole part");
+  part.refuse({"facets"}, "not allowed beside mesh, which has the facets that it has");
+  const auto file = part.file("mesh");
+  PartMesh mesh;
+  mesh.name = *part.text("mesh");
+  mesh.file = *file;
+  mesh.location = part.where("mesh");
+  if (const toml::node* const node = part.node("allow_open")) {
+    if (!node->is_boolean()) part.fail("allow_open", "must be true or false, got " + shown(*node));
+    mesh.allow_open = node->as_boolean()->get();
+  }
+  part.finish();
+  return mesh;
+}
+
 /// One number, or pairs over the wavelength.
 void read_absorption(TableReader& body, Design& design) {
   constexpr std::string_view key = "absorption_per_mm";
@@ -335,13 +376,22 @@ void read_absorption(TableReader& body, Design& design) {
   if (*size < 2) body.fail(key, "must be a number or a list of two or more pairs, got a list of one");
 }
 
-void read_body(TableReader& body, Design& design) {
+void read_thickness(TableReader& body, Design& design) {
   design.part.thickness_mm = read_size(body, "thickness_mm");
   const double top_mm = geometry::element_top_mm(design.part.element, design.part.angle_errors);
   const double least_mm = top_mm > 0.0 ? top_mm + kSaneSize.low : 0.0;
   if (design.part.thickness_mm < least_mm)
     body.fail("thickness_mm", fmt::format("must be >= {} to cover rims that errors of angle or cant lift to {}, got {}",
                                           shortest(least_mm), shortest(top_mm), shortest(design.part.thickness_mm)));
+}
+
+void read_body(TableReader& body, Design& design) {
+  if (design.mesh) {
+    body.number("thickness_mm", kPositive);
+    design.part.thickness_mm = body.number("thickness_mm", kSaneSize).value_or(0.0);
+  } else {
+    read_thickness(body, design);
+  }
   design.material_location = body.where("material");
   design.material = body.text("material").value_or(design.material);
   if (design.material.empty()) body.fail("material", "must name a material, such as \"PMMA\", got \"\"");
@@ -468,6 +518,10 @@ std::optional<FacetPlanesFile> read_facet_planes(const DesignDocument& document,
 
 }  // namespace
 
+void Design::require_elements(const std::string& what) const {
+  if (mesh) throw InputError(mesh->location, what + " takes no mesh, only [element] and [array]");
+}
+
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
   const DesignDocument document(text, source_name, overrides);
   TableReader top(document, "");
@@ -476,10 +530,15 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   Design design;
   design.source = source_name;
   design.title = top.text("title").value_or("");
-  design.part = read_part(document);
-  design.mask = read_mask(document, design.part);
-  design.texture = read_surface(document, design.part);
-  design.facet_planes = read_facet_planes(document, design.part);
+  design.mesh = read_mesh(document);
+  if (design.mesh) {
+    design.texture = read_mesh_surface(document);
+  } else {
+    design.part = read_part(document);
+    design.mask = read_mask(document, design.part);
+    design.texture = read_surface(document, design.part);
+    design.facet_planes = read_facet_planes(document, design.part);
+  }
   TableReader body(document, "body");
   read_body(body, design);
   read_light_and_detector(document, design);

@@ -9,7 +9,7 @@
 
 #include "core/number_format.h"
 #include "materials/io/spectrum_reader.h"
-#include "studies/design/design_part.h"
+#include "studies/design/part_of_design.h"
 #include "surface_models/form.h"
 #include "surface_models/io/height_map_reader.h"
 
@@ -240,7 +240,7 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
   if (!design.refractive_index) warn_of_extrapolation(design, material, model);
   if (design.aluminised_facets) warn_of_extrapolation(design, library.find_metal("aluminium"), model);
   add_texture_warnings(design, model);
-  model.part = part_of(design);
+  model.part = part_of_design(design, &model.warnings);
   return model;
 }
 

@@ -35,6 +35,7 @@ fabrication::Strategy strategy_of(const std::string& given) {
 }
 
 const geometry::RtpElement& prism_of(const Design& design) {
+  design.require_elements("retrace job");
   const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part.element);
   if (rtp == nullptr)
     throw InputError({design.source_name(), 0, "element.kind"},

@@ -228,17 +228,23 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.element_depth_mm = part.element_depth_mm;
   result.facet_area_mm2 = part.retro_facet_area_mm2;
   result.entrance_area_mm2 = part.entrance_area_mm2;
+  result.thickness_mm = part.thickness_mm;
+  result.warnings = model.warnings;
+  result.refractive_index = mean_index(model.spectral);
+  result.light = model.spectral;
+  if (design.needs_total_reflection()) result.wavelength_nm = model.wavelength_nm;
+  if (design.mesh) {
+    // make_model() refuses one that is not; what was mended is in the warnings.
+    result.boundary = result.warnings.empty() ? "closed, free of self-intersections" : "see warnings";
+    return result;
+  }
   const double aperture = geometry::area(geometry::aperture_outline(design.part.element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
-  result.refractive_index = mean_index(model.spectral);
-  if (design.needs_total_reflection()) result.wavelength_nm = model.wavelength_nm;
-  result.light = model.spectral;
   result.tir_limit_deg = tir_limit_deg(design.part, least_index(model.spectral), model.optics.back_index);
   if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part);
   result.dead_zone_share = geometry::edge_share(
       geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part));
   result.boundary = boundary_finding(design, part.size_mm);
-  result.warnings = model.warnings;
   add_warnings(result, part);
   return result;
 }

@@ -20,6 +20,7 @@ struct Inspection {
   double element_depth_mm = 0.0;
   double facet_area_mm2 = 0.0;  ///< of all retro facets, partial elements included
   double entrance_area_mm2 = 0.0;
+  double thickness_mm = 0.0;
   double full_element_share = 0.0;    ///< of the entrance area
   double wavelength_nm = 0.0;         ///< of the light; of a spectrum, its centroid
   double refractive_index = 1.0;      ///< of a spectrum: its mean

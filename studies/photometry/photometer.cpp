@@ -9,7 +9,7 @@
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/farfield/coefficients.h"
 #include "raytrace/threads.h"
-#include "studies/design/design_part.h"
+#include "studies/design/part_of_design.h"
 
 namespace retrace::studies {
 namespace {
@@ -149,7 +149,7 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     model_ = make_model(design_, library);
     for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
   } else {
-    const geometry::Part part = part_of(design_);
+    const geometry::Part part = part_of_design(design_, nullptr);
     const WeighedLight light =
         lamp_light(materials::shipped_cie_table(), request, 2.0 * (part.thickness_mm + part.element_depth_mm), parts);
     model_ = make_model(lit(design_, request, light), library);

@@ -111,6 +111,7 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     prepared_->models.push_back(make_model(design, library));
     check_light(design, prepared_->models.back(), request);
     check_planes(design, request);
+    if (request.derivatives) design.require_elements("--derivatives");
     if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
       throw InputError(design.texture.location,
                        "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "

@@ -39,6 +39,8 @@ const std::map<std::string, Names>& study_rooms() {
                                                      {"photometry", {"design", "rre"}},
                                                      {"image", {"design", "rre", "photometry"}},
                                                      {"inspect", {"design"}},
+                                                     {"scene", {"design"}},
+                                                     {"solids", {"design"}},
                                                      {"metrology", {}},
                                                      {"fabrication", {"design"}},
                                                      {"forces", {}},
@@ -90,6 +92,9 @@ Place place_of(const std::string& path) {
 bool is_header(const std::string& path) {
   return path.ends_with(".h");
 }
+bool is_step_module(const std::string& path) {
+  return path == "geometry/io/step_module.cpp";
+}
 bool in_io_room(const std::string& path) {
   return path.find("/io/") != std::string::npos;
 }
@@ -118,6 +123,11 @@ const std::vector<Library>& libraries() {
        [](const std::string& path) { return path.starts_with("studies/sweep/mpi_") && !is_header(path); }},
       {"NLopt", "nlopt", "a .cpp file of studies/optimise/",
        [](const std::string& path) { return path.starts_with("studies/optimise/") && !is_header(path); }},
+      {"OpenCASCADE", "STEPControl_", "geometry/io/step_module.cpp", is_step_module},
+      {"OpenCASCADE", "TopoDS", "geometry/io/step_module.cpp", is_step_module},
+      {"OpenCASCADE", "BRep", "geometry/io/step_module.cpp", is_step_module},
+      {"OpenCASCADE", "Geom_", "geometry/io/step_module.cpp", is_step_module},
+      {"OpenCASCADE", "gp_", "geometry/io/step_module.cpp", is_step_module},
       {"OpenImageIO", "OpenImageIO/", "an io/ room", in_io_room},
       {"CLI11", "CLI/", "app/", [](const std::string& path) { return path.starts_with("app/"); }},
       {"FFTW", "fftw3", "a .cpp file of surface_models/",

@@ -508,7 +508,8 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
   EXPECT_EQ(
       refused("body.facet_coating=silver"),
       "--set body.facet_coating=silver: body.facet_coating: must be one of \"none\" or \"aluminium\", got \"silver\"");
-  EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")), "d.toml:12: part.mesh" + no);
+  EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")),
+            "d.toml:1: element: not allowed beside part.mesh, which is the whole part");
   EXPECT_EQ(refused("surface.roughness_sq_nm=rough"),
             "--set surface.roughness_sq_nm=rough: surface.roughness_sq_nm: must be a number, got \"rough\"");
 }

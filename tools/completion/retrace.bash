@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces image init list'
+  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces image export report init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -59,6 +59,10 @@ _retrace() {
       ;;
     --engine)
       _retrace_words "$word" 'auto exact montecarlo cell embree'
+      return
+      ;;
+    --what)
+      _retrace_words "$word" 'element array mould'
       return
       ;;
     --sampling)
@@ -178,13 +182,21 @@ _retrace() {
           --eye-mm --lamp-mm --lamp-arcmin --pupil-arcmin --illuminance-lx --ambient-lx --backlight-lx --field-mm \
           --film-mm --cylinder-mm --noise --passes --false-colour --road-distance-m --lamp-cd --dye"
         ;;
+      export) _retrace_words "$word" "$common --what --block-mm" ;;
+      report) _retrace_words "$word" "$common --title" ;;
       *) _retrace_words "$word" "$common" ;;
     esac
     return
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect | photometry | roughness | sweep | optimize | tolerance | job | fabricate | forces | image) _retrace_files "$word" .toml ;;
+    rre | inspect | photometry | roughness | sweep | optimize | tolerance | job | fabricate | forces | image | export)
+      _retrace_files "$word" .toml
+      ;;
+    report)
+      mapfile -t COMPREPLY < <(compgen -d -- "$word")
+      compopt -o filenames 2>/dev/null
+      ;;
     metrology | verify) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
     list) _retrace_words "$word" 'materials machines processes standards' ;;

@@ -47,10 +47,15 @@ std::string inspect_json(const Inspection& i) {
                                  {"entrance_area_mm2", i.entrance_area_mm2},
                                  {"full_element_share", i.full_element_share},
                                  {"refractive_index", i.refractive_index}};
+  if (i.design.mesh) {
+    // A mesh tells no elements.
+    for (const char* key : {"elements_full", "elements_partial", "full_element_share"}) json.erase(key);
+    json["thickness_mm"] = i.thickness_mm;
+  }
   if (i.design.spectrum) json["spectrum"] = spectrum_json(i.light);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
-  json["dead_zone_share"] = i.dead_zone_share;
+  if (!i.design.mesh) json["dead_zone_share"] = i.dead_zone_share;
   json["boundary"] = i.boundary;
   json["version"] = kVersion;
   json["warnings"] = i.warnings;
@@ -58,7 +63,24 @@ std::string inspect_json(const Inspection& i) {
   return to_text(json);
 }
 
+namespace {
+
+std::string mesh_text(const Inspection& i) {
+  std::string text = fmt::format("{}\n", printable(short_name(i.design)));
+  text += fmt::format("  depth               {} mm\n", fixed(i.element_depth_mm, 6));
+  text += fmt::format("  plate               {} mm\n", fixed(i.thickness_mm, 6));
+  text += fmt::format("  entrance area       {} mm2\n", fixed(i.entrance_area_mm2, 4));
+  text += fmt::format("  retro facet area    {} mm2\n", fixed(i.facet_area_mm2, 4));
+  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
+  text += spectrum_text(i);
+  text += fmt::format("  boundary            {}\n", i.boundary);
+  return text;
+}
+
+}  // namespace
+
 std::string inspect_text(const Inspection& i) {
+  if (i.design.mesh) return mesh_text(i);
   const bool infinite = i.design.part.extent == geometry::Extent::infinite;
   const char* per_period = infinite ? " per period" : "";
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));

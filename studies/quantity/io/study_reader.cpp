@@ -467,8 +467,9 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
   // What the study says of the surface counts more than what cutting leaves.
   const std::vector<std::string> as_cut = surface_overrides(machining);
   for_design.insert(for_design.begin(), as_cut.begin(), as_cut.end());
-  return {parse_design(study.design_texts.at(design), design, for_design), read_analysis(document, study.seed),
-          machining};
+  const Design varied = parse_design(study.design_texts.at(design), design, for_design);
+  varied.require_elements("a study");
+  return {varied, read_analysis(document, study.seed), machining};
 }
 
 }  // namespace retrace::studies

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "geometry/closed_boundary.h"
+
+namespace retrace::geometry {
+
+/// The mesh as Wavefront OBJ in millimetres and double precision, one group for each role of its faces.
+/// \param title one line, goes into a comment
+std::string obj_text(const BoundaryMesh& mesh, std::string_view title);
+
+}  // namespace retrace::geometry

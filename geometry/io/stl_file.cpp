@@ -1,0 +1,220 @@
+#include "geometry/io/stl_file.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <unordered_map>
+
+#include "core/error.h"
+#include "core/message_text.h"
+
+// Own code, for want of a library that names the line at fault: a binary file is a header and an array, and an ASCII
+// one has a grammar of seven words.
+
+namespace retrace::geometry {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 80;
+constexpr std::size_t kCountBytes = 4;
+constexpr std::size_t kTriangleBytes = 50;
+constexpr double kLargestCoordinateMm = 1e6;
+
+static_assert(std::endian::native == std::endian::little, "binary STL is little-endian");
+
+template <class Value>
+void append(std::string& text, const Value& value) {
+  std::array<char, sizeof(Value)> bytes{};
+  std::memcpy(bytes.data(), &value, sizeof(Value));
+  text.append(bytes.data(), bytes.size());
+}
+
+void append(std::string& text, const Vec3& v) {
+  for (const double c : {v.x(), v.y(), v.z()}) append(text, static_cast<float>(c));
+}
+
+template <class Value>
+Value value_at(std::string_view text, std::size_t at) {
+  Value value{};
+  std::memcpy(&value, text.data() + at, sizeof(Value));
+  return value;
+}
+
+class Welder {
+ public:
+  explicit Welder(const std::string& name) : name_(name) {}
+
+  /// \param where "triangle 7", "line 12"
+  void add(const std::array<Vec3, 3>& corners, const InputLocation& where, std::string_view what) {
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertex(corners[k], where, what);
+    ++read_;
+    if (read_ > kMostStlTriangles)
+      throw InputError({name_, 0, ""}, fmt::format("must have at most {} triangles", kMostStlTriangles));
+    if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) return;
+    mesh_.triangles.push_back(triangle);
+  }
+
+  TriangleMesh finish() {
+    if (mesh_.triangles.empty()) throw InputError({name_, 0, ""}, "must have at least one triangle, got none");
+    return std::move(mesh_);
+  }
+
+ private:
+  struct Hash {
+    std::size_t operator()(const std::array<double, 3>& p) const {
+      std::size_t hash = 0;
+      for (const double c : p) hash = hash * 0x9e3779b97f4a7c15U + std::hash<double>{}(c);
+      return hash;
+    }
+  };
+
+  std::uint32_t vertex(const Vec3& p, const InputLocation& where, std::string_view what) {
+    // Adding 0 makes -0 the same as 0.
+    const std::array<double, 3> at = {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};
+    for (const double c : at)
+      if (!(std::abs(c) < kLargestCoordinateMm))
+        throw InputError(where, fmt::format("{}coordinates must be finite and below 1e6 mm, got {}", what, c));
+    const auto [it, is_new] = known_.try_emplace(at, static_cast<std::uint32_t>(mesh_.vertices.size()));
+    if (is_new) mesh_.vertices.emplace_back(at[0], at[1], at[2]);
+    return it->second;
+  }
+
+  const std::string& name_;
+  TriangleMesh mesh_;
+  std::size_t read_ = 0;
+  std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> known_;
+};
+
+bool is_binary(std::string_view text) {
+  if (text.size() < kHeaderBytes + kCountBytes) return false;
+  const std::size_t count = value_at<std::uint32_t>(text, kHeaderBytes);
+  return text.size() == kHeaderBytes + kCountBytes + kTriangleBytes * count;
+}
+
+TriangleMesh parse_binary(std::string_view text, const std::string& name) {
+  Welder welder(name);
+  const std::size_t count = value_at<std::uint32_t>(text, kHeaderBytes);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::array<Vec3, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        corners[c][static_cast<Eigen::Index>(axis)] = static_cast<double>(
+            value_at<float>(text, kHeaderBytes + kCountBytes + kTriangleBytes * k + 12 * (c + 1) + 4 * axis));
+    welder.add(corners, {name, 0, ""}, fmt::format("triangle {}: ", k + 1));
+  }
+  return welder.finish();
+}
+
+/// The words of an ASCII file, each with its line.
+class Words {
+ public:
+  Words(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+
+  int line() const { return line_; }
+
+  /// Empty at the end.
+  std::string_view next() {
+    while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n' ? 1 : 0;
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
+    return text_.substr(begin, at_ - begin);
+  }
+
+  void skip_line() {
+    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+  }
+
+  void expect(std::string_view word) {
+    const std::string_view got = next();
+    if (got != word) fail(word, got);
+  }
+
+  Vec3 vector() {
+    Vec3 v;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) v[axis] = number();
+    return v;
+  }
+
+  [[noreturn]] void fail(std::string_view wanted, std::string_view got) const {
+    throw InputError({name_, line_, ""},
+                     fmt::format("not an STL file: must go on with {}, got {}", wanted,
+                                 got.empty() ? std::string("the end of the file") : in_quotes(got)));
+  }
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+  double number() {
+    const std::string_view word = next();
+    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc{} || end != digits.data() + digits.size()) fail("a number", word);
+    return value;
+  }
+
+  std::string_view text_;
+  const std::string& name_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+};
+
+TriangleMesh parse_ascii(std::string_view text, const std::string& name) {
+  Words words(text, name);
+  const std::string_view first = words.next();
+  if (first != "solid") words.fail("\"solid\"", first);
+  words.skip_line();  // its name
+  Welder welder(name);
+  for (std::string_view word = words.next();; word = words.next()) {
+    if (word == "endsolid") {
+      words.skip_line();
+      word = words.next();
+      if (word.empty()) break;
+      if (word != "solid") words.fail("\"solid\" or the end", word);
+      words.skip_line();
+      continue;
+    }
+    if (word != "facet") words.fail("\"facet\" or \"endsolid\"", word);
+    words.expect("normal");
+    for (int axis = 0; axis < 3; ++axis) words.next();  // made of the vertices; files have nan there at times
+    words.expect("outer");
+    words.expect("loop");
+    std::array<Vec3, 3> corners;
+    for (Vec3& corner : corners) {
+      words.expect("vertex");
+      corner = words.vector();
+    }
+    welder.add(corners, {name, words.line(), ""}, "");
+    words.expect("endloop");
+    words.expect("endfacet");
+  }
+  return welder.finish();
+}
+
+}  // namespace
+
+std::string stl_text(const BoundaryMesh& mesh, std::string_view title) {
+  std::string text(title.substr(0, kHeaderBytes));
+  text.resize(kHeaderBytes, ' ');
+  text.reserve(kHeaderBytes + kCountBytes + kTriangleBytes * mesh.triangles.size());
+  append(text, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& t : mesh.triangles) {
+    const Vec3& a = mesh.vertices[t[0]];
+    append(text, Vec3((mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).normalized()));
+    for (const std::uint32_t v : t) append(text, mesh.vertices[v]);
+    append(text, std::uint16_t{0});
+  }
+  return text;
+}
+
+TriangleMesh parse_stl(std::string_view text, const std::string& name) {
+  return is_binary(text) ? parse_binary(text, name) : parse_ascii(text, name);
+}
+
+}  // namespace retrace::geometry

@@ -1,0 +1,266 @@
+#include "report/page/page.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <string_view>
+
+#include "core/atomic_file.h"
+#include "core/data_directory.h"
+#include "core/number_format.h"
+#include "core/version.h"
+
+namespace retrace::report {
+namespace {
+
+std::string base64(std::string_view bytes) {
+  static constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      group = (group << 8) | (k + i < bytes.size() ? static_cast<unsigned char>(bytes[k + i]) : 0U);
+    for (std::size_t i = 0; i < 4; ++i) text += k + i <= bytes.size() ? digits[(group >> (18 - 6 * i)) & 63U] : '=';
+  }
+  return text;
+}
+
+/// A text in JSON that stands in an HTML document: nothing in it can end its element.
+std::string json_string(std::string_view text) {
+  std::string json = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      json += {'\\', c};
+    else if (byte < 0x20 || c == '<' || c == '>' || c == '&')
+      json += fmt::format("\\u{:04x}", byte);
+    else
+      json += c;
+  }
+  return json + "\"";
+}
+
+std::string json_number(double value) {
+  return std::isfinite(value) ? shortest(value) : "null";
+}
+
+template <class Values, class Text>
+std::string json_list(const Values& values, const Text& text) {
+  std::string json = "[";
+  for (const auto& value : values) {
+    if (json.size() > 1) json += ',';
+    json += text(value);
+  }
+  return json + "]";
+}
+
+std::string json_of(const PageChart& chart) {
+  return fmt::format(R"({{"title":{},"x_label":{},"y_label":{},"y_from":{},"series":{}}})", json_string(chart.title),
+                     json_string(chart.x_label), json_string(chart.y_label),
+                     chart.y_from ? json_number(*chart.y_from) : "null",
+                     json_list(chart.series, [](const ChartSeries& s) {
+                       return fmt::format(R"({{"label":{},"x":{},"y":{}}})", json_string(s.label),
+                                          json_list(s.x, json_number), json_list(s.y, json_number));
+                     }));
+}
+
+/// To a hundred thousandth of a millimetre, which no screen shows.
+std::string json_point(const std::array<double, 3>& p) {
+  return json_list(p, [](double c) { return shortest(std::round(c * 1e6) / 1e6 + 0.0); });
+}
+
+std::string json_of(const SceneView& scene) {
+  const auto numbers = [](const auto& list) {
+    return json_list(list, [](std::uint32_t v) { return std::to_string(v); });
+  };
+  return fmt::format(R"({{"vertices":{},"triangles":{},"edges":{},"paths":{}}})",
+                     json_list(scene.vertices_mm, json_point), json_list(scene.triangles, numbers),
+                     json_list(scene.edges, numbers), json_list(scene.paths, [](const ScenePathView& p) {
+                       return fmt::format(R"({{"label":{},"points":{},"events":{}}})", json_string(p.label),
+                                          json_list(p.points_mm, json_point), json_list(p.events, json_string));
+                     }));
+}
+
+bool is_numeric(const PageTable& table, std::size_t column) {
+  for (const auto& row : table.rows) {
+    const std::string& text = row[column].text;
+    if (!text.empty() && text.find_first_not_of("0123456789.+-eE") != std::string::npos) return false;
+  }
+  return true;
+}
+
+class HtmlWriter {
+ public:
+  explicit HtmlWriter(const Page& page) : page_(page) {}
+
+  std::string write(const PageAssets& assets) {
+    add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<meta name=\"generator\" content=\"retrace {}\">\n<title>{}</title>\n<link rel=\"icon\" href=\"data:,\">\n"
+        "<style>{}</style>\n</head>\n<body>\n",
+        kVersion, html_text(page_.title), assets.style);
+    write_header();
+    add("<main id=\"main\">\n");
+    for (const PageSection& section : page_.sections) write_section(section);
+    add("</main>\n<footer>\n<details><summary>Licences of the code in this page</summary><pre>{}</pre></details>\n"
+        "</footer>\n",
+        html_text(assets.licences));
+    add("<script type=\"application/json\" id=\"page-data\">{{\"charts\":[{}],\"scene\":{}}}</script>\n", charts_,
+        page_.scene ? json_of(*page_.scene) : "null");
+    add("<script>{}</script>\n</body>\n</html>\n", assets.script);
+    return std::move(html_);
+  }
+
+ private:
+  template <class... Values>
+  void add(fmt::format_string<Values...> format, Values&&... values) {
+    fmt::format_to(std::back_inserter(html_), format, std::forward<Values>(values)...);
+  }
+
+  void write_header() {
+    add("<a class=\"skip\" href=\"#main\">Skip to the results</a>\n<header>\n<h1>{}</h1>\n"
+        "<button type=\"button\" id=\"theme\" hidden></button>\n<p>{}</p>\n</header>\n",
+        html_text(page_.title), html_text(page_.subtitle));
+    add("<nav aria-label=\"Sections\"><ul>\n");
+    for (const PageSection& section : page_.sections)
+      add("<li><a href=\"#{}\">{}</a></li>\n", section.id, html_text(section.title));
+    add("</ul></nav>\n");
+  }
+
+  void write_section(const PageSection& section) {
+    add("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n", section.id,
+        html_text(section.title));
+    for (const std::string& text : section.paragraphs) add("<p>{}</p>\n", html_text(text));
+    write_facts(section.facts);
+    if (section.has_scene && page_.scene) write_scene();
+    for (const PageChart& chart : section.charts) write_chart(chart);
+    write_figures(section.figures);
+    for (const PageTable& table : section.tables) write_table(table);
+    for (const auto& [title, content] : section.details)
+      add("<details><summary>{}</summary><pre>{}</pre></details>\n", html_text(title), html_text(content));
+    add("</section>\n");
+  }
+
+  void write_facts(const std::vector<PageFact>& facts) {
+    if (facts.empty()) return;
+    constexpr std::size_t long_text = 24;
+    add("<dl class=\"facts\">\n");
+    for (const PageFact& fact : facts)
+      add("<div><dt>{}</dt><dd class=\"{}{}\">{}</dd></div>\n", html_text(fact.name), fact.style,
+          fact.value.size() > long_text ? " long" : "", html_text(fact.value));
+    add("</dl>\n");
+  }
+
+  void write_scene() {
+    add("<div class=\"scene-box\">\n<div id=\"scene\" tabindex=\"0\" role=\"application\" "
+        "aria-label=\"The part and light paths in three dimensions. Arrow keys turn it, plus and minus move nearer and "
+        "away. The paths are listed in words beside it.\"></div>\n"
+        "<div><fieldset id=\"scene-paths\"><legend>Light paths</legend></fieldset>\n"
+        "<ol id=\"scene-steps\" aria-live=\"polite\"></ol>\n<noscript><ul>\n");
+    for (const ScenePathView& path : page_.scene->paths) add("<li>{}</li>\n", html_text(path.label));
+    add("</ul></noscript></div>\n</div>\n");
+  }
+
+  void write_chart(const PageChart& chart) {
+    if (chart_count_ > 0) charts_ += ',';
+    charts_ += json_of(chart);
+    add("<figure data-chart=\"{}\"><div class=\"plot\"></div><figcaption>{}. Drag to zoom, double click for all; with "
+        "the keyboard: arrows, +, - and 0.</figcaption></figure>\n",
+        chart_count_++, html_text(chart.title));
+  }
+
+  void write_figures(const std::vector<PageFigure>& figures) {
+    if (figures.empty()) return;
+    add("<div class=\"{}\">\n", figures.size() > 1 && !figures.front().svg.empty() ? "drawings" : "pictures");
+    for (const PageFigure& figure : figures) {
+      if (!figure.svg.empty())
+        add("<figure class=\"drawing\">{}", figure.svg);
+      else
+        add("<figure class=\"picture\"><img alt=\"{}\" src=\"data:{};base64,{}\">", html_text(figure.alternative_text),
+            figure.media_type, base64(figure.bytes));
+      add("<figcaption>{}</figcaption></figure>\n", html_text(figure.caption));
+    }
+    add("</div>\n");
+  }
+
+  void write_table(const PageTable& table) {
+    add("<div class=\"table-box\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table data-csv=\"{1}\">"
+        "<caption>{0}</caption>\n<thead><tr>",
+        html_text(table.caption), html_text(table.csv_name));
+    std::vector<const char*> style;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      style.push_back(is_numeric(table, c) ? "n" : "");
+      add("<th scope=\"col\" class=\"{}\">{}</th>", style[c], html_text(table.columns[c]));
+    }
+    add("</tr></thead>\n<tbody>\n");
+    for (const auto& row : table.rows) {
+      add("<tr>");
+      for (std::size_t c = 0; c < row.size(); ++c) {
+        add("<td class=\"{} {}\"", style[c], row[c].style);
+        if (!row[c].full.empty()) add(" data-v=\"{}\"", html_text(row[c].full));
+        add(">{}</td>", html_text(row[c].text));
+      }
+      add("</tr>\n");
+    }
+    add("</tbody></table></div>\n");
+    if (table.left_out > 0) add("<p>{} more rows are in the file itself.</p>\n", table.left_out);
+  }
+
+  const Page& page_;
+  std::string html_;
+  std::string charts_;
+  std::size_t chart_count_ = 0;
+};
+
+}  // namespace
+
+std::string shown(double value) {
+  if (!std::isfinite(value)) return "";
+  return fmt::format("{:.6g}", value + 0.0);
+}
+
+PageCell::PageCell(double value) : text(shown(value)) {
+  if (!std::isfinite(value)) return;
+  std::string all = shortest(value);
+  if (all != text) full = std::move(all);
+}
+
+std::string html_text(std::string_view text) {
+  std::string html;
+  html.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      case '\'':
+        html += "&#39;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+PageAssets shipped_page_assets() {
+  const auto folder = data_directory() / "report_page";
+  return {read_file(folder / "page.js"), read_file(folder / "page.css"), read_file(folder / "LICENCES.txt")};
+}
+
+std::string page_html(const Page& page, const PageAssets& assets) {
+  return HtmlWriter(page).write(assets);
+}
+
+}  // namespace retrace::report

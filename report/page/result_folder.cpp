@@ -1,0 +1,92 @@
+#include "report/page/result_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <system_error>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/message_text.h"
+
+namespace retrace::report {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kSchema = "retrace.";
+/// Largest picture that goes into a page.
+constexpr std::uintmax_t kLargestPictureBytes = std::uintmax_t{4} << 20;
+
+/// Files of the folder and of the folders in it, sorted by name. \throw InputError if it cannot be read
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    std::error_code ignored;
+    if (entry.is_regular_file(ignored)) files.push_back(entry.path());
+    if (!entry.is_directory(ignored)) continue;
+    for (const fs::directory_entry& inner : fs::directory_iterator(entry.path(), ignored))
+      if (inner.is_regular_file(ignored)) files.push_back(inner.path());
+  }
+  if (error) throw InputError({folder.string(), 0, ""}, "cannot be read: " + error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// "rre" of "retrace.rre/1"; empty for documents of others.
+std::string kind_of(const nlohmann::ordered_json& json) {
+  if (!json.is_object() || !json.contains("schema") || !json["schema"].is_string()) return {};
+  const auto schema = json["schema"].get<std::string>();
+  if (!schema.starts_with(kSchema)) return {};
+  return schema.substr(kSchema.size(), schema.find('/') - kSchema.size());
+}
+
+void add_document(ResultFolder& result, const fs::path& file, const std::string& name) {
+  std::error_code ignored;
+  if (fs::file_size(file, ignored) > kLongestDocumentBytes)
+    throw InputError({file.string(), 0, ""}, fmt::format("must be at most {} MiB", kLongestDocumentBytes >> 20));
+  const std::string text = read_file(file);
+  ResultDocument document;
+  try {
+    document.json = nlohmann::ordered_json::parse(text);
+  } catch (const nlohmann::json::exception&) {
+    if (text.find("retrace.") == std::string::npos) return;  // somebody else's
+    throw InputError({file.string(), 0, ""},
+                     "not valid JSON; a run that was cut off leaves no such file, write it anew");
+  }
+  document.kind = kind_of(document.json);
+  if (document.kind.empty()) return;
+  document.name = name;
+  document.bytes = text.size();
+  result.documents.push_back(std::move(document));
+}
+
+}  // namespace
+
+ResultFolder read_result_folder(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored))
+    throw InputError({folder.string(), 0, ""},
+                     fs::exists(folder, ignored) ? "must be a folder of results, is none" : "there is no such folder");
+  ResultFolder result;
+  result.path = folder.string();
+  const std::vector<fs::path> files = files_in(folder);
+  const std::set<fs::path> known(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    const std::string ending = file.extension().string();
+    const std::string name = printable(file.lexically_relative(folder).generic_string(), 200);
+    if (ending == ".json") add_document(result, file, name);
+    const bool is_drawing = ending == ".svg";
+    if (!is_drawing && (ending != ".png" || known.contains(fs::path(file).replace_extension(".svg")))) continue;
+    if (fs::file_size(file, ignored) > kLargestPictureBytes) continue;
+    result.pictures.push_back({name, is_drawing ? "image/svg+xml" : "image/png", read_file(file)});
+  }
+  if (result.documents.empty())
+    throw InputError({folder.string(), 0, ""},
+                     "no results in it: there must be JSON files that commands of retrace wrote (--out), such as "
+                     "rre.json");
+  return result;
+}
+
+}  // namespace retrace::report

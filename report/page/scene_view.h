@@ -1,0 +1,11 @@
+#pragma once
+
+#include "report/page/page.h"
+#include "studies/scene/scene.h"
+
+namespace retrace::report {
+
+/// A scene as the page shows it, what happens on each path in words.
+SceneView scene_view(const studies::DesignScene& scene);
+
+}  // namespace retrace::report

@@ -1,0 +1,43 @@
+// Light or dark: what the system says, unless the button was pressed.
+
+const dark = window.matchMedia("(prefers-color-scheme: dark)");
+
+export function isDark() {
+  const chosen = document.documentElement.dataset.theme;
+  return chosen ? chosen === "dark" : dark.matches;
+}
+
+export function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+export function addThemeSwitch(changed) {
+  const button = document.getElementById("theme");
+  button.hidden = false;
+  const tell = () => {
+    button.textContent = isDark() ? "Light" : "Dark";
+    button.setAttribute("aria-label", isDark() ? "Show in light colours" : "Show in dark colours");
+  };
+  button.addEventListener("click", () => {
+    document.documentElement.dataset.theme = isDark() ? "light" : "dark";
+    tell();
+    changed();
+  });
+  dark.addEventListener("change", () => {
+    tell();
+    changed();
+  });
+  // Printed pages are light.
+  let before;
+  window.addEventListener("beforeprint", () => {
+    before = document.documentElement.dataset.theme;
+    document.documentElement.dataset.theme = "light";
+    changed();
+  });
+  window.addEventListener("afterprint", () => {
+    if (before) document.documentElement.dataset.theme = before;
+    else delete document.documentElement.dataset.theme;
+    changed();
+  });
+  tell();
+}

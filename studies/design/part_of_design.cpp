@@ -1,0 +1,92 @@
+#include "studies/design/part_of_design.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "core/number_format.h"
+#include "geometry/check/boundary_check.h"
+#include "geometry/faceted_solid.h"
+#include "geometry/io/stl_file.h"
+#include "geometry/mesh_part.h"
+#include "studies/design/design_part.h"
+
+namespace retrace::studies {
+namespace {
+
+// Meshes come in single precision, and thicknesses from drawings.
+constexpr double kSameThickness = 1e-4;
+
+void tell(std::vector<std::string>* warnings, const Design& design, const std::string& text) {
+  if (warnings != nullptr)
+    warnings->push_back(fmt::format("{}: {}: {}", design.source_name(), design.mesh->file.string(), text));
+}
+
+geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh, std::vector<std::string>* warnings) {
+  geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
+  if (report.is_closed) return mesh;
+  if (!design.mesh->allow_open)
+    throw InputError("the mesh is not closed; allow_open = true in [part] traces it as it is");
+  geometry::ClosedMesh mended = geometry::with_openings_closed(mesh);
+  tell(warnings, design,
+       fmt::format("the mesh is not closed: {} opening{} with {} edges {} closed by flat pieces, results are those of "
+                   "the part with them",
+                   mended.openings, mended.openings == 1 ? "" : "s", mended.open_edges,
+                   mended.openings == 1 ? "was" : "were"));
+  return std::move(mended.mesh);
+}
+
+geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh, std::vector<std::string>* warnings) {
+  mesh = closed(design, std::move(mesh), warnings);
+  if (geometry::volume_mm3(geometry::boundary_of(mesh)) < 0.0) {
+    tell(warnings, design, "the triangles of the mesh look inward; they were turned over");
+    mesh = geometry::turned_over(mesh);
+  }
+  const geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
+  if (report.ok()) return mesh;
+  const char* const fault = !report.is_manifold      ? "touches itself along edges"
+                            : report.self_intersects ? "crosses itself"
+                                                     : "does not enclose one volume";
+  if (!design.mesh->allow_open)
+    throw InputError(fmt::format("the mesh {}; allow_open = true in [part] traces it as it is", fault));
+  tell(warnings, design, fmt::format("the mesh {}; it is traced as it is", fault));
+  return mesh;
+}
+
+void check_thickness(const Design& design, const geometry::Part& part) {
+  const double given_mm = design.part.thickness_mm;
+  if (given_mm == 0.0 || std::abs(given_mm - part.thickness_mm) <= kSameThickness * part.thickness_mm) return;
+  throw InputError(fmt::format("its plate is {} mm thick, which body.thickness_mm must say or leave out, got {}",
+                               fixed(part.thickness_mm, 6), shortest(given_mm)));
+}
+
+}  // namespace
+
+geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::string>* warnings) {
+  const std::string name = design.mesh->file.string();
+  try {
+    geometry::TriangleMesh mesh = geometry::parse_stl(read_file(design.mesh->file), name);
+    try {
+      return checked(design, std::move(mesh), warnings);
+    } catch (const InputError& error) {
+      throw InputError({name, 0, ""}, error.what());
+    }
+  } catch (const InputError& error) {
+    throw InputError(design.mesh->location, error.what());  // which does not know who named the file
+  }
+}
+
+geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings) {
+  if (!design.mesh) return part_of(design);
+  const geometry::TriangleMesh mesh = mesh_of_design(design, warnings);
+  try {
+    geometry::Part part = geometry::part_of_mesh(mesh);
+    check_thickness(design, part);
+    return part;
+  } catch (const InputError& error) {
+    throw InputError(design.mesh->location, fmt::format("{}: {}", design.mesh->file.string(), error.what()));
+  }
+}
+
+}  // namespace retrace::studies

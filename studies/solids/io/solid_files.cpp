@@ -1,0 +1,96 @@
+#include "studies/solids/io/solid_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/json_text.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "core/version.h"
+#include "geometry/faceted_solid.h"
+#include "geometry/io/obj_file.h"
+#include "geometry/io/step_file.h"
+#include "geometry/io/stl_file.h"
+#include "studies/design/design_json.h"
+
+namespace retrace::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One line without the characters that end a text in STEP or a line in OBJ.
+std::string title_of(const Solid& solid) {
+  std::string title = printable(short_name(solid.design), 60) + ", " + name_of(solid.what);
+  std::replace(title.begin(), title.end(), '\'', ' ');
+  // STEP and STL know ASCII only.
+  std::replace_if(
+      title.begin(), title.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return title;
+}
+
+Json vector_json(const geometry::Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+}  // namespace
+
+SolidFormat solid_format(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  if (ending == ".stl") return SolidFormat::stl;
+  if (ending == ".obj") return SolidFormat::obj;
+  if (ending == ".step" || ending == ".stp") return SolidFormat::step;
+  throw InputError({"", 0, "--out"}, fmt::format("must end in .stl, .obj, .step or .stp, got {}", in_quotes(file)));
+}
+
+std::string solid_text(const Solid& solid, SolidFormat format) {
+  switch (format) {
+    case SolidFormat::stl:
+      return geometry::stl_text(solid.mesh, "retrace " + std::string(kVersion) + ", mm: " + title_of(solid));
+    case SolidFormat::obj:
+      return geometry::obj_text(solid.mesh, "retrace " + std::string(kVersion) + ": " + title_of(solid));
+    case SolidFormat::step:
+      break;
+  }
+  if (!solid.is_manifold)
+    throw InputError({solid.design.source_name(), 0, ""},
+                     "the part touches itself along edges, which a STEP solid may not; STL and OBJ take it");
+  return geometry::step_text(geometry::faceted_solid(solid.mesh), title_of(solid));
+}
+
+std::string solid_json(const Solid& solid, const std::string& file) {
+  Json json = {{"schema", "retrace.export/1"}, {"design", to_json(solid.design)}, {"what", name_of(solid.what)}};
+  if (!file.empty()) json["file"] = file;
+  if (solid.what == SolidKind::mould) json["block_mm"] = solid.block_mm;
+  json.update({{"elements_full", solid.elements_full},
+               {"elements_partial", solid.elements_partial},
+               {"volume_mm3", solid.volume_mm3},
+               {"area_mm2", solid.area_mm2},
+               {"lower_mm", vector_json(solid.lower_mm)},
+               {"upper_mm", vector_json(solid.upper_mm)},
+               {"triangles", solid.mesh.triangles.size()},
+               {"is_manifold", solid.is_manifold},
+               {"version", kVersion},
+               {"warnings", solid.warnings},
+               {"complete", true}});
+  return to_text(json);
+}
+
+std::string solid_table(const Solid& solid) {
+  const auto size = solid.upper_mm - solid.lower_mm;
+  std::string text = fmt::format("{} of {}\n", name_of(solid.what), short_name(solid.design));
+  if (solid.what == SolidKind::mould) text += fmt::format("  block below the deepest point  {} mm\n", solid.block_mm);
+  text += fmt::format("  elements   {} whole, {} cut\n", solid.elements_full, solid.elements_partial);
+  text += fmt::format("  size       {} x {} x {} mm\n", fixed(size.x(), 4), fixed(size.y(), 4), fixed(size.z(), 4));
+  text += fmt::format("  volume     {} mm3\n", fixed(solid.volume_mm3, 6));
+  text += fmt::format("  surface    {} mm2\n", fixed(solid.area_mm2, 6));
+  text += fmt::format("  triangles  {}\n", solid.mesh.triangles.size());
+  return text;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,131 @@
+#include "studies/solids/solids.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "geometry/faceted_solid.h"
+#include "geometry/mesh_part.h"
+#include "geometry/mould_boundary.h"
+#include "geometry/welded_part.h"
+#include "studies/design/design_part.h"
+#include "studies/design/part_of_design.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr std::array<std::string_view, 3> kKinds = {"element", "array", "mould"};
+
+/// About how many elements a finite array has, before any is built.
+double estimated_elements(const geometry::PartSpec& spec) {
+  if (spec.arrangement == geometry::Arrangement::single) return 1.0;
+  const double cell_mm2 = geometry::area(geometry::aperture_outline(spec.element));
+  const auto* const rtp = std::get_if<geometry::RtpElement>(&spec.element);
+  const double with_gaps_mm2 =
+      rtp != nullptr ? (rtp->base_mm + spec.x_gap_mm) * (rtp->width_mm + spec.y_gap_mm) : cell_mm2;
+  return spec.x_length_mm * spec.y_length_mm / with_gaps_mm2;
+}
+
+geometry::PartSpec spec_of(const Design& design, SolidKind what) {
+  geometry::PartSpec spec = design.part;
+  if (what == SolidKind::element) {
+    spec.arrangement = geometry::Arrangement::single;
+    spec.extent = geometry::Extent::finite;
+    return spec;
+  }
+  if (design.mask)
+    throw InputError(design.mask->location, "masks are cut (retrace job), not exported, in this version");
+  if (spec.extent == geometry::Extent::infinite)
+    throw InputError({design.source_name(), 0, "array.extent"},
+                     fmt::format("must be \"finite\" for --what {}, got \"infinite\"; --what element has one element",
+                                 name_of(what)));
+  const double elements = estimated_elements(spec);
+  if (elements > static_cast<double>(kMostSolidElements))
+    throw InputError(
+        {design.source_name(), 0, "array.x_length_mm"},
+        fmt::format("the solid would have some {:.0f} elements, at most {} are written", elements, kMostSolidElements));
+  return spec;
+}
+
+void measure(Solid& solid) {
+  solid.volume_mm3 = geometry::volume_mm3(solid.mesh);
+  solid.area_mm2 = geometry::area_mm2(solid.mesh);
+  solid.lower_mm.setConstant(INFINITY);
+  solid.upper_mm.setConstant(-INFINITY);
+  for (const auto& t : solid.mesh.triangles)
+    for (const std::uint32_t v : t) {
+      solid.lower_mm = solid.lower_mm.cwiseMin(solid.mesh.vertices[v]);
+      solid.upper_mm = solid.upper_mm.cwiseMax(solid.mesh.vertices[v]);
+    }
+  solid.is_manifold = geometry::is_closed_manifold(solid.mesh);
+}
+
+void add_warnings(Solid& solid) {
+  const std::string name = solid.design.source_name();
+  if (!solid.is_manifold)
+    solid.warnings.push_back(name + ": the part touches itself along edges, which some programs take for open");
+  if (solid.design.texture.model != FacetTexture::Model::smooth)
+    solid.warnings.push_back(name + ": the texture of the facets is left out: a solid's facets are plane");
+}
+
+geometry::Part part_to_write(const Design& design, SolidKind what) {
+  const geometry::PartSpec spec = spec_of(design, what);
+  if (!design.facet_planes) return geometry::build_welded_part(spec);
+  if (what == SolidKind::element)
+    throw InputError(design.facet_planes->location, "--what element has no planes of single facets; export the array");
+  geometry::Part part = part_of(design);
+  if (part.placements.size() != 1)
+    throw InputError(design.facet_planes->location, "arrays of more than some 2000 such elements are not exported");
+  return part;
+}
+
+/// What was read, mended where it had to be.
+Solid solid_of_mesh(Solid solid) {
+  if (solid.what != SolidKind::array)
+    throw InputError(solid.design.mesh->location,
+                     fmt::format("--what {} takes no mesh, only [element] and [array]", name_of(solid.what)));
+  solid.mesh = geometry::boundary_of(mesh_of_design(solid.design, &solid.warnings));
+  measure(solid);
+  add_warnings(solid);
+  return solid;
+}
+
+}  // namespace
+
+SolidKind read_solid_kind(const std::string& word) {
+  for (std::size_t k = 0; k < kKinds.size(); ++k)
+    if (kKinds[k] == word) return static_cast<SolidKind>(k);
+  throw InputError({"", 0, "--what"}, fmt::format("must be {}, got {}", alternatives(kKinds), in_quotes(word)));
+}
+
+std::string name_of(SolidKind kind) {
+  return std::string(kKinds[static_cast<std::size_t>(kind)]);
+}
+
+Solid make_solid(const Design& design, const SolidRequest& request) {
+  if (request.block_mm && request.what != SolidKind::mould)
+    throw InputError({"", 0, "--block-mm"}, "only allowed with --what mould");
+  if (request.block_mm && !(*request.block_mm > 0.0 && *request.block_mm <= 1e6))
+    throw InputError({"", 0, "--block-mm"}, fmt::format("must be > 0 and <= 1e6, got {}", *request.block_mm));
+  Solid solid;
+  solid.design = design;
+  solid.what = request.what;
+  if (design.mesh) return solid_of_mesh(std::move(solid));
+  const geometry::Part part = part_to_write(design, request.what);
+  solid.elements_full = part.elements_full;
+  solid.elements_partial = part.elements_partial;
+  if (request.what == SolidKind::mould) {
+    solid.block_mm = request.block_mm.value_or(part.thickness_mm);
+    solid.mesh = geometry::mould_boundary(part, solid.block_mm);
+  } else {
+    solid.mesh = geometry::closed_boundary(part);
+  }
+  measure(solid);
+  add_warnings(solid);
+  return solid;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,27 @@
+// Whatever an STL file holds, the reader either returns a mesh or throws an InputError of one line; and so does what
+// makes a part of it.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/error.h"
+#include "geometry/io/stl_file.h"
+#include "geometry/mesh_part.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace retrace;
+  try {
+    const geometry::TriangleMesh mesh =
+        geometry::parse_stl(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz.stl");
+    const geometry::ClosedMesh closed = geometry::with_openings_closed(mesh);
+    geometry::part_of_mesh(closed.mesh);
+  } catch (const InputError& error) {
+    const std::string_view message = error.what();
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+  }
+  return 0;
+}

@@ -1,0 +1,242 @@
+"""The page that retrace report writes, in a browser without a screen and without a network.
+
+    python3 browser_test.py RETRACE SOURCE [--keep]
+
+--keep writes the screenshots anew into this folder instead of comparing with them.
+"""
+
+import os
+import pathlib
+import sys
+import tempfile
+import time
+import unittest
+
+from PIL import Image, ImageChops, ImageFilter
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import WebDriverWait
+
+from page_results import make_page
+
+HERE = pathlib.Path(__file__).resolve().parent
+PROGRAM = SOURCE = None
+KEEP = False
+WIDTH, HEIGHT = 1200, 1000
+BLUR_PX = 3
+DIFFERENT = 24  # of 255, after blurring
+MOST_DIFFERENT = 0.02  # of the pixels
+
+
+def browser(profile, *more):
+    options = Options()
+    options.binary_location = "/usr/bin/chromium"
+    for argument in ("--headless=new", f"--window-size={WIDTH},{HEIGHT}", "--force-device-scale-factor=1",
+                     "--hide-scrollbars", "--font-render-hinting=none", "--disable-lcd-text",
+                     "--disable-background-networking", "--no-first-run", "--disable-dev-shm-usage",
+                     f"--user-data-dir={profile}", *more):
+        options.add_argument(argument)
+    if os.geteuid() == 0:
+        options.add_argument("--no-sandbox")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    driver.set_page_load_timeout(120)
+    # The window's border takes some of its size: the page itself is to have it.
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                           {"width": WIDTH, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": False})
+    return driver
+
+
+SOFTWARE_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+
+
+class PageCase(unittest.TestCase):
+    webgl = SOFTWARE_WEBGL
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.page = make_page(PROGRAM, SOURCE, cls.folder.name)
+        cls.driver = browser(os.path.join(cls.folder.name, "profile"), *cls.webgl)
+        cls.addClassCleanup(cls.driver.quit)
+
+    def setUp(self):
+        self.driver.get(self.page.as_uri())
+        self.wait(lambda d: d.execute_script("return document.documentElement.dataset.ready") == "yes")
+
+    def wait(self, condition):
+        return WebDriverWait(self.driver, 60).until(condition)
+
+    def all(self, selector):
+        return self.driver.find_elements(By.CSS_SELECTOR, selector)
+
+    def one(self, selector):
+        return self.driver.find_element(By.CSS_SELECTOR, selector)
+
+    def tearDown(self):
+        faults = [entry for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
+        self.assertEqual(faults, [], "the console has errors")
+
+
+class PageWorks(PageCase):
+    def test_structure(self):
+        self.assertEqual(self.one("h1").text, "Study of a prism")
+        titles = [heading.text for heading in self.all("section > h2")]
+        for title in ("Summary", "In three dimensions", "Design", "Efficiency", "Footprint", "Far field", "Tool path",
+                      "Verification", "Provenance"):
+            self.assertIn(title, titles)
+        for link in self.all("nav a"):
+            self.assertTrue(self.all(link.get_attribute("href").split("#")[1].join(("#", ""))))
+        for table in self.all("table[data-csv]"):
+            self.assertTrue(table.find_element(By.CSS_SELECTOR, "caption").text)
+            self.assertTrue(table.find_elements(By.CSS_SELECTOR, "th[scope=col]"))
+        for image in self.all("img"):
+            self.assertTrue(image.get_attribute("alt"))
+            self.assertTrue(self.driver.execute_script("return arguments[0].naturalWidth", image) > 100)
+        for drawing in self.all("figure.drawing svg"):
+            self.assertTrue(drawing.get_attribute("aria-label"))
+        self.assertGreater(len(self.all("svg .region")), 0)
+        self.assertGreater(len(self.all("svg .spot")), 0)
+        self.assertEqual(self.one("html").get_attribute("lang"), "en")
+
+    def test_needs_no_network_and_is_small(self):
+        self.assertEqual(self.driver.execute_script(
+            "return performance.getEntriesByType('resource').map(e => e.name).filter(n => !/^(data|blob):/.test(n))"), [])
+        pictures = sum(len(image.get_attribute("src")) for image in self.all("img"))
+        self.assertLess(self.page.stat().st_size - pictures, 2e6)
+
+    def test_curve_is_hovered_and_zoomed(self):
+        figure = self.one("figure[data-chart]")
+        over = figure.find_element(By.CSS_SELECTOR, ".u-over")
+        self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", figure)
+        ActionChains(self.driver).move_to_element(over).perform()
+        at = self.wait(lambda d: figure.get_attribute("data-at"))
+        incidence, rre = map(float, at.split())
+        self.assertEqual(incidence, 0.0)  # the middle of -40 to 40
+        self.assertTrue(10 < rre <= 100)
+        before = figure.get_attribute("data-zoom")
+        ActionChains(self.driver).move_to_element_with_offset(over, -150, 0).click_and_hold() \
+            .move_by_offset(300, 0).release().perform()
+        self.wait(lambda d: figure.get_attribute("data-zoom") != before)
+        low, high = map(float, figure.get_attribute("data-zoom").split())
+        self.assertTrue(-40 < low < high < 40)
+
+    def test_curve_answers_to_the_keyboard(self):
+        figure = self.one("figure[data-chart]")
+        area = figure.find_element(By.CSS_SELECTOR, ".plot")
+        area.send_keys(Keys.HOME)
+        area.send_keys(Keys.ARROW_RIGHT)
+        spoken = figure.find_element(By.CSS_SELECTOR, "[aria-live]")
+        self.wait(lambda d: "-35" in spoken.get_attribute("textContent"))
+        before = figure.get_attribute("data-zoom")
+        area.send_keys("+")
+        self.wait(lambda d: figure.get_attribute("data-zoom") != before)
+        area.send_keys("0")
+        self.wait(lambda d: figure.get_attribute("data-zoom") == before)
+
+    def test_view_is_turned_and_paths_are_told(self):
+        view = self.one("#scene")
+        self.assertEqual(view.get_attribute("data-renderer"), "webgl")
+        self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", view)
+        before = view.get_attribute("data-camera")
+        ActionChains(self.driver).move_to_element(view).click_and_hold().move_by_offset(120, 40).release().perform()
+        self.wait(lambda d: view.get_attribute("data-camera") != before)
+        before = view.get_attribute("data-camera")
+        view.send_keys(Keys.ARROW_LEFT)
+        self.wait(lambda d: view.get_attribute("data-camera") != before)
+        steps = [step.text for step in self.all("#scene-steps li")]
+        self.assertTrue(steps[0].startswith("Enters the entrance face"))
+        self.assertTrue(any(step.startswith("Total reflection at a facet") for step in steps))
+        choices = self.all("#scene-paths input")
+        self.assertGreater(len(choices), 2)
+        choices[1].click()
+        self.wait(lambda d: [step.text for step in self.all("#scene-steps li")] != steps)
+
+    def test_tables_are_saved_as_csv(self):
+        target = pathlib.Path(self.folder.name) / "saved"
+        target.mkdir(exist_ok=True)
+        self.driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(target)})
+        button = next(b for b in self.all("button.download") if "Where the light goes" in b.get_attribute("aria-label"))
+        self.driver.execute_script("arguments[0].click()", button)
+        file = target / "rre_ledger.csv"
+        deadline = time.monotonic() + 60
+        while not file.exists() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        lines = file.read_text().splitlines()
+        self.assertEqual(len(lines), 1 + 17)
+        self.assertTrue(lines[0].startswith("design,incidence (deg),azimuth (deg)"))
+        self.assertEqual(len(lines[1].split(",")), len(lines[0].split(",")))
+
+    def test_light_and_dark(self):
+        def paper():
+            return self.driver.execute_script("return getComputedStyle(document.body).backgroundColor")
+
+        colours = set()
+        for name in ("light", "dark"):
+            self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                        {"features": [{"name": "prefers-color-scheme", "value": name}]})
+            colours.add(paper())
+        self.assertEqual(len(colours), 2)
+        self.one("#theme").click()
+        self.assertEqual(self.one("html").get_attribute("data-theme"), "light")
+        self.assertIn(paper(), colours)
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+    def test_prints(self):
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        self.assertFalse(self.one("nav").is_displayed())
+        self.assertFalse(any(b.is_displayed() for b in self.all("button")))
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+        pdf = self.driver.execute_cdp_cmd("Page.printToPDF", {})["data"]
+        self.assertGreater(len(pdf), 20000)
+
+    def test_looks_as_it_did(self):
+        for name in ("light", "dark"):
+            self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                        {"features": [{"name": "prefers-color-scheme", "value": name}]})
+            self.driver.get(self.page.as_uri())
+            self.wait(lambda d: d.execute_script("return document.documentElement.dataset.ready") == "yes")
+            time.sleep(0.5)
+            self.compare(name)
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+    def compare(self, name):
+        file = HERE / f"screenshot_{name}.png"
+        taken = pathlib.Path(self.folder.name) / file.name
+        self.driver.save_screenshot(str(taken))
+        picture = Image.open(taken).convert("RGB")
+        if KEEP:
+            picture.quantize(256).save(file, optimize=True)
+            return
+        wanted = Image.open(file).convert("RGB")  # a missing one is a fault
+        self.assertEqual(picture.size, wanted.size)
+        blurred = [p.filter(ImageFilter.GaussianBlur(BLUR_PX)) for p in (picture, wanted)]
+        difference = ImageChops.difference(*blurred).convert("L").point(lambda v: 255 if v > DIFFERENT else 0)
+        share = difference.histogram()[255] / (WIDTH * HEIGHT)
+        self.assertLess(share, MOST_DIFFERENT, f"{name}: {share:.1%} of the pixels differ")
+
+
+class PageWithoutWebgl(PageCase):
+    webgl = ("--disable-3d-apis",)
+
+    def tearDown(self):
+        pass  # three.js says on the console that there is no WebGL
+
+    def test_the_view_is_a_still_drawing(self):
+        view = self.one("#scene")
+        self.assertEqual(view.get_attribute("data-renderer"), "svg")
+        self.assertGreater(len(self.all("#scene svg polygon")), 5)
+        before = self.one("#scene svg").get_attribute("innerHTML")
+        self.all("#scene-paths input")[1].click()
+        self.wait(lambda d: self.one("#scene svg").get_attribute("innerHTML") != before)
+
+
+if __name__ == "__main__":
+    PROGRAM, SOURCE = sys.argv[1:3]
+    KEEP = "--keep" in sys.argv
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,32 @@
+"""Makes a folder of results and its page with the program itself: what the tests of the page look at."""
+
+import pathlib
+import subprocess
+
+
+def run(program, *arguments, codes=(0,)):
+    """Runs retrace; its exit code must be one of `codes`."""
+    done = subprocess.run([str(program), *map(str, arguments)], capture_output=True, text=True, check=False)
+    if done.returncode not in codes:
+        raise AssertionError(f"retrace {' '.join(map(str, arguments))}: {done.returncode}: {done.stderr}")
+    return done
+
+
+def make_page(program, source, folder):
+    """Results of optics, fabrication and verification in one folder, and report.html of it."""
+    folder = pathlib.Path(folder)
+    results = folder / "study"
+    design = pathlib.Path(source) / "examples" / "rtp_single_0p45mm.toml"
+    run(program, "inspect", design, "-o", results, "--quiet")
+    run(program, "rre", design, "--engine", "exact", "--incidence=-40:40:5", "--footprint", "--far-field",
+        "-o", results, "--quiet")
+    array = folder / "array.toml"
+    array.write_text('[element]\nkind = "rtp"\nbase_mm = 1\nwidth_mm = 1\n[array]\nx_length_mm = 3\ny_length_mm = 2\n'
+                     '[body]\nthickness_mm = 2\n')
+    job = folder / "job.toml"
+    run(program, "job", array, "--machine", "thesis", "--tool-width-mm", "1", "-o", job, "--quiet")
+    run(program, "fabricate", job, "-o", results, "--quiet")
+    program_text = next(results.glob("*.ngc"))
+    run(program, "verify", job, program_text, "-o", results, "--quiet", codes=(0, 1))
+    run(program, "report", results, "--title", "Study of a prism", "--quiet")
+    return results / "report.html"

@@ -1,0 +1,159 @@
+#include "report/page/page.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "report/page/sections.h"
+
+namespace retrace::report {
+namespace {
+
+const PageAssets kAssets = {"/* script */", "/* style */", "licence"};
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+ResultDocument document(const std::string& kind, nlohmann::ordered_json json) {
+  json["schema"] = "retrace." + kind + "/1";
+  return {kind + ".json", kind, 100, std::move(json)};
+}
+
+TEST(Page, TextsAreTextsWhateverTheyHold) {
+  const std::string nasty = "</script><script>alert(1)</script>&\"'";
+  Page page;
+  page.title = nasty;
+  PageSection section;
+  section.id = "s0";
+  section.title = nasty;
+  section.paragraphs = {nasty};
+  section.facts = {{nasty, nasty, ""}};
+  section.tables = {{nasty, {nasty}, {{PageCell(nasty)}}, nasty, 0}};
+  section.charts = {{nasty, nasty, nasty, {{nasty, {1.0}, {2.0}}}, {}}};
+  section.details = {{nasty, nasty}};
+  section.has_scene = true;
+  page.sections = {section};
+  page.scene = SceneView{{{0, 0, 0}}, {}, {}, {{nasty, {{0, 0, 0}}, {nasty}}}};
+  const std::string html = page_html(page, kAssets);
+  EXPECT_EQ(count(html, "<script"), 2U);  // data, and the page's own
+  EXPECT_EQ(count(html, "</script"), 2U);
+  EXPECT_EQ(count(html, "alert(1)</script"), 0U);
+  // What is in the data is read back whole.
+  const std::size_t begin = html.find("id=\"page-data\">") + 15;
+  const auto data = nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+  EXPECT_EQ(data["charts"][0]["title"], nasty);
+  EXPECT_EQ(data["scene"]["paths"][0]["events"][0], nasty);
+}
+
+TEST(Page, CellsShowSixDigitsAndKeepAll) {
+  EXPECT_EQ(PageCell(1.0 / 3.0).text, "0.333333");
+  EXPECT_EQ(PageCell(1.0 / 3.0).full, "0.3333333333333333");
+  EXPECT_EQ(PageCell(0.5).full, "");
+  EXPECT_EQ(PageCell(-0.0).text, "0");
+  EXPECT_EQ(PageCell(NAN).text, "");
+}
+
+TEST(Page, PicturesAreHeldInThePage) {
+  Page page;
+  PageSection section;
+  section.id = "s0";
+  for (const std::string bytes : {"M", "Ma", "Man"}) section.figures.push_back({"c", "", "image/png", bytes, "alt"});
+  page.sections = {section};
+  const std::string html = page_html(page, kAssets);
+  for (const std::string text : {"base64,TQ==\"", "base64,TWE=\"", "base64,TWFu\""}) EXPECT_EQ(count(html, text), 1U);
+}
+
+TEST(StudyPage, CurvesAreSplitByAzimuthAndGoOverIncidence) {
+  nlohmann::ordered_json json = {{"designs", {{{"title", "A"}}}}, {"points", nlohmann::ordered_json::array()}};
+  for (const double azimuth : {0.0, 90.0})
+    for (const double incidence : {0.0, 10.0})
+      json["points"].push_back({{"design", 0},
+                                {"incidence_deg", incidence},
+                                {"azimuth_deg", azimuth},
+                                {"acceptance_half_angle_deg", 0.5},
+                                {"rre", 0.01 * (incidence + azimuth)},
+                                {"std_error", 0},
+                                {"ledger", {{"absorbed", 0.25}, {"lost", 0}}}});
+  const Page page = study_page({"x", {document("rre", json)}, {}}, "");
+  EXPECT_EQ(page.title, "A");
+  const auto section = std::find_if(page.sections.begin(), page.sections.end(),
+                                    [](const PageSection& s) { return s.title == "Efficiency"; });
+  ASSERT_NE(section, page.sections.end());
+  ASSERT_EQ(section->charts.size(), 1U);
+  ASSERT_EQ(section->charts[0].series.size(), 2U);
+  EXPECT_EQ(section->charts[0].series[1].label, "azimuth 90 deg");
+  EXPECT_EQ(section->charts[0].series[1].x, (std::vector<double>{0.0, 10.0}));
+  EXPECT_NEAR(section->charts[0].series[1].y[1], 100.0, 1e-9);
+  ASSERT_EQ(section->tables.size(), 1U);
+  EXPECT_EQ(section->tables[0].rows.size(), 4U);
+  EXPECT_EQ(section->tables[0].columns[6], "absorbed (%)");
+  EXPECT_EQ(section->tables[0].rows[0][6].text, "25");
+  // Summary: nothing at normal incidence, all of it at 10 and 90 degrees.
+  EXPECT_EQ(page.sections[0].facts[0].value, "0.00 %");
+  EXPECT_EQ(page.sections[0].facts[1].value, "100.00 %");
+}
+
+TEST(StudyPage, DocumentsThatLackEverythingGiveASectionEach) {
+  ResultFolder folder{"x", {}, {}};
+  for (const char* kind : {"inspect", "rre", "footprint", "far_field", "photometry", "roughness", "sweep", "optimum",
+                           "fabrication", "verification", "forces", "metrology", "anything"}) {
+    folder.documents.push_back(document(kind, nlohmann::ordered_json::object()));
+    // And of wrong types.
+    folder.documents.push_back(document(kind, {{"points", "no"},
+                                               {"designs", {1, "a"}},
+                                               {"features", {nullptr, 3}},
+                                               {"regions", {{{"rre", "x"}}}},
+                                               {"directions", {{{"spots", {5}}}}},
+                                               {"design", {{"element", 3}}},
+                                               {"findings", {7}},
+                                               {"best", {{"a", {1}}}}}));
+  }
+  const Page page = study_page(folder, "T");
+  EXPECT_GE(page.sections.size(), 2 * 13U + 2U);
+  const std::string html = page_html(page, kAssets);
+  EXPECT_GT(html.size(), 1000U);
+  for (const char* no_number : {">nan", "nan ", ":nan", ">inf"}) EXPECT_EQ(html.find(no_number), std::string::npos);
+}
+
+TEST(StudyPage, VerdictsAndFindingsAreShown) {
+  const Page page = study_page(
+      {"x",
+       {document("verification",
+                 {{"verdict", "fail"},
+                  {"findings", {{{"kind", "gouge"}, {"program", "p.ngc"}, {"line", 12}, {"message", "too deep"}}}}})},
+       {}},
+      "");
+  EXPECT_EQ(page.sections[0].facts[0].value, "fail");
+  EXPECT_EQ(page.sections[0].facts[0].style, "bad");
+  EXPECT_EQ(page.sections[1].title, "Verification");
+  EXPECT_EQ(page.sections[1].tables[0].rows[0][2].text, "12");
+}
+
+TEST(StudyPage, LongResultsAreCutAndSaySo) {
+  nlohmann::ordered_json points = nlohmann::ordered_json::array();
+  for (int k = 0; k < 5000; ++k) points.push_back({{"point", k}, {"a", k}, {"rre", 0.5}});
+  const Page page = study_page(
+      {"x", {document("sweep", {{"parameters", {"a"}}, {"quantities", {"rre"}}, {"points", points}})}, {}}, "");
+  const PageTable& table = page.sections[1].tables[0];
+  EXPECT_EQ(table.rows.size() + table.left_out, 5000U);
+  EXPECT_GT(table.left_out, 0U);
+  EXPECT_EQ(page.sections[1].charts[0].series[0].x.size(), 5000U);
+}
+
+TEST(StudyPage, ExtremeDirectionsComeFromTheCurve) {
+  const auto point = [](double incidence) {
+    return nlohmann::ordered_json{{"incidence_deg", incidence}, {"azimuth_deg", 30}, {"rre", 0.1}};
+  };
+  ResultFolder folder{"x", {document("rre", {{"points", {point(-20), point(5), point(10)}}})}, {}};
+  const auto directions = extreme_directions_deg(folder);
+  ASSERT_EQ(directions.size(), 2U);
+  EXPECT_EQ(directions[0][0], 5.0);
+  EXPECT_EQ(directions[1][0], -20.0);
+  EXPECT_EQ(extreme_directions_deg({"x", {}, {}}).size(), 1U);
+}
+
+}  // namespace
+}  // namespace retrace::report

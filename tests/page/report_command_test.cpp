@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/app/program.h"
+
+// `retrace report` as users meet it; what the page looks like is the browser test's.
+
+namespace retrace::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+void expect_refused(const Outcome& outcome, const std::string& begin) {
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err << "should begin: " << begin;
+}
+
+void make_results(const TemporaryFolder& folder) {
+  ASSERT_EQ(retrace(folder, {"rre", example("rtp_single_0p45mm.toml"), "--engine", "exact", "--incidence=0,20", "-o",
+                             "results", "--quiet"})
+                .code,
+            0);
+}
+
+TEST(Report, IsWrittenBesideTheResultsOrWhereOneSays) {
+  const TemporaryFolder folder;
+  make_results(folder);
+  const Outcome outcome = retrace(folder, {"report", "results"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("wrote results/report.html"), std::string::npos);
+  EXPECT_EQ(retrace(folder, {"report", "results", "-o", "page.html"}).code, 0);
+  EXPECT_EQ(retrace(folder, {"report", "results", "-o", "pages"}).code, 0);
+  const std::string html = folder.read("results/report.html");
+  EXPECT_EQ(html, folder.read("page.html")) << "the same results give the same page";
+  EXPECT_EQ(html, folder.read("pages/report.html"));
+  EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
+  EXPECT_EQ(html.find("src=\"http"), std::string::npos);
+  EXPECT_EQ(html.find("href=\"http"), std::string::npos);
+  EXPECT_NE(html.find("Permission is hereby granted"), std::string::npos) << "licences of the scripts";
+}
+
+TEST(Report, SaysWhatIsInIt) {
+  const TemporaryFolder folder;
+  make_results(folder);
+  const Json json = retrace_json(folder, {"report", "results", "--title", "Mine"});
+  EXPECT_EQ(json.at("schema"), "retrace.report/1");
+  EXPECT_EQ(json.at("title"), "Mine");
+  EXPECT_EQ(json.at("documents"), Json::array({"rre.json"}));
+  EXPECT_GE(json.at("light_paths"), 2);
+  EXPECT_LT(json.at("bytes"), 2'000'000);
+}
+
+TEST(Report, TakesResultsInFoldersOfTheFolder) {
+  const TemporaryFolder folder;
+  make_results(folder);
+  fs::create_directory(folder.path() / "study");
+  fs::rename(folder.path() / "results", folder.path() / "study/optics");
+  EXPECT_EQ(retrace_json(folder, {"report", "study"}).at("documents"), Json::array({"optics/rre.json"}));
+}
+
+TEST(Report, FoldersWithoutResultsAreRefused) {
+  const TemporaryFolder folder;
+  expect_refused(retrace(folder, {"report", "nothing"}), "nothing: there is no such folder");
+  folder.write("file.txt", "x");
+  expect_refused(retrace(folder, {"report", "file.txt"}), "file.txt: must be a folder of results, is none");
+  fs::create_directory(folder.path() / "empty");
+  expect_refused(retrace(folder, {"report", "empty"}), "empty: no results in it");
+  folder.write("empty/other.json", "{\"schema\": \"somebody/1\"}");
+  folder.write("empty/list.json", "[1, 2]");
+  folder.write("empty/broken.json", "{");
+  expect_refused(retrace(folder, {"report", "empty"}), "empty: no results in it");
+  folder.write("empty/rre.json", "{\"schema\": \"retrace.rre/1\", \"points\": [");
+  expect_refused(retrace(folder, {"report", "empty"}), "empty/rre.json: not valid JSON");
+  EXPECT_FALSE(fs::exists(folder.path() / "empty/report.html"));
+}
+
+TEST(Report, DesignsThatCannotBeShownAreLeftOutWithAWarning) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "d");
+  folder.write("d/rre.json",
+               R"({"schema": "retrace.rre/1", "designs": [{"element": {"kind": "cone"}}], "points": []})");
+  const Outcome outcome = retrace(folder, {"report", "d"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_TRUE(outcome.err.starts_with("warning: no view in three dimensions: ")) << outcome.err;
+  EXPECT_NE(folder.read("d/report.html").find("cannot be shown here"), std::string::npos);
+}
+
+TEST(Report, SetIsRefusedAndOutputsAreKeptApart) {
+  const TemporaryFolder folder;
+  make_results(folder);
+  expect_refused(retrace(folder, {"report", "results", "--set", "a.b=1"}), "--set: report reads results");
+  expect_refused(retrace(folder, {"report", "results", "--json", "results/report.html"}),
+                 "--json: results/report.html is the page itself");
+  EXPECT_EQ(retrace(folder, {"report", "results", "-o", "results/rre.csv/x.html"}).code, 3);
+}
+
+}  // namespace
+}  // namespace retrace::test

@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/app/program.h"
+
+// An STL as the part to trace, as users meet it.
+
+namespace retrace::test {
+namespace {
+
+const std::string kArray =
+    "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"offset\"\nx_length_mm = 2\n"
+    "y_length_mm = 2\n[body]\nthickness_mm = 1\nrefractive_index = 1.4917\n";
+const std::string kMesh = "[part]\nmesh = \"part.stl\"\n[body]\nrefractive_index = 1.4917\n";
+
+void expect_refused(const Outcome& outcome, const std::string& begin) {
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err << "should begin: " << begin;
+}
+
+void export_part(const TemporaryFolder& folder, const std::string& design) {
+  folder.write("direct.toml", design);
+  folder.write("mesh.toml", kMesh);
+  ASSERT_EQ(retrace(folder, {"export", "direct.toml", "part.stl", "--quiet"}).code, 0);
+}
+
+std::vector<double> rre(const TemporaryFolder& folder, Arguments arguments) {
+  std::vector<double> values;
+  for (const Json& p : retrace_json(folder, std::move(arguments)).at("points")) {
+    values.push_back(p.at("rre"));
+    EXPECT_LT(p.at("ledger").at("lost"), 1e-9);
+  }
+  return values;
+}
+
+/// The part and the mesh of it send back the same, by the exact engine but for what single precision of the STL moves.
+TEST(MeshPart, SendsBackWhatTheDesignItWasMadeOfDoes) {
+  const TemporaryFolder folder;
+  export_part(folder, kArray);
+  const Arguments how = {"--engine",
+                         "exact",
+                         "--cutoff",
+                         "1e-4",
+                         "--incidence=0,12",
+                         "--set",
+                         "detector.acceptance_half_angle_deg=[0.5, 3]"};
+  Arguments direct = {"rre", "direct.toml"};
+  Arguments mesh = {"rre", "mesh.toml"};
+  direct.insert(direct.end(), how.begin(), how.end());
+  mesh.insert(mesh.end(), how.begin(), how.end());
+  const auto expected = rre(folder, direct);
+  const auto found = rre(folder, mesh);
+  ASSERT_EQ(found.size(), expected.size());
+  // Pieces of triangles are fainter than whole facets: each may leave the cut-off behind.
+  for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 2e-3);
+}
+
+TEST(MeshPart, MonteCarloAgreesOnCubeCornersWithinItsError) {
+  const TemporaryFolder folder;
+  export_part(
+      folder,
+      "[element]\nkind = \"triangular_icc\"\naperture_mm = 1\n[array]\nx_length_mm = 4\ny_length_mm = 4\n[body]\n"
+      "thickness_mm = 1\nrefractive_index = 1.4917\n");
+  const auto result = [&](const char* design) {
+    return retrace_json(folder, {"rre", design, "--engine", "embree", "--samples", "131072", "--incidence=10"})
+        .at("points")
+        .at(0);
+  };
+  const Json direct = result("direct.toml");
+  const Json mesh = result("mesh.toml");
+  const double error = std::hypot(direct.at("std_error").get<double>(), mesh.at("std_error").get<double>());
+  EXPECT_NEAR(mesh.at("rre").get<double>(), direct.at("rre").get<double>(), 5.0 * error);
+}
+
+TEST(MeshPart, IsInspectedAndExportedAgain) {
+  const TemporaryFolder folder;
+  export_part(folder, kArray);
+  const Json json = retrace_json(folder, {"inspect", "mesh.toml"});
+  EXPECT_EQ(json.at("boundary"), "closed, free of self-intersections");
+  EXPECT_NEAR(json.at("thickness_mm").get<double>(), 1.0, 1e-6);
+  EXPECT_NEAR(json.at("entrance_area_mm2").get<double>(), 4.0, 1e-6);
+  EXPECT_EQ(json.at("design").at("part").at("mesh"), "part.stl");
+  EXPECT_FALSE(json.contains("elements_full"));
+  EXPECT_EQ(retrace(folder, {"export", "mesh.toml", "again.step", "--quiet"}).code, 0);
+  EXPECT_EQ(retrace(folder, {"inspect", "mesh.toml"}).code, 0);
+}
+
+/// The part without one of its triangles.
+void write_open(const TemporaryFolder& folder) {
+  std::string stl = folder.read("part.stl");
+  stl.resize(stl.size() - 50);
+  --stl[80];
+  folder.write("part.stl", stl);
+}
+
+TEST(MeshPart, AnOpenOneIsRefusedUnlessOneInsists) {
+  const TemporaryFolder folder;
+  export_part(folder, kArray);
+  write_open(folder);
+  expect_refused(retrace(folder, {"rre", "mesh.toml", "-o", "out"}),
+                 "mesh.toml:2: part.mesh: part.stl: the mesh is not closed; allow_open = true in [part]");
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"direct.toml", "mesh.toml", "part.stl"}));
+  const Outcome insisted =
+      retrace(folder, {"rre", "mesh.toml", "--set", "part.allow_open=true", "--samples", "4096", "--json", "r.json"});
+  EXPECT_EQ(insisted.code, 0) << insisted.err;
+  EXPECT_NE(insisted.err.find("the mesh is not closed: 1 opening with 3 edges was closed by flat pieces"),
+            std::string::npos)
+      << insisted.err;
+  const Json json = folder.json("r.json");
+  ASSERT_FALSE(json.at("warnings").empty());
+  EXPECT_NE(json.at("warnings").at(0).get<std::string>().find("not closed"), std::string::npos);
+}
+
+TEST(MeshPart, WrongFilesAndKeysAreRefused) {
+  const TemporaryFolder folder;
+  export_part(folder, kArray);
+  const auto refused = [&](const std::string& design, const std::string& begin) {
+    folder.write("d.toml", design);
+    expect_refused(retrace(folder, {"rre", "d.toml", "--samples", "64"}), begin);
+  };
+  refused("[part]\nmesh = \"none.stl\"\n[body]\n", "d.toml:2: part.mesh: none.stl: cannot be read");
+  folder.write("text.stl", "hello");
+  refused("[part]\nmesh = \"text.stl\"\n[body]\n", "d.toml:2: part.mesh: text.stl:1: not an STL file");
+  refused("[part]\n[body]\n", "d.toml:1: part.mesh: missing, must name an STL file");
+  refused("[part]\nmesh = 3\n", "d.toml:2: part.mesh: ");
+  refused("[part]\nmesh = \"part.stl\"\nallow_open = 1\n", "d.toml:3: part.allow_open: must be true or false, got 1");
+  refused("[part]\nmesh = \"part.stl\"\nscale = 1\n", "d.toml:3: part.scale: unknown key");
+  refused("[part]\nmesh = \"part.stl\"\n[array]\nx_length_mm = 1\n", "d.toml:3: array: not allowed beside part.mesh");
+  refused("[part]\nmesh = \"part.stl\"\n[surface]\nroot_radius_um = 1\n",
+          "d.toml:4: surface.root_radius_um: not allowed with [part]");
+  refused("[part]\nmesh = \"part.stl\"\n[body]\nthickness_mm = 2\n",
+          "d.toml:2: part.mesh: part.stl: its plate is 1.000000 mm thick, which body.thickness_mm must say");
+}
+
+TEST(MeshPart, CommandsThatNeedElementsSaySo) {
+  const TemporaryFolder folder;
+  export_part(folder, kArray);
+  expect_refused(retrace(folder, {"job", "mesh.toml", "--tool-width-mm", "0.5"}),
+                 "mesh.toml:2: part.mesh: retrace job takes no mesh");
+  expect_refused(retrace(folder, {"rre", "mesh.toml", "--engine", "exact", "--derivatives"}),
+                 "mesh.toml:2: part.mesh: --derivatives takes no mesh");
+  expect_refused(retrace(folder, {"export", "mesh.toml", "--what", "mould"}),
+                 "mesh.toml:2: part.mesh: --what mould takes no mesh");
+}
+
+}  // namespace
+}  // namespace retrace::test
