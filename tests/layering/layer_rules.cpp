@@ -33,23 +33,24 @@ const std::map<std::string, Names>& folders() {
 
 /// What a room of studies/ may see of the others. Rooms that come later are listed here first.
 const std::map<std::string, Names>& study_rooms() {
-  static const std::map<std::string, Names> rooms = {{"design", {}},
-                                                     {"rre", {"design"}},
-                                                     {"roughness", {"design", "rre"}},
-                                                     {"photometry", {"design", "rre"}},
-                                                     {"image", {"design", "rre", "photometry"}},
-                                                     {"inspect", {"design"}},
-                                                     {"scene", {"design"}},
-                                                     {"solids", {"design"}},
-                                                     {"metrology", {}},
-                                                     {"fabrication", {"design"}},
-                                                     {"forces", {}},
-                                                     {"closed_loop", {"design"}},
-                                                     {"store", {}},
-                                                     {"quantity", {"design", "rre", "inspect", "photometry", "fabrication", "closed_loop"}},
-                                                     {"sweep", {"design", "store", "quantity"}},
-                                                     {"optimise", {"design", "store", "quantity", "sweep"}},
-                                                     {"tolerance", {"design", "store", "quantity", "sweep"}}};
+  static const std::map<std::string, Names> rooms = {
+      {"design", {}},
+      {"rre", {"design"}},
+      {"roughness", {"design", "rre"}},
+      {"photometry", {"design", "rre"}},
+      {"image", {"design", "rre", "photometry"}},
+      {"inspect", {"design"}},
+      {"scene", {"design"}},
+      {"solids", {"design"}},
+      {"metrology", {}},
+      {"fabrication", {"design"}},
+      {"forces", {}},
+      {"closed_loop", {"design"}},
+      {"store", {}},
+      {"quantity", {"design", "rre", "inspect", "photometry", "fabrication", "closed_loop"}},
+      {"sweep", {"design", "store", "quantity"}},
+      {"optimise", {"design", "store", "quantity", "sweep"}},
+      {"tolerance", {"design", "store", "quantity", "sweep"}}};
   return rooms;
 }
 

@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 fs::path limits_file_of(const std::string& standard) {
   if (find_standard(standard) != nullptr) return data_directory() / "photometry_limits.csv";
   if (!fs::exists(standard))
-    throw InputError({"", 0, "--standard"}, fmt::format("must be r150, j594, bicycle or a file that exists, got {}",
-                                                        in_quotes(standard)));
+    throw InputError({"", 0, "--standard"},
+                     fmt::format("must be r150, j594, bicycle or a file that exists, got {}", in_quotes(standard)));
   return standard;
 }
 
