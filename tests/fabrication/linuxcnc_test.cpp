@@ -39,12 +39,13 @@ struct CanonicalMove {
   double dwell_s = 0.0;  ///< after it
 };
 
-/// Runs `rs274`, which writes its parameters into the working folder.
+/// Runs `rs274`, which writes its parameters into the working folder and maps a file of tools in the home folder: tests
+/// that run at a time must not share it.
 std::string interpreted(const std::string& text) {
   const fs::path folder = fs::temp_directory_path() / ("retrace_rs274_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   std::ofstream(folder / "p.ngc") << text;
-  const std::string command = "cd '" + folder.string() + "' && rs274 -g p.ngc > out.txt 2> err.txt < /dev/null";
+  const std::string command = "cd '" + folder.string() + "' && HOME=. rs274 -g p.ngc > out.txt 2> err.txt < /dev/null";
   const int code = std::system(command.c_str());
   const std::string out = read_file(folder / "out.txt");
   const std::string err = read_file(folder / "err.txt");
