@@ -66,8 +66,8 @@ class Reader {
       if (has_header) take(row_of(content, line));
       has_header = true;
     }
-    if (elements_.empty()) fail(0, "", fmt::format("must have the header {} and two lines for each element", kHeader));
     if (pending_) fail(pending_->line, "", "must be followed by the other facet of its element");
+    if (elements_.empty()) fail(0, "", fmt::format("must have the header {} and two lines for each element", kHeader));
     try {
       return {std::move(elements_), std::min(nominal_.base_mm, nominal_.width_mm)};
     } catch (const InputError& error) {
