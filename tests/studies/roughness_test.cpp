@@ -128,12 +128,14 @@ TEST(RoughnessStudy, SpecularShareIsTheClosedFormOfSa) {
   ASSERT_EQ(result.points.size(), 5U);
   EXPECT_EQ(result.smooth_std_error, 0.0) << "of the exact engine";
   EXPECT_EQ(result.points[0].rre, result.smooth_rre);
+  // The share that stays specular is followed to the end, so that rounding may be all the difference.
+  constexpr double kRounding = 1e-12;
   for (std::size_t k = 1; k < 4; ++k)
     EXPECT_NEAR(result.points[k].rre, result.smooth_rre * std::exp(-2.0 * phase2(index, request.sa_nm[k])),
-                testing::student_bound(4) * result.points[k].std_error);
+                testing::student_bound(4) * result.points[k].std_error + kRounding);
   EXPECT_EQ(result.points[4].measured, 0U);
   EXPECT_NEAR(result.points[4].rre, result.smooth_rre * std::exp(-2.0 * (phase2(index, 6.0) + phase2(index, 12.0))),
-              testing::student_bound(4) * result.points[4].std_error);
+              testing::student_bound(4) * result.points[4].std_error + kRounding);
 }
 
 // Longer roughness scatters into narrower lobes, more of them inside the cone: Sa alone does not fix RRE.
