@@ -1,0 +1,198 @@
+#include "report/page/document_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/number_format.h"
+#include "report/page/document_view.h"
+
+namespace retrace::report::document {
+
+PageSection inspect_section(const ResultDocument& document, const ResultFolder&) {
+  PageSection section;
+  section.title = "Design";
+  section.tables.push_back(figures_of(document.json, "What the design is", csv_name(document, "figures")));
+  return section;
+}
+
+PageSection photometry_section(const ResultDocument& document, const ResultFolder&) {
+  const Json& json = document.json;
+  const Json& programme = member(json, "programme");
+  const std::string verdict = text(json, "verdict");
+  PageSection section;
+  section.title = "Photometry";
+  section.facts = {{"Standard", text(programme, "standard"), ""},
+                   {"Class and colour", text(programme, "class") + " " + text(programme, "colour"), ""},
+                   {"Area", measured(number(json, "area_cm2"), " cm2"), ""},
+                   {"Verdict", verdict, verdict_style(verdict)}};
+  section.paragraphs.push_back(
+      "R_I at the test points of the standard. Limits that are recalled, not confirmed, make a verdict unconfirmed. It "
+      "is no approval test.");
+  PageTable table =
+      table_of(list(json, "points"),
+               {"observation_deg", "v_deg", "h_deg", "rotation_deg", "value_mcd_per_lx", "std_error_mcd_per_lx",
+                "limit_mcd_per_lx", "margin", "limit_status", "pass", "r_a_cd_per_lx_m2"},
+               "Test points", csv_name(document, "points"));
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (table.columns[c] == "pass")
+      for (auto& row : table.rows) row[c].style = row[c].text == "yes" ? "good" : "bad";
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+PageSection roughness_section(const ResultDocument& document, const ResultFolder&) {
+  PageSection section;
+  section.title = "Roughness";
+  PageChart chart;
+  chart.title = "Efficiency against the roughness of the facets";
+  chart.x_label = "Sa (nm)";
+  chart.y_label = "RRE (%)";
+  for (const Json& p : list(document.json, "points")) {
+    const double length = number(p, "correlation_length_um");
+    ChartSeries& series = series_of(chart, fmt::format("correlation length {} um", shown(length)));
+    series.x.push_back(number(p, "sa_nm"));
+    series.y.push_back(100.0 * number(p, "rre"));
+  }
+  section.charts.push_back(chart);
+  section.tables.push_back(table_of(list(document.json, "points"),
+                                    {"correlation_length_um", "sa_nm", "sq_nm", "rre", "std_error"}, "Curves",
+                                    csv_name(document, "curves")));
+  section.tables.push_back(
+      table_of(list(document.json, "measured"),
+               {"table", "name", "facets", "roughness_sa_nm", "waviness_sa_nm", "rre", "std_error"}, "Measured facets",
+               csv_name(document, "measured")));
+  return section;
+}
+
+PageSection fabrication_section(const ResultDocument& document, const ResultFolder&) {
+  const Json& json = document.json;
+  PageSection section;
+  section.title = "Tool path";
+  section.facts = {{"Machining time", measured(number(json, "time_s") / 3600.0, 3, " h"), ""},
+                   {"Time an element", measured(number(json, "time_per_element_s"), 2, " s"), ""},
+                   {"Elements", shown(number(json, "elements")), ""},
+                   {"Machine", text(json, "machine"), ""},
+                   {"Strategy", text(json, "strategy"), ""},
+                   {"Dialect", text(json, "dialect"), ""}};
+  section.tables.push_back(table_of(list(json, "stages"), {"name", "a_deg", "c_deg", "elements", "time_s"},
+                                    "Stages of the program", csv_name(document, "stages")));
+  section.tables.push_back(figures_of(json, "Figures of the plan", csv_name(document, "figures")));
+  return section;
+}
+
+PageSection verification_section(const ResultDocument& document, const ResultFolder&) {
+  const Json& json = document.json;
+  const std::string verdict = text(json, "verdict");
+  const Json& findings = list(json, "findings");
+  PageSection section;
+  section.title = "Verification";
+  section.facts = {{"Verdict", verdict, verdict_style(verdict)},
+                   {"Findings", std::to_string(findings.size()), findings.empty() ? "good" : "bad"},
+                   {"Facets off by at most", measured(number(json, "facet_distance_nm_max"), " nm"), ""},
+                   {"Angles off by at most", measured(number(json, "facet_angle_arcmin_max"), " arcmin"), ""}};
+  section.paragraphs.push_back(
+      "The text of the programs was read back, the machine's axes moved and the blank cut again; planner and writers "
+      "take no part in it.");
+  if (!findings.empty())
+    section.tables.push_back(table_of(findings,
+                                      {"kind", "program", "line", "element", "message", "value", "limit", "count"},
+                                      "Findings", csv_name(document, "findings")));
+  section.tables.push_back(figures_of(json, "Figures of the part that is left", csv_name(document, "figures")));
+  return section;
+}
+
+PageSection forces_section(const ResultDocument& document, const ResultFolder&) {
+  PageSection section;
+  section.title = "Cutting forces";
+  PageChart chart;
+  chart.title = "Forces on the tool over one cycle";
+  chart.x_label = "time (s)";
+  chart.y_label = "force (N)";
+  for (const char* key : {"fx_n", "fy_n", "fz_n"}) {
+    ChartSeries series{column_name(key), {}, {}};
+    for (const Json& sample : list(document.json, "profile")) {
+      series.x.push_back(number(sample, "time_s"));
+      series.y.push_back(number(sample, key));
+    }
+    chart.series.push_back(std::move(series));
+  }
+  section.charts.push_back(std::move(chart));
+  section.tables.push_back(figures_of(document.json, "Figures of the cycle", csv_name(document, "figures")));
+  return section;
+}
+
+namespace {
+
+/// A curve of the first quantity over the first parameter of numbers, one for each set of the others.
+PageChart sweep_chart(const Json& json) {
+  const std::vector<std::string> parameters = words(list(json, "parameters"));
+  const std::vector<std::string> quantities = words(list(json, "quantities"));
+  PageChart chart;
+  if (parameters.empty() || quantities.empty()) return chart;
+  const Json& points = list(json, "points");
+  const auto is_axis = [&](const std::string& key) {
+    return !points.empty() && std::isfinite(number(points.front(), key.c_str()));
+  };
+  const auto axis = std::find_if(parameters.rbegin(), parameters.rend(), is_axis);
+  if (axis == parameters.rend()) return chart;
+  chart.title = fmt::format("{} against {}", column_name(quantities.front()), column_name(*axis));
+  chart.x_label = column_name(*axis);
+  chart.y_label = column_name(quantities.front());
+  constexpr std::size_t most_series = 20;
+  for (const Json& p : points) {
+    std::vector<std::string> others;
+    for (const std::string& key : parameters)
+      if (key != *axis) others.push_back(key + " " + cell_of(member(p, key.c_str())).text);
+    const std::string label = others.empty() ? chart.y_label : fmt::format("{}", fmt::join(others, ", "));
+    if (!std::isfinite(number(p, quantities.front().c_str()))) continue;
+    const auto is_it = [&](const ChartSeries& series) { return series.label == label; };
+    if (chart.series.size() == most_series && std::none_of(chart.series.begin(), chart.series.end(), is_it)) continue;
+    ChartSeries& series = series_of(chart, label);
+    series.x.push_back(number(p, axis->c_str()));
+    series.y.push_back(number(p, quantities.front().c_str()));
+  }
+  return chart;
+}
+
+}  // namespace
+
+PageSection sweep_section(const ResultDocument& document, const ResultFolder&) {
+  PageSection section;
+  section.title = "Sweep";
+  const PageChart chart = sweep_chart(document.json);
+  if (!chart.series.empty()) section.charts.push_back(chart);
+  const Json& points = list(document.json, "points");
+  section.tables.push_back(table_of(points, keys_of(points), "Points", csv_name(document, "points")));
+  return section;
+}
+
+PageSection optimum_section(const ResultDocument& document, const ResultFolder&) {
+  PageSection section;
+  section.title = "Optimum";
+  const Json& best = member(document.json, "best");
+  if (best.is_object())
+    section.tables.push_back(figures_of(best, "The best design", csv_name(document, "best")));
+  else
+    section.paragraphs.push_back("No design is feasible.");
+  const Json& front = list(document.json, "pareto");
+  section.tables.push_back(table_of(front, keys_of(front), "Pareto front", csv_name(document, "front")));
+  const Json& rejected = list(document.json, "rejected");
+  section.tables.push_back(
+      table_of(rejected, keys_of(rejected), "What was rejected, and why", csv_name(document, "rejected")));
+  return section;
+}
+
+PageSection plain_section(const ResultDocument& document, const ResultFolder&) {
+  PageSection section;
+  section.title = document.kind;
+  section.title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(section.title.front())));
+  section.tables.push_back(figures_of(document.json, "Figures", csv_name(document, "figures")));
+  for (const auto& [key, value] : document.json.items())
+    if (value.is_array() && !value.empty() && value.front().is_object())
+      section.tables.push_back(table_of(value, keys_of(value), column_name(key), csv_name(document, key.c_str())));
+  return section;
+}
+
+}  // namespace retrace::report::document

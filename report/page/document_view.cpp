@@ -1,0 +1,169 @@
+#include "report/page/document_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "core/number_format.h"
+
+namespace retrace::report::document {
+
+const Json& member(const Json& json, const char* key) {
+  static const Json none;
+  if (!json.is_object()) return none;
+  const auto it = json.find(key);
+  return it == json.end() ? none : *it;
+}
+
+double number(const Json& json, const char* key) {
+  const Json& value = member(json, key);
+  return value.is_number() ? value.get<double>() : NAN;
+}
+
+std::string text(const Json& json, const char* key) {
+  const Json& value = member(json, key);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+bool flag(const Json& json, const char* key) {
+  const Json& value = member(json, key);
+  return value.is_boolean() && value.get<bool>();
+}
+
+const Json& list(const Json& json, const char* key) {
+  static const Json empty = Json::array();
+  const Json& value = member(json, key);
+  return value.is_array() ? value : empty;
+}
+
+std::string measured(double value, int digits, const char* unit) {
+  return std::isfinite(value) ? fixed(value, digits) + unit : "";
+}
+
+std::string measured(double value, const char* unit) {
+  return std::isfinite(value) ? shown(value) + unit : "";
+}
+
+std::string percent(double share) {
+  return std::isfinite(share) ? fixed(100.0 * share, 2) + " %" : "";
+}
+
+PageCell cell_of(const Json& value) {
+  if (value.is_number()) return {value.get<double>()};
+  if (value.is_string()) return {value.get<std::string>()};
+  if (value.is_boolean()) return {value.get<bool>() ? "yes" : "no"};
+  return {value.is_null() ? std::string() : value.dump()};
+}
+
+std::string column_name(const std::string& key) {
+  static const std::vector<std::pair<std::string, std::string>> units = {{"_mcd_per_lx", "mcd/lx"},
+                                                                         {"_cd_per_lx_m2", "cd/lx/m2"},
+                                                                         {"_mm2_per_h", "mm2/h"},
+                                                                         {"_arcmin", "arcmin"},
+                                                                         {"_deg", "deg"},
+                                                                         {"_mm2", "mm2"},
+                                                                         {"_mm3", "mm3"},
+                                                                         {"_mm", "mm"},
+                                                                         {"_um", "um"},
+                                                                         {"_nm", "nm"},
+                                                                         {"_s", "s"},
+                                                                         {"_n", "N"},
+                                                                         {"_h", "h"},
+                                                                         {"_cm2", "cm2"},
+                                                                         {"_percent", "%"}};
+  std::string name = key;
+  std::string unit;
+  for (const auto& [suffix, word] : units)
+    if (key.size() > suffix.size() && key.ends_with(suffix)) {
+      name.resize(key.size() - suffix.size());
+      unit = " (" + word + ")";
+      break;
+    }
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name + unit;
+}
+
+PageTable table_of(const Json& rows, const std::vector<std::string>& keys, const std::string& caption,
+                   const std::string& csv_name) {
+  PageTable table;
+  table.caption = caption;
+  table.csv_name = csv_name;
+  std::vector<std::string> present;
+  for (const std::string& key : keys)
+    if (std::any_of(rows.begin(), rows.end(), [&](const Json& row) { return row.is_object() && row.contains(key); }))
+      present.push_back(key);
+  for (const std::string& key : present) table.columns.push_back(column_name(key));
+  for (const Json& row : rows) {
+    if (table.rows.size() == kMostRows) {
+      table.left_out = rows.size() - kMostRows;
+      break;
+    }
+    std::vector<PageCell> cells;
+    for (const std::string& key : present) cells.push_back(cell_of(member(row, key.c_str())));
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+PageTable figures_of(const Json& json, const std::string& caption, const std::string& csv_name) {
+  static const std::set<std::string> told = {"schema", "version", "complete", "elapsed_s", "seed"};
+  PageTable table;
+  table.caption = caption;
+  table.csv_name = csv_name;
+  table.columns = {"figure", "value"};
+  for (const auto& [key, value] : json.items()) {
+    if (told.contains(key) || value.is_structured()) continue;
+    table.rows.push_back({column_name(key), cell_of(value)});
+  }
+  return table;
+}
+
+std::string csv_name(const ResultDocument& document, const char* what) {
+  std::string name = document.name.substr(0, document.name.rfind('.'));
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name + "_" + what + ".csv";
+}
+
+ChartSeries& series_of(PageChart& chart, const std::string& label) {
+  const auto is_it = [&](const ChartSeries& series) { return series.label == label; };
+  const auto found = std::find_if(chart.series.begin(), chart.series.end(), is_it);
+  if (found != chart.series.end()) return *found;
+  chart.series.push_back({label, {}, {}});
+  return chart.series.back();
+}
+
+std::string verdict_style(const std::string& verdict) {
+  if (verdict == "pass") return "good";
+  return verdict == "fail" ? "bad" : "open";
+}
+
+std::string name_of_design(const Json& design) {
+  if (const std::string title = text(design, "title"); !title.empty()) return title;
+  const Json& element = member(design, "element");
+  if (!element.is_object()) return text(member(design, "part"), "mesh");
+  std::string name = text(element, "kind");
+  for (const char* size : {"base_mm", "width_mm", "aperture_mm"})
+    if (std::isfinite(number(element, size))) name += " " + shown(number(element, size));
+  return name + " mm, " + text(member(design, "array"), "arrangement");
+}
+
+std::vector<std::string> keys_of(const Json& rows) {
+  std::vector<std::string> keys;
+  std::size_t looked_at = 0;
+  for (const Json& row : rows) {
+    if (!row.is_object() || ++looked_at > 20) continue;
+    for (const auto& [key, value] : row.items())
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+  }
+  return keys;
+}
+
+std::vector<std::string> words(const Json& values) {
+  std::vector<std::string> words;
+  for (const Json& value : values)
+    if (value.is_string()) words.push_back(value.get<std::string>());
+  return words;
+}
+
+}  // namespace retrace::report::document
