@@ -23,6 +23,7 @@ pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus>=3.3)
 pkg_check_modules(CCD REQUIRED IMPORTED_TARGET ccd>=2.0)
 pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3>=3.3)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo>=1.16 cairo-svg cairo-png)
+pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser>=2.3)
 
 if(RETRACE_WITH_OPENIMAGEIO)
   # Its own CMake package asks for OpenEXR's and others', which reading pictures does not need.

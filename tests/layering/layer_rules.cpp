@@ -58,7 +58,8 @@ const std::map<std::string, Names>& study_rooms() {
 const std::map<std::string, Names>& fabrication_rooms() {
   static const std::map<std::string, Names> rooms = {
       {"job", {}},           {"machine", {}},       {"program", {}},     {"plan", {"job", "machine", "program"}},
-      {"post", {"program"}}, {"read", {"machine"}}, {"forces", {"job"}}, {"verify", {"job", "machine", "read"}}};
+      {"post", {"program"}}, {"read", {"machine"}}, {"forces", {"job"}}, {"verify", {"job", "machine", "read"}},
+      {"turning", {"program", "read"}}};
   return rooms;
 }
 

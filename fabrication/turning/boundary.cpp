@@ -1,0 +1,209 @@
+#include "fabrication/turning/boundary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/number_format.h"
+
+namespace retrace::fabrication::turning {
+namespace {
+
+using geometry::Vec2;
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+std::string degrees(double angle_rad) {
+  return fixed(std::remainder(angle_rad, kTurn) * 180.0 / std::numbers::pi, 2);
+}
+
+/// Least and most radius: at the ends and at several places of every piece.
+void measure(Boundary& boundary, const InputLocation& where) {
+  const std::vector<double>& knots = boundary.radius_mm.knots_rad();
+  constexpr int kPlaces = 16;
+  boundary.least_mm = std::numeric_limits<double>::infinity();
+  boundary.most_mm = 0.0;
+  for (std::size_t i = 0; i < knots.size(); ++i) {
+    const double next = i + 1 < knots.size() ? knots[i + 1] : knots.front() + kTurn;
+    for (int k = 0; k < kPlaces; ++k) {
+      const double angle = knots[i] + (next - knots[i]) * k / kPlaces;
+      const double r = boundary.radius_mm.evaluate(angle);
+      if (!(r > 0.0))
+        throw InputError(where, fmt::format("must have a radius > 0 all round its centre, at {} degrees the spline "
+                                            "through it has {} mm",
+                                            degrees(angle), shortest(r)));
+      boundary.least_mm = std::min(boundary.least_mm, r);
+      boundary.most_mm = std::max(boundary.most_mm, r);
+    }
+  }
+  // Between the places a radius may still differ a little: the quick answers keep clear of that.
+  const double margin = 1e-3 * (boundary.most_mm - boundary.least_mm);
+  boundary.least_mm -= std::min(margin, 0.5 * boundary.least_mm);
+  boundary.most_mm += margin;
+}
+
+/// Angles of points about the centre, each within half a turn of the one before it.
+std::vector<double> unwound(const std::vector<Vec2>& points, const Vec2& centre) {
+  std::vector<double> angles;
+  for (const Vec2& p : points) {
+    const double angle = std::atan2(p.y() - centre.y(), p.x() - centre.x());
+    angles.push_back(angles.empty() ? angle : angles.back() + std::remainder(angle - angles.back(), kTurn));
+  }
+  return angles;
+}
+
+void sort_by_angle(std::vector<Vec2>& points, const Vec2& centre) {
+  std::sort(points.begin(), points.end(), [&](const Vec2& a, const Vec2& b) {
+    return std::atan2(a.y() - centre.y(), a.x() - centre.x()) < std::atan2(b.y() - centre.y(), b.x() - centre.x());
+  });
+}
+
+/// The angles must rise all the way round, once.
+void check_single_valued(const std::vector<double>& angles, const InputLocation& where) {
+  const double closing = angles.back() + std::remainder(angles.front() - angles.back(), kTurn);
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double next = i + 1 < angles.size() ? angles[i + 1] : closing;
+    if (!(next - angles[i] > 1e-12))
+      throw InputError(where, fmt::format("must not cross itself and have one radius at every angle about its centre, "
+                                          "turns back at point {} ({} degrees)",
+                                          i + 1, degrees(angles[i])));
+  }
+  if (std::abs(closing - angles.front() - kTurn) > 1e-9)
+    throw InputError(where, fmt::format("must go once round its centre, goes {} times",
+                                        std::lround((closing - angles.front()) / kTurn)));
+}
+
+}  // namespace
+
+Boundary boundary_from_radii(const Vec2& centre_mm, const std::vector<double>& angles_rad,
+                             const std::vector<double>& radii_mm, int degree, const InputLocation& where) {
+  Boundary boundary;
+  boundary.centre_mm = centre_mm;
+  try {
+    boundary.radius_mm = PeriodicSpline(angles_rad, radii_mm, degree);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(where, fmt::format("needs at least {} points at different angles for a spline of degree {} ({})",
+                                        degree + 2, degree, error.what()));
+  }
+  measure(boundary, where);
+  return boundary;
+}
+
+Boundary boundary_from_points(std::vector<Vec2> points_mm, std::optional<Vec2> centre_mm, bool scattered, int degree,
+                              const InputLocation& where) {
+  if (points_mm.size() < static_cast<std::size_t>(degree) + 2)
+    throw InputError(where, fmt::format("must have at least {} points for a spline of degree {}, got {}", degree + 2,
+                                        degree, points_mm.size()));
+  Vec2 centre = Vec2::Zero();
+  for (const Vec2& p : points_mm) centre += p / static_cast<double>(points_mm.size());
+  if (centre_mm) centre = *centre_mm;
+  for (std::size_t i = 0; i < points_mm.size(); ++i)
+    if (!((points_mm[i] - centre).norm() > 0.0))
+      throw InputError(where, fmt::format("must have a radius > 0 at every angle, point {} is the centre", i + 1));
+  if (scattered) sort_by_angle(points_mm, centre);
+  std::vector<double> angles = unwound(points_mm, centre);
+  if (angles.back() < angles.front()) {
+    std::reverse(points_mm.begin(), points_mm.end());
+    angles = unwound(points_mm, centre);
+  }
+  check_single_valued(angles, where);
+  std::vector<double> radii;
+  for (const Vec2& p : points_mm) radii.push_back((p - centre).norm());
+  return boundary_from_radii(centre, angles, radii, degree, where);
+}
+
+Boundary boundary_from_radius(const Vec2& centre_mm, const std::function<double(double)>& radius_mm,
+                              const BoundaryOptions& options, const InputLocation& where) {
+  std::vector<double> angles;
+  std::vector<double> radii;
+  for (int i = 0; i < options.samples; ++i) {
+    angles.push_back(kTurn * i / options.samples - std::numbers::pi);
+    radii.push_back(radius_mm(angles.back()));
+    if (!(radii.back() > 0.0) || !std::isfinite(radii.back()))
+      throw InputError(
+          where, fmt::format("must give a finite radius > 0 at every angle, at {} degrees it gives {}",
+                             degrees(angles.back()), std::isfinite(radii.back()) ? shortest(radii.back()) : "none"));
+  }
+  return boundary_from_radii(centre_mm, angles, radii, options.degree, where);
+}
+
+Boundary circle_boundary(const Vec2& centre_mm, double radius_mm, int degree) {
+  Boundary boundary;
+  boundary.centre_mm = centre_mm;
+  boundary.radius_mm = PeriodicSpline::constant(radius_mm, degree);
+  // A spline through equal values is that value but for rounding.
+  boundary.least_mm = radius_mm * (1.0 - 1e-12);
+  boundary.most_mm = radius_mm * (1.0 + 1e-12);
+  return boundary;
+}
+
+Boundary rectangle_boundary(const Vec2& centre_mm, double width_mm, double height_mm, double corner_mm,
+                            const BoundaryOptions& options, const InputLocation& where) {
+  const double a = 0.5 * width_mm;
+  const double b = 0.5 * height_mm;
+  const double c = std::min(corner_mm, std::min(a, b));
+  const auto radius = [=](double angle) {
+    const double x = std::abs(std::cos(angle));
+    const double y = std::abs(std::sin(angle));
+    const double to_side = std::min(x > 0.0 ? a / x : 1e300, y > 0.0 ? b / y : 1e300);
+    if (to_side * x <= a - c || to_side * y <= b - c) return to_side;
+    // On the corner's circle about (a - c, b - c): the farther root of |r (x, y) - centre| = c.
+    const double along = x * (a - c) + y * (b - c);
+    const double across = x * (b - c) - y * (a - c);
+    return along + std::sqrt(std::max(0.0, c * c - across * across));
+  };
+  return boundary_from_radius(centre_mm, radius, options, where);
+}
+
+Boundary boundary_of_intersection(const Vec2& centre_mm, const std::function<double(double, double)>& difference_mm,
+                                  double most_mm, const BoundaryOptions& options, const InputLocation& where) {
+  constexpr int kSteps = 256;
+  const auto radius = [&](double angle) {
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const auto f = [&](double r) { return difference_mm(centre_mm.x() + r * c, centre_mm.y() + r * s); };
+    double low = most_mm / kSteps;
+    double f_low = f(low);
+    for (int i = 2; i <= kSteps; ++i) {
+      double high = most_mm * i / kSteps;
+      const double f_high = f(high);
+      if (f_low == 0.0) return low;
+      if ((f_low < 0.0) != (f_high < 0.0) && std::isfinite(f_high)) {
+        while (high - low > 1e-15 * most_mm) {
+          const double middle = 0.5 * (low + high);
+          if (middle <= low || middle >= high) break;
+          const double value = f(middle);
+          ((value < 0.0) == (f_low < 0.0) ? low : high) = middle;
+        }
+        return 0.5 * (low + high);
+      }
+      low = high;
+      f_low = f_high;
+    }
+    throw InputError(where, fmt::format("must meet the base all round, at {} degrees it does not within {} mm",
+                                        degrees(angle), shortest(most_mm)));
+  };
+  return boundary_from_radius(centre_mm, radius, options, where);
+}
+
+Boundary scaled(const Boundary& boundary, double factor, double offset_mm, const InputLocation& where) {
+  Boundary result = boundary;
+  result.radius_mm = boundary.radius_mm.mapped(factor, offset_mm);
+  measure(result, where);
+  return result;
+}
+
+void check_nested(const Boundary& inner, const Boundary& outer, const InputLocation& where) {
+  constexpr int kAngles = 4096;
+  for (int i = 0; i < kAngles; ++i) {
+    const double angle = kTurn * i / kAngles;
+    const double r = inner.radius_mm.evaluate(angle);
+    const double R = outer.radius_mm.evaluate(angle);
+    if (!(r < R))
+      throw InputError(where, fmt::format("must not cross or touch the boundary round it, at {} degrees they have {} "
+                                          "and {} mm",
+                                          degrees(angle), fixed(r, 6), fixed(R, 6)));
+  }
+}
+
+}  // namespace retrace::fabrication::turning

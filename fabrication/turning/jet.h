@@ -1,0 +1,300 @@
+#pragma once
+
+// Automatic differentiation for surfaces of turning: a dual number with the two partial derivatives, and truncated
+// Taylor series in one variable, both over the elementary functions that a sag may use (A. Griewank, A. Walther,
+// Evaluating Derivatives, 2nd ed., SIAM 2008, tables 13.1 and 13.2). They nest: Series<Dual> is a series whose
+// coefficients carry their own derivatives.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace retrace::fabrication::turning {
+
+/// Most derivatives that a series carries.
+inline constexpr int kMostOrder = 9;
+
+/// A value with its partial derivatives with respect to x and y.
+struct Dual {
+  double v = 0.0;
+  double dx = 0.0;
+  double dy = 0.0;
+
+  Dual() = default;
+  Dual(double value) : v(value) {}  // NOLINT: constants are numbers too
+  Dual(double value, double by_x, double by_y) : v(value), dx(by_x), dy(by_y) {}
+};
+
+inline double value_of(double a) {
+  return a;
+}
+inline double value_of(const Dual& a) {
+  return a.v;
+}
+
+inline Dual operator-(const Dual& a) {
+  return {-a.v, -a.dx, -a.dy};
+}
+inline Dual operator+(const Dual& a, const Dual& b) {
+  return {a.v + b.v, a.dx + b.dx, a.dy + b.dy};
+}
+inline Dual operator-(const Dual& a, const Dual& b) {
+  return {a.v - b.v, a.dx - b.dx, a.dy - b.dy};
+}
+inline Dual operator*(const Dual& a, const Dual& b) {
+  return {a.v * b.v, a.dx * b.v + a.v * b.dx, a.dy * b.v + a.v * b.dy};
+}
+inline Dual operator/(const Dual& a, const Dual& b) {
+  const double v = a.v / b.v;
+  return {v, (a.dx - v * b.dx) / b.v, (a.dy - v * b.dy) / b.v};
+}
+
+/// Chain rule: f(a) with the derivative of f there.
+inline Dual chained(const Dual& a, double value, double slope) {
+  return {value, slope * a.dx, slope * a.dy};
+}
+inline Dual sqrt(const Dual& a) {
+  const double root = std::sqrt(a.v);
+  return chained(a, root, 0.5 / root);
+}
+inline Dual exp(const Dual& a) {
+  return chained(a, std::exp(a.v), std::exp(a.v));
+}
+inline Dual log(const Dual& a) {
+  return chained(a, std::log(a.v), 1.0 / a.v);
+}
+inline Dual sin(const Dual& a) {
+  return chained(a, std::sin(a.v), std::cos(a.v));
+}
+inline Dual cos(const Dual& a) {
+  return chained(a, std::cos(a.v), -std::sin(a.v));
+}
+inline Dual atan2(const Dual& y, const Dual& x) {
+  const double square = x.v * x.v + y.v * y.v;
+  return {std::atan2(y.v, x.v), (x.v * y.dx - y.v * x.dx) / square, (x.v * y.dy - y.v * x.dy) / square};
+}
+
+/// The start of a Taylor series: c[0] + c[1] t + ... + c[order] t^order. Results are as long as the shorter operand.
+template <class T>
+struct Series {
+  std::array<T, static_cast<std::size_t>(kMostOrder) + 1> c{};  ///< the first order + 1 of them count
+  int order = 0;
+
+  Series() = default;
+  explicit Series(int length) : order(length) {}
+  T& operator[](int k) { return c[static_cast<std::size_t>(k)]; }
+  const T& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
+};
+
+/// A constant that is as long as `like`.
+inline double constant_like(double, double value) {
+  return value;
+}
+inline Dual constant_like(const Dual&, double value) {
+  return value;
+}
+template <class T>
+Series<T> constant_like(const Series<T>& like, double value) {
+  Series<T> s(like.order);
+  s[0] = constant_like(like[0], value);
+  for (int k = 1; k <= like.order; ++k) s[k] = constant_like(like[0], 0.0);
+  return s;
+}
+
+/// value + slope t, to that order.
+template <class T>
+Series<T> line_series(const T& value, const T& slope, int order) {
+  Series<T> s(order);
+  s[0] = value;
+  if (order > 0) s[1] = slope;
+  for (int k = 2; k <= order; ++k) s[k] = constant_like(value, 0.0);
+  return s;
+}
+
+template <class T>
+double value_of(const Series<T>& a) {
+  return value_of(a[0]);
+}
+
+template <class T>
+Series<T> operator-(const Series<T>& a) {
+  Series<T> r(a.order);
+  for (int k = 0; k <= r.order; ++k) r[k] = -a[k];
+  return r;
+}
+template <class T>
+Series<T> operator+(const Series<T>& a, const Series<T>& b) {
+  Series<T> r(std::min(a.order, b.order));
+  for (int k = 0; k <= r.order; ++k) r[k] = a[k] + b[k];
+  return r;
+}
+template <class T>
+Series<T> operator-(const Series<T>& a, const Series<T>& b) {
+  Series<T> r(std::min(a.order, b.order));
+  for (int k = 0; k <= r.order; ++k) r[k] = a[k] - b[k];
+  return r;
+}
+template <class T>
+Series<T> operator*(const Series<T>& a, const Series<T>& b) {
+  Series<T> r(std::min(a.order, b.order));
+  for (int k = 0; k <= r.order; ++k) {
+    T sum = a[0] * b[k];
+    for (int i = 1; i <= k; ++i) sum = sum + a[i] * b[k - i];
+    r[k] = sum;
+  }
+  return r;
+}
+template <class T>
+Series<T> operator/(const Series<T>& a, const Series<T>& b) {
+  Series<T> r(std::min(a.order, b.order));
+  for (int k = 0; k <= r.order; ++k) {
+    T sum = a[k];
+    for (int i = 1; i <= k; ++i) sum = sum - b[i] * r[k - i];
+    r[k] = sum / b[0];
+  }
+  return r;
+}
+
+template <class T>
+Series<T> operator+(Series<T> a, double b) {
+  a[0] = a[0] + b;
+  return a;
+}
+template <class T>
+Series<T> operator+(double a, Series<T> b) {
+  return std::move(b) + a;
+}
+template <class T>
+Series<T> operator-(Series<T> a, double b) {
+  return std::move(a) + (-b);
+}
+template <class T>
+Series<T> operator-(double a, const Series<T>& b) {
+  return -b + a;
+}
+template <class T>
+Series<T> operator*(Series<T> a, double b) {
+  for (int k = 0; k <= a.order; ++k) a[k] = a[k] * b;
+  return a;
+}
+template <class T>
+Series<T> operator*(double a, Series<T> b) {
+  return std::move(b) * a;
+}
+template <class T>
+Series<T> operator/(Series<T> a, double b) {
+  return std::move(a) * (1.0 / b);
+}
+template <class T>
+Series<T> operator/(double a, const Series<T>& b) {
+  return constant_like(b, a) / b;
+}
+
+template <class T>
+Series<T> sqrt(const Series<T>& a) {
+  using std::sqrt;
+  Series<T> r(a.order);
+  r[0] = sqrt(a[0]);
+  for (int k = 1; k <= a.order; ++k) {
+    T sum = a[k];
+    for (int i = 1; i < k; ++i) sum = sum - r[i] * r[k - i];
+    r[k] = sum / (r[0] + r[0]);
+  }
+  return r;
+}
+template <class T>
+Series<T> exp(const Series<T>& a) {
+  using std::exp;
+  Series<T> r(a.order);
+  r[0] = exp(a[0]);
+  for (int k = 1; k <= a.order; ++k) {
+    T sum = constant_like(a[0], 0.0);
+    for (int i = 1; i <= k; ++i) sum = sum + static_cast<double>(i) * a[i] * r[k - i];
+    r[k] = sum / static_cast<double>(k);
+  }
+  return r;
+}
+/// The antiderivative of `slope` that is `start` at t = 0; one order longer than needed orders are cut.
+template <class T>
+Series<T> integral(const T& start, const Series<T>& slope, int order) {
+  Series<T> r(order);
+  r[0] = start;
+  for (int k = 1; k <= order; ++k) r[k] = slope[k - 1] / static_cast<double>(k);
+  return r;
+}
+/// The derivative, whose last coefficient, which is not known, is 0.
+template <class T>
+Series<T> derivative(const Series<T>& a) {
+  Series<T> r(a.order);
+  for (int k = 0; k < a.order; ++k) r[k] = static_cast<double>(k + 1) * a[k + 1];
+  r[a.order] = constant_like(a[0], 0.0);
+  return r;
+}
+template <class T>
+Series<T> log(const Series<T>& a) {
+  using std::log;
+  return integral(log(a[0]), derivative(a) / a, a.order);
+}
+/// Sine and cosine together, as their recurrences need each other.
+template <class T>
+void sin_cos(const Series<T>& a, Series<T>& s, Series<T>& c) {
+  using std::cos;
+  using std::sin;
+  s = Series<T>(a.order);
+  c = Series<T>(a.order);
+  s[0] = sin(a[0]);
+  c[0] = cos(a[0]);
+  for (int k = 1; k <= a.order; ++k) {
+    T sum_s = constant_like(a[0], 0.0);
+    T sum_c = constant_like(a[0], 0.0);
+    for (int i = 1; i <= k; ++i) {
+      sum_s = sum_s + static_cast<double>(i) * a[i] * c[k - i];
+      sum_c = sum_c + static_cast<double>(i) * a[i] * s[k - i];
+    }
+    s[k] = sum_s / static_cast<double>(k);
+    c[k] = -sum_c / static_cast<double>(k);
+  }
+}
+template <class T>
+Series<T> sin(const Series<T>& a) {
+  Series<T> s;
+  Series<T> c;
+  sin_cos(a, s, c);
+  return s;
+}
+template <class T>
+Series<T> cos(const Series<T>& a) {
+  Series<T> s;
+  Series<T> c;
+  sin_cos(a, s, c);
+  return c;
+}
+template <class T>
+Series<T> atan2(const Series<T>& y, const Series<T>& x) {
+  using std::atan2;
+  const Series<T> slope = (x * derivative(y) - y * derivative(x)) / (x * x + y * y);
+  return integral(atan2(y[0], x[0]), slope, std::min(x.order, y.order));
+}
+
+/// a to a whole power >= 0, exact where a is 0.
+template <class T>
+T power(const T& a, int exponent) {
+  T result = constant_like(a, 1.0);
+  T base = a;
+  for (int e = exponent; e > 0; e >>= 1) {
+    if ((e & 1) != 0) result = result * base;
+    if (e > 1) base = base * base;
+  }
+  return result;
+}
+
+/// Horner's rule from the highest of `count` coefficients down.
+template <class T>
+T horner(const double* coefficients, int count, const T& x) {
+  T sum = constant_like(x, count > 0 ? coefficients[count - 1] : 0.0);
+  for (int k = count - 2; k >= 0; --k) sum = sum * x + coefficients[k];
+  return sum;
+}
+
+}  // namespace retrace::fabrication::turning

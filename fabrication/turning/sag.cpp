@@ -1,0 +1,105 @@
+#include "fabrication/turning/sag.h"
+
+#include <array>
+#include <cmath>
+
+namespace retrace::fabrication::turning {
+namespace {
+
+double factorial(int n) {
+  double f = 1.0;
+  for (int k = 2; k <= n; ++k) f *= k;
+  return f;
+}
+
+double binomial(int n, int k) {
+  return factorial(n) / (factorial(k) * factorial(n - k));
+}
+
+/// Adds value * x^i y^j (x^2 + y^2)^power.
+void add_ring(XyPolynomial& p, int i, int j, int power, double value) {
+  for (int k = 0; k <= power; ++k)
+    p.coefficients[p.index(i + 2 * (power - k), j + 2 * k)] += value * binomial(power, k);
+}
+
+/// Adds one term: its radial polynomial times the real or imaginary part of (x + i y)^|m|.
+void add_term(XyPolynomial& p, const ZernikeTerm& term) {
+  const int m = std::abs(term.m);
+  const double norm = std::sqrt((term.n + 1.0) * (m == 0 ? 1.0 : 2.0));
+  for (int k = 0; 2 * k <= term.n - m; ++k) {
+    const double radial = (k % 2 == 0 ? 1.0 : -1.0) * factorial(term.n - k) /
+                          (factorial(k) * factorial((term.n + m) / 2 - k) * factorial((term.n - m) / 2 - k));
+    const int power = (term.n - m) / 2 - k;
+    for (int j = term.m < 0 ? 1 : 0; j <= m; j += 2) {
+      const double sign = (j / 2) % 2 == 0 ? 1.0 : -1.0;
+      add_ring(p, m - j, j, power, term.coefficient_mm * norm * radial * sign * binomial(m, j));
+    }
+  }
+}
+
+template <class T>
+T evaluate_asphere(const Asphere& a, const T& x, const T& y) {
+  using std::sqrt;
+  const T s = x * x + y * y;
+  T z = s * a.curvature_per_mm;
+  if (a.curvature_per_mm != 0.0 && a.conic != -1.0)
+    z = z / (sqrt(1.0 - s * ((1.0 + a.conic) * a.curvature_per_mm * a.curvature_per_mm)) + 1.0);
+  else
+    z = z * 0.5;
+  if (!a.even.empty()) z = z + s * s * horner(a.even.data(), static_cast<int>(a.even.size()), s);
+  return z;
+}
+
+/// Horner's rule in y within Horner's rule in x.
+template <class T>
+T evaluate_polynomial(const XyPolynomial& p, const T& x_mm, const T& y_mm) {
+  const T x = x_mm * (1.0 / p.scale_mm);
+  const T y = y_mm * (1.0 / p.scale_mm);
+  T sum = constant_like(x, p.coefficients[p.index(p.degree, 0)]);
+  for (int i = p.degree - 1; i >= 0; --i) sum = sum * x + horner(&p.coefficients[p.index(i, 0)], p.degree - i + 1, y);
+  return sum;
+}
+
+template <class T>
+T evaluate_formula(const Formula& formula, const T& x, const T& y) {
+  using std::atan2;
+  using std::sqrt;
+  const T none = constant_like(x, 0.0);
+  // Polar variables have no derivatives at the centre; there they must not spoil a formula that has none of them.
+  const std::array<T, 4> variables = {x, y, formula.uses(2) ? sqrt(x * x + y * y) : none,
+                                      formula.uses(3) ? atan2(y, x) : none};
+  return formula.evaluate(variables.data());
+}
+
+}  // namespace
+
+XyPolynomial polynomial_of(const std::vector<ZernikeTerm>& terms, double radius_mm) {
+  XyPolynomial p;
+  p.scale_mm = radius_mm;
+  for (const ZernikeTerm& term : terms) p.degree = std::max(p.degree, term.n);
+  p.coefficients.assign(XyPolynomial::count(p.degree), 0.0);
+  for (const ZernikeTerm& term : terms) add_term(p, term);
+  return p;
+}
+
+template <class T>
+T Sag::evaluate(const T& x, const T& y) const {
+  const bool has_asphere = asphere.curvature_per_mm != 0.0 || !asphere.even.empty();
+  if (polynomial && !has_asphere && !formula) return evaluate_polynomial(*polynomial, x, y);
+  T z = has_asphere ? evaluate_asphere(asphere, x, y) : constant_like(x, 0.0);
+  if (polynomial) z = z + evaluate_polynomial(*polynomial, x, y);
+  if (formula) z = z + evaluate_formula(*formula, x, y);
+  return z;
+}
+
+template double Sag::evaluate(const double&, const double&) const;
+template Dual Sag::evaluate(const Dual&, const Dual&) const;
+template Series<double> Sag::evaluate(const Series<double>&, const Series<double>&) const;
+template Series<Dual> Sag::evaluate(const Series<Dual>&, const Series<Dual>&) const;
+template Series<Series<double>> Sag::evaluate(const Series<Series<double>>&, const Series<Series<double>>&) const;
+
+std::vector<std::string> sag_variables() {
+  return {"x", "y", "r", "theta"};
+}
+
+}  // namespace retrace::fabrication::turning

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/error.h"
+#include "fabrication/turning/boundary.h"
+#include "fabrication/turning/sag.h"
+#include "geometry/vec.h"
+
+namespace retrace::fabrication::turning {
+
+/// Most derivatives that a blend matches.
+inline constexpr int kMostBlendOrder = 4;
+
+/// The polynomial of degree 2 d + 1 between two radii that has the first d + 1 Taylor coefficients of a curve at each
+/// end: Hermite's, in the share of the way between them, so that no system is solved (W. Gautschi, Numerical Analysis,
+/// 2nd ed., section 2.2.7, two-point case).
+/// \param share 0 at the first end, 1 at the second \param width of the interval
+/// \param first, second Taylor coefficients by radius at the ends, `order` + 1 each
+template <class T>
+T hermite_blend(const T& share, const T& width, const Series<T>& first, const Series<T>& second, int order);
+
+/// A surface of its own on the base, with a blend round it.
+struct Lenslet {
+  Sag sag;                                                          ///< in its own frame
+  geometry::Vec3 origin_mm = geometry::Vec3::Zero();                ///< of its frame, in that of the part
+  Eigen::Matrix3d part_from_lenslet = Eigen::Matrix3d::Identity();  ///< its z is the base's normal if it is tilted
+  Boundary inner;                                                   ///< where the blend leaves it
+  Boundary outer;                                                   ///< where the blend reaches the base
+  int blend_order = 2;                                              ///< d: C^d at both
+
+  /// Its surface as z(x, y) in the part's frame.
+  template <class T>
+  T evaluate(const T& x_mm, const T& y_mm) const;
+};
+
+/// How the base goes on outside of the region in which it is defined.
+struct Extrapolation {
+  Boundary boundary;
+  int order = 2;  ///< degree n of the polynomials along radial lines: C^n
+};
+
+/// What defines the surface at a place.
+enum class Zone { base, extrapolation, lenslet, blend };
+
+/// The explicit surface z(x, y) of a turned part, material below it: a base with its extrapolation and lenslets.
+class TurnedSurface {
+ public:
+  /// \throw InputError at `where` for lenslets whose blends overlap
+  TurnedSurface(Sag base, std::optional<Extrapolation> extrapolation, std::vector<Lenslet> lenslets,
+                const InputLocation& where);
+
+  /// z in mm with all derivatives that T carries (double, Dual or Series<double>); not finite where there is no value.
+  template <class T>
+  T evaluate(const T& x_mm, const T& y_mm) const;
+
+  /// The base alone, with its extrapolation.
+  template <class T>
+  T evaluate_base(const T& x_mm, const T& y_mm) const;
+
+  double height_mm(double x_mm, double y_mm) const { return evaluate(x_mm, y_mm); }
+  /// Height and both slopes.
+  Dual gradient(double x_mm, double y_mm) const { return evaluate(Dual(x_mm, 1.0, 0.0), Dual(y_mm, 0.0, 1.0)); }
+  Zone zone_at(double x_mm, double y_mm) const;
+
+  const Sag& base() const { return base_; }
+  const std::optional<Extrapolation>& extrapolation() const { return extrapolation_; }
+  const std::vector<Lenslet>& lenslets() const { return lenslets_; }
+  /// Nothing but a polynomial, everywhere.
+  bool is_polynomial_everywhere() const { return lenslets_.empty() && !extrapolation_ && is_polynomial(base_); }
+
+ private:
+  /// The lenslet whose outer boundary holds the point; null if none does.
+  const Lenslet* lenslet_at(double x_mm, double y_mm) const;
+  void sort_into_grid(const InputLocation& where);
+
+  Sag base_;
+  std::optional<Extrapolation> extrapolation_;
+  std::vector<Lenslet> lenslets_;
+  // Square cells, each with the lenslets that reach into it.
+  geometry::Vec2 grid_low_ = geometry::Vec2::Zero();
+  double cell_mm_ = 1.0;
+  long columns_ = 0;
+  long rows_ = 0;
+  std::vector<std::vector<std::uint32_t>> cells_;
+};
+
+/// Puts the lenslet's frame on the base at (x, y): its origin `height_mm` above the base along its normal, its z axis
+/// the normal if `tilted`. \throw InputError where the base has no finite slope
+void place_on_base(Lenslet& lenslet, const TurnedSurface& base, double x_mm, double y_mm, double height_mm, bool tilted,
+                   const InputLocation& where);
+
+/// Slopes above this are taken for vertical: 89 degrees.
+inline constexpr double kSteepestSlope = 57.28996163075943;
+
+/// \throw InputError naming the place within `radius_mm` of the origin where the surface has no finite height or a
+/// vertical slope, sampled on circles
+void check_surface(const TurnedSurface& surface, double radius_mm, const InputLocation& where);
+
+extern template double TurnedSurface::evaluate(const double&, const double&) const;
+extern template Dual TurnedSurface::evaluate(const Dual&, const Dual&) const;
+extern template Series<double> TurnedSurface::evaluate(const Series<double>&, const Series<double>&) const;
+extern template double TurnedSurface::evaluate_base(const double&, const double&) const;
+extern template Dual TurnedSurface::evaluate_base(const Dual&, const Dual&) const;
+extern template Series<double> TurnedSurface::evaluate_base(const Series<double>&, const Series<double>&) const;
+extern template double hermite_blend(const double&, const double&, const Series<double>&, const Series<double>&, int);
+extern template double Lenslet::evaluate(const double&, const double&) const;
+extern template Dual Lenslet::evaluate(const Dual&, const Dual&) const;
+extern template Series<double> Lenslet::evaluate(const Series<double>&, const Series<double>&) const;
+
+}  // namespace retrace::fabrication::turning

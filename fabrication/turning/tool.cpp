@@ -1,0 +1,108 @@
+#include "fabrication/turning/tool.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/number_format.h"
+
+namespace retrace::fabrication::turning {
+namespace {
+
+using geometry::Vec3;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+Vec3 normal_of(const SlopeSample& s) {
+  return Vec3(-s.radial, -s.along, 1.0).normalized();
+}
+
+bool clears(const TurningTool& tool, const std::vector<SlopeSample>& samples) {
+  const ToolFrame frame = tool_frame(tool);
+  return std::all_of(samples.begin(), samples.end(), [&](const SlopeSample& s) {
+    const Contact contact = contact_of(frame, normal_of(s));
+    return contact.clearance_needed_deg <= tool.clearance_deg &&
+           2.0 * std::abs(contact.window_angle_deg) <= tool.window_deg;
+  });
+}
+
+}  // namespace
+
+std::vector<std::string> tool_warnings(const TurningTool& tool) {
+  std::vector<std::string> warnings;
+  if (tool.rake_deg < kTriedRakeLowDeg || tool.rake_deg > kTriedRakeHighDeg)
+    warnings.push_back(
+        fmt::format("a rake of {} degrees lies outside of the -45 to 18 degrees that were tried with good "
+                    "finish",
+                    shortest(tool.rake_deg)));
+  if (std::abs(tool.skew_deg) > kTriedSkewDeg)
+    warnings.push_back(
+        fmt::format("a skew of {} degrees lies outside of the -60 to 60 degrees that were tried with "
+                    "good finish",
+                    shortest(tool.skew_deg)));
+  return warnings;
+}
+
+ToolFrame tool_frame(const TurningTool& tool) {
+  const double skew = tool.skew_deg * kDegree;
+  const double rake = tool.rake_deg * kDegree;
+  const Vec3 cut(std::sin(skew), std::cos(skew), 0.0);
+  ToolFrame frame;
+  frame.across = {std::cos(skew), -std::sin(skew), 0.0};
+  frame.rake_normal = std::cos(rake) * cut + std::sin(rake) * Vec3::UnitZ();
+  frame.up = std::cos(rake) * Vec3::UnitZ() - std::sin(rake) * cut;
+  return frame;
+}
+
+Contact contact_of(const ToolFrame& frame, const Vec3& normal) {
+  const double along = std::clamp(normal.dot(frame.rake_normal), -1.0, 1.0);
+  // The nose touches with the point whose direction from its middle is opposite to the normal within the rake face.
+  const double angle = std::atan2(-normal.dot(frame.across), normal.dot(frame.up));
+  return {std::asin(along) / kDegree, angle / kDegree};
+}
+
+Angle clearance_along_cut(Angle clearance, Angle skew) {
+  return Angle::from_rad(std::asin(std::sin(clearance.rad()) / std::cos(skew.rad())));
+}
+
+ClearanceFigures clearance_figures(const TurningTool& tool, const std::vector<SlopeSample>& samples) {
+  const ToolFrame frame = tool_frame(tool);
+  ClearanceFigures figures;
+  for (const SlopeSample& s : samples) {
+    const Contact contact = contact_of(frame, normal_of(s));
+    if (contact.clearance_needed_deg > figures.clearance_needed_deg) {
+      figures.clearance_needed_deg = contact.clearance_needed_deg;
+      figures.clearance_at_mm = s.at_mm;
+    }
+    if (2.0 * std::abs(contact.window_angle_deg) > figures.window_needed_deg) {
+      figures.window_needed_deg = 2.0 * std::abs(contact.window_angle_deg);
+      figures.window_at_mm = s.at_mm;
+    }
+  }
+  return figures;
+}
+
+std::optional<double> least_skew_deg(TurningTool tool, const std::vector<SlopeSample>& samples, double most_deg) {
+  constexpr double kCoarse = 0.25;
+  const auto clears_at = [&](double skew) {
+    tool.skew_deg = skew;
+    return clears(tool, samples);
+  };
+  if (clears_at(0.0)) return 0.0;
+  for (int i = 1; kCoarse * i <= most_deg + 1e-9; ++i)
+    for (const double sign : {1.0, -1.0}) {
+      if (!clears_at(sign * kCoarse * i)) continue;
+      double failing = kCoarse * (i - 1);
+      double clearing = kCoarse * i;
+      while (clearing - failing > 0.005) {
+        const double middle = 0.5 * (failing + clearing);
+        (clears_at(sign * middle) ? clearing : failing) = middle;
+      }
+      return sign * std::min(most_deg, std::ceil(clearing * 100.0) / 100.0);
+    }
+  return std::nullopt;
+}
+
+}  // namespace retrace::fabrication::turning

@@ -1,0 +1,167 @@
+#include "fabrication/turning/sag.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+// Jets and sags against closed forms, identities and difference quotients.
+
+namespace retrace::fabrication::turning {
+namespace {
+
+const InputLocation kHere{"part.toml", 7, "base.formula"};
+
+Series<double> line(double x, double slope, int order = kMostOrder) {
+  return line_series(x, slope, order);
+}
+
+void expect_series(const Series<double>& a, const Series<double>& b, double tolerance) {
+  ASSERT_EQ(a.order, b.order);
+  for (int k = 0; k <= a.order; ++k) EXPECT_NEAR(a[k], b[k], tolerance * (1.0 + std::abs(b[k]))) << "order " << k;
+}
+
+TEST(Jet, IdentitiesHoldToEveryOrder) {
+  const Series<double> x = line(1.7, 0.6) + line(0.0, 1.0) * line(0.2, -0.4);
+  expect_series(sin(x) * sin(x) + cos(x) * cos(x), constant_like(x, 1.0), 1e-14);
+  expect_series(exp(log(x)), x, 1e-13);
+  expect_series(sqrt(x) * sqrt(x), x, 1e-14);
+  expect_series((x * x) / x, x, 1e-14);
+  expect_series(atan2(sin(x), cos(x)), x, 1e-13);
+  expect_series(power(x, 5), x * x * x * x * x, 1e-13);
+}
+
+TEST(Jet, ExponentialHasInverseFactorials) {
+  const Series<double> e = exp(line(0.0, 1.0));
+  double factorial = 1.0;
+  for (int k = 0; k <= kMostOrder; ++k) {
+    if (k > 0) factorial *= k;
+    EXPECT_NEAR(e[k], 1.0 / factorial, 1e-16);
+  }
+}
+
+/// Gradient by Dual and second derivative by Series against central differences of values.
+void expect_derivatives(const Sag& sag, double x, double y) {
+  const double h = 1e-4;
+  const Dual z = sag.evaluate(Dual(x, 1.0, 0.0), Dual(y, 0.0, 1.0));
+  EXPECT_EQ(z.v, sag.evaluate(x, y));
+  EXPECT_NEAR(z.dx, (sag.evaluate(x + h, y) - sag.evaluate(x - h, y)) / (2 * h), 1e-6);
+  EXPECT_NEAR(z.dy, (sag.evaluate(x, y + h) - sag.evaluate(x, y - h)) / (2 * h), 1e-6);
+  const double c = std::cos(0.4);
+  const double s = std::sin(0.4);
+  const Series<double> along = sag.evaluate(line(x, c), line(y, s));
+  EXPECT_NEAR(along[1], z.dx * c + z.dy * s, 1e-12);
+  const double second =
+      (sag.evaluate(x + h * c, y + h * s) - 2 * sag.evaluate(x, y) + sag.evaluate(x - h * c, y - h * s)) / (h * h);
+  EXPECT_NEAR(2.0 * along[2], second, 1e-5);
+  // The whole series stands for the function around.
+  const double t = 1e-2;
+  EXPECT_NEAR(horner(along.c.data(), along.order + 1, t), sag.evaluate(x + t * c, y + t * s), 1e-14);
+}
+
+TEST(Sag, SphereIsASphere) {
+  Sag sag;
+  sag.asphere.curvature_per_mm = 0.1;
+  EXPECT_NEAR(sag.evaluate(3.0, 4.0), 10.0 - std::sqrt(75.0), 1e-14);
+  EXPECT_TRUE(std::isnan(sag.evaluate(8.0, 7.0)));
+  expect_derivatives(sag, 3.0, 4.0);
+}
+
+TEST(Sag, AsphereAndParaboloid) {
+  Sag sag;
+  sag.asphere = {0.2, -1.0, {1e-3, -2e-5}};
+  EXPECT_NEAR(sag.evaluate(1.0, 1.0), 0.2 + 1e-3 * 4.0 - 2e-5 * 8.0, 1e-15);
+  sag.asphere.conic = -0.6;
+  expect_derivatives(sag, 1.1, -0.3);
+}
+
+TEST(Sag, PolynomialInXAndY) {
+  Sag sag;
+  XyPolynomial p{2.0, 3, std::vector<double>(XyPolynomial::count(3), 0.0)};
+  p.coefficients[p.index(2, 1)] = 0.5;
+  p.coefficients[p.index(0, 3)] = -0.25;
+  p.coefficients[p.index(0, 0)] = 1.0;
+  sag.polynomial = p;
+  EXPECT_NEAR(sag.evaluate(1.0, 3.0), 1.0 + 0.5 * 0.25 * 1.5 - 0.25 * 3.375, 1e-15);
+  expect_derivatives(sag, 0.4, -1.2);
+}
+
+TEST(Sag, ZernikeTermsAreOrthonormal) {
+  const std::vector<std::pair<int, int>> terms = {{0, 0}, {1, 1}, {1, -1}, {2, 0}, {2, -2}, {3, 1}, {4, 0}, {5, -3}};
+  std::vector<Sag> sags;
+  for (const auto& [n, m] : terms) {
+    sags.emplace_back();
+    sags.back().polynomial = polynomial_of({{n, m, 1.0}}, 2.0);
+  }
+  for (std::size_t a = 0; a < terms.size(); ++a)
+    for (std::size_t b = a; b < terms.size(); ++b) {
+      double sum = 0.0;
+      const int radii = 400;
+      const int angles = 32;
+      for (int i = 0; i < radii; ++i)
+        for (int k = 0; k < angles; ++k) {
+          const double r = 2.0 * std::sqrt((i + 0.5) / radii);
+          const double t = 2.0 * std::numbers::pi * k / angles;
+          sum += sags[a].evaluate(r * std::cos(t), r * std::sin(t)) *
+                 sags[b].evaluate(r * std::cos(t), r * std::sin(t)) / (radii * angles);
+        }
+      EXPECT_NEAR(sum, a == b ? 1.0 : 0.0, 1e-4) << a << " " << b;
+    }
+  EXPECT_NEAR(sags[6].evaluate(1.0, 0.0), std::sqrt(5.0) * (6.0 / 16 - 6.0 / 4 + 1.0), 1e-14);
+  EXPECT_NEAR(sags[3].evaluate(0.0, 2.0), std::sqrt(3.0), 1e-14);
+}
+
+TEST(Formula, HasTheUsualRules) {
+  const std::string texts[] = {"-x^2",    "2^3^0.5",      "1-2-3",       "x*y/2+3.5e0", "atan2(y,x)",
+                               "sqrt(r)", "cosh(x)-1",    "2*-x",        "x^-2",        "tanh(x)*asin(x/2)",
+                               "abs(-y)", "acos(x/3)*pi", "exp(log(y))", "(x+y)^2.5",   "sinh(y)+tan(x)"};
+  const double x = 0.8;
+  const double y = 1.7;
+  const double r = std::hypot(x, y);
+  const double expected[] = {-x * x,
+                             std::pow(2.0, std::pow(3.0, 0.5)),
+                             -4.0,
+                             x * y / 2 + 3.5,
+                             std::atan2(y, x),
+                             std::sqrt(r),
+                             std::cosh(x) - 1,
+                             -2 * x,
+                             1 / (x * x),
+                             std::tanh(x) * std::asin(x / 2),
+                             y,
+                             std::acos(x / 3) * std::numbers::pi,
+                             y,
+                             std::pow(x + y, 2.5),
+                             std::sinh(y) + std::tan(x)};
+  for (std::size_t i = 0; i < std::size(texts); ++i) {
+    Sag sag;
+    sag.formula = parse_formula(texts[i], sag_variables(), kHere);
+    EXPECT_NEAR(sag.evaluate(x, y), expected[i], 1e-14 * (1 + std::abs(expected[i]))) << texts[i];
+    if (i != 1 && i != 2) expect_derivatives(sag, x, y);
+  }
+}
+
+TEST(Formula, UsesPolarVariablesOnlyWhereItSaysSo) {
+  Sag sag;
+  sag.formula = parse_formula("0.1*x^2+0.2*y^2", sag_variables(), kHere);
+  EXPECT_EQ(sag.evaluate(Dual(0.0, 1.0, 0.0), Dual(0.0, 0.0, 1.0)).dx, 0.0);
+  EXPECT_FALSE(sag.formula->uses(2));
+  EXPECT_TRUE(parse_formula("r^2", sag_variables(), kHere).uses(2));
+}
+
+TEST(Formula, SaysWhereItDoesNotParse) {
+  const char* const bad[] = {"",         "x+",     "(x",   "x)",     "3x",    "z+1",       "sin()",
+                             "sin(x,y)", "x,y",    "x=3",  "1..2",   "\"a\"", "x ? y : 1", "x == y",
+                             "atan2(x)", "pi = 3", "x; y", "foo(x)", "1e400"};
+  for (const char* const text : bad) {
+    try {
+      parse_formula(text, sag_variables(), kHere);
+      ADD_FAILURE() << text << " was taken";
+    } catch (const InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with("part.toml:7: base.formula: ")) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::turning

@@ -1,0 +1,4 @@
+retrace_test(turning_surface_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/sag_test.cpp ${CMAKE_CURRENT_LIST_DIR}/boundary_test.cpp ${CMAKE_CURRENT_LIST_DIR}/surface_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/tool_test.cpp
+  LIBRARIES retrace::turning)
