@@ -393,7 +393,7 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   app.get_formatter()->column_width(34);
   add_common(app, line.common);
   add_rre(app, line.rre);
-  app.add_subcommand("inspect", "what a design is: counts, areas, depth, limits of total reflection")
+  app.add_subcommand("inspect", "what a design is: counts, areas, limits of total reflection; its drawings")
       ->add_option("DESIGN", line.design, "design file; - is standard input")
       ->required()
       ->check(not_empty());

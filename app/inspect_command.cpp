@@ -1,17 +1,36 @@
 #include "app/commands.h"
 #include "app/output.h"
+#include "report/drawing/design_picture.h"
+#include "report/drawing/design_sheets.h"
 #include "studies/design/design_reader.h"
+#include "studies/design/part_of_design.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 
 namespace retrace::app {
+namespace {
+
+/// Plan, section and view of the design.
+std::vector<OutputFile> drawings_of(const studies::Design& design, std::vector<std::string>& warnings) {
+  const studies::DesignDrawing drawing = studies::draw_design(design, studies::part_of_design(design, nullptr));
+  std::vector<OutputFile> files = {{"plan.svg", report::plan_svg(drawing)}};
+  if (drawing.section) files.push_back({"section.svg", report::section_svg(drawing)});
+  files.push_back({"view.png", report::view_png(studies::view_of(design))});
+  warnings.insert(warnings.end(), drawing.warnings.begin(), drawing.warnings.end());
+  return files;
+}
+
+}  // namespace
 
 ExitCode run_inspect_command(const CommandLine& line) {
   const studies::Design design = studies::read_design(line.design, line.common.overrides);
-  const studies::Inspection inspection = studies::inspect(design, materials::MaterialLibrary::shipped());
-  prepare_outputs(line.common, {files_read({design}), "inspect.json", {}});
+  studies::Inspection inspection = studies::inspect(design, materials::MaterialLibrary::shipped());
+  prepare_outputs(line.common, {files_read({design}), "inspect.json", {"plan.svg", "section.svg", "view.png"}});
+  std::vector<OutputFile> files;
+  if (!line.common.out.empty()) files = drawings_of(design, inspection.warnings);
   const std::string json = studies::inspect_json(inspection);
-  write_outputs(line.common, json, {{"inspect.json", json}}, studies::inspect_text(inspection));
+  files.push_back({"inspect.json", json});
+  write_outputs(line.common, json, files, studies::inspect_text(inspection));
   print_warnings(line.common, inspection.warnings);
   return ExitCode::done;
 }

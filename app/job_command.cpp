@@ -19,7 +19,6 @@ ExitCode run_job_command(const CommandLine& line) {
   outputs.out.clear();
   const std::string text = job_text_at(made, out);
   FileNames names{files_read({design}), "", {}};
-  if (design.mask) names.designs.push_back(design.mask->file.string());
   for (const std::string& file : files_of_making(line.job)) names.designs.push_back(file);
   prepare_outputs(outputs, names);
   if (!out.empty()) {

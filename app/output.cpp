@@ -57,6 +57,7 @@ std::vector<std::string> files_read(const std::vector<studies::Design>& designs)
   for (const studies::Design& design : designs) {
     files.push_back(design.source);
     if (!design.texture.height_map_file.empty()) files.push_back(design.texture.height_map_file.string());
+    if (design.mask) files.push_back(design.mask->file.string());
     if (design.mesh) files.push_back(design.mesh->file.string());
     if (design.spectrum && !design.spectrum->file.empty()) files.push_back(design.spectrum->file.string());
   }

@@ -62,7 +62,7 @@ struct LightSpectrum {
   InputLocation location;      ///< where it was given, for whoever cannot read the file or finds no index there
 };
 
-/// A picture whose dark pixels say which elements are there. Only fabrication jobs know what to do with it.
+/// A picture whose dark pixels say which elements are there.
 struct ArrayMask {
   std::string name;            ///< of the file, as given
   std::filesystem::path file;  ///< the same, from the working directory

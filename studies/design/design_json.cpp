@@ -45,7 +45,8 @@ struct ElementJson {
   }
 };
 
-Json array_json(const PartSpec& part) {
+Json array_json(const Design& design) {
+  const PartSpec& part = design.part;
   Json array = {{"arrangement", name_of(part.arrangement)}};
   if (part.arrangement == Arrangement::single) return array;
   array["extent"] = part.extent == Extent::infinite ? "infinite" : "finite";
@@ -64,6 +65,7 @@ Json array_json(const PartSpec& part) {
     array["overlap_percent"] = part.overlap_percent;
     array["shifted_rows"] = part.shifted_rows == RowParity::even ? "even" : "odd";
   }
+  if (design.mask) array.update({{"mask", design.mask->name}, {"mask_threshold", design.mask->threshold}});
   return array;
 }
 
@@ -194,7 +196,7 @@ nlohmann::ordered_json to_json(const Design& design) {
     json["part"] = {{"mesh", design.mesh->name}, {"allow_open", design.mesh->allow_open}};
   } else {
     json["element"] = std::visit(ElementJson{}, design.part.element);
-    json["array"] = array_json(design.part);
+    json["array"] = array_json(design);
   }
   if (design.facet_planes) json["part"] = {{"facets", design.facet_planes->name}};
   json["body"] = body;

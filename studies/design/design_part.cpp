@@ -2,10 +2,14 @@
 
 #include "core/atomic_file.h"
 #include "studies/design/facet_planes_reader.h"
+#include "studies/design/mask_part.h"
 
 namespace retrace::studies {
 
 geometry::Part part_of(const Design& design) {
+  if (design.mask && design.facet_planes)
+    throw InputError(design.mask->location, "not allowed together with facets in [part]");
+  if (design.mask) return geometry::build_part(design.part, elements_of_mask(design));
   if (!design.facet_planes) return geometry::build_part(design.part);
   const std::string file = design.facet_planes->file.string();
   const geometry::FacetPlanes planes = parse_facet_planes(read_file(design.facet_planes->file), file, design.part);

@@ -5,8 +5,8 @@
 
 namespace retrace::studies {
 
-/// The part of a design, with the planes of its own facets if it names a table of them.
-/// \throw InputError as geometry::build_part(), and for a table that cannot be read or understood
+/// The part of a design: the elements that its mask leaves, with the planes of their own facets if it names a table.
+/// \throw InputError as geometry::build_part(), and for a table or a mask that cannot be read or understood
 geometry::Part part_of(const Design& design);
 
 }  // namespace retrace::studies

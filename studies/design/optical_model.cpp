@@ -227,7 +227,6 @@ const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double w
 }  // namespace
 
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library) {
-  if (design.mask) throw InputError(design.mask->location, "masks are cut (retrace job), not traced, in this version");
   OpticalModel model;
   const materials::Material& material = library.find(design.material, design.material_location);
   const materials::Spectrum light = wavelengths_to_trace(design);

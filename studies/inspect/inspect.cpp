@@ -73,7 +73,7 @@ geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_
 }
 
 std::string boundary_finding(const Design& design, double element_mm) {
-  bool is_whole = design.facet_planes.has_value();
+  bool is_whole = design.facet_planes.has_value() || design.mask.has_value();
   const geometry::Part part =
       is_whole ? part_of(design) : geometry::build_part(part_to_check(design.part, element_mm, is_whole));
   if (part.placements.size() != 1) return "not checked: the elements differ too much in size from their array";

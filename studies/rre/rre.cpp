@@ -57,6 +57,8 @@ void check(const RreRequest& request) {
 void check_planes(const Design& design, const RreRequest& request) {
   if (request.derivatives && design.facet_planes)
     throw InputError(design.facet_planes->location, "has no derivatives: leave out --derivatives");
+  if (request.derivatives && design.mask)
+    throw InputError(design.mask->location, "has no derivatives: leave out --derivatives");
 }
 
 /// A slope, a footprint or a far field is that of one wavelength: a mean of them over others would show none of them.

@@ -30,6 +30,7 @@ geometry::Rectangle element_box(const geometry::Element& element) {
 Design few_elements(const Design& design, std::vector<std::string>& remarks) {
   Design small = design;
   small.mask.reset();
+  if (design.mask) remarks.push_back("the mask is not shown");
   small.texture = {};
   if (design.texture.model != FacetTexture::Model::smooth) remarks.push_back("facets are shown smooth");
   small.facet_planes.reset();

@@ -36,8 +36,6 @@ geometry::PartSpec spec_of(const Design& design, SolidKind what) {
     spec.extent = geometry::Extent::finite;
     return spec;
   }
-  if (design.mask)
-    throw InputError(design.mask->location, "masks are cut (retrace job), not exported, in this version");
   if (spec.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"},
                      fmt::format("must be \"finite\" for --what {}, got \"infinite\"; --what element has one element",
@@ -73,12 +71,14 @@ void add_warnings(Solid& solid) {
 
 geometry::Part part_to_write(const Design& design, SolidKind what) {
   const geometry::PartSpec spec = spec_of(design, what);
-  if (!design.facet_planes) return geometry::build_welded_part(spec);
+  if (what == SolidKind::element && !design.facet_planes) return geometry::build_welded_part(spec);
+  if (!design.facet_planes && !design.mask) return geometry::build_welded_part(spec);
   if (what == SolidKind::element)
     throw InputError(design.facet_planes->location, "--what element has no planes of single facets; export the array");
   geometry::Part part = part_of(design);
   if (part.placements.size() != 1)
-    throw InputError(design.facet_planes->location, "arrays of more than some 2000 such elements are not exported");
+    throw InputError(design.mask ? design.mask->location : design.facet_planes->location,
+                     "arrays of more than some 2000 such elements are not exported");
   return part;
 }
 

@@ -210,7 +210,8 @@ TEST(Inspect, OutHoldsTheDocument) {
   const TemporaryFolder folder;
   const Outcome outcome = retrace(folder, {"inspect", "-", "--json", "-", "-o", "result"}, brick(5, "odd"));
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(folder.names(), (Arguments{"result", "result/inspect.json"}));
+  EXPECT_EQ(folder.names(),
+            (Arguments{"result", "result/inspect.json", "result/plan.svg", "result/section.svg", "result/view.png"}));
   EXPECT_EQ(folder.read("result/inspect.json"), outcome.out);
 }
 

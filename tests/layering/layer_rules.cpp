@@ -42,6 +42,7 @@ const std::map<std::string, Names>& study_rooms() {
       {"inspect", {"design"}},
       {"scene", {"design"}},
       {"solids", {"design"}},
+      {"drawing", {"design"}},
       {"metrology", {}},
       {"fabrication", {"design"}},
       {"forces", {}},

@@ -365,8 +365,9 @@ std::string files_of(const std::string& text, const std::string& source, std::sp
   std::string parts;
   try {
     const Design design = parse_design(text, source, overrides);
-    for (const fs::path& file : {design.texture.height_map_file, design.spectrum ? design.spectrum->file : fs::path(),
-                                 design.facet_planes ? design.facet_planes->file : fs::path()})
+    for (const fs::path& file :
+         {design.texture.height_map_file, design.spectrum ? design.spectrum->file : fs::path(),
+          design.facet_planes ? design.facet_planes->file : fs::path(), design.mask ? design.mask->file : fs::path()})
       if (!file.empty()) parts += file.filename().string() + ": " + fingerprint(read_file(file)) + "\n";
   } catch (const Error&) {
     return parts;

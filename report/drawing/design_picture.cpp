@@ -1,0 +1,62 @@
+#include "report/drawing/design_picture.h"
+
+#include <Eigen/Geometry>
+
+#include "report/canvas.h"
+#include "report/drawing/shaded_view.h"
+#include "report/style.h"
+
+namespace retrace::report {
+namespace {
+
+using geometry::Vec3;
+
+constexpr double kWidth = 860.0;
+constexpr double kHeight = 560.0;
+constexpr double kHead = 66.0;
+constexpr double kScale = 2.0;
+constexpr double kAxisLength = 34.0;
+constexpr Font kRemarkFont{11.5, false};
+
+/// From below, so that the elements are in front; y runs to the right and away.
+ViewDirection from_below() {
+  return {Vec3(-0.48, -0.62, -0.72).normalized(), -Vec3::UnitZ()};
+}
+
+void draw_axes(Canvas& canvas, const ViewDirection& direction, Point origin) {
+  const Vec3 right = direction.up.cross(direction.from).normalized();
+  const Vec3 up = direction.from.cross(right);
+  const std::array<std::pair<Vec3, const char*>, 3> axes = {
+      {{Vec3::UnitX(), "x"}, {Vec3::UnitY(), "y"}, {Vec3::UnitZ(), "z"}}};
+  for (const auto& [axis, name] : axes) {
+    const Point step{axis.dot(right), -axis.dot(up)};
+    const Point end{origin.x + kAxisLength * step.x, origin.y + kAxisLength * step.y};
+    canvas.line({origin, end}, {kAxis, 1.4, {}});
+    canvas.text({origin.x + (kAxisLength + 9.0) * step.x, origin.y + (kAxisLength + 9.0) * step.y + 4.0}, name,
+                kRemarkFont, kText, Align::centre);
+  }
+}
+
+}  // namespace
+
+std::string view_png(const studies::DesignView& view) {
+  const ViewDirection direction = from_below();
+  const ShadedView picture = shaded_view(view.mesh, view.edges, direction, static_cast<std::size_t>(kScale * kWidth),
+                                         static_cast<std::size_t>(kScale * kHeight));
+  const Size size{kWidth, kHead + kHeight};
+  Canvas canvas(Canvas::Format::png, size, kScale);
+  canvas.fill_rectangle({0.0, 0.0}, size, picture.colours.front());
+  canvas.image({0.0, kHead}, {kWidth, kHeight}, picture.columns, picture.colours);
+  double y = kMargin + kTitleFont.size;
+  for (const std::string& line : canvas.fitted(view.title, kTitleFont, kWidth - 2.0 * kMargin, 1, Ellipsis::end))
+    canvas.text({kMargin, y}, line, kTitleFont, kText, Align::left);
+  std::string remarks = "seen from behind, where the elements are";
+  for (const std::string& remark : view.remarks) remarks += "; " + remark;
+  y += kRemarkFont.size + 7.0;
+  for (const std::string& line : canvas.fitted(remarks, kRemarkFont, kWidth - 2.0 * kMargin, 1, Ellipsis::end))
+    canvas.text({kMargin, y}, line, kRemarkFont, kFaint, Align::left);
+  draw_axes(canvas, direction, {kMargin + 40.0, kHead + kHeight - 56.0});
+  return canvas.finish();
+}
+
+}  // namespace retrace::report

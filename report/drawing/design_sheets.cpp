@@ -1,0 +1,325 @@
+#include "report/drawing/design_sheets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "report/drawing/dimension_layout.h"
+#include "report/drawing/svg_sheet.h"
+
+namespace retrace::report {
+namespace {
+
+using geometry::Polygon;
+using geometry::Rectangle;
+using geometry::Vec2;
+using studies::DesignDrawing;
+using studies::PlanPanel;
+using studies::SectionPanel;
+
+constexpr double kWholeWidth = 520.0;  ///< most room of a panel's figure
+constexpr double kWholeHeight = 460.0;
+constexpr double kSheetMargin = 26.0;
+constexpr double kPanelGap = 44.0;
+constexpr double kArrowLength = 8.0;
+constexpr double kArrowHalf = 2.6;
+/// Elements' lines closer than this are drawn finer, in units.
+constexpr double kFineLines = 14.0;
+/// A plate more than this many times as thick as the elements are deep is drawn interrupted.
+constexpr double kThickPlate = 3.2;
+constexpr double kBreakGap = 12.0;
+
+using ToPaper = std::function<Point(const Vec2&)>;
+
+std::vector<Point> on_paper(const std::vector<Vec2>& polygon, const ToPaper& at) {
+  std::vector<Point> points;
+  for (const Vec2& p : polygon) points.push_back(at(p));
+  return points;
+}
+
+std::vector<std::pair<Point, Point>> on_paper(const std::vector<studies::PlanLine>& lines, const ToPaper& at) {
+  std::vector<std::pair<Point, Point>> result;
+  for (const auto& [a, b] : lines) result.emplace_back(at(a), at(b));
+  return result;
+}
+
+void arrow(SvgGroup& group, Point tip, Point away) {
+  const double length = std::hypot(away.x - tip.x, away.y - tip.y);
+  const Point u{(away.x - tip.x) / length, (away.y - tip.y) / length};
+  const Point foot{tip.x + kArrowLength * u.x, tip.y + kArrowLength * u.y};
+  group.faces("arrow", {{tip,
+                         {foot.x - kArrowHalf * u.y, foot.y + kArrowHalf * u.x},
+                         {foot.x + kArrowHalf * u.y, foot.y - kArrowHalf * u.x}}});
+}
+
+void draw_dimensions(SvgGroup& group, const std::vector<studies::Dimension>& dimensions, const ToPaper& at, Point lower,
+                     Point upper) {
+  std::vector<PaperDimension> wanted;
+  for (const studies::Dimension& d : dimensions) {
+    PaperDimension p{static_cast<DimensionSide>(d.side), at(d.from_mm), at(d.to_mm), dimension_text(d), 0.0};
+    p.text_width = sheet_text_width(p.text, kSheetTextSize);
+    wanted.push_back(std::move(p));
+  }
+  for (const PlacedDimension& d : place_dimensions(wanted, lower, upper)) {
+    group.lines("ext", {d.extensions[0], d.extensions[1]});
+    group.lines("dim", {d.line});
+    const auto [a, b] = d.tips;
+    const auto mirrored = [](Point p, Point about) { return Point{2.0 * about.x - p.x, 2.0 * about.y - p.y}; };
+    arrow(group, a, d.arrows_point_inward ? mirrored(b, a) : b);
+    arrow(group, b, d.arrows_point_inward ? mirrored(a, b) : a);
+    group.text("value", d.text_at, d.text, Align::centre, d.upwards);
+    const double half = 0.5 * sheet_text_width(d.text, kSheetTextSize);
+    if (d.upwards)
+      group.reserve({d.text_at.x - kSheetTextSize, d.text_at.y - half}, {kSheetTextSize, 2.0 * half});
+    else
+      group.reserve({d.text_at.x - half, d.text_at.y - kSheetTextSize}, {2.0 * half, kSheetTextSize});
+  }
+}
+
+std::string face_style(const studies::PlanFace& face) {
+  if (face.role != geometry::FacetRole::retro_facet) return "land";
+  return fmt::format("f{}", static_cast<int>(std::floor(face.azimuth_deg / 60.0 + 0.25)) % 6);
+}
+
+void draw_faces(SvgGroup& group, const studies::PlanView& view, const ToPaper& at) {
+  static constexpr std::array<const char*, 7> kStyles = {"f0", "f1", "f2", "f3", "f4", "f5", "land"};
+  for (const char* style : kStyles) {
+    std::vector<std::vector<Point>> polygons;
+    for (const studies::PlanFace& face : view.faces)
+      if (face_style(face) == style) polygons.push_back(on_paper(face.outline_mm, at));
+    group.faces(style, polygons);
+  }
+  group.lines("root", on_paper(view.roots_mm, at));
+  group.lines("rim", on_paper(view.rims_mm, at));
+}
+
+/// How near the lines of the plan lie: units of the shortest of many rims.
+bool has_fine_lines(const studies::PlanView& view, double units_per_mm) {
+  if (view.rims_mm.size() < 200) return false;
+  double sum = 0.0;
+  for (const auto& [a, b] : view.rims_mm) sum += (b - a).norm();
+  return units_per_mm * sum / static_cast<double>(view.rims_mm.size()) < kFineLines;
+}
+
+struct Panel {
+  SvgGroup group;
+  std::string attributes;
+};
+
+std::string place_of(const Vec2& origin_mm, double units_per_mm, const char* second) {
+  return fmt::format("data-x-mm=\"{:.9g}\" data-{}-mm=\"{:.9g}\" data-units-per-mm=\"{:.12g}\"", origin_mm.x(), second,
+                     origin_mm.y(), units_per_mm);
+}
+
+void draw_section_marks(SvgGroup& group, Point left, Point right) {
+  const double beyond = 14.0;
+  group.path("cut", {{left.x - beyond, left.y}, {right.x + beyond, right.y}});
+  group.text("mark", {left.x - beyond - 3.0, left.y - 5.0}, "B", Align::right);
+  group.text("mark", {right.x + beyond + 3.0, right.y - 5.0}, "B", Align::left);
+  group.reserve({right.x + beyond, right.y - 16.0}, {14.0, 12.0});
+  group.reserve({left.x - beyond - 14.0, left.y - 16.0}, {14.0, 12.0});
+}
+
+Panel plan_panel(const PlanPanel& panel) {
+  const Rectangle& window = panel.view.window_mm;
+  const Vec2 size = window.size();
+  const double scale = std::min(kWholeWidth / size.x(), kWholeHeight / size.y());
+  const Vec2 origin(window.lower.x(), window.upper.y());
+  const ToPaper at = [&](const Vec2& p) { return Point{scale * (p.x() - origin.x()), scale * (origin.y() - p.y())}; };
+  Panel result{{}, place_of(origin, scale, "y")};
+  SvgGroup& group = result.group;
+  if (panel.faces_are_left_out && !panel.outline_mm.empty()) group.outline("plain", on_paper(panel.outline_mm, at));
+  const bool fine = has_fine_lines(panel.view, scale);
+  if (fine) result.attributes += " class=\"fine\"";
+  draw_faces(group, panel.view, at);
+  Polygon outline = panel.outline_mm;
+  if (!outline.empty()) outline = geometry::clip(outline, window, 1e-9 * size.maxCoeff());
+  const bool is_whole = !outline.empty() && outline.size() == panel.outline_mm.size() &&
+                        geometry::area(outline) > (1.0 - 1e-9) * geometry::area(panel.outline_mm);
+  if (is_whole) group.outline("outline", on_paper(outline, at));
+  if (panel.circle_radius_mm) group.circle("round", at(panel.circle_mm), scale * *panel.circle_radius_mm);
+  if (panel.period_mm) group.outline("period", on_paper(geometry::to_polygon(*panel.period_mm), at));
+  const Point lower = at({window.lower.x(), window.upper.y()});
+  const Point upper = at({window.upper.x(), window.lower.y()});
+  if (panel.detail_mm) {
+    group.outline("frame", on_paper(geometry::to_polygon(*panel.detail_mm), at));
+    const Point corner = at({panel.detail_mm->upper.x(), panel.detail_mm->upper.y()});
+    group.text("mark", {corner.x + 4.0, corner.y - 4.0}, "A", Align::left);
+  }
+  if (panel.section_y_mm)
+    draw_section_marks(group, {lower.x, at({0.0, *panel.section_y_mm}).y}, {upper.x, at({0.0, *panel.section_y_mm}).y});
+  // The marks of the section stay within the first dimension lines.
+  const double marks = panel.section_y_mm ? 12.0 : 0.0;
+  draw_dimensions(group, panel.dimensions, at, {lower.x - marks, lower.y}, {upper.x + marks, upper.y});
+  return result;
+}
+
+/// Heights on paper, where a thick plate has its middle left out.
+struct HeightScale {
+  double scale = 1.0;
+  double top_mm = 0.0;
+  double break_from_mm = 0.0;  ///< what is left out; equal: nothing
+  double break_to_mm = 0.0;
+
+  bool is_interrupted() const { return break_to_mm > break_from_mm; }
+  double at(double z_mm) const {
+    double down = scale * (top_mm - z_mm);
+    if (is_interrupted()) {
+      const double out = std::clamp(break_to_mm - z_mm, 0.0, break_to_mm - break_from_mm);
+      down -= scale * out;
+      if (z_mm < break_to_mm) down += kBreakGap * std::clamp(out / (break_to_mm - break_from_mm), 0.0, 1.0);
+    }
+    return down;
+  }
+};
+
+HeightScale height_scale(const SectionPanel& panel, double scale, double deepest_mm, double highest_mm) {
+  HeightScale z{scale, panel.thickness_mm, 0.0, 0.0};
+  const double depth = std::max(highest_mm - deepest_mm, 1e-12);
+  if (panel.thickness_mm > kThickPlate * depth) {
+    z.break_from_mm = std::max(highest_mm, 0.0) + 0.9 * depth;
+    z.break_to_mm = panel.thickness_mm - 0.6 * depth;
+  }
+  return z;
+}
+
+/// A line of the kind that says that something goes on, from one point to another.
+std::vector<Point> broken_line(Point from, Point to) {
+  const Point middle{0.5 * (from.x + to.x), 0.5 * (from.y + to.y)};
+  const double length = std::hypot(to.x - from.x, to.y - from.y);
+  const Point u{(to.x - from.x) / length, (to.y - from.y) / length};
+  const auto by = [&](double along, double across) {
+    return Point{middle.x + along * u.x - across * u.y, middle.y + along * u.y + across * u.x};
+  };
+  return {from, by(-7.0, 0.0), by(-3.0, -6.0), by(3.0, 6.0), by(7.0, 0.0), to};
+}
+
+void draw_break(SvgGroup& group, const HeightScale& z, double width) {
+  const double upper = z.at(z.break_to_mm);
+  const double lower = upper + kBreakGap;
+  const double beyond = 8.0;
+  std::vector<Point> above = broken_line({-beyond, upper}, {width + beyond, upper});
+  std::vector<Point> below = broken_line({-beyond, lower}, {width + beyond, lower});
+  std::vector<Point> gap = above;
+  gap.insert(gap.end(), below.rbegin(), below.rend());
+  group.faces("gap", {gap});
+  group.path("break", above);
+  group.path("break", below);
+}
+
+void draw_angle(SvgGroup& group, const studies::AngleDimension& angle, const ToPaper& at, double reach_mm) {
+  const Point apex = at(angle.apex_mm);
+  const Point side = at(angle.apex_mm + reach_mm * Vec2(angle.right.x(), 0.0).normalized());
+  const double radius = 0.42 * std::abs(side.x - apex.x);
+  group.arc("dim", apex, radius, std::atan2(angle.right.y(), angle.right.x()),
+            std::atan2(angle.left.y(), angle.left.x()));
+  const std::string text = fmt::format("{:.6g}°", angle.deg);
+  // In the material above the root, inside the arc where there is room.
+  const double half = 0.5 * sheet_text_width(text, kSheetTextSize);
+  group.text("value", {apex.x, apex.y - radius - 5.0}, text, Align::centre);
+  group.reserve({apex.x - half, apex.y - radius - 5.0 - kSheetTextSize}, {2.0 * half, kSheetTextSize});
+}
+
+Panel section_panel(const SectionPanel& panel) {
+  const studies::SectionView& view = panel.view;
+  double deepest = 0.0;
+  double highest = 0.0;
+  for (std::size_t k = 0; k + 2 < view.outline_mm.size(); ++k) {
+    deepest = std::min(deepest, view.outline_mm[k].y());
+    highest = k == 0 ? view.outline_mm[k].y() : std::max(highest, view.outline_mm[k].y());
+  }
+  const double width_mm = view.x_to_mm - view.x_from_mm;
+  const double tall_mm = std::min(panel.thickness_mm - deepest, (kThickPlate + 1.0) * (highest - deepest));
+  const double scale = std::min(1.35 * kWholeWidth / width_mm, 0.9 * kWholeHeight / tall_mm);
+  const HeightScale z = height_scale(panel, scale, deepest, highest);
+  const ToPaper at = [&](const Vec2& p) { return Point{scale * (p.x() - view.x_from_mm), z.at(p.y())}; };
+  Panel result{{}, place_of({view.x_from_mm, panel.thickness_mm}, scale, "z")};
+  SvgGroup& group = result.group;
+  const std::vector<Point> outline = on_paper(view.outline_mm, at);
+  const auto corners = static_cast<std::ptrdiff_t>(outline.size());
+  group.outline(panel.goes_on ? "body bare" : "body", outline);
+  if (panel.goes_on) {
+    group.path("outline", {outline.begin(), outline.begin() + corners - 2});
+    group.path("outline", {outline.begin() + corners - 2, outline.end()});
+  }
+  if (z.is_interrupted()) draw_break(group, z, scale * width_mm);
+  if (panel.goes_on)
+    for (const double x_mm : {view.x_from_mm, view.x_to_mm}) {
+      const double foot_mm =
+          x_mm == view.x_from_mm ? view.outline_mm.front().y() : view.outline_mm[view.outline_mm.size() - 3].y();
+      const Point top = at({x_mm, panel.thickness_mm});
+      const Point foot = at({x_mm, foot_mm});
+      group.path("break", broken_line({top.x, top.y - 7.0}, {foot.x, foot.y + 7.0}));
+    }
+  if (panel.angle) draw_angle(group, *panel.angle, at, -deepest);
+  draw_dimensions(group, panel.dimensions, at, at({view.x_from_mm, panel.thickness_mm}), at({view.x_to_mm, deepest}));
+  return result;
+}
+
+/// Panels side by side under a title.
+std::string sheet_of(const DesignDrawing& drawing, const std::vector<Panel>& panels,
+                     const std::vector<std::string>& titles, const char* id, const std::string& description) {
+  SvgGroup head;
+  double y = kSheetMargin + kSheetTitleSize;
+  head.text("title", {kSheetMargin, y}, drawing.title, Align::left);
+  std::string remarks;
+  for (const std::string& remark : drawing.remarks) remarks += (remarks.empty() ? "" : "; ") + remark;
+  y += kSheetTextSize + 8.0;
+  head.text("remark", {kSheetMargin, y}, remarks, Align::left);
+  const double panels_top = y + 22.0 + kSheetPanelSize;
+  SvgSheet sheet;
+  double x = kSheetMargin;
+  double bottom = panels_top;
+  std::vector<std::pair<Point, std::size_t>> places;
+  for (std::size_t k = 0; k < panels.size(); ++k) {
+    const PaperBox& box = panels[k].group.box();
+    head.text("panel", {x, panels_top}, titles[k], Align::left);
+    places.push_back({{x - box.lower.x, panels_top + 14.0 - box.lower.y}, k});
+    bottom = std::max(bottom, panels_top + 14.0 + box.size().height);
+    x += std::max(box.size().width, sheet_text_width(titles[k], kSheetPanelSize) * 1.15) + kPanelGap;
+  }
+  sheet.add(head, {0.0, 0.0}, "titles");
+  for (const auto& [place, k] : places)
+    sheet.add(panels[k].group, place, fmt::format("{}-{}", id, k), panels[k].attributes);
+  const double text_width =
+      std::max(1.2 * sheet_text_width(drawing.title, kSheetTitleSize), sheet_text_width(remarks, kSheetTextSize));
+  return sheet.finish({std::max(x - kPanelGap, text_width + kSheetMargin) + kSheetMargin, bottom + kSheetMargin},
+                      drawing.title, description);
+}
+
+std::string words_of(const std::vector<studies::Dimension>& dimensions) {
+  std::string words;
+  for (const studies::Dimension& d : dimensions) words += (words.empty() ? "" : ", ") + dimension_text(d) + " mm";
+  return words;
+}
+
+}  // namespace
+
+std::string dimension_text(const studies::Dimension& dimension) {
+  return fmt::format("{} {:.6g}", dimension.name, dimension.value_mm);
+}
+
+std::string plan_svg(const DesignDrawing& drawing) {
+  std::vector<Panel> panels;
+  std::vector<std::string> titles;
+  std::string words = "Plan of the part";
+  for (const PlanPanel& panel : drawing.plan) {
+    panels.push_back(plan_panel(panel));
+    titles.push_back(panel.faces_are_left_out ? panel.title + " (elements too small to be drawn)" : panel.title);
+    words += "; " + words_of(panel.dimensions);
+  }
+  return sheet_of(drawing, panels, titles, "plan", words);
+}
+
+std::string section_svg(const DesignDrawing& drawing) {
+  const SectionPanel& panel = *drawing.section;
+  std::string words = "Section across the elements; " + words_of(panel.dimensions);
+  if (panel.angle) words += fmt::format(", angle {:.6g} degrees", panel.angle->deg);
+  return sheet_of(drawing, {section_panel(panel)}, {panel.title}, "section", words);
+}
+
+}  // namespace retrace::report

@@ -1,0 +1,121 @@
+#include "studies/drawing/array_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Arrangement;
+using geometry::Extent;
+using geometry::Part;
+using geometry::PartSpec;
+using geometry::Rectangle;
+using geometry::RtpElement;
+using geometry::Vec2;
+
+// Lengths this close (relative) to a whole number of elements are whole, as in a design.
+constexpr double kWhole = 1e-9;
+
+Rectangle extent_of(const Part& part) {
+  if (part.period_mm) return {Vec2::Zero(), *part.period_mm};
+  return geometry::bounding_box(part.outline);
+}
+
+/// The corner of the whole element nearest to the origin in a finite part that leaves elements out.
+std::optional<Vec2> first_element_there(const Part& part, const Vec2& size) {
+  std::optional<Vec2> first;
+  for (const geometry::Placement& placement : part.placements) {
+    const geometry::SurfacePatch& patch = part.patches[placement.patch];
+    for (const geometry::PatchCell& cell : patch.cells) {
+      const bool is_element = patch.facets[cell.first_facet].role == geometry::FacetRole::retro_facet;
+      const Vec2 lower = cell.lower.head<2>() + placement.offset_mm;
+      const bool is_whole = ((cell.upper - cell.lower).head<2>() - size).cwiseAbs().maxCoeff() < 1e-6 * size.maxCoeff();
+      if (!is_element || !is_whole) continue;
+      if (!first || lower.y() < first->y() - 1e-6 * size.y() ||
+          (lower.y() < first->y() + 1e-6 * size.y() && lower.x() < first->x()))
+        first = lower;
+    }
+  }
+  return first;
+}
+
+void measure_prisms(ArrayFigures& a, const Design& design, const Part& part) {
+  const PartSpec& spec = part.spec;
+  const auto& element = std::get<RtpElement>(spec.element);
+  a.size_mm = {element.base_mm, element.width_mm};
+  a.pitch_mm = a.size_mm + Vec2(spec.x_gap_mm, spec.y_gap_mm);
+  a.block_mm = a.extent_mm;
+  if (spec.arrangement != Arrangement::single && spec.extent == Extent::finite) {
+    const Vec2 gap(spec.x_gap_mm, spec.y_gap_mm);
+    const Vec2 room = a.extent_mm.size() - 2.0 * Vec2(spec.x_offset_mm, spec.y_offset_mm) + gap;
+    for (const Eigen::Index k : {0, 1}) {
+      const double count = room[k] / a.pitch_mm[k];
+      a.count[k] = std::floor(count + kWhole * std::max(1.0, count));
+    }
+    const Vec2 filled = a.count.cwiseProduct(a.pitch_mm) - gap;
+    a.block_mm.lower = a.extent_mm.lower + 0.5 * (a.extent_mm.size() - filled);
+    a.block_mm.upper = a.block_mm.lower + filled;
+  } else if (spec.extent == Extent::infinite) {
+    a.count = {INFINITY, INFINITY};
+  }
+  if (spec.arrangement == Arrangement::offset && a.count.y() > 1.0)
+    a.shift_mm = 0.01 * spec.overlap_percent * element.base_mm;
+  const auto is_shifted = [&](double row) {
+    return a.shift_mm > 0.0 &&
+           (std::fmod(std::round(row), 2.0) == 0.0) == (spec.shifted_rows == geometry::RowParity::odd);
+  };
+  a.element_is_shifted = is_shifted(0.0);
+  a.element_mm = a.block_mm.lower + Vec2(a.element_is_shifted ? a.shift_mm : 0.0, 0.0);
+  if (design.mask || design.facet_planes)
+    if (const auto there = first_element_there(part, a.size_mm)) {
+      a.element_mm = *there;
+      a.element_is_shifted = is_shifted((there->y() - a.block_mm.lower.y()) / a.pitch_mm.y());
+    }
+  a.root_mm = a.element_mm + 0.5 * a.size_mm;
+}
+
+void measure_cubes(ArrayFigures& a, const Part& part) {
+  const PartSpec& spec = part.spec;
+  const Rectangle box = geometry::bounding_box(geometry::element_cell(spec.element).outline);
+  const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&spec.element);
+  a.aperture_mm =
+      hexagonal != nullptr ? hexagonal->aperture_mm : std::get<geometry::TriangularCube>(spec.element).aperture_mm;
+  a.size_mm = box.size();
+  a.pitch_mm = 0.5 * a.aperture_mm * Vec2(3.0, std::sqrt(3.0));
+  a.block_mm = a.extent_mm;
+  const Vec2 margin(spec.x_offset_mm, spec.y_offset_mm);
+  a.has_neighbours = true;
+  if (spec.arrangement == Arrangement::single) {
+    a.element_mm = a.extent_mm.lower - box.lower;
+  } else if (spec.extent == Extent::finite) {
+    a.block_mm = {a.extent_mm.lower + margin, a.extent_mm.upper - margin};
+    a.element_mm = 0.5 * (a.extent_mm.lower + a.extent_mm.upper);
+    a.count = a.block_mm.size().cwiseQuotient(a.size_mm);
+    a.has_neighbours = (a.element_mm + a.pitch_mm).x() < a.block_mm.upper.x();
+  } else {
+    a.count = {INFINITY, INFINITY};
+  }
+  a.root_mm = a.element_mm;
+}
+
+}  // namespace
+
+ArrayFigures array_figures(const Design& design, const Part& part) {
+  ArrayFigures a;
+  a.extent_mm = extent_of(part);
+  if (design.mesh) {
+    a.block_mm = a.extent_mm;
+    a.size_mm = a.extent_mm.size();
+    a.root_mm = 0.5 * (a.extent_mm.lower + a.extent_mm.upper);
+  } else if (std::holds_alternative<RtpElement>(part.spec.element)) {
+    measure_prisms(a, design, part);
+  } else {
+    measure_cubes(a, part);
+  }
+  a.section_y_mm = a.root_mm.y();
+  return a;
+}
+
+}  // namespace retrace::studies

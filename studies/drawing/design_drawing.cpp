@@ -1,0 +1,247 @@
+#include "studies/drawing/design_drawing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "studies/design/design_json.h"
+#include "studies/drawing/array_figures.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Arrangement;
+using geometry::Part;
+using geometry::PartSpec;
+using geometry::Rectangle;
+using geometry::RtpElement;
+using geometry::Vec2;
+using Side = Dimension::Side;
+
+// Arrays of more elements than this along an axis have a detail.
+constexpr double kFewElements = 3.2;
+// Of a section: elements, and how far the window of a detail goes beyond what is measured, in elements.
+constexpr double kDetailElements = 2.6;
+constexpr double kBeyond = 0.35;
+constexpr double kSmallest = 1e-9;
+
+void add(std::vector<Dimension>& dimensions, Side side, const Vec2& from, const Vec2& to, const char* name) {
+  const bool across = side == Side::below || side == Side::above;
+  const double value = across ? to.x() - from.x() : to.y() - from.y();
+  dimensions.push_back({side, from, to, name, value});
+}
+
+/// Sizes of one prism, its gaps and the shift of its row.
+void add_prism(std::vector<Dimension>& dimensions, const PartSpec& spec, const ArrayFigures& a) {
+  const auto& element = std::get<RtpElement>(spec.element);
+  const Vec2 corner = a.element_mm;
+  const Vec2 end = corner + Vec2(element.base_mm, element.width_mm);
+  dimensions.push_back({Side::below, corner, {end.x(), corner.y()}, "base", element.base_mm});
+  dimensions.push_back({Side::left, corner, {corner.x(), end.y()}, "width", element.width_mm});
+  if (spec.arrangement == Arrangement::single) return;
+  const double x_gap = spec.x_gap_mm;
+  const double y_gap = spec.y_gap_mm;
+  if (x_gap > 0.0 && a.count.x() > 1.0)
+    dimensions.push_back({Side::below, {end.x(), corner.y()}, {end.x() + x_gap, corner.y()}, "x gap", x_gap});
+  if (y_gap > 0.0 && a.count.y() > 1.0)
+    dimensions.push_back({Side::left, {corner.x(), end.y()}, {corner.x(), end.y() + y_gap}, "y gap", y_gap});
+  if (x_gap > 0.0 && a.count.x() > 1.0)
+    add(dimensions, Side::below, corner, corner + Vec2(a.pitch_mm.x(), 0.0), "x pitch");
+  if (y_gap > 0.0 && a.count.y() > 1.0)
+    add(dimensions, Side::left, corner, corner + Vec2(0.0, a.pitch_mm.y()), "y pitch");
+  if (a.shift_mm > 0.0) {
+    // Measured at the line between its row and the next.
+    const Vec2 between(corner.x() - (a.element_is_shifted ? a.shift_mm : 0.0), end.y() + 0.5 * y_gap);
+    dimensions.push_back({Side::above, between, between + Vec2(a.shift_mm, 0.0), "shift", a.shift_mm});
+  }
+}
+
+/// Sizes of one cube corner and its distances to its neighbours.
+void add_cube(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
+  const double radius = 0.5 * a.aperture_mm;
+  const Vec2 apex = a.element_mm;
+  const bool hexagonal = std::holds_alternative<geometry::HexagonalCube>(spec.element);
+  panel.circle_radius_mm = radius;
+  panel.circle_mm = apex;
+  panel.dimensions.push_back(
+      {Side::below, apex - Vec2(radius, 0.0), apex + Vec2(radius, 0.0), "aperture", a.aperture_mm});
+  const double half_side = 0.5 * std::numbers::sqrt3 * radius;
+  if (hexagonal) {
+    add(panel.dimensions, Side::left, apex + Vec2(-0.5 * radius, -half_side), apex + Vec2(-0.5 * radius, half_side),
+        "across flats");
+  } else {
+    add(panel.dimensions, Side::left, apex + Vec2(-0.5 * radius, -half_side), apex + Vec2(-0.5 * radius, half_side),
+        "side");
+  }
+  if (spec.arrangement != Arrangement::single && a.has_neighbours)
+    add(panel.dimensions, Side::above, apex, apex + 0.5 * a.pitch_mm, "column pitch");
+}
+
+void add_element(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
+  if (std::holds_alternative<RtpElement>(spec.element))
+    add_prism(panel.dimensions, spec, a);
+  else
+    add_cube(panel, spec, a);
+}
+
+/// Margins and lengths of a finite array, or the period of an endless one.
+void add_extent(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
+  const Rectangle& e = a.extent_mm;
+  if (spec.extent == geometry::Extent::infinite) {
+    panel.period_mm = e;
+    add(panel.dimensions, Side::above, {e.lower.x(), e.upper.y()}, e.upper, "x period");
+    add(panel.dimensions, Side::right, {e.upper.x(), e.lower.y()}, e.upper, "y period");
+    return;
+  }
+  if (spec.arrangement == Arrangement::single) return;
+  const Vec2 margin = a.block_mm.lower - e.lower;
+  const double least = kSmallest * e.size().maxCoeff();
+  if (margin.x() > least) add(panel.dimensions, Side::below, e.lower, {a.block_mm.lower.x(), e.lower.y()}, "x margin");
+  if (margin.y() > least) add(panel.dimensions, Side::left, e.lower, {e.lower.x(), a.block_mm.lower.y()}, "y margin");
+  panel.dimensions.push_back({Side::below, e.lower, {e.upper.x(), e.lower.y()}, "x length", spec.x_length_mm});
+  panel.dimensions.push_back({Side::left, e.lower, {e.lower.x(), e.upper.y()}, "y length", spec.y_length_mm});
+}
+
+PlanPanel panel_of(const Part& part, const Rectangle& window, const char* title) {
+  PlanPanel panel;
+  panel.title = title;
+  panel.outline_mm = part.outline;
+  if (faces_near(part, window) <= kMostPlanFaces)
+    panel.view = plan_view(part, window);
+  else
+    panel.faces_are_left_out = true;
+  panel.view.window_mm = window;
+  return panel;
+}
+
+/// What of the array the detail shows: its first elements, or those in the middle.
+Rectangle detail_window(const PartSpec& spec, const ArrayFigures& a) {
+  const Vec2 beyond = kBeyond * a.size_mm;
+  Rectangle window;
+  if (std::holds_alternative<RtpElement>(spec.element)) {
+    const Vec2 first = a.element_mm - Vec2(a.element_is_shifted ? a.shift_mm : 0.0, 0.0);
+    window = {first - beyond, a.element_mm + kDetailElements * a.pitch_mm};
+  } else {
+    window = {a.element_mm - 1.1 * a.size_mm, a.element_mm + 1.3 * a.size_mm};
+  }
+  window.lower = window.lower.cwiseMax(a.extent_mm.lower);
+  window.upper = window.upper.cwiseMin(a.extent_mm.upper);
+  return window;
+}
+
+void add_plan(DesignDrawing& drawing, const Part& part, const ArrayFigures& a) {
+  const PartSpec& spec = part.spec;
+  if (spec.extent == geometry::Extent::infinite) {
+    const Vec2 beyond = 0.75 * a.size_mm;
+    const Rectangle window{a.extent_mm.lower - beyond, a.extent_mm.upper.cwiseMax(a.element_mm + a.pitch_mm) + beyond};
+    drawing.plan.push_back(panel_of(part, window, "One period and its surroundings"));
+    add_element(drawing.plan.back(), spec, a);
+    add_extent(drawing.plan.back(), spec, a);
+    drawing.plan.back().section_y_mm = a.section_y_mm;
+    return;
+  }
+  const bool has_detail = spec.arrangement != Arrangement::single && a.count.maxCoeff() > kFewElements;
+  drawing.plan.push_back(panel_of(part, a.extent_mm, "Seen from the light"));
+  if (has_detail) {
+    const Rectangle window = detail_window(spec, a);
+    drawing.plan.push_back(panel_of(part, window, "Detail A"));
+    drawing.plan.front().detail_mm = window;
+  }
+  add_element(drawing.plan.back(), spec, a);
+  drawing.plan.back().section_y_mm = a.section_y_mm;
+  add_extent(drawing.plan.front(), spec, a);
+}
+
+/// Between the planes of the element's facets in the section.
+AngleDimension apex_angle(const PartSpec& spec, const Vec2& root) {
+  double steepest_right = 0.0;
+  double steepest_left = 0.0;
+  for (const geometry::CellFacet& facet : geometry::element_cell(spec.element, spec.angle_errors).facets) {
+    steepest_right = std::max(steepest_right, facet.plane.slope.x());
+    steepest_left = std::min(steepest_left, facet.plane.slope.x());
+  }
+  AngleDimension angle;
+  angle.apex_mm = root;
+  angle.left = Vec2(-1.0, -steepest_left).normalized();
+  angle.right = Vec2(1.0, steepest_right).normalized();
+  angle.deg = std::acos(std::clamp(angle.left.dot(angle.right), -1.0, 1.0)) * 180.0 / std::numbers::pi;
+  return angle;
+}
+
+void add_section(DesignDrawing& drawing, const Design& design, const Part& part, const ArrayFigures& a) {
+  const bool whole = part.spec.arrangement == Arrangement::single || design.mesh;
+  double from = a.extent_mm.lower.x();
+  double to = a.extent_mm.upper.x();
+  if (!whole) {
+    const bool infinite = part.spec.extent == geometry::Extent::infinite;
+    const double left = a.root_mm.x() - 0.85 * a.size_mm.x();
+    const double right = a.root_mm.x() + 2.2 * a.size_mm.x();
+    from = infinite ? left : std::max(from, left);
+    to = infinite ? right : std::min(to, right);
+  }
+  const auto view = section_view(part, a.section_y_mm, from, to);
+  if (!view) {
+    drawing.warnings.push_back(design.source_name() + ": no section is drawn: the back folds under itself there");
+    return;
+  }
+  SectionPanel panel;
+  panel.title = "Section B\u2013B";
+  panel.view = *view;
+  panel.thickness_mm = part.thickness_mm;
+  panel.goes_on = !whole;
+  const double left = view->x_from_mm;
+  const double right = view->x_to_mm;
+  const double deepest = -part.element_depth_mm;
+  panel.dimensions.push_back({Side::right, {right, 0.0}, {right, part.thickness_mm}, "thickness", part.thickness_mm});
+  panel.dimensions.push_back(
+      {Side::left, {design.mesh ? left : a.root_mm.x(), deepest}, {left, 0.0}, "depth", part.element_depth_mm});
+  if (const auto* rtp = std::get_if<RtpElement>(&part.spec.element); rtp != nullptr && !design.mesh) {
+    const double middle = a.root_mm.x();
+    panel.dimensions.push_back(
+        {Side::below, {middle - 0.5 * rtp->base_mm, 0.0}, {middle + 0.5 * rtp->base_mm, 0.0}, "base", rtp->base_mm});
+  }
+  if (!design.mesh && !design.facet_planes && part.spec.random_tilts.sigma_arcmin == 0.0)
+    panel.angle =
+        apex_angle(part.spec, {a.root_mm.x(), -geometry::element_depth_mm(part.spec.element, part.spec.angle_errors)});
+  drawing.section = std::move(panel);
+}
+
+std::string arrangement_text(const Part& part) {
+  const PartSpec& spec = part.spec;
+  if (spec.arrangement == Arrangement::single) return "one element";
+  if (spec.extent == geometry::Extent::infinite)
+    return fmt::format("endless array, {} elements a period", part.elements_full);
+  std::string text = fmt::format("{} full elements", part.elements_full);
+  if (part.elements_partial > 0) text += fmt::format(", {} cut by the border", part.elements_partial);
+  if (spec.arrangement == Arrangement::offset)
+    text += fmt::format("; {} rows shifted, rows count from below",
+                        spec.shifted_rows == geometry::RowParity::even ? "even" : "odd");
+  if (spec.arrangement == Arrangement::checker) text += "; every second element turned";
+  return text;
+}
+
+}  // namespace
+
+DesignDrawing draw_design(const Design& design, const Part& part) {
+  DesignDrawing drawing;
+  drawing.title = short_name(design);
+  const ArrayFigures a = array_figures(design, part);
+  if (design.mesh) {
+    drawing.remarks.emplace_back("part read from a mesh");
+    drawing.plan.push_back(panel_of(part, a.extent_mm, "Seen from the light"));
+    PlanPanel& panel = drawing.plan.back();
+    panel.section_y_mm = a.section_y_mm;
+    add(panel.dimensions, Side::below, a.extent_mm.lower, a.extent_mm.upper, "x length");
+    add(panel.dimensions, Side::left, a.extent_mm.lower, a.extent_mm.upper, "y length");
+  } else {
+    drawing.remarks.push_back(arrangement_text(part));
+    add_plan(drawing, part, a);
+  }
+  drawing.remarks.emplace_back("lengths in mm");
+  add_section(drawing, design, part, a);
+  return drawing;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,148 @@
+#include "studies/drawing/design_view.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "geometry/mesh_part.h"
+#include "studies/design/design_json.h"
+#include "studies/design/part_of_design.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::BoundaryMesh;
+using geometry::FacetRole;
+using geometry::Part;
+using geometry::SurfacePatch;
+using geometry::Vec2;
+using geometry::Vec3;
+
+// Of a cosine: neighbours that look so nearly the same way have no edge between them.
+constexpr double kSameDirection = 1e-6;
+
+using Triangle = std::array<std::uint32_t, 3>;
+using Edge = std::array<std::uint32_t, 2>;
+
+Vec3 normal_of(const std::vector<Vec3>& vertices, const Triangle& t) {
+  return (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]).normalized();
+}
+
+/// Edges between triangles that look different ways, and those that only one has.
+std::vector<Edge> edges_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  struct Beside {
+    Vec3 normal = Vec3::Zero();
+    bool is_smooth = false;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Beside> known;
+  for (const Triangle& t : triangles) {
+    const Vec3 normal = normal_of(vertices, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [it, is_new] = known.try_emplace(std::minmax(t[k], t[(k + 1) % 3]), Beside{normal, false});
+      if (!is_new && normal.dot(it->second.normal) > 1.0 - kSameDirection) it->second.is_smooth = true;
+    }
+  }
+  std::vector<Edge> edges;
+  for (const auto& [ends, beside] : known)
+    if (!beside.is_smooth) edges.push_back({ends.first, ends.second});
+  return edges;
+}
+
+/// Appends a convex face that is in no patch, with its outline.
+void add_face(DesignView& view, const std::vector<Vec3>& corners, FacetRole role) {
+  const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
+  const auto count = static_cast<std::uint32_t>(corners.size());
+  view.mesh.vertices.insert(view.mesh.vertices.end(), corners.begin(), corners.end());
+  for (std::uint32_t k = 0; k + 2 < count; ++k) {
+    view.mesh.triangles.push_back({first, first + k + 1, first + k + 2});
+    view.mesh.roles.push_back(role);
+  }
+  for (std::uint32_t k = 0; k < count; ++k) view.edges.push_back({first + k, first + (k + 1) % count});
+}
+
+void add_patch(DesignView& view, const SurfacePatch& patch, const std::vector<Edge>& edges, const Vec2& offset) {
+  const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
+  for (const Vec3& v : patch.vertices) view.mesh.vertices.emplace_back(v.x() + offset.x(), v.y() + offset.y(), v.z());
+  for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+    const auto& [a, b, c] = patch.triangles[t];
+    view.mesh.triangles.push_back({first + a, first + b, first + c});
+    view.mesh.roles.push_back(patch.facets[patch.triangle_facet[t]].role);
+  }
+  for (const Edge& e : edges) view.edges.push_back({first + e[0], first + e[1]});
+  for (const std::vector<std::uint32_t>& wall : patch.border_walls) {
+    std::vector<Vec3> corners;
+    for (const std::uint32_t k : wall) corners.push_back(view.mesh.vertices[first + k]);
+    add_face(view, corners, FacetRole::border_wall);
+  }
+}
+
+/// Fewer elements of the same kind: the first ones of a large or endless array.
+Design piece_of(const Design& design, std::vector<std::string>& remarks) {
+  Design piece = design;
+  geometry::PartSpec& spec = piece.part;
+  if (design.mesh || design.mask || design.facet_planes || spec.arrangement == geometry::Arrangement::single)
+    return piece;
+  const Vec2 size = geometry::bounding_box(geometry::aperture_outline(spec.element)).size();
+  const Vec2 pitch = size + Vec2(spec.x_gap_mm, spec.y_gap_mm);
+  const bool infinite = spec.extent == geometry::Extent::infinite;
+  const Vec2 count = Vec2(spec.x_length_mm, spec.y_length_mm).cwiseQuotient(pitch);
+  if (!infinite && count.maxCoeff() <= kMostElementsAcross) return piece;
+  const Vec2 wanted = kPieceElements * pitch;
+  spec.extent = geometry::Extent::finite;
+  spec.x_length_mm = infinite ? wanted.x() : std::min(spec.x_length_mm, wanted.x());
+  spec.y_length_mm = infinite ? wanted.y() : std::min(spec.y_length_mm, wanted.y());
+  spec.x_offset_mm = spec.y_offset_mm = 0.0;
+  remarks.emplace_back("a piece of the array");
+  if (spec.thickness_mm > wanted.minCoeff()) {
+    const double top_mm = geometry::element_top_mm(spec.element, spec.angle_errors);
+    spec.thickness_mm = std::max(1.5 * top_mm, 0.3 * wanted.minCoeff());
+    remarks.emplace_back("its plate is thicker than shown");
+  }
+  return piece;
+}
+
+DesignView view_of_mesh(const Design& design) {
+  DesignView view;
+  view.mesh = geometry::boundary_of(mesh_of_design(design, nullptr));
+  view.edges = edges_of(view.mesh.vertices, view.mesh.triangles);
+  return view;
+}
+
+}  // namespace
+
+DesignView view_of(const Part& part) {
+  DesignView view;
+  std::vector<std::vector<Edge>> edges;
+  for (const SurfacePatch& patch : part.patches) edges.push_back(edges_of(patch.vertices, patch.triangles));
+  for (const geometry::Placement& placement : part.placements)
+    add_patch(view, part.patches[placement.patch], edges[placement.patch], placement.offset_mm);
+  const auto at = [&](std::size_t k, double z) {
+    const Vec2& p = part.outline[k % part.outline.size()];
+    return Vec3(p.x(), p.y(), z);
+  };
+  std::vector<Vec3> face;
+  for (std::size_t k = 0; k < part.outline.size(); ++k) {
+    face.push_back(at(k, part.thickness_mm));
+    add_face(view, {at(k, 0.0), at(k + 1, 0.0), at(k + 1, part.thickness_mm), at(k, part.thickness_mm)},
+             FacetRole::side);
+  }
+  add_face(view, face, FacetRole::entrance);
+  return view;
+}
+
+DesignView view_of(const Design& design) {
+  std::vector<std::string> remarks;
+  DesignView view;
+  if (design.mesh) {
+    view = view_of_mesh(design);
+  } else {
+    const Design piece = piece_of(design, remarks);
+    view = view_of(part_of_design(piece, nullptr));
+  }
+  view.title = short_name(design);
+  view.remarks = std::move(remarks);
+  return view;
+}
+
+}  // namespace retrace::studies
