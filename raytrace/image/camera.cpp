@@ -199,7 +199,19 @@ Contact contact_with(const Film& film, double thickness_mm, const WorldRay& ray)
 }  // namespace
 
 double CameraImage::std_error(std::size_t pixel) const {
-  return std::sqrt(squares[pixel] / (passes - 1.0) / passes);
+  const double own = own_variance(pixel);
+  if (!(coverage[pixel] > 0.0)) return std::sqrt(own);
+  constexpr std::size_t kReach = 2;
+  const std::size_t row = pixel / columns;
+  const std::size_t column = pixel % columns;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t r = row - std::min(row, kReach); r <= std::min(row + kReach, rows - 1); ++r)
+    for (std::size_t c = column - std::min(column, kReach); c <= std::min(column + kReach, columns - 1); ++c) {
+      sum += own_variance(r * columns + c);
+      ++count;
+    }
+  return std::sqrt(std::max(own, sum / static_cast<double>(count)));
 }
 
 double CameraImage::part_mean() const {

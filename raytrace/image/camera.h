@@ -76,14 +76,24 @@ struct CameraImage {
   std::vector<double> part_means;  ///< of each pass: luminance over all that shows the part; empty if nothing does
   std::uint64_t paths = 0;
 
-  /// Standard error of a pixel. \pre passes > 1
+  /// Standard error of a pixel: what the spread of its passes says, or the mean of that over the pixels round it (two
+  /// on either side) where that is larger and the pixel shows the part. A pixel may have missed the few bright paths
+  /// that its neighbours met; its own passes then know of no error. \pre passes > 1
   double std_error(std::size_t pixel) const;
   /// Of the part as a whole, with its standard error.
   double part_mean() const;
   double part_error() const;
   /// Mean standard error over mean luminance, of pixels wholly of the part.
   double relative_noise() const;
+
+ private:
+  /// Squared, by the pixel's own passes.
+  double own_variance(std::size_t pixel) const { return squares[pixel] / (passes - 1.0) / passes; }
 };
+
+/// How cameras follow paths: both branches of an interface down to far less power than where efficiencies are asked
+/// for. A lamp is some 1e5 times as bright as what else is seen, so that a branch of 1e-4 of the power still matters.
+inline constexpr PathPolicy kCameraPolicy{.split_power = 1e-4};
 
 /// Traces light backwards from the pupil through the part, with the same walker as all other light: what a path would
 /// carry from the lamp to the eye it carries from the eye to the lamp (docs/theory/images.md).

@@ -167,7 +167,7 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   const auto start = std::chrono::steady_clock::now();
   std::vector<raytrace::WeighedOptics> light;
   for (const SpectralOptics& at : model_.spectral) light.push_back({at.optics, at.weight});
-  const raytrace::CameraTracer tracer(model_.part, light, scene_, {}, request_.seed);
+  const raytrace::CameraTracer tracer(model_.part, light, scene_, raytrace::kCameraPolicy, request_.seed);
   CameraResult result;
   result.design = design_;
   result.request = request_;

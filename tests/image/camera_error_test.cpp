@@ -1,0 +1,112 @@
+// What the errors of single pixels are worth, at borders and where bright paths are rare.
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <vector>
+
+#include "raytrace/farfield/photometric_geometry.h"
+#include "raytrace/image/camera.h"
+#include "tests/support/designs.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+constexpr std::size_t kSide = 16;  ///< pixels
+constexpr std::uint32_t kSeeds = 16;
+
+/// Bricks with cut elements and upright sides, some of whose pixels see the lamp in a few of a thousand paths.
+CameraScene border_scene(const Part& part) {
+  const PhotometricGeometry geometry =
+      geometry_from({Angle::from_deg(5.0), Angle::from_deg(5.0)}, Angle::from_deg(0.2), Angle::from_deg(0.0));
+  const PhotometricDirections towards = directions_of(geometry);
+  CameraScene scene;
+  scene.view.target_mm = {0.0, 0.0, part.thickness_mm};
+  scene.view.eye_mm = scene.view.target_mm + 1e4 * towards.to_observer;
+  scene.view.up = return_frame(geometry).up;
+  scene.view.columns = scene.view.rows = kSide;
+  scene.view.width_mm = 7.0;
+  scene.view.pupil = Angle::from_deg(15.0 / 60.0);
+  scene.lamp = {scene.view.target_mm + 1e4 * towards.to_source, 10.0, Angle::from_deg(20.0 / 60.0)};
+  scene.surroundings = {1.0, 0.2};
+  return scene;
+}
+
+std::vector<CameraImage> pictures_of(const Part& part, const CameraScene& scene, std::uint32_t passes) {
+  std::vector<CameraImage> images;
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    const CameraTracer tracer(part, {{pmma(), 1.0}}, scene, kCameraPolicy, 100 + seed);
+    CameraImage image = tracer.empty_image();
+    while (image.passes < passes) EXPECT_TRUE(tracer.add_pass(image));
+    images.push_back(std::move(image));
+  }
+  return images;
+}
+
+/// Mean square of a pixel's deviations over the error that its picture claims; 1 where errors are right.
+double z_variance(const std::vector<CameraImage>& images, std::size_t pixel) {
+  double mean = 0.0;
+  for (const CameraImage& image : images) mean += image.luminance[pixel] / kSeeds;
+  double sum = 0.0;
+  for (const CameraImage& image : images) {
+    // Sums of equal values differ in their last digits.
+    const double error = std::hypot(image.std_error(pixel), 1e-9 * mean);
+    sum += std::pow((image.luminance[pixel] - mean) / error, 2.0);
+  }
+  return sum / (kSeeds - 1.0);
+}
+
+/// Largest mean square of normal deviations that one of so many pixels may show (family error 1 %).
+double variance_bound(std::size_t pixels) {
+  const boost::math::chi_squared distribution(kSeeds - 1.0);
+  return boost::math::quantile(boost::math::complement(distribution, sidak_level(pixels))) / (kSeeds - 1.0);
+}
+
+/// Independent pictures of a part with cut elements differ by no more than they say, pixel by pixel.
+TEST(CameraError, HoldsAtBorders) {
+  const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 2.0));
+  const std::vector<CameraImage> images = pictures_of(part, border_scene(part), 48);
+  std::size_t partly = 0;
+  for (std::size_t k = 0; k < kSide * kSide; ++k) {
+    if (images.front().coverage[k] == 0.0) continue;
+    if (images.front().coverage[k] < 1.0) ++partly;
+    EXPECT_LT(z_variance(images, k), variance_bound(kSide * kSide))
+        << "column " << k % kSide << ", row " << k / kSide << ", luminance " << images.front().luminance[k];
+  }
+  EXPECT_GT(partly, 20U) << "there must be pixels on the border";
+}
+
+/// Where all pixels are alike the errors are right, not only large enough.
+TEST(CameraError, IsRightWithinAnArray) {
+  PartSpec spec = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
+  spec.angle_errors.dihedral_error_arcmin.fill(2.0);
+  const Part part = build_part(spec);
+  CameraScene scene = border_scene(part);
+  scene.film = Film{40.0, 40.0, {}};
+  scene.view.width_mm = 24.0;
+  const std::vector<CameraImage> images = pictures_of(part, scene, 48);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < kSide * kSide; ++k) {
+    const double variance = z_variance(images, k);
+    sum += variance / (kSide * kSide);
+    EXPECT_LT(variance, variance_bound(kSide * kSide));
+  }
+  // The larger of two estimates of one variance is a little too large.
+  EXPECT_GT(sum, 0.8);
+  EXPECT_LT(sum, 1.1);
+}
+
+/// A pixel that shows nothing of the part is known exactly, whatever is beside it.
+TEST(CameraError, OfThePlainBackgroundIsNone) {
+  const Part part = build_part(single(RtpElement{2.0, 2.0}, 1.0));
+  const std::vector<CameraImage> images = pictures_of(part, border_scene(part), 2);
+  EXPECT_EQ(images.front().coverage[0], 0.0);
+  EXPECT_EQ(images.front().std_error(0), 0.0);
+}
+
+}  // namespace
+}  // namespace retrace::testing
