@@ -17,7 +17,7 @@ using namespace retrace::fabrication;
 Job large_job(int side) {
   Job job;
   job.source = "benchmark";
-  job.element.base_mm = job.element.width_mm = 0.2;
+  prism_of(job).base_mm = prism_of(job).width_mm = 0.2;
   job.array.arrangement = retrace::geometry::Arrangement::offset;
   job.array.x_length_mm = job.array.y_length_mm = 0.2 * side;
   job.tool.width_mm = 0.2;

@@ -18,7 +18,7 @@ using namespace fabrication;
 /// Rows of 50 prisms of 0.451 mm, roughed by 22 cuts and finished by two cuts a facet.
 Job job_of(std::int64_t elements) {
   Job job;
-  job.element.base_mm = job.element.width_mm = 0.451;
+  prism_of(job).base_mm = prism_of(job).width_mm = 0.451;
   job.array.arrangement = geometry::Arrangement::aligned;
   job.array.x_length_mm = 0.451 * 50;
   job.array.y_length_mm = 0.451 * static_cast<double>(elements) / 50.0;

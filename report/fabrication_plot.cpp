@@ -28,7 +28,7 @@ Polygon rectangle(const Vec2& low, const Vec2& high) {
 }  // namespace
 
 PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing) {
-  const geometry::RtpElement element = fabrication::blank_element(result.job);
+  const geometry::RtpElement element = fabrication::blank_prism(result.job);
   const double half_mm = 0.5 * element.base_mm;
   const double depth_mm = fabrication::root_depth_mm(element);
   PathPlot plot;
@@ -57,7 +57,7 @@ PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing)
 
 MapPlot arrangement_plot(const studies::FabricationResult& result) {
   const std::vector<fabrication::CutElement>& elements = result.plan.elements;
-  const geometry::RtpElement element = fabrication::blank_element(result.job);
+  const geometry::RtpElement element = fabrication::blank_prism(result.job);
   const std::vector<std::int64_t> places = studies::cutting_places(result);
   const Vec2 extent(fabrication::blank_extent_mm(result.job).y(), fabrication::blank_extent_mm(result.job).x());
   MapPlot plot;

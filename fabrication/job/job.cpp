@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "fabrication/job/cube_cells.h"
+#include "geometry/lattice.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -37,25 +42,48 @@ double blank_scale(const Workpiece& workpiece) {
   return 1.0 + 0.01 * workpiece.shrinkage_percent;
 }
 
-geometry::RtpElement blank_element(const Job& job) {
-  geometry::RtpElement element = job.element;
+const geometry::RtpElement& prism_of(const Job& job) {
+  const auto* const prism = std::get_if<geometry::RtpElement>(&job.element);
+  if (prism == nullptr) throw InputError({job.source, 0, "element.kind"}, "must be \"rtp\" for this");
+  return *prism;
+}
+
+geometry::RtpElement& prism_of(Job& job) {
+  return const_cast<geometry::RtpElement&>(prism_of(std::as_const(job)));
+}
+
+geometry::Element blank_element(const Job& job) {
+  if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&job.element))
+    return geometry::HexagonalCube{blank_scale(job.workpiece) * hexagonal->aperture_mm, {}};
+  if (const auto* const triangular = std::get_if<geometry::TriangularCube>(&job.element))
+    return geometry::TriangularCube{blank_scale(job.workpiece) * triangular->aperture_mm, {}};
+  return blank_prism(job);
+}
+
+geometry::RtpElement blank_prism(const Job& job) {
+  geometry::RtpElement element = prism_of(job);
   element.base_mm *= blank_scale(job.workpiece);
   element.width_mm *= blank_scale(job.workpiece);
   return element;
 }
 
 geometry::Vec2 blank_extent_mm(const Job& job) {
-  const bool single = job.array.arrangement == geometry::Arrangement::single;
-  const double x_mm = single ? job.element.base_mm : job.array.x_length_mm;
-  const double y_mm = single ? job.element.width_mm : job.array.y_length_mm;
-  return blank_scale(job.workpiece) * geometry::Vec2(y_mm, x_mm);
+  geometry::Vec2 part_mm(job.array.x_length_mm, job.array.y_length_mm);
+  if (job.array.arrangement == geometry::Arrangement::single) {
+    const geometry::Rectangle box = geometry::bounding_box(geometry::aperture_outline(job.element));
+    part_mm = box.upper - box.lower;
+  }
+  return blank_scale(job.workpiece) * geometry::Vec2(part_mm.y(), part_mm.x());
 }
 
-std::vector<CutElement> cut_elements(const Job& job) {
+namespace {
+
+std::vector<CutElement> cut_prisms(const Job& job) {
   const Array& array = job.array;
-  const auto [columns, rows] = cell_counts(array, job.element);
-  const double x_pitch_mm = job.element.base_mm + array.x_gap_mm;
-  const double y_pitch_mm = job.element.width_mm + array.y_gap_mm;
+  const geometry::RtpElement& prism = prism_of(job);
+  const auto [columns, rows] = cell_counts(array, prism);
+  const double x_pitch_mm = prism.base_mm + array.x_gap_mm;
+  const double y_pitch_mm = prism.width_mm + array.y_gap_mm;
   // The block is centred, and so is the workpiece frame.
   const double x_first_mm = -0.5 * x_pitch_mm * static_cast<double>(columns - 1);
   const double y_first_mm = -0.5 * y_pitch_mm * static_cast<double>(rows - 1);
@@ -64,7 +92,7 @@ std::vector<CutElement> cut_elements(const Job& job) {
   std::vector<CutElement> elements;
   for (std::int64_t row = 0; row < rows; ++row) {
     const bool shifted = is_shifted(array, row, rows);
-    const double shift_mm = shifted ? 0.01 * array.overlap_percent * job.element.base_mm : 0.0;
+    const double shift_mm = shifted ? 0.01 * array.overlap_percent * prism.base_mm : 0.0;
     const std::int64_t whole = shifted ? columns - 1 : columns;
     for (std::int64_t k = 0; k < whole; ++k) {
       const std::int64_t column = mirrored ? whole - 1 - k : k;
@@ -80,6 +108,27 @@ std::vector<CutElement> cut_elements(const Job& job) {
     }
   }
   return elements;
+}
+
+std::vector<CutElement> cut_cubes(const Job& job) {
+  const double scale = blank_scale(job.workpiece);
+  std::vector<CutElement> elements;
+  for (const CubeCell& cell : cube_cells(job.array, job.element)) {
+    if (!cell.is_cut) continue;
+    CutElement element;
+    element.centre_mm = scale * geometry::Vec2(cell.centre_mm.y(), -cell.centre_mm.x());
+    element.row = cell.row;
+    element.column = cell.column;
+    element.turned = cell.turned;
+    elements.push_back(element);
+  }
+  return elements;
+}
+
+}  // namespace
+
+std::vector<CutElement> cut_elements(const Job& job) {
+  return std::holds_alternative<geometry::RtpElement>(job.element) ? cut_prisms(job) : cut_cubes(job);
 }
 
 }  // namespace retrace::fabrication

@@ -17,27 +17,33 @@ enum class WorkpieceKind { mould, direct };
 enum class Strategy {
   unidirectional,  ///< plunge along facet 1, plough along facet 2
   bidirectional,   ///< plunges along both facets, layer by layer
-  two_step         ///< unidirectional roughing, bidirectional finishing
+  two_step,        ///< unidirectional roughing, bidirectional finishing
+  dmc              ///< diamond micro chiseling of cube corners: a V-shaped tool down one dihedral edge, up the other
 };
 
 /// Words of files and commands, in the order of the enumerators.
 inline constexpr std::string_view kWorkpieceWords[] = {"mould", "direct"};
-inline constexpr std::string_view kStrategyWords[] = {"unidirectional", "bidirectional", "two-step"};
+inline constexpr std::string_view kStrategyWords[] = {"unidirectional", "bidirectional", "two-step", "dmc"};
 
 struct Workpiece {
   WorkpieceKind kind = WorkpieceKind::mould;
   double shrinkage_percent = 0.0;  ///< the mould is larger than the part by this much; 0..10
 };
 
-/// Single-point inverted cutting tool (thesis 2.1): a diamond whose clearance face looks at the plunged facet. The
-/// clearance comes from how the tool is mounted.
+/// A diamond whose clearance face looks at the facet that it cuts; the clearance comes from how the tool is mounted.
+/// For prisms a chisel with a straight edge (single-point inverted cutting, thesis 2.1), for cube corners a V-shaped
+/// tool with two edges that meet in its tip (diamond micro chiseling, thesis 1.4.2).
 struct Tool {
-  double width_mm = 0.0;            ///< of the cutting edge; 0.1..2
-  double wedge_deg = 50.0;          ///< between clearance and rake face
-  double clearance_deg = 3.0;       ///< between clearance face and plunged facet; 2..15
-  double edge_radius_um = 0.0;      ///< of the cutting edge; 0: sharp
-  double side_clearance_deg = 2.0;  ///< by which the side walls fall back from the edge's ends; > 0
+  double width_mm = 0.0;            ///< of a chisel's edge, 0.1..2; across the ends of a V's two edges, 0.01..10
+  double wedge_deg = 50.0;          ///< between clearance and rake face; of a V: behind either edge, 65 by default
+  double clearance_deg = 3.0;       ///< between clearance face and cut facet; 2..15
+  double edge_radius_um = 0.0;      ///< of a chisel's edge, of a V's nose; 0: sharp
+  double side_clearance_deg = 2.0;  ///< by which a chisel's side walls fall back from the edge's ends; > 0
+  double nose_angle_deg = 50.0;     ///< between the two edges of a V
 };
+
+/// The wedge of a V-shaped tool with rake 22 and clearance 3 (thesis 1.4.2): they add up to 90.
+inline constexpr double kDmcWedgeDeg = 65.0;
 
 /// How an element is cut: depths, feeds and the thesis's recommendations, which are off by default.
 struct Process {
@@ -64,10 +70,11 @@ struct Process {
 
 /// Where the elements are, in the part's frame and size.
 struct Array {
-  geometry::Arrangement arrangement = geometry::Arrangement::single;  ///< single, aligned, offset or checker
+  /// single, aligned, offset or checker; of cube corners single, honeycomb or triangular
+  geometry::Arrangement arrangement = geometry::Arrangement::single;
   geometry::RowParity shifted_rows = geometry::RowParity::even;
   double overlap_percent = 50.0;
-  double x_length_mm = 0.0;  ///< of the extent; for `single`: the element's base and width
+  double x_length_mm = 0.0;  ///< of the extent; for `single`: that of the element's aperture
   double y_length_mm = 0.0;
   double x_gap_mm = 0.0;
   double y_gap_mm = 0.0;
@@ -75,6 +82,7 @@ struct Array {
   double y_offset_mm = 0.0;
   /// Which cells are cut: one text a row, the row of largest y first, '#' for a cell that is cut and '-' for one that
   /// is not, x rising. Empty: all are. The last column of a shifted row lies beyond the border and counts for nothing.
+  /// Of cube corners a row has as many cells as lie wholly within the array at its height.
   std::vector<std::string> pattern;
 };
 
@@ -84,7 +92,7 @@ struct Job {
   std::string title;
   std::string design;  ///< file that the job was made from, for people
   Workpiece workpiece;
-  geometry::RtpElement element;  ///< of the part
+  geometry::Element element;  ///< of the part, without cant
   Array array;
   Tool tool;
   std::string machine = "ideal";  ///< name of a shipped machine, or a file
@@ -99,7 +107,7 @@ struct CutElement {
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< of the aperture, in the workpiece frame
   std::int32_t row = 0;                               ///< from 0 at y = 0
   std::int32_t column = 0;                            ///< from 0 at x = 0
-  bool turned = false;                                ///< by 90 degrees about z: its roof edge lies along y_w
+  bool turned = false;  ///< a prism by 90 degrees about z: its roof edge lies along y_w; a cube corner by 180
 };
 
 /// Columns and rows of an array's cells.
@@ -108,7 +116,11 @@ struct CellCounts {
   std::int64_t rows = 0;
 };
 
-/// How many cells the extent of an array holds. \pre lengths and sizes > 0
+/// The prism that a job cuts. \throw InputError if it cuts cube corners
+const geometry::RtpElement& prism_of(const Job& job);
+geometry::RtpElement& prism_of(Job& job);
+
+/// How many cells the extent of an array of prisms holds. \pre lengths and sizes > 0
 CellCounts cell_counts(const Array& array, const geometry::RtpElement& element);
 
 /// The elements of the job, row by row from y = 0, x rising, in the frame of the blank (a direct workpiece's is
@@ -120,7 +132,9 @@ std::vector<CutElement> cut_elements(const Job& job);
 double blank_scale(const Workpiece& workpiece);
 
 /// The element as it is cut into the blank, shrinkage included.
-geometry::RtpElement blank_element(const Job& job);
+geometry::Element blank_element(const Job& job);
+/// The same of prisms. \throw InputError if the job cuts cube corners
+geometry::RtpElement blank_prism(const Job& job);
 
 /// x and y lengths of the array's extent on the blank along x_w and y_w.
 geometry::Vec2 blank_extent_mm(const Job& job);

@@ -75,6 +75,8 @@ class StageMaker {
         add_plunges("finishing", job_.process.finishing_cuts, job_.process.finishing_depth_um,
                     job_.process.finishing_feed_mm_per_min, true);
         break;
+      case Strategy::dmc:
+        throw InputError({job_.source, 0, "strategy"}, "must be a strategy for prisms, got \"dmc\"");
     }
     return std::move(starts_);
   }
@@ -176,7 +178,7 @@ class ProgramMaker {
   }
 
   void run() {
-    const std::vector<double> offsets = pass_offsets_mm(blank_element(job_).width_mm, job_.tool.width_mm);
+    const std::vector<double> offsets = pass_offsets_mm(blank_prism(job_).width_mm, job_.tool.width_mm);
     plan_.passes = static_cast<int>(offsets.size());
     std::map<bool, std::vector<std::int32_t>> orders;
     for (const bool turned : {false, true}) orders[turned] = cutting_order(plan_.elements, turned);
@@ -365,7 +367,7 @@ class ProgramMaker {
   }
 
   std::vector<std::string> header() const {
-    const geometry::RtpElement element = blank_element(job_);
+    const geometry::RtpElement element = blank_prism(job_);
     const geometry::Vec2 extent = blank_extent_mm(job_);
     const Process& p = job_.process;
     std::vector<std::string> lines = {
@@ -452,7 +454,7 @@ Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& option
   plan.cuts_per_facet = cuts_per_facet(job);
   const std::vector<Start> starts = StageMaker(job, machine, plan).run();
   plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);
-  const geometry::RtpElement element = blank_element(job);
+  const geometry::RtpElement element = blank_prism(job);
   plan.aperture_area_mm2 = element.base_mm * element.width_mm * static_cast<double>(plan.elements.size());
   choose_stages(plan, options);
   ProgramMaker(job, machine, options, starts, plan).run();

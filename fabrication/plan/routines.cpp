@@ -73,7 +73,7 @@ double finishing_allowance_mm(const Job& job) {
 }
 
 int cuts_per_facet(const Job& job) {
-  const geometry::RtpElement element = blank_element(job);
+  const geometry::RtpElement element = blank_prism(job);
   const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
   const double facet_mm = 0.5 * element.base_mm / std::sin(0.5 * apex_rad);
   const double depth_mm = 1e-3 * job.process.roughing_depth_um;

@@ -75,7 +75,7 @@ double root_depth_mm(const geometry::RtpElement& element) {
 
 CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg) {
   const InputLocation where{job.source, 0, "machine"};
-  const geometry::RtpElement element = blank_element(job);
+  const geometry::RtpElement element = blank_prism(job);
   const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
   const double nominal_c_deg = (facet.facet == 1 ? 0.0 : 180.0) + (facet.turned ? 90.0 : 0.0);
   CuttingPose pose;

@@ -55,7 +55,7 @@ ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings)
       machine_(*workpiece.machine),
       findings_(findings),
       map_(workpiece.grooves),
-      wedge_(tool_wedge(workpiece.job->tool, machine_, Angle::from_deg(workpiece.job->element.apex_angle_deg))),
+      wedge_(tool_wedge(workpiece.job->tool, machine_, Angle::from_deg(prism_of(*workpiece.job).apex_angle_deg))),
       tool_bodies_(tool_bodies(machine_, wedge_, diamond_mm(workpiece))),
       sweeps_(workpiece.grooves.size()),
       states_(workpiece.grooves.size()) {}

@@ -116,7 +116,7 @@ Workpiece3d workpiece_of(const Job& job, const Machine& machine, const VerifyOpt
   workpiece.job = &job;
   workpiece.machine = &machine;
   workpiece.tolerance_mm = options.tolerance_nm / kNmPerMm;
-  const geometry::RtpElement size = blank_element(job);
+  const geometry::RtpElement size = blank_prism(job);
   for (const CutElement& element : cut_elements(job)) {
     workpiece.grooves.push_back(groove_of(element, size));
     auto& prediction = workpiece.predictions[element.turned ? 1 : 0];

@@ -42,6 +42,7 @@ double sa_of(const Job& job) {
     case Strategy::bidirectional:
       return p.roughing_plunge_sa_nm;
     case Strategy::two_step:
+    case Strategy::dmc:
       return p.finishing_plunge_sa_nm;
   }
   return 0.0;
@@ -104,8 +105,9 @@ PredictedTexture predicted_texture(const Job& job) {
   texture.roughness_sq_nm = kRoughnessShare * texture.sa_nm * kSqPerSa;
   texture.waviness_sq_nm = kWavinessShare * texture.sa_nm * kSqPerSa;
   texture.correlation_length_um = kCorrelationLengthUm;
+  const bool is_finished = job.strategy == Strategy::two_step || job.strategy == Strategy::dmc;
   const double feed_mm_per_min =
-      job.strategy == Strategy::two_step ? job.process.finishing_feed_mm_per_min : job.process.roughing_feed_mm_per_min;
+      is_finished ? job.process.finishing_feed_mm_per_min : job.process.roughing_feed_mm_per_min;
   texture.waviness_length_um = 1e3 * feed_mm_per_min / 60.0 / kFeedMarksHz;
   return texture;
 }
@@ -194,14 +196,14 @@ geometry::ElementPlanes planes_of(const Groove& groove, const ElementFigures& fi
 
 geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
   const std::vector<CutElement> elements = cut_elements(run.job);
-  const geometry::RtpElement size = blank_element(run.job);
+  const geometry::RtpElement size = blank_prism(run.job);
   const PartFrame frame(run.job);
   std::vector<geometry::ElementPlanes> planes;
   for (std::size_t i = 0; i < elements.size(); ++i)
     if (run.result.elements[i].figures.is_cut)
       planes.push_back(
           planes_of(groove_of(elements[i], size), run.result.elements[i].figures, frame, elements[i].turned));
-  return {std::move(planes), std::min(run.job.element.base_mm, run.job.element.width_mm)};
+  return {std::move(planes), std::min(prism_of(run.job).base_mm, prism_of(run.job).width_mm)};
 }
 
 /// What a design with all elements alike leaves out.
@@ -257,8 +259,8 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
   std::string text = "schema = \"retrace.design/1\"\n";
   text += fmt::format("title = {}\n", toml_text((run.job.title.empty() ? "Part" : run.job.title) + ", as machined"));
   text += fmt::format("\n[element]\nkind = \"rtp\"\nbase_mm = {}\nwidth_mm = {}\napex_angle_deg = {}\n",
-                      shortest(run.job.element.base_mm), shortest(run.job.element.width_mm),
-                      shortest(run.job.element.apex_angle_deg));
+                      shortest(prism_of(run.job).base_mm), shortest(prism_of(run.job).width_mm),
+                      shortest(prism_of(run.job).apex_angle_deg));
   text += "\n[array]\n" + array_text(run.job);
   text += "\n[body]\n" + part.body;
   if (part.planes)

@@ -33,7 +33,7 @@ geometry::Vec2 in_section(const FabricationResult& result, const fabrication::Cu
                                         1e-7 * static_cast<double>(at.a), 1e-7 * static_cast<double>(at.c)};
   const Vec3 tip = fabrication::forward(result.machine, axes).reference_mm;
   const Vec3 from_root = tip - Vec3(element.centre_mm.x(), element.centre_mm.y(),
-                                    -fabrication::root_depth_mm(fabrication::blank_element(result.job)));
+                                    -fabrication::root_depth_mm(fabrication::blank_prism(result.job)));
   // Facet 1 has its wall on the side of +y_w; of turned elements on that of +x_w.
   return {element.turned ? -from_root.x() : -from_root.y(), from_root.z()};
 }

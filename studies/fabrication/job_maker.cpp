@@ -34,7 +34,7 @@ fabrication::Strategy strategy_of(const std::string& given) {
   return static_cast<fabrication::Strategy>(word_index("--strategy", given, fabrication::kStrategyWords));
 }
 
-const geometry::RtpElement& prism_of(const Design& design) {
+const geometry::RtpElement& element_of(const Design& design) {
   design.require_elements("retrace job");
   const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part.element);
   if (rtp == nullptr)
@@ -111,8 +111,8 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   Job& job = made.job;
   job.title = design.title;
   job.design = design.source == "-" ? "" : std::filesystem::path(design.source).filename().string();
-  job.element = prism_of(design);
-  job.element.apex_angle_deg += design.part.angle_errors.dihedral_error_arcmin[0] / 60.0;
+  job.element = element_of(design);
+  prism_of(job).apex_angle_deg += design.part.angle_errors.dihedral_error_arcmin[0] / 60.0;
   job.array = array_of(design);
   check_making(request);
   job.strategy = strategy_of(request.strategy);
@@ -120,7 +120,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
       word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords));
   job.workpiece.shrinkage_percent = request.shrinkage_percent;
   job.tool.width_mm = request.tool_width_mm;
-  const double element_width_mm = fabrication::blank_element(job).width_mm;
+  const double element_width_mm = fabrication::blank_prism(job).width_mm;
   if (request.tool_width_mm > element_width_mm + 1e-6)
     throw InputError({"", 0, "--tool-width-mm"},
                      fmt::format("must be <= {}, the element's width, got {}", shortest(element_width_mm),
@@ -130,7 +130,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   if (design.mask)
     job.array.pattern =
         fabrication::mask_pattern(design.mask->file, design.mask->threshold,
-                                  fabrication::cell_counts(job.array, job.element), design.mask->location);
+                                  fabrication::cell_counts(job.array, prism_of(job)), design.mask->location);
   fabrication::check_job(job, {design.source_name(), 0, ""});
   made.elements = static_cast<std::int64_t>(fabrication::cut_elements(job).size());
   add_warnings(design, made);

@@ -26,7 +26,7 @@ Configuration configuration_of(const std::string& word) {
 }
 
 CutConditions conditions_of(const Job& job, const ForcesRequest& request) {
-  const geometry::RtpElement element = blank_element(job);
+  const geometry::RtpElement element = blank_prism(job);
   const double half_apex = 0.5 * Angle::from_deg(element.apex_angle_deg).rad();
   const double facet_mm = 0.5 * element.base_mm / std::sin(half_apex);
   CutConditions cut;

@@ -214,7 +214,7 @@ struct SweepSink : NcSink {
 
 Cut cut_of(const std::string& text, const Job& job, const Machine& m, NcDialect dialect = NcDialect::rs274ngc) {
   SweepSink sink(m);
-  sink.cut.wedge = tool_wedge(job.tool, m, Angle::from_deg(job.element.apex_angle_deg));
+  sink.cut.wedge = tool_wedge(job.tool, m, Angle::from_deg(prism_of(job).apex_angle_deg));
   run_nc(parse_nc(text, "p", dialect), sink);
   return sink.cut;
 }

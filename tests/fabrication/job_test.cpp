@@ -39,7 +39,7 @@ TEST(Job, HasAsManyElementsAsThePartHasWholeOnes) {
         job.array.x_gap_mm = 0.02;
         job.array.x_offset_mm = 0.1;
         geometry::PartSpec spec;
-        spec.element = job.element;
+        spec.element = prism_of(job);
         spec.arrangement = arrangement;
         spec.shifted_rows = parity;
         spec.partial_elements = geometry::PartialElements::omit;
@@ -109,7 +109,7 @@ TEST(Job, ShrinkageMakesTheBlankLarger) {
   const double before_mm = cut_elements(job).front().centre_mm.norm();
   job.workpiece.shrinkage_percent = 0.5;
   EXPECT_DOUBLE_EQ(cut_elements(job).front().centre_mm.norm(), 1.005 * before_mm);
-  EXPECT_DOUBLE_EQ(blank_element(job).base_mm, 1.005 * 0.451);
+  EXPECT_DOUBLE_EQ(blank_prism(job).base_mm, 1.005 * 0.451);
   EXPECT_DOUBLE_EQ(blank_extent_mm(job).x(), 1.005 * 3 * 0.451);
 }
 
@@ -121,8 +121,8 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   job.title = *rc::gen::string<std::string>();
   job.title.erase(std::remove_if(job.title.begin(), job.title.end(), [](char c) { return (c & 0x80) != 0; }),
                   job.title.end());
-  job.element.base_mm = real(0.2, 3.0);
-  job.element.apex_angle_deg = real(70.0, 120.0);
+  prism_of(job).base_mm = real(0.2, 3.0);
+  prism_of(job).apex_angle_deg = real(70.0, 120.0);
   job.array.x_length_mm = real(3.0, 30.0);
   job.array.x_gap_mm = real(0.0, 0.1);
   job.array.overlap_percent = real(0.0, 99.0);

@@ -16,8 +16,8 @@ inline Process thesis_process() {
 /// n x n prisms of 0.451 mm in brick rows, as the thesis cut them, by a tool that fits.
 inline Job square_job(int n, geometry::Arrangement arrangement = geometry::Arrangement::offset) {
   Job job;
-  job.element.base_mm = 0.451;
-  job.element.width_mm = 0.451;
+  prism_of(job).base_mm = 0.451;
+  prism_of(job).width_mm = 0.451;
   job.array.arrangement = n == 1 ? geometry::Arrangement::single : arrangement;
   if (n > 1) job.array.x_length_mm = job.array.y_length_mm = 0.451 * n;
   job.tool.width_mm = 0.451;

@@ -34,7 +34,7 @@ Machine machine(const std::string& name) {
 
 Job job_of(double base_mm, double depth_um, Strategy strategy) {
   Job job = square_job(1);
-  job.element.base_mm = job.element.width_mm = base_mm;
+  prism_of(job).base_mm = prism_of(job).width_mm = base_mm;
   job.tool.width_mm = base_mm;
   job.process.roughing_depth_um = depth_um;
   job.strategy = strategy;
@@ -116,11 +116,11 @@ TEST(Poses, StandThePlungedFacetUpright) {
       for (const bool turned : {false, true})
         for (const int facet : {1, 2}) {
           Job job = square_job(2, Arrangement::checker);
-          job.element.apex_angle_deg = apex_deg;
+          prism_of(job).apex_angle_deg = apex_deg;
           const Machine m = machine(name);
           const CuttingPose pose = cutting_pose(job, m, {turned, facet}, 0.0);
           const RigidMotion motion = machine_from_workpiece(m, pose.rounded);
-          const Vec3 normal = motion.direction(facet_normal(job.element, {turned, facet}));
+          const Vec3 normal = motion.direction(facet_normal(prism_of(job), {turned, facet}));
           EXPECT_LT(kArcminPerRad * std::acos(std::min(1.0, -normal.y())), 0.01)
               << name << " apex " << apex_deg << " facet " << facet << (turned ? " turned" : "");
           EXPECT_GT(motion.direction(pose.root).x(), 0.999);
@@ -150,8 +150,8 @@ TEST(Poses, LeaveThePredictedRotation) {
 
 /// Signed distance of a point of the workpiece from a facet of an element: positive outside the material.
 double distance_nm(const Job& job, const CutElement& element, int facet, const Vec3& point) {
-  const Vec3 root(element.centre_mm.x(), element.centre_mm.y(), -root_depth_mm(blank_element(job)));
-  return 1e6 * facet_normal(blank_element(job), {element.turned, facet}).dot(point - root);
+  const Vec3 root(element.centre_mm.x(), element.centre_mm.y(), -root_depth_mm(blank_prism(job)));
+  return 1e6 * facet_normal(blank_prism(job), {element.turned, facet}).dot(point - root);
 }
 
 /// Both ends of the tool's edge in the workpiece, where the axes are there.
@@ -166,7 +166,7 @@ TEST(Plunges, EndWhereTheDeeperEndTouchesTheOtherFacetAndNeverBelow) {
     for (const Arrangement arrangement : {Arrangement::offset, Arrangement::checker})
       for (const double apex_deg : {90.0, 90.3, 75.0, 100.0}) {
         Job job = square_job(3, arrangement);
-        job.element.apex_angle_deg = apex_deg;
+        prism_of(job).apex_angle_deg = apex_deg;
         const Machine m = machine(name);
         const Plan plan = make_plan(job, m);
         std::map<std::pair<std::int32_t, int>, std::array<double, 2>> nearest;  // to wall and floor
@@ -311,7 +311,7 @@ TEST(Time, IsThatOfTheThesis) {
 TEST(Time, WideToolHalvesTheTimePerArea) {
   Job job = square_job(10, Arrangement::aligned);
   const Plan narrow = make_plan(job, machine("ideal"));
-  job.element.width_mm = job.tool.width_mm = 0.902;
+  prism_of(job).width_mm = job.tool.width_mm = 0.902;
   job.array.y_length_mm *= 2.0;
   const Plan wide = make_plan(job, machine("ideal"));
   const double ratio =
@@ -335,7 +335,7 @@ RC_GTEST_PROP(Moves, AreSafe, ()) {
   Job job = square_job(*rc::gen::inRange(2, 6),
                        *rc::gen::element(Arrangement::aligned, Arrangement::offset, Arrangement::checker));
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
-  job.element.apex_angle_deg = *rc::gen::element(80.0, 90.0, 90.5, 100.0);
+  prism_of(job).apex_angle_deg = *rc::gen::element(80.0, 90.0, 90.5, 100.0);
   job.tool.width_mm = *rc::gen::element(0.451, 0.3, 0.15);
   job.process.roughing_depth_um = *rc::gen::element(15.0, 7.3, 40.0);
   job.tool.edge_radius_um = *rc::gen::element(0.0, 0.2, 2.0);

@@ -78,36 +78,36 @@ const std::vector<Variant>& variants() {
   static const std::vector<Variant> all = {
       {"narrow tool", [](Job& job) { job.tool.width_mm = 0.2; }},
       {"gaps", [](Job& job) { job.array.x_gap_mm = job.array.y_gap_mm = 0.03; }},
-      {"opened apex", [](Job& job) { job.element.apex_angle_deg = 90.05; }},
-      {"closed apex", [](Job& job) { job.element.apex_angle_deg = 89.95; }},
-      {"narrow apex", [](Job& job) { job.element.apex_angle_deg = 80.0; }},
-      {"wide apex", [](Job& job) { job.element.apex_angle_deg = 95.0; }},
+      {"opened apex", [](Job& job) { prism_of(job).apex_angle_deg = 90.05; }},
+      {"closed apex", [](Job& job) { prism_of(job).apex_angle_deg = 89.95; }},
+      {"narrow apex", [](Job& job) { prism_of(job).apex_angle_deg = 80.0; }},
+      {"wide apex", [](Job& job) { prism_of(job).apex_angle_deg = 95.0; }},
       {"blunt edge", [](Job& job) { job.tool.edge_radius_um = 0.5; }},
       {"blunt edge, opened apex",
        [](Job& job) {
          job.tool.edge_radius_um = 0.5;
-         job.element.apex_angle_deg = 90.05;
+         prism_of(job).apex_angle_deg = 90.05;
        }},
       {"blunt edge, wide apex",
        [](Job& job) {
          job.tool.edge_radius_um = 1.0;
-         job.element.apex_angle_deg = 95.0;
+         prism_of(job).apex_angle_deg = 95.0;
        }},
       {"blunt edge, narrow apex",
        [](Job& job) {
          job.tool.edge_radius_um = 5.0;
-         job.element.apex_angle_deg = 80.0;
+         prism_of(job).apex_angle_deg = 80.0;
        }},
-      {"apex of 100", [](Job& job) { job.element.apex_angle_deg = 100.0; }},
-      {"two passes 20 nm apart", [](Job& job) { job.element.width_mm += 2e-5; }},
-      {"two passes 0.3 um apart", [](Job& job) { job.element.width_mm += 3e-4; }},
-      {"two passes 4 um apart", [](Job& job) { job.element.width_mm += 4e-3; }},
-      {"two passes 100 um apart", [](Job& job) { job.element.width_mm += 0.1; }},
+      {"apex of 100", [](Job& job) { prism_of(job).apex_angle_deg = 100.0; }},
+      {"two passes 20 nm apart", [](Job& job) { prism_of(job).width_mm += 2e-5; }},
+      {"two passes 0.3 um apart", [](Job& job) { prism_of(job).width_mm += 3e-4; }},
+      {"two passes 4 um apart", [](Job& job) { prism_of(job).width_mm += 4e-3; }},
+      {"two passes 100 um apart", [](Job& job) { prism_of(job).width_mm += 0.1; }},
       {"direct", [](Job& job) { job.workpiece.kind = WorkpieceKind::direct; }},
       {"shrinkage",
        [](Job& job) {
          job.workpiece.shrinkage_percent = 0.6;
-         job.tool.width_mm = blank_element(job).width_mm;
+         job.tool.width_mm = blank_prism(job).width_mm;
        }},
       {"pattern",
        [](Job& job) {
@@ -134,7 +134,7 @@ TEST(PlannedJobs, EveryKeyIsCutAsDesigned) {
         job.strategy = strategy;
         job.process.roughing_depth_um = 40.0;
         variant.change(job);
-        job.array.y_length_mm = std::max(job.array.y_length_mm, 3.0 * job.element.width_mm);
+        job.array.y_length_mm = std::max(job.array.y_length_mm, 3.0 * prism_of(job).width_mm);
         const Verification v = verified(job, job, m);
         const std::string what = fmt::format("{}, {}, strategy {}", variant.what, name, static_cast<int>(strategy));
         EXPECT_TRUE(v.passes()) << what << "\n" << listed(v);
@@ -152,8 +152,8 @@ TEST(PlannedJobs, AnotherApexIsFound) {
     Job planned = square_job(2, Arrangement::aligned);
     planned.process.roughing_depth_um = 40.0;
     Job job = planned;
-    planned.element.apex_angle_deg = apex_deg + 0.02;
-    job.element.apex_angle_deg = apex_deg;
+    prism_of(planned).apex_angle_deg = apex_deg + 0.02;
+    prism_of(job).apex_angle_deg = apex_deg;
     EXPECT_FALSE(verified(planned, job, machine("ideal")).passes()) << apex_deg;
   }
 }
@@ -165,7 +165,7 @@ TEST(PlannedJobs, AnEdgeThatTheProgramForgotIsFound) {
     Job planned = square_job(2, Arrangement::aligned);
     planned.strategy = Strategy::unidirectional;
     planned.process.roughing_depth_um = 40.0;
-    planned.element.apex_angle_deg = apex_deg;
+    prism_of(planned).apex_angle_deg = apex_deg;
     Job job = planned;
     job.tool.edge_radius_um = 1.0;
     for (const char* name : {"ideal", "paper"}) {
@@ -188,8 +188,8 @@ TEST(PlannedJobs, PassesAtAnotherHeightAreFound) {
     Job job = square_job(2, Arrangement::aligned);
     job.strategy = Strategy::unidirectional;
     job.process.roughing_depth_um = 40.0;
-    job.element.width_mm += wider_mm;
-    job.array.y_length_mm = 2.0 * job.element.width_mm;
+    prism_of(job).width_mm += wider_mm;
+    job.array.y_length_mm = 2.0 * prism_of(job).width_mm;
     const Machine paper = machine("paper");
     const std::vector<Program> programs = make_plan(job, paper).programs;
     EXPECT_TRUE(verified(programs, job, paper).passes()) << wider_mm;
@@ -204,7 +204,7 @@ TEST(PlannedJobs, RootsAreAsPredictedAtEveryApex) {
   for (const double apex_deg : {80.0, 90.0, 95.0, 100.0}) {
     Job job = square_job(2, Arrangement::aligned);
     job.process.roughing_depth_um = 40.0;
-    job.element.apex_angle_deg = apex_deg;
+    prism_of(job).apex_angle_deg = apex_deg;
     const Machine paper = machine("paper");
     const std::vector<Program> programs = make_plan(job, paper).programs;
     const Verification v = verified(programs, job, paper);

@@ -83,7 +83,7 @@ RC_GTEST_PROP(ReadBack, EveryDialectToThePlannedPositions, ()) {
   job.process.slow_retract_um = *rc::gen::element(0.0, 5.0);
   job.process.plough_lift_um = *rc::gen::element(0.0, 2.0);
   job.process.dwell_s = *rc::gen::element(0.0, 0.1, 0.125);
-  job.element.apex_angle_deg = 85.0 + 1e-3 * *rc::gen::inRange(0, 10001);
+  prism_of(job).apex_angle_deg = 85.0 + 1e-3 * *rc::gen::inRange(0, 10001);
   const Plan plan =
       make_plan(job, machine(*rc::gen::element(std::string("ideal"), std::string("paper"), std::string("thesis"))));
   for (const Program& program : plan.programs)

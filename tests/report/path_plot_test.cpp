@@ -53,7 +53,7 @@ TEST(PathPlot, NothingAtAllIsDrawn) {
 studies::FabricationResult result_of(fabrication::Strategy strategy, geometry::Arrangement arrangement) {
   studies::FabricationResult result;
   result.job.source = "j.toml";
-  result.job.element.base_mm = result.job.element.width_mm = 0.5;
+  prism_of(result.job).base_mm = prism_of(result.job).width_mm = 0.5;
   result.job.array.arrangement = arrangement;
   result.job.array.x_length_mm = result.job.array.y_length_mm = 1.5;
   result.job.tool.width_mm = 0.5;

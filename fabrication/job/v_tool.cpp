@@ -1,0 +1,90 @@
+#include "fabrication/job/v_tool.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/angle.h"
+#include "core/number_format.h"
+#include "geometry/lattice.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+double rad(double deg) {
+  return Angle::from_deg(deg).rad();
+}
+
+/// Between the directions in which two cuts reach from a dihedral edge into the shell, one along either facet: what is
+/// left between them if the sum is less than a right angle is a fin.
+double covered_deg(const VToolEdges& edges) {
+  const Vec3& s = edges.spine;
+  return Angle::from_rad(std::atan2(s.z(), s.y()) + std::atan2(s.z(), s.x())).deg();
+}
+
+}  // namespace
+
+VToolEdges v_tool_edges(const Tool& tool) {
+  const double half = rad(0.5 * tool.nose_angle_deg);
+  const double from_second = rad(45.0) - half;  // the two dihedral edges of a facet include 90 degrees
+  VToolEdges edges;
+  edges.leading = {std::sin(from_second), std::cos(from_second), 0.0};
+  const Vec3 behind(std::cos(from_second), -std::sin(from_second), 0.0);
+  const double c = rad(tool.clearance_deg);
+  const Vec3 across = std::cos(c) * behind + std::sin(c) * Vec3::UnitZ();
+  const Vec3 into_tool = std::cos(c) * Vec3::UnitZ() - std::sin(c) * behind;
+  edges.trailing = std::cos(2.0 * half) * edges.leading + std::sin(2.0 * half) * across;
+  const Vec3 middle = std::cos(half) * edges.leading + std::sin(half) * across;
+  const double rise = std::atan(std::sin(half) * std::tan(rad(tool.wedge_deg)));
+  edges.spine = std::cos(rise) * middle + std::sin(rise) * into_tool;
+  return edges;
+}
+
+double cavity_depth_mm(const geometry::Element& element) {
+  return geometry::element_depth_mm(element);
+}
+
+double cavity_edge_mm(const geometry::Element& element) {
+  return std::numbers::sqrt3 * cavity_depth_mm(element);
+}
+
+double nose_strip_mm(const Tool& tool) {
+  return 1e-3 * tool.edge_radius_um * (std::sin(rad(45.0)) / std::sin(rad(0.5 * tool.nose_angle_deg)) - 1.0);
+}
+
+void check_v_tool(const geometry::Element& element, const Tool& tool, const VToolPlaces& at) {
+  if (tool.nose_angle_deg >= 90.0)
+    throw InputError(at.nose_angle, fmt::format("must be < 90, the angle between the dihedral edges of a facet, for "
+                                                "the tool to reach the apex, got {}",
+                                                shortest(tool.nose_angle_deg)));
+  const VToolEdges edges = v_tool_edges(tool);
+  for (const Vec3& edge : {edges.leading, edges.trailing, edges.spine})
+    if (edge.minCoeff() < 0.0)
+      throw InputError(at.wedge, fmt::format("is too wide: with nose_angle_deg and clearance_deg the tool runs into a "
+                                             "neighbouring facet at the apex, got {}",
+                                             shortest(tool.wedge_deg)));
+  if (covered_deg(edges) < 90.0)
+    throw InputError(at.wedge,
+                     fmt::format("is too narrow: with nose_angle_deg and clearance_deg the cuts of two facets "
+                                 "leave a fin along their edge, got {}",
+                                 shortest(tool.wedge_deg)));
+  constexpr double kMostRadiusShare = 0.1;
+  const double edge_mm = cavity_edge_mm(element);
+  const double aperture_mm = geometry::bounding_box(geometry::element_cell(element).outline).upper.x() * 2.0;
+  if (1e-3 * tool.edge_radius_um > kMostRadiusShare * aperture_mm)
+    throw InputError(at.radius,
+                     fmt::format("must be <= {}, a tenth of the element's aperture: the element is smaller than the "
+                                 "tool's nose, got {}",
+                                 shortest(1e3 * kMostRadiusShare * aperture_mm), shortest(tool.edge_radius_um)));
+  // The ends of the cutting edges must come out of the blank while the tip stands in the apex.
+  const double least_mm = std::numbers::sqrt2 * edge_mm * std::tan(rad(0.5 * tool.nose_angle_deg));
+  if (tool.width_mm < least_mm)
+    throw InputError(at.width, fmt::format("must be >= {} for the cutting edges to reach from the apex to the blank's "
+                                           "face, got {}",
+                                           fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(tool.width_mm)));
+}
+
+}  // namespace retrace::fabrication

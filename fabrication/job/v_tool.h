@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+
+#include "core/error.h"
+#include "fabrication/job/job.h"
+#include "geometry/vec.h"
+
+namespace retrace::fabrication {
+
+/// The three edges of a V-shaped tool's body, upwards from its tip, of length 1, as components along a facet's first
+/// dihedral edge, its second one and its outward normal. The tool stands as it cuts: its leading edge lies in the facet
+/// and the clearance face turns away from it about that edge (docs/theory/micro_chiseling.md).
+struct VToolEdges {
+  geometry::Vec3 leading = geometry::Vec3::UnitY();   ///< cutting edge, on the side of the second dihedral edge
+  geometry::Vec3 trailing = geometry::Vec3::UnitX();  ///< the other edge of the clearance face
+  geometry::Vec3 spine = geometry::Vec3::UnitZ();     ///< where the two flanks meet
+};
+VToolEdges v_tool_edges(const Tool& tool);
+
+/// Length of the facets' edges from the apex to the blank's face: of full cubes twice the cube's edge.
+/// \pre the element is a cube corner
+double cavity_edge_mm(const geometry::Element& element);
+/// Depth of the apex below the blank's face.
+double cavity_depth_mm(const geometry::Element& element);
+
+/// Width that a nose of the tool's radius leaves uncut on either facet along a dihedral edge.
+double nose_strip_mm(const Tool& tool);
+
+/// Where the values of a tool were given.
+struct VToolPlaces {
+  InputLocation width;
+  InputLocation nose_angle;
+  InputLocation wedge;
+  InputLocation radius;
+};
+
+/// That the tool reaches the apex of a cube corner, and every place of its facets.
+/// \param element as it is cut into the blank \pre it is a cube corner
+/// \throw InputError at the value that is wrong
+void check_v_tool(const geometry::Element& element, const Tool& tool, const VToolPlaces& at);
+
+}  // namespace retrace::fabrication
