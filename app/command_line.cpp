@@ -245,9 +245,10 @@ std::vector<CLI::Option*> add_making(CLI::App& command, JobOptions& job) {
   options.push_back(command.add_option("--tool-width-mm", job.tool_width_mm, "width of the tool's edge, 0.1 to 2")
                         ->type_name("W")
                         ->check(real_number()));
-  options.push_back(command.add_option("--strategy", job.strategy, "unidirectional, bidirectional or two-step")
-                        ->type_name("STRATEGY")
-                        ->capture_default_str());
+  options.push_back(
+      command.add_option("--strategy", job.strategy, "unidirectional, bidirectional or two-step; dmc for cube corners")
+          ->type_name("STRATEGY")
+          ->capture_default_str());
   options.push_back(
       command.add_option("--process", job.process, "depths, feeds and dwells: a shipped process or a file")
           ->type_name("PROCESS")

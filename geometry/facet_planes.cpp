@@ -32,18 +32,53 @@ const ElementPlanes* FacetPlanes::at(const Vec2& centre_mm) const {
   return nullptr;
 }
 
+std::size_t FacetPlanes::element_count() const {
+  std::size_t count = 0;
+  for (const ElementPlanes& element : elements_) if (!element.planes.empty()) ++count;
+  return count;
+}
+
+Vec2 place_of(const PartSpec& spec, const Cell& cell) {
+  if (!std::holds_alternative<RtpElement>(spec.element)) return cell.at_mm;
+  const Rectangle box = bounding_box(cell.outline);
+  return 0.5 * (box.lower + box.upper);
+}
+
 Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm) {
-  std::array<HeightPlane, 2> planes = element.planes;
+  std::vector<HeightPlane> planes = element.planes;
   for (HeightPlane& plane : planes) plane.height_mm -= plane.slope.dot(centre_mm);
   Cell own = cell;
   own.facets.clear();
-  for (const std::size_t k : {0U, 1U}) {
+  for (std::size_t k = 0; k < planes.size(); ++k) {
     CellFacet facet;
     facet.plane = planes[k];
-    facet.outline = where_higher(cell.outline, planes[k], planes[1 - k]);
+    facet.outline = cell.outline;
+    for (std::size_t other = 0; other < planes.size() && !facet.outline.empty(); ++other)
+      if (other != k) facet.outline = where_higher(facet.outline, planes[k], planes[other]);
     if (!facet.outline.empty()) own.facets.push_back(std::move(facet));
   }
   return own;
+}
+
+Cell flared_land(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm) {
+  Cell land = cell;
+  land.is_element = false;
+  land.facets = {CellFacet{}};
+  const Polygon& hexagon = cell.outline;
+  for (std::size_t k = 0; k < hexagon.size(); ++k) {
+    const bool is_flared = k % 2 == 0 && element.flares[k / 2].has_value();
+    if (!is_flared) {
+      land.facets.front().outline.push_back(hexagon[k]);
+      continue;
+    }
+    CellFacet flare;
+    flare.plane = *element.flares[k / 2];
+    flare.plane.height_mm -= flare.plane.slope.dot(centre_mm);
+    flare.outline = {hexagon[(k + 5) % 6], hexagon[k], hexagon[(k + 1) % 6]};
+    flare.is_edge = true;  // of a facet, though on land
+    land.facets.push_back(std::move(flare));
+  }
+  return land;
 }
 
 }  // namespace retrace::geometry

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,14 +13,18 @@
 
 namespace retrace::geometry {
 
-/// The two facets of one prism as planes of their own.
+/// The facets of one element as planes of their own: z = height_mm + slope . (p - centre_mm).
 struct ElementPlanes {
-  Vec2 centre_mm = Vec2::Zero();  ///< of its aperture, in the part frame
-  /// Towards -x and +x (of a turned element: -y and +y): z = height_mm + slope . (p - centre_mm).
-  std::array<HeightPlane, 2> planes;
+  Vec2 centre_mm = Vec2::Zero();  ///< of a prism's aperture, or of a cube corner's apex, in the part frame
+  /// Of a prism towards -x and +x (of a turned element: -y and +y); of a cube corner facet k between the dihedral edges
+  /// at 120 k and 120 (k + 1) degrees. None: the element is not there, and `flares` are what its place has.
+  std::vector<HeightPlane> planes = std::vector<HeightPlane>(2);
+  /// In the place of a hexagonal cube corner that is not there: what cavities of its neighbours, which are triangular,
+  /// take of its corner at 120 k degrees, up to the line between the corners beside that one.
+  std::array<std::optional<HeightPlane>, 3> flares;
 };
 
-/// Prisms with facets of their own, such as a program left them. Elements that are not among them are not there.
+/// Elements with facets of their own, such as a program left them. Elements that are not among them are not there.
 class FacetPlanes {
  public:
   /// \param spacing_mm no two elements' centres are nearer than this along both axes; > 0
@@ -27,6 +32,8 @@ class FacetPlanes {
   /// The element with its centre there, up to a hundredth of the spacing; null if there is none.
   const ElementPlanes* at(const Vec2& centre_mm) const;
   std::size_t size() const { return elements_.size(); }
+  /// How many of them are there, and not just land with flares.
+  std::size_t element_count() const;
   const std::vector<ElementPlanes>& elements() const { return elements_; }
 
  private:
@@ -38,13 +45,20 @@ class FacetPlanes {
   std::map<Key, std::size_t> places_;
 };
 
+/// What ElementPlanes::centre_mm is of an element's cell.
+Vec2 place_of(const PartSpec& spec, const Cell& cell);
+
 /// The element in the place of `cell`, its facets in planes of their own: they meet where the planes do.
-/// \param centre_mm the cell's centre in its own coordinates
+/// \param centre_mm the cell's place_of() in its own coordinates
 Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm);
 
-/// A finite part of prisms like build_part() makes it, each with its own facets; flat land stands where an element is
+/// Land on z = 0 in the place of a hexagonal cube corner, without the corners that flares take.
+/// \pre the outline of `cell` is the hexagon, from its corner at 0 degrees
+Cell flared_land(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm);
+
+/// A finite part like build_part() makes it, each element with its own facets; flat land stands where an element is
 /// not given. Outlines stay nominal, and vertical walls close what differs between neighbours.
-/// \pre spec.element is a prism, spec.extent is finite, facets slope as nominal ones do
+/// \pre spec.extent is finite, facets slope as nominal ones do
 /// \throw InputError as build_part(), and for planes that belong to no whole element of the array
 Part build_part(const PartSpec& spec, const FacetPlanes& planes);
 

@@ -33,16 +33,11 @@ struct Layout {
   PartialElements partial = PartialElements::cut;
   double tolerance_mm = 0.0;
   PartSpec spec;
-  const FacetPlanes* planes = nullptr;  ///< of prisms that have their own
+  const FacetPlanes* planes = nullptr;  ///< of elements that have their own
 
   /// Whether no element is like another.
   bool elements_differ() const { return spec.random_tilts.sigma_arcmin > 0.0 || planes != nullptr; }
 };
-
-Vec2 middle_of(const Polygon& outline) {
-  const Rectangle box = bounding_box(outline);
-  return 0.5 * (box.lower + box.upper);
-}
 
 /// The errors of one element: those of all, and its own random tilts.
 AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std::uint32_t number) {
@@ -168,17 +163,24 @@ void add_cell(std::vector<Tile>& tiles, const Layout& layout, const Rectangle& e
   }
 }
 
-/// The element of the lattice with its own planes, or level land where there is none.
+/// The element of the lattice with its own planes, or land where there is none.
 Cell own_cell(const Layout& layout, const Cell& cell, std::int64_t i, std::int64_t j) {
   const Vec2 index(static_cast<double>(i), static_cast<double>(j));
-  const Vec2 middle = middle_of(cell.outline);
+  const Vec2 place = place_of(layout.spec, cell);
   const ElementPlanes* const planes =
-      layout.planes->at(layout.anchor + index.cwiseProduct(layout.lattice.period_mm) + middle);
-  if (planes != nullptr) return with_edges(cell_with_planes(cell, *planes, middle), layout.spec);
+      layout.planes->at(layout.anchor + index.cwiseProduct(layout.lattice.period_mm) + place);
+  if (planes != nullptr && planes->planes.empty()) return flared_land(cell, *planes, place);
+  if (planes != nullptr) return with_edges(cell_with_planes(cell, *planes, place), layout.spec);
   Cell land = cell;
   land.is_element = false;
   land.facets = {CellFacet{cell.outline, HeightPlane{}, false}};
   return land;
+}
+
+/// Whether an element of the layout, moved by `shift`, is there.
+bool has_planes(const Layout& layout, const Cell& cell, const Vec2& shift) {
+  const ElementPlanes* const planes = layout.planes->at(place_of(layout.spec, cell) + shift);
+  return planes != nullptr && !planes->planes.empty();
 }
 
 /// The tiles of a range of the lattice and of one more cell all round, local to the range's lower corner.
@@ -287,7 +289,7 @@ void count_elements(Part& part, const Layout& layout) {
       for (const Cell& cell : layout.lattice.cells) {
         if (!cell.is_element) continue;
         const Polygon outline = moved(cell.outline, shift);
-        if (layout.planes != nullptr && layout.planes->at(middle_of(outline)) == nullptr) continue;
+        if (layout.planes != nullptr && !has_planes(layout, cell, shift)) continue;
         if (contains(layout.block, outline, layout.tolerance_mm))
           ++part.elements_full;
         else if (area(clip(outline, layout.block, layout.tolerance_mm)) > 0.0)
@@ -303,8 +305,9 @@ void build_single(Part& part, const Vec2& origin, const FacetPlanes* planes) {
   const AngleErrors errors = is_random ? errors_of(part.spec, 0, 0, 0) : part.spec.angle_errors;
   Cell sharp = element_cell(part.spec.element, errors);
   if (planes != nullptr) {
-    const ElementPlanes* const own = planes->at(middle_of(outline));
-    if (own != nullptr) sharp = cell_with_planes(sharp, *own, middle_of(sharp.outline));
+    const Vec2 place = place_of(part.spec, sharp);
+    const ElementPlanes* const own = planes->at(place - bounding_box(sharp.outline).lower);
+    if (own != nullptr && !own->planes.empty()) sharp = cell_with_planes(sharp, *own, place);
   }
   const Cell cell = with_edges(sharp, part.spec);
   const Vec2 shift = -bounding_box(cell.outline).lower;
@@ -417,7 +420,7 @@ Part build_part(const PartSpec& spec, const Vec2& origin_mm) {
 
 Part build_part(const PartSpec& spec, const FacetPlanes& planes) {
   Part part = build(spec, Vec2::Zero(), &planes, kElementsPerPatch);
-  const auto given = static_cast<std::int64_t>(planes.size());
+  const auto given = static_cast<std::int64_t>(planes.element_count());
   if (part.elements_full != given)
     throw InputError(
         fmt::format("{} of the {} elements are no whole elements of the array", given - part.elements_full, given));

@@ -61,40 +61,57 @@ Eigen::Matrix3d rotation_about(const Vec3& axis, Angle angle) {
   return c * Eigen::Matrix3d::Identity() + s * cross + (1.0 - c) * axis * axis.transpose();
 }
 
+RotaryPose rotary_pose(const Machine& machine, const AxisPositions& axes) {
+  return {machine.tilt == Tilt::table ? axes.a_deg : axes.b_deg, axes.c_deg};
+}
+
 RigidMotion machine_from_workpiece(const Machine& machine, const RotaryPose& pose) {
   const RigidMotion c = turn_about_line(machine.c, pose.c_deg);
-  const RigidMotion a = turn_about_line(machine.a, pose.a_deg);
-  return {a.rotation * c.rotation, a.rotation * c.translation_mm + a.translation_mm};
+  const RigidMotion tilt = machine.tilt == Tilt::table ? turn_about_line(machine.a, pose.a_deg)
+                                                       : turn_about_line(machine.a, pose.a_deg).inverse();
+  return {tilt.rotation * c.rotation, tilt.rotation * c.translation_mm + tilt.translation_mm};
 }
 
 Vec3 machine_point(const Machine& machine, const AxisPositions& axes) {
-  return linear_directions(machine) * Vec3(axes.x_mm, axes.y_mm, axes.z_mm);
+  const Vec3 point = linear_directions(machine) * Vec3(axes.x_mm, axes.y_mm, axes.z_mm);
+  return machine.tilt == Tilt::table ? point : Vec3(turn(machine.a, axes.b_deg).transpose() * point);
 }
 
-std::array<double, 3> linear_words(const Machine& machine, const Vec3& machine_point_mm) {
-  const Vec3 words = linear_directions(machine).partialPivLu().solve(machine_point_mm);
+std::array<double, 3> linear_words(const Machine& machine, const Vec3& machine_point_mm, const RotaryPose& pose) {
+  const Vec3 point =
+      machine.tilt == Tilt::table ? machine_point_mm : Vec3(turn(machine.a, pose.a_deg) * machine_point_mm);
+  const Vec3 words = linear_directions(machine).partialPivLu().solve(point);
   return {words.x(), words.y(), words.z()};
 }
 
 ToolPose forward(const Machine& machine, const AxisPositions& axes) {
-  const RigidMotion motion = machine_from_workpiece(machine, {axes.a_deg, axes.c_deg});
+  const RigidMotion motion = machine_from_workpiece(machine, rotary_pose(machine, axes));
   return {motion.inverse().point(machine_point(machine, axes)), motion.rotation.transpose()};
 }
 
 AxisPositions inverse(const Machine& machine, const Vec3& reference_mm, const RotaryPose& pose) {
   const Vec3 point = machine_from_workpiece(machine, pose).point(reference_mm);
-  const std::array<double, 3> words = linear_words(machine, point);
-  return {words[0], words[1], words[2], pose.a_deg, pose.c_deg};
+  const std::array<double, 3> words = linear_words(machine, point, pose);
+  const bool is_table = machine.tilt == Tilt::table;
+  return {words[0], words[1], words[2], is_table ? pose.a_deg : 0.0, pose.c_deg, is_table ? 0.0 : pose.a_deg};
 }
 
 Vec3 plunged_normal(const Machine& machine) {
-  return machine.x.direction.value.cross(machine.z.direction.value).normalized();
+  const Vec3& across = machine.tilt == Tilt::table ? machine.x.direction.value : machine.z.direction.value;
+  const Vec3& along = machine.tilt == Tilt::table ? machine.z.direction.value : machine.y.direction.value;
+  return across.cross(along).normalized();
+}
+
+Vec3 level_direction(const Machine& machine) {
+  return machine.tilt == Tilt::table ? machine.x.direction.value : machine.y.direction.value;
 }
 
 PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, const Vec3& root,
                              const RotaryPose& near) {
   const Vec3 target = plunged_normal(machine);
   const Vec3& a_axis = machine.a.direction.value;
+  // A head that turns by B shows the workpiece to the tool as a table would that turns by -B.
+  const double a_sign = machine.tilt == Tilt::table ? machine.a.sign.value : -machine.a.sign.value;
   const Vec3& c_axis = machine.c.direction.value;
   // Turning about A keeps the component along A, so C alone must bring it to the target's: with n split along and
   // across C that reads  p cos C + q sin C = r.
@@ -104,7 +121,8 @@ PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, c
   const double r = a_axis.dot(target) - a_axis.dot(c_axis) * along;
   const double amplitude = std::hypot(p, q);
   if (!(amplitude > std::abs(r)))
-    throw InputError("machine " + machine.name + ": no A and C turn that facet to where the tool plunges it");
+    throw InputError("machine " + machine.name + ": no " + std::string(1, machine.tilt_letter()) +
+                     " and C turn that facet to where the tool plunges it");
   const double middle = std::atan2(q, p);
   const double half_width = std::acos(r / amplitude);
 
@@ -113,12 +131,12 @@ PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, c
   for (const double c_rad : {middle + half_width, middle - half_width}) {
     const Vec3 turned = rotation_about(c_axis, Angle::from_rad(c_rad)) * facet_normal;
     const double a_rad = angle_about(a_axis, turned, target);
-    const RotaryPose pose = {nearest_turn(to_deg(a_rad) * machine.a.sign.value, near.a_deg),
+    const RotaryPose pose = {nearest_turn(to_deg(a_rad) * a_sign, near.a_deg),
                              nearest_turn(to_deg(c_rad) * machine.c.sign.value, near.c_deg)};
     const double distance = std::hypot(pose.a_deg - near.a_deg, pose.c_deg - near.c_deg);
     if (best && distance >= best_distance) continue;
     const Vec3 turned_root = machine_from_workpiece(machine, pose).direction(root);
-    best = PlungePose{pose, Angle::from_rad(angle_about(target, machine.x.direction.value, turned_root))};
+    best = PlungePose{pose, Angle::from_rad(angle_about(target, level_direction(machine), turned_root))};
     best_distance = distance;
   }
   return *best;
@@ -132,7 +150,7 @@ std::vector<LimitExcess> limit_excesses(const Machine& machine, const AxisPositi
   check('X', axes.x_mm, machine.x.limits_mm.value);
   check('Y', axes.y_mm, machine.y.limits_mm.value);
   check('Z', axes.z_mm, machine.z.limits_mm.value);
-  check('A', axes.a_deg, machine.a.limits_deg.value);
+  check(machine.tilt_letter(), rotary_pose(machine, axes).a_deg, machine.a.limits_deg.value);
   check('C', axes.c_deg, machine.c.limits_deg.value);
   return excesses;
 }

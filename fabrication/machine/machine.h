@@ -54,7 +54,7 @@ struct RotaryAxis {
 /// What a body of a machine moves with.
 enum class Carrier {
   workpiece,  ///< the table that A and C turn, in the frame of the workpiece
-  cradle,     ///< what A turns and C does not, in the same frame at A = 0
+  cradle,     ///< what C does not turn, in the same frame at A = 0; where the head tilts: what stands still
   tool        ///< spindle and holder, relative to the tool reference point
 };
 
@@ -65,39 +65,58 @@ struct MachineBody {
   Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least 4, not in one plane
 };
 
-/// A machine with three linear axes and a table that turns about A and, on top of that, about C. Its kinematic chain
-/// from the workpiece W to the linear axes M is
+/// What the axis that tilts turns.
+enum class Tilt {
+  table,  ///< A: the table, and C with it
+  head    ///< B: the tool; C alone turns the workpiece
+};
+
+/// A machine with three linear axes, an axis that tilts, and a table that turns about C.
+///
+/// Where the table tilts, its kinematic chain from the workpiece W to the linear axes M is
 ///
 ///   P_M = b3 b2 R_A b1 R_C b0 P_W
 ///
 /// (Hamilton et al., Right triangular prism retroreflectors, eq. 6; docs/theory/kinematics.md), with every axis
 /// given by a point and a direction. At A = C = 0 P_M = P_W, so the words of a program are the position of the tool
 /// reference point in the workpiece frame when nothing is turned.
+///
+/// Where the head tilts, points are told in the frame of the tool, which B turns against the linear axes, so that the
+/// tool stands in it as it does where the table tilts: P_T = p + R_B^T (R_C P_W - p), p a point on B from the tool
+/// reference point at B = 0. "The frame of the machine" means the tool's for such machines.
 struct Machine {
   std::string name;
   std::string title;
   LinearAxis x;
   LinearAxis y;
   LinearAxis z;
-  RotaryAxis a;
+  Tilt tilt = Tilt::table;
+  RotaryAxis a;  ///< the axis that tilts: A, or B of a head, whose point is told from the tool reference point at B = 0
   RotaryAxis c;
   std::vector<MachineBody> bodies;
+
+  /// Letter of the axis that tilts.
+  char tilt_letter() const { return tilt == Tilt::table ? 'A' : 'B'; }
 };
 
-/// Words of a program: positions of the five axes.
+/// Words of a program: positions of the axes. A machine has A or B.
 struct AxisPositions {
   double x_mm = 0.0;
   double y_mm = 0.0;
   double z_mm = 0.0;
   double a_deg = 0.0;
   double c_deg = 0.0;
+  double b_deg = 0.0;
 };
 
 /// Positions of the two rotary axes.
 struct RotaryPose {
-  double a_deg = 0.0;
+  double a_deg = 0.0;  ///< of the axis that tilts, A or B
   double c_deg = 0.0;
 };
+
+/// Those of the two that the machine has.
+RotaryPose rotary_pose(const Machine& machine, const AxisPositions& axes);
 
 /// A rigid motion: p -> rotation p + translation.
 struct RigidMotion {
@@ -112,7 +131,7 @@ struct RigidMotion {
 /// Where a machine puts the tool: as a frame in the workpiece.
 struct ToolPose {
   geometry::Vec3 reference_mm = geometry::Vec3::Zero();  ///< tool reference point, in the workpiece frame
-  /// Turns directions of the machine into those of the workpiece: the tool's edge lies along +x of the machine.
+  /// Turns directions of the machine into those of the workpiece: a chisel's edge lies along +x of the machine.
   Eigen::Matrix3d workpiece_from_machine = Eigen::Matrix3d::Identity();
 };
 
@@ -129,18 +148,23 @@ ToolPose forward(const Machine& machine, const AxisPositions& axes);
 /// within 200 mm of the origin. Limits are not looked at.
 AxisPositions inverse(const Machine& machine, const geometry::Vec3& reference_mm, const RotaryPose& pose);
 
-/// Axis positions as a point of the machine frame, and back; the same numbers if the linear axes are square.
+/// Axis positions as a point of the machine frame, and back; the same numbers if the linear axes are square and the
+/// head, if it is what tilts, stands at B = 0.
 geometry::Vec3 machine_point(const Machine& machine, const AxisPositions& axes);
-std::array<double, 3> linear_words(const Machine& machine, const geometry::Vec3& machine_point_mm);
+std::array<double, 3> linear_words(const Machine& machine, const geometry::Vec3& machine_point_mm,
+                                   const RotaryPose& pose = {});
 
-/// The normal, in the machine frame, that a facet has when the tool can plunge it: the normal of the plane that the
-/// tool's edge (along X) sweeps when Z moves, on the side of -Y.
+/// The normal, in the machine frame, that a facet has when the tool can cut it. Where the table tilts: of the plane
+/// that the tool's edge (along X) sweeps when Z moves, on the side of -Y. Where the head tilts: of the plane of Y and Z
+/// of the tool, on the side of -X.
 geometry::Vec3 plunged_normal(const Machine& machine);
+/// The direction of the machine that a facet's level line then has: X, or Y where the head tilts.
+geometry::Vec3 level_direction(const Machine& machine);
 
 /// A pose that lets the tool plunge a facet.
 struct PlungePose {
   RotaryPose pose;
-  /// Rotation that is left about the facet's normal (right-handed about the outward normal), from the machine's X to
+  /// Rotation that is left about the facet's normal (right-handed about the outward normal), from level_direction() to
   /// the root line: two directions are matched, and the third angle of a rotation is what the two axes give.
   Angle root_tilt;
 };
@@ -149,7 +173,8 @@ struct PlungePose {
 /// docs/theory/kinematics.md). A facet's normal fixes two of the three angles of the workpiece; what is left is
 /// `root_tilt`. Limits are not looked at.
 /// \param facet_normal outward from the material, of length 1, in the workpiece frame
-/// \param root along the facet's root, to the side that lies on machine +X when the facet is plunged
+/// \param root along the facet's root, or another level line of it, to the side that lies on level_direction() when the
+/// facet is plunged
 /// \throw InputError if no pose of this machine does that
 PlungePose solve_plunge_pose(const Machine& machine, const geometry::Vec3& facet_normal, const geometry::Vec3& root,
                              const RotaryPose& near);
@@ -160,7 +185,7 @@ struct LimitExcess {
   double position = 0.0;  ///< mm or degrees
   Interval limits;
 };
-/// All of them, in the order X, Y, Z, A, C.
+/// All of them, in the order X, Y, Z, A or B, C.
 std::vector<LimitExcess> limit_excesses(const Machine& machine, const AxisPositions& axes);
 
 }  // namespace retrace::fabrication

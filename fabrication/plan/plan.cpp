@@ -9,9 +9,11 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/plan/chiseling.h"
 #include "fabrication/plan/move_time.h"
 #include "fabrication/plan/order.h"
 #include "fabrication/plan/routines.h"
+#include "geometry/lattice.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -44,6 +46,7 @@ std::string plain(std::string_view text) {
 
 /// What the stages need to know of a routine beside its steps.
 struct Start {
+  Nanometres x_nm = 0;
   Nanometres y_nm = 0;
   Nanometres z_nm = 0;
   Reach reach;
@@ -55,8 +58,11 @@ class StageMaker {
   StageMaker(const Job& job, const Machine& machine, Plan& plan) : job_(job), machine_(machine), plan_(plan) {}
 
   std::vector<Start> run() {
-    std::array<bool, 2> has = {};
-    for (const CutElement& element : plan_.elements) has[element.turned ? 1 : 0] = true;
+    if (job_.strategy == Strategy::dmc) {
+      chisel();
+      return std::move(starts_);
+    }
+    const std::array<bool, 2> has = orientations();
     const bool one_facet = job_.strategy == Strategy::unidirectional;
     for (const FacetChoice& facet : kPoseOrder) {
       if (!has[facet.turned ? 1 : 0] || (one_facet && facet.facet == 2)) continue;
@@ -76,12 +82,49 @@ class StageMaker {
                     job_.process.finishing_feed_mm_per_min, true);
         break;
       case Strategy::dmc:
-        throw InputError({job_.source, 0, "strategy"}, "must be a strategy for prisms, got \"dmc\"");
+        break;
     }
     return std::move(starts_);
   }
 
  private:
+  /// Whether there are elements that are not turned, and such that are.
+  std::array<bool, 2> orientations() const {
+    std::array<bool, 2> has = {};
+    for (const CutElement& element : plan_.elements) has[element.turned ? 1 : 0] = true;
+    return has;
+  }
+
+  /// Layer by layer, all elements on one facet, then on the next: chips come off with the third.
+  void chisel() {
+    const std::array<bool, 2> has = orientations();
+    for (const bool turned : {false, true})
+      for (int facet = 1; facet <= 3 && has[turned ? 1 : 0]; ++facet) {
+        plan_.poses.push_back(chiseling_pose(job_, machine_, {turned, facet}, previous_c_deg_));
+        previous_c_deg_ = plan_.poses.back().rounded.c_deg;
+      }
+    const Process& process = job_.process;
+    const double left_mm = chiseling_allowance_mm(job_);
+    add_layers("layer", plan_.cuts_per_facet, process.roughing_depth_um, left_mm, process.roughing_feed_mm_per_min);
+    add_layers("finishing", process.finishing_cuts, process.finishing_depth_um, 0.0, process.finishing_feed_mm_per_min);
+  }
+
+  void add_layers(std::string_view what, int cuts, double depth_um, double left_mm, double feed_mm_per_min) {
+    for (int cut = 1; cut <= cuts; ++cut)
+      for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
+        const FacetChoice& facet = plan_.poses[pose].facet;
+        Stage stage;
+        stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, facet.facet, facet.turned ? "-turned" : "");
+        stage.roughs = what == "layer";
+        stage.cut = cut;
+        stage.cuts = cuts;
+        Routine routine = chiseling_routine(job_, machine_, plan_.poses[pose], left_mm + 1e-3 * depth_um * (cuts - cut),
+                                            feed_mm_per_min);
+        routine.subroutine.title = fmt::format("{}: down one edge, up the other", stage.name);
+        add(std::move(stage), pose, std::move(routine));
+      }
+  }
+
   void add_roughing(std::size_t pose) {
     Stage stage;
     stage.name = std::string("roughing") + (plan_.poses[pose].facet.turned ? "-turned" : "");
@@ -112,7 +155,7 @@ class StageMaker {
     stage.pose = pose;
     stage.subroutine = static_cast<std::uint32_t>(plan_.subroutines.size());
     routine.subroutine.number = 101 + static_cast<int>(plan_.subroutines.size());
-    starts_.push_back({routine.y_start_nm, routine.z_start_nm, reach_of(routine.subroutine)});
+    starts_.push_back({routine.x_start_nm, routine.y_start_nm, routine.z_start_nm, reach_of(routine.subroutine)});
     plan_.subroutines.push_back(std::move(routine.subroutine));
     plan_.stages.push_back(std::move(stage));
   }
@@ -159,8 +202,8 @@ TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
       continue;
     }
     const auto& move = std::get<Increment>(step);
-    const double seconds =
-        linear_move_s(machine, Vec3(0.0, millimetres(move.y_nm), millimetres(move.z_nm)), move.feed_mm_per_min);
+    const double seconds = linear_move_s(
+        machine, Vec3(millimetres(move.x_nm), millimetres(move.y_nm), millimetres(move.z_nm)), move.feed_mm_per_min);
     const bool cuts = move.motion == Motion::plunge || move.motion == Motion::plough;
     (cuts ? time.cutting_s : time.retract_s) += seconds;
   }
@@ -178,7 +221,9 @@ class ProgramMaker {
   }
 
   void run() {
-    const std::vector<double> offsets = pass_offsets_mm(blank_prism(job_).width_mm, job_.tool.width_mm);
+    const std::vector<double> offsets = job_.strategy == Strategy::dmc
+                                            ? std::vector<double>{0.0}
+                                            : pass_offsets_mm(blank_prism(job_).width_mm, job_.tool.width_mm);
     plan_.passes = static_cast<int>(offsets.size());
     std::map<bool, std::vector<std::int32_t>> orders;
     for (const bool turned : {false, true}) orders[turned] = cutting_order(plan_.elements, turned);
@@ -223,6 +268,7 @@ class ProgramMaker {
     program_ = {};
     program_seconds_ = 0.0;
     program_.subroutines = plan_.subroutines;
+    program_.tilt_letter = machine_.tilt_letter();
     at_ = {};
     raise();
   }
@@ -276,8 +322,8 @@ class ProgramMaker {
       const double offset_mm = offsets[forth_ ? k : offsets.size() - 1 - k];
       const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
       const Start& start = starts_[stage.subroutine];
-      Visit visit{element, stage.subroutine, nanometres(at.x_mm), nanometres(at.y_mm) + start.y_nm,
-                  nanometres(at.z_mm) + start.z_nm};
+      const auto [x_nm, y_nm, z_nm] = rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along);
+      const Visit visit{element, stage.subroutine, x_nm + start.x_nm, y_nm + start.y_nm, z_nm + start.z_nm};
       check_limits(visit, start.reach);
       add(stage, visit, start.reach);
     }
@@ -315,6 +361,7 @@ class ProgramMaker {
     spend(&stage, &TimeShares::cutting_s, routine.cutting_s);
     spend(&stage, &TimeShares::dwell_s, routine.dwell_s);
     spend(&stage, &TimeShares::retract_s, routine.retract_s);
+    *at_.x_nm += reach.x_end_nm;
     *at_.y_nm += reach.y_end_nm;
     *at_.z_nm += reach.z_end_nm;
     program_.items.push_back(visit);
@@ -346,7 +393,8 @@ class ProgramMaker {
   }
 
   void check_limits(const Visit& visit, const Reach& reach) const {
-    check_axis('X', visit.x_nm, visit.x_nm, machine_.x.limits_mm.value, visit.element);
+    check_axis('X', visit.x_nm + reach.x_low_nm, visit.x_nm + reach.x_high_nm, machine_.x.limits_mm.value,
+               visit.element);
     check_axis('Y', visit.y_nm + reach.y_low_nm, visit.y_nm + reach.y_high_nm, machine_.y.limits_mm.value,
                visit.element);
     check_axis('Z', visit.z_nm + reach.z_low_nm, visit.z_nm + reach.z_high_nm, machine_.z.limits_mm.value,
@@ -366,29 +414,39 @@ class ProgramMaker {
     finish_program();
   }
 
-  std::vector<std::string> header() const {
+  /// What is cut, by which tool.
+  std::vector<std::string> description() const {
+    if (job_.strategy == Strategy::dmc) return chiseling_description(job_, plan_.elements.size());
     const geometry::RtpElement element = blank_prism(job_);
-    const geometry::Vec2 extent = blank_extent_mm(job_);
-    const Process& p = job_.process;
-    std::vector<std::string> lines = {
-        job_.title.empty() ? "Prism array" : plain(job_.title),
-        plain("Job " + std::filesystem::path(job_.source).filename().string() + ", machine " + machine_.name),
-        fmt::format("Blank: {}, array of {} x {} mm along X and Y at A0 C0",
-                    kWorkpieceWords[static_cast<std::size_t>(job_.workpiece.kind)], fixed(extent.x(), 3),
-                    fixed(extent.y(), 3)),
+    return {
         fmt::format("{} elements, base {} width {} apex {} deg, root {} mm deep", plan_.elements.size(),
                     shortest(element.base_mm), shortest(element.width_mm), shortest(element.apex_angle_deg),
                     fixed(root_depth_mm(element), 6)),
         "Zero: centre of the array on the face of the blank, roof edges along X at A0 C0. Controller transformation "
         "off",
         fmt::format("Tool: width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: middle of the edge",
-                    shortest(job_.tool.width_mm), shortest(job_.tool.wedge_deg), shortest(job_.tool.clearance_deg)),
-        plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
-                          shortest(p.roughing_depth_um), job_.strategy == Strategy::two_step ? p.finishing_cuts : 0,
-                          shortest(p.finishing_depth_um), shortest(p.clearance_mm)))};
+                    shortest(job_.tool.width_mm), shortest(job_.tool.wedge_deg), shortest(job_.tool.clearance_deg))};
+  }
+
+  std::vector<std::string> header() const {
+    const geometry::Vec2 extent = blank_extent_mm(job_);
+    const Process& p = job_.process;
+    const bool is_dmc = job_.strategy == Strategy::dmc;
+    const char tilt = machine_.tilt_letter();
+    std::vector<std::string> lines = {
+        job_.title.empty() ? is_dmc ? "Cube corner array" : "Prism array" : plain(job_.title),
+        plain("Job " + std::filesystem::path(job_.source).filename().string() + ", machine " + machine_.name),
+        fmt::format("Blank: {}, array of {} x {} mm along X and Y at {}0 C0",
+                    kWorkpieceWords[static_cast<std::size_t>(job_.workpiece.kind)], fixed(extent.x(), 3),
+                    fixed(extent.y(), 3), tilt)};
+    for (const std::string& line : description()) lines.push_back(line);
+    const bool is_finished = is_dmc || job_.strategy == Strategy::two_step;
+    lines.push_back(plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
+                                      shortest(p.roughing_depth_um), is_finished ? p.finishing_cuts : 0,
+                                      shortest(p.finishing_depth_um), shortest(p.clearance_mm))));
     for (const CuttingPose& pose : plan_.poses)
-      lines.push_back(fmt::format("Pose: facet {}{} A{:.7f} C{:.7f}", pose.facet.facet,
-                                  pose.facet.turned ? " of turned elements" : "", pose.rounded.a_deg,
+      lines.push_back(fmt::format("Pose: facet {}{} {}{:.7f} C{:.7f}", pose.facet.facet,
+                                  pose.facet.turned ? " of turned elements" : "", tilt, pose.rounded.a_deg,
                                   pose.rounded.c_deg));
     const auto minutes = static_cast<std::int64_t>(std::ceil(program_seconds_ / 60.0));
     lines.push_back(fmt::format("Expected time: {} h {} min", minutes / 60, minutes % 60));
@@ -422,6 +480,17 @@ void check_options(const PlanOptions& options, std::size_t elements) {
     throw InputError({"", 0, "--split-hours"}, "must be > 0, got " + shortest(*options.split_hours));
 }
 
+/// A chisel stands upright and the table tilts; a V is tilted by the head.
+void check_machine(const Job& job, const Machine& machine) {
+  const bool is_dmc = job.strategy == Strategy::dmc;
+  if (is_dmc == (machine.tilt == Tilt::head)) return;
+  throw InputError(
+      {job.source, 0, "machine"},
+      is_dmc
+          ? "must be a machine whose head tilts (B), such as \"ideal-dmc\", for strategy \"dmc\", got " + machine.name
+          : "must be a machine whose table tilts (A) for this strategy, got " + machine.name);
+}
+
 }  // namespace
 
 double safe_height_mm(const Job& job, const Machine& machine, const std::vector<CuttingPose>& poses) {
@@ -451,11 +520,12 @@ Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& option
   Plan plan;
   plan.elements = cut_elements(job);
   check_options(options, plan.elements.size());
-  plan.cuts_per_facet = cuts_per_facet(job);
+  check_machine(job, machine);
+  plan.cuts_per_facet = job.strategy == Strategy::dmc ? chiseling_layers(job) : cuts_per_facet(job);
   const std::vector<Start> starts = StageMaker(job, machine, plan).run();
   plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);
-  const geometry::RtpElement element = blank_prism(job);
-  plan.aperture_area_mm2 = element.base_mm * element.width_mm * static_cast<double>(plan.elements.size());
+  plan.aperture_area_mm2 =
+      geometry::area(geometry::aperture_outline(blank_element(job))) * static_cast<double>(plan.elements.size());
   choose_stages(plan, options);
   ProgramMaker(job, machine, options, starts, plan).run();
   return plan;

@@ -27,23 +27,6 @@ RotaryUnits rounded_units(double deg) {
   return std::llround(deg * kRotaryUnitsPerDeg);
 }
 
-/// The turn of C by whole revolutions that lies within the limits, nearest to where C was; as it is if others are no
-/// nearer.
-double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where) {
-  const Interval& limits = machine.c.limits_deg.value;
-  std::optional<double> best;
-  for (const int turns : {0, 1, -1, 2, -2}) {
-    const double candidate = c_deg + 360.0 * turns;
-    if (!limits.contains(candidate)) continue;
-    constexpr double kAsFarDeg = 1.0;  // solved angles differ from round ones by less
-    if (!best || std::abs(candidate - previous_c_deg) < std::abs(*best - previous_c_deg) - kAsFarDeg) best = candidate;
-  }
-  if (!best)
-    throw InputError(where, fmt::format("machine {}: axis C would go to {} degrees, beyond its limits of {} to {}",
-                                        machine.name, fixed(c_deg, 4), shortest(limits.low), shortest(limits.high)));
-  return *best;
-}
-
 /// (Y, Z) parts of a plane's normal when positions are words of the axes instead of points.
 Vec3 in_words(const Machine& machine, const Vec3& normal) {
   return {normal.dot(machine.x.direction.value), normal.dot(machine.y.direction.value),
@@ -73,6 +56,29 @@ double root_depth_mm(const geometry::RtpElement& element) {
   return 0.5 * element.base_mm / std::tan(half_apex_rad(element));
 }
 
+double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where) {
+  const Interval& limits = machine.c.limits_deg.value;
+  std::optional<double> best;
+  for (const int turns : {0, 1, -1, 2, -2}) {
+    const double candidate = c_deg + 360.0 * turns;
+    if (!limits.contains(candidate)) continue;
+    constexpr double kAsFarDeg = 1.0;  // solved angles differ from round ones by less
+    if (!best || std::abs(candidate - previous_c_deg) < std::abs(*best - previous_c_deg) - kAsFarDeg) best = candidate;
+  }
+  if (!best)
+    throw InputError(where, fmt::format("machine {}: axis C would go to {} degrees, beyond its limits of {} to {}",
+                                        machine.name, fixed(c_deg, 4), shortest(limits.low), shortest(limits.high)));
+  return *best;
+}
+
+void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where) {
+  const Interval& limits = machine.a.limits_deg.value;
+  if (limits.contains(tilt_deg)) return;
+  throw InputError(
+      where, fmt::format("machine {}: axis {} would go to {} degrees, beyond its limits of {} to {}", machine.name,
+                         machine.tilt_letter(), fixed(tilt_deg, 4), shortest(limits.low), shortest(limits.high)));
+}
+
 CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg) {
   const InputLocation where{job.source, 0, "machine"};
   const geometry::RtpElement element = blank_prism(job);
@@ -87,11 +93,7 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   pose.a = rounded_units(solved.pose.a_deg);
   pose.c = rounded_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where));
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
-  const Interval& limits = machine.a.limits_deg.value;
-  if (!limits.contains(pose.rounded.a_deg))
-    throw InputError(
-        where, fmt::format("machine {}: axis A would go to {} degrees, beyond its limits of {} to {}", machine.name,
-                           fixed(pose.rounded.a_deg, 4), shortest(limits.low), shortest(limits.high)));
+  check_tilt(machine, pose.rounded.a_deg, where);
 
   const RigidMotion motion = machine_from_workpiece(machine, pose.rounded);
   Section& section = pose.section;

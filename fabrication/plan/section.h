@@ -1,14 +1,16 @@
 #pragma once
 
 #include "core/angle.h"
+#include "core/error.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/program/program.h"
 
 namespace retrace::fabrication {
 
-/// A facet of an element, as a pose can present it to the tool. Facet 1 faces -Y of the workpiece frame (for a turned
-/// element -X), facet 2 the other way (docs/theory/cutting.md).
+/// A facet of an element, as a pose can present it to the tool. Facet 1 of a prism faces -Y of the workpiece frame (for
+/// a turned element -X), facet 2 the other way (docs/theory/cutting.md). Facets 1 to 3 of a cube corner lie between its
+/// dihedral edges k and k + 1 (docs/theory/micro_chiseling.md).
 struct FacetChoice {
   bool turned = false;
   int facet = 1;
@@ -45,6 +47,9 @@ struct CuttingPose {
   Angle root_tilt;      ///< of the root line against the tool's edge
   geometry::Vec3 root;  ///< direction of the root line that lies on machine +X, in the workpiece frame
   Section section;
+  /// Normal of the cut facet in words of the linear axes, along which positions are rounded to the least error; 0: each
+  /// word is rounded by itself.
+  geometry::Vec3 rounded_along = geometry::Vec3::Zero();
 };
 
 /// Outward normals of facets 1 and 2 of an element as it is cut, in the workpiece frame.
@@ -53,6 +58,12 @@ geometry::Vec3 facet_normal(const geometry::RtpElement& element, const FacetChoi
 geometry::Vec3 root_direction(const FacetChoice& facet);
 /// Depth of the root below the blank's face.
 double root_depth_mm(const geometry::RtpElement& element);
+
+/// The turn of C by whole revolutions that lies within the limits, nearest to where C was; as it is if others are no
+/// nearer. \throw InputError at `where`
+double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where);
+/// That the axis that tilts may go there. \throw InputError at `where`
+void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where);
 
 /// The pose, with C as near to `previous_c_deg` as its limits let it.
 /// \throw InputError naming axis and limits if the machine cannot take it

@@ -17,8 +17,9 @@ struct Words {
   std::optional<Nanometres> x_nm;
   std::optional<Nanometres> y_nm;
   std::optional<Nanometres> z_nm;
-  std::optional<RotaryUnits> a;
+  std::optional<RotaryUnits> a;  ///< of the axis that tilts
   std::optional<RotaryUnits> c;
+  char tilt_letter = 'A';
 };
 
 /// Collects the lines of a file. Numbers are written from integers, digit by digit.

@@ -67,6 +67,7 @@ class FileWriter {
     Words words;
     words.a = turn.a;
     words.c = turn.c;
+    words.tilt_letter = program_.tilt_letter;
     dialect_.rapid(out_, words);
   }
   void operator()(const Visit& visit) {
@@ -83,7 +84,7 @@ class FileWriter {
     const Subroutine& subroutine = program_.subroutines[visit.subroutine];
     dialect_.call(out_, subroutine.number);
     const Reach& reach = reaches_[visit.subroutine];
-    at_.x_nm = visit.x_nm;
+    at_.x_nm = visit.x_nm + reach.x_end_nm;
     at_.y_nm = visit.y_nm + reach.y_end_nm;
     at_.z_nm = visit.z_nm + reach.z_end_nm;
   }
@@ -103,6 +104,7 @@ class FileWriter {
         }
         const auto& move = std::get<Increment>(step);
         Words words;
+        if (move.x_nm != 0) words.x_nm = move.x_nm;
         if (move.y_nm != 0) words.y_nm = move.y_nm;
         if (move.z_nm != 0) words.z_nm = move.z_nm;
         dialect_.feed(out_, words, move.feed_mm_per_min);
@@ -164,7 +166,7 @@ NcText& NcText::words(const Words& words) {
   if (words.x_nm) fixed_point('X', *words.x_nm, kLinearDecimals);
   if (words.y_nm) fixed_point('Y', *words.y_nm, kLinearDecimals);
   if (words.z_nm) fixed_point('Z', *words.z_nm, kLinearDecimals);
-  if (words.a) fixed_point('A', *words.a, kRotaryDecimals);
+  if (words.a) fixed_point(words.tilt_letter, *words.a, kRotaryDecimals);
   if (words.c) fixed_point('C', *words.c, kRotaryDecimals);
   return *this;
 }

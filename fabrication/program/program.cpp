@@ -54,6 +54,7 @@ class Walker {
       }
       flush();
       const auto& increment = std::get<Increment>(step);
+      if (at_.x_nm) at_.x_nm = *at_.x_nm + increment.x_nm;
       at_.y_nm = *at_.y_nm + increment.y_nm;
       at_.z_nm = *at_.z_nm + increment.z_nm;
       PlannedMove move;
@@ -79,8 +80,11 @@ Reach reach_of(const Subroutine& subroutine) {
   for (const Step& step : subroutine.steps) {
     const auto* increment = std::get_if<Increment>(&step);
     if (increment == nullptr) continue;
+    reach.x_end_nm += increment->x_nm;
     reach.y_end_nm += increment->y_nm;
     reach.z_end_nm += increment->z_nm;
+    reach.x_low_nm = std::min(reach.x_low_nm, reach.x_end_nm);
+    reach.x_high_nm = std::max(reach.x_high_nm, reach.x_end_nm);
     reach.y_low_nm = std::min(reach.y_low_nm, reach.y_end_nm);
     reach.y_high_nm = std::max(reach.y_high_nm, reach.y_end_nm);
     reach.z_low_nm = std::min(reach.z_low_nm, reach.z_end_nm);

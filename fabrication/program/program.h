@@ -12,7 +12,7 @@ namespace retrace::fabrication {
 
 /// Positions of linear axes in whole nanometres: sums of them do not drift.
 using Nanometres = std::int64_t;
-/// Positions of rotary axes in units of 1e-7 degrees.
+/// Positions of rotary axes in units of 1e-7 degrees. The axis that tilts is called `a` here, whether it is A or B.
 using RotaryUnits = std::int64_t;
 
 inline constexpr double kNanometresPerMm = 1e6;
@@ -21,12 +21,13 @@ inline constexpr double kRotaryUnitsPerDeg = 1e7;
 /// What a move of a subroutine is for.
 enum class Motion { plunge, plough, retract, translate };
 
-/// One straight incremental move at a feed. X never moves while cutting: there is no word for it.
+/// One straight incremental move at a feed. A chisel never moves along X while it cuts.
 struct Increment {
   Motion motion = Motion::plunge;
   Nanometres y_nm = 0;
   Nanometres z_nm = 0;
   double feed_mm_per_min = 0.0;
+  Nanometres x_nm = 0;
 };
 
 struct Dwell {
@@ -50,6 +51,9 @@ struct Reach {
   Nanometres y_high_nm = 0;
   Nanometres z_low_nm = 0;
   Nanometres z_high_nm = 0;
+  Nanometres x_end_nm = 0;
+  Nanometres x_low_nm = 0;
+  Nanometres x_high_nm = 0;
 };
 Reach reach_of(const Subroutine& subroutine);
 
@@ -90,6 +94,7 @@ struct Program {
   std::vector<std::string> header;
   std::vector<Subroutine> subroutines;
   std::vector<Item> items;
+  char tilt_letter = 'A';  ///< of the axis that tilts
 };
 
 /// Positions of all axes.

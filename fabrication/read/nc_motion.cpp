@@ -124,7 +124,7 @@ class Runner {
     known_ = static_cast<std::uint8_t>(known_ | bit);
   }
 
-  static AxisPositions axes_of(const std::array<double, kNcAxes>& p) { return {p[0], p[1], p[2], p[3], p[4]}; }
+  static AxisPositions axes_of(const std::array<double, kNcAxes>& p) { return {p[0], p[1], p[2], p[3], p[4], p[5]}; }
 
   const NcProgram& program_;
   NcSink& sink_;

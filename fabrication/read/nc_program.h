@@ -16,9 +16,9 @@ enum class NcDialect { rs274ngc, sinumerik, fanuc, pmac };
 /// Words of the command line, in the order of the enumerators.
 inline constexpr std::string_view kNcDialectWords[] = {"rs274ngc", "sinumerik", "fanuc", "pmac"};
 
-/// Axes in the order of words here: X, Y, Z, A, C.
-inline constexpr std::size_t kNcAxes = 5;
-inline constexpr std::string_view kNcAxisLetters = "XYZAC";
+/// Axes in the order of words here: X, Y, Z, A, C, B. Which of A and B there is, the machine says.
+inline constexpr std::size_t kNcAxes = 6;
+inline constexpr std::string_view kNcAxisLetters = "XYZACB";
 
 enum class NcMove : std::uint8_t { rapid, linear };
 

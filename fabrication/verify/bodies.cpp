@@ -54,8 +54,7 @@ std::vector<PlacedBody> tool_bodies(const Machine& machine, const ToolWedge& wed
   for (const double side : {-1.0, 1.0}) {
     const Vec3 end = side * wedge.half_width_mm * wedge.edge;
     diamond.points_mm.push_back(end);
-    for (const Vec3& face : {wedge.clearance_direction, wedge.rake_direction})
-      diamond.points_mm.emplace_back(end + face * (diamond_mm / face.z()));
+    for (const Vec3& face : wedge.rays) diamond.points_mm.emplace_back(end + face * (diamond_mm / face.z()));
   }
   std::vector<PlacedBody> bodies = {std::move(diamond)};
   for (const MachineBody& body : machine.bodies) {

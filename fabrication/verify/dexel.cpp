@@ -23,7 +23,7 @@ std::vector<Plane> planes_of(const Sweep& sweep, const RigidMotion& back, const 
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   const std::array<Vec3, 2> tips = {sweep.from_mm - wedge.half_width_mm * wedge.edge,
                                     sweep.from_mm + wedge.half_width_mm * wedge.edge};
-  const std::array<Vec3, 2> rays = {wedge.clearance_direction, wedge.rake_direction};
+  const std::vector<Vec3>& rays = wedge.rays;
   std::vector<Plane> planes;
   const auto add = [&](const Vec3& outward) {
     for (const Vec3& ray : rays)
@@ -34,7 +34,9 @@ std::vector<Plane> planes_of(const Sweep& sweep, const RigidMotion& back, const 
     planes.push_back({turned, bound + turned.dot(back.translation_mm)});
   };
   for (const ToolWedge::Side& side : wedge.sides) add(side.outward);
-  for (const Vec3& edge : {wedge.edge, rays[0], rays[1]}) {
+  std::vector<Vec3> edges = rays;
+  edges.push_back(wedge.edge);
+  for (const Vec3& edge : edges) {
     const Vec3 across = edge.cross(travel);
     if (across.norm() < 1e-12) continue;
     add(across.normalized());

@@ -47,7 +47,9 @@ ElementField field_of(const Groove& groove, std::span<const Sweep> sweeps, std::
                       const ToolWedge& wedge, std::size_t lines) {
   const Vec3 across = groove.root_direction.cross(Vec3::UnitZ());
   const Vec3 half =
-      (groove.half_width_mm * groove.root_direction).cwiseAbs() + (groove.half_base_mm * across).cwiseAbs();
+      groove.is_cube()
+          ? Vec3(groove.half_base_mm, groove.half_base_mm, 0.0)
+          : Vec3((groove.half_width_mm * groove.root_direction).cwiseAbs() + (groove.half_base_mm * across).cwiseAbs());
   ElementField field;
   field.box = {groove.root_mm - half + 2.0 * groove.root_mm.z() * Vec3::UnitZ(), groove.root_mm + half};
   field.box.high_mm.z() = 0.0;
@@ -63,7 +65,8 @@ ElementField field_of(const Groove& groove, std::span<const Sweep> sweeps, std::
           field.box.low_mm.y() + (static_cast<double>(row) + 0.5) / static_cast<double>(dexels.rows) * size.y();
       const Vec3 left(x, y, -dexels.removed_mm[row * dexels.columns + column]);
       // Above the nearer facet: what is left of the other one is its own.
-      const double height_mm = std::min(groove.facets[0].height_mm(left), groove.facets[1].height_mm(left));
+      double height_mm = std::numeric_limits<double>::infinity();
+      for (const DesignFacet& facet : groove.facets) height_mm = std::min(height_mm, facet.height_mm(left));
       field.height_nm.push_back(height_mm * kNmPerMm);
     }
   return field;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fabrication/verify/plane_fit.h"
+
 namespace retrace::fabrication {
 namespace {
 
@@ -52,7 +54,7 @@ class Measurer {
     FacetFigures figures;
     figures.is_ploughed = is_ploughed;
     const std::vector<double> slants = slant_positions(facet);
-    Sums sums;
+    PlaneFit plane;
     for (std::size_t k = 0; k < stations_.along_mm.size(); ++k) {
       const double along = stations_.along_mm[k];
       const double width_mm = width_of_station(k);
@@ -64,46 +66,18 @@ class Measurer {
         if (!is_clear_of_other(slant)) continue;
         const LineSurface surface = surface_at(facet, along, slant + floor_mm);
         take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along) : Interval{});
-        if (is_for_plane(slant, along)) sums.add(slant, along, surface.lowest);
+        if (is_for_plane(slant, along)) plane.add(slant, along, surface.lowest);
         figures.residual_mm3 += 0.5 * (surface.top + previous_top) * (slant - previous_slant) * width_mm;
         previous_slant = slant;
         previous_top = surface.top;
       }
     }
-    sums.fit(figures);
+    plane.fit(figures);
     figures.distance_nm = std::max(figures.highest.nm, -figures.deepest.nm);
     return figures;
   }
 
  private:
-  /// Sums for the plane top = mean + up (slant - ...) + along (along - ...), by least squares.
-  struct Sums {
-    void add(double slant, double along, double top) { points.push_back({slant, along, top}); }
-    void fit(FacetFigures& figures) const {
-      if (points.empty()) return;
-      Vec3 mean = Vec3::Zero();
-      for (const Vec3& p : points) mean += p;
-      mean /= static_cast<double>(points.size());
-      double uu = 0.0, uv = 0.0, vv = 0.0, ut = 0.0, vt = 0.0;
-      for (const Vec3& p : points) {
-        const Vec3 d = p - mean;
-        uu += d.x() * d.x();
-        uv += d.x() * d.y();
-        vv += d.y() * d.y();
-        ut += d.x() * d.z();
-        vt += d.y() * d.z();
-      }
-      figures.mean_nm = mean.z() * kNmPerMm;
-      figures.mean_up_mm = mean.x();
-      figures.mean_along_mm = mean.y();
-      const double determinant = uu * vv - uv * uv;
-      if (!(determinant > 1e-12 * uu * vv)) return;
-      figures.slope_up = (ut * vv - vt * uv) / determinant;
-      figures.slope_along = (vt * uu - ut * uv) / determinant;
-    }
-    std::vector<Vec3> points;
-  };
-
   /// Part of the width that a station stands for: halfway to its neighbours.
   double width_of_station(std::size_t k) const {
     const std::vector<double>& at = stations_.along_mm;
@@ -292,6 +266,7 @@ ElementFigures element_figures(const Groove& groove, std::span<const Sweep> swee
   if (!figures.is_cut) return figures;
   Measurer measurer(groove, sweeps, poses, wedge, prediction);
   const std::size_t plunged = measurer.plunged_facet();
+  figures.facets.resize(2);
   for (std::size_t f = 0; f < 2; ++f)
     figures.facets[f] =
         measurer.measure(f, is_one_facet_ploughed && f != plunged, is_one_facet_ploughed && f == plunged);

@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/angle.h"
+#include "geometry/lattice.h"
 
 namespace retrace::fabrication {
 
@@ -19,6 +21,8 @@ Groove groove_of(const CutElement& element, const geometry::RtpElement& size) {
   groove.facet_length_mm = groove.half_base_mm / std::sin(half_apex);
   groove.root_mm = {element.centre_mm.x(), element.centre_mm.y(), -groove.half_base_mm / std::tan(half_apex)};
   groove.root_direction = element.turned ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
+  groove.turned = element.turned;
+  groove.facets.resize(2);
   for (std::size_t f = 0; f < 2; ++f) {
     const double side = f == 0 ? 1.0 : -1.0;  // facet 1 lies on the far side of the root and faces back
     DesignFacet& facet = groove.facets[f];
@@ -27,6 +31,33 @@ Groove groove_of(const CutElement& element, const geometry::RtpElement& size) {
     facet.up_slope = side * std::sin(half_apex) * across + std::cos(half_apex) * Vec3::UnitZ();
   }
   return groove;
+}
+
+Groove cavity_of(const CutElement& element, const geometry::Element& size) {
+  Groove cavity;
+  const double depth_mm = geometry::element_depth_mm(size);
+  cavity.turned = element.turned;
+  cavity.root_mm = {element.centre_mm.x(), element.centre_mm.y(), -depth_mm};
+  cavity.facet_length_mm = std::numbers::sqrt3 * depth_mm;
+  cavity.half_base_mm = cavity.half_width_mm = geometry::element_cell(size).outline.front().norm();
+  // The edges of a cube that stands on its corner: 1 / sqrt(3) up each, 120 degrees apart.
+  const double first = element.turned ? 0.5 * std::numbers::pi : -0.5 * std::numbers::pi;
+  for (int k = 0; k < 3; ++k) {
+    const double azimuth = first + 2.0 * std::numbers::pi / 3.0 * k;
+    cavity.edges.emplace_back(std::sqrt(2.0 / 3.0) * std::cos(azimuth), std::sqrt(2.0 / 3.0) * std::sin(azimuth),
+                              1.0 / std::numbers::sqrt3);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& a = cavity.edges[k];
+    const Vec3& b = cavity.edges[(k + 1) % 3];
+    DesignFacet facet;
+    facet.normal = a.cross(b).normalized();  // along the third edge, into the cavity
+    facet.offset_mm = facet.normal.dot(cavity.root_mm);
+    facet.up_slope = (a + b).normalized();
+    cavity.facets.push_back(facet);
+  }
+  cavity.root_direction = Vec3::UnitZ().cross(cavity.facets.front().normal).normalized();
+  return cavity;
 }
 
 GrooveMap::GrooveMap(const std::vector<Groove>& grooves) : grooves_(grooves) {
@@ -46,18 +77,27 @@ GrooveMap::Cell GrooveMap::cell_of(double x_mm, double y_mm, int dx, int dy) con
 }
 
 std::optional<std::size_t> GrooveMap::at(double x_mm, double y_mm) const {
+  std::optional<std::size_t> nearest;
+  double least_mm = 0.0;
   for (int dx = -1; dx <= 1; ++dx)
     for (int dy = -1; dy <= 1; ++dy) {
       const auto [first, last] = cells_.equal_range(cell_of(x_mm, y_mm, dx, dy));
       for (auto entry = first; entry != last; ++entry) {
         const Groove& groove = grooves_[entry->second];
         const Vec3 from_root = Vec3(x_mm, y_mm, groove.root_mm.z()) - groove.root_mm;
+        if (groove.is_cube()) {
+          const double distance_mm = from_root.norm();
+          if (distance_mm > groove.half_base_mm || (nearest && distance_mm >= least_mm)) continue;
+          nearest = entry->second;
+          least_mm = distance_mm;
+          continue;
+        }
         const double along = std::abs(groove.root_direction.dot(from_root));
         const double across = (from_root - groove.root_direction * groove.root_direction.dot(from_root)).norm();
         if (along <= groove.half_width_mm && across <= groove.half_base_mm) return entry->second;
       }
     }
-  return std::nullopt;
+  return nearest;
 }
 
 }  // namespace retrace::fabrication

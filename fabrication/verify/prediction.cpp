@@ -9,8 +9,28 @@ namespace retrace::fabrication {
 
 using geometry::Vec3;
 
-Prediction predict(const Machine& machine, const Groove& groove, double tool_width_mm) {
+namespace {
+
+Prediction predict_cube(const Machine& machine, const Groove& cavity) {
   Prediction prediction;
+  for (const DesignFacet& facet : cavity.facets) {
+    // Nominal pose: C turns what the facet faces to -x, B leans the tool against it.
+    const double facing = std::atan2(facet.normal.y(), facet.normal.x());
+    RotaryPose near;
+    near.c_deg = machine.c.sign.value * Angle::from_rad(std::numbers::pi - facing).deg();
+    near.a_deg = machine.a.sign.value * Angle::from_rad(std::asin(facet.normal.z())).deg();
+    const Vec3 level = facet.normal.cross(Vec3::UnitZ()).normalized();
+    prediction.poses.push_back(solve_plunge_pose(machine, facet.normal, level, near));
+  }
+  return prediction;
+}
+
+}  // namespace
+
+Prediction predict(const Machine& machine, const Groove& groove, double tool_width_mm) {
+  if (groove.is_cube()) return predict_cube(machine, groove);
+  Prediction prediction;
+  prediction.poses.resize(2);
   for (std::size_t f = 0; f < 2; ++f) {
     const Vec3& normal = groove.facets[f].normal;
     // Nominal pose: C turns what the facet faces to -y_w, A stands it up.

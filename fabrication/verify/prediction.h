@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "fabrication/machine/machine.h"
 #include "fabrication/verify/groove.h"
@@ -10,10 +11,11 @@ namespace retrace::fabrication {
 /// What a machine's axes make unavoidable for the elements of one orientation, from the poses that this machine needs -
 /// not from those of the program (docs/theory/verification.md).
 struct Prediction {
-  std::array<PlungePose, 2> poses;  ///< in which facets 1 and 2 are plunged
+  std::vector<PlungePose> poses;  ///< in which facets 1, 2 and, of cube corners, 3 are cut
   /// By how much facet f rises from one end of the tool's edge to the other, per mm, when it is ploughed in the pose of
   /// the other facet; signed along the root direction of the groove.
   std::array<double, 2> plough_slope{};
+  /// Of prisms. A V follows the dihedral edges themselves and its planes hold the facets: it leaves nothing.
   double root_mm = 0.0;  ///< by which the ends of the tilted edge stay up a facet at the root at most
   double wall_mm = 0.0;  ///< by which the tilted edge's ends cut into the walls at most
 };

@@ -15,7 +15,18 @@ using geometry::Vec3;
 
 constexpr double kNmPerMm = 1e6;
 constexpr std::uint8_t kLinearBits = 0b00111;
-constexpr std::uint8_t kRotaryBits = 0b11000;
+
+/// Bits of the rotary axes that a machine has, and of the one that it has not.
+std::uint8_t bit_of(char axis) {
+  return static_cast<std::uint8_t>(1U << kNcAxisLetters.find(axis));
+}
+std::uint8_t rotary_bits(const Machine& machine) {
+  return static_cast<std::uint8_t>(bit_of(machine.tilt_letter()) | bit_of('C'));
+}
+char missing_axis(const Machine& machine) {
+  return machine.tilt == Tilt::table ? 'B' : 'A';
+}
+
 /// Z alone moves a plunge or a retract; this much of a move along Z makes it one.
 constexpr double kMostlyAlong = 0.9;
 /// Share of the process's clearance that rapid moves must keep from the blank's face.
@@ -35,6 +46,11 @@ double diamond_mm(const Workpiece3d& workpiece) {
   return workpiece.grooves.empty() ? 1.0 : -kDepths * workpiece.grooves.front().root_mm.z();
 }
 
+ToolWedge wedge_of(const Job& job, const Machine& machine) {
+  if (job.strategy == Strategy::dmc) return v_tool_wedge(job.tool, machine);
+  return tool_wedge(job.tool, machine, Angle::from_deg(prism_of(job).apex_angle_deg));
+}
+
 /// Time of a move that starts and ends at rest.
 double trapezoid_s(double distance, double speed_per_s, double acceleration_per_s2) {
   if (!(distance > 0.0)) return 0.0;
@@ -46,7 +62,7 @@ double trapezoid_s(double distance, double speed_per_s, double acceleration_per_
 }  // namespace
 
 const Prediction& Workpiece3d::prediction(std::size_t element) const {
-  return *predictions[grooves[element].root_direction.x() > 0.5 ? 0 : 1];
+  return *predictions[grooves[element].turned ? 1 : 0];
 }
 
 ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings)
@@ -55,10 +71,16 @@ ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings)
       machine_(*workpiece.machine),
       findings_(findings),
       map_(workpiece.grooves),
-      wedge_(tool_wedge(workpiece.job->tool, machine_, Angle::from_deg(prism_of(*workpiece.job).apex_angle_deg))),
+      wedge_(wedge_of(*workpiece.job, machine_)),
       tool_bodies_(tool_bodies(machine_, wedge_, diamond_mm(workpiece))),
       sweeps_(workpiece.grooves.size()),
-      states_(workpiece.grooves.size()) {}
+      states_(workpiece.grooves.size()) {
+  if (job_.strategy != Strategy::dmc) return;
+  chiseling_.emplace(
+      job_, workpiece.grooves, workpiece.tolerance_mm,
+      [this](std::string kind, const NcPlace& place, std::int64_t element, std::string message, double value,
+             double limit) { report(std::move(kind), place, element, std::move(message), value, limit); });
+}
 
 void ProgramCheck::begin(const std::string& program) {
   program_ = program;
@@ -88,6 +110,11 @@ void ProgramCheck::dwell(double seconds, const NcPlace&, const AxisPositions&) {
   time_.dwell_s += seconds;
   // A billionth is rounding of the text.
   if (open_ && seconds >= job_.process.dwell_s - 1e-9) open_->has_dwell = true;
+  if (chiseling_) chiseling_->dwell(seconds);
+}
+
+void ProgramCheck::finish() {
+  if (chiseling_) chiseling_->finish();
 }
 
 void ProgramCheck::end(const NcEnd& end) {
@@ -97,19 +124,21 @@ void ProgramCheck::end(const NcEnd& end) {
 }
 
 void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
+  check_axes(motion);
   check_limits(motion);
   count_time(motion);
   if (motion.moved == 0) return;
-  if ((motion.moved & kRotaryBits) != 0) {
+  const std::uint8_t rotary = rotary_bits(machine_);
+  if ((motion.moved & rotary) != 0) {
     close_plunge();
     return check_turn(motion);
   }
   // Before X, Y and Z are known nothing can be said; the settings are looked at when the first cut comes.
-  constexpr std::uint8_t all = kLinearBits | kRotaryBits;
-  const auto known_after = static_cast<std::uint8_t>(motion.known | motion.moved);
+  const auto all = static_cast<std::uint8_t>(kLinearBits | rotary);
+  const auto known_after = static_cast<std::uint8_t>((motion.known | motion.moved) & all);
   if (known_after != all || (motion.known & kLinearBits) != kLinearBits) return;
   Sweep sweep;
-  sweep.pose = static_cast<std::uint32_t>(pose_index({motion.to.a_deg, motion.to.c_deg}));
+  sweep.pose = static_cast<std::uint32_t>(pose_index(rotary_pose(machine_, motion.to)));
   sweep.place = motion.place;
   sweep.is_rapid = motion.move == NcMove::rapid;
   sweep.from_mm = machine_point(machine_, motion.from) + wedge_.tip_mm;
@@ -158,6 +187,12 @@ void ProgramCheck::check_limits(const NcMotion& motion) {
   }
 }
 
+void ProgramCheck::check_axes(const NcMotion& motion) {
+  const char axis = missing_axis(machine_);
+  if ((motion.moved & bit_of(axis)) != 0)
+    report("axis_unknown", motion.place, -1, fmt::format("machine {} has no axis {}", machine_.name, axis), 0, 0);
+}
+
 void ProgramCheck::check_turn(const NcMotion& motion) {
   if ((motion.moved & kLinearBits) != 0)
     report("combined_move", motion.place, -1, "rotary and linear axes move at once", 0, 0);
@@ -165,6 +200,7 @@ void ProgramCheck::check_turn(const NcMotion& motion) {
     report("turn_too_low", motion.place, -1, "the table turns before Z is known", 0, 0);
     return;
   }
+  if (machine_.tilt == Tilt::head) return check_turn_of_head(motion);
   const geometry::Vec2 half = 0.5 * blank_extent_mm(job_);
   const Vec3 tip = machine_point(machine_, motion.from) + wedge_.tip_mm;
   double highest_mm = -std::numeric_limits<double>::infinity();
@@ -188,6 +224,28 @@ void ProgramCheck::check_turn(const NcMotion& motion) {
            z_mm, highest_mm);
 }
 
+/// The blank stays level, and a head that turns swings the tool about B: the tip must stay above the blank's face.
+void ProgramCheck::check_turn_of_head(const NcMotion& motion) {
+  double lowest_mm = std::numeric_limits<double>::infinity();
+  constexpr int steps = 24;
+  for (int i = 0; i <= steps; ++i) {
+    const double t = static_cast<double>(i) / steps;
+    AxisPositions axes = motion.from;
+    axes.b_deg += t * (motion.to.b_deg - motion.from.b_deg);
+    axes.c_deg += t * (motion.to.c_deg - motion.from.c_deg);
+    const RotaryPose pose = rotary_pose(machine_, axes);
+    const Vec3 tip = machine_point(machine_, axes) + wedge_.tip_mm;
+    lowest_mm = std::min(lowest_mm, machine_from_workpiece(machine_, pose).inverse().point(tip).z());
+    if ((motion.known & kLinearBits) != kLinearBits) continue;
+    for (const BodyContact& contact : contacts(tool_bodies_, standing_bodies(machine_, pose), tip, tip))
+      report_contact(contact, motion.place);
+  }
+  if (lowest_mm < 0.0)
+    report("turn_too_low", motion.place, -1,
+           fmt::format("the tip comes to {} mm over the blank's face while the axes turn", fixed(lowest_mm, 3)),
+           lowest_mm, 0.0);
+}
+
 void ProgramCheck::find_corners(const Sweep& sweep) {
   corners_.clear();
   const RigidMotion& back = back_[sweep.pose];
@@ -201,7 +259,7 @@ void ProgramCheck::find_corners(const Sweep& sweep) {
     if (a.z() < 0.0) {
       corners_.push_back(a);
       // Up the faces of the wedge to where they leave the blank.
-      for (const Vec3& face : {wedge_.clearance_direction, wedge_.rake_direction}) {
+      for (const Vec3& face : wedge_.rays) {
         const Vec3 up = back.direction(face);
         if (up.z() > 1e-3) corners_.push_back(a - up * (a.z() / up.z()));
       }
@@ -290,7 +348,7 @@ void ProgramCheck::check_cut(const NcMotion& motion, const Sweep& sweep, std::si
   double wall_mm = 0.0;
   for (const Vec3& corner : corners_) {
     for (const DesignFacet& facet : groove.facets) gouge_mm = std::max(gouge_mm, -facet.height_mm(corner));
-    wall_mm = std::max(wall_mm, std::abs(groove.along_mm(corner)) - groove.half_width_mm);
+    if (!groove.is_cube()) wall_mm = std::max(wall_mm, std::abs(groove.along_mm(corner)) - groove.half_width_mm);
   }
   deepest_wall_mm_ = std::max(deepest_wall_mm_, wall_mm);
   if (gouge_mm > workpiece_.tolerance_mm)
@@ -304,6 +362,7 @@ void ProgramCheck::check_cut(const NcMotion& motion, const Sweep& sweep, std::si
                        fixed(prediction.wall_mm * kNmPerMm, 1)),
            wall_mm * kNmPerMm, wall_limit_mm * kNmPerMm);
   if (sweep.is_rapid) return close_plunge();
+  if (chiseling_) return check_chiseling(motion, sweep, element);
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   const double z_share = travel.z() / travel.norm();
   // Only a retract may move the tool towards the facet that its clearance face looks at.
@@ -314,6 +373,15 @@ void ProgramCheck::check_cut(const NcMotion& motion, const Sweep& sweep, std::si
   if (z_share < 0.5) return check_plough(motion, sweep, element);
   if (motion.feed_mm_per_min <= 0.0) check_feed(motion, 0.0);
   close_plunge();
+}
+
+void ProgramCheck::check_chiseling(const NcMotion& motion, const Sweep& sweep, std::size_t element) {
+  check_feed(motion, std::max(job_.process.roughing_feed_mm_per_min, job_.process.finishing_feed_mm_per_min));
+  const Vec3 travel = sweep.to_mm - sweep.from_mm;
+  if (travel.dot(wedge_.sides[0].outward) > kMostSlip * travel.norm())
+    report("clearance_face_leads", motion.place, static_cast<std::int64_t>(element),
+           "the tool is pushed into the material by its clearance face", 0, 0);
+  chiseling_->move(sweep, back_[sweep.pose], wedge_, element);
 }
 
 void ProgramCheck::check_plunge(const NcMotion& motion, const Sweep& sweep, std::size_t element) {
@@ -381,6 +449,7 @@ void ProgramCheck::check_plough(const NcMotion& motion, const Sweep& sweep, std:
 }
 
 void ProgramCheck::close_plunge() {
+  if (chiseling_) chiseling_->close();
   if (!open_) return;
   if (!open_->has_dwell && job_.process.dwell_s > 0.0)
     report("missing_dwell", open_->place, static_cast<std::int64_t>(open_->element),
@@ -432,9 +501,11 @@ void ProgramCheck::count_time(const NcMotion& motion) {
     time_.rapid_s += slowest_s;
   }
   // The tool is touched off at A = C = 0, from where the first turn starts.
-  const double a_s = trapezoid_s(std::abs(motion.to.a_deg - motion.from.a_deg), machine_.a.speed_deg_per_s.value,
+  const RotaryPose from = rotary_pose(machine_, motion.from);
+  const RotaryPose to = rotary_pose(machine_, motion.to);
+  const double a_s = trapezoid_s(std::abs(to.a_deg - from.a_deg), machine_.a.speed_deg_per_s.value,
                                  machine_.a.acceleration_deg_per_s2.value);
-  const double c_s = trapezoid_s(std::abs(motion.to.c_deg - motion.from.c_deg), machine_.c.speed_deg_per_s.value,
+  const double c_s = trapezoid_s(std::abs(to.c_deg - from.c_deg), machine_.c.speed_deg_per_s.value,
                                  machine_.c.acceleration_deg_per_s2.value);
   time_.rotary_s += std::max(a_s, c_s);
 }

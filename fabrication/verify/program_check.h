@@ -11,6 +11,7 @@
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_motion.h"
 #include "fabrication/verify/bodies.h"
+#include "fabrication/verify/chiseling_check.h"
 #include "fabrication/verify/findings.h"
 #include "fabrication/verify/groove.h"
 #include "fabrication/verify/prediction.h"
@@ -48,6 +49,8 @@ class ProgramCheck : public NcSink {
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace& place, const AxisPositions& position) override;
   void end(const NcEnd& end);
+  /// After the last program.
+  void finish();
 
   const std::vector<std::vector<Sweep>>& sweeps() const { return sweeps_; }  ///< by element
   const std::vector<RotaryPose>& pose_words() const { return pose_words_; }
@@ -84,6 +87,9 @@ class ProgramCheck : public NcSink {
   void check_settings(const NcSettings& settings, const NcPlace& place);
   void check_limits(const NcMotion& motion);
   void check_turn(const NcMotion& motion);
+  void check_axes(const NcMotion& motion);
+  void check_turn_of_head(const NcMotion& motion);
+  void check_chiseling(const NcMotion& motion, const Sweep& sweep, std::size_t element);
   void check_rapid(const NcMotion& motion, const Sweep& sweep);
   void check_feed(const NcMotion& motion, double allowed);
   void check_holder(const Sweep& sweep);
@@ -116,6 +122,7 @@ class ProgramCheck : public NcSink {
   std::vector<std::vector<Sweep>> sweeps_;
   std::vector<CutState> states_;
   std::optional<OpenPlunge> open_;
+  std::optional<ChiselingCheck> chiseling_;  ///< of cube corners
   std::vector<geometry::Vec3> corners_;
   ProgramTime time_;
   double least_free_tool_mm_ = 0.0;

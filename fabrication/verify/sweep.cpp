@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/angle.h"
+#include "fabrication/job/v_tool.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -50,10 +51,37 @@ ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex) {
   wedge.tip_mm = -below_mm * z;
   wedge.clearance_direction = -std::sin(clearance) * y + std::cos(clearance) * z;
   wedge.rake_direction = -std::sin(rake) * y + std::cos(rake) * z;
+  wedge.rays = {wedge.clearance_direction, wedge.rake_direction};
   wedge.sides = {{{std::cos(clearance) * y + std::sin(clearance) * z, 0.0},
                   {-std::cos(rake) * y - std::sin(rake) * z, 0.0},
                   {x, wedge.half_width_mm},
                   {-x, wedge.half_width_mm}}};
+  return wedge;
+}
+
+ToolWedge v_tool_wedge(const Tool& tool, const Machine& machine) {
+  // The facet in the frame of the tool: its normal, and the dihedral edges at 45 degrees to the tool's axis.
+  const Vec3 normal = plunged_normal(machine);
+  const Vec3 level = (level_direction(machine) - normal * normal.dot(level_direction(machine))).normalized();
+  const Vec3 up = level.cross(normal);
+  const Vec3 first = (up - level).normalized();
+  const Vec3 second = (up + level).normalized();
+  const VToolEdges edges = v_tool_edges(tool);
+  const auto placed = [&](const Vec3& e) -> Vec3 { return e.x() * first + e.y() * second + e.z() * normal; };
+  const Vec3 leading = placed(edges.leading);
+  const Vec3 trailing = placed(edges.trailing);
+  const Vec3 spine = placed(edges.spine);
+  const auto side = [](const Vec3& a, const Vec3& b, const Vec3& within) {
+    const Vec3 across = a.cross(b).normalized();
+    return ToolWedge::Side{across.dot(within) > 0.0 ? Vec3(-across) : across, 0.0};
+  };
+  ToolWedge wedge;
+  wedge.edge = leading;
+  wedge.clearance_direction = trailing;
+  wedge.rake_direction = spine;
+  wedge.rays = {leading, trailing, spine};
+  const ToolWedge::Side flank = side(trailing, spine, leading);
+  wedge.sides = {side(leading, trailing, spine), side(leading, spine, trailing), flank, flank};
   return wedge;
 }
 

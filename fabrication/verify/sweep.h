@@ -15,9 +15,10 @@
 
 namespace retrace::fabrication {
 
-/// The diamond as an endless wedge, in the frame of the machine relative to its tip: between clearance face and rake
-/// face, and between two planes at the ends of its edge. The tip is the crossing of those two tangents of the edge's
-/// circle that lie in the facets, so that a rounded edge sweeps the same two planes as the sharp one
+/// The diamond as an endless wedge, in the frame of the machine relative to its tip. Of a chisel: between clearance
+/// face and rake face, and between two planes at the ends of its edge. Of a V: between its clearance face and two
+/// flanks, with the leading edge for its edge, of no width. A chisel's tip is the crossing of those two tangents of the
+/// edge's circle that lie in the facets, so that a rounded edge sweeps the same two planes as the sharp one
 /// (docs/theory/verification.md).
 struct ToolWedge {
   /// inward . p <= bound
@@ -25,10 +26,13 @@ struct ToolWedge {
     geometry::Vec3 outward = geometry::Vec3::Zero();
     double bound_mm = 0.0;
   };
-  std::array<Side, 4> sides;  ///< clearance face, rake face, ends of the edge at +X and -X
+  /// Clearance face, rake face, ends of the edge at +X and -X; of a V clearance face, leading and trailing flank, and
+  /// the trailing one again.
+  std::array<Side, 4> sides;
   geometry::Vec3 edge = geometry::Vec3::UnitX();
   geometry::Vec3 clearance_direction = geometry::Vec3::UnitZ();  ///< up the clearance face
   geometry::Vec3 rake_direction = geometry::Vec3::UnitZ();       ///< up the rake face
+  std::vector<geometry::Vec3> rays;  ///< edges of the wedge that go up from its tip, or from the ends of its edge
   double half_width_mm = 0.0;
   geometry::Vec3 tip_mm = geometry::Vec3::Zero();  ///< from the tool reference point; 0 at an apex of 90 degrees
 };
@@ -36,6 +40,9 @@ struct ToolWedge {
 /// \param apex included angle of the two facets that are cut; the other tangent is the one in the facet that the tool
 /// does not plunge
 ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex);
+
+/// The V-shaped tool of a machine whose head tilts, as it stands to the facet that it cuts.
+ToolWedge v_tool_wedge(const Tool& tool, const Machine& machine);
 
 /// A straight move of the tool's tip in one pose, as points of the machine frame.
 struct Sweep {

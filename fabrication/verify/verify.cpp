@@ -4,15 +4,21 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/job/v_tool.h"
 
 namespace retrace::fabrication {
 namespace {
+
+using geometry::Vec3;
 
 constexpr double kNmPerMm = 1e6;
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
@@ -41,7 +47,8 @@ void refuse_other_machine(const Job& job, const Machine& machine, const std::vec
                           const std::vector<RotaryPose>& words, const std::string& file) {
   if (has_poses_of(machine, workpiece, words)) return;
   for (const Machine& other : others) {
-    if (other.name == machine.name || other.a.direction.basis != Basis::measured) continue;
+    if (other.name == machine.name || other.tilt != machine.tilt || other.a.direction.basis != Basis::measured)
+      continue;
     if (has_poses_of(other, workpiece_of(job, other, options), words))
       throw InputError({file, 0, ""}, fmt::format("is a program for machine {}, the job is for {}: its poses are those "
                                                   "of the other machine's axes",
@@ -49,16 +56,36 @@ void refuse_other_machine(const Job& job, const Machine& machine, const std::vec
   }
 }
 
-ElementResult result_of(const ElementFigures& figures, const Prediction& prediction) {
+/// The error of a cube corner's dihedral angles that is the largest.
+double dihedral_error_arcmin(const Groove& cavity, const ElementFigures& figures) {
+  std::vector<Vec3> normals;
+  for (std::size_t f = 0; f < figures.facets.size(); ++f) {
+    const DesignFacet& design = cavity.facets[f];
+    const Vec3 level = design.normal.cross(Vec3::UnitZ()).normalized();
+    normals.push_back(
+        (design.normal - figures.facets[f].slope_up * design.up_slope - figures.facets[f].slope_along * level)
+            .normalized());
+  }
+  double largest = 0.0;
+  for (std::size_t f = 0; f < normals.size(); ++f) {
+    const double error = std::asin(normals[f].dot(normals[(f + 1) % normals.size()])) * kArcminPerRad;
+    if (std::abs(error) > std::abs(largest)) largest = error;
+  }
+  return largest;
+}
+
+ElementResult result_of(const Groove& groove, const ElementFigures& figures, const Prediction& prediction) {
   ElementResult result;
   result.figures = figures;
-  for (std::size_t f = 0; f < 2; ++f) {
+  result.facet_angle_arcmin.resize(figures.facets.size());
+  for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const FacetFigures& facet = figures.facets[f];
     const double along = facet.slope_along - (facet.is_ploughed ? prediction.plough_slope[f] : 0.0);
     result.facet_angle_arcmin[f] = std::atan(std::hypot(facet.slope_up, along)) * kArcminPerRad;
     // A facet that rises above the design up its slope leans into the groove.
     result.apex_error_arcmin -= std::atan(facet.slope_up) * kArcminPerRad;
   }
+  if (groove.is_cube()) result.apex_error_arcmin = dihedral_error_arcmin(groove, figures);
   return result;
 }
 
@@ -75,9 +102,10 @@ class Judge {
       return;
     }
     ++result_.elements_cut;
-    for (std::size_t f = 0; f < 2; ++f) facet(element.figures.facets[f], f, number, program);
-    const double angle = std::max(element.facet_angle_arcmin[0], element.facet_angle_arcmin[1]);
-    result_.facet_angle_arcmin_max = std::max(result_.facet_angle_arcmin_max, angle);
+    for (std::size_t f = 0; f < element.figures.facets.size(); ++f)
+      facet(element.figures.facets[f], f, number, program);
+    for (const double angle : element.facet_angle_arcmin)
+      result_.facet_angle_arcmin_max = std::max(result_.facet_angle_arcmin_max, angle);
     if (std::abs(element.apex_error_arcmin) > std::abs(result_.apex_error_arcmin_max))
       result_.apex_error_arcmin_max = element.apex_error_arcmin;
   }
@@ -105,8 +133,33 @@ class Judge {
   Verification& result_;
 };
 
-double design_volume_mm3(const Groove& groove) {
+/// Volume of the material that an element takes; of hexagonal cube corners without what overlaps.
+double design_volume_mm3(const Groove& groove, bool is_hexagonal) {
+  const double edge_mm = groove.facet_length_mm;
+  if (groove.is_cube()) return edge_mm * edge_mm * edge_mm / (is_hexagonal ? 8.0 : 6.0);
   return groove.half_base_mm * -groove.root_mm.z() * 2.0 * groove.half_width_mm;
+}
+
+/// What triangular cavities take beyond the hexagons of their elements. In units of the cube's edge a the blank's face
+/// passes above N cubes that lie open, of which it leaves a sixth each, and cuts a sixth off each of the M cubes above
+/// them: M corners of hexagons at dihedral edges (docs/theory/micro_chiseling.md).
+double border_overcut_mm3(const std::vector<Groove>& cavities, const std::vector<ElementResult>& elements) {
+  std::set<std::pair<std::int64_t, std::int64_t>> corners;
+  std::int64_t cut = 0;
+  double edge_mm = 0.0;
+  for (std::size_t i = 0; i < cavities.size(); ++i) {
+    if (!elements[i].figures.is_cut) continue;
+    ++cut;
+    edge_mm = 0.5 * cavities[i].facet_length_mm;
+    for (const Vec3& edge : cavities[i].edges) {
+      const Vec3 from_first = cavities[i].root_mm + edge_mm * edge - cavities.front().root_mm;
+      // Corners lie on a grid of half the radius by half the width of the hexagons.
+      const double half_radius_mm = 0.5 * cavities[i].half_base_mm;
+      corners.emplace(std::llround(from_first.x() / (std::numbers::sqrt3 * half_radius_mm)),
+                      std::llround(from_first.y() / half_radius_mm));
+    }
+  }
+  return edge_mm * edge_mm * edge_mm * static_cast<double>(static_cast<std::int64_t>(corners.size()) - cut) / 6.0;
 }
 
 }  // namespace
@@ -116,9 +169,15 @@ Workpiece3d workpiece_of(const Job& job, const Machine& machine, const VerifyOpt
   workpiece.job = &job;
   workpiece.machine = &machine;
   workpiece.tolerance_mm = options.tolerance_nm / kNmPerMm;
-  const geometry::RtpElement size = blank_prism(job);
+  const bool is_dmc = job.strategy == Strategy::dmc;
+  if (is_dmc != (machine.tilt == Tilt::head))
+    throw InputError({job.source, 0, "machine"},
+                     fmt::format("must be a machine whose {} tilts for this strategy, got {}",
+                                 is_dmc ? "head" : "table", machine.name));
+  const geometry::Element size = blank_element(job);
+  const auto* const prism = std::get_if<geometry::RtpElement>(&size);
   for (const CutElement& element : cut_elements(job)) {
-    workpiece.grooves.push_back(groove_of(element, size));
+    workpiece.grooves.push_back(prism != nullptr ? groove_of(element, *prism) : cavity_of(element, size));
     auto& prediction = workpiece.predictions[element.turned ? 1 : 0];
     if (!prediction) prediction = predict(machine, workpiece.grooves.back(), job.tool.width_mm);
   }
@@ -135,6 +194,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
     check.begin(program.file);
     check.end(run_nc(program, check));
   }
+  check.finish();
   const std::string first = programs.empty() ? std::string() : programs.front().file;
   Verification result;
   result.tolerance_nm = options.tolerance_nm;
@@ -147,14 +207,18 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   refuse_other_machine(job, machine, others, options, workpiece, result.poses, first);
 
   const bool ploughs = job.strategy == Strategy::unidirectional;
+  const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(job.element);
   result.elements.resize(workpiece.grooves.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.elements.size()), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       if (cancellation != nullptr && cancellation->requested()) return;
       const Prediction& prediction = workpiece.prediction(i);
-      result.elements[i] =
-          result_of(element_figures(workpiece.grooves[i], check.sweeps()[i], poses, check.wedge(), prediction, ploughs),
-                    prediction);
+      const Groove& groove = workpiece.grooves[i];
+      const ElementFigures figures =
+          groove.is_cube()
+              ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses, check.wedge(), job.tool.nose_angle_deg)
+              : element_figures(groove, check.sweeps()[i], poses, check.wedge(), prediction, ploughs);
+      result.elements[i] = result_of(groove, figures, prediction);
     }
   });
 
@@ -162,7 +226,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   for (std::size_t i = 0; i < result.elements.size(); ++i) {
     judge.element(i, first);
     if (!result.elements[i].figures.is_cut) continue;
-    result.removed_volume_mm3 += design_volume_mm3(workpiece.grooves[i]);
+    result.removed_volume_mm3 += design_volume_mm3(workpiece.grooves[i], is_hexagonal);
     for (const FacetFigures& facet : result.elements[i].figures.facets) result.removed_volume_mm3 -= facet.residual_mm3;
   }
   for (const auto& prediction : workpiece.predictions) {
@@ -171,7 +235,12 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
     result.wall_overcut_nm_predicted = std::max(result.wall_overcut_nm_predicted, prediction->wall_mm * kNmPerMm);
   }
   result.wall_overcut_nm_max = check.deepest_wall_mm() * kNmPerMm;
-  result.root_radius_um = job.tool.edge_radius_um;
+  if (is_hexagonal) result.border_overcut_mm3 = border_overcut_mm3(workpiece.grooves, result.elements);
+  result.removed_volume_mm3 += result.border_overcut_mm3;
+  if (job.strategy == Strategy::dmc)
+    result.root_chamfer_um = 1e3 * std::numbers::sqrt2 * nose_strip_mm(job.tool);
+  else
+    result.root_radius_um = job.tool.edge_radius_um;
   result.free_tool_length_mm = check.least_free_tool_mm();
   result.time = check.time();
   result.findings = findings.take();

@@ -22,9 +22,9 @@ struct VerifyOptions {
 /// One element that a program leaves.
 struct ElementResult {
   ElementFigures figures;
-  std::array<double, 2>
-      facet_angle_arcmin{};        ///< of the facet's normal to the design's, what ploughing must leave taken off
-  double apex_error_arcmin = 0.0;  ///< of the angle between the facets, positive opens it
+  /// Of each facet's normal to the design's, what ploughing must leave taken off; none if it is not cut.
+  std::vector<double> facet_angle_arcmin;
+  double apex_error_arcmin = 0.0;  ///< of the angle between the facets, positive opens it; of a cube corner the largest
 };
 
 /// What programs do to a blank, judged against the design of the job.
@@ -39,7 +39,11 @@ struct Verification {
   double root_residual_nm_predicted = 0.0;
   double wall_overcut_nm_max = 0.0;
   double wall_overcut_nm_predicted = 0.0;
-  double root_radius_um = 0.0;  ///< that the tool's edge leaves at the root
+  double root_radius_um = 0.0;   ///< that the tool's edge leaves at the root
+  double root_chamfer_um = 0.0;  ///< width across what the nose of a V leaves in dihedral edges
+  /// Volume that the cavities of hexagonal cube corners, which are triangular, take beyond the elements' apertures:
+  /// what the outermost of them must.
+  double border_overcut_mm3 = 0.0;
   double removed_volume_mm3 = 0.0;
   double free_tool_length_mm = 0.0;  ///< that the tool needs to keep its holder clear of the blank
   ProgramTime time;

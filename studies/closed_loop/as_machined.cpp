@@ -1,16 +1,21 @@
 #include "studies/closed_loop/as_machined.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/toml_file.h"
+#include "geometry/lattice.h"
 #include "studies/design/design_reader.h"
 
 namespace retrace::studies {
@@ -74,12 +79,33 @@ std::string_view arrangement_word(geometry::Arrangement arrangement) {
       return "offset";
     case geometry::Arrangement::checker:
       return "checker";
+    case geometry::Arrangement::honeycomb:
+      return "honeycomb";
+    case geometry::Arrangement::triangular:
+      return "triangular";
     default:
       return "single";
   }
 }
 
-std::string array_text(const Job& job) {
+bool is_prism(const Job& job) {
+  return std::holds_alternative<geometry::RtpElement>(job.element);
+}
+
+std::string element_text(const Job& job) {
+  if (!is_prism(job)) {
+    const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&job.element);
+    const double aperture_mm =
+        hexagonal != nullptr ? hexagonal->aperture_mm : std::get<geometry::TriangularCube>(job.element).aperture_mm;
+    return fmt::format("kind = \"{}\"\naperture_mm = {}\n", hexagonal != nullptr ? "hexagonal_icc" : "triangular_icc",
+                       shortest(aperture_mm));
+  }
+  const geometry::RtpElement& prism = prism_of(job);
+  return fmt::format("kind = \"rtp\"\nbase_mm = {}\nwidth_mm = {}\napex_angle_deg = {}\n", shortest(prism.base_mm),
+                     shortest(prism.width_mm), shortest(prism.apex_angle_deg));
+}
+
+std::string array_text(const Job& job, bool has_planes) {
   const Array& a = job.array;
   std::string text = fmt::format("arrangement = \"{}\"\n", arrangement_word(a.arrangement));
   if (a.arrangement == geometry::Arrangement::single) return text;
@@ -89,8 +115,12 @@ std::string array_text(const Job& job) {
   };
   put("x_gap_mm", a.x_gap_mm);
   put("y_gap_mm", a.y_gap_mm);
-  put("x_offset_mm", a.x_offset_mm);
-  put("y_offset_mm", a.y_offset_mm);
+  // Flares reach into margins: which elements there are, the table of planes says.
+  if (!has_planes || is_prism(job)) {
+    put("x_offset_mm", a.x_offset_mm);
+    put("y_offset_mm", a.y_offset_mm);
+  }
+  if (!is_prism(job)) text += "partial_elements = \"omit\"\n";
   if (a.arrangement == geometry::Arrangement::offset)
     text += fmt::format("overlap_percent = {}\nshifted_rows = \"{}\"\npartial_elements = \"omit\"\n",
                         shortest(a.overlap_percent), a.shifted_rows == geometry::RowParity::odd ? "odd" : "even");
@@ -115,10 +145,11 @@ PredictedTexture predicted_texture(const Job& job) {
 namespace {
 
 /// Tilts of one element's facets, opening is positive.
-std::array<double, 2> tilts_of(const ElementResult& element) {
-  std::array<double, 2> tilt{};
+std::vector<double> tilts_of(const ElementResult& element) {
+  std::vector<double> tilt(element.figures.facets.size());
   // A facet that rises above the design up its slope leans into the groove and closes it.
-  for (std::size_t f = 0; f < 2; ++f) tilt[f] = -std::atan(element.figures.facets[f].slope_up) * kArcminPerRad;
+  for (std::size_t f = 0; f < tilt.size(); ++f)
+    tilt[f] = -std::atan(element.figures.facets[f].slope_up) * kArcminPerRad;
   return tilt;
 }
 
@@ -129,7 +160,7 @@ struct Unlikeness {
   std::int64_t missing = 0;
 };
 
-Unlikeness unlikeness_of(const VerificationRun& run, const std::array<double, 2>& mean_arcmin) {
+Unlikeness unlikeness_of(const VerificationRun& run, const std::vector<double>& mean_arcmin) {
   Unlikeness unlike;
   const geometry::Arrangement arrangement = run.job.array.arrangement;
   const bool is_whole = arrangement == geometry::Arrangement::single || run.job.array.pattern.empty();
@@ -139,8 +170,8 @@ Unlikeness unlikeness_of(const VerificationRun& run, const std::array<double, 2>
       ++unlike.missing;
       continue;
     }
-    const std::array<double, 2> tilt = tilts_of(element);
-    for (std::size_t f = 0; f < 2; ++f) {
+    const std::vector<double> tilt = tilts_of(element);
+    for (std::size_t f = 0; f < tilt.size(); ++f) {
       const double along = std::abs(std::atan(element.figures.facets[f].slope_along)) * kArcminPerRad;
       unlike.along_arcmin = std::max(unlike.along_arcmin, along);
       unlike.spread_arcmin = std::max(unlike.spread_arcmin, std::abs(tilt[f] - mean_arcmin[f]));
@@ -172,38 +203,85 @@ geometry::HeightPlane plane_through(const std::array<Vec3, 3>& points, const geo
   return plane;
 }
 
+/// Along a facet's level line, as its figures count.
+Vec3 level_of(const Groove& groove, std::size_t f) {
+  if (!groove.is_cube()) return groove.root_direction;
+  return (groove.edges[(f + 1) % 3] - groove.edges[f]).normalized();
+}
+
 /// The planes that verification fitted to an element's facets, in the part's frame.
 geometry::ElementPlanes planes_of(const Groove& groove, const ElementFigures& figures, const PartFrame& frame,
                                   bool turned) {
   geometry::ElementPlanes planes;
   planes.centre_mm = frame.point(groove.root_mm).head<2>();
-  for (std::size_t f = 0; f < 2; ++f) {
+  planes.planes.resize(figures.facets.size());
+  for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const FacetFigures& facet = figures.facets[f];
     const DesignFacet& design = groove.facets[f];
     const auto surface = [&](double up_mm, double along_mm) {
       const double height_mm = 1e-6 * facet.mean_nm + facet.slope_up * (up_mm - facet.mean_up_mm) +
                                facet.slope_along * (along_mm - facet.mean_along_mm);
-      return frame.point(groove.root_mm + up_mm * design.up_slope + along_mm * groove.root_direction +
+      return frame.point(groove.root_mm + up_mm * design.up_slope + along_mm * level_of(groove, f) +
                          height_mm * design.normal);
     };
     const geometry::HeightPlane plane =
         plane_through({surface(0.0, 0.0), surface(groove.facet_length_mm, 0.0), surface(0.0, groove.half_width_mm)},
                       planes.centre_mm);
-    planes.planes[plane.slope[turned ? 1 : 0] < 0.0 ? 0 : 1] = plane;
+    planes.planes[groove.is_cube() ? f : plane.slope[turned ? 1 : 0] < 0.0 ? 0U : 1U] = plane;
   }
   return planes;
 }
 
+/// Triangular cavities of hexagonal elements reach beyond these. A corner of a hexagon at a dihedral edge is that of
+/// two others; where one of these is not cut, a facet of the cavity goes on over it (docs/theory/micro_chiseling.md).
+void add_flares(std::vector<geometry::ElementPlanes>& elements, double radius_mm) {
+  using Key = std::pair<std::int64_t, std::int64_t>;
+  // Middles of hexagons lie on multiples of these from the first.
+  const geometry::Vec2 step = radius_mm * geometry::Vec2(1.5, 0.5 * std::numbers::sqrt3);
+  const geometry::Vec2 first = elements.front().centre_mm;
+  const auto key_of = [&](const geometry::Vec2& at) {
+    return Key{std::llround((at - first).x() / step.x()), std::llround((at - first).y() / step.y())};
+  };
+  const auto corner = [&](std::size_t k) -> geometry::Vec2 {
+    const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k);
+    return radius_mm * geometry::Vec2(std::cos(angle), std::sin(angle));
+  };
+  std::set<Key> cut;
+  for (const geometry::ElementPlanes& element : elements) cut.insert(key_of(element.centre_mm));
+  std::map<Key, geometry::ElementPlanes> land;
+  for (const geometry::ElementPlanes& element : elements)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
+        const geometry::Vec2 centre_mm = element.centre_mm + corner(k) - corner(other);
+        if (cut.contains(key_of(centre_mm))) continue;
+        geometry::ElementPlanes& place = land[key_of(centre_mm)];
+        place.planes.clear();
+        place.centre_mm = centre_mm;
+        // The facet across the dihedral edge `other`, told over that place.
+        geometry::HeightPlane plane = element.planes[(other + 1) % 3];
+        plane.height_mm += plane.slope.dot(centre_mm - element.centre_mm);
+        if (!place.flares[other]) place.flares[other] = plane;
+      }
+  for (auto& [key, place] : land) elements.push_back(std::move(place));
+}
+
 geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
   const std::vector<CutElement> elements = cut_elements(run.job);
-  const geometry::RtpElement size = blank_prism(run.job);
+  const geometry::Element size = blank_element(run.job);
+  const auto* const prism = std::get_if<geometry::RtpElement>(&size);
   const PartFrame frame(run.job);
   std::vector<geometry::ElementPlanes> planes;
-  for (std::size_t i = 0; i < elements.size(); ++i)
-    if (run.result.elements[i].figures.is_cut)
-      planes.push_back(
-          planes_of(groove_of(elements[i], size), run.result.elements[i].figures, frame, elements[i].turned));
-  return {std::move(planes), std::min(prism_of(run.job).base_mm, prism_of(run.job).width_mm)};
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (!run.result.elements[i].figures.is_cut) continue;
+    const Groove groove = prism != nullptr ? groove_of(elements[i], *prism) : cavity_of(elements[i], size);
+    planes.push_back(planes_of(groove, run.result.elements[i].figures, frame, elements[i].turned));
+  }
+  if (prism != nullptr) return {std::move(planes), std::min(prism_of(run.job).base_mm, prism_of(run.job).width_mm)};
+  constexpr double kNearest = 1.0 / 3.0;
+  const geometry::Vec2 box = geometry::bounding_box(geometry::aperture_outline(run.job.element)).size();
+  const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&run.job.element);
+  if (hexagonal != nullptr) add_flares(planes, 0.5 * hexagonal->aperture_mm);
+  return {std::move(planes), kNearest * box.minCoeff()};
 }
 
 /// What a design with all elements alike leaves out.
@@ -223,14 +301,24 @@ void warn_of(const Unlikeness& unlike, AsMachined& part) {
 
 }  // namespace
 
+namespace {
+
+/// A single element's part ends with its aperture.
+bool has_flares(const VerificationRun& run) {
+  return run.result.border_overcut_mm3 > 0.0 && run.job.array.arrangement != geometry::Arrangement::single;
+}
+
+}  // namespace
+
 AsMachined as_machined(const VerificationRun& run) {
   AsMachined part;
   std::int64_t cut = 0;
   for (const ElementResult& element : run.result.elements) {
     if (!element.figures.is_cut) continue;
     ++cut;
-    const std::array<double, 2> tilt = tilts_of(element);
-    for (std::size_t f = 0; f < 2; ++f) part.facet_tilt_arcmin[f] += tilt[f];
+    const std::vector<double> tilt = tilts_of(element);
+    part.facet_tilt_arcmin.resize(tilt.size());
+    for (std::size_t f = 0; f < tilt.size(); ++f) part.facet_tilt_arcmin[f] += tilt[f];
   }
   if (cut == 0) throw InputError({"", 0, "--as-machined"}, "the programs cut no element of the job");
   for (double& tilt : part.facet_tilt_arcmin) tilt /= static_cast<double>(cut);
@@ -240,7 +328,8 @@ AsMachined as_machined(const VerificationRun& run) {
   if (is_direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
   if (is_direct)
     warn_of(unlike, part);
-  else if (unlike.along_arcmin > kShownArcmin || unlike.spread_arcmin > kShownArcmin || unlike.missing > 0)
+  else if (has_flares(run) || unlike.along_arcmin > kShownArcmin || unlike.spread_arcmin > kShownArcmin ||
+           unlike.missing > 0)
     part.planes = facet_planes_of(run);
   if (run.job.strategy == Strategy::unidirectional &&
       run.job.process.plough_sa_nm != run.job.process.roughing_plunge_sa_nm)
@@ -249,6 +338,7 @@ AsMachined as_machined(const VerificationRun& run) {
                     "cannot say: it has the root of the mean of their squares",
                     shortest(run.job.process.roughing_plunge_sa_nm), shortest(run.job.process.plough_sa_nm)));
   part.root_radius_um = run.result.root_radius_um;
+  part.root_chamfer_um = run.result.root_chamfer_um;
   part.texture = predicted_texture(run.job);
   part.body = body_of(run, part.warnings);
   return part;
@@ -256,12 +346,12 @@ AsMachined as_machined(const VerificationRun& run) {
 
 std::string as_machined_toml(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
   const auto nonzero = [](double v) { return std::abs(v) < 1e-6 ? 0.0 : v; };
+  std::vector<std::string> tilts;
+  for (const double tilt : part.facet_tilt_arcmin) tilts.push_back(shortest(nonzero(tilt)));
   std::string text = "schema = \"retrace.design/1\"\n";
   text += fmt::format("title = {}\n", toml_text((run.job.title.empty() ? "Part" : run.job.title) + ", as machined"));
-  text += fmt::format("\n[element]\nkind = \"rtp\"\nbase_mm = {}\nwidth_mm = {}\napex_angle_deg = {}\n",
-                      shortest(prism_of(run.job).base_mm), shortest(prism_of(run.job).width_mm),
-                      shortest(prism_of(run.job).apex_angle_deg));
-  text += "\n[array]\n" + array_text(run.job);
+  text += "\n[element]\n" + element_text(run.job);
+  text += "\n[array]\n" + array_text(run.job, part.planes.has_value());
   text += "\n[body]\n" + part.body;
   if (part.planes)
     text += fmt::format("\n# Facets as the programs leave them: a plane each.\n[part]\nfacets = {}\n\n[surface]\n",
@@ -269,8 +359,9 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
   else
     text += fmt::format(
         "\n# Facets as the programs leave them; the mean over the elements.\n[surface]\n"
-        "facet_tilt_arcmin = [{}, {}]\n",
-        shortest(nonzero(part.facet_tilt_arcmin[0])), shortest(nonzero(part.facet_tilt_arcmin[1])));
+        "facet_tilt_arcmin = [{}]\n",
+        fmt::join(tilts, ", "));
+  if (part.root_chamfer_um > 0.0) text += fmt::format("root_chamfer_um = {}\n", shortest(part.root_chamfer_um));
   if (part.root_radius_um > 0.0) text += fmt::format("root_radius_um = {}\n", shortest(part.root_radius_um));
   const PredictedTexture& t = part.texture;
   text += fmt::format(

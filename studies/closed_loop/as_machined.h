@@ -24,9 +24,11 @@ PredictedTexture predicted_texture(const fabrication::Job& job);
 /// The part that programs leave, moulded in it or cut directly. Where its elements are alike, a design file says it
 /// with the mean tilts of their facets; else every facet of a moulded part has a plane of its own.
 struct AsMachined {
-  std::array<double, 2> facet_tilt_arcmin{};  ///< towards -x and +x of the part, opening is positive
+  /// Opening is positive; of a prism towards -x and +x of the part, of a cube corner in the order of its facets.
+  std::vector<double> facet_tilt_arcmin;
   std::optional<geometry::FacetPlanes> planes;
   double root_radius_um = 0.0;
+  double root_chamfer_um = 0.0;
   PredictedTexture texture;
   std::string body;  ///< the table [body] of the job's design, or a default
   std::vector<std::string> warnings;

@@ -508,8 +508,6 @@ std::optional<FacetPlanesFile> read_facet_planes(const DesignDocument& document,
   if (file) planes = FacetPlanesFile{*table.text("facets"), *file, table.where("facets")};
   table.finish();
   if (!planes) return planes;
-  if (!std::holds_alternative<geometry::RtpElement>(part.element))
-    table.fail("facets", "only allowed for kind = \"rtp\"");
   if (part.extent == Extent::infinite) table.fail("facets", "only allowed for finite arrays");
   if (!(part.angle_errors == geometry::AngleErrors{}) || part.random_tilts.sigma_arcmin > 0.0)
     table.fail("facets", "not allowed together with errors of angle, which its planes hold");

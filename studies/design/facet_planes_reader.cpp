@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,6 +26,8 @@ constexpr std::string_view kHeader = "x_mm,y_mm,facet,height_mm,x_slope,y_slope"
 constexpr std::array<std::string_view, 6> kColumns = {"x_mm", "y_mm", "facet", "height_mm", "x_slope", "y_slope"};
 constexpr std::size_t kMostBytes = std::size_t{512} << 20;
 constexpr double kMost = 1e6;
+/// Flares are the facets behind the three of an element.
+constexpr std::size_t kFlares = 3;
 constexpr double kMostTurnDeg = 5.0;
 constexpr double kMostHeightShare = 0.1;
 
@@ -46,10 +47,14 @@ struct Row {
 
 class Reader {
  public:
-  Reader(const std::string& file, const geometry::PartSpec& spec)
-      : file_(file), spec_(spec), nominal_(std::get<geometry::RtpElement>(spec.element)) {
-    half_apex_rad_ = 0.5 * Angle::from_deg(nominal_.apex_angle_deg).rad();
+  Reader(const std::string& file, const geometry::PartSpec& spec) : file_(file), spec_(spec) {
+    for (const geometry::CellFacet& facet : geometry::element_cell(spec.element).facets)
+      nominal_slopes_.push_back(facet.plane.slope);
     depth_mm_ = geometry::element_depth_mm(spec.element);
+    const Vec2 size = geometry::bounding_box(geometry::aperture_outline(spec.element)).size();
+    // The axes of neighbouring triangles are half a radius apart along x.
+    constexpr double kNearest = 1.0 / 3.0;
+    spacing_mm_ = is_prism() ? size.minCoeff() : kNearest * size.minCoeff();
   }
 
   geometry::FacetPlanes read(std::string_view text) {
@@ -66,10 +71,14 @@ class Reader {
       if (has_header) take(row_of(content, line));
       has_header = true;
     }
-    if (pending_) fail(pending_->line, "", "must be followed by the other facet of its element");
-    if (elements_.empty()) fail(0, "", fmt::format("must have the header {} and two lines for each element", kHeader));
+    if (!pending_.empty())
+      fail(pending_.back().line, "",
+           fmt::format("must be followed by the other {} of its element", is_prism() ? "facet" : "facets"));
+    if (!has_element_)
+      fail(0, "",
+           fmt::format("must have the header {} and {} lines for each element", kHeader, is_prism() ? "two" : "three"));
     try {
-      return {std::move(elements_), std::min(nominal_.base_mm, nominal_.width_mm)};
+      return {std::move(elements_), spacing_mm_};
     } catch (const InputError& error) {
       throw InputError({file_, 0, ""}, error.what());
     }
@@ -99,7 +108,10 @@ class Reader {
     }
     if (column != values.size())
       fail(line, "", fmt::format("must have the {} fields of the heading, got {}", values.size(), column));
-    if (values[2] != 1.0 && values[2] != 2.0) fail(line, "facet", "must be 1 or 2, got " + shortest(values[2]));
+    const auto most = static_cast<double>(is_hexagonal() ? kFlares + 3 : nominal_slopes_.size());
+    if (!(values[2] >= 1.0 && values[2] <= most) || values[2] != std::floor(values[2]))
+      fail(line, "facet",
+           fmt::format("must be {}, got {}", is_prism() ? "1 or 2" : "1 to " + shortest(most), shortest(values[2])));
     Row row;
     row.centre_mm = {values[0], values[1]};
     row.facet = static_cast<std::size_t>(values[2]) - 1;
@@ -109,51 +121,83 @@ class Reader {
     return row;
   }
 
-  /// The nominal slope of a facet; in a checker every second element is turned.
+  bool is_prism() const { return std::holds_alternative<geometry::RtpElement>(spec_.element); }
+  bool is_hexagonal() const { return std::holds_alternative<geometry::HexagonalCube>(spec_.element); }
+
+  /// Whether a plane resembles that of a nominal facet; in a checker every second element is turned, and in an array of
+  /// triangles by 180 degrees. A flare lies in the plane of the facet across its edge.
   bool resembles(const Row& row, bool turned) const {
-    const double side = row.facet == 0 ? -1.0 : 1.0;
-    Vec2 slope(side / std::tan(half_apex_rad_), 0.0);
-    if (turned) std::swap(slope.x(), slope.y());
+    const std::size_t facet = row.facet < kFlares ? row.facet : (row.facet - kFlares + 1) % 3;
+    Vec2 slope = nominal_slopes_[facet];
+    if (turned) slope = is_prism() ? Vec2(slope.y(), slope.x()) : Vec2(-slope);
     const geometry::Vec3 nominal = geometry::Vec3(slope.x(), slope.y(), -1.0).normalized();
     const geometry::Vec3 own = geometry::Vec3(row.plane.slope.x(), row.plane.slope.y(), -1.0).normalized();
     return own.dot(nominal) >= std::cos(Angle::from_deg(kMostTurnDeg).rad());
   }
 
+  /// Of a facet over the root or apex; of a flare over the middle of its hexagon, whose corner is half as deep.
+  double nominal_height_mm(const Row& row) const {
+    if (row.facet < kFlares) return -depth_mm_;
+    const double angle = Angle::from_deg(120.0 * static_cast<double>(row.facet - kFlares)).rad();
+    const double radius_mm = 0.5 * std::get<geometry::HexagonalCube>(spec_.element).aperture_mm;
+    const Vec2 corner = radius_mm * Vec2(std::cos(angle), std::sin(angle));
+    return -0.5 * depth_mm_ - nominal_slopes_[(row.facet - kFlares + 1) % 3].dot(corner);
+  }
+
   void check(const Row& row) const {
-    const bool may_be_turned = spec_.arrangement == geometry::Arrangement::checker;
+    const bool may_be_turned =
+        spec_.arrangement == geometry::Arrangement::checker || spec_.arrangement == geometry::Arrangement::triangular;
     if (!resembles(row, false) && !(may_be_turned && resembles(row, true)))
       fail(row.line, "x_slope",
            fmt::format("the plane must lie within {} degrees of facet {} of the design's element",
                        shortest(kMostTurnDeg), row.facet + 1));
-    if (std::abs(row.plane.height_mm + depth_mm_) > kMostHeightShare * depth_mm_)
+    const double nominal_mm = nominal_height_mm(row);
+    if (std::abs(row.plane.height_mm - nominal_mm) > kMostHeightShare * depth_mm_)
       fail(row.line, "height_mm",
            fmt::format("must be {} to {}, near the root of the design's element, got {}",
-                       fixed(-(1.0 + kMostHeightShare) * depth_mm_, 6), fixed(-(1.0 - kMostHeightShare) * depth_mm_, 6),
-                       shortest(row.plane.height_mm)));
+                       fixed(nominal_mm - kMostHeightShare * depth_mm_, 6),
+                       fixed(nominal_mm + kMostHeightShare * depth_mm_, 6), shortest(row.plane.height_mm)));
   }
 
   void take(const Row& row) {
-    if (!pending_) {
-      pending_ = row;
-      return;
-    }
-    if (pending_->centre_mm != row.centre_mm || pending_->facet == row.facet)
-      fail(row.line, "", "must be the other facet of the element of the line before");
+    if (row.facet >= kFlares && pending_.empty()) return take_flare(row);
+    for (const Row& other : pending_)
+      if (other.centre_mm != row.centre_mm || other.facet == row.facet || row.facet >= kFlares)
+        fail(row.line, "",
+             fmt::format("must be {} facet of the element of the line before", is_prism() ? "the other" : "another"));
+    pending_.push_back(row);
+    if (pending_.size() < nominal_slopes_.size()) return;
     ElementPlanes element;
     element.centre_mm = row.centre_mm;
-    element.planes[pending_->facet] = pending_->plane;
-    element.planes[row.facet] = row.plane;
-    elements_.push_back(element);
-    pending_.reset();
+    element.planes.resize(pending_.size());
+    for (const Row& known : pending_) element.planes[known.facet] = known.plane;
+    elements_.push_back(std::move(element));
+    has_element_ = true;
+    pending_.clear();
+  }
+
+  /// Flares of one place stand together.
+  void take_flare(const Row& row) {
+    const bool is_same =
+        !elements_.empty() && elements_.back().planes.empty() && elements_.back().centre_mm == row.centre_mm;
+    if (!is_same) {
+      elements_.emplace_back();
+      elements_.back().centre_mm = row.centre_mm;
+      elements_.back().planes.clear();
+    }
+    auto& flare = elements_.back().flares[row.facet - kFlares];
+    if (flare) fail(row.line, "facet", "must not be given twice for one place");
+    flare = row.plane;
   }
 
   const std::string& file_;
   const geometry::PartSpec& spec_;
-  const geometry::RtpElement& nominal_;
-  double half_apex_rad_ = 0.0;
+  std::vector<Vec2> nominal_slopes_;
   double depth_mm_ = 0.0;
+  double spacing_mm_ = 0.0;
   std::vector<ElementPlanes> elements_;
-  std::optional<Row> pending_;
+  std::vector<Row> pending_;
+  bool has_element_ = false;
 };
 
 }  // namespace
@@ -165,12 +209,15 @@ geometry::FacetPlanes parse_facet_planes(std::string_view text, const std::strin
 
 std::string facet_planes_text(const geometry::FacetPlanes& planes) {
   std::string text = std::string(kHeader) + "\n";
-  for (const ElementPlanes& element : planes.elements())
-    for (const std::size_t k : {0U, 1U}) {
-      const HeightPlane& plane = element.planes[k];
+  for (const ElementPlanes& element : planes.elements()) {
+    const auto put = [&](std::size_t facet, const HeightPlane& plane) {
       text += fmt::format("{},{},{},{},{},{}\n", shortest(element.centre_mm.x()), shortest(element.centre_mm.y()),
-                          k + 1, shortest(plane.height_mm), shortest(plane.slope.x()), shortest(plane.slope.y()));
-    }
+                          facet, shortest(plane.height_mm), shortest(plane.slope.x()), shortest(plane.slope.y()));
+    };
+    for (std::size_t k = 0; k < element.planes.size(); ++k) put(k + 1, element.planes[k]);
+    for (std::size_t k = 0; k < element.flares.size(); ++k)
+      if (element.flares[k]) put(kFlares + k + 1, *element.flares[k]);
+  }
   return text;
 }
 

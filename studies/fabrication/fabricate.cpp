@@ -7,7 +7,9 @@
 #include "core/message_text.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
+#include "fabrication/plan/chiseling.h"
 #include "fabrication/post/post.h"
+#include "geometry/lattice.h"
 
 namespace retrace::studies {
 namespace {
@@ -27,13 +29,18 @@ const fabrication::Dialect& dialect_of(const std::string& name) {
 /// Where the axes are, in the section of an element.
 geometry::Vec2 in_section(const FabricationResult& result, const fabrication::CutElement& element,
                           const fabrication::Position& at) {
-  const fabrication::AxisPositions axes{1e-6 * static_cast<double>(at.x_nm.value_or(0)),
-                                        1e-6 * static_cast<double>(at.y_nm.value_or(0)),
-                                        1e-6 * static_cast<double>(at.z_nm.value_or(0)),
-                                        1e-7 * static_cast<double>(at.a), 1e-7 * static_cast<double>(at.c)};
+  fabrication::AxisPositions axes{
+      1e-6 * static_cast<double>(at.x_nm.value_or(0)), 1e-6 * static_cast<double>(at.y_nm.value_or(0)),
+      1e-6 * static_cast<double>(at.z_nm.value_or(0)), 0.0, 1e-7 * static_cast<double>(at.c)};
+  (result.machine.tilt == fabrication::Tilt::table ? axes.a_deg : axes.b_deg) = 1e-7 * static_cast<double>(at.a);
   const Vec3 tip = fabrication::forward(result.machine, axes).reference_mm;
-  const Vec3 from_root = tip - Vec3(element.centre_mm.x(), element.centre_mm.y(),
-                                    -fabrication::root_depth_mm(fabrication::blank_prism(result.job)));
+  const Vec3 root(element.centre_mm.x(), element.centre_mm.y(),
+                  -geometry::element_depth_mm(fabrication::blank_element(result.job)));
+  const Vec3 from_root = tip - root;
+  if (result.job.strategy == fabrication::Strategy::dmc) {
+    const auto [first, second] = fabrication::cube_facet_edges({element.turned, 1});
+    return {(second - first).normalized().dot(from_root), (second + first).normalized().dot(from_root)};
+  }
   // Facet 1 has its wall on the side of +y_w; of turned elements on that of +x_w.
   return {element.turned ? -from_root.x() : -from_root.y(), from_root.z()};
 }
@@ -52,9 +59,11 @@ FabricationResult fabricate(const FabricationRequest& request) {
 }
 
 std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing) {
+  const bool is_dmc = result.job.strategy == fabrication::Strategy::dmc;
   std::set<std::uint32_t> wanted;
   for (const fabrication::Stage& stage : result.plan.stages)
-    if (stage.roughs == roughing) wanted.insert(stage.subroutine);
+    if (stage.roughs == roughing && (!is_dmc || result.plan.poses[stage.pose].facet.facet == 1))
+      wanted.insert(stage.subroutine);
   std::vector<SectionMove> moves;
   for (const fabrication::Program& program : result.plan.programs) {
     fabrication::Program first_only;

@@ -10,6 +10,7 @@
 #include "core/number_format.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/mask_image.h"
+#include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "geometry/part.h"
 
@@ -28,21 +29,49 @@ std::size_t word_index(const std::string& option, const std::string& given, std:
 }
 
 fabrication::Strategy strategy_of(const std::string& given) {
-  if (given == "dmc")
-    throw InputError({"", 0, "--strategy"},
-                     "dmc (cube corners by diamond micro chiseling) is not available in this version");
   return static_cast<fabrication::Strategy>(word_index("--strategy", given, fabrication::kStrategyWords));
 }
 
-const geometry::RtpElement& element_of(const Design& design) {
+bool is_dmc(const JobRequest& request) {
+  return strategy_of(request.strategy) == fabrication::Strategy::dmc;
+}
+
+/// Diamond micro chiseling needs a head that tilts: the ideal machine is another one.
+std::string machine_of(const JobRequest& request) {
+  return is_dmc(request) && request.machine == "ideal" ? "ideal-dmc" : request.machine;
+}
+
+template <class Cube>
+geometry::Element upright(const Cube& cube, const Design& design) {
+  if (cube.cant.deg != 0.0)
+    throw InputError({design.source_name(), 0, "element.cant_deg"},
+                     "must be 0 to be cut in this version, got " + shortest(cube.cant.deg));
+  return Cube{cube.aperture_mm, {}};
+}
+
+/// The element of the design, its dihedral error included if it is a prism.
+/// \throw InputError for one that the strategy does not cut
+geometry::Element element_of(const Design& design, const JobRequest& request) {
   design.require_elements("retrace job");
-  const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part.element);
-  if (rtp == nullptr)
-    throw InputError({design.source_name(), 0, "element.kind"},
-                     "must be \"rtp\": other elements cannot be cut in this version");
   if (design.part.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
-  return *rtp;
+  if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part.element)) {
+    if (is_dmc(request))
+      throw InputError({"", 0, "--strategy"},
+                       "dmc cuts cube corners: must be unidirectional, bidirectional or two-step "
+                       "for element.kind = \"rtp\", got dmc");
+    geometry::RtpElement prism = *rtp;
+    prism.apex_angle_deg += design.part.angle_errors.dihedral_error_arcmin[0] / 60.0;
+    return prism;
+  }
+  if (!is_dmc(request))
+    throw InputError({"", 0, "--strategy"},
+                     "a chisel with a straight edge cannot reach the apex of a cube corner: must be dmc for this "
+                     "element.kind, got " +
+                         request.strategy);
+  if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&design.part.element))
+    return upright(*hexagonal, design);
+  return upright(std::get<geometry::TriangularCube>(design.part.element), design);
 }
 
 fabrication::Array array_of(const Design& design) {
@@ -63,12 +92,16 @@ fabrication::Array array_of(const Design& design) {
 /// Whether the design has tilts or edges that a job does not know.
 bool has_errors(const PartSpec& part) {
   const std::array<double, 3> none{};
+  const bool is_prism = std::holds_alternative<geometry::RtpElement>(part.element);
+  if (!is_prism && part.angle_errors.dihedral_error_arcmin != none) return true;
   return !part.edges.is_sharp() || part.angle_errors.facet_tilt_arcmin != none || part.random_tilts.sigma_arcmin > 0.0;
 }
 
 /// Partial elements of the array, whether or not a mask is to leave out others.
 std::int64_t partial_elements(const PartSpec& part) {
-  if (part.arrangement != Arrangement::offset) return 0;
+  if (part.arrangement != Arrangement::offset && part.arrangement != Arrangement::honeycomb &&
+      part.arrangement != Arrangement::triangular)
+    return 0;
   PartSpec nominal = part;
   nominal.angle_errors = {};
   nominal.random_tilts = {};
@@ -87,7 +120,11 @@ void add_warnings(const Design& design, MadeJob& made) {
                       made.partial_elements));
   }
   if (has_errors(design.part))
-    made.warnings.push_back(fmt::format("{}: facet tilts, random errors and edges of [surface] are not cut", name));
+    made.warnings.push_back(
+        fmt::format("{}: {}facet tilts, random errors and edges of [surface] are not cut", name,
+                    std::holds_alternative<geometry::RtpElement>(design.part.element) ? "" : "dihedral errors, "));
+  if (design.part.arrangement == Arrangement::honeycomb)
+    made.job.notes.push_back("cavities are triangular: those at the border reach beyond the elements' outlines");
 }
 
 }  // namespace
@@ -98,11 +135,39 @@ void check_making(const JobRequest& request) {
   if (!(request.shrinkage_percent >= 0.0 && request.shrinkage_percent <= 10.0))
     throw InputError({"", 0, "--shrinkage-percent"},
                      "must be >= 0 and <= 10, got " + shortest(request.shrinkage_percent));
-  if (!(request.tool_width_mm >= 0.1 && request.tool_width_mm <= 2.0))
-    throw InputError({"", 0, "--tool-width-mm"}, "must be >= 0.1 and <= 2, got " + shortest(request.tool_width_mm));
-  fabrication::load_machine(request.machine, {"", 0, "--machine"});
+  const double least_mm = is_dmc(request) ? 0.01 : 0.1;
+  const double most_mm = is_dmc(request) ? 10.0 : 2.0;
+  if (!(request.tool_width_mm >= least_mm && request.tool_width_mm <= most_mm))
+    throw InputError({"", 0, "--tool-width-mm"}, fmt::format("must be >= {} and <= {}, got {}", shortest(least_mm),
+                                                             shortest(most_mm), shortest(request.tool_width_mm)));
+  const fabrication::Machine machine = fabrication::load_machine(machine_of(request), {"", 0, "--machine"});
+  if (is_dmc(request) != (machine.tilt == fabrication::Tilt::head))
+    throw InputError({"", 0, "--machine"},
+                     fmt::format("must be a machine whose {} tilts for strategy {}, got {}",
+                                 is_dmc(request) ? "head" : "table", request.strategy, in_quotes(request.machine)));
   fabrication::load_process(request.process, {"", 0, "--process"});
 }
+
+namespace {
+
+/// The tool as it was asked for. \throw InputError if it does not fit the element
+fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
+  fabrication::Tool tool;
+  tool.width_mm = request.tool_width_mm;
+  const InputLocation at{"", 0, "--tool-width-mm"};
+  if (job.strategy == fabrication::Strategy::dmc) {
+    tool.wedge_deg = fabrication::kDmcWedgeDeg;
+    fabrication::check_v_tool(fabrication::blank_element(job), tool, {at, at, at, at});
+    return tool;
+  }
+  const double element_width_mm = fabrication::blank_prism(job).width_mm;
+  if (request.tool_width_mm > element_width_mm + 1e-6)
+    throw InputError(at, fmt::format("must be <= {}, the element's width, got {}", shortest(element_width_mm),
+                                     shortest(request.tool_width_mm)));
+  return tool;
+}
+
+}  // namespace
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
   if (design.facet_planes)
@@ -111,26 +176,20 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   Job& job = made.job;
   job.title = design.title;
   job.design = design.source == "-" ? "" : std::filesystem::path(design.source).filename().string();
-  job.element = element_of(design);
-  prism_of(job).apex_angle_deg += design.part.angle_errors.dihedral_error_arcmin[0] / 60.0;
+  job.strategy = strategy_of(request.strategy);
+  job.element = element_of(design, request);
   job.array = array_of(design);
   check_making(request);
-  job.strategy = strategy_of(request.strategy);
   job.workpiece.kind = static_cast<fabrication::WorkpieceKind>(
       word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords));
   job.workpiece.shrinkage_percent = request.shrinkage_percent;
-  job.tool.width_mm = request.tool_width_mm;
-  const double element_width_mm = fabrication::blank_prism(job).width_mm;
-  if (request.tool_width_mm > element_width_mm + 1e-6)
-    throw InputError({"", 0, "--tool-width-mm"},
-                     fmt::format("must be <= {}, the element's width, got {}", shortest(element_width_mm),
-                                 shortest(request.tool_width_mm)));
-  job.machine = request.machine;
+  job.tool = tool_of(job, request);
+  job.machine = machine_of(request);
   job.process = fabrication::load_process(request.process, {"", 0, "--process"});
   if (design.mask)
-    job.array.pattern =
-        fabrication::mask_pattern(design.mask->file, design.mask->threshold,
-                                  fabrication::cell_counts(job.array, prism_of(job)), design.mask->location);
+    job.array.pattern = fabrication::mask_pattern(design.mask->file, design.mask->threshold,
+                                                  fabrication::cell_counts(job.array, fabrication::prism_of(job)),
+                                                  design.mask->location);
   fabrication::check_job(job, {design.source_name(), 0, ""});
   made.elements = static_cast<std::int64_t>(fabrication::cut_elements(job).size());
   add_warnings(design, made);

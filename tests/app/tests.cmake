@@ -4,6 +4,7 @@ retrace_test(app_test
     app/bad_input_test.cpp
     app/commands_test.cpp
     app/derivatives_test.cpp
+    app/chiseling_command_test.cpp
     app/fabricate_test.cpp
     app/metrology_test.cpp
     app/number_list_test.cpp

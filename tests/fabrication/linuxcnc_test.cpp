@@ -14,7 +14,7 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "tests/fabrication/jobs.h"
+#include "tests/fabrication/chiseling_jobs.h"
 
 // LinuxCNC's own interpreter reads our RS274/NGC text: its canonical moves are the planned ones. Golden programs pin
 // the text of every dialect.
@@ -95,11 +95,13 @@ void expect_planned(const Plan& plan, const std::string& what) {
       ASSERT_NEAR(moves[k].at[0], 1e-6 * static_cast<double>(to.x_nm.value_or(0)), kPrinted);
       ASSERT_NEAR(moves[k].at[1], 1e-6 * static_cast<double>(to.y_nm.value_or(0)), kPrinted);
       ASSERT_NEAR(moves[k].at[2], 1e-6 * static_cast<double>(*to.z_nm), kPrinted);
-      ASSERT_NEAR(moves[k].at[3], 1e-7 * static_cast<double>(to.a), kPrinted);
+      const bool tilts_table = program.tilt_letter == 'A';
+      ASSERT_NEAR(moves[k].at[tilts_table ? 3 : 4], 1e-7 * static_cast<double>(to.a), kPrinted);
+      ASSERT_EQ(moves[k].at[tilts_table ? 4 : 3], 0.0);
       ASSERT_NEAR(moves[k].at[5], 1e-7 * static_cast<double>(to.c), kPrinted);
       ASSERT_EQ(moves[k].feed, planned[k].feed_mm_per_min);
       ASSERT_NEAR(moves[k].dwell_s, planned[k].dwell_s, 1e-9);
-      ASSERT_TRUE(moves[k].rapid || moves[k].at[0] == moves[k - 1].at[0]) << "X while cutting";
+      ASSERT_TRUE(moves[k].rapid || !tilts_table || moves[k].at[0] == moves[k - 1].at[0]) << "X while cutting";
     }
   }
 }
@@ -117,6 +119,11 @@ TEST(LinuxCnc, MovesAsPlannedForAllStrategiesArrangementsAndMachines) {
                        std::string(name) + " " + std::string(kStrategyWords[static_cast<std::size_t>(strategy)]) +
                            " arrangement " + std::to_string(static_cast<int>(arrangement)));
       }
+}
+
+TEST(LinuxCnc, MovesAsPlannedForCubeCorners) {
+  for (const bool is_hexagonal : {false, true})
+    expect_planned(make_plan(cube_job(is_hexagonal), machine("ideal-dmc")), is_hexagonal ? "hexagonal" : "triangular");
 }
 
 TEST(LinuxCnc, TakesSplitAndStoppedPrograms) {

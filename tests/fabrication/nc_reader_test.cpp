@@ -186,7 +186,7 @@ TEST(NcReader, WhatIsNotUnderstoodIsAnErrorWithItsLine) {
     return refusal(replaced(sample(NcDialect::rs274ngc), from, to), NcDialect::rs274ngc);
   };
   EXPECT_EQ(rs274("G0 Z5.", "G2 Z5."), "p:14: G2 is not understood");
-  EXPECT_EQ(rs274("G0 Z5.", "G0 B5."), "p:14: a word B is not understood");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 U5."), "p:14: a word U is not understood");
   EXPECT_EQ(rs274("G0 Z5.", "G0 G1 Z5."), "p:14: has two G codes of one group, the second is G1");
   EXPECT_EQ(rs274("G0 Z5.", "G0 Z5. Z6."), "p:14: has two words for Z");
   EXPECT_EQ(rs274("G0 Z5.", "G0 Z"), "p:14: must have a number of at most 20 digits at \"\"");

@@ -25,3 +25,6 @@ retrace_test(fabrication_planned_jobs_test
 retrace_test(fabrication_forces_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/forces_test.cpp
   LIBRARIES retrace::forces)
+retrace_test(fabrication_chiseling_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/chiseling_test.cpp
+  LIBRARIES retrace::plan retrace::post retrace::verify)

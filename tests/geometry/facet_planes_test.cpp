@@ -101,6 +101,89 @@ TEST(FacetPlanes, OneElementAndMissingOnes) {
   EXPECT_TRUE(check_boundary(closed_boundary(part)).is_closed);
 }
 
+PartSpec cubes(const Element& element, Arrangement arrangement) {
+  PartSpec spec;
+  spec.element = element;
+  spec.arrangement = arrangement;
+  spec.x_length_mm = 4.0;
+  spec.y_length_mm = 4.0;
+  spec.partial_elements = PartialElements::omit;
+  spec.thickness_mm = 0.5;
+  return spec;
+}
+
+/// Facet k of a cube corner with its apex at `centre`, told there.
+ElementPlanes cube_at(const Element& element, const Vec2& centre, bool turned = false) {
+  ElementPlanes planes;
+  planes.centre_mm = centre;
+  planes.planes.clear();
+  for (const CellFacet& facet : element_cell(element).facets)
+    planes.planes.push_back({-element_depth_mm(element), turned ? Vec2(-facet.plane.slope) : facet.plane.slope});
+  return planes;
+}
+
+TEST(FacetPlanes, NominalPlanesOfCubeCornersAreTheNominalPart) {
+  const Element hexagon = HexagonalCube{1.0, {}};
+  const Element triangle = TriangularCube{1.0, {}};
+  for (const Element& element : {hexagon, triangle}) {
+    const bool is_hexagonal = std::holds_alternative<HexagonalCube>(element);
+    const PartSpec spec = cubes(element, is_hexagonal ? Arrangement::honeycomb : Arrangement::triangular);
+    // The cells of the lattice, from the one in the middle, that the array holds whole.
+    std::vector<ElementPlanes> planes;
+    const double row_mm = 0.25 * std::numbers::sqrt3;
+    for (int row = -5; row <= 5; ++row)
+      for (int column = -4; column <= 4; ++column) {
+        if ((row + column) % 2 != 0) continue;
+        const Vec2 centre(2.0 + 0.75 * column, 2.0 + row_mm * row);
+        const auto add = [&](const Vec2& apex, bool turned) {
+          Polygon outline = element_cell(element).outline;
+          for (Vec2& p : outline) p = turned ? Vec2(apex - p) : Vec2(apex + p);
+          const Rectangle box = bounding_box(outline);
+          if (box.lower.minCoeff() < 0.0 || box.upper.maxCoeff() > 4.0) return;
+          planes.push_back(cube_at(element, apex, turned));
+        };
+        add(centre, false);
+        if (!is_hexagonal) add(centre - Vec2(0.5, 0.0), true);
+      }
+    const Part nominal = build_part(spec);
+    const Part own = build_part(spec, FacetPlanes(planes, 0.25));
+    EXPECT_EQ(own.elements_full, nominal.elements_full);
+    EXPECT_NEAR(own.retro_facet_area_mm2, nominal.retro_facet_area_mm2, 1e-10);
+    const BoundaryReport report = check_boundary(closed_boundary(own));
+    EXPECT_TRUE(report.ok());
+    EXPECT_NEAR(report.volume_mm3, check_boundary(closed_boundary(nominal)).volume_mm3, 1e-10);
+  }
+}
+
+/// One hexagonal cube corner by a triangular cavity: a^3 within its hexagon and a^3 / 3 beyond it, in six flares.
+TEST(FacetPlanes, FlaresOfOneCavityTakeAThirdOfACube) {
+  const Element element = HexagonalCube{1.0, {}};
+  const PartSpec spec = cubes(element, Arrangement::honeycomb);
+  std::vector<ElementPlanes> planes = {cube_at(element, {2.0, 2.0})};
+  const auto corner = [](std::size_t k) -> Vec2 {
+    const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k);
+    return 0.5 * Vec2(std::cos(angle), std::sin(angle));
+  };
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
+      ElementPlanes land;
+      land.planes.clear();
+      land.centre_mm = Vec2(2.0, 2.0) + corner(k) - corner(other);
+      HeightPlane plane = planes.front().planes[(other + 1) % 3];
+      plane.height_mm += plane.slope.dot(land.centre_mm - Vec2(2.0, 2.0));
+      land.flares[other] = plane;
+      planes.push_back(land);
+    }
+  const Part part = build_part(spec, FacetPlanes(planes, 0.25));
+  EXPECT_EQ(part.elements_full, 1);
+  const BoundaryReport report = check_boundary(closed_boundary(part));
+  EXPECT_TRUE(report.ok());
+  const double a = std::sqrt(3.0 / 8.0);
+  EXPECT_NEAR(report.volume_mm3, 4.0 * 4.0 * 0.5 + a * a * a * 4.0 / 3.0, 1e-9);
+  // Three squares, and half a square for either pair of flares.
+  EXPECT_NEAR(part.retro_facet_area_mm2, 3.0 * a * a + 6.0 * 0.5 * a * a, 1e-9);
+}
+
 TEST(FacetPlanes, PlanesOfNoElementAreRefused) {
   const PartSpec spec = prisms(Arrangement::offset);
   EXPECT_THROW(build_part(spec, FacetPlanes({planes_at({0.25, 0.25}), planes_at({5.25, 0.25})}, 0.5)), InputError);

@@ -68,5 +68,47 @@ TEST(FacetPlanesReader, SaysWhereAndWhatIsAllowed) {
   EXPECT_EQ(refused(kHead + kElement + kElement), "p.csv: two elements lie in one place");
 }
 
+geometry::PartSpec cubes(const geometry::Element& element) {
+  geometry::PartSpec spec;
+  spec.element = element;
+  spec.arrangement = geometry::Arrangement::honeycomb;
+  spec.x_length_mm = spec.y_length_mm = 4.0;
+  spec.thickness_mm = 1.0;
+  return spec;
+}
+
+std::string refused_cube(const std::string& text) {
+  try {
+    parse_facet_planes(text, "p.csv", cubes(geometry::HexagonalCube{1.0, {}}));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(FacetPlanesReader, CubeCornersHaveThreeFacetsAndFlares) {
+  // An apex at (2, 2), 0.70711 deep; facets look away from 60, 180 and 300 degrees.
+  const std::string cube = "2,2,1,-0.70711,0.7071,1.2247\n2,2,2,-0.70711,-1.41421,0\n2,2,3,-0.70711,0.7071,-1.2247\n";
+  const std::string flare = "2.75,1.57,5,0.3536,0.7071,-1.2247\n";
+  EXPECT_EQ(refused_cube(kHead + cube), "accepted");
+  const geometry::FacetPlanes planes =
+      parse_facet_planes(kHead + cube + flare, "p.csv", cubes(geometry::HexagonalCube{1.0, {}}));
+  ASSERT_EQ(planes.size(), 2U);
+  EXPECT_EQ(planes.element_count(), 1U);
+  EXPECT_TRUE(planes.elements()[1].flares[1].has_value());
+  EXPECT_EQ(facet_planes_text(planes), "x_mm,y_mm,facet,height_mm,x_slope,y_slope\n" + cube + flare);
+  EXPECT_EQ(refused_cube(kHead + flare),
+            "p.csv: must have the header x_mm,y_mm,facet,height_mm,x_slope,y_slope and three lines for each element");
+  EXPECT_EQ(refused_cube(kHead + cube + flare + flare), "p.csv:7: facet: must not be given twice for one place");
+  EXPECT_EQ(refused_cube(kHead + "2,2,7,-0.70711,0,0\n"), "p.csv:3: facet: must be 1 to 6, got 7");
+  EXPECT_EQ(refused_cube(kHead + "2,2,1.5,-0.70711,0,0\n"), "p.csv:3: facet: must be 1 to 6, got 1.5");
+  EXPECT_EQ(refused_cube(kHead + "2,2,1,-0.70711,0.7071,1.2247\n"),
+            "p.csv:3: must be followed by the other facets of its element");
+  EXPECT_EQ(refused_cube(kHead + "2,2,1,-0.70711,0.7071,1.2247\n2,2,4,0.3536,-1.41421,0\n"),
+            "p.csv:4: must be another facet of the element of the line before");
+  EXPECT_EQ(refused_cube(kHead + "2,2,2,-0.70711,1.41421,0\n"),
+            "p.csv:3: x_slope: the plane must lie within 5 degrees of facet 2 of the design's element");
+}
+
 }  // namespace
 }  // namespace retrace::studies

@@ -267,23 +267,23 @@ void check_array(const Job& job, const Places& at) {
 }
 
 /// Prisms are cut by a chisel, cube corners by a V.
-void check_strategy(const Job& job, const Places& at) {
+void check_strategy(const Job& job, const InputLocation& at_strategy, const InputLocation& at_workpiece) {
   const bool is_dmc = job.strategy == Strategy::dmc;
   const std::string_view kind = kKindWords[job.element.index()];
   if (is_dmc && is_prism(job))
-    throw InputError(at.strategy,
+    throw InputError(at_strategy,
                      R"(must be "unidirectional", "bidirectional" or "two-step" for element.kind = "rtp", got "dmc")");
   if (!is_dmc && !is_prism(job))
-    throw InputError(at.strategy, fmt::format("must be \"dmc\" for element.kind = {}, got {}", in_quotes(kind),
+    throw InputError(at_strategy, fmt::format("must be \"dmc\" for element.kind = {}, got {}", in_quotes(kind),
                                               in_quotes(kStrategyWords[static_cast<std::size_t>(job.strategy)])));
   if (is_dmc && job.workpiece.kind == WorkpieceKind::direct)
-    throw InputError(at.workpiece,
+    throw InputError(at_workpiece,
                      "must be \"mould\" for cube corners, whose cavities are not their elements, got "
                      "\"direct\"");
 }
 
 void check_together(const Job& job, const Places& at) {
-  check_strategy(job, at);
+  check_strategy(job, at.strategy, at.workpiece);
   check_array(job, at);
   if (is_prism(job))
     check_chisel(job, at);
@@ -399,6 +399,7 @@ Job parse_job(std::string_view text, const std::string& source_name) {
   TomlTable workpiece = root.table("workpiece");
   job.workpiece = read_workpiece(workpiece);
   job.element = read_element(element);
+  check_strategy(job, root.where("strategy"), workpiece.where("kind"));
   job.array = read_array(array, job.element);
   job.tool = read_tool(tool, job.strategy);
   job.process = read_process(process);

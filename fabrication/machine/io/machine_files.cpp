@@ -148,7 +148,7 @@ void check_axes(const Machine& machine, const TomlTable& root) {
   const double volume = linear.col(0).cross(linear.col(1)).dot(linear.col(2));
   if (!(volume > kLeastDeterminant)) root.fail("z", "X, Y and Z must be right-handed and near to square to each other");
   const double across = machine.a.direction.value.cross(machine.c.direction.value).norm();
-  if (!(across > kLeastDeterminant)) root.fail("c", "C must lie across A");
+  if (!(across > kLeastDeterminant)) root.fail("c", std::string("C must lie across ") + machine.tilt_letter());
 }
 
 }  // namespace
@@ -163,7 +163,11 @@ Machine parse_machine(std::string_view text, const std::string& source_name) {
   machine.x = linear_axis(root.required_table("x"));
   machine.y = linear_axis(root.required_table("y"));
   machine.z = linear_axis(root.required_table("z"));
-  machine.a = rotary_axis(root.required_table("a"));
+  if (root.has("b")) {
+    if (root.has("a")) root.fail("b", "not allowed together with [a]: either the table tilts or the head");
+    machine.tilt = Tilt::head;
+  }
+  machine.a = rotary_axis(root.required_table(machine.tilt == Tilt::table ? "a" : "b"));
   machine.c = rotary_axis(root.required_table("c"));
   for (const TomlTable& table : root.tables("body")) machine.bodies.push_back(body(table));
   root.finish();

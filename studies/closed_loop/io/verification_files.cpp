@@ -39,9 +39,10 @@ Json programs_json(const VerificationRun& run) {
   return programs;
 }
 
-Json poses_json(const Verification& result) {
+Json poses_json(const Verification& result, const Machine& machine) {
   Json poses = Json::array();
-  for (const RotaryPose& pose : result.poses) poses.push_back({{"a_deg", pose.a_deg}, {"c_deg", pose.c_deg}});
+  const char* const tilt = machine.tilt == Tilt::table ? "a_deg" : "b_deg";
+  for (const RotaryPose& pose : result.poses) poses.push_back({{tilt, pose.a_deg}, {"c_deg", pose.c_deg}});
   return poses;
 }
 
@@ -70,11 +71,13 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"root_residual_nm_max", r.root_residual_nm_max},
                      {"root_residual_nm_predicted", r.root_residual_nm_predicted},
                      {"root_radius_um", r.root_radius_um},
+                     {"root_chamfer_um", r.root_chamfer_um},
                      {"wall_overcut_nm_max", r.wall_overcut_nm_max},
                      {"wall_overcut_nm_predicted", r.wall_overcut_nm_predicted},
                      {"removed_volume_mm3", r.removed_volume_mm3},
+                     {"border_overcut_mm3", r.border_overcut_mm3},
                      {"free_tool_length_mm", r.free_tool_length_mm},
-                     {"poses", poses_json(r)},
+                     {"poses", poses_json(r, run.machine)},
                      {"time_s", r.time.total_s()},
                      {"time_feed_s", r.time.feed_s},
                      {"time_rapid_s", r.time.rapid_s},
@@ -103,6 +106,8 @@ std::string verification_table(const VerificationRun& run) {
   row("cut into walls",
       fmt::format("{} nm, {} unavoidable", fixed(r.wall_overcut_nm_max, 1), fixed(r.wall_overcut_nm_predicted, 1)));
   row("removed", fixed(r.removed_volume_mm3, 6) + " mm3");
+  if (r.border_overcut_mm3 > 0.0)
+    row("beyond the apertures", fixed(r.border_overcut_mm3, 6) + " mm3, as triangular cavities must");
   row("free tool length", fixed(r.free_tool_length_mm, 2) + " mm needed");
   row("time", fixed(r.time.total_s(), 1) + " s");
   for (std::size_t i = 0; i < r.findings.size() && i < kShownFindings; ++i) {

@@ -45,12 +45,17 @@ std::string_view word_of(fabrication::Strategy strategy) {
   return fabrication::kStrategyWords[static_cast<std::size_t>(strategy)];
 }
 
-Json poses_json(const Plan& plan) {
+/// Key of the axis that tilts.
+std::string tilt_key(const fabrication::Machine& machine) {
+  return machine.tilt == fabrication::Tilt::table ? "a_deg" : "b_deg";
+}
+
+Json poses_json(const FabricationResult& result) {
   Json poses = Json::array();
-  for (const fabrication::CuttingPose& pose : plan.poses)
+  for (const fabrication::CuttingPose& pose : result.plan.poses)
     poses.push_back({{"facet", pose.facet.facet},
                      {"turned", pose.facet.turned},
-                     {"a_deg", pose.rounded.a_deg},
+                     {tilt_key(result.machine), pose.rounded.a_deg},
                      {"c_deg", pose.rounded.c_deg},
                      {"root_tilt_arcmin", 60.0 * pose.root_tilt.deg()},
                      {"lift_nm", 1e6 * pose.section.lift_mm}});
@@ -96,45 +101,48 @@ std::string fabrication_json(const FabricationResult& result) {
   for (const fabrication::Stage& stage : plan.stages) {
     const fabrication::CuttingPose& pose = plan.poses[stage.pose];
     stages.push_back({{"name", stage.name},
-                      {"a_deg", pose.rounded.a_deg},
+                      {tilt_key(result.machine), pose.rounded.a_deg},
                       {"c_deg", pose.rounded.c_deg},
                       {"elements", stage.visits},
                       {"time_s", stage.time.total_s()}});
   }
   const fabrication::CuttingAngles plunge = fabrication::plunge_angles(result.job.tool);
   const fabrication::CuttingAngles plough = fabrication::plough_angles(result.job.tool);
-  const Json json = {{"schema", "retrace.fabrication/1"},
-                     {"job", result.job.source},
-                     {"machine", result.machine.name},
-                     {"dialect", result.dialect},
-                     {"strategy", word_of(result.job.strategy)},
-                     {"process", result.job.process.name},
-                     {"elements", plan.elements.size()},
-                     {"cuts_per_facet", plan.cuts_per_facet},
-                     {"passes", plan.passes},
-                     {"c_rotations", plan.c_rotations},
-                     {"time_s", plan.time.total_s()},
-                     {"time_per_element_s", per_element_s(plan)},
-                     {"time_fixed_s", plan.time.fixed_s},
-                     {"area_mm2", plan.aperture_area_mm2},
-                     {"area_rate_mm2_per_h", area_rate(plan)},
-                     {"time_per_cm2_s", 100.0 * plan.time.total_s() / plan.aperture_area_mm2},
-                     {"time", shares_json(plan.time)},
-                     {"plunge_rake_deg", plunge.rake_deg},
-                     {"plough_rake_deg", plough.rake_deg},
-                     {"safe_z_mm", plan.safe_z_mm},
-                     {"poses", poses_json(plan)},
-                     {"stages", stages},
-                     {"programs", programs},
-                     {"program_times_s", plan.program_times_s},
-                     {"version", kVersion},
-                     {"warnings", result.warnings},
-                     {"complete", true}};
+  Json json = {{"schema", "retrace.fabrication/1"},
+               {"job", result.job.source},
+               {"machine", result.machine.name},
+               {"dialect", result.dialect},
+               {"strategy", word_of(result.job.strategy)},
+               {"process", result.job.process.name},
+               {"elements", plan.elements.size()},
+               {"cuts_per_facet", plan.cuts_per_facet},
+               {"passes", plan.passes},
+               {"c_rotations", plan.c_rotations},
+               {"time_s", plan.time.total_s()},
+               {"time_per_element_s", per_element_s(plan)},
+               {"time_fixed_s", plan.time.fixed_s},
+               {"area_mm2", plan.aperture_area_mm2},
+               {"area_rate_mm2_per_h", area_rate(plan)},
+               {"time_per_cm2_s", 100.0 * plan.time.total_s() / plan.aperture_area_mm2},
+               {"time", shares_json(plan.time)},
+               {"plunge_rake_deg", plunge.rake_deg},
+               {"plough_rake_deg", plough.rake_deg},
+               {"safe_z_mm", plan.safe_z_mm},
+               {"poses", poses_json(result)},
+               {"stages", stages},
+               {"programs", programs},
+               {"program_times_s", plan.program_times_s},
+               {"version", kVersion},
+               {"warnings", result.warnings},
+               {"complete", true}};
+  // A V cuts in both directions with its leading edge, always with the same rake.
+  if (result.job.strategy == fabrication::Strategy::dmc) json.erase("plough_rake_deg");
   return to_text(json);
 }
 
 std::string stages_csv(const FabricationResult& result) {
-  std::string text = "name,a_deg,c_deg,elements,time_s,cutting_s,dwell_s,retract_s,rapid_s,fixed_s\n";
+  std::string text =
+      "name," + tilt_key(result.machine) + ",c_deg,elements,time_s,cutting_s,dwell_s,retract_s,rapid_s,fixed_s\n";
   for (const fabrication::Stage& stage : result.plan.stages) {
     const fabrication::CuttingPose& pose = result.plan.poses[stage.pose];
     const TimeShares& t = stage.time;
@@ -164,8 +172,9 @@ std::string fabrication_table(const FabricationResult& result) {
   for (std::size_t k = 0; k < plan.stages.size() && k < kMostStages; ++k) {
     const fabrication::Stage& stage = plan.stages[k];
     const fabrication::CuttingPose& pose = plan.poses[stage.pose];
-    text += fmt::format("  {:<28} A{} C{}  {} elements, {}\n", stage.name, fixed(pose.rounded.a_deg, 4),
-                        fixed(pose.rounded.c_deg, 4), stage.visits, hours_text(stage.time.total_s()));
+    text += fmt::format("  {:<28} {}{} C{}  {} elements, {}\n", stage.name, result.machine.tilt_letter(),
+                        fixed(pose.rounded.a_deg, 4), fixed(pose.rounded.c_deg, 4), stage.visits,
+                        hours_text(stage.time.total_s()));
   }
   if (plan.stages.size() > kMostStages) text += fmt::format("  and {} more\n", plan.stages.size() - kMostStages);
   return text;

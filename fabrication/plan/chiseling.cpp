@@ -1,0 +1,156 @@
+#include "fabrication/plan/chiseling.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/angle.h"
+#include "core/error.h"
+#include "core/number_format.h"
+#include "fabrication/job/v_tool.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// A whole number of layers is not made one more by rounding.
+constexpr double kWholeTolerance = 1e-9;
+
+/// Azimuth of dihedral edge 0, 1 or 2 in the workpiece frame, whose x runs along y of the part.
+double edge_azimuth_deg(bool turned, int edge) {
+  return 120.0 * edge - 90.0 + (turned ? 180.0 : 0.0);
+}
+
+Vec3 horizontal(double azimuth_deg) {
+  const double azimuth = Angle::from_deg(azimuth_deg).rad();
+  return {std::cos(azimuth), std::sin(azimuth), 0.0};
+}
+
+/// In the middle between its two edges.
+double facet_azimuth_deg(const FacetChoice& facet) {
+  return edge_azimuth_deg(facet.turned, facet.facet - 1) + 60.0;
+}
+
+Vec3 words_of(const Machine& machine, const Vec3& point_mm, const RotaryPose& pose) {
+  const AxisPositions axes = inverse(machine, point_mm, pose);
+  return {axes.x_mm, axes.y_mm, axes.z_mm};
+}
+
+/// (X, Y, Z) parts of a plane's normal when positions are words of the axes instead of points, of length 1.
+Vec3 in_words(const Machine& machine, const RotaryPose& pose, const Vec3& normal) {
+  const Vec3 zero = words_of(machine, Vec3::Zero(), pose);
+  Eigen::Matrix3d words_from_points;
+  for (Eigen::Index k = 0; k < 3; ++k) words_from_points.col(k) = words_of(machine, Vec3::Unit(k), pose) - zero;
+  return (words_from_points.inverse().transpose() * normal).normalized();
+}
+
+}  // namespace
+
+Vec3 cube_facet_normal(const FacetChoice& facet) {
+  return (std::numbers::sqrt2 * -horizontal(facet_azimuth_deg(facet)) + Vec3::UnitZ()) / std::numbers::sqrt3;
+}
+
+std::array<Vec3, 2> cube_facet_edges(const FacetChoice& facet) {
+  const auto edge = [&](int k) -> Vec3 {
+    const Vec3 outwards = horizontal(edge_azimuth_deg(facet.turned, k));
+    return (std::numbers::sqrt2 * outwards + Vec3::UnitZ()) / std::numbers::sqrt3;
+  };
+  return {edge(facet.facet - 1), edge(facet.facet)};
+}
+
+double chiseling_allowance_mm(const Job& job) {
+  return 1e-3 * job.process.finishing_cuts * job.process.finishing_depth_um;
+}
+
+int chiseling_layers(const Job& job) {
+  // The blank's face is 1 / sqrt(3) of the depth from the apex of each facet's normal.
+  const double across_mm = cavity_depth_mm(blank_element(job)) / std::numbers::sqrt3 - chiseling_allowance_mm(job);
+  return std::max(1, static_cast<int>(std::ceil(across_mm / (1e-3 * job.process.roughing_depth_um) - kWholeTolerance)));
+}
+
+CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg) {
+  const InputLocation where{job.source, 0, "machine"};
+  const double azimuth_deg = facet_azimuth_deg(facet);
+  const Vec3 normal = cube_facet_normal(facet);
+  CuttingPose pose;
+  pose.facet = facet;
+  pose.root = Vec3::UnitZ().cross(horizontal(azimuth_deg));
+  const double tilt_deg = Angle::from_rad(std::asin(1.0 / std::numbers::sqrt3)).deg();
+  const RotaryPose near{machine.a.sign.value * tilt_deg, -machine.c.sign.value * azimuth_deg};
+  const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
+  pose.root_tilt = solved.root_tilt;
+  pose.a = std::llround(solved.pose.a_deg * kRotaryUnitsPerDeg);
+  pose.c = std::llround(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where) * kRotaryUnitsPerDeg);
+  pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
+  check_tilt(machine, pose.rounded.a_deg, where);
+  pose.section.depth_mm = cavity_depth_mm(blank_element(job));
+  pose.section.apex = Angle::from_deg(90.0);
+  pose.rounded_along = in_words(machine, pose.rounded, normal);
+  return pose;
+}
+
+Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
+                          double feed_mm_per_min) {
+  const auto [down, up] = cube_facet_edges(pose.facet);
+  // From the design's apex to that of this layer, along the axis.
+  const Vec3 tip(0.0, 0.0, std::numbers::sqrt3 * left_mm);
+  const double to_go_mm = (pose.section.depth_mm + job.process.clearance_mm - tip.z()) / down.z();
+  const Vec3 zero = words_of(machine, Vec3::Zero(), pose.rounded);
+  const auto rounded = [&](const Vec3& from_apex) {
+    return rounded_words(words_of(machine, from_apex, pose.rounded) - zero, pose.rounded_along);
+  };
+  const std::array<Nanometres, 3> start = rounded(tip + to_go_mm * down);
+  const std::array<Nanometres, 3> middle = rounded(tip);
+  const std::array<Nanometres, 3> end = rounded(tip + to_go_mm * up);
+  const auto move = [&](Motion motion, const std::array<Nanometres, 3>& from, const std::array<Nanometres, 3>& to) {
+    return Increment{motion, to[1] - from[1], to[2] - from[2], feed_mm_per_min, to[0] - from[0]};
+  };
+  Routine routine;
+  routine.x_start_nm = start[0];
+  routine.y_start_nm = start[1];
+  routine.z_start_nm = start[2];
+  std::vector<Step>& steps = routine.subroutine.steps;
+  steps.emplace_back(move(Motion::plunge, start, middle));
+  const auto dwell_ms = static_cast<std::int32_t>(std::lround(1e3 * job.process.dwell_s));
+  if (dwell_ms > 0) steps.emplace_back(Dwell{dwell_ms});
+  steps.emplace_back(move(Motion::retract, middle, end));
+  return routine;
+}
+
+std::vector<std::string> chiseling_description(const Job& job, std::size_t elements) {
+  const geometry::Element element = blank_element(job);
+  const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(element);
+  return {fmt::format("{} {} cube corners, apex {} mm deep, edges {} mm to the face", elements,
+                      is_hexagonal ? "hexagonal" : "triangular", fixed(cavity_depth_mm(element), 6),
+                      fixed(cavity_edge_mm(element), 6)),
+          "Zero: centre of the array on the face of the blank, dihedral edges along -Y and 120 deg apart at B0 C0. "
+          "Controller transformation off",
+          fmt::format("Tool: V of {} deg, width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: the tip",
+                      shortest(job.tool.nose_angle_deg), shortest(job.tool.width_mm), shortest(job.tool.wedge_deg),
+                      shortest(job.tool.clearance_deg))};
+}
+
+std::array<Nanometres, 3> rounded_words(const Vec3& words_mm, const Vec3& along) {
+  const Vec3 exact = words_mm * kNanometresPerMm;
+  if (along == Vec3::Zero()) return {std::llround(exact.x()), std::llround(exact.y()), std::llround(exact.z())};
+  const Vec3 low = exact.array().floor();
+  Vec3 best = low;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 candidate = low + Vec3((k & 1) != 0, (k & 2) != 0, (k & 4) != 0);
+    const Vec3 error = candidate - exact;
+    // Of equals that which is nearer.
+    const double measure = std::abs(along.dot(error)) + 1e-3 * error.norm();
+    if (measure >= least) continue;
+    least = measure;
+    best = candidate;
+  }
+  return {std::llround(best.x()), std::llround(best.y()), std::llround(best.z())};
+}
+
+}  // namespace retrace::fabrication

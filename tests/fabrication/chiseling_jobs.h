@@ -1,0 +1,38 @@
+#pragma once
+
+// Small jobs of cube corners for tests.
+
+#include "tests/fabrication/jobs.h"
+
+namespace retrace::fabrication::test {
+
+/// 3 x 3 cube corners, by a tool that reaches: three columns of three triangles, or of three hexagons each, of which
+/// the outer two have a fourth that the pattern leaves out.
+inline Job cube_job(bool is_hexagonal, double aperture_mm = 0.3) {
+  Job job;
+  const double radius_mm = 0.5 * aperture_mm;
+  const double row_mm = 0.8660254037844386 * radius_mm;
+  if (is_hexagonal) {
+    job.element = geometry::HexagonalCube{aperture_mm, {}};
+    job.array.arrangement = geometry::Arrangement::honeycomb;
+    job.array.x_length_mm = 5.01 * radius_mm;
+    job.array.y_length_mm = 8.01 * row_mm;
+    job.array.pattern = {"--", "#", "##", "#", "##", "#", "##"};
+    job.tool.width_mm = 1.4 * aperture_mm;
+  } else {
+    job.element = geometry::TriangularCube{aperture_mm, {}};
+    job.array.arrangement = geometry::Arrangement::triangular;
+    job.array.x_length_mm = 5.01 * radius_mm;
+    job.array.y_length_mm = 4.01 * row_mm;
+    job.tool.width_mm = 0.6 * aperture_mm;
+  }
+  job.strategy = Strategy::dmc;
+  job.machine = "ideal-dmc";
+  job.tool.wedge_deg = kDmcWedgeDeg;
+  job.process = thesis_process();
+  job.process.roughing_depth_um = 10.0;
+  job.process.finishing_cuts = 1;
+  return job;
+}
+
+}  // namespace retrace::fabrication::test

@@ -1,0 +1,495 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numbers>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/job/cube_cells.h"
+#include "fabrication/job/io/job_files.h"
+#include "fabrication/job/v_tool.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/plan/chiseling.h"
+#include "fabrication/plan/plan.h"
+#include "fabrication/post/post.h"
+#include "fabrication/verify/dexel.h"
+#include "fabrication/verify/verify.h"
+#include "geometry/lattice.h"
+#include "geometry/part.h"
+#include "tests/fabrication/chiseling_jobs.h"
+
+// Diamond micro chiseling: poses and paths against the geometry of cubes, programs cut again from their text, and
+// faults that are planted in them.
+
+namespace retrace::fabrication::test {
+namespace {
+
+using geometry::Vec3;
+
+Machine machine(const std::string& name = "ideal-dmc") {
+  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
+}
+
+/// A machine whose axes are off by minutes of arc and whose pivots by tenths of a millimetre.
+Machine crooked_machine() {
+  Machine m = machine();
+  m.name = "crooked";
+  m.a.direction.value = Vec3(0.0013, 1.0, -0.0021).normalized();
+  m.a.point_mm.value = {0.2, -0.1, 90.0};
+  m.c.direction.value = Vec3(-0.0008, 0.0011, 1.0).normalized();
+  m.c.point_mm.value = {0.3, 0.15, -2.0};
+  return m;
+}
+
+/// Collects the sweeps of a program, for dexels.
+struct SweepSink : NcSink {
+  explicit SweepSink(const Machine& m) : machine_of(m) {}
+  void motion(const NcMotion& motion, const NcSettings&) override {
+    if ((motion.known & 7) != 7 || (motion.moved & 7) == 0) return;
+    poses.push_back(machine_from_workpiece(machine_of, rotary_pose(machine_of, motion.to)));
+    sweeps.push_back({static_cast<std::uint32_t>(poses.size() - 1), motion.place, false,
+                      machine_point(machine_of, motion.from), machine_point(machine_of, motion.to)});
+  }
+  void dwell(double, const NcPlace&, const AxisPositions&) override {}
+  const Machine& machine_of;
+  std::vector<Sweep> sweeps;
+  std::vector<RigidMotion> poses;
+};
+
+std::string text_of(const Job& job, const Machine& m, std::string_view dialect = "rs274ngc") {
+  return nc_text(make_plan(job, m).programs.front(), dialect);
+}
+
+Verification verified(const Job& job, const Machine& m, const std::string& text,
+                      NcDialect dialect = NcDialect::rs274ngc) {
+  return verify_programs(job, m, {parse_nc(text, "p.ngc", dialect)}, {},
+                         {machine("ideal"), machine("paper"), machine("thesis"), machine()});
+}
+
+std::string listed(const Verification& v) {
+  std::string text;
+  for (const Finding& f : v.findings)
+    text += fmt::format("{}:{} {} [{}] {} ({} > {}) x{}\n", f.program, f.line, f.kind, f.element, f.message, f.value,
+                        f.limit, f.count);
+  return text.substr(0, 3000);
+}
+
+double degrees_between(const Vec3& a, const Vec3& b) {
+  return std::acos(a.normalized().dot(b.normalized())) * 180.0 / std::numbers::pi;
+}
+
+TEST(Chiseling, FacetsAndEdgesOfACubeOnItsCorner) {
+  for (const bool turned : {false, true})
+    for (int k = 1; k <= 3; ++k) {
+      const Vec3 normal = cube_facet_normal({turned, k});
+      const auto [first, second] = cube_facet_edges({turned, k});
+      EXPECT_NEAR(degrees_between(normal, Vec3::UnitZ()), 54.7356103172, 1e-9);
+      for (const Vec3& edge : {first, second}) {
+        EXPECT_NEAR(90.0 - degrees_between(edge, Vec3::UnitZ()), 35.2643896828, 1e-9);
+        EXPECT_NEAR(edge.dot(normal), 0.0, 1e-15);
+      }
+      EXPECT_NEAR(first.dot(second), 0.0, 1e-15);
+    }
+}
+
+TEST(Chiseling, ThePoseLaysTheToolOnTheFacetAndTheTipOnItsEdges) {
+  for (const Machine& m : {machine(), crooked_machine()})
+    for (const bool turned : {false, true})
+      for (int k = 1; k <= 3; ++k) {
+        const Job job = cube_job(false);
+        const CuttingPose pose = chiseling_pose(job, m, {turned, k}, 0.0);
+        const RigidMotion motion = machine_from_workpiece(m, pose.rounded);
+        EXPECT_LT((motion.direction(cube_facet_normal({turned, k})) - plunged_normal(m)).norm(), 4e-9);
+        EXPECT_NEAR(pose.rounded.a_deg, 35.2643897, m.name == "ideal-dmc" ? 1e-7 : 0.5);
+      }
+}
+
+/// The head's kinematics against the chain written out: the tool swings about B's pivot, the workpiece about C.
+TEST(Chiseling, TheHeadSwingsTheToolAboutItsPivot) {
+  const Machine m = crooked_machine();
+  const AxisPositions axes{1.5, -2.0, 3.0, 0.0, 77.0, 35.0};
+  const Eigen::Matrix3d b = rotation_about(m.a.direction.value, Angle::from_deg(35.0));
+  const Eigen::Matrix3d c = rotation_about(m.c.direction.value, Angle::from_deg(77.0));
+  const Vec3 tip = Vec3(1.5, -2.0, 3.0);
+  // The words are where the tip would be at B = 0; the pivot stands at p from there.
+  const Vec3 pivot = tip + m.a.point_mm.value;
+  const Vec3 carried = pivot + b * (tip - pivot);
+  const Vec3 in_workpiece = c.transpose() * (carried - m.c.point_mm.value) + m.c.point_mm.value;
+  const ToolPose tool = forward(m, axes);
+  EXPECT_NEAR((tool.workpiece_from_machine - c.transpose() * b).norm(), 0.0, 1e-14);
+  const AxisPositions back = inverse(m, tool.reference_mm, {35.0, 77.0});
+  EXPECT_NEAR((Vec3(back.x_mm, back.y_mm, back.z_mm) - tip).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((tool.reference_mm - in_workpiece).norm(), 0.0, 1e-12);
+  EXPECT_EQ(back.b_deg, 35.0);
+  EXPECT_EQ(back.a_deg, 0.0);
+}
+
+TEST(Chiseling, ProgramsOfThreeByThreeCubesVerifyBelowANanometre) {
+  for (const bool is_hexagonal : {false, true})
+    for (const double aperture_mm : {0.15, 0.3}) {
+      const Job job = cube_job(is_hexagonal, aperture_mm);
+      const Verification v = verified(job, machine(), text_of(job, machine()));
+      const std::string what = fmt::format("hexagonal {} aperture {}", is_hexagonal, aperture_mm);
+      EXPECT_TRUE(v.passes()) << what << "\n" << listed(v);
+      EXPECT_EQ(v.elements_cut, 9) << what;
+      EXPECT_LT(v.facet_distance_nm_max, 1.0) << what;
+      EXPECT_LT(v.facet_angle_arcmin_max, 0.02) << what;
+      EXPECT_LT(std::abs(v.apex_error_arcmin_max), 0.02) << what;
+      EXPECT_LT(v.root_residual_nm_max, 3.0) << what;
+      EXPECT_EQ(v.wall_overcut_nm_max, 0.0) << what;
+    }
+}
+
+TEST(Chiseling, MeasuredAxesLeaveTheSameFacets) {
+  for (const bool is_hexagonal : {false, true}) {
+    const Job job = cube_job(is_hexagonal, 0.15);
+    const Verification v = verified(job, crooked_machine(), text_of(job, crooked_machine()));
+    EXPECT_TRUE(v.passes()) << listed(v);
+    EXPECT_LT(v.facet_distance_nm_max, 1.0);
+  }
+}
+
+/// Planned for ideal axes a program shows the machine's errors. The tip follows the edges whatever B does, but the
+/// leading edge leaves the facet: it becomes two planes that meet along it.
+TEST(Chiseling, PlannedForIdealAxesShowsTheErrorsOfTheMachine) {
+  Machine leaning = machine();
+  leaning.a.direction.value = Vec3(std::sin(0.005), std::cos(0.005), 0.0);
+  leaning.a.point_mm.value = Vec3::Zero();
+  Machine square = machine();
+  square.a.point_mm.value = Vec3::Zero();
+  const Job job = cube_job(false, 0.15);
+  const Verification v = verified(job, leaning, text_of(job, square));
+  EXPECT_FALSE(v.passes());
+  const Angle b = Angle::from_rad(std::asin(1.0 / std::numbers::sqrt3));
+  const Vec3 normal = rotation_about(Vec3::UnitY(), b) * plunged_normal(square);
+  const double half_nose = Angle::from_deg(25.0).rad();
+  const Vec3 leading =
+      rotation_about(leaning.a.direction.value, b) * Vec3(0.0, std::sin(half_nose), std::cos(half_nose));
+  const double length_mm = cavity_edge_mm(job.element) / (std::numbers::sqrt2 * std::cos(half_nose));
+  const double expected_nm = 1e6 * length_mm * std::abs(normal.dot(leading));
+  EXPECT_GT(expected_nm, 10.0);
+  EXPECT_NEAR(v.facet_distance_nm_max, expected_nm, 1.0 + 0.01 * expected_nm);
+}
+
+/// The union of overlapping triangular cavities is the full-cube array: surface and volume of dexels against a stair of
+/// unit cubes, told by whole numbers alone (docs/theory/micro_chiseling.md).
+TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
+  const Job job = cube_job(true, 0.3);
+  const Machine m = machine();
+  const Verification v = verified(job, m, text_of(job, m));
+  ASSERT_TRUE(v.passes()) << listed(v);
+  const double edge_mm = 0.5 * cavity_edge_mm(job.element);
+  EXPECT_NEAR(edge_mm, 0.3 * std::sqrt(3.0 / 8.0), 1e-15);
+  // Cubes are told by their lowest corners in units of the edge: those of cells lie on i + j + k = 0.
+  const auto elements = cut_elements(job);
+  std::set<std::array<int, 3>> cells;
+  const auto [e1, e2] = cube_facet_edges({false, 1});
+  const Vec3 e3 = e1.cross(e2);
+  for (const CutElement& element : elements) {
+    const Vec3 apex = Vec3(element.centre_mm.x(), element.centre_mm.y(), 0.0) -
+                      Vec3(elements[0].centre_mm.x(), elements[0].centre_mm.y(), 0.0);
+    const auto index = [&](const Vec3& e) { return static_cast<int>(std::lround(apex.dot(e) / edge_mm)); };
+    cells.insert({index(e1), index(e2), index(e3)});
+    EXPECT_EQ(index(e1) + index(e2) + index(e3), 0);
+  }
+  ASSERT_EQ(cells.size(), 9U);
+  std::set<std::array<int, 3>> above;
+  for (const auto& c : cells)
+    for (std::size_t k = 0; k < 3; ++k) {
+      auto cube = c;
+      ++cube[k];
+      above.insert(cube);
+    }
+  const double volume_mm3 = std::pow(edge_mm, 3) * (5.0 * 9.0 + static_cast<double>(above.size())) / 6.0;
+  EXPECT_NEAR(v.removed_volume_mm3, volume_mm3, 1e-6 * volume_mm3);
+  EXPECT_NEAR(v.border_overcut_mm3, volume_mm3 - 9.0 * std::pow(edge_mm, 3), 1e-12);
+
+  // The same by dexels from the text alone.
+  SweepSink sink(m);
+  run_nc(parse_nc(text_of(job, m), "p", NcDialect::rs274ngc), sink);
+  const double reach = 5.0 * edge_mm;
+  const DexelField field = cut_dexels(sink.sweeps, sink.poses, v_tool_wedge(job.tool, m),
+                                      {{-reach, -reach, -2.0 * edge_mm}, {reach, reach, 0.0}}, 2, 150);
+  EXPECT_NEAR(field.volume_mm3(), volume_mm3, 3e-3 * volume_mm3);
+  const double low_mm = -cavity_depth_mm(job.element);
+  int below = 0;
+  for (std::size_t row = 0; row < field.rows; ++row)
+    for (std::size_t column = 0; column < field.columns; ++column) {
+      const double x = (2.0 * (static_cast<double>(column) + 0.5) / static_cast<double>(field.columns) - 1.0) * reach;
+      const double y = (2.0 * (static_cast<double>(row) + 0.5) / static_cast<double>(field.rows) - 1.0) * reach;
+      // The stair over this place: the lowest of the octants that start at cells.
+      double stair_mm = 0.0;
+      for (const CutElement& element : elements) {
+        const Vec3 from(x - element.centre_mm.x(), y - element.centre_mm.y(), 0.0);
+        double height_mm = 0.0;
+        for (const Vec3& e : {e1, e2, e3}) height_mm = std::max(height_mm, -from.dot(e) / e.z());
+        stair_mm = std::min(stair_mm, low_mm + height_mm);
+      }
+      const double left_mm = -field.removed_mm[row * field.columns + column];
+      EXPECT_NEAR(left_mm, stair_mm, 5e-6) << x << " " << y;
+      if (stair_mm < -1e-9) ++below;
+    }
+  EXPECT_GT(below, 3000);
+}
+
+TEST(Chiseling, EveryDialectCutsTheSame) {
+  const Job job = cube_job(false, 0.15);
+  for (const auto dialect : {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac}) {
+    const std::string_view word = kNcDialectWords[static_cast<std::size_t>(dialect)];
+    const Verification v = verified(job, machine(), text_of(job, machine(), word), dialect);
+    EXPECT_TRUE(v.passes()) << word << "\n" << listed(v);
+    EXPECT_LT(v.facet_distance_nm_max, 1.0);
+  }
+}
+
+/// The program of four triangles, to be spoilt.
+class ChiselingFaults : public ::testing::Test {
+ protected:
+  ChiselingFaults() {
+    job_.process.roughing_depth_um = 20.0;
+    text_ = text_of(job_, machine());
+  }
+
+  static std::string replaced(std::string text, const std::string& from, const std::string& to, std::size_t after = 0) {
+    const std::size_t at = text.find(from, after);
+    EXPECT_NE(at, std::string::npos) << "the program has no " << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+  }
+  /// The text without the line that holds `what`, the first behind `after`.
+  static std::string without_line(std::string text, const std::string& what, std::size_t after = 0) {
+    const std::size_t at = text.find(what, after);
+    EXPECT_NE(at, std::string::npos) << "the program has no " << what;
+    const std::size_t begin = text.rfind('\n', at) + 1;
+    return text.erase(begin, text.find('\n', at) + 1 - begin);
+  }
+  /// Every number behind `letter` in the main part's lines that begin with `start`, put through `change`.
+  static std::string changed(const std::string& text, const std::string& start, char letter,
+                             const std::function<double(double)>& change) {
+    std::istringstream lines(text);
+    std::string result;
+    for (std::string line; std::getline(lines, line); result += line + "\n") {
+      const std::size_t at = line.find(std::string(" ") + letter);
+      if (!line.starts_with(start) || at == std::string::npos) continue;
+      const std::size_t end = std::min(line.find(' ', at + 1), line.size());
+      line.replace(at + 2, end - at - 2, fmt::format("{:.7f}", change(std::stod(line.substr(at + 2)))));
+    }
+    return result;
+  }
+  std::string kinds(const std::string& text) const {
+    std::set<std::string> kinds;
+    for (const Finding& finding : verified(job_, machine(), text).findings) kinds.insert(finding.kind);
+    return fmt::format("{}", fmt::join(kinds, " "));
+  }
+
+  Job job_ = cube_job(false, 0.15);
+  std::string text_;
+};
+
+TEST_F(ChiselingFaults, NoneWithoutAFault) {
+  EXPECT_EQ(kinds(text_), "");
+}
+
+TEST_F(ChiselingFaults, WrongSignOfC) {
+  EXPECT_NE(kinds(changed(text_, "G0 B", 'C', [](double c) { return -c; })).find("gouge"), std::string::npos);
+}
+
+TEST_F(ChiselingFaults, WrongSignOfB) {
+  EXPECT_NE(kinds(changed(text_, "G0 B", 'B', [](double b) { return -b; })), "");
+}
+
+TEST_F(ChiselingFaults, DwellLost) {
+  EXPECT_EQ(kinds(without_line(text_, "G4 P0.1")), "missing_dwell");
+}
+
+TEST_F(ChiselingFaults, ElementDroppedFromALayer) {
+  EXPECT_EQ(kinds(without_line(text_, "o104 call")), "chip_too_thick") << "by the next layer";
+  const std::size_t last = text_.rfind(" call");
+  const std::string found = kinds(without_line(text_, " call", last));
+  EXPECT_NE(found.find("chip_not_separated"), std::string::npos) << found;
+}
+
+TEST_F(ChiselingFaults, ElementDroppedAltogether) {
+  std::string text;
+  std::istringstream lines(text_);
+  bool skips = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("(element ")) skips = line == "(element 4)";
+    if (!(skips && line.find("call") != std::string::npos)) text += line + "\n";
+  }
+  const Verification v = verified(job_, machine(), text);
+  ASSERT_FALSE(v.passes());
+  for (const Finding& finding : v.findings) {
+    EXPECT_EQ(finding.kind, "element_missing") << listed(v);
+    EXPECT_EQ(finding.element, 4);
+  }
+}
+
+TEST_F(ChiselingFaults, AxisScaled) {
+  // A tenth of a percent of X over half a millimetre.
+  EXPECT_NE(kinds(changed(text_, "G0 X", 'X', [](double x) { return 1.001 * x; })).find("gouge"), std::string::npos);
+}
+
+TEST_F(ChiselingFaults, ReturnToAbsoluteLost) {
+  EXPECT_NE(kinds(without_line(text_, "G90", text_.find("o101 sub"))), "");
+}
+
+TEST_F(ChiselingFaults, OriginShifted) {
+  const Verification v = verified(job_, machine(), changed(text_, "G0 X", 'X', [](double x) { return x + 0.001; }));
+  EXPECT_FALSE(v.passes());
+  // A micrometre along X of the machine goes into every facet by the cosine of 35.26 degrees.
+  for (const ElementResult& element : v.elements)
+    for (const FacetFigures& facet : element.figures.facets)
+      EXPECT_NEAR(facet.mean_nm, -1000.0 * std::sqrt(2.0 / 3.0), 2.0);
+}
+
+TEST_F(ChiselingFaults, FileTruncated) {
+  EXPECT_NE(kinds(text_.substr(0, text_.size() / 2)).find("truncated"), std::string::npos);
+}
+
+TEST_F(ChiselingFaults, SignFlippedInASubroutine) {
+  const std::size_t sub = text_.find("o105 sub");
+  const std::size_t word = text_.find(" X-", sub);
+  ASSERT_LT(word, text_.find("endsub", sub));
+  const std::string found = kinds(replaced(text_, " X-", " X", sub));
+  EXPECT_NE(found, "");
+}
+
+TEST_F(ChiselingFaults, ClearanceOfZero) {
+  Job flat = job_;
+  flat.process.clearance_mm = 0.0;
+  EXPECT_NE(kinds(text_of(flat, machine())).find("clearance"), std::string::npos);
+}
+
+TEST_F(ChiselingFaults, FeedOfZero) {
+  EXPECT_EQ(kinds(replaced(text_, "F50.000", "F0.000", text_.find("o103 sub"))), "zero_feed");
+}
+
+TEST_F(ChiselingFaults, StopsShortOfTheApex) {
+  // All three words of one plunge a tenth shorter, and of the way up a tenth longer at its start.
+  const std::size_t sub = text_.find("o110 sub");
+  const std::size_t line = text_.find("G1 X", sub);
+  const std::string move = text_.substr(line, text_.find('\n', line) - line);
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+  ASSERT_EQ(std::sscanf(move.c_str(), "G1 X%lf Y%lf Z%lf", &x, &y, &z), 3) << move;
+  const std::string shorter = fmt::format("G1 X{:.6f} Y{:.6f} Z{:.6f} F50.000", 0.9 * x, 0.9 * y, 0.9 * z);
+  const std::string found = kinds(replaced(text_, move, shorter, sub));
+  EXPECT_NE(found.find("chip_not_separated"), std::string::npos) << found;
+}
+
+TEST_F(ChiselingFaults, AWordForAnAxisThatTheMachineHasNot) {
+  EXPECT_NE(kinds(replaced(text_, "G0 B", "G0 A")).find("axis_unknown"), std::string::npos);
+}
+
+TEST_F(ChiselingFaults, TheTableTurnsWithTheToolInTheBlank) {
+  const std::size_t turn = text_.find("G0 B", text_.find("o101 call"));
+  const std::size_t lift = text_.rfind("G0 Z", turn);
+  // B has carried the tip 100 (1 - cos B) = 18.35 mm above where the word says.
+  EXPECT_NE(kinds(replaced(text_, text_.substr(lift, text_.find('\n', lift) - lift), "G1 Z-18.4 F50.", lift - 1))
+                .find("turn_too_low"),
+            std::string::npos);
+}
+
+TEST(ChiselingJobs, AreReadAndWrittenWithoutLoss) {
+  for (const bool is_hexagonal : {false, true}) {
+    const Job job = cube_job(is_hexagonal);
+    const Job again = parse_job(job_text(job), "j.toml");
+    EXPECT_EQ(job_text(again), job_text(job));
+    EXPECT_EQ(cut_elements(again).size(), 9U);
+  }
+}
+
+TEST(ChiselingJobs, HaveAsManyElementsAsThePartHasWholeOnes) {
+  for (const bool is_hexagonal : {false, true})
+    for (const double x_mm : {1.0, 1.37, 2.6})
+      for (const double y_mm : {0.9, 1.7}) {
+        Job job = cube_job(is_hexagonal);
+        job.array.pattern.clear();
+        job.array.x_length_mm = x_mm;
+        job.array.y_length_mm = y_mm;
+        job.array.x_offset_mm = 0.07;
+        geometry::PartSpec spec;
+        spec.element = job.element;
+        spec.arrangement = job.array.arrangement;
+        spec.partial_elements = geometry::PartialElements::omit;
+        spec.x_length_mm = x_mm;
+        spec.y_length_mm = y_mm;
+        spec.x_offset_mm = 0.07;
+        spec.thickness_mm = 1.0;
+        EXPECT_EQ(static_cast<std::int64_t>(cut_elements(job).size()), geometry::build_part(spec).elements_full);
+      }
+}
+
+struct WrongJob {
+  std::string from;
+  std::string to;
+  std::string message;
+};
+
+TEST(ChiselingJobs, WhatIsWrongIsRefusedWithFileLineAndKey) {
+  const std::string good = job_text(cube_job(true));
+  const WrongJob cases[] = {
+      {"strategy = \"dmc\"", "strategy = \"two-step\"",
+       "strategy: must be \"dmc\" for element.kind = \"hexagonal_icc\", got \"two-step\""},
+      {"kind = \"mould\"", "kind = \"direct\"", "workpiece.kind: must be \"mould\" for cube corners"},
+      {"nose_angle_deg = 50", "nose_angle_deg = 95",
+       "tool.nose_angle_deg: must be < 90, the angle between the dihedral edges of a facet"},
+      {"wedge_deg = 65", "wedge_deg = 40", "tool.wedge_deg: is too narrow"},
+      {"width_mm = 0.42", "width_mm = 0.2", "tool.width_mm: must be >= 0.242301"},
+      {"edge_radius_um = 0", "edge_radius_um = 31", "tool.edge_radius_um: must be <= 30, a tenth of the element's"},
+      {"aperture_mm = 0.3", "aperture_mm = -1", "element.aperture_mm: must be"},
+      {"aperture_mm = 0.3", "aperture_mm = 9", "array.x_length_mm: with y_length_mm must hold one whole element"},
+      {"arrangement = \"honeycomb\"", "arrangement = \"offset\"", "array.arrangement: must be"},
+      {"x_offset_mm = 0", "x_offset_mm = 0\nx_gap_mm = 0.1", "array.x_gap_mm: unknown key"},
+      {"\"--\",", "\"-\",", "array.pattern: must have 2 cells in every row"},
+  };
+  for (const WrongJob& wrong : cases) {
+    SCOPED_TRACE(wrong.message);
+    std::string text = good;
+    const std::size_t at = text.find(wrong.from);
+    ASSERT_NE(at, std::string::npos) << good;
+    text.replace(at, wrong.from.size(), wrong.to);
+    try {
+      parse_job(text, "j.toml");
+      ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with("j.toml:")) << error.what();
+      EXPECT_NE(std::string(error.what()).find(": " + wrong.message), std::string::npos) << error.what();
+    }
+  }
+}
+
+/// A V that is too thick behind its edges would run into the next facet.
+TEST(ChiselingJobs, AToolThatRunsIntoTheNextFacetIsRefused) {
+  Job job = cube_job(true);
+  job.tool.nose_angle_deg = 80.0;
+  job.tool.wedge_deg = 80.0;
+  job.tool.clearance_deg = 15.0;
+  job.tool.width_mm = 1.0;
+  try {
+    parse_job(job_text(job), "j.toml");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("tool.wedge_deg: is too wide"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ChiselingJobs, NeedAHeadThatTilts) {
+  EXPECT_THROW(make_plan(cube_job(true), machine("ideal")), InputError);
+  EXPECT_THROW(make_plan(square_job(2), machine()), InputError);
+  EXPECT_THROW(verified(cube_job(true), machine("ideal"), text_of(cube_job(true), machine())), InputError);
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::test
