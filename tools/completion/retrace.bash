@@ -97,11 +97,11 @@ _retrace() {
       return
       ;;
     --machine)
-      _retrace_words "$word" 'ideal paper thesis'
+      _retrace_words "$word" 'ideal ideal-dmc paper thesis'
       return
       ;;
     --strategy)
-      _retrace_words "$word" 'unidirectional bidirectional two-step'
+      _retrace_words "$word" 'unidirectional bidirectional two-step dmc'
       return
       ;;
     --process)
