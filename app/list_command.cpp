@@ -47,7 +47,7 @@ Json direction_json(const fabrication::Sourced<geometry::Vec3>& item) {
 }
 
 ExitCode list_machines(const CommandLine& line) {
-  std::string text = fmt::format("{:<10} {:<10} {:<10} {}\n", "name", "A axis", "C axis", "title");
+  std::string text = fmt::format("{:<10} {:<10} {:<10} {}\n", "name", "A or B", "C axis", "title");
   Json json = {{"schema", "retrace.machines/1"}, {"machines", Json::array()}};
   for (const fabrication::Machine& m : fabrication::shipped_machines()) {
     const auto basis = [](const auto& item) {
@@ -56,7 +56,7 @@ ExitCode list_machines(const CommandLine& line) {
     text += fmt::format("{:<10} {:<10} {:<10} {}\n", m.name, basis(m.a.direction), basis(m.c.direction), m.title);
     json["machines"].push_back({{"name", m.name},
                                 {"title", m.title},
-                                {"a_direction", direction_json(m.a.direction)},
+                                {m.tilt_letter() == 'A' ? "a_direction" : "b_direction", direction_json(m.a.direction)},
                                 {"c_direction", direction_json(m.c.direction)}});
   }
   return write_list(line, std::move(json), text);

@@ -34,7 +34,8 @@ const ElementPlanes* FacetPlanes::at(const Vec2& centre_mm) const {
 
 std::size_t FacetPlanes::element_count() const {
   std::size_t count = 0;
-  for (const ElementPlanes& element : elements_) if (!element.planes.empty()) ++count;
+  for (const ElementPlanes& element : elements_)
+    if (!element.planes.empty()) ++count;
   return count;
 }
 

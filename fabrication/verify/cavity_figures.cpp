@@ -14,8 +14,9 @@ using geometry::Vec2;
 using geometry::Vec3;
 
 constexpr double kNmPerMm = 1e6;
-/// Nearer to a dihedral edge than this a line cannot tell the facets apart: positions are whole nanometres.
-constexpr double kStripMm = 5e-6;
+/// Nearer to a dihedral edge than this a line runs into what the other facet keeps as soon as that is off: what is left
+/// counts for the edge, and so far from the facet.
+constexpr double kStripMm = 1e-3;
 /// Where what is left at an edge is taken, and where the facet begins.
 constexpr double kAtEdgeMm = 1.5e-6;
 constexpr double kBesideEdgeMm = 8e-6;
@@ -65,14 +66,14 @@ class Places {
   double leading_rad_;
 };
 
-LineSurface surface_at(const Vec3& point, const Vec3& direction, std::span<const Sweep> sweeps,
+LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, std::span<const Sweep> sweeps,
                        std::span<const RigidMotion> poses, const ToolWedge& wedge, std::vector<LineSpan>& spans) {
   spans.clear();
   for (const Sweep& sweep : sweeps)
     if (const auto span =
             swept_span(wedge, sweep, poses[sweep.pose].point(point), poses[sweep.pose].direction(direction)))
       spans.push_back(*span);
-  return surface_along(spans, -point.z() / direction.z());
+  return surface_along(spans, exit);
 }
 
 /// Share of a facet's breadth at its edges from which its plane is not taken.
@@ -80,11 +81,8 @@ constexpr double kPlaneMargin = 0.02;
 
 void take(FacetFigures& figures, const Vec2& place, const LineSurface& surface) {
   const double lowest_mm = std::min(surface.lowest, surface.top);
-  if (place.minCoeff() <= kStripMm) {
-    if (surface.top * kNmPerMm > figures.root.nm) figures.root = {surface.top * kNmPerMm, surface.top_line};
-    return;
-  }
-  if (surface.top * kNmPerMm > figures.highest.nm) figures.highest = {surface.top * kNmPerMm, surface.top_line};
+  FacetDeviation& left = place.minCoeff() <= kStripMm ? figures.root : figures.highest;
+  if (surface.top * kNmPerMm > left.nm) left = {surface.top * kNmPerMm, surface.top_line};
   if (lowest_mm * kNmPerMm < figures.deepest.nm) figures.deepest = {lowest_mm * kNmPerMm, surface.lowest_line};
 }
 
@@ -105,7 +103,10 @@ ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span
     PlaneFit plane;
     for (const Vec2& place : places) {
       const Vec3 point = cavity.root_mm + place.x() * first + place.y() * second;
-      const LineSurface surface = surface_at(point, cavity.facets[k].normal, sweeps, poses, wedge, spans);
+      const Vec3& normal = cavity.facets[k].normal;
+      const double at_face = -point.z() / normal.z();
+      const double exit = place.minCoeff() <= kStripMm ? std::min(at_face, kStripMm) : at_face;
+      const LineSurface surface = surface_at(point, normal, exit, sweeps, poses, wedge, spans);
       take(facet, place, surface);
       if (place.minCoeff() < kPlaneMargin * edge_mm) continue;
       plane.add(place.sum() / std::numbers::sqrt2, (place.y() - place.x()) / std::numbers::sqrt2, surface.lowest);

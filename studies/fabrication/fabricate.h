@@ -31,9 +31,9 @@ struct FabricationResult {
 /// Reads and plans a job. \throw InputError
 FabricationResult fabricate(const FabricationRequest& request);
 
-/// The way of the tool through one element. Of a prism in the section across its root: u to the side of facet 2, z up, in
-/// mm from the root. Of a cube corner in the plane of facet 1: u along its level line towards its second dihedral edge, z
-/// up its slope, in mm from the apex.
+/// The way of the tool through one element. Of a prism in the section across its root: u to the side of facet 2, z up,
+/// in mm from the root. Of a cube corner in the plane of facet 1: u along its level line towards its second dihedral
+/// edge, z up its slope, in mm from the apex.
 struct SectionMove {
   fabrication::Motion motion = fabrication::Motion::translate;
   double from_u_mm = 0.0;
@@ -42,8 +42,8 @@ struct SectionMove {
   double to_z_mm = 0.0;
 };
 
-/// All cutting moves of the first element that is cut, those of roughing stages or of the others; of a cube corner those on
-/// facet 1.
+/// All cutting moves of the first element that is cut, those of roughing stages or of the others; of a cube corner
+/// those on facet 1.
 std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing);
 
 /// For each element that is cut its place in the order of cutting, from 1, within the first stage of its orientation.

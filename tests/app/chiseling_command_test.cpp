@@ -76,8 +76,7 @@ TEST_F(ChiselingCommand, TrianglesAsMachinedReturnWhatTheDesignDoes) {
                               "map.png", "--quiet"})
                 .code,
             0);
-  EXPECT_NE(folder_.read("part.toml").find("facet_tilt_arcmin = ["), std::string::npos)
-      << folder_.read("part.toml");
+  EXPECT_NE(folder_.read("part.toml").find("facet_tilt_arcmin = ["), std::string::npos) << folder_.read("part.toml");
   write_smooth("part.toml", "smooth.toml");
   EXPECT_NEAR(rre_of("smooth.toml"), rre_of("design.toml"), 1e-6);
 }

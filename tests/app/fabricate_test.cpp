@@ -292,7 +292,7 @@ TEST(List, NamesMachinesAndProcesses) {
   EXPECT_EQ(machines["schema"], "retrace.machines/1");
   std::vector<std::string> names;
   for (const Json& machine : machines["machines"]) names.push_back(machine["name"]);
-  EXPECT_EQ(names, (std::vector<std::string>{"ideal", "paper", "thesis"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"ideal-dmc", "ideal", "paper", "thesis"}));
   const Json processes = retrace_json(folder, {"list", "processes"});
   ASSERT_GE(processes["processes"].size(), 3U);
   for (const Json& process : processes["processes"]) EXPECT_FALSE(process["source"].get<std::string>().empty());
