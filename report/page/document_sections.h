@@ -12,6 +12,7 @@ PageSection footprint_section(const ResultDocument& document, const ResultFolder
 PageSection far_field_section(const ResultDocument& document, const ResultFolder& folder);
 
 PageSection inspect_section(const ResultDocument& document, const ResultFolder& folder);
+PageSection image_section(const ResultDocument& document, const ResultFolder& folder);
 PageSection photometry_section(const ResultDocument& document, const ResultFolder& folder);
 PageSection roughness_section(const ResultDocument& document, const ResultFolder& folder);
 PageSection fabrication_section(const ResultDocument& document, const ResultFolder& folder);

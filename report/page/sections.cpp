@@ -26,6 +26,7 @@ const std::vector<std::pair<std::string, MakeSection>>& makers() {
                                                                        {"rre", rre_section},
                                                                        {"footprint", footprint_section},
                                                                        {"far_field", far_field_section},
+                                                                       {"image", image_section},
                                                                        {"photometry", photometry_section},
                                                                        {"roughness", roughness_section},
                                                                        {"sweep", sweep_section},
@@ -41,7 +42,8 @@ std::vector<std::string> pictures_of(const std::string& kind) {
   if (kind == "photometry") return {"far_field", "r_a"};
   if (kind == "fabrication") return {"roughing", "finishing", "arrangement"};
   if (kind == "metrology") return {"metrology"};
-  if (kind == "image") return {"camera", "detector", "angular", "image"};
+  if (kind == "image") return {"irradiance", "angular", "camera", "false_colour", "road"};
+  if (kind == "inspect") return {"plan", "section", "view"};
   return {};
 }
 
@@ -51,6 +53,15 @@ std::string caption_of(const std::string& picture) {
   if (picture == "roughing") return "The way of the tool through one element: roughing";
   if (picture == "finishing") return "The way of the tool through one element: finishing";
   if (picture == "arrangement") return "The elements in the order in which they are cut";
+  if (picture == "plan") return "Plan: the part seen from the light, lengths in mm";
+  if (picture == "section") return "Section across the elements, lengths in mm";
+  if (picture == "view") return "The part seen from behind";
+  if (picture == "irradiance")
+    return "Irradiance over that of the beam: what the detector sees, and where that light entered";
+  if (picture == "angular") return "Share of the light per steradian, around the direction back to the source";
+  if (picture == "camera") return "What the camera sees, tones mapped";
+  if (picture == "false_colour") return "Luminance in cd/m2, by decades";
+  if (picture == "road") return "What the driver sees at each distance, tones mapped";
   return picture;
 }
 

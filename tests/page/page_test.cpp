@@ -96,10 +96,60 @@ TEST(StudyPage, CurvesAreSplitByAzimuthAndGoOverIncidence) {
   EXPECT_EQ(page.sections[0].facts[1].value, "100.00 %");
 }
 
+const PageSection* section_called(const Page& page, const std::string& title) {
+  for (const PageSection& section : page.sections)
+    if (section.title == title) return &section;
+  return nullptr;
+}
+
+TEST(StudyPage, PicturesStandBesideTheirFigures) {
+  ResultFolder folder{"x", {}, {}};
+  const auto add = [&](const std::string& place, const nlohmann::ordered_json& json,
+                       const std::vector<std::string>& pictures) {
+    folder.documents.push_back(document("image", json));
+    folder.documents.back().name = place + "/image.json";
+    for (const std::string& name : pictures) folder.pictures.push_back({place + "/" + name, "image/png", "bytes"});
+  };
+  add("camera",
+      {{"kind", "camera"},
+       {"part_luminance_cd_per_m2", 12.5},
+       {"part_std_error_cd_per_m2", 0.25},
+       {"observation_deg", 0.33}},
+      {"camera.png", "false_colour.png", "other.png"});
+  add("maps", {{"kind", "detector"}, {"rre", 0.889}}, {"irradiance.png", "angular.png"});
+  add("night",
+      {{"kind", "road"},
+       {"views",
+        {{{"distance_m", 10},
+          {"reflectors",
+           {{{"luminance_cd_per_m2", 3.5}, {"observation_deg", {1, 2}}, {"r_a_cd_per_lx_m2", {4, 5}}},
+            {{"luminance_cd_per_m2", 7.5}}}}}}}},
+      {"road.png"});
+  const Page page = study_page(folder, "T");
+  const PageSection* const camera = section_called(page, "Camera");
+  ASSERT_NE(camera, nullptr);
+  ASSERT_EQ(camera->figures.size(), 2U) << "its own pictures, and no others";
+  EXPECT_EQ(camera->figures[1].caption, "Luminance in cd/m2, by decades");
+  EXPECT_EQ(camera->facts[0].value, "12.5 cd/m2");
+  EXPECT_EQ(camera->facts[1].value, "0.25 cd/m2");
+  EXPECT_EQ(camera->facts.size(), 3U) << "what is not there is left out";
+  const PageSection* const maps = section_called(page, "Detector");
+  ASSERT_NE(maps, nullptr);
+  EXPECT_EQ(maps->figures.size(), 2U);
+  EXPECT_EQ(maps->facts[0].value, "88.90 %");
+  const PageSection* const road = section_called(page, "Night road");
+  ASSERT_NE(road, nullptr);
+  EXPECT_EQ(road->figures.size(), 1U);
+  ASSERT_EQ(road->tables[0].rows.size(), 2U);
+  EXPECT_EQ(road->tables[0].rows[0][2].text, "3.5");
+  EXPECT_EQ(road->tables[0].rows[0][6].text, "2") << "observation angle of the right lamp";
+  EXPECT_EQ(road->tables[0].rows[1][7].text, "") << "what is not there is empty";
+}
+
 TEST(StudyPage, DocumentsThatLackEverythingGiveASectionEach) {
   ResultFolder folder{"x", {}, {}};
   for (const char* kind : {"inspect", "rre", "footprint", "far_field", "photometry", "roughness", "sweep", "optimum",
-                           "fabrication", "verification", "forces", "metrology", "anything"}) {
+                           "fabrication", "verification", "forces", "metrology", "image", "anything"}) {
     folder.documents.push_back(document(kind, nlohmann::ordered_json::object()));
     // And of wrong types.
     folder.documents.push_back(document(kind, {{"points", "no"},
@@ -112,7 +162,7 @@ TEST(StudyPage, DocumentsThatLackEverythingGiveASectionEach) {
                                                {"best", {{"a", {1}}}}}));
   }
   const Page page = study_page(folder, "T");
-  EXPECT_GE(page.sections.size(), 2 * 13U + 2U);
+  EXPECT_GE(page.sections.size(), 2 * 14U + 2U);
   const std::string html = page_html(page, kAssets);
   EXPECT_GT(html.size(), 1000U);
   for (const char* no_number : {">nan", "nan ", ":nan", ">inf"}) EXPECT_EQ(html.find(no_number), std::string::npos);

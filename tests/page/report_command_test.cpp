@@ -62,6 +62,52 @@ TEST(Report, TakesResultsInFoldersOfTheFolder) {
   EXPECT_EQ(retrace_json(folder, {"report", "study"}).at("documents"), Json::array({"optics/rre.json"}));
 }
 
+/// The data of a page: charts and what is in the view.
+Json data_of(const std::string& html) {
+  const std::size_t begin = html.find("id=\"page-data\">") + 15;
+  return Json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+}
+
+TEST(Report, ShowsDrawingsAndPictures) {
+  const TemporaryFolder folder;
+  const std::string design = example("rtp_brick_2mm.toml");
+  ASSERT_EQ(retrace(folder, {"inspect", design, "-o", "study/design", "--quiet"}).code, 0);
+  const Outcome made =
+      retrace(folder, {"image", design, "--detector", "--pixels", "40", "-o", "study/maps", "--quiet"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  ASSERT_EQ(retrace(folder, {"report", "study"}).code, 0);
+  const std::string html = folder.read("study/report.html");
+  for (const char* text : {"Plan: the part seen from the light", "Section across the elements", "seen from behind",
+                           "Irradiance over that of the beam", "per steradian"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  EXPECT_NE(html.find("data:image/svg+xml;base64,"), std::string::npos);
+}
+
+/// A part from a mesh and one with planes of its own have their views and sections as well.
+TEST(Report, TakesMeshesAndTablesOfFacets) {
+  const TemporaryFolder folder;
+  const std::string shape =
+      "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nx_length_mm = 2\ny_length_mm = 1\n";
+  const std::string body = "[body]\nthickness_mm = 1\nrefractive_index = 1.5\n";
+  folder.write("d.toml", shape + body);
+  ASSERT_EQ(retrace(folder, {"export", "d.toml", "part.stl"}).code, 0);
+  folder.write("mesh.toml", "[part]\nmesh = \"part.stl\"\n[body]\nrefractive_index = 1.5\n");
+  // One of the two prisms, 20 um deeper than it should be.
+  folder.write("planes.csv", "x_mm,y_mm,facet,height_mm,x_slope,y_slope\n0.5,0.5,1,-0.52,-1,0\n0.5,0.5,2,-0.52,1,0\n");
+  folder.write("facets.toml", shape + "[part]\nfacets = \"planes.csv\"\n" + body);
+  for (const std::string name : {"mesh", "facets"}) {
+    ASSERT_EQ(retrace(folder, {"inspect", name + ".toml", "-o", name, "--quiet"}).code, 0) << name;
+    ASSERT_EQ(retrace(folder, {"report", name}).code, 0) << name;
+    const Json data = data_of(folder.read(name + "/report.html"));
+    EXPECT_GT(data["scene"]["triangles"].size(), 8U) << name;
+    EXPECT_GE(data["scene"]["paths"].size(), 1U) << name;
+  }
+  // The plate, and a prism of 1 x 0.5 / 2 x 1 on a step of 20 um.
+  const Json solid = retrace_json(folder, {"export", "facets.toml", "facets.stl"});
+  EXPECT_NEAR(solid["volume_mm3"].get<double>(), 2.0 * 1.0 * 1.0 + 0.25 + 0.02, 1e-9);
+  EXPECT_NEAR(retrace_json(folder, {"export", "mesh.toml", "again.stl"})["volume_mm3"].get<double>(), 2.5, 1e-5);
+}
+
 TEST(Report, FoldersWithoutResultsAreRefused) {
   const TemporaryFolder folder;
   expect_refused(retrace(folder, {"report", "nothing"}), "nothing: there is no such folder");
