@@ -66,6 +66,32 @@ PageSection roughness_section(const ResultDocument& document, const ResultFolder
   return section;
 }
 
+namespace {
+
+/// The way of the tool through one element, by kinds of motion.
+PagePath tool_path(const Json& path, bool is_dmc) {
+  const std::string name = text(path, "name");
+  PagePath shown{"The way of the tool through one element: " + name,
+                 is_dmc ? "along the facet's level line (mm)" : "across the root (mm)",
+                 "above the root (mm)",
+                 {{"plunge", {}}, {"plough", {}}, {"retract", {}}, {"translate", {}}}};
+  for (const Json& move : list(path, "moves")) {
+    if (!move.is_array() || move.size() != 5 || !move[0].is_string()) continue;
+    std::array<double, 4> ends{};
+    bool is_whole = true;
+    for (std::size_t k = 0; k < 4; ++k) {
+      is_whole = is_whole && move[k + 1].is_number();
+      if (is_whole) ends[k] = move[k + 1].get<double>();
+    }
+    for (PathMoves& kind : shown.kinds)
+      if (is_whole && kind.label == move[0].get<std::string>()) kind.moves.push_back(ends);
+  }
+  std::erase_if(shown.kinds, [](const PathMoves& kind) { return kind.moves.empty(); });
+  return shown;
+}
+
+}  // namespace
+
 PageSection fabrication_section(const ResultDocument& document, const ResultFolder&) {
   const Json& json = document.json;
   PageSection section;
@@ -76,6 +102,10 @@ PageSection fabrication_section(const ResultDocument& document, const ResultFold
                    {"Machine", text(json, "machine"), ""},
                    {"Strategy", text(json, "strategy"), ""},
                    {"Dialect", text(json, "dialect"), ""}};
+  for (const Json& path : list(json, "section_path")) {
+    PagePath shown = tool_path(path, text(json, "strategy") == "dmc");
+    if (!shown.kinds.empty()) section.paths.push_back(std::move(shown));
+  }
   section.tables.push_back(table_of(list(json, "stages"), {"name", "a_deg", "c_deg", "elements", "time_s"},
                                     "Stages of the program", csv_name(document, "stages")));
   section.tables.push_back(figures_of(json, "Figures of the plan", csv_name(document, "figures")));

@@ -66,6 +66,19 @@ std::string json_of(const PageChart& chart) {
                      }));
 }
 
+/// To a nanometre.
+std::string json_move(const std::array<double, 4>& move) {
+  return json_list(move, [](double c) { return shortest(std::round(c * 1e6) / 1e6 + 0.0); });
+}
+
+std::string json_of(const PagePath& path) {
+  return fmt::format(
+      R"({{"title":{},"x_label":{},"y_label":{},"kinds":{}}})", json_string(path.title), json_string(path.x_label),
+      json_string(path.y_label), json_list(path.kinds, [](const PathMoves& kind) {
+        return fmt::format(R"({{"label":{},"moves":{}}})", json_string(kind.label), json_list(kind.moves, json_move));
+      }));
+}
+
 /// To a hundred thousandth of a millimetre, which no screen shows.
 std::string json_point(const std::array<double, 3>& p) {
   return json_list(p, [](double c) { return shortest(std::round(c * 1e6) / 1e6 + 0.0); });
@@ -107,8 +120,8 @@ class HtmlWriter {
     add("</main>\n<footer>\n<details><summary>Licences of the code in this page</summary><pre>{}</pre></details>\n"
         "</footer>\n",
         html_text(assets.licences));
-    add("<script type=\"application/json\" id=\"page-data\">{{\"charts\":[{}],\"scene\":{}}}</script>\n", charts_,
-        page_.scene ? json_of(*page_.scene) : "null");
+    add("<script type=\"application/json\" id=\"page-data\">{{\"charts\":[{}],\"paths\":[{}],\"scene\":{}}}</script>\n",
+        charts_, paths_, page_.scene ? json_of(*page_.scene) : "null");
     add("<script>{}</script>\n</body>\n</html>\n", assets.script);
     return std::move(html_);
   }
@@ -136,6 +149,7 @@ class HtmlWriter {
     write_facts(section.facts);
     if (section.has_scene && page_.scene) write_scene();
     for (const PageChart& chart : section.charts) write_chart(chart);
+    for (const PagePath& path : section.paths) write_path(path);
     write_figures(section.figures);
     for (const PageTable& table : section.tables) write_table(table);
     for (const auto& [title, content] : section.details)
@@ -169,6 +183,14 @@ class HtmlWriter {
     add("<figure data-chart=\"{}\"><div class=\"plot\"></div><figcaption>{}. Drag to zoom, double click for all; with "
         "the keyboard: arrows, +, - and 0.</figcaption></figure>\n",
         chart_count_++, html_text(chart.title));
+  }
+
+  void write_path(const PagePath& path) {
+    if (path_count_ > 0) paths_ += ',';
+    paths_ += json_of(path);
+    add("<figure data-path=\"{}\"><div class=\"path\"></div><figcaption>{}. Wheel with the control key, or + and -, to "
+        "zoom; drag or arrows to move; 0 or double click for all.</figcaption></figure>\n",
+        path_count_++, html_text(path.title));
   }
 
   void write_figures(const std::vector<PageFigure>& figures) {
@@ -212,6 +234,8 @@ class HtmlWriter {
   std::string html_;
   std::string charts_;
   std::size_t chart_count_ = 0;
+  std::string paths_;
+  std::size_t path_count_ = 0;
 };
 
 }  // namespace

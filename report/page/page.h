@@ -45,6 +45,20 @@ struct PageChart {
   std::optional<double> y_from;  ///< where the y axis begins; none: where the values do
 };
 
+/// Straight moves of one kind, in mm.
+struct PathMoves {
+  std::string label;
+  std::vector<std::array<double, 4>> moves;  ///< from x, y to x, y
+};
+
+/// The way of a tool in a section, to scale, that can be zoomed and whose kinds can be hidden.
+struct PagePath {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  std::vector<PathMoves> kinds;
+};
+
 /// A drawing (SVG, made by retrace) or a picture in a file of the folder.
 struct PageFigure {
   std::string caption;
@@ -66,6 +80,7 @@ struct PageSection {
   std::vector<std::string> paragraphs;
   std::vector<PageFact> facts;
   std::vector<PageChart> charts;
+  std::vector<PagePath> paths;
   std::vector<PageFigure> figures;
   std::vector<PageTable> tables;
   std::vector<std::pair<std::string, std::string>> details;  ///< folded texts: title, content

@@ -126,6 +126,27 @@ class PageWorks(PageCase):
         low, high = map(float, figure.get_attribute("data-zoom").split())
         self.assertTrue(-40 < low < high < 40)
 
+    def test_tool_path_is_zoomed_moved_and_sorted(self):
+        figure = self.one("figure[data-path]")
+        area = figure.find_element(By.CSS_SELECTOR, ".path")
+        view = lambda: list(map(float, figure.get_attribute("data-view").split()))
+        whole = view()
+        self.assertTrue(whole[2] > 1.0)  # the section of a prism of 1 mm and the way to the next cut
+        self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", area)
+        area.send_keys("++")
+        self.assertAlmostEqual(view()[2], 0.49 * whole[2], places=9)
+        self.assertAlmostEqual(view()[3] / view()[2], whole[3] / whole[2], places=9)
+        at = view()
+        area.send_keys(Keys.ARROW_RIGHT)
+        self.assertAlmostEqual(view()[0], at[0] + 0.15 * at[2], places=9)
+        area.send_keys("0")
+        self.assertEqual(view(), whole)
+        kinds = figure.find_elements(By.CSS_SELECTOR, ".path-kinds label")
+        self.assertIn("plunge", [kind.text for kind in kinds])
+        kinds[0].click()
+        first = figure.find_element(By.CSS_SELECTOR, ".path svg path")
+        self.assertEqual(first.value_of_css_property("display"), "none")
+
     def test_curve_answers_to_the_keyboard(self):
         figure = self.one("figure[data-chart]")
         area = figure.find_element(By.CSS_SELECTOR, ".plot")

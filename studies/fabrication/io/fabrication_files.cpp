@@ -93,6 +93,39 @@ std::string job_table(const MadeJob& made) {
   return text;
 }
 
+namespace {
+
+const char* word_of(fabrication::Motion motion) {
+  switch (motion) {
+    case fabrication::Motion::plunge:
+      return "plunge";
+    case fabrication::Motion::plough:
+      return "plough";
+    case fabrication::Motion::retract:
+      return "retract";
+    case fabrication::Motion::translate:
+      break;
+  }
+  return "translate";
+}
+
+/// The way of the tool through one element: for each move its kind, and from where to where in the section, in mm.
+Json section_path_json(const FabricationResult& result) {
+  // A page shows no more, and there are no more but for very thin layers.
+  constexpr std::size_t kMostMoves = 2000;
+  Json paths = Json::array();
+  for (const bool roughing : {true, false}) {
+    Json moves = Json::array();
+    for (const SectionMove& m : section_moves(result, roughing))
+      if (moves.size() < kMostMoves)
+        moves.push_back({word_of(m.motion), m.from_u_mm, m.from_z_mm, m.to_u_mm, m.to_z_mm});
+    if (!moves.empty()) paths.push_back({{"name", roughing ? "roughing" : "finishing"}, {"moves", std::move(moves)}});
+  }
+  return paths;
+}
+
+}  // namespace
+
 std::string fabrication_json(const FabricationResult& result) {
   const Plan& plan = result.plan;
   Json programs = Json::array();
@@ -130,6 +163,7 @@ std::string fabrication_json(const FabricationResult& result) {
                {"safe_z_mm", plan.safe_z_mm},
                {"poses", poses_json(result)},
                {"stages", stages},
+               {"section_path", section_path_json(result)},
                {"programs", programs},
                {"program_times_s", plan.program_times_s},
                {"version", kVersion},
