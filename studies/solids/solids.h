@@ -47,8 +47,8 @@ struct Solid {
 
 /// Builds the boundary of a solid of a design. Facets are plane and smooth: texture and everything else that
 /// `[surface]` says but for angles and edges is left out.
-/// \throw InputError for an infinite array (an element of it is allowed), a mask that cannot be read, more than kMostSolidElements, or a
-/// block that is not thicker than 0
+/// \throw InputError for an infinite array (an element of it is allowed), a mask that cannot be read, more than
+/// kMostSolidElements, or a block that is not thicker than 0
 Solid make_solid(const Design& design, const SolidRequest& request);
 
 }  // namespace retrace::studies

@@ -57,10 +57,15 @@ const std::map<std::string, Names>& study_rooms() {
 
 /// The same for rooms of fabrication/. Readers and verifier share nothing with planner and writers.
 const std::map<std::string, Names>& fabrication_rooms() {
-  static const std::map<std::string, Names> rooms = {
-      {"job", {}},           {"machine", {}},       {"program", {}},     {"plan", {"job", "machine", "program"}},
-      {"post", {"program"}}, {"read", {"machine"}}, {"forces", {"job"}}, {"verify", {"job", "machine", "read"}},
-      {"turning", {"program", "read"}}};
+  static const std::map<std::string, Names> rooms = {{"job", {}},
+                                                     {"machine", {}},
+                                                     {"program", {}},
+                                                     {"plan", {"job", "machine", "program"}},
+                                                     {"post", {"program"}},
+                                                     {"read", {"machine"}},
+                                                     {"forces", {"job"}},
+                                                     {"verify", {"job", "machine", "read"}},
+                                                     {"turning", {"program", "read"}}};
   return rooms;
 }
 
