@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "geometry/part_spec.h"
+#include "raytrace/beads/ball_layer.h"
 #include "raytrace/stokes.h"
 
 namespace retrace::studies {
@@ -91,6 +92,8 @@ struct Design {
   std::string title;             ///< empty if none was given
   geometry::PartSpec part;       ///< means little where there is a mesh: thickness_mm is then 0 or what was given
   std::optional<PartMesh> mesh;  ///< in place of element and array
+  std::optional<raytrace::BallLayer> balls;  ///< kind = "ball": `part` then means nothing
+  InputLocation balls_location;              ///< where the kind was given, for whoever cannot trace balls
   std::optional<ArrayMask> mask;
   std::optional<FacetPlanesFile> facet_planes;  ///< finite parts of prisms only
   std::string material = "PMMA";
@@ -115,6 +118,8 @@ struct Design {
   std::string source_name() const { return source == "-" ? "standard input" : source; }
   /// \throw InputError if the shape is a mesh. \param what does not take it, such as "retrace job"
   void require_elements(const std::string& what) const;
+  /// \throw InputError if the elements are balls, which have no planes that could be traced, cut or written
+  void require_no_balls() const;
   /// Whether the retro facets rely on total reflection.
   bool needs_total_reflection() const { return !idealisation.mirror_facets && !aluminised_facets; }
 };

@@ -69,6 +69,18 @@ Json array_json(const Design& design) {
   return array;
 }
 
+Json ball_json(const raytrace::BallLayer& balls) {
+  return {{"kind", "ball"},
+          {"diameter_mm", balls.diameter_mm},
+          {"mirror_offset_mm", balls.mirror_offset_mm},
+          {"mirror_half_angle_deg", balls.mirror_half_angle_deg}};
+}
+
+Json ball_array_json(const raytrace::BallLayer& balls) {
+  if (!balls.pitch_mm) return {{"arrangement", "single"}};
+  return {{"arrangement", "packed"}, {"extent", "infinite"}, {"gap_mm", *balls.pitch_mm - balls.diameter_mm}};
+}
+
 /// The word that the design file has for it, or [i, q, u, v].
 Json polarisation_json(const raytrace::Stokes& stokes) {
   const std::array<double, 4> values = stokes.values();
@@ -194,6 +206,9 @@ nlohmann::ordered_json to_json(const Design& design) {
   if (!design.title.empty()) json["title"] = design.title;
   if (design.mesh) {
     json["part"] = {{"mesh", design.mesh->name}, {"allow_open", design.mesh->allow_open}};
+  } else if (design.balls) {
+    json["element"] = ball_json(*design.balls);
+    json["array"] = ball_array_json(*design.balls);
   } else {
     json["element"] = std::visit(ElementJson{}, design.part.element);
     json["array"] = array_json(design);
@@ -202,7 +217,7 @@ nlohmann::ordered_json to_json(const Design& design) {
   json["body"] = body;
   json["light"] = light_json(design);
   json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};
-  json["surface"] = design.mesh ? texture_json(design.texture) : surface_json(design);
+  if (!design.balls) json["surface"] = design.mesh ? texture_json(design.texture) : surface_json(design);
   json["idealisation"] = {{"facets", design.idealisation.mirror_facets ? "mirror" : "real"},
                           {"entrance", design.idealisation.lossless_entrance ? "lossless" : "real"}};
   return json;
@@ -228,6 +243,8 @@ nlohmann::ordered_json spectrum_json(const std::vector<SpectralOptics>& light) {
 std::string short_name(const Design& design) {
   if (!design.title.empty()) return design.title;
   if (design.mesh) return design.mesh->name;
+  if (design.balls)
+    return fmt::format("{} {} mm", design.balls->pitch_mm ? "balls" : "ball", shortest(design.balls->diameter_mm));
   const std::string element = std::visit(ElementName{}, design.part.element);
   return fmt::format("{}, {}", element, name_of(design.part.arrangement));
 }

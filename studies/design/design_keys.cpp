@@ -35,14 +35,21 @@ struct KeyRule {
   Availability availability = Served{};
 };
 
-constexpr std::array kElementKeys = {
-    KeyRule{"kind"},        KeyRule{"base_mm"},  KeyRule{"width_mm"},        KeyRule{"apex_angle_deg"},
-    KeyRule{"aperture_mm"}, KeyRule{"cant_deg"}, KeyRule{"cant_azimuth_deg"}};
+constexpr std::array kElementKeys = {KeyRule{"kind"},
+                                     KeyRule{"base_mm"},
+                                     KeyRule{"width_mm"},
+                                     KeyRule{"apex_angle_deg"},
+                                     KeyRule{"aperture_mm"},
+                                     KeyRule{"cant_deg"},
+                                     KeyRule{"cant_azimuth_deg"},
+                                     KeyRule{"diameter_mm"},
+                                     KeyRule{"mirror_offset_mm"},
+                                     KeyRule{"mirror_half_angle_deg"}};
 constexpr std::array kArrayKeys = {KeyRule{"arrangement"},      KeyRule{"extent"},          KeyRule{"shifted_rows"},
                                    KeyRule{"partial_elements"}, KeyRule{"x_length_mm"},     KeyRule{"y_length_mm"},
                                    KeyRule{"x_gap_mm"},         KeyRule{"y_gap_mm"},        KeyRule{"x_offset_mm"},
                                    KeyRule{"y_offset_mm"},      KeyRule{"overlap_percent"}, KeyRule{"mask"},
-                                   KeyRule{"mask_threshold"}};
+                                   KeyRule{"mask_threshold"},   KeyRule{"gap_mm"}};
 constexpr std::array kBodyKeys = {KeyRule{"thickness_mm"},      KeyRule{"material"},   KeyRule{"refractive_index"},
                                   KeyRule{"absorption_per_mm"}, KeyRule{"back_index"}, KeyRule{"facet_coating"}};
 constexpr std::array kLightKeys = {KeyRule{"wavelength_nm"}, KeyRule{"polarisation"}, KeyRule{"polarisation_angle_deg"},

@@ -17,6 +17,7 @@
 #include "core/number_format.h"
 #include "geometry/lattice.h"
 #include "studies/design/array_checks.h"
+#include "studies/design/ball_reader.h"
 #include "studies/design/design_keys.h"
 #include "studies/design/spectrum_reader.h"
 #include "studies/design/table_reader.h"
@@ -33,11 +34,13 @@ using geometry::PartSpec;
 using geometry::RowParity;
 
 enum class Polarisation { unpolarised, linear, right_circular, left_circular };
-enum class Kind { rtp, hexagonal_icc, triangular_icc };
+enum class Kind { rtp, hexagonal_icc, triangular_icc, ball };
 
 constexpr std::string_view kSchema = "retrace.design/1";
 constexpr std::array kKinds = {Choice<Kind>{"rtp", Kind::rtp}, Choice<Kind>{"hexagonal_icc", Kind::hexagonal_icc},
-                               Choice<Kind>{"triangular_icc", Kind::triangular_icc}};
+                               Choice<Kind>{"triangular_icc", Kind::triangular_icc},
+                               Choice<Kind>{"ball", Kind::ball}};  // which ball_reader reads
+
 /// The first of each is the default.
 constexpr std::array kRtpArrangements = {
     Choice<Arrangement>{"aligned", Arrangement::aligned}, Choice<Arrangement>{"offset", Arrangement::offset},
@@ -119,6 +122,7 @@ std::span<const Choice<Arrangement>> arrangements_of(Kind kind) {
     case Kind::hexagonal_icc:
       return kHexagonalArrangements;
     case Kind::triangular_icc:
+    case Kind::ball:
       break;
   }
   return kTriangularArrangements;
@@ -320,6 +324,8 @@ PartSpec read_part(const DesignDocument& document) {
   TableReader array(document, "array");
   PartSpec part;
   const Kind kind = element.required_choice("kind", all(kKinds));
+  element.refuse({"diameter_mm", "mirror_offset_mm", "mirror_half_angle_deg"}, "only allowed for kind = \"ball\"");
+  array.refuse({"gap_mm"}, "only allowed for kind = \"ball\"");
   part.element = read_element(element, kind);
   read_array(array, part, kind);
   element.finish();
@@ -386,7 +392,9 @@ void read_thickness(TableReader& body, Design& design) {
 }
 
 void read_body(TableReader& body, Design& design) {
-  if (design.mesh) {
+  if (design.balls) {
+    body.refuse({"thickness_mm"}, "not allowed for kind = \"ball\", which has no plate");
+  } else if (design.mesh) {
     body.number("thickness_mm", kPositive);
     design.part.thickness_mm = body.number("thickness_mm", kSaneSize).value_or(0.0);
   } else {
@@ -400,6 +408,15 @@ void read_body(TableReader& body, Design& design) {
   design.back_index = body.number("back_index", kBackIndex).value_or(design.back_index);
   design.aluminised_facets = body.choice("facet_coating", all(kCoatings)).value_or(false);
   body.finish();
+}
+
+/// A bowl behind balls is nothing but its mirror.
+void check_ball_mirror(const DesignDocument& document, const Design& design) {
+  if (!design.balls || design.balls->mirror_offset_mm == 0.0) return;
+  if (design.aluminised_facets || design.idealisation.mirror_facets) return;
+  TableReader(document, "element")
+      .fail("mirror_offset_mm",
+            "needs a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = \"mirror\"");
 }
 
 /// `[i, q, u, v]` in the unit of i.
@@ -516,7 +533,12 @@ std::optional<FacetPlanesFile> read_facet_planes(const DesignDocument& document,
 
 }  // namespace
 
+void Design::require_no_balls() const {
+  if (balls) throw InputError(balls_location, "balls are taken by retrace rre, photometry and inspect alone");
+}
+
 void Design::require_elements(const std::string& what) const {
+  require_no_balls();
   if (mesh) throw InputError(mesh->location, what + " takes no mesh, only [element] and [array]");
 }
 
@@ -531,6 +553,9 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   design.mesh = read_mesh(document);
   if (design.mesh) {
     design.texture = read_mesh_surface(document);
+  } else if (has_balls(document)) {
+    design.balls = read_balls(document);
+    design.balls_location = TableReader(document, "element").where("kind");
   } else {
     design.part = read_part(document);
     design.mask = read_mask(document, design.part);
@@ -541,6 +566,7 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   read_body(body, design);
   read_light_and_detector(document, design);
   read_idealisation(document, design);
+  check_ball_mirror(document, design);
   return design;
 }
 

@@ -227,6 +227,13 @@ const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double w
 }  // namespace
 
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library) {
+  design.require_no_balls();
+  OpticalModel model = make_light_model(design, library);
+  model.part = part_of_design(design, &model.warnings);
+  return model;
+}
+
+OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library) {
   OpticalModel model;
   const materials::Material& material = library.find(design.material, design.material_location);
   const materials::Spectrum light = wavelengths_to_trace(design);
@@ -239,7 +246,6 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
   if (!design.refractive_index) warn_of_extrapolation(design, material, model);
   if (design.aluminised_facets) warn_of_extrapolation(design, library.find_metal("aluminium"), model);
   add_texture_warnings(design, model);
-  model.part = part_of_design(design, &model.warnings);
   return model;
 }
 

@@ -28,6 +28,10 @@ struct OpticalModel {
 
 /// Builds the part, looks up the material and resolves the spectrum of the light. \throw InputError naming file and
 /// line for an unknown material, a spectrum that cannot be read, or a wavelength at which the material has no index
+/// and for balls, which are no part
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library);
+
+/// The same without the part: what can trace balls needs no more. \throw InputError likewise
+OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library);
 
 }  // namespace retrace::studies

@@ -5,11 +5,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "core/angle.h"
 #include "core/number_format.h"
 #include "geometry/check/boundary_check.h"
+#include "raytrace/beads/ball_forms.h"
 #include "studies/design/design_part.h"
 #include "studies/design/optical_model.h"
 
@@ -218,7 +220,45 @@ std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, 
   return sine < 1.0 ? std::optional(Angle::from_rad(std::asin(sine)).deg()) : std::nullopt;
 }
 
+namespace {
+
+Inspection inspect_balls(const Design& design, const materials::MaterialLibrary& library) {
+  const raytrace::BallLayer& layer = *design.balls;
+  const OpticalModel model = make_light_model(design, library);
+  Inspection result;
+  result.design = design;
+  result.warnings = model.warnings;
+  result.light = model.spectral;
+  result.refractive_index = mean_index(model.spectral);
+  result.wavelength_nm = model.wavelength_nm;
+  result.elements_full = layer.pitch_mm ? 2 : 1;
+  result.element_depth_mm = layer.mirror_radius_mm();
+  const double ball_mm2 = std::numbers::pi * layer.radius_mm() * layer.radius_mm();
+  const double cosine = std::cos(Angle::from_deg(layer.mirror_half_angle_deg).rad());
+  result.facet_area_mm2 = static_cast<double>(result.elements_full) * 2.0 * std::numbers::pi *
+                          std::pow(layer.mirror_radius_mm(), 2.0) * (1.0 - cosine);
+  BallFigures figures;
+  figures.packing_share = raytrace::packing_share(layer);
+  result.full_element_share = figures.packing_share;
+  result.entrance_area_mm2 = static_cast<double>(result.elements_full) * ball_mm2 / figures.packing_share;
+  const double index = result.refractive_index;
+  const double spacer = layer.mirror_offset_mm > 0.0 ? model.optics.back_index : 1.0;
+  const double rho = layer.mirror_radius_mm() / layer.radius_mm();
+  figures.paraxial_error = raytrace::paraxial_error(index, spacer, rho);
+  if (const auto offset = raytrace::focal_offset_over_radius(index, model.optics.back_index))
+    figures.focal_offset_mm = *offset * layer.radius_mm();
+  figures.largest_return_error_deg = Angle::from_rad(raytrace::largest_return_error_rad(index, spacer, rho)).deg();
+  const double acceptance_rad = Angle::from_deg(design.acceptance_half_angle_deg.front()).rad();
+  figures.share_within_acceptance = raytrace::share_within(acceptance_rad, index, spacer, rho);
+  figures.mirror_half_angle_deg = layer.mirror_half_angle_deg;
+  result.balls = figures;
+  return result;
+}
+
+}  // namespace
+
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library) {
+  if (design.balls) return inspect_balls(design, library);
   const OpticalModel model = make_model(design, library);
   const geometry::Part& part = model.part;
   Inspection result;

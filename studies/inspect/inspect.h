@@ -12,6 +12,16 @@
 
 namespace retrace::studies {
 
+/// What a layer of balls, or a single one, is to light along its axis: closed forms (docs/theory/beads.md).
+struct BallFigures {
+  double packing_share = 0.0;             ///< of the plan that balls cover
+  double paraxial_error = 0.0;            ///< return error over height near the axis, rad; 0: parallel
+  std::optional<double> focal_offset_mm;  ///< mirror offset for which that is 0; none if there is none
+  double largest_return_error_deg = 0.0;  ///< over the whole aperture: spherical aberration
+  double share_within_acceptance = 0.0;   ///< of the aperture, narrowest cone; geometry alone, no Fresnel
+  double mirror_half_angle_deg = 0.0;
+};
+
 /// What a design is, before any light is traced. Areas and counts of an infinite array are those of one period.
 struct Inspection {
   Design design;
@@ -32,8 +42,9 @@ struct Inspection {
   /// From where light meets a facet most squarely, so that its total reflection ends first; 0 to below 360, the least
   /// of equal ones, of an unturned element. None where none is needed.
   std::optional<double> tir_limit_azimuth_deg;
-  double dead_zone_share = 0.0;  ///< of an element's plan that rounded and chamfered edges take
-  std::string boundary;          ///< what the check of the boundary found
+  double dead_zone_share = 0.0;      ///< of an element's plan that rounded and chamfered edges take
+  std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something
+  std::string boundary;              ///< what the check of the boundary found
   std::vector<std::string> warnings;
 };
 

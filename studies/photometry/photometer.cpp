@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "materials/io/spectrum_reader.h"
+#include "raytrace/beads/ball_tracer.h"
 #include "raytrace/farfield/coefficients.h"
 #include "raytrace/threads.h"
 #include "studies/design/part_of_design.h"
@@ -65,6 +66,25 @@ WeighedLight lamp_light(const materials::CieTable& cie, const PhotometryRequest&
     light.weights.push_back(traced.weights[k] * behind / before / transmittance(traced.wavelengths_nm[k]));
   }
   return light;
+}
+
+/// Length of the way through a design and back, for the dye.
+double way_through_mm(const Design& design) {
+  if (design.balls) return 2.0 * design.balls->diameter_mm;
+  const geometry::Part part = part_of_design(design, nullptr);
+  return 2.0 * (part.thickness_mm + part.element_depth_mm);
+}
+
+OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library) {
+  return design.balls ? make_light_model(design, library) : make_model(design, library);
+}
+
+/// R_A is of an area, which a single ball has none of, and rays are followed in one way alone.
+void check_balls(const Design& design, const PhotometryRequest& request) {
+  if (!design.balls->pitch_mm)
+    throw InputError(design.balls_location, "photometry takes layers of balls: give array.arrangement = \"packed\"");
+  if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
+    throw InputError({"", 0, "--engine"}, "must be auto or montecarlo for balls");
 }
 
 /// The design in the light of the photometer.
@@ -145,17 +165,17 @@ struct Photometer::Piece {
 Photometer::Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts)
     : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
+  if (design_.balls) check_balls(design_, request);
   if (request.own_light) {
-    model_ = make_model(design_, library);
+    model_ = model_of(design_, library);
     for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
   } else {
-    const geometry::Part part = part_of_design(design_, nullptr);
-    const WeighedLight light =
-        lamp_light(materials::shipped_cie_table(), request, 2.0 * (part.thickness_mm + part.element_depth_mm), parts);
-    model_ = make_model(lit(design_, request, light), library);
+    const WeighedLight light = lamp_light(materials::shipped_cie_table(), request, way_through_mm(design_), parts);
+    model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
-  is_exact_ = model_.optics.is_smooth() && (request.engine == Engine::exact || request.engine == Engine::automatic);
+  is_exact_ = !design_.balls && model_.optics.is_smooth() &&
+              (request.engine == Engine::exact || request.engine == Engine::automatic);
 }
 
 std::vector<double> Photometer::wavelengths_nm() const {
@@ -219,7 +239,7 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
 }
 
 Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
-                                              const raytrace::MonteCarlo& tracer, const Cancellation* cancel) const {
+                                              const raytrace::MonteCarlo* tracer, const Cancellation* cancel) const {
   constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
   const SpectralOptics& light = model_.spectral[wavelength];
   const raytrace::ReturnFrame frame = raytrace::return_frame(geometry_at(setting, 0.0));
@@ -233,9 +253,12 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
   raytrace::Sampling sampling;
   sampling.seed = request_.seed + kGolden * static_cast<std::uint32_t>(wavelength);
   sampling.rays = std::max<std::uint64_t>(1, request_.rays / model_.spectral.size());
+  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.polarisation};
+  const std::vector<double>& cones = design_.acceptance_half_angle_deg;
   const raytrace::MonteCarloResult traced =
-      tracer.trace(light.optics, {source.incidence, source.azimuth, design_.polarisation},
-                   design_.acceptance_half_angle_deg, sampling, {}, cancel, &score);
+      tracer != nullptr
+          ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score)
+          : raytrace::BallTracer(*design_.balls).trace(light.optics, illumination, cones, sampling, {}, cancel, &score);
   Piece piece;
   if (!traced.complete) return piece;
   const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
@@ -306,11 +329,12 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vec
           measure_exactly(setting, model_.spectral[w], setting.split && w == middle, tracer, cancel);
     });
   } else {
-    const raytrace::MonteCarlo tracer(model_.part);
+    std::optional<raytrace::MonteCarlo> tracer;
+    if (!design_.balls) tracer.emplace(model_.part);
     for (std::size_t k = 0; k < settings.size() * wavelengths; ++k) {
       if (cancel != nullptr && cancel->requested()) return std::nullopt;
       pieces[k / wavelengths][k % wavelengths] =
-          measure_by_rays(settings[k / wavelengths], k % wavelengths, tracer, cancel);
+          measure_by_rays(settings[k / wavelengths], k % wavelengths, tracer ? &*tracer : nullptr, cancel);
       if (progress != nullptr)
         progress->at(static_cast<double>(k + 1) / static_cast<double>(settings.size() * wavelengths));
     }

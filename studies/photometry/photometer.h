@@ -43,7 +43,7 @@ class Photometer {
 
   const std::vector<std::string>& warnings() const { return model_.warnings; }
   std::vector<double> wavelengths_nm() const;
-  std::string engine_name() const { return is_exact_ ? "exact" : "embree"; }
+  std::string engine_name() const { return design_.balls ? "balls" : is_exact_ ? "exact" : "embree"; }
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
   /// From now on by Monte Carlo.
   void leave_exact() { is_exact_ = false; }
@@ -53,7 +53,8 @@ class Photometer {
   struct Piece;  ///< what one wavelength adds
   Piece measure_exactly(const PhotometerSetting& setting, const SpectralOptics& light, bool split,
                         const raytrace::BeamTracer& tracer, const Cancellation* cancel) const;
-  Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo& tracer,
+  /// \param tracer null for balls, which have their own
+  Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
                         const Cancellation* cancel) const;
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
   std::size_t middle_wavelength() const;

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "raytrace/beads/ball_tracer.h"
 #include "raytrace/beam_tracer.h"
 #include "raytrace/monte_carlo.h"
 #include "raytrace/threads.h"
@@ -100,6 +101,25 @@ std::string_view engine_name(Engine engine) {
   return "";
 }
 
+namespace {
+
+/// Balls have one engine of their own.
+OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreRequest& request) {
+  if (!design.balls) return make_model(design, library);
+  if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
+    throw InputError({"", 0, "--engine"},
+                     fmt::format("must be auto or montecarlo for balls, got {}", engine_name(request.engine)));
+  if (request.sampling == raytrace::Sampling::Kind::plain)
+    throw InputError({"", 0, "--sampling"}, "must be stratified for balls, got plain");
+  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
+                                      {request.far_field, "--far-field"},
+                                      {request.derivatives, "--derivatives"}})
+    if (asked) throw InputError(design.balls_location, fmt::format("balls have no {}", option));
+  return make_light_model(design, library);
+}
+
+}  // namespace
+
 struct RreStudy::Prepared {
   std::vector<Design> designs;
   RreRequest request;
@@ -110,9 +130,10 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
   check(request);
   const auto library = materials::MaterialLibrary::shipped();
   for (const Design& design : designs) {
-    prepared_->models.push_back(make_model(design, library));
+    prepared_->models.push_back(model_of(design, library, request));
     check_light(design, prepared_->models.back(), request);
     check_planes(design, request);
+    if (design.balls) continue;
     if (request.derivatives) design.require_elements("--derivatives");
     if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
       throw InputError(design.texture.location,
@@ -285,8 +306,15 @@ raytrace::MonteCarlo::Engine engine_for(const OpticalModel& model, const RreRequ
   return may_be_cell && MonteCarlo::cell_serves(model.part) ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
 }
 
+bool is_ball(const Design& design) {
+  return design.balls.has_value();
+}
+
 /// The engine that Monte Carlo takes, one for all designs or several.
-std::string monte_carlo_name(const std::vector<OpticalModel>& models, const RreRequest& request) {
+std::string monte_carlo_name(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+                             const RreRequest& request) {
+  if (std::all_of(designs.begin(), designs.end(), is_ball)) return "balls";
+  if (std::any_of(designs.begin(), designs.end(), is_ball)) return "montecarlo";
   const auto is_cell = [&](const OpticalModel& model) {
     return engine_for(model, request) == raytrace::MonteCarlo::Engine::cell;
   };
@@ -310,11 +338,15 @@ void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<
     const Design& design = designs[direction.at.design];
     const OpticalModel& model = models[direction.at.design];
     const SpectralOptics& light = model.spectral[w];
-    if (direction.at.design != traced_design) tracer.emplace(model.part, engine_for(model, request));
+    if (direction.at.design != traced_design && !design.balls) tracer.emplace(model.part, engine_for(model, request));
     traced_design = direction.at.design;
+    const raytrace::Illumination illumination = illumination_of(direction.at, design);
+    const raytrace::Sampling sampling = sampling_of(request, light.weight, w);
+    const std::vector<double>& cones = design.acceptance_half_angle_deg;
     const raytrace::MonteCarloResult traced =
-        tracer->trace(light.optics, illumination_of(direction.at, design), design.acceptance_half_angle_deg,
-                      sampling_of(request, light.weight, w), policy, cancel);
+        design.balls
+            ? raytrace::BallTracer(*design.balls).trace(light.optics, illumination, cones, sampling, policy, cancel)
+            : tracer->trace(light.optics, illumination, cones, sampling, policy, cancel);
     if (!traced.complete) return;  // an unfinished point is no point
     direction.spectral[w] = points_of(spectral_point(direction, light), traced);
     result.rays += traced.rays;
@@ -395,7 +427,8 @@ bool trace_exactly_if_cheap(const std::vector<Design>& designs, const std::vecto
                             const RreRequest& request, std::vector<Direction>& directions, Progress* progress,
                             const Cancellation* cancel) {
   const bool all_smooth = std::all_of(models.begin(), models.end(), [](const auto& m) { return m.optics.is_smooth(); });
-  if (!may_be_exact(request) || !all_smooth) return false;
+  const bool has_balls = std::any_of(designs.begin(), designs.end(), is_ball);
+  if (!may_be_exact(request) || !all_smooth || has_balls) return false;
   try {
     trace_exactly(designs, models, request, directions, progress, cancel);
     return true;
@@ -422,7 +455,7 @@ RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
   std::vector<Direction> directions = directions_of(models, request);
   const bool exact = trace_exactly_if_cheap(designs, models, request, directions, progress, cancel);
   if (!exact) trace_by_monte_carlo(designs, models, request, directions, progress, cancel, result);
-  result.engine = exact ? "exact" : monte_carlo_name(models, request);
+  result.engine = exact ? "exact" : monte_carlo_name(designs, models, request);
   for (Direction& direction : directions) {
     finish(direction, designs[direction.at.design], models[direction.at.design]);
     result.complete = result.complete && !direction.points.empty();

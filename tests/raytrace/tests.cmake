@@ -2,6 +2,7 @@ retrace_test(raytrace_test
   SOURCES
     ${CMAKE_CURRENT_LIST_DIR}/angle_errors_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/back_surface_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/balls_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/beam_tracer_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/cell_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/cant_test.cpp

@@ -37,7 +37,36 @@ std::string spectrum_text(const Inspection& i) {
 
 }  // namespace
 
+namespace {
+
+std::string ball_json(const Inspection& i) {
+  const BallFigures& balls = *i.balls;
+  nlohmann::ordered_json json = {{"schema", "retrace.inspect/1"},
+                                 {"design", to_json(i.design)},
+                                 {"elements_full", i.elements_full},
+                                 {"elements_partial", 0},
+                                 {"element_depth_mm", i.element_depth_mm},
+                                 {"facet_area_mm2", i.facet_area_mm2},
+                                 {"entrance_area_mm2", i.entrance_area_mm2},
+                                 {"full_element_share", i.full_element_share},
+                                 {"refractive_index", i.refractive_index},
+                                 {"packing_share", balls.packing_share},
+                                 {"mirror_half_angle_deg", balls.mirror_half_angle_deg},
+                                 {"paraxial_error", balls.paraxial_error},
+                                 {"largest_return_error_deg", balls.largest_return_error_deg},
+                                 {"share_within_acceptance", balls.share_within_acceptance}};
+  if (balls.focal_offset_mm) json["focal_offset_mm"] = *balls.focal_offset_mm;
+  if (i.design.spectrum) json["spectrum"] = spectrum_json(i.light);
+  json["version"] = kVersion;
+  json["warnings"] = i.warnings;
+  json["complete"] = true;
+  return to_text(json);
+}
+
+}  // namespace
+
 std::string inspect_json(const Inspection& i) {
+  if (i.balls) return ball_json(i);
   nlohmann::ordered_json json = {{"schema", "retrace.inspect/1"},
                                  {"design", to_json(i.design)},
                                  {"elements_full", i.elements_full},
@@ -77,9 +106,27 @@ std::string mesh_text(const Inspection& i) {
   return text;
 }
 
+std::string ball_text(const Inspection& i) {
+  const BallFigures& balls = *i.balls;
+  std::string text = fmt::format("{}\n", printable(short_name(i.design)));
+  text += fmt::format("  packing             {} % of the plan\n", fixed(100.0 * balls.packing_share, 3));
+  text += fmt::format("  mirror              {} mm behind the balls, to {} degrees from their axes\n",
+                      shortest(i.design.balls->mirror_offset_mm), fixed(balls.mirror_half_angle_deg, 2));
+  text += fmt::format("  in focus at         {}\n",
+                      balls.focal_offset_mm ? fixed(*balls.focal_offset_mm, 6) + " mm" : "no offset");
+  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
+  text += spectrum_text(i);
+  text += fmt::format("  paraxial error      {} rad over height / radius\n", fixed(balls.paraxial_error, 6));
+  text += fmt::format("  largest error       {} degrees\n", fixed(balls.largest_return_error_deg, 3));
+  text +=
+      fmt::format("  within acceptance   {} % of a ball's aperture\n", fixed(100.0 * balls.share_within_acceptance, 3));
+  return text;
+}
+
 }  // namespace
 
 std::string inspect_text(const Inspection& i) {
+  if (i.balls) return ball_text(i);
   if (i.design.mesh) return mesh_text(i);
   const bool infinite = i.design.part.extent == geometry::Extent::infinite;
   const char* per_period = infinite ? " per period" : "";

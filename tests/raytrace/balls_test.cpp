@@ -1,0 +1,307 @@
+// Balls with mirrors behind: the tracer of spheres against closed forms, and against sums over heights that know angles
+// in one plane alone and no vectors.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "raytrace/beads/ball_forms.h"
+#include "raytrace/beads/ball_tracer.h"
+#include "raytrace/beads/ball_walker.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using std::numbers::pi;
+
+Optics ideal(double index) {
+  Optics optics;
+  optics.index = index;
+  optics.mirror_facets = true;
+  optics.lossless_entrance = true;
+  return optics;
+}
+
+Optics glass(double index) {
+  Optics optics = ideal(index);
+  optics.lossless_entrance = false;
+  return optics;
+}
+
+BallLayer single(double diameter_mm = 1.0, double offset_mm = 0.0) {
+  return {diameter_mm, offset_mm, 90.0, std::nullopt};
+}
+
+BallLayer packed(double gap_mm = 0.0, double diameter_mm = 1.0) {
+  return {diameter_mm, 0.0, 90.0, diameter_mm + gap_mm};
+}
+
+Illumination at(double incidence_deg, double azimuth_deg = 0.0) {
+  return {Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg)};
+}
+
+MonteCarloResult traced(const BallLayer& layer, const Optics& optics, const Illumination& illumination,
+                        double half_angle_deg = 0.5, std::uint64_t rays = 1U << 15) {
+  Sampling sampling;
+  sampling.rays = rays;
+  return BallTracer(layer).trace(optics, illumination, {half_angle_deg}, sampling, {});
+}
+
+/// One ray of a single ball at a height over the radius: its power by cone.
+std::vector<double> power_by_cone(const BallLayer& layer, const Optics& optics, double height,
+                                  const std::vector<double>& cones_deg) {
+  const LightSetup setup(geometry::Part{}, Vec2::Zero(), optics, at(0.0), cones_deg);
+  Tally tally(cones_deg.size());
+  PathPolicy policy;
+  BallWalker walker(layer, setup, policy, tally);
+  walker.trace({height * layer.radius_mm(), 0.0, 2.0 * layer.radius_mm()}, -Vec3::UnitZ(), {}, {});
+  std::vector<double> power;
+  for (const Stokes& stokes : tally.returned) power.push_back(stokes.i);
+  return power;
+}
+
+/// Light of unit power at a height, in a plane through the axis and at `turn` from the tilt: what of it comes back
+/// within the cone, by angles round the centre alone. Ideal mirror on the ball's own back half.
+double returned_by_angles(double height, double index, double turn_rad, double incidence_rad, double half_angle_rad) {
+  const double i = std::asin(height);
+  const double inside = std::asin(height / index);
+  double r_s = std::sin(i - inside) / std::sin(i + inside);
+  double r_p = std::tan(i - inside) / std::tan(i + inside);
+  if (height < 1e-9) r_s = r_p = (index - 1.0) / (index + 1.0);
+  // z of a direction at angle `phi` from the source, in the plane of the ray: the source at the incidence from z.
+  const double tilt = std::sin(incidence_rad) * std::cos(turn_rad);
+  const auto z_at = [&](double phi) { return std::cos(phi) * std::cos(incidence_rad) - std::sin(phi) * tilt; };
+  const auto is_back = [&](double phi) {
+    return std::abs(std::remainder(phi, 2.0 * pi)) <= half_angle_rad && z_at(phi) > 0.0;
+  };
+  if (z_at(i) <= 0.0) return 0.0;
+  double sum = 0.0;
+  for (const double reflectance : {r_s * r_s, r_p * r_p}) {
+    if (is_back(2.0 * i)) sum += 0.5 * reflectance;
+    double power = 0.5 * (1.0 - reflectance);
+    double phi = i;
+    for (int k = 0; k < 200 && power > 1e-12; ++k) {
+      phi += pi - 2.0 * inside;
+      if (z_at(phi) <= 0.0) continue;  // the mirror
+      if (is_back(phi + i)) sum += power * (1.0 - reflectance);
+      power *= reflectance;
+    }
+  }
+  return sum;
+}
+
+double rre_by_angles(double index, double incidence_deg, double half_angle_deg) {
+  const int heights = incidence_deg == 0.0 ? 200000 : 4000;
+  const int turns = incidence_deg == 0.0 ? 1 : 90;
+  const double deg = pi / 180.0;
+  double sum = 0.0;
+  for (int k = 0; k < heights; ++k)
+    for (int j = 0; j < turns; ++j)
+      sum += returned_by_angles(std::sqrt((k + 0.5) / heights), index, 2.0 * pi * (j + 0.5) / turns,
+                                incidence_deg * deg, half_angle_deg * deg);
+  return sum / heights / turns;
+}
+
+TEST(Balls, OfIndexTwoSendLightNearTheAxisBackParallel) {
+  const double within_deg = 1e-9 * 180.0 / pi;
+  for (const double height : {0.0, 1e-6, 1e-4, 1e-3, 1.5e-3})
+    EXPECT_NEAR(power_by_cone(single(), ideal(2.0), height, {within_deg})[0], 1.0, 1e-12) << height;
+  // A quarter of the cube of the height is what the third order leaves.
+  EXPECT_EQ(power_by_cone(single(), ideal(2.0), 2e-3, {within_deg})[0], 0.0);
+  EXPECT_NEAR(return_error_rad(0.01, 2.0, 1.0, 1.0), 0.25e-6, 1e-10);
+}
+
+TEST(Balls, SphericalAberrationIsTheClosedForm) {
+  struct Case {
+    double index, offset_mm, spacer;
+  };
+  for (const auto& [index, offset_mm, spacer] :
+       {Case{2.0, 0.0, 1.0}, {1.9, 0.0, 1.0}, {1.5, 0.25, 1.0}, {1.5, 0.2, 1.0}, {1.9, 0.05, 1.5}, {2.2, 0.1, 1.5}}) {
+    const BallLayer layer = single(1.0, offset_mm);
+    Optics optics = ideal(index);
+    optics.back_index = spacer;
+    const double rho = layer.mirror_radius_mm() / layer.radius_mm();
+    const double m = offset_mm > 0.0 ? spacer : 1.0;
+    for (double height = 0.05; height < 0.96; height += 0.05) {
+      const double error_deg = std::abs(return_error_rad(height, index, m, rho)) * 180.0 / pi;
+      const double little = 1e-10 + 1e-8 * error_deg;  // the edge of a cone is drawn to 1e-9 of its square
+      const auto power =
+          power_by_cone(layer, optics, height, {std::max(error_deg - little, 1e-14), error_deg + little});
+      EXPECT_NEAR(power[1], 1.0, 1e-12) << index << ' ' << offset_mm << ' ' << height;
+    }
+  }
+}
+
+TEST(Balls, ReturnErrorByDirectCount) {
+  // Snell's law ray by ray: -2 i at the front twice, 4 i' at the mirror; 60 degrees of incidence in n = sqrt 3 is 30.
+  EXPECT_NEAR(return_error_rad(std::sin(pi / 3.0), std::sqrt(3.0), 1.0, 1.0), 0.0, 1e-15);
+  EXPECT_NEAR(return_error_rad(1.0, 2.0, 1.0, 1.0), pi - 2.0 * pi / 3.0, 1e-15);
+}
+
+TEST(Balls, MirrorInFocus) {
+  // A ball of n = 1.5 focuses 1.5 radii behind its centre.
+  EXPECT_NEAR(*focal_offset_over_radius(1.5, 1.0), 0.5, 1e-15);
+  EXPECT_FALSE(focal_offset_over_radius(2.0, 1.0));
+  EXPECT_FALSE(focal_offset_over_radius(1.2, 1.6));
+  for (const double index : {1.45, 1.6, 1.9})
+    for (const double spacer : {1.0, 1.3}) {
+      const double rho = 1.0 + *focal_offset_over_radius(index, spacer);
+      EXPECT_NEAR(paraxial_error(index, spacer, rho), 0.0, 1e-14);
+      EXPECT_NEAR(return_error_rad(1e-4, index, spacer, rho), 0.0, 1e-11);
+    }
+}
+
+TEST(Balls, ShareWithinAConeByAngles) {
+  for (const double index : {1.8, 1.9, 2.0, 2.1}) {
+    const MonteCarloResult result = traced(single(), ideal(index), at(0.0), 1.0);
+    EXPECT_NEAR(result.cones[0].rre, share_within(pi / 180.0, index, 1.0, 1.0), 5.0 * result.cones[0].std_error + 1e-6)
+        << index;
+  }
+}
+
+TEST(Balls, SumsOverHeightsAgreeAtNormalIncidence) {
+  for (const double index : {1.5, 1.9, 2.0}) {
+    const MonteCarloResult result = traced(single(), glass(index), at(0.0));
+    EXPECT_NEAR(result.cones[0].rre, rre_by_angles(index, 0.0, 0.5), 5.0 * result.cones[0].std_error + 1e-5) << index;
+  }
+}
+
+TEST(Balls, SumsOverHeightsAndTurnsAgreeAtOtherAngles) {
+  for (const double incidence_deg : {20.0, 45.0, 70.0}) {
+    const MonteCarloResult result = traced(single(), glass(1.92), at(incidence_deg, 33.0), 1.0);
+    EXPECT_NEAR(result.cones[0].rre, rre_by_angles(1.92, incidence_deg, 1.0), 5.0 * result.cones[0].std_error + 2e-4)
+        << incidence_deg;
+  }
+}
+
+TEST(Balls, EveryBitOfPowerIsBooked) {
+  std::vector<BallLayer> layers = {single(), packed(), packed(0.3)};
+  layers.push_back({1.0, 0.2, 45.0, std::nullopt});
+  layers.push_back({1.0, 0.1, 60.0, 1.2});
+  for (const BallLayer& layer : layers)
+    for (const double incidence_deg : {0.0, 30.0, 80.0, -60.0}) {
+      Optics optics;
+      optics.index = 1.9;
+      optics.back_index = 1.4;
+      optics.absorption_per_mm = 0.05;
+      if (layer.mirror_offset_mm > 0.0) optics.coating_index = std::complex<double>(1.2, 7.1);
+      const MonteCarloResult result = traced(layer, optics, at(incidence_deg, 17.0), 0.5, 1U << 12);
+      const Ledger& ledger = result.cones[0].ledger;
+      EXPECT_NEAR(ledger.total(), 1.0, 1e-10);
+      EXPECT_LT(ledger[Account::truncated], 1e-5);
+      EXPECT_GT(ledger[Account::absorbed], 0.0);
+      for (const double power : ledger.power) EXPECT_GE(power, 0.0);
+    }
+}
+
+TEST(Balls, NothingButTheMirrorAndTheGlassAbsorbs) {
+  const MonteCarloResult result = traced(packed(), glass(1.9), at(25.0), 0.5, 1U << 13);
+  EXPECT_NEAR(result.cones[0].ledger[Account::absorbed], 0.0, 1e-12);
+}
+
+/// Share of the plane between the balls that light at this incidence does not reach, by marching back to the source.
+double shaded_share(double pitch_mm, double radius_mm, double incidence_rad, double azimuth_rad) {
+  const Vec3 to_source(std::sin(incidence_rad) * std::cos(azimuth_rad), std::sin(incidence_rad) * std::sin(azimuth_rad),
+                       std::cos(incidence_rad));
+  const int n = 300;
+  int shaded = 0;
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b) {
+      const Vec3 place =
+          pitch_mm * ((a + 0.5) / n * Vec3(1.0, 0.0, 0.0) + (b + 0.5) / n * Vec3(0.5, 0.5 * std::sqrt(3.0), 0.0));
+      bool is_shaded = false;
+      for (int row = -12; row <= 12 && !is_shaded; ++row)
+        for (int along = -18; along <= 18 && !is_shaded; ++along) {
+          const Vec3 off = pitch_mm * Vec3(along + 0.5 * row, 0.5 * std::sqrt(3.0) * row, 0.0) - place;
+          const double towards = off.dot(to_source);
+          const double half2 = radius_mm * radius_mm - off.squaredNorm() + towards * towards;
+          is_shaded =
+              half2 > 0.0 && towards + std::sqrt(half2) > 0.0;  // its last point with a ball lies above the plane
+        }
+      if (is_shaded) ++shaded;
+    }
+  return static_cast<double>(shaded) / n / n;
+}
+
+/// What falls on the balls: all of it is absorbed, nothing reflected.
+double share_on_balls(const BallLayer& layer, const Illumination& illumination) {
+  Optics optics = ideal(1.0);
+  optics.absorption_per_mm = 1e9;
+  return traced(layer, optics, illumination, 0.5, 1U << 17).cones[0].ledger[Account::absorbed];
+}
+
+TEST(Balls, ShadeEachOther) {
+  for (const double gap_mm : {0.0, 0.4})
+    for (const double incidence_deg : {0.0, 30.0, 50.0, 70.0}) {
+      const double share = shaded_share(1.0 + gap_mm, 0.5, incidence_deg * pi / 180.0, 0.3);
+      EXPECT_NEAR(share_on_balls(packed(gap_mm), at(incidence_deg, 0.3 * 180.0 / pi)), share, 2e-3)
+          << gap_mm << ' ' << incidence_deg;
+    }
+}
+
+TEST(Balls, FarApartHaveShadowsOfTheirOwn) {
+  const BallLayer layer = packed(9.0);
+  for (const double incidence_deg : {0.0, 30.0, 60.0}) {
+    const double cosine = std::cos(incidence_deg * pi / 180.0);
+    // Half a disc and half an ellipse, seen along the light.
+    EXPECT_NEAR(share_on_balls(layer, at(incidence_deg, 11.0)), packing_share(layer) * 0.5 * (1.0 + 1.0 / cosine),
+                2e-4);
+  }
+  const MonteCarloResult alone = traced(single(), glass(1.9), at(60.0), 0.5, 1U << 14);
+  EXPECT_GT(alone.cones[0].ledger[Account::transmitted], 0.25 - 1e-3) << "(1 - cos 60) / 2 falls on its sunk half";
+}
+
+TEST(Balls, PackedSendBackTheirShareOfThePlan) {
+  EXPECT_NEAR(packing_share(packed()), 0.9068996821171089, 1e-15);
+  const MonteCarloResult result = traced(packed(), ideal(1.95), at(0.0), 1.0);
+  EXPECT_NEAR(result.cones[0].rre, packing_share(packed()) * share_within(pi / 180.0, 1.95, 1.0, 1.0),
+              5.0 * result.cones[0].std_error + 1e-6);
+}
+
+TEST(Balls, LayersHaveSixfoldSymmetry) {
+  const MonteCarloResult one = traced(packed(), glass(1.9), at(55.0, 8.0));
+  for (const double azimuth_deg : {68.0, 128.0, 188.0, -8.0}) {
+    const MonteCarloResult other = traced(packed(), glass(1.9), at(55.0, azimuth_deg));
+    EXPECT_NEAR(other.cones[0].rre, one.cones[0].rre,
+                5.0 * std::hypot(one.cones[0].std_error, other.cones[0].std_error))
+        << azimuth_deg;
+  }
+}
+
+TEST(Balls, SizeDoesNotMatterWithoutAbsorption) {
+  const MonteCarloResult small = traced(packed(0.0, 0.05), glass(1.9), at(35.0), 0.5, 1U << 13);
+  const MonteCarloResult large = traced(packed(0.0, 50.0), glass(1.9), at(35.0), 0.5, 1U << 13);
+  EXPECT_NEAR(small.cones[0].rre, large.cones[0].rre, 1e-6);
+}
+
+TEST(Balls, TheMirrorEndsWhereItIsToldTo) {
+  // Behind a mirror of half angle 20 degrees light in focus is caught to an incidence of 20 degrees, and not beyond.
+  BallLayer layer = single(1.0, *focal_offset_over_radius(1.5, 1.0) * 0.5);
+  layer.mirror_half_angle_deg = 20.0;
+  const double near_axis_deg = 0.5;
+  const LightSetup inside(geometry::Part{}, Vec2::Zero(), ideal(1.5), at(19.0), {near_axis_deg});
+  const LightSetup outside(geometry::Part{}, Vec2::Zero(), ideal(1.5), at(21.0), {near_axis_deg});
+  for (const LightSetup* setup : {&inside, &outside}) {
+    Tally tally(1);
+    PathPolicy policy;
+    BallWalker walker(layer, *setup, policy, tally);
+    walker.trace(2.0 * setup->to_source + Vec3(0.0, 0.02, 0.0), -setup->to_source, {}, {});
+    EXPECT_NEAR(tally.returned[0].i, setup == &inside ? 1.0 : 0.0, 1e-12);
+    EXPECT_NEAR(tally.other[Account::transmitted], setup == &inside ? 0.0 : 1.0, 1e-12);
+  }
+}
+
+TEST(Balls, SameSeedSameBytesAndAnotherSeedAnother) {
+  const auto rre = [](std::uint32_t seed) {
+    Sampling sampling;
+    sampling.seed = seed;
+    sampling.rays = 4096;
+    return BallTracer(packed()).trace(glass(1.9), at(40.0), {0.5}, sampling, {}).cones[0].rre;
+  };
+  EXPECT_EQ(rre(1), rre(1));
+  EXPECT_NE(rre(1), rre(2));
+}
+
+}  // namespace
+}  // namespace retrace::raytrace
