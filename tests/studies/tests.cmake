@@ -10,3 +10,6 @@ retrace_test(studies_rre_test
 retrace_test(studies_photometry_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/photometry_test.cpp
   LIBRARIES retrace::photometry)
+retrace_test(studies_balls_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/balls_test.cpp
+  LIBRARIES retrace::inspect retrace::photometry retrace::rre nlohmann_json::nlohmann_json)

@@ -1,0 +1,227 @@
+// Designs of balls: what is read and refused, and what rre, photometry and inspect make of them.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/error.h"
+#include "raytrace/beads/ball_forms.h"
+#include "studies/design/design_json.h"
+#include "studies/design/design_part.h"
+#include "studies/design/design_reader.h"
+#include "studies/inspect/inspect.h"
+#include "studies/inspect/io/inspect_files.h"
+#include "studies/photometry/photometry.h"
+#include "studies/rre/io/rre_files.h"
+#include "studies/rre/rre.h"
+
+namespace retrace::studies {
+namespace {
+
+using std::numbers::pi;
+
+const std::string kBalls = R"([element]
+kind = "ball"
+diameter_mm = 0.05
+[body]
+refractive_index = 1.93
+[idealisation]
+facets = "mirror"
+)";
+
+Design balls(const std::vector<std::string>& overrides = {}) {
+  return parse_design(kBalls, "balls.toml", overrides);
+}
+
+std::string refusal(const std::vector<std::string>& overrides, const std::string& text = kBalls) {
+  try {
+    parse_design(text, "balls.toml", overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(BallDesign, DefaultsAreAPackedLayerWithAMirrorOnTheBalls) {
+  const Design design = balls();
+  ASSERT_TRUE(design.balls);
+  EXPECT_EQ(design.balls->diameter_mm, 0.05);
+  EXPECT_EQ(design.balls->pitch_mm, 0.05);
+  EXPECT_EQ(design.balls->mirror_offset_mm, 0.0);
+  EXPECT_EQ(design.balls->mirror_half_angle_deg, 90.0);
+}
+
+TEST(BallDesign, BowlsReachAsFarAsTheirNeighboursLet) {
+  const Design design = balls({"element.mirror_offset_mm=0.025", "array.gap_mm=0.01"});
+  EXPECT_NEAR(*design.balls->pitch_mm, 0.06, 1e-15);
+  EXPECT_NEAR(design.balls->mirror_half_angle_deg, std::asin(0.03 / 0.05) * 180.0 / pi, 1e-12);
+  const Design single = balls({"element.mirror_offset_mm=0.025", "array.arrangement=single"});
+  EXPECT_EQ(single.balls->mirror_half_angle_deg, 90.0);
+  EXPECT_FALSE(single.balls->pitch_mm);
+}
+
+TEST(BallDesign, JsonReadsBackAsTheSameDesign) {
+  const auto json = to_json(balls({"array.gap_mm=0.01"}));
+  EXPECT_EQ(json["element"]["kind"], "ball");
+  EXPECT_EQ(json["element"]["diameter_mm"], 0.05);
+  EXPECT_EQ(json["array"]["arrangement"], "packed");
+  EXPECT_NEAR(json["array"]["gap_mm"].get<double>(), 0.01, 1e-15);
+  EXPECT_FALSE(json.contains("surface"));
+  EXPECT_FALSE(json["body"].contains("thickness_mm"));
+}
+
+TEST(BallDesign, WhatMeansNothingForBallsIsRefused) {
+  const std::string at = "balls.toml:2: element.";
+  EXPECT_EQ(refusal({"element.diameter_mm=0"}), "--set element.diameter_mm=0: element.diameter_mm: must be > 0, got 0");
+  EXPECT_EQ(refusal({}, "[element]\nkind = \"ball\"\n"), "balls.toml:1: element.diameter_mm: missing, must be > 0");
+  EXPECT_EQ(refusal({"element.base_mm=1"}),
+            "--set element.base_mm=1: element.base_mm: not allowed for kind = \"ball\", which has diameter_mm");
+  EXPECT_EQ(refusal({"array.x_length_mm=1"}),
+            "--set array.x_length_mm=1: array.x_length_mm: not allowed for kind = \"ball\", whose layers are endless, "
+            "with gap_mm between the balls");
+  EXPECT_EQ(
+      refusal({"array.arrangement=honeycomb"}),
+      "--set array.arrangement=honeycomb: array.arrangement: must be \"packed\" or \"single\", got \"honeycomb\"");
+  EXPECT_EQ(
+      refusal({"array.extent=finite"}),
+      "--set array.extent=finite: array.extent: must be \"infinite\" for arrangement = \"packed\", got \"finite\"");
+  EXPECT_EQ(refusal({"array.arrangement=single", "array.gap_mm=1"}),
+            "--set array.gap_mm=1: array.gap_mm: not allowed for arrangement = \"single\"");
+  EXPECT_EQ(refusal({"array.gap_mm=-1"}), "--set array.gap_mm=-1: array.gap_mm: must be >= 0 and <= 1e+06, got -1");
+  EXPECT_EQ(refusal({"body.thickness_mm=1"}),
+            "--set body.thickness_mm=1: body.thickness_mm: not allowed for kind = \"ball\", which has no plate");
+  EXPECT_EQ(refusal({"surface.roughness_sq_nm=5"}),
+            "--set surface.roughness_sq_nm=5: surface: not allowed for kind = \"ball\", whose surfaces are smooth");
+  EXPECT_EQ(refusal({"element.mirror_half_angle_deg=91"}),
+            "--set element.mirror_half_angle_deg=91: element.mirror_half_angle_deg: must be > 0 and <= 90, got 91");
+  EXPECT_NE(refusal({"element.mirror_offset_mm=0.025", "element.mirror_half_angle_deg=31"})
+                .find("must be <= 30 where the bowls of neighbours meet, got 31"),
+            std::string::npos)
+      << refusal({"element.mirror_offset_mm=0.025", "element.mirror_half_angle_deg=31"});
+  EXPECT_EQ(refusal({"element.mirror_offset_mm=0.01", "idealisation.facets=real"}),
+            "--set element.mirror_offset_mm=0.01: element.mirror_offset_mm: needs a mirror: give body.facet_coating = "
+            "\"aluminium\", or idealisation.facets = \"mirror\"");
+}
+
+TEST(BallDesign, KeysOfBallsAreRefusedForPrisms) {
+  const std::string prism =
+      "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"single\"\n"
+      "[body]\nthickness_mm = 1\n";
+  EXPECT_EQ(refusal({"element.diameter_mm=1"}, prism),
+            "--set element.diameter_mm=1: element.diameter_mm: only allowed for kind = \"ball\"");
+  EXPECT_EQ(refusal({"array.gap_mm=1"}, prism), "--set array.gap_mm=1: array.gap_mm: only allowed for kind = \"ball\"");
+}
+
+TEST(BallDesign, WhatTakesNoBallsSaysWhatDoes) {
+  const std::string text = "balls.toml:2: element.kind: balls are taken by retrace rre, photometry and inspect alone";
+  const auto message = [](const auto& work) -> std::string {
+    try {
+      work();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message([] { make_model(balls(), materials::MaterialLibrary::shipped()); }), text);
+  EXPECT_EQ(message([] { part_of(balls()); }), text);
+  EXPECT_EQ(message([] { balls().require_elements("retrace job"); }), text);
+}
+
+RreRequest some_rays() {
+  RreRequest request;
+  request.rays = 1U << 15;
+  return request;
+}
+
+TEST(BallStudies, RreIsThatOfTheTracerAndOfTheClosedForm) {
+  Design design = balls({"idealisation.entrance=lossless", "detector.acceptance_half_angle_deg=1"});
+  const RreResult result = RreStudy({design}, some_rays()).run();
+  EXPECT_EQ(result.engine, "balls");
+  ASSERT_EQ(result.points.size(), 1U);
+  EXPECT_NEAR(result.points[0].rre,
+              raytrace::packing_share(*design.balls) * raytrace::share_within(pi / 180.0, 1.93, 1.0, 1.0),
+              5.0 * result.points[0].std_error + 1e-3);
+  EXPECT_NEAR(result.points[0].ledger.total(), 1.0, 1e-9);
+}
+
+TEST(BallStudies, ASpectrumIsTheMeanOfItsLines) {
+  const Design design = balls({"light.spectrum=[[480,1],[620,1]]", "light.weighting=radiant"});
+  const RreResult result = RreStudy({design}, some_rays()).run();
+  ASSERT_EQ(result.points[0].by_wavelength.size(), 2U);
+  EXPECT_NEAR(result.points[0].rre,
+              0.5 * (result.points[0].by_wavelength[0].rre + result.points[0].by_wavelength[1].rre), 1e-12);
+}
+
+TEST(BallStudies, BallsAndPrismsStandInOneTable) {
+  const Design prism = parse_design(
+      "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = "
+      "1\n",
+      "rtp.toml", {});
+  const RreResult result = RreStudy({balls(), prism}, some_rays()).run();
+  EXPECT_EQ(result.engine, "montecarlo");
+  ASSERT_EQ(result.points.size(), 2U);
+  EXPECT_GT(result.points[1].rre, 0.99);
+}
+
+TEST(BallStudies, OtherEnginesAreRefused) {
+  RreRequest request = some_rays();
+  request.engine = Engine::exact;
+  EXPECT_THROW(RreStudy({balls()}, request), InputError);
+  request.engine = Engine::automatic;
+  request.footprint = true;
+  EXPECT_THROW(RreStudy({balls()}, request), InputError);
+}
+
+TestProgramme straight_back() {
+  TestProgramme programme;
+  programme.points.push_back({0.0, 0.0, 0.0, 1.0, PhotometricUnit::cd_per_lx_per_m2, LimitStatus::confirmed, 2});
+  return programme;
+}
+
+PhotometryRequest request_of(double receiver_deg) {
+  PhotometryRequest request;
+  request.programme = straight_back();
+  request.area_cm2 = 10.0;
+  request.apertures.source = Angle::from_deg(0.0);
+  request.apertures.receiver = Angle::from_deg(receiver_deg);
+  request.own_light = true;
+  request.diffraction = false;
+  request.advice = false;
+  request.rays = 1U << 17;
+  return request;
+}
+
+TEST(BallStudies, CoefficientOfAWideReceiverIsItsShareOfThePower) {
+  // What a receiver of 1 degree round the source sees is what comes back within half a degree, over its solid angle.
+  const Design design = balls();
+  const PhotometryResult result = PhotometryStudy(design, request_of(1.0)).run();
+  EXPECT_EQ(result.engine, "balls");
+  const RrePoint point = RreStudy({design}, some_rays()).run().points[0];
+  const double solid_angle_sr = 2.0 * pi * (1.0 - std::cos(0.5 * pi / 180.0));
+  const double expected = point.rre / solid_angle_sr;
+  EXPECT_NEAR(result.points[0].r_a, expected, 5.0 * point.std_error / solid_angle_sr + 0.01 * expected);
+}
+
+TEST(BallStudies, PhotometryNeedsALayer) {
+  EXPECT_THROW(PhotometryStudy(balls({"array.arrangement=single"}), request_of(1.0)), InputError);
+}
+
+TEST(BallStudies, InspectionIsTheClosedForm) {
+  const Inspection two = inspect(balls({"body.refractive_index=2"}), materials::MaterialLibrary::shipped());
+  ASSERT_TRUE(two.balls);
+  EXPECT_NEAR(two.balls->paraxial_error, 0.0, 1e-15);
+  EXPECT_FALSE(two.balls->focal_offset_mm);
+  EXPECT_NEAR(two.balls->packing_share, pi / (2.0 * std::sqrt(3.0)), 1e-14);
+  EXPECT_NEAR(two.balls->largest_return_error_deg, 60.0, 1e-9);
+  EXPECT_NEAR(two.entrance_area_mm2, 0.05 * 0.05 * std::sqrt(3.0), 1e-15);
+  EXPECT_NEAR(two.facet_area_mm2, 4.0 * pi * 0.025 * 0.025, 1e-15);
+  const Inspection plain = inspect(balls({"body.refractive_index=1.5"}), materials::MaterialLibrary::shipped());
+  EXPECT_NEAR(*plain.balls->focal_offset_mm, 0.0125, 1e-15);
+  EXPECT_NE(inspect_text(plain).find("0.012500 mm"), std::string::npos);
+  EXPECT_NE(inspect_json(plain).find("\"focal_offset_mm\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace retrace::studies
