@@ -1,0 +1,48 @@
+// Balls: the commands that take them, and those that refuse them by name before anything is written.
+
+#include <gtest/gtest.h>
+
+#include "tests/app/program.h"
+
+namespace retrace::test {
+namespace {
+
+const std::string kBalls = example("beads_n193.toml");
+
+TEST(Balls, CommandsThatTakeNoneSayWhichDo) {
+  for (const Arguments& command : {Arguments{"image", kBalls, "--detector", "-o", "out"},
+                                   {"image", kBalls, "--camera", "-o", "out"},
+                                   {"image", kBalls, "--road", "-o", "out"},
+                                   {"roughness", kBalls, "-o", "out"},
+                                   {"export", kBalls, "out.stl"},
+                                   {"job", kBalls, "--tool-width-mm=0.4", "-o", "out.toml"}}) {
+    const TemporaryFolder folder;
+    const Outcome outcome = retrace(folder, command);
+    EXPECT_EQ(outcome.code, 2) << command[0];
+    EXPECT_NE(outcome.err.find("element.kind: balls are taken by retrace rre, photometry and inspect alone"),
+              std::string::npos)
+        << command[0] << ": " << outcome.err;
+    EXPECT_TRUE(folder.names().empty()) << command[0];
+  }
+}
+
+TEST(Balls, RreWritesItsFiles) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"rre", kBalls, "--incidence=0,40", "--samples=2048", "-o", "."});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = folder.json("rre.json");
+  EXPECT_EQ(json["engine"], "balls");
+  EXPECT_EQ(json["designs"][0]["element"]["kind"], "ball");
+  EXPECT_EQ(json["points"].size(), 2U);
+  EXPECT_NE(folder.read("rre.svg").find("Beads"), std::string::npos);
+}
+
+TEST(Balls, OtherEnginesAreRefused) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"rre", kBalls, "--engine=exact"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "retrace: --engine: must be auto or montecarlo for balls, got exact\n");
+}
+
+}  // namespace
+}  // namespace retrace::test
