@@ -10,8 +10,9 @@
 namespace retrace::app {
 namespace {
 
-/// Plan, section and view of the design.
+/// Plan, section and view of the design; none of balls.
 std::vector<OutputFile> drawings_of(const studies::Design& design, std::vector<std::string>& warnings) {
+  if (design.balls) return {};  // no part of planes to draw
   const studies::DesignDrawing drawing = studies::draw_design(design, studies::part_of_design(design, nullptr));
   std::vector<OutputFile> files = {{"plan.svg", report::plan_svg(drawing)}};
   if (drawing.section) files.push_back({"section.svg", report::section_svg(drawing)});

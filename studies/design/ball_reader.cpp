@@ -45,10 +45,10 @@ void read_mirror(TableReader& element, raytrace::BallLayer& balls) {
   if (balls.pitch_mm && balls.mirror_offset_mm > 0.0)
     most_deg = Angle::from_rad(std::asin(std::min(1.0, 0.5 * *balls.pitch_mm / balls.mirror_radius_mm()))).deg();
   const auto given_deg = element.number("mirror_half_angle_deg", kMirrorAngle);
-  if (given_deg && *given_deg > most_deg)
+  if (given_deg && *given_deg > most_deg + 1e-9)
     element.fail("mirror_half_angle_deg", fmt::format("must be <= {} where the bowls of neighbours meet, got {}",
-                                                      shortest(most_deg), shortest(*given_deg)));
-  balls.mirror_half_angle_deg = given_deg.value_or(most_deg);
+                                                      fixed(most_deg, 6), shortest(*given_deg)));
+  balls.mirror_half_angle_deg = std::min(given_deg.value_or(most_deg), most_deg);
 }
 
 }  // namespace

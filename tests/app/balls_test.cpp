@@ -34,7 +34,14 @@ TEST(Balls, RreWritesItsFiles) {
   EXPECT_EQ(json["engine"], "balls");
   EXPECT_EQ(json["designs"][0]["element"]["kind"], "ball");
   EXPECT_EQ(json["points"].size(), 2U);
-  EXPECT_NE(folder.read("rre.svg").find("Beads"), std::string::npos);
+}
+
+TEST(Balls, InspectWritesItsFile) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"inspect", kBalls, "-o", "."});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"inspect.json"});
+  EXPECT_NEAR(folder.json("inspect.json")["packing_share"].get<double>(), 0.9069, 1e-4);
 }
 
 TEST(Balls, OtherEnginesAreRefused) {

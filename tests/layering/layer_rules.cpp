@@ -46,6 +46,7 @@ const std::map<std::string, Names>& study_rooms() {
       {"metrology", {}},
       {"fabrication", {"design"}},
       {"forces", {}},
+      {"planing", {}},
       {"closed_loop", {"design"}},
       {"store", {}},
       {"quantity", {"design", "rre", "inspect", "photometry", "fabrication", "closed_loop"}},
@@ -65,7 +66,8 @@ const std::map<std::string, Names>& fabrication_rooms() {
                                                      {"read", {"machine"}},
                                                      {"forces", {"job"}},
                                                      {"verify", {"job", "machine", "read"}},
-                                                     {"turning", {"program", "read"}}};
+                                                     {"turning", {"program", "read"}},
+                                                     {"planing", {"program", "read"}}};
   return rooms;
 }
 
