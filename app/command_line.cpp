@@ -343,6 +343,14 @@ void add_forces(CLI::App& app, ForcesOptions& forces) {
       ->check(real_number());
 }
 
+void add_plane(CLI::App& app, FabricateOptions& plane) {
+  CLI::App* command = app.add_subcommand("plane", "NC programs of a flat lens of zones, planed or turned");
+  command->add_option("PART", plane.job, "part file")->required()->check(not_empty());
+  command->add_option("--dialect", plane.dialect, "rs274ngc, sinumerik, fanuc or pmac")
+      ->type_name("DIALECT")
+      ->capture_default_str();
+}
+
 void add_export(CLI::App& app, ExportOptions& solid) {
   CLI::App* command = app.add_subcommand("export", "a design's solid as STL, OBJ or STEP");
   command->add_option("DESIGN", solid.design, "design file; - is standard input")->required()->check(not_empty());
@@ -372,6 +380,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
   if (!app.get_subcommands().empty()) return otherwise;
   const std::string commands =
       "rre, inspect, photometry, roughness, metrology, sweep, optimize, tolerance, job, fabricate, verify, forces, "
+      "plane, "
       "image, export, report, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
@@ -408,6 +417,7 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_study(app, line.study, "tolerance", "what becomes of a design in manufacture, as a study file says");
   add_verify(app, line.verify);
   add_forces(app, line.forces);
+  add_plane(app, line.fabricate);
   add_image(app, line.image);
   add_export(app, line.solid);
   add_report(app, line.report);

@@ -18,6 +18,7 @@ ExitCode run_fabricate_command(const CommandLine& line);
 ExitCode run_optimize_command(const CommandLine& line);
 ExitCode run_tolerance_command(const CommandLine& line);
 ExitCode run_verify_command(const CommandLine& line);
+ExitCode run_plane_command(const CommandLine& line);
 ExitCode run_forces_command(const CommandLine& line);
 ExitCode run_image_command(const CommandLine& line);
 ExitCode run_export_command(const CommandLine& line);

@@ -180,13 +180,57 @@ std::span<const Dialect> dialects() {
   return all;
 }
 
-std::string nc_text(const Program& program, std::string_view dialect) {
+namespace {
+
+const Entry& entry_of(std::string_view dialect) {
   std::vector<std::string_view> names;
   for (const Entry& entry : kEntries) {
-    if (entry.dialect.name == dialect) return FileWriter(*entry.make(), program).run();
+    if (entry.dialect.name == dialect) return entry;
     names.push_back(entry.dialect.name);
   }
   throw InputError({"", 0, "--dialect"}, fmt::format("must be {}, got {}", alternatives(names), in_quotes(dialect)));
+}
+
+/// Writes the items of a program of moves.
+struct MoveWriter {
+  const DialectWriter& dialect;
+  NcText& out;
+
+  void operator()(const Comment& comment) const { dialect.comment(out, comment.text); }
+  void operator()(const Message& message) const { dialect.message(out, message.text); }
+  void operator()(const LinearMove& move) const {
+    Words words;
+    words.x_nm = move.x_nm;
+    words.y_nm = move.y_nm;
+    words.z_nm = move.z_nm;
+    if (move.feed_mm_per_min > 0.0)
+      dialect.feed(out, words, move.feed_mm_per_min);
+    else
+      dialect.rapid(out, words);
+  }
+};
+
+}  // namespace
+
+std::string nc_text(const Program& program, std::string_view dialect) {
+  return FileWriter(*entry_of(dialect).make(), program).run();
+}
+
+std::string nc_text(const MoveProgram& program, std::string_view dialect) {
+  const std::unique_ptr<DialectWriter> writer = entry_of(dialect).make();
+  NcText out;
+  writer->begin_file(out);
+  writer->begin_main(out);
+  for (const std::string& line : program.header) writer->comment(out, line);
+  writer->prepare(out);
+  for (const auto& item : program.items) std::visit(MoveWriter{*writer, out}, item);
+  writer->end_main(out);
+  writer->end_file(out);
+  return out.take();
+}
+
+std::string_view ending_of(std::string_view dialect) {
+  return entry_of(dialect).dialect.ending;
 }
 
 }  // namespace retrace::fabrication

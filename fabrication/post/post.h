@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "fabrication/program/move_program.h"
 #include "fabrication/program/program.h"
 
 namespace retrace::fabrication {
@@ -21,5 +22,11 @@ std::span<const Dialect> dialects();
 /// The program as one complete file of that dialect: header, preparation, subroutines, moves, end.
 /// \throw InputError for a dialect that is not known
 std::string nc_text(const Program& program, std::string_view dialect);
+
+/// The same of a program that is nothing but moves.
+std::string nc_text(const MoveProgram& program, std::string_view dialect);
+
+/// The ending of a dialect's files. \throw InputError likewise
+std::string_view ending_of(std::string_view dialect);
 
 }  // namespace retrace::fabrication

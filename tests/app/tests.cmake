@@ -10,6 +10,7 @@ retrace_test(app_test
     app/metrology_test.cpp
     app/number_list_test.cpp
     app/photometry_test.cpp
+    app/plane_test.cpp
     app/program.cpp
     app/readme_test.cpp
     app/returned_light_test.cpp

@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces image export report init list'
+  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces plane image export report init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -175,6 +175,7 @@ _retrace() {
         _retrace_words "$word" "$common --dialect --phase --from-element --stop-every --split-hours"
         ;;
       verify) _retrace_words "$word" "$common --dialect --tolerance-nm --as-machined --map" ;;
+      plane) _retrace_words "$word" "$common --dialect" ;;
       forces) _retrace_words "$word" "$common --configuration --facet --plunge-mm" ;;
       image)
         _retrace_words "$word" "$common --detector --camera --road --pixels --incidence --azimuth --engine --cutoff \
@@ -190,7 +191,7 @@ _retrace() {
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect | photometry | roughness | sweep | optimize | tolerance | job | fabricate | forces | image | export)
+    rre | inspect | photometry | roughness | sweep | optimize | tolerance | job | fabricate | forces | plane | image | export)
       _retrace_files "$word" .toml
       ;;
     report)

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "fabrication/planing/part.h"
+
+namespace retrace::fabrication {
+
+/// Reads a part to be planed or turned (`retrace.planed_part/1`, docs/planing_file.md). \throw InputError naming file,
+/// line and key
+PlanedPart parse_planed_part(std::string_view text, const std::string& source_name);
+PlanedPart read_planed_part(const std::filesystem::path& file);
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "fabrication/planing/check.h"
+#include "fabrication/read/nc_motion.h"
+
+namespace retrace::fabrication {
+
+/// Follows the programs of a planing mill. Strokes of all programs make one surface.
+class MillCheck : public NcSink {
+ public:
+  MillCheck(const PlanedPart& part, double flank_slope, PlaningCheck& result)
+      : part_(part), flank_slope_(flank_slope), result_(result) {}
+
+  void begin(const std::string& program);
+  void motion(const NcMotion& motion, const NcSettings& settings) override;
+  void dwell(double seconds, const NcPlace&, const AxisPositions&) override { result_.time_s.back() += seconds; }
+  void end();
+  /// What all strokes left.
+  void measure();
+
+ private:
+  struct Stroke {
+    double x_mm = 0.0;
+    double depth_mm = 0.0;
+  };
+
+  void find(const std::string& kind, const NcMotion& motion, const std::string& message, double value, double limit);
+  void check_length(const NcMotion& motion, std::size_t axis, double length_mm);
+  void check_grid(const NcMotion& motion, std::size_t axis, double place_mm);
+  void check_place(const NcMotion& motion, std::size_t axis);
+  void measure_at(double x_mm, double left_mm, const ZoneProfile& profile);
+
+  const PlanedPart& part_;
+  double flank_slope_;
+  PlaningCheck& result_;
+  std::string program_;
+  std::vector<Stroke> strokes_;
+  double low_mm_[3] = {0.0, 0.0, 0.0};
+  double high_mm_[3] = {0.0, 0.0, 0.0};
+  bool is_placed_[3] = {false, false, false};
+};
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "fabrication/planing/zone_profile.h"
+
+namespace retrace::fabrication {
+
+/// A milling machine that planes: its spindle stands still, which it allows in fast feed alone, so that every move is
+/// of one axis and no shorter than the least that fast feed makes. X across the zones, Y along them, Z up.
+struct PlaningMill {
+  double fast_feed_mm_per_min = 0.0;
+  double frame_s = 0.0;  ///< that a frame takes beside its move
+  double grid_mm = 0.01;
+  double least_x_mm = 13.0;
+  double least_y_mm = 13.0;
+  double least_z_mm = 6.0;
+  double travel_x_mm = 350.0;
+  double travel_y_mm = 1500.0;
+  double travel_z_mm = 400.0;
+  double most_hours = 8.0;
+  double run_out_mm = 20.0;  ///< by which strokes begin and end beside the part
+  double clear_mm = 14.0;    ///< height above the blank of moves over it
+};
+
+/// A lathe: X is the radius, Z along the axis, both at a time.
+struct PlaningLathe {
+  double feed_mm_per_min = 0.0;
+  double depth_of_cut_mm = 1.0;  ///< of a pass
+  double clear_mm = 2.0;
+};
+
+/// A flat optical element that is to be planed or turned.
+struct PlanedPart {
+  std::string source;
+  std::string title;
+  ZoneLens lens;
+  double length_mm = 0.0;     ///< along the zones of a cylindrical lens; mill only
+  double tolerance_mm = 0.0;  ///< of depth (mill), of distance (lathe)
+  std::optional<PlaningMill> mill;
+  std::optional<PlaningLathe> lathe;  ///< one of the two
+};
+
+}  // namespace retrace::fabrication

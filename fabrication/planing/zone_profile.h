@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace retrace::fabrication {
+
+/// A flat lens of zones: flat on one side, stepped hyperbolas on the side of the focus. Lengths in mm, of a cylindrical
+/// lens across its zones, of a round one along the radius. Lengths > 0, index > 1.
+struct ZoneLens {
+  double focal_length_mm = 0.0;  ///< from the middle of the stepped face
+  double wavelength_mm = 0.0;    ///< in air
+  double refractive_index = 0.0;
+  double half_width_mm = 0.0;
+};
+
+/// One zone, from its step towards the middle to the next one.
+struct Zone {
+  double from_mm = 0.0;
+  double to_mm = 0.0;
+};
+
+/// The depth of a zone lens below the face of its blank (docs/theory/planing.md): within zone k the optical path from
+/// the focus through the lens is that of the middle and k wavelengths more.
+class ZoneProfile {
+ public:
+  /// \pre the values are in range \throw InputError if the zones do not fit between lens and focus
+  explicit ZoneProfile(const ZoneLens& lens);
+
+  const ZoneLens& lens() const { return lens_; }
+  const std::vector<Zone>& zones() const { return zones_; }
+  /// Largest depth: wavelength / (index - 1).
+  double step_mm() const { return step_mm_; }
+  /// The zone that holds a place; a step belongs to the zone outside. \pre 0 <= x <= half width
+  std::size_t zone_of(double x_mm) const;
+  double depth_mm(double x_mm) const { return depth_in_zone_mm(zone_of(x_mm), x_mm); }
+  /// The same by the formula of one zone, also beyond its ends.
+  double depth_in_zone_mm(std::size_t zone, double x_mm) const;
+  /// Slope of the depth in a zone; it grows outwards.
+  double slope_in_zone(std::size_t zone, double x_mm) const;
+  /// Where a zone's formula has that depth. \pre depth >= that of the middle
+  double place_in_zone_mm(std::size_t zone, double depth_mm) const;
+  double steepest_slope() const;
+
+ private:
+  double vertex_distance_mm(std::size_t zone) const;
+
+  ZoneLens lens_;
+  double step_mm_ = 0.0;
+  std::vector<Zone> zones_;
+};
+
+}  // namespace retrace::fabrication

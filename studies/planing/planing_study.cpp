@@ -1,0 +1,31 @@
+#include "studies/planing/planing_study.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "fabrication/planing/io/part_files.h"
+#include "fabrication/post/post.h"
+
+namespace retrace::studies {
+
+PlaningResult plane(const std::string& part_file, const std::string& dialect) {
+  using namespace fabrication;
+  PlaningResult result;
+  const std::string ending(ending_of(dialect));  // says at once that there is no such dialect
+  result.part = read_planed_part(part_file);
+  result.dialect = dialect;
+  try {
+    result.plan = plan_planing(result.part);
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    throw text.starts_with(part_file) ? error : InputError({part_file, 0, ""}, text);
+  }
+  for (const PlannedProgram& planned : result.plan.programs)
+    result.programs.push_back({planned.program.name + ending, nc_text(planned.program, dialect)});
+  const auto word = std::find(std::begin(kNcDialectWords), std::end(kNcDialectWords), dialect);
+  result.check = check_planing(result.part, result.plan.flank_slope, result.programs,
+                               static_cast<NcDialect>(word - std::begin(kNcDialectWords)));
+  return result;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,43 @@
+// retrace plane: its files, its exit codes, and what it refuses before anything is written.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/app/program.h"
+
+namespace retrace::test {
+namespace {
+
+const std::string kLens = example("planing/zone_lens_60ghz.toml");
+
+TEST(Plane, WritesProgramsDrawingsAndItsDocument) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"plane", kLens, "--dialect=fanuc", "-o", "."});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = folder.json("planing.json");
+  EXPECT_EQ(json["schema"], "retrace.planing/1");
+  EXPECT_EQ(json["verdict"], "pass");
+  const std::vector<std::string> names = folder.names();
+  for (const char* name : {"profile.svg", "zones.svg", "form_error.svg", "profile.csv", "odd_zones_1.nc"})
+    EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  EXPECT_NE(outcome.out.find("odd_zones_1.nc"), std::string::npos);
+}
+
+TEST(Plane, BadInputIsOneLineAndNothingIsWritten) {
+  const TemporaryFolder folder;
+  folder.write("part.toml", "[element]\nkind = \"zone_lens\"\n");
+  Outcome outcome = retrace(folder, {"plane", "part.toml", "-o", "out"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("part.toml:1: element.focal_length_mm: missing"), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+  outcome = retrace(folder, {"plane", kLens, "--dialect=heidenhain", "-o", "out"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("--dialect: must be"), std::string::npos) << outcome.err;
+  outcome = retrace(folder, {"plane", kLens, "--set", "element.width_mm=3", "-o", "out"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"part.toml"});
+}
+
+}  // namespace
+}  // namespace retrace::test

@@ -1,0 +1,135 @@
+// Chords within a tube: against the circle, and against all sets of chords of random profiles.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/random.h"
+#include "fabrication/planing/chords.h"
+
+namespace retrace::fabrication {
+namespace {
+
+std::vector<ProfilePoint> circle(double radius_mm, double spacing_mm, double length_mm) {
+  std::vector<ProfilePoint> points;
+  for (double way = 0.0; way <= length_mm; way += spacing_mm)
+    points.push_back({radius_mm * std::sin(way / radius_mm), -radius_mm * (1.0 - std::cos(way / radius_mm))});
+  return points;
+}
+
+double random(std::uint32_t seed, std::uint32_t k) {
+  return unit_interval(philox({seed, 7}, k, 0)[0]);
+}
+
+/// Distance of a point from the piece between two.
+double off_piece(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& p) {
+  const double dx = b.x_mm - a.x_mm;
+  const double dz = b.z_mm - a.z_mm;
+  const double t = std::clamp(((p.x_mm - a.x_mm) * dx + (p.z_mm - a.z_mm) * dz) / (dx * dx + dz * dz), 0.0, 1.0);
+  return std::hypot(p.x_mm - a.x_mm - t * dx, p.z_mm - a.z_mm - t * dz);
+}
+
+bool fits(const std::vector<ProfilePoint>& points, std::size_t i, std::size_t j, double tolerance_mm) {
+  for (std::size_t k = i + 1; k < j; ++k)
+    if (off_piece(points[i], points[j], points[k]) > tolerance_mm + 1e-12) return false;
+  return true;
+}
+
+/// The fewest chords by dynamic programming over all pairs.
+std::size_t fewest_by_all_pairs(const std::vector<ProfilePoint>& points, double tolerance_mm) {
+  std::vector<std::size_t> count(points.size(), std::numeric_limits<std::size_t>::max());
+  count[0] = 0;
+  for (std::size_t j = 1; j < points.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i)
+      if (fits(points, i, j, tolerance_mm)) count[j] = std::min(count[j], count[i] + 1);
+  return count.back();
+}
+
+void expect_in_tube(const std::vector<ProfilePoint>& points, const Chords& chords, double tolerance_mm) {
+  ASSERT_EQ(chords.front(), 0U);
+  ASSERT_EQ(chords.back(), points.size() - 1);
+  for (std::size_t k = 0; k + 1 < chords.size(); ++k) {
+    ASSERT_LT(chords[k], chords[k + 1]);
+    EXPECT_TRUE(fits(points, chords[k], chords[k + 1], tolerance_mm));
+  }
+}
+
+/// Heights that wander from point to point.
+std::vector<ProfilePoint> wandering(std::uint32_t seed) {
+  std::vector<ProfilePoint> points;
+  double slope = 0.0;
+  double height = 0.0;
+  for (std::uint32_t k = 0; k < 70; ++k) {
+    points.push_back({0.1 * k, height});
+    slope += 0.6 * (random(seed, k) - 0.5);
+    height += 0.1 * slope;
+  }
+  return points;
+}
+
+/// A profile that bends one way alone.
+std::vector<ProfilePoint> convex(std::uint32_t seed) {
+  std::vector<ProfilePoint> points;
+  double slope = -1.0;
+  double height = 0.0;
+  for (std::uint32_t k = 0; k < 70; ++k) {
+    points.push_back({0.1 * k, height});
+    slope += 0.08 * random(seed, k);
+    height += 0.1 * slope;
+  }
+  return points;
+}
+
+TEST(Chords, OfACircle) {
+  // Half a chord squared is R^2 - (R - t)^2: 0.894 mm at R = 10 mm and t = 0.01 mm.
+  const double chord_mm = 2.0 * std::sqrt(2.0 * 10.0 * 0.01 - 0.01 * 0.01);
+  EXPECT_NEAR(chord_mm, 0.894, 5e-4);
+  const double spacing_mm = 1e-3;
+  const auto points = circle(10.0, spacing_mm, 6.0);
+  for (const Chords& chords : {longest_chords(points, 0.01), fewest_chords(points, 0.01)}) {
+    const ProfilePoint& end = points[chords[1]];
+    EXPECT_NEAR(std::hypot(end.x_mm, end.z_mm), chord_mm, 2.0 * spacing_mm);
+    EXPECT_EQ(chords.size() - 1, 7U);  // 6 mm of arc
+    expect_in_tube(points, chords, 0.01);
+  }
+}
+
+TEST(Chords, NoFewerArePossible) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed)
+    for (const double tolerance_mm : {0.0, 0.002, 0.01, 0.05}) {
+      const auto points = wandering(seed);
+      const Chords chords = fewest_chords(points, tolerance_mm);
+      expect_in_tube(points, chords, tolerance_mm);
+      EXPECT_EQ(chords.size() - 1, fewest_by_all_pairs(points, tolerance_mm)) << seed << ' ' << tolerance_mm;
+    }
+}
+
+TEST(Chords, LongestAreTheFewestOfConvexProfiles) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed)
+    for (const double tolerance_mm : {0.002, 0.01, 0.05}) {
+      const auto points = convex(seed);
+      const Chords chords = longest_chords(points, tolerance_mm);
+      expect_in_tube(points, chords, tolerance_mm);
+      EXPECT_EQ(chords.size() - 1, fewest_by_all_pairs(points, tolerance_mm)) << seed << ' ' << tolerance_mm;
+    }
+}
+
+TEST(Chords, LongestAreNotAlwaysTheFewest) {
+  // The first chord may reach point 2, which lies high; from there the low point 3 is in the way of the end. From point
+  // 1 the end is reached at once.
+  const std::vector<ProfilePoint> points = {{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.9}, {3.0, -0.9}, {4.0, 0.0}, {9.0, 0.0}};
+  const std::size_t longest = longest_chords(points, 1.0).size() - 1;
+  EXPECT_LE(fewest_chords(points, 1.0).size() - 1, longest);
+  bool found = false;
+  for (std::uint32_t seed = 1; seed <= 60 && !found; ++seed)
+    for (const double tolerance_mm : {0.01, 0.02, 0.05}) {
+      const auto wild = wandering(seed);
+      found = found || fewest_chords(wild, tolerance_mm).size() < longest_chords(wild, tolerance_mm).size();
+    }
+  EXPECT_TRUE(found) << "profiles that bend both ways have fewer chords than the longest ones";
+}
+
+}  // namespace
+}  // namespace retrace::fabrication

@@ -1,0 +1,82 @@
+// Files of parts to be planed or turned: what is read, and what is refused in one line.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/error.h"
+#include "fabrication/planing/io/part_files.h"
+
+namespace retrace::fabrication {
+namespace {
+
+const std::string kMilled = R"(schema = "retrace.planed_part/1"
+[element]
+kind = "zone_lens"
+focal_length_mm = 500
+wavelength_mm = 5
+refractive_index = 1.5
+width_mm = 400
+length_mm = 300
+[tolerance]
+form_mm = 0.2
+[mill]
+fast_feed_mm_per_min = 3000
+)";
+
+std::string refusal(const std::string& from, const std::string& to, std::string text = kMilled) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  try {
+    parse_planed_part(text, "p.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(PlanedPart, DefaultsAreThoseOfTheMachineOfThePaper) {
+  const PlanedPart part = parse_planed_part(kMilled, "p.toml");
+  ASSERT_TRUE(part.mill);
+  EXPECT_FALSE(part.lathe);
+  EXPECT_EQ(part.lens.half_width_mm, 200.0);
+  EXPECT_EQ(part.mill->grid_mm, 0.01);
+  EXPECT_EQ(part.mill->least_x_mm, 13.0);
+  EXPECT_EQ(part.mill->least_y_mm, 13.0);
+  EXPECT_EQ(part.mill->least_z_mm, 6.0);
+  EXPECT_EQ(part.mill->most_hours, 8.0);
+}
+
+TEST(PlanedPart, BadInputIsOneLineWithItsPlace) {
+  EXPECT_EQ(refusal("retrace.planed_part/1", "retrace.job/1"),
+            "p.toml:1: schema: must be \"retrace.planed_part/1\", got \"retrace.job/1\"");
+  EXPECT_EQ(refusal("focal_length_mm = 500", "focal_length_mm = -5"),
+            "p.toml:4: element.focal_length_mm: must be >= 0.1 and <= 10000, got -5");
+  EXPECT_EQ(refusal("refractive_index = 1.5", "refractive_index = 1"),
+            "p.toml:6: element.refractive_index: must be >= 1.01 and <= 5, got 1");
+  EXPECT_EQ(refusal("form_mm = 0.2", "form_mm = 0.015"),
+            "p.toml:10: tolerance.form_mm: must be >= two steps of the machine's grid, 0.02, got 0.015");
+  EXPECT_EQ(refusal("form_mm = 0.2", "form_mm = 6"),
+            "p.toml:10: tolerance.form_mm: must be <= half the depth of a zone, 5, got 6");
+  EXPECT_EQ(refusal("form_mm = 0.2", "form_mm = 4"),
+            "p.toml:10: tolerance.form_mm: must be <= 200 steps of the machine's grid, 2, got 4");
+  EXPECT_EQ(refusal("[mill]\n", "[mill]\nclear_mm = 3\n"),
+            "p.toml:12: mill.clear_mm: must be at least the least move of Z, 6, got 3");
+  EXPECT_EQ(refusal("[mill]\nfast_feed_mm_per_min = 3000\n", ""), "p.toml: mill: missing, must be a table");
+}
+
+TEST(PlanedPart, UnknownKeysAndTablesAreRefused) {
+  EXPECT_NE(refusal("[mill]\n", "[mill]\nspeed = 3\n").find("p.toml:12: mill.speed"), std::string::npos);
+  EXPECT_NE(refusal("[mill]\n", "[lathe]\nfeed_mm_per_min = 3\n[mill]\n").find("lathe"), std::string::npos);
+  EXPECT_NE(refusal("kind = \"zone_lens\"", "kind = \"lens\"").find("p.toml:3: element.kind"), std::string::npos);
+}
+
+TEST(PlanedPart, ZonesThatDoNotFitAreRefused) {
+  EXPECT_NE(refusal("focal_length_mm = 500", "focal_length_mm = 20").find("p.toml:4: element.focal_length_mm"),
+            std::string::npos)
+      << refusal("focal_length_mm = 500", "focal_length_mm = 20");
+}
+
+}  // namespace
+}  // namespace retrace::fabrication
