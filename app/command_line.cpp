@@ -238,13 +238,14 @@ CLI::App* add_study(CLI::App& app, StudyOptions& study, const char* name, const 
 /// How a job is made, for every command that makes one. \return the options
 std::vector<CLI::Option*> add_making(CLI::App& command, JobOptions& job) {
   std::vector<CLI::Option*> options;
-  options.push_back(command.add_option("--machine", job.machine, "ideal, paper, thesis or a file")
+  options.push_back(command.add_option("--machine", job.machine, "ideal, paper, thesis, ideal-dmc or a file")
                         ->type_name("MACHINE")
                         ->capture_default_str()
                         ->check(not_empty()));
-  options.push_back(command.add_option("--tool-width-mm", job.tool_width_mm, "width of the tool's edge, 0.1 to 2")
-                        ->type_name("W")
-                        ->check(real_number()));
+  options.push_back(
+      command.add_option("--tool-width-mm", job.tool_width_mm, "width of the tool's edge, 0.1 to 2; of dmc 0.01 to 10")
+          ->type_name("W")
+          ->check(real_number()));
   options.push_back(
       command.add_option("--strategy", job.strategy, "unidirectional, bidirectional or two-step; dmc for cube corners")
           ->type_name("STRATEGY")
@@ -267,11 +268,14 @@ std::vector<CLI::Option*> add_making(CLI::App& command, JobOptions& job) {
 
 void add_job(CLI::App& app, JobOptions& job) {
   CLI::App* command = app.add_subcommand("job", "a fabrication job from a design");
-  command->add_option("DESIGN", job.design, "design file of prisms; - is standard input")
-      ->required()
-      ->check(not_empty());
+  command->add_option("DESIGN", job.design, "design file; - is standard input")->required()->check(not_empty());
   add_making(*command, job);
   command->get_option("--tool-width-mm")->required();
+  command
+      ->add_option("--reachable", job.reachable,
+                   "write what a chisel with a straight edge makes of cube corners, as a design, instead of a job")
+      ->type_name("FILE")
+      ->check(not_empty());
 }
 
 void add_optimize(CLI::App& app, StudyOptions& study, JobOptions& job) {

@@ -92,6 +92,7 @@ struct JobOptions {
   std::string process = "thesis-acrylic";
   std::string workpiece = "mould";
   double shrinkage_percent = 0.0;
+  std::string reachable;  ///< job: design file of what a chisel makes of cube corners; empty: none
 };
 
 struct FabricateOptions {

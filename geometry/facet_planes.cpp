@@ -1,6 +1,9 @@
 #include "geometry/facet_planes.h"
 
 #include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
 #include <utility>
 
 #include "core/error.h"
@@ -39,6 +42,43 @@ std::size_t FacetPlanes::element_count() const {
   return count;
 }
 
+void add_flares(std::vector<ElementPlanes>& elements, double radius_mm) {
+  using Key = std::pair<std::int64_t, std::int64_t>;
+  // Middles of hexagons lie on multiples of these from the first.
+  const Vec2 step = radius_mm * Vec2(1.5, 0.5 * std::numbers::sqrt3);
+  const Vec2 first = elements.front().centre_mm;
+  const auto key_of = [&](const Vec2& at) {
+    return Key{std::llround((at - first).x() / step.x()), std::llround((at - first).y() / step.y())};
+  };
+  const auto corner = [&](std::size_t k) -> Vec2 {
+    const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k);
+    return radius_mm * Vec2(std::cos(angle), std::sin(angle));
+  };
+  std::set<Key> cut;
+  for (const ElementPlanes& element : elements) cut.insert(key_of(element.centre_mm));
+  std::map<Key, ElementPlanes> land;
+  for (const ElementPlanes& element : elements)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
+        const Vec2 centre_mm = element.centre_mm + corner(k) - corner(other);
+        if (cut.contains(key_of(centre_mm))) continue;
+        ElementPlanes& place = land[key_of(centre_mm)];
+        place.planes.clear();
+        place.centre_mm = centre_mm;
+        // The facet across the dihedral edge `other`, told over that place.
+        HeightPlane plane = element.planes[(other + 1) % 3];
+        plane.height_mm += plane.slope.dot(centre_mm - element.centre_mm);
+        if (!place.flares[other]) place.flares[other] = plane;
+      }
+  for (auto& [key, place] : land) elements.push_back(std::move(place));
+}
+
+double cube_spacing_mm(const Element& element) {
+  // Apexes of neighbouring triangles are half a radius apart along x, a third of their height.
+  constexpr double kNearest = 1.0 / 3.0;
+  return kNearest * bounding_box(aperture_outline(element)).size().minCoeff();
+}
+
 Vec2 place_of(const PartSpec& spec, const Cell& cell) {
   if (!std::holds_alternative<RtpElement>(spec.element)) return cell.at_mm;
   const Rectangle box = bounding_box(cell.outline);
@@ -48,6 +88,11 @@ Vec2 place_of(const PartSpec& spec, const Cell& cell) {
 Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm) {
   std::vector<HeightPlane> planes = element.planes;
   for (HeightPlane& plane : planes) plane.height_mm -= plane.slope.dot(centre_mm);
+  std::vector<HeightPlane> caps;
+  for (const std::optional<HeightPlane>& cap : element.caps)
+    if (cap) caps.push_back({cap->height_mm - cap->slope.dot(centre_mm), cap->slope});
+  const bool has_caps = caps.size() == planes.size();
+  if (!has_caps) caps.clear();
   Cell own = cell;
   own.facets.clear();
   for (std::size_t k = 0; k < planes.size(); ++k) {
@@ -56,7 +101,16 @@ Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2
     facet.outline = cell.outline;
     for (std::size_t other = 0; other < planes.size() && !facet.outline.empty(); ++other)
       if (other != k) facet.outline = where_higher(facet.outline, planes[k], planes[other]);
+    if (has_caps && !facet.outline.empty()) facet.outline = where_higher(facet.outline, planes[k], caps[k]);
     if (!facet.outline.empty()) own.facets.push_back(std::move(facet));
+  }
+  for (std::size_t k = 0; k < caps.size(); ++k) {
+    CellFacet cap;
+    cap.plane = caps[k];
+    cap.outline = where_higher(cell.outline, caps[k], planes[k]);
+    for (std::size_t other = 0; other < caps.size() && !cap.outline.empty(); ++other)
+      if (other != k) cap.outline = where_higher(cap.outline, caps[other], caps[k]);
+    if (!cap.outline.empty()) own.facets.push_back(std::move(cap));
   }
   return own;
 }

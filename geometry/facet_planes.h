@@ -22,7 +22,19 @@ struct ElementPlanes {
   /// In the place of a hexagonal cube corner that is not there: what cavities of its neighbours, which are triangular,
   /// take of its corner at 120 k degrees, up to the line between the corners beside that one.
   std::array<std::optional<HeightPlane>, 3> flares;
+  /// Of a cube corner: what a chisel with a straight edge leaves over its apex, in front of facet k: the surface is the
+  /// higher of the facets and of the lowest of these. All three, or none.
+  std::array<std::optional<HeightPlane>, 3> caps;
 };
+
+/// Adds the flares that triangular cavities leave beside hexagonal cube corners: a corner of a hexagon at a dihedral
+/// edge is that of two others; where one of these is not there, a facet of the cavity goes on over it
+/// (docs/theory/micro_chiseling.md). \param elements all that are there, at least one \param radius_mm of their
+/// apertures
+void add_flares(std::vector<ElementPlanes>& elements, double radius_mm);
+
+/// FacetPlanes' spacing for cube corners.
+double cube_spacing_mm(const Element& element);
 
 /// Elements with facets of their own, such as a program left them. Elements that are not among them are not there.
 class FacetPlanes {

@@ -24,6 +24,8 @@ using geometry::Vec3;
 constexpr double kNmPerMm = 1e6;
 constexpr std::size_t kMostLines = 400;
 constexpr std::size_t kLeastLines = 4;
+/// Cavities of hexagonal cube corners reach twice the radius of their apertures.
+constexpr double kCavityReach = 2.0;
 
 /// The dexels of one element, as heights over its facets.
 struct ElementField {
@@ -48,7 +50,7 @@ ElementField field_of(const Groove& groove, std::span<const Sweep> sweeps, std::
   const Vec3 across = groove.root_direction.cross(Vec3::UnitZ());
   const Vec3 half =
       groove.is_cube()
-          ? Vec3(groove.half_base_mm, groove.half_base_mm, 0.0)
+          ? Vec3(kCavityReach * groove.half_base_mm, kCavityReach * groove.half_base_mm, 0.0)
           : Vec3((groove.half_width_mm * groove.root_direction).cwiseAbs() + (groove.half_base_mm * across).cwiseAbs());
   ElementField field;
   field.box = {groove.root_mm - half + 2.0 * groove.root_mm.z() * Vec3::UnitZ(), groove.root_mm + half};
@@ -67,6 +69,8 @@ ElementField field_of(const Groove& groove, std::span<const Sweep> sweeps, std::
       // Above the nearer facet: what is left of the other one is its own.
       double height_mm = std::numeric_limits<double>::infinity();
       for (const DesignFacet& facet : groove.facets) height_mm = std::min(height_mm, facet.height_mm(left));
+      // Where nothing is removed beyond a cavity's rim the face stays as it should.
+      if (left.z() == 0.0) height_mm = std::max(height_mm, 0.0);
       field.height_nm.push_back(height_mm * kNmPerMm);
     }
   return field;
@@ -98,7 +102,8 @@ ErrorField error_field(const Job& job, const Machine& machine, const std::vector
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements.size()), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const Groove& groove = workpiece.grooves[i];
-      const double longest_mm = 2.0 * std::max(groove.half_width_mm, groove.half_base_mm);
+      const double longest_mm =
+          2.0 * (groove.is_cube() ? kCavityReach : 1.0) * std::max(groove.half_width_mm, groove.half_base_mm);
       const auto lines =
           std::clamp(static_cast<std::size_t>(std::ceil(longest_mm / pitch_mm)), kLeastLines, kMostLines);
       elements[i] = field_of(groove, check.sweeps()[i], poses, check.wedge(), lines);
@@ -112,7 +117,7 @@ ErrorField error_field(const Job& job, const Machine& machine, const std::vector
       const Vec2 share((static_cast<double>(column) + 0.5) / static_cast<double>(field.columns),
                        1.0 - (static_cast<double>(row) + 0.5) / static_cast<double>(field.rows));
       const Vec2 p = field.low_mm + share.cwiseProduct(field.size_mm);
-      if (const auto element = map.at(p.x(), p.y()))
+      if (const auto element = map.deepest(p.x(), p.y()))
         field.height_nm[row * field.columns + column] = elements[*element].at(p);
     }
   return field;

@@ -100,4 +100,27 @@ std::optional<std::size_t> GrooveMap::at(double x_mm, double y_mm) const {
   return nearest;
 }
 
+std::optional<std::size_t> GrooveMap::deepest(double x_mm, double y_mm) const {
+  if (grooves_.empty() || !grooves_.front().is_cube()) return at(x_mm, y_mm);
+  // Cavities of hexagonal elements reach twice their radius.
+  constexpr int kCells = 2;
+  std::optional<std::size_t> best;
+  double lowest_mm = 0.0;
+  for (int dx = -kCells; dx <= kCells; ++dx)
+    for (int dy = -kCells; dy <= kCells; ++dy) {
+      const auto [first, last] = cells_.equal_range(cell_of(x_mm, y_mm, dx, dy));
+      for (auto entry = first; entry != last; ++entry) {
+        const Groove& cavity = grooves_[entry->second];
+        const Vec3 from_apex(x_mm - cavity.root_mm.x(), y_mm - cavity.root_mm.y(), 0.0);
+        double height_mm = cavity.root_mm.z();
+        for (const DesignFacet& facet : cavity.facets)
+          height_mm = std::max(height_mm, cavity.root_mm.z() - facet.normal.dot(from_apex) / facet.normal.z());
+        if (height_mm >= lowest_mm) continue;
+        lowest_mm = height_mm;
+        best = entry->second;
+      }
+    }
+  return best;
+}
+
 }  // namespace retrace::fabrication

@@ -52,6 +52,9 @@ class GrooveMap {
   explicit GrooveMap(const std::vector<Groove>& grooves);
   /// The element under the point; nothing on flat land or beyond the array.
   std::optional<std::size_t> at(double x_mm, double y_mm) const;
+  /// The element whose design lies deepest under the point: that of at(), or of cube corners the one whose cavity takes
+  /// the point, beyond its aperture too. Nothing where the face stays.
+  std::optional<std::size_t> deepest(double x_mm, double y_mm) const;
 
  private:
   using Cell = std::int64_t;

@@ -7,10 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numbers>
-#include <set>
-#include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
@@ -232,39 +229,6 @@ geometry::ElementPlanes planes_of(const Groove& groove, const ElementFigures& fi
   return planes;
 }
 
-/// Triangular cavities of hexagonal elements reach beyond these. A corner of a hexagon at a dihedral edge is that of
-/// two others; where one of these is not cut, a facet of the cavity goes on over it (docs/theory/micro_chiseling.md).
-void add_flares(std::vector<geometry::ElementPlanes>& elements, double radius_mm) {
-  using Key = std::pair<std::int64_t, std::int64_t>;
-  // Middles of hexagons lie on multiples of these from the first.
-  const geometry::Vec2 step = radius_mm * geometry::Vec2(1.5, 0.5 * std::numbers::sqrt3);
-  const geometry::Vec2 first = elements.front().centre_mm;
-  const auto key_of = [&](const geometry::Vec2& at) {
-    return Key{std::llround((at - first).x() / step.x()), std::llround((at - first).y() / step.y())};
-  };
-  const auto corner = [&](std::size_t k) -> geometry::Vec2 {
-    const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k);
-    return radius_mm * geometry::Vec2(std::cos(angle), std::sin(angle));
-  };
-  std::set<Key> cut;
-  for (const geometry::ElementPlanes& element : elements) cut.insert(key_of(element.centre_mm));
-  std::map<Key, geometry::ElementPlanes> land;
-  for (const geometry::ElementPlanes& element : elements)
-    for (std::size_t k = 0; k < 3; ++k)
-      for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
-        const geometry::Vec2 centre_mm = element.centre_mm + corner(k) - corner(other);
-        if (cut.contains(key_of(centre_mm))) continue;
-        geometry::ElementPlanes& place = land[key_of(centre_mm)];
-        place.planes.clear();
-        place.centre_mm = centre_mm;
-        // The facet across the dihedral edge `other`, told over that place.
-        geometry::HeightPlane plane = element.planes[(other + 1) % 3];
-        plane.height_mm += plane.slope.dot(centre_mm - element.centre_mm);
-        if (!place.flares[other]) place.flares[other] = plane;
-      }
-  for (auto& [key, place] : land) elements.push_back(std::move(place));
-}
-
 geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
   const std::vector<CutElement> elements = cut_elements(run.job);
   const geometry::Element size = blank_element(run.job);
@@ -277,11 +241,9 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
     planes.push_back(planes_of(groove, run.result.elements[i].figures, frame, elements[i].turned));
   }
   if (prism != nullptr) return {std::move(planes), std::min(prism_of(run.job).base_mm, prism_of(run.job).width_mm)};
-  constexpr double kNearest = 1.0 / 3.0;
-  const geometry::Vec2 box = geometry::bounding_box(geometry::aperture_outline(run.job.element)).size();
   const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&run.job.element);
-  if (hexagonal != nullptr) add_flares(planes, 0.5 * hexagonal->aperture_mm);
-  return {std::move(planes), kNearest * box.minCoeff()};
+  if (hexagonal != nullptr) geometry::add_flares(planes, 0.5 * hexagonal->aperture_mm);
+  return {std::move(planes), geometry::cube_spacing_mm(run.job.element)};
 }
 
 /// What a design with all elements alike leaves out.

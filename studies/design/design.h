@@ -95,7 +95,7 @@ struct Design {
   std::optional<raytrace::BallLayer> balls;  ///< kind = "ball": `part` then means nothing
   InputLocation balls_location;              ///< where the kind was given, for whoever cannot trace balls
   std::optional<ArrayMask> mask;
-  std::optional<FacetPlanesFile> facet_planes;  ///< finite parts of prisms only
+  std::optional<FacetPlanesFile> facet_planes;  ///< finite parts only
   std::string material = "PMMA";
   InputLocation material_location;          ///< where the material was named, for whoever finds that it is not shipped
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1

@@ -28,6 +28,7 @@ constexpr std::size_t kMostBytes = std::size_t{512} << 20;
 constexpr double kMost = 1e6;
 /// Flares are the facets behind the three of an element.
 constexpr std::size_t kFlares = 3;
+constexpr std::size_t kCaps = 6;
 constexpr double kMostTurnDeg = 5.0;
 constexpr double kMostHeightShare = 0.1;
 
@@ -52,9 +53,7 @@ class Reader {
       nominal_slopes_.push_back(facet.plane.slope);
     depth_mm_ = geometry::element_depth_mm(spec.element);
     const Vec2 size = geometry::bounding_box(geometry::aperture_outline(spec.element)).size();
-    // The axes of neighbouring triangles are half a radius apart along x.
-    constexpr double kNearest = 1.0 / 3.0;
-    spacing_mm_ = is_prism() ? size.minCoeff() : kNearest * size.minCoeff();
+    spacing_mm_ = is_prism() ? size.minCoeff() : geometry::cube_spacing_mm(spec.element);
   }
 
   geometry::FacetPlanes read(std::string_view text) {
@@ -108,10 +107,13 @@ class Reader {
     }
     if (column != values.size())
       fail(line, "", fmt::format("must have the {} fields of the heading, got {}", values.size(), column));
-    const auto most = static_cast<double>(is_hexagonal() ? kFlares + 3 : nominal_slopes_.size());
-    if (!(values[2] >= 1.0 && values[2] <= most) || values[2] != std::floor(values[2]))
+    if (!is_facet(values[2]))
       fail(line, "facet",
-           fmt::format("must be {}, got {}", is_prism() ? "1 or 2" : "1 to " + shortest(most), shortest(values[2])));
+           fmt::format("must be {}, got {}",
+                       is_prism()       ? "1 or 2"
+                       : is_hexagonal() ? "1 to 9"
+                                        : "1 to 3 or 7 to 9",
+                       shortest(values[2])));
     Row row;
     row.centre_mm = {values[0], values[1]};
     row.facet = static_cast<std::size_t>(values[2]) - 1;
@@ -121,6 +123,11 @@ class Reader {
     return row;
   }
 
+  bool is_facet(double number) const {
+    if (!(number >= 1.0 && number <= 9.0) || number != std::floor(number)) return false;
+    if (number <= static_cast<double>(nominal_slopes_.size())) return true;
+    return !is_prism() && (is_hexagonal() || number > static_cast<double>(kCaps));
+  }
   bool is_prism() const { return std::holds_alternative<geometry::RtpElement>(spec_.element); }
   bool is_hexagonal() const { return std::holds_alternative<geometry::HexagonalCube>(spec_.element); }
 
@@ -144,7 +151,16 @@ class Reader {
     return -0.5 * depth_mm_ - nominal_slopes_[(row.facet - kFlares + 1) % 3].dot(corner);
   }
 
+  /// A cap may lean as its tool did, but it passes over the apex and below the rim.
+  void check_cap(const Row& row) const {
+    if (!(row.plane.height_mm > -depth_mm_ && row.plane.height_mm < 0.0))
+      fail(row.line, "height_mm",
+           fmt::format("must be > {} and < 0, over the apex, got {}", fixed(-depth_mm_, 6),
+                       shortest(row.plane.height_mm)));
+  }
+
   void check(const Row& row) const {
+    if (row.facet >= kCaps) return check_cap(row);
     const bool may_be_turned =
         spec_.arrangement == geometry::Arrangement::checker || spec_.arrangement == geometry::Arrangement::triangular;
     if (!resembles(row, false) && !(may_be_turned && resembles(row, true)))
@@ -160,6 +176,7 @@ class Reader {
   }
 
   void take(const Row& row) {
+    if (row.facet >= kCaps && pending_.empty()) return take_cap(row);
     if (row.facet >= kFlares && pending_.empty()) return take_flare(row);
     for (const Row& other : pending_)
       if (other.centre_mm != row.centre_mm || other.facet == row.facet || row.facet >= kFlares)
@@ -174,6 +191,16 @@ class Reader {
     elements_.push_back(std::move(element));
     has_element_ = true;
     pending_.clear();
+  }
+
+  /// Caps stand behind the facets of their element, in their order.
+  void take_cap(const Row& row) {
+    if (elements_.empty() || elements_.back().planes.empty() || elements_.back().centre_mm != row.centre_mm)
+      fail(row.line, "facet", "must stand behind the three facets of its element");
+    auto& caps = elements_.back().caps;
+    const std::size_t k = row.facet - kCaps;
+    if (caps[k] || (k > 0 && !caps[k - 1])) fail(row.line, "facet", "must follow in the order 7, 8, 9");
+    caps[k] = row.plane;
   }
 
   /// Flares of one place stand together.
@@ -217,6 +244,8 @@ std::string facet_planes_text(const geometry::FacetPlanes& planes) {
     for (std::size_t k = 0; k < element.planes.size(); ++k) put(k + 1, element.planes[k]);
     for (std::size_t k = 0; k < element.flares.size(); ++k)
       if (element.flares[k]) put(kFlares + k + 1, *element.flares[k]);
+    for (std::size_t k = 0; k < element.caps.size(); ++k)
+      if (element.caps[k]) put(kCaps + k + 1, *element.caps[k]);
   }
   return text;
 }

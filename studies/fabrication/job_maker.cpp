@@ -13,6 +13,7 @@
 #include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "geometry/part.h"
+#include "studies/fabrication/reachable.h"
 
 namespace retrace::studies {
 namespace {
@@ -65,10 +66,11 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
     return prism;
   }
   if (!is_dmc(request))
-    throw InputError({"", 0, "--strategy"},
-                     "a chisel with a straight edge cannot reach the apex of a cube corner: must be dmc for this "
-                     "element.kind, got " +
-                         request.strategy);
+    throw InputError(
+        {"", 0, "--strategy"},
+        fmt::format("a chisel with a straight edge reaches {} % of the facets of this cube corner, and not "
+                    "its apex: must be dmc, or --reachable FILE for the part that it can make, got {}",
+                    fixed(100.0 * reachable_share(design.part.element, request.tool_width_mm), 2), request.strategy));
   if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&design.part.element))
     return upright(*hexagonal, design);
   return upright(std::get<geometry::TriangularCube>(design.part.element), design);

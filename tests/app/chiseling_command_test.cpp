@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "tests/app/program.h"
 
@@ -100,6 +102,73 @@ TEST_F(ChiselingCommand, HexagonsAsMachinedHaveFlares) {
   write_smooth("part.toml", "smooth.toml");
   // The hexagons return what they do in the design; flares add little or nothing at normal incidence.
   EXPECT_NEAR(rre_of("smooth.toml"), rre_of("design.toml"), 0.05);
+}
+
+std::string cube_design(bool is_hexagonal) {
+  return std::string("[element]\nkind = \"") + (is_hexagonal ? "hexagonal_icc" : "triangular_icc") +
+         "\"\naperture_mm = 1\n[array]\nx_length_mm = 2.6\ny_length_mm = 2.7\npartial_elements = \"omit\"\n[body]\n"
+         "thickness_mm = 1\nrefractive_index = 1.4917\n";
+}
+
+/// The triangle at the apex that a chisel does not reach is half its edge high; what it leaves over the apex ends where
+/// three rake faces meet. The cut's own planes say the same.
+TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
+  const TemporaryFolder folder;
+  for (const bool is_hexagonal : {false, true}) {
+    folder.write("d.toml", cube_design(is_hexagonal));
+    const Outcome made = retrace(folder, {"job", "d.toml", "--strategy", "unidirectional", "--tool-width-mm", "0.2",
+                                          "--reachable", "part.toml", "--json", "reach.json"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Json reach = folder.json("reach.json");
+    const double a = std::sqrt(3.0 / 8.0);
+    const double area = (is_hexagonal ? 1.0 : 0.5) * a * a;
+    EXPECT_EQ(reach["schema"], "retrace.reach/1");
+    EXPECT_NEAR(reach["facet_area_mm2"].get<double>(), area, 1e-12);
+    EXPECT_NEAR(reach["reached_share"].get<double>(), 1.0 - 0.01 / area, 1e-12);
+    EXPECT_NEAR(reach["reached_share_cut"].get<double>(), 1.0 - 0.01 / area, 0.01);
+    // On the axis, t from each facet: sqrt(2) t - 0.1 = t / tan 53.
+    const double t = 0.1 / (std::sqrt(2.0) - 1.0 / std::tan(53.0 * 3.14159265358979 / 180.0));
+    EXPECT_NEAR(reach["core_mm"].get<double>(), std::sqrt(3.0) * t, 1e-9);
+    EXPECT_NEAR(reach["core_mm_cut"].get<double>(), std::sqrt(3.0) * t, 1e-6);
+    const Json inspected = retrace_json(folder, {"inspect", "part.toml"});
+    EXPECT_EQ(inspected["elements_full"], reach["elements"]);
+    EXPECT_EQ(inspected["boundary"], "closed, free of self-intersections");
+    const auto rre = [&](const std::string& name) {
+      return retrace_json(folder, {"rre", name, "--engine", "montecarlo", "--samples", "20000"})["points"][0]["rre"]
+          .get<double>();
+    };
+    const double whole = rre("d.toml");
+    const double part = rre("part.toml");
+    EXPECT_LT(part, whole);
+    // Light that meets the core, 3 (0.2 / 2)^2 / sqrt(3) in plan of each cell, is lost, on either way.
+    EXPECT_GT(part, 0.4 * whole);
+  }
+}
+
+TEST(ReachablePart, WhatIsWrongIsRefusedInOneLine) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", cube_design(false));
+  folder.write("p.toml",
+               "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"single\"\n"
+               "[body]\nthickness_mm = 1\n");
+  const Arguments before = folder.names();
+  const std::pair<Arguments, std::string> cases[] = {
+      {{"job", "d.toml", "--tool-width-mm", "0.5", "--reachable", "o.toml"},
+       "--tool-width-mm: must be < 0.269713, or what it leaves over the apex reaches the blank's face, got 0.5"},
+      {{"job", "d.toml", "--tool-width-mm", "0.2", "--strategy", "dmc", "--reachable", "o.toml"},
+       "--reachable: is for strategies with a chisel"},
+      {{"job", "p.toml", "--tool-width-mm", "0.2", "--reachable", "o.toml"}, "--reachable: is for cube corners"},
+      {{"job", "d.toml", "--tool-width-mm", "0.2", "--reachable", "o.toml", "-o", "j.toml"}, "--out: makes a job"},
+      {{"job", "d.toml", "--tool-width-mm", "0.2", "--reachable", "d.toml"}, "--reachable: d.toml is a file that is"},
+      {{"job", "d.toml", "--tool-width-mm", "0.2", "--set", "array.x_length_mm=0.1", "--reachable", "o.toml"},
+       "array.x_length_mm: must be >= 1 to hold one element"}};
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = retrace(folder, arguments);
+    EXPECT_EQ(outcome.code, 2) << message;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(folder.names(), before);
+  }
 }
 
 }  // namespace

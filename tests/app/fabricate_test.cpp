@@ -238,7 +238,9 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
       {{"job", "d.toml", "--tool-width-mm", "0.4", "--workpiece", "die"}, "--workpiece: must be"},
       {{"job", "d.toml", "--tool-width-mm", "0.4", "--shrinkage-percent", "50"}, "--shrinkage-percent: must be"},
       {{"job", "cube.toml", "--tool-width-mm", "0.4"},
-       "--strategy: a chisel with a straight edge cannot reach the apex of a cube corner: must be dmc"},
+       "--strategy: a chisel with a straight edge reaches 89.33 % of the facets of this cube corner, and not its apex: "
+       "must be "
+       "dmc, or --reachable FILE for the part that it can make, got two-step"},
       {{"job", "cube.toml", "--tool-width-mm", "0.4", "--strategy", "dmc"},
        "--tool-width-mm: must be >= 0.807669 for the cutting edges to reach from the apex to the blank's face, got "
        "0.4"},

@@ -23,6 +23,7 @@
 #include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
 #include "fabrication/verify/dexel.h"
+#include "fabrication/verify/error_field.h"
 #include "fabrication/verify/verify.h"
 #include "geometry/lattice.h"
 #include "geometry/part.h"
@@ -240,6 +241,26 @@ TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
       if (stair_mm < -1e-9) ++below;
     }
   EXPECT_GT(below, 3000);
+}
+
+/// The picture of errors shows flares as cut right, and land as land.
+TEST(Chiseling, TheMapOfErrorsHoldsFlares) {
+  const Job job = cube_job(true, 0.3);
+  const Machine m = machine();
+  const ErrorField field = error_field(job, m, {parse_nc(text_of(job, m), "p", NcDialect::rs274ngc)}, 120);
+  const double pixel_mm2 = field.size_mm.prod() / static_cast<double>(field.columns * field.rows);
+  double cut_mm2 = 0.0;
+  double worst_nm = 0.0;
+  for (const double nm : field.height_nm) {
+    if (std::isnan(nm)) continue;
+    cut_mm2 += pixel_mm2;
+    worst_nm = std::max(worst_nm, std::abs(nm));
+  }
+  // Dexels stand in the middle of their cells, beside that of the pixel: that costs nothing on planes but a place.
+  EXPECT_LT(worst_nm, 20.0);
+  const double hexagons_mm2 = 9.0 * geometry::area(geometry::aperture_outline(job.element));
+  EXPECT_GT(cut_mm2, 1.05 * hexagons_mm2);
+  EXPECT_LT(cut_mm2, 0.98 * field.size_mm.prod());
 }
 
 TEST(Chiseling, EveryDialectCutsTheSame) {

@@ -184,6 +184,38 @@ TEST(FacetPlanes, FlaresOfOneCavityTakeAThirdOfACube) {
   EXPECT_NEAR(part.retro_facet_area_mm2, 3.0 * a * a + 6.0 * 0.5 * a * a, 1e-9);
 }
 
+/// What a chisel with an edge of 0.2 leaves over an apex is a corner of a cube with edges of 0.2 / sqrt(2), and a
+/// pyramid on the triangle of side 0.2 above it.
+TEST(FacetPlanes, CapsLeaveACoreOverTheApex) {
+  const double width = 0.2;
+  const double rake = 53.0 * std::numbers::pi / 180.0;
+  const double core = 0.5 * std::numbers::sqrt3 * width / (std::numbers::sqrt2 - 1.0 / std::tan(rake));
+  for (const Element& element : {Element(HexagonalCube{1.0, {}}), Element(TriangularCube{1.0, {}})}) {
+    PartSpec spec;
+    spec.element = element;
+    spec.arrangement = Arrangement::single;
+    spec.thickness_mm = 0.5;
+    const Vec2 centre = -bounding_box(element_cell(element).outline).lower;
+    ElementPlanes planes = cube_at(element, centre);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Through the level line half the edge up the facet, and the point on the axis.
+      const double plan = 0.5 * width / std::numbers::sqrt3;
+      const double azimuth = std::numbers::pi / 3.0 * (2.0 * static_cast<double>(k) + 1.0);
+      const double slope = (std::numbers::sqrt2 * plan - core) / plan;
+      planes.caps[k] =
+          HeightPlane{core - element_depth_mm(element), slope * Vec2(std::cos(azimuth), std::sin(azimuth))};
+    }
+    const Part part = build_part(spec, FacetPlanes({planes}, 0.25));
+    const BoundaryReport report = check_boundary(closed_boundary(part));
+    EXPECT_TRUE(report.ok());
+    const double corner = std::pow(width / std::numbers::sqrt2, 3) / 6.0;
+    const double pyramid = std::numbers::sqrt3 / 12.0 * width * width * (core - width / std::sqrt(6.0));
+    const double whole = check_boundary(closed_boundary(build_part(spec))).volume_mm3;
+    EXPECT_NEAR(report.volume_mm3, whole - corner - pyramid, 1e-12);
+    EXPECT_NEAR(part.element_depth_mm, element_depth_mm(element) - width / std::sqrt(6.0), 1e-12);
+  }
+}
+
 TEST(FacetPlanes, PlanesOfNoElementAreRefused) {
   const PartSpec spec = prisms(Arrangement::offset);
   EXPECT_THROW(build_part(spec, FacetPlanes({planes_at({0.25, 0.25}), planes_at({5.25, 0.25})}, 0.5)), InputError);

@@ -100,14 +100,27 @@ TEST(FacetPlanesReader, CubeCornersHaveThreeFacetsAndFlares) {
   EXPECT_EQ(refused_cube(kHead + flare),
             "p.csv: must have the header x_mm,y_mm,facet,height_mm,x_slope,y_slope and three lines for each element");
   EXPECT_EQ(refused_cube(kHead + cube + flare + flare), "p.csv:7: facet: must not be given twice for one place");
-  EXPECT_EQ(refused_cube(kHead + "2,2,7,-0.70711,0,0\n"), "p.csv:3: facet: must be 1 to 6, got 7");
-  EXPECT_EQ(refused_cube(kHead + "2,2,1.5,-0.70711,0,0\n"), "p.csv:3: facet: must be 1 to 6, got 1.5");
+  EXPECT_EQ(refused_cube(kHead + "2,2,10,-0.70711,0,0\n"), "p.csv:3: facet: must be 1 to 9, got 10");
+  EXPECT_EQ(refused_cube(kHead + "2,2,1.5,-0.70711,0,0\n"), "p.csv:3: facet: must be 1 to 9, got 1.5");
   EXPECT_EQ(refused_cube(kHead + "2,2,1,-0.70711,0.7071,1.2247\n"),
             "p.csv:3: must be followed by the other facets of its element");
   EXPECT_EQ(refused_cube(kHead + "2,2,1,-0.70711,0.7071,1.2247\n2,2,4,0.3536,-1.41421,0\n"),
             "p.csv:4: must be another facet of the element of the line before");
   EXPECT_EQ(refused_cube(kHead + "2,2,2,-0.70711,1.41421,0\n"),
             "p.csv:3: x_slope: the plane must lie within 5 degrees of facet 2 of the design's element");
+}
+
+TEST(FacetPlanesReader, CubeCornersMayHaveCaps) {
+  const std::string cube = "2,2,1,-0.70711,0.7071,1.2247\n2,2,2,-0.70711,-1.41421,0\n2,2,3,-0.70711,0.7071,-1.2247\n";
+  const std::string caps = "2,2,7,-0.5,-1,-1.7\n2,2,8,-0.5,2,0\n2,2,9,-0.5,-1,1.7\n";
+  const geometry::FacetPlanes planes =
+      parse_facet_planes(kHead + cube + caps, "p.csv", cubes(geometry::HexagonalCube{1.0, {}}));
+  ASSERT_EQ(planes.size(), 1U);
+  EXPECT_EQ(facet_planes_text(planes), "x_mm,y_mm,facet,height_mm,x_slope,y_slope\n" + cube + caps);
+  EXPECT_EQ(refused_cube(kHead + caps), "p.csv:3: facet: must stand behind the three facets of its element");
+  EXPECT_EQ(refused_cube(kHead + cube + "2,2,8,-0.5,2,0\n"), "p.csv:6: facet: must follow in the order 7, 8, 9");
+  EXPECT_EQ(refused_cube(kHead + cube + "2,2,7,0.5,-1,-1.7\n"),
+            "p.csv:6: height_mm: must be > -0.707107 and < 0, over the apex, got 0.5");
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ _retrace() {
           --workpiece --shrinkage-percent"
         ;;
       job)
-        _retrace_words "$word" "$common --machine --tool-width-mm --strategy --process --workpiece --shrinkage-percent"
+        _retrace_words "$word" "$common --machine --tool-width-mm --strategy --process --workpiece --shrinkage-percent --reachable"
         ;;
       fabricate)
         _retrace_words "$word" "$common --dialect --phase --from-element --stop-every --split-hours"

@@ -1,0 +1,163 @@
+#include "studies/fabrication/reachable.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/json_text.h"
+#include "core/number_format.h"
+#include "core/toml_file.h"
+#include "core/version.h"
+#include "fabrication/job/cube_cells.h"
+#include "geometry/facet_planes.h"
+#include "geometry/lattice.h"
+#include "studies/design/facet_planes_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+/// A plane through a point told from the apex, which lies `depth_mm` below the rims; for a turned cell turned with it.
+geometry::HeightPlane height_plane(const Vec3& normal, const Vec3& point_mm, double depth_mm, bool turned) {
+  geometry::HeightPlane plane;
+  plane.slope = (turned ? 1.0 : -1.0) * normal.head<2>() / normal.z();
+  plane.height_mm = -depth_mm + normal.dot(point_mm) / normal.z();
+  return plane;
+}
+
+geometry::ElementPlanes element_at(const geometry::Element& element, const fabrication::ChiselReach& reach,
+                                   const Vec2& centre_mm, bool turned) {
+  const double depth_mm = geometry::element_depth_mm(element);
+  geometry::ElementPlanes planes;
+  planes.centre_mm = centre_mm;
+  planes.planes.clear();
+  for (const geometry::CellFacet& facet : geometry::element_cell(element).facets)
+    planes.planes.push_back({-depth_mm, turned ? Vec2(-facet.plane.slope) : facet.plane.slope});
+  for (std::size_t k = 0; k < 3; ++k)
+    planes.caps[k] = height_plane(reach.caps[k].normal, reach.caps[k].point_mm, depth_mm, turned);
+  return planes;
+}
+
+fabrication::Array array_of(const geometry::PartSpec& part) {
+  fabrication::Array array;
+  array.arrangement = part.arrangement;
+  array.x_length_mm = part.x_length_mm;
+  array.y_length_mm = part.y_length_mm;
+  array.x_offset_mm = part.x_offset_mm;
+  array.y_offset_mm = part.y_offset_mm;
+  return array;
+}
+
+/// Middle of the extent, in the part's frame.
+Vec2 middle_of(const geometry::PartSpec& part) {
+  if (part.arrangement != geometry::Arrangement::single) return 0.5 * Vec2(part.x_length_mm, part.y_length_mm);
+  return 0.5 * geometry::bounding_box(geometry::aperture_outline(part.element)).size();
+}
+
+std::string design_text(const Design& design, const std::string& facets_file) {
+  const geometry::PartSpec& part = design.part;
+  const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&part.element);
+  const double aperture_mm =
+      hexagonal != nullptr ? hexagonal->aperture_mm : std::get<geometry::TriangularCube>(part.element).aperture_mm;
+  std::string text = "schema = \"retrace.design/1\"\n";
+  text += fmt::format("title = {}\n", toml_text((design.title.empty() ? "Part" : design.title) +
+                                                ", as far as a chisel with a straight edge reaches"));
+  text += fmt::format("\n[element]\nkind = \"{}\"\naperture_mm = {}\n",
+                      hexagonal != nullptr ? "hexagonal_icc" : "triangular_icc", shortest(aperture_mm));
+  const bool is_single = part.arrangement == geometry::Arrangement::single;
+  text += fmt::format("\n[array]\narrangement = \"{}\"\n", is_single              ? "single"
+                                                           : hexagonal != nullptr ? "honeycomb"
+                                                                                  : "triangular");
+  if (!is_single)
+    text += fmt::format("x_length_mm = {}\ny_length_mm = {}\npartial_elements = \"omit\"\n", shortest(part.x_length_mm),
+                        shortest(part.y_length_mm));
+  text += fmt::format("\n[body]\nthickness_mm = {}\n", shortest(part.thickness_mm));
+  if (design.refractive_index)
+    text += fmt::format("refractive_index = {}\n", shortest(*design.refractive_index));
+  else
+    text += fmt::format("material = {}\n", toml_text(design.material));
+  if (design.absorption_per_mm) text += fmt::format("absorption_per_mm = {}\n", shortest(*design.absorption_per_mm));
+  return text + fmt::format("\n[part]\nfacets = {}\n", toml_text(facets_file));
+}
+
+void check_design(const Design& design, const JobRequest& request) {
+  design.require_elements("retrace job");
+  const geometry::PartSpec& part = design.part;
+  if (std::holds_alternative<geometry::RtpElement>(part.element))
+    throw InputError({"", 0, "--reachable"}, "is for cube corners: a chisel reaches all of a prism");
+  if (request.strategy == "dmc")
+    throw InputError({"", 0, "--reachable"}, "is for strategies with a chisel: dmc reaches all of a cube corner");
+  if (part.extent == geometry::Extent::infinite)
+    throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
+  if (geometry::cant_of(part.element).deg != 0.0)
+    throw InputError({design.source_name(), 0, "element.cant_deg"},
+                     "must be 0 to be cut in this version, got " + shortest(geometry::cant_of(part.element).deg));
+  if (request.shrinkage_percent != 0.0)
+    throw InputError({"", 0, "--shrinkage-percent"},
+                     "must be 0 with --reachable, got " + shortest(request.shrinkage_percent));
+}
+
+}  // namespace
+
+double reachable_share(const geometry::Element& element, double tool_width_mm) {
+  const double edge_mm = std::sqrt(3.0) * geometry::element_depth_mm(element);
+  const double area_mm2 = (std::holds_alternative<geometry::HexagonalCube>(element) ? 0.25 : 0.5) * edge_mm * edge_mm;
+  return std::max(0.0, 1.0 - 0.25 * tool_width_mm * tool_width_mm / area_mm2);
+}
+
+ReachablePart reachable_part(const Design& design, const JobRequest& request, const std::string& facets_file) {
+  check_design(design, request);
+  check_making(request);
+  const geometry::PartSpec& part = design.part;
+  fabrication::Tool tool;
+  tool.width_mm = request.tool_width_mm;
+  const InputLocation at{"", 0, "--tool-width-mm"};
+  fabrication::check_chisel_reach(part.element, tool, at, at);
+  ReachablePart result;
+  result.reach = fabrication::chisel_reach(part.element, tool);
+  std::vector<geometry::ElementPlanes> planes;
+  for (const fabrication::CubeCell& cell : fabrication::cube_cells(array_of(part), part.element))
+    planes.push_back(element_at(part.element, result.reach, middle_of(part) + cell.centre_mm, cell.turned));
+  if (planes.empty())
+    throw InputError({design.source_name(), 0, "array.x_length_mm"}, "the array holds no whole element");
+  result.elements = static_cast<std::int64_t>(planes.size());
+  const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&part.element);
+  if (hexagonal != nullptr && part.arrangement != geometry::Arrangement::single)
+    geometry::add_flares(planes, 0.5 * hexagonal->aperture_mm);
+  result.facets = facet_planes_text({std::move(planes), geometry::cube_spacing_mm(part.element)});
+  result.design = design_text(design, facets_file);
+  return result;
+}
+
+std::string reach_json(const ReachablePart& part, const JobRequest& request) {
+  const fabrication::ChiselReach& r = part.reach;
+  const nlohmann::ordered_json json = {{"schema", "retrace.reach/1"},
+                                       {"elements", part.elements},
+                                       {"strategy", request.strategy},
+                                       {"tool_width_mm", request.tool_width_mm},
+                                       {"facet_area_mm2", r.facet_area_mm2},
+                                       {"reached_share", r.share},
+                                       {"reached_share_cut", r.cut_share},
+                                       {"core_mm", r.core_mm},
+                                       {"core_mm_cut", r.cut_core_mm},
+                                       {"version", kVersion},
+                                       {"warnings", nlohmann::ordered_json::array()},
+                                       {"complete", true}};
+  return to_text(json);
+}
+
+std::string reach_table(const ReachablePart& part) {
+  const fabrication::ChiselReach& r = part.reach;
+  std::string text = fmt::format("  elements            {}\n", part.elements);
+  text += fmt::format("  facets reached      {} % of their area, {} % found by cutting\n", fixed(100.0 * r.share, 2),
+                      fixed(100.0 * r.cut_share, 2));
+  text += fmt::format("  left over the apex  {} mm high, {} mm found by cutting\n", fixed(r.core_mm, 6),
+                      fixed(r.cut_core_mm, 6));
+  return text;
+}
+
+}  // namespace retrace::studies
