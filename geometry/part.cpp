@@ -6,24 +6,19 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "geometry/base_part.h"
 #include "geometry/facet_planes.h"
+#include "geometry/part_pieces.h"
 #include "geometry/welded_part.h"
 
 namespace retrace::geometry {
 namespace {
 
-// Up to this many elements the surface is one patch; beyond, blocks of at most this many are shared.
-constexpr double kElementsPerPatch = 2048.0;
 constexpr double kAllInOnePatch = 1e18;
 // An infinite array is a patch of this many periods round the central one: rays seldom have to be brought back.
 constexpr int kPeriodsBeyond = 2;
-// Lengths this close to a whole number of elements (relative) are whole.
-constexpr double kWholeTolerance = 1e-9;
-
 /// What of the plane the part and the array fill, and which elements count.
 struct Layout {
   Lattice lattice;
@@ -38,26 +33,6 @@ struct Layout {
   /// Whether no element is like another.
   bool elements_differ() const { return spec.random_tilts.sigma_arcmin > 0.0 || planes != nullptr; }
 };
-
-/// The errors of one element: those of all, and its own random tilts.
-AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std::uint32_t number) {
-  constexpr std::uint32_t kTiltStream = 3;
-  const auto words = philox({spec.random_tilts.seed, kTiltStream}, static_cast<std::uint32_t>(i),
-                            static_cast<std::uint32_t>(j), number);
-  // Box and Muller; the shift keeps 0 out of the logarithm.
-  const auto radius = [&](std::size_t k) { return std::sqrt(-2.0 * std::log(unit_interval(words[k]) + 0x1p-33)); };
-  const auto angle = [&](std::size_t k) { return 2.0 * std::numbers::pi * unit_interval(words[k]); };
-  const std::array<double, 3> normal = {radius(0) * std::cos(angle(1)), radius(0) * std::sin(angle(1)),
-                                        radius(2) * std::cos(angle(3))};
-  AngleErrors errors = spec.angle_errors;
-  for (std::size_t k = 0; k < 3; ++k) errors.facet_tilt_arcmin[k] += spec.random_tilts.sigma_arcmin * normal[k];
-  return errors;
-}
-
-double whole_count(double length, double offset, double gap, double pitch) {
-  const double count = (length - 2.0 * offset + gap) / pitch;
-  return std::floor(count + kWholeTolerance * std::max(1.0, count));
-}
 
 /// A bound of the array that meets the part's up to the tolerance is the part's.
 void snap(double& extent_bound, double block_bound, double scale) {
@@ -94,26 +69,6 @@ Layout finite_layout(const PartSpec& spec, double size_mm) {
   }
   return layout;
 }
-
-/// The four strips of the extent that the block leaves free; any of them may be empty.
-std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block) {
-  return {Rectangle{extent.lower, {block.lower.x(), extent.upper.y()}},
-          Rectangle{{block.upper.x(), extent.lower.y()}, extent.upper},
-          Rectangle{{block.lower.x(), extent.lower.y()}, {block.upper.x(), block.lower.y()}},
-          Rectangle{{block.lower.x(), block.upper.y()}, {block.upper.x(), extent.upper.y()}}};
-}
-
-Polygon moved(const Polygon& polygon, const Vec2& by) {
-  Polygon result = polygon;
-  for (Vec2& p : result) p += by;
-  return result;
-}
-
-/// Range of lattice indices, upper bounds excluded.
-struct IndexRange {
-  std::array<std::int64_t, 2> lower{};
-  std::array<std::int64_t, 2> upper{};
-};
 
 /// The indices of all cells that may reach into the extent.
 IndexRange indices_over(const Layout& layout) {
@@ -357,6 +312,26 @@ void measure_layer(Part& part) {
   part.top_mm = highest;
 }
 
+/// The same on a base, where patches stand at different heights.
+void measure_layer_on_base(Part& part) {
+  std::vector<std::array<double, 2>> of_patch;
+  for (const SurfacePatch& patch : part.patches) {
+    std::array<double, 2> range{INFINITY, -INFINITY};
+    for (const PatchCell& cell : patch.cells)
+      range = {std::min(range[0], cell.lower.z()), std::max(range[1], cell.upper.z())};
+    of_patch.push_back(range);
+  }
+  double lowest = 0.0;
+  double highest = 0.0;
+  for (const Placement& placement : part.placements) {
+    lowest = std::min(lowest, of_patch[placement.patch][0] + placement.height_mm);
+    highest = std::max(highest, of_patch[placement.patch][1] + placement.height_mm);
+  }
+  constexpr double rounding = 1e-12;
+  part.element_depth_mm = -lowest;
+  part.top_mm = highest > rounding * part.element_depth_mm ? highest : 0.0;
+}
+
 void measure(Part& part) {
   for (const Placement& placement : part.placements)
     for (const PatchFacet& facet : part.patches[placement.patch].facets)
@@ -394,6 +369,10 @@ Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* plane
     build_single(part, origin_mm, planes);
   } else if (spec.extent == Extent::infinite) {
     build_infinite(part);
+  } else if (spec.base) {
+    part.outline = moved(to_polygon({Vec2::Zero(), {spec.x_length_mm, spec.y_length_mm}}), origin_mm);
+    add_surface_on_base(part, origin_mm, elements_per_patch);
+    if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   } else {
     Layout layout = finite_layout(spec, part.size_mm);
     layout.spec = spec;
@@ -404,7 +383,10 @@ Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* plane
     count_elements(part, layout);
     if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   }
-  if (planes != nullptr || spec.random_tilts.sigma_arcmin > 0.0 || !spec.edges.is_sharp()) measure_layer(part);
+  if (spec.base && spec.arrangement != Arrangement::single && spec.extent == Extent::finite)
+    measure_layer_on_base(part);
+  else if (planes != nullptr || spec.random_tilts.sigma_arcmin > 0.0 || !spec.edges.is_sharp())
+    measure_layer(part);
   if (part.thickness_mm <= part.top_mm)
     throw InputError(
         fmt::format("body.thickness_mm must be above {} mm, the highest rim, got {}", part.top_mm, part.thickness_mm));

@@ -14,6 +14,7 @@ namespace retrace::geometry {
 struct Placement {
   std::uint32_t patch = 0;
   Vec2 offset_mm = Vec2::Zero();
+  double height_mm = 0.0;  ///< along z; other than 0 on a base alone
 };
 
 /// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below it

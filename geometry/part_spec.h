@@ -2,7 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <variant>
+
+#include "geometry/base_shape.h"
 
 namespace retrace::geometry {
 
@@ -93,7 +96,10 @@ struct PartSpec {
   double x_offset_mm = 0.0;  ///< flat margin kept free on both borders
   double y_offset_mm = 0.0;
   double overlap_percent = 50.0;  ///< shift of alternate rows of `offset`, in percent of the base
-  double thickness_mm = 0.0;      ///< plate between the entrance face and z = 0; > element_top_mm()
+  /// What elements stand on, of finite arrays that are not `single`; none: the plane z = 0. Offsets are then 0.
+  std::optional<Base> base;
+  bool is_pin_bundle = false;  ///< a honeycomb whose cubes are the ends of pins
+  double thickness_mm = 0.0;   ///< plate between the entrance face and z = 0; > element_top_mm()
 };
 
 }  // namespace retrace::geometry

@@ -49,7 +49,7 @@ struct BackSurface::Embree {
     scene = new_scene();
     if (placements.size() == 1) {
       // One patch needs no instance: a level of the hierarchy less for every ray.
-      attach_mesh(scene, part.patches[placements[0].patch], placements[0].patch, placements[0].offset_mm);
+      attach_mesh(scene, part.patches[placements[0].patch], placements[0].patch, placements[0]);
     } else {
       attach_instances(part, placements);
     }
@@ -69,14 +69,15 @@ struct BackSurface::Embree {
     return s;
   }
 
-  void attach_mesh(RTCScene target, const geometry::SurfacePatch& patch, std::uint32_t number, const Vec2& offset) {
+  void attach_mesh(RTCScene target, const geometry::SurfacePatch& patch, std::uint32_t number,
+                   const geometry::Placement& at) {
     RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), patch.vertices.size()));
     for (const Vec3& p : patch.vertices) {
-      *vertices++ = static_cast<float>(p.x() + offset.x());
-      *vertices++ = static_cast<float>(p.y() + offset.y());
-      *vertices++ = static_cast<float>(p.z());
+      *vertices++ = static_cast<float>(p.x() + at.offset_mm.x());
+      *vertices++ = static_cast<float>(p.y() + at.offset_mm.y());
+      *vertices++ = static_cast<float>(p.z() + at.height_mm);
     }
     auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), patch.triangles.size()));
@@ -91,7 +92,7 @@ struct BackSurface::Embree {
   void attach_instances(const geometry::Part& part, const std::vector<geometry::Placement>& placements) {
     for (std::size_t k = 0; k < part.patches.size(); ++k) {
       patch_scenes.push_back(new_scene());
-      attach_mesh(patch_scenes.back(), part.patches[k], static_cast<std::uint32_t>(k), Vec2::Zero());
+      attach_mesh(patch_scenes.back(), part.patches[k], static_cast<std::uint32_t>(k), geometry::Placement{});
       rtcCommitScene(patch_scenes.back());
     }
     for (std::uint32_t k = 0; k < placements.size(); ++k) {
@@ -108,7 +109,7 @@ struct BackSurface::Embree {
                                             1,
                                             static_cast<float>(placements[k].offset_mm.x()),
                                             static_cast<float>(placements[k].offset_mm.y()),
-                                            0};
+                                            static_cast<float>(placements[k].height_mm)};
       rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
       rtcCommitGeometry(instance);
       rtcAttachGeometryByID(scene, instance, k);

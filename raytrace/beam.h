@@ -55,6 +55,7 @@ struct EntryPoint {
 struct CellPlace {
   std::uint64_t id = 0;           ///< the same for all copies of a patch
   Vec2 offset_mm = Vec2::Zero();  ///< by which this copy is moved
+  double height_mm = 0.0;         ///< and along z
 
   friend bool operator==(const CellPlace& a, const CellPlace& b) {
     return a.id == b.id && (a.offset_mm - b.offset_mm).squaredNorm() == 0.0;

@@ -340,16 +340,17 @@ void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatP
   // Beyond the horizon facets may be hidden by others that were not looked for.
   const Plane far{-beam.direction, -(nearest + horizon.t)};
   const Box box = box_of(whole);
-  cells_.visit(plan.lower, plan.upper, [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset) {
-    const CellPlace place{part_.number_of(patch, cell), offset};
-    for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
-      consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f], place);
-  });
+  cells_.visit(plan.lower, plan.upper,
+               [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset, double height_mm) {
+                 const CellPlace place{part_.number_of(patch, cell), offset, height_mm};
+                 for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
+                   consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f], place);
+               });
 }
 
 void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Box& box,
                         const Plane* far, const SurfacePatch& patch, const PatchFacet& facet, const CellPlace& cell) {
-  const Vec3 shift(cell.offset_mm.x(), cell.offset_mm.y(), 0.0);
+  const Vec3 shift(cell.offset_mm.x(), cell.offset_mm.y(), cell.height_mm);
   const double towards = facet.normal.dot(beam.direction);
   if (beam.inside ? towards <= kGrazing : towards >= -kGrazing) return;
   Corners corners;

@@ -14,8 +14,8 @@ class CellIndex {
   /// \param centre_mm point of the plane that becomes the origin
   CellIndex(const geometry::Part& part, const geometry::Vec2& centre_mm);
 
-  /// Calls visit(patch, cell, offset) for every cell whose box meets the rectangle, each once; `offset` moves the
-  /// patch's coordinates to where the cell stands.
+  /// Calls visit(patch, cell, offset, height_mm) for every cell whose box meets the rectangle, each once; these move
+  /// the patch's coordinates to where the cell stands.
   template <class Visit>
   void visit(const geometry::Vec2& lower, const geometry::Vec2& upper, const Visit& visit) const {
     if (infinite_)
@@ -51,7 +51,8 @@ class CellIndex {
         for (auto i = static_cast<std::int64_t>(std::ceil(first.x())); static_cast<double>(i) <= last.x(); ++i)
           visit(part_.patches[part_.placements[e.placement].patch], cell,
                 geometry::Vec2(offset.x() + static_cast<double>(i) * period.x(),
-                               offset.y() + static_cast<double>(j) * period.y()));
+                               offset.y() + static_cast<double>(j) * period.y()),
+                0.0);
     }
   }
 
@@ -73,7 +74,8 @@ class CellIndex {
           if ((low.array() > upper.array()).any() || (high.array() < lower.array()).any()) continue;
           // A cell stands in every bucket it meets; it is visited in the first of them that the query meets.
           if (std::max(bucket(low.x(), 0), i0) != i || std::max(bucket(low.y(), 1), j0) != j) continue;
-          visit(part_.patches[part_.placements[e.placement].patch], cell, offset);
+          visit(part_.patches[part_.placements[e.placement].patch], cell, offset,
+                part_.placements[e.placement].height_mm);
         }
       }
   }

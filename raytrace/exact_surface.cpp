@@ -12,8 +12,8 @@ namespace {
 constexpr double kTolerance = 1e-10;
 constexpr double kWideTolerance = 1e-6;
 
-Vec3 lifted(const Vec2& p) {
-  return {p.x(), p.y(), 0.0};
+Vec3 place_of(const geometry::Placement& placement) {
+  return {placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm};
 }
 
 /// True if the ray passes the box, widened by `pad_mm`, somewhere in -pad..t_max.
@@ -69,14 +69,14 @@ ExactSurface::Patch ExactSurface::compile(const geometry::SurfacePatch& source) 
 
 double ExactSurface::distance(FacetRef ref, const Vec3& origin, const Vec3& direction) const {
   const Facet& f = facet(ref);
-  const Vec3 local = origin - lifted(placements_[ref.placement].offset_mm);
+  const Vec3 local = origin - place_of(placements_[ref.placement]);
   return (f.offset_mm - f.normal.dot(local)) / f.normal.dot(direction);
 }
 
 double ExactSurface::margin(FacetRef ref, const Vec3& point) const {
   const geometry::Placement& placement = placements_[ref.placement];
   const Patch& patch = patches_[placement.patch];
-  return local_margin(patch, patch.facets[ref.facet], point - lifted(placement.offset_mm));
+  return local_margin(patch, patch.facets[ref.facet], point - place_of(placement));
 }
 
 double ExactSurface::local_margin(const Patch& patch, const Facet& facet, const Vec3& local) const {
@@ -99,7 +99,7 @@ std::optional<SurfaceHit> ExactSurface::first_within(const SurfaceRay& ray, doub
   best.t = ray.t_max;
   for (std::uint32_t p = 0; p < placements_.size(); ++p) {
     const Patch& patch = patches_[placements_[p].patch];
-    const Vec3 local = ray.origin - lifted(placements_[p].offset_mm);
+    const Vec3 local = ray.origin - place_of(placements_[p]);
     if (!meets_box(local, ray.direction, patch.lower, patch.upper, tolerance_mm, best.t)) continue;
     for (const auto& cell : patch.cells)
       if (meets_box(local, ray.direction, cell.lower, cell.upper, tolerance_mm, best.t))
@@ -112,7 +112,7 @@ std::optional<SurfaceHit> ExactSurface::first_within(const SurfaceRay& ray, doub
 void ExactSurface::search_cell(const SurfaceRay& ray, std::uint32_t placement, const geometry::PatchCell& cell,
                                double tolerance_mm, SurfaceHit& best) const {
   const Patch& patch = patches_[placements_[placement].patch];
-  const Vec3 local = ray.origin - lifted(placements_[placement].offset_mm);
+  const Vec3 local = ray.origin - place_of(placements_[placement]);
   for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
     const Facet& facet = patch.facets[f];
     const double towards = facet.normal.dot(ray.direction);

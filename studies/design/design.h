@@ -90,6 +90,7 @@ struct PartMesh {
 struct Design {
   std::string source;            ///< file name as given, "-" for standard input
   std::string title;             ///< empty if none was given
+  InputLocation base_location;   ///< what of [base] decides its shape, for whoever cannot stand on it
   geometry::PartSpec part;       ///< means little where there is a mesh: thickness_mm is then 0 or what was given
   std::optional<PartMesh> mesh;  ///< in place of element and array
   std::optional<raytrace::BallLayer> balls;  ///< kind = "ball": `part` then means nothing
@@ -120,6 +121,8 @@ struct Design {
   void require_elements(const std::string& what) const;
   /// \throw InputError if the elements are balls, which have no planes that could be traced, cut or written
   void require_no_balls() const;
+  /// \throw InputError if its elements stand on a base. \param what does not take it, such as "retrace job"
+  void require_no_base(const std::string& what) const;
   /// Whether the retro facets rely on total reflection.
   bool needs_total_reflection() const { return !idealisation.mirror_facets && !aluminised_facets; }
 };

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_format.h"
+#include "geometry/formula.h"
 
 namespace retrace::studies {
 namespace {
@@ -47,7 +48,7 @@ struct ElementJson {
 
 Json array_json(const Design& design) {
   const PartSpec& part = design.part;
-  Json array = {{"arrangement", name_of(part.arrangement)}};
+  Json array = {{"arrangement", part.is_pin_bundle ? "pins" : name_of(part.arrangement)}};
   if (part.arrangement == Arrangement::single) return array;
   array["extent"] = part.extent == Extent::infinite ? "infinite" : "finite";
   if (part.extent == Extent::finite) {
@@ -79,6 +80,23 @@ Json ball_json(const raytrace::BallLayer& balls) {
 Json ball_array_json(const raytrace::BallLayer& balls) {
   if (!balls.pitch_mm) return {{"arrangement", "single"}};
   return {{"arrangement", "packed"}, {"extent", "infinite"}, {"gap_mm", *balls.pitch_mm - balls.diameter_mm}};
+}
+
+struct BaseJson {
+  Json operator()(const PlaneBase& b) const {
+    return {{"kind", "plane"}, {"incline_deg", b.incline_deg}, {"azimuth_deg", b.azimuth_deg}};
+  }
+  Json operator()(const CylinderBase& b) const {
+    return {{"kind", "cylinder"}, {"radius_mm", b.radius_mm}, {"axis", b.axis_is_x ? "x" : "y"}};
+  }
+  Json operator()(const SphereBase& b) const { return {{"kind", "sphere"}, {"radius_mm", b.radius_mm}}; }
+  Json operator()(const FormulaBase& b) const { return {{"kind", "formula"}, {"sag_mm", b.sag_mm->text()}}; }
+};
+
+Json base_json(const Base& base) {
+  Json json = std::visit(BaseJson{}, base.shape);
+  json["elements"] = base.standing == Standing::normal ? "normal" : "parallel";
+  return json;
 }
 
 /// The word that the design file has for it, or [i, q, u, v].
@@ -212,6 +230,7 @@ nlohmann::ordered_json to_json(const Design& design) {
   } else {
     json["element"] = std::visit(ElementJson{}, design.part.element);
     json["array"] = array_json(design);
+    if (design.part.base) json["base"] = base_json(*design.part.base);
   }
   if (design.facet_planes) json["part"] = {{"facets", design.facet_planes->name}};
   json["body"] = body;
@@ -246,7 +265,7 @@ std::string short_name(const Design& design) {
   if (design.balls)
     return fmt::format("{} {} mm", design.balls->pitch_mm ? "balls" : "ball", shortest(design.balls->diameter_mm));
   const std::string element = std::visit(ElementName{}, design.part.element);
-  return fmt::format("{}, {}", element, name_of(design.part.arrangement));
+  return fmt::format("{}, {}", element, design.part.is_pin_bundle ? "pins" : name_of(design.part.arrangement));
 }
 
 }  // namespace retrace::studies

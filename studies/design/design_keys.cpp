@@ -78,16 +78,23 @@ constexpr std::array kSurfaceKeys = {KeyRule{"model"},
                                      KeyRule{"angle_error_sigma_arcmin"},
                                      KeyRule{"angle_error_seed"}};
 constexpr std::array kIdealisationKeys = {KeyRule{"facets"}, KeyRule{"entrance"}};
+constexpr std::array kBaseKeys = {KeyRule{"kind"}, KeyRule{"incline_deg"}, KeyRule{"azimuth_deg"}, KeyRule{"radius_mm"},
+                                  KeyRule{"axis"}, KeyRule{"sag_mm"},      KeyRule{"elements"}};
 constexpr std::array kPartKeys = {KeyRule{"mesh"}, KeyRule{"allow_open"}, KeyRule{"facets"}};
 
 struct TableRule {
   std::string_view name;
   std::span<const KeyRule> keys;
 };
-constexpr std::array kTables = {TableRule{"element", kElementKeys},   TableRule{"array", kArrayKeys},
-                                TableRule{"body", kBodyKeys},         TableRule{"light", kLightKeys},
-                                TableRule{"detector", kDetectorKeys}, TableRule{"surface", kSurfaceKeys},
-                                TableRule{"part", kPartKeys},         TableRule{"idealisation", kIdealisationKeys}};
+constexpr std::array kTables = {TableRule{"element", kElementKeys},
+                                TableRule{"array", kArrayKeys},
+                                TableRule{"body", kBodyKeys},
+                                TableRule{"light", kLightKeys},
+                                TableRule{"detector", kDetectorKeys},
+                                TableRule{"surface", kSurfaceKeys},
+                                TableRule{"base", kBaseKeys},
+                                TableRule{"part", kPartKeys},
+                                TableRule{"idealisation", kIdealisationKeys}};
 constexpr std::array<std::string_view, 2> kTopLevelKeys = {"schema", "title"};
 
 /// One entry of the design: its table's rule (null at top level) and its name there.

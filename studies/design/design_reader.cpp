@@ -18,6 +18,7 @@
 #include "geometry/lattice.h"
 #include "studies/design/array_checks.h"
 #include "studies/design/ball_reader.h"
+#include "studies/design/base_reader.h"
 #include "studies/design/design_keys.h"
 #include "studies/design/spectrum_reader.h"
 #include "studies/design/table_reader.h"
@@ -45,7 +46,9 @@ constexpr std::array kKinds = {Choice<Kind>{"rtp", Kind::rtp}, Choice<Kind>{"hex
 constexpr std::array kRtpArrangements = {
     Choice<Arrangement>{"aligned", Arrangement::aligned}, Choice<Arrangement>{"offset", Arrangement::offset},
     Choice<Arrangement>{"checker", Arrangement::checker}, Choice<Arrangement>{"single", Arrangement::single}};
+constexpr std::string_view kPins = "pins";
 constexpr std::array kHexagonalArrangements = {Choice<Arrangement>{"honeycomb", Arrangement::honeycomb},
+                                               Choice<Arrangement>{kPins, Arrangement::honeycomb},
                                                Choice<Arrangement>{"single", Arrangement::single}};
 constexpr std::array kTriangularArrangements = {Choice<Arrangement>{"triangular", Arrangement::triangular},
                                                 Choice<Arrangement>{"single", Arrangement::single}};
@@ -176,6 +179,7 @@ void read_rows(TableReader& array, PartSpec& part) {
 
 void read_array(TableReader& array, PartSpec& part, Kind kind) {
   part.arrangement = read_arrangement(array, kind);
+  part.is_pin_bundle = kind == Kind::hexagonal_icc && array.text("arrangement") == kPins;
   part.extent = array.choice("extent", all(kExtents)).value_or(part.extent);
   if (part.arrangement == Arrangement::single && part.extent == Extent::infinite)
     array.fail("extent", "must be \"finite\" for arrangement = \"single\", got \"infinite\"");
@@ -345,7 +349,7 @@ std::optional<PartMesh> read_mesh(const DesignDocument& document) {
     if (document.root().contains("element")) return std::nullopt;
     throw InputError(document.location_of_missing(table, "part.mesh"), "missing, must name an STL file");
   }
-  for (const char* other : {"element", "array"})
+  for (const char* other : {"element", "array", "base"})
     if (const toml::node* const node = document.root().get(other))
       throw InputError(document.location(*node, other), "not allowed beside part.mesh, which is the whole part");
   part.refuse({"facets"}, "not allowed beside mesh, which has the facets that it has");
@@ -526,6 +530,7 @@ std::optional<FacetPlanesFile> read_facet_planes(const DesignDocument& document,
   table.finish();
   if (!planes) return planes;
   if (part.extent == Extent::infinite) table.fail("facets", "only allowed for finite arrays");
+  if (part.base) table.fail("facets", "not allowed together with [base]");
   if (!(part.angle_errors == geometry::AngleErrors{}) || part.random_tilts.sigma_arcmin > 0.0)
     table.fail("facets", "not allowed together with errors of angle, which its planes hold");
   return planes;
@@ -540,6 +545,10 @@ void Design::require_no_balls() const {
 void Design::require_elements(const std::string& what) const {
   require_no_balls();
   if (mesh) throw InputError(mesh->location, what + " takes no mesh, only [element] and [array]");
+}
+
+void Design::require_no_base(const std::string& what) const {
+  if (part.base) throw InputError(base_location, what + " takes no [base], only elements on a plane");
 }
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
@@ -558,9 +567,11 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
     design.balls_location = TableReader(document, "element").where("kind");
   } else {
     design.part = read_part(document);
+    design.base_location = read_base(document, design.part);
     design.mask = read_mask(document, design.part);
     design.texture = read_surface(document, design.part);
     design.facet_planes = read_facet_planes(document, design.part);
+    check_base_of(design);
   }
   TableReader body(document, "body");
   read_body(body, design);

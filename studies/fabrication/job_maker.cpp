@@ -172,6 +172,7 @@ fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
 }  // namespace
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
+  design.require_no_base("retrace job");
   if (design.facet_planes)
     throw InputError(design.facet_planes->location, "planes of single facets are traced, not cut, in this version");
   MadeJob made;

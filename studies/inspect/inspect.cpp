@@ -160,8 +160,21 @@ void warn_of_lost_reflection(Inspection& result) {
                                           circumstances(result), ends));
 }
 
+/// Of elements that stand at many angles only the depth is that of each; the part is as deep as its base as well.
+void add_base(Inspection& result, const geometry::Part& part) {
+  const geometry::PartSpec& spec = part.spec;
+  BaseReport report;
+  report.measures = geometry::check_base(spec);
+  report.element_mm = geometry::width_across_mm(spec.element);
+  report.walls = geometry::inner_walls(part, geometry::base_surface_of(spec).normal_at(geometry::Vec2::Zero()));
+  result.base = report;
+  result.element_depth_mm = geometry::element_depth_mm(spec.element, spec.angle_errors);
+  if (spec.base->standing == geometry::Standing::normal)
+    result.full_element_share *= part.entrance_area_mm2 / report.measures.area_mm2;
+}
+
 void add_warnings(Inspection& result, const geometry::Part& part) {
-  warn_of_lost_reflection(result);
+  if (!part.spec.base) warn_of_lost_reflection(result);
   if (part.elements_partial > 0 && part.spec.partial_elements == geometry::PartialElements::cut)
     result.warnings.push_back(
         fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
@@ -280,8 +293,12 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   }
   const double aperture = geometry::area(geometry::aperture_outline(design.part.element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
-  result.tir_limit_deg = tir_limit_deg(design.part, least_index(model.spectral), model.optics.back_index);
-  if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part);
+  if (design.part.base) {
+    add_base(result, part);
+  } else {
+    result.tir_limit_deg = tir_limit_deg(design.part, least_index(model.spectral), model.optics.back_index);
+    if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part);
+  }
   result.dead_zone_share = geometry::edge_share(
       geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part));
   result.boundary = boundary_finding(design, part.size_mm);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/angle.h"
+#include "geometry/base_part.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
@@ -20,6 +21,13 @@ struct BallFigures {
   double largest_return_error_deg = 0.0;  ///< over the whole aperture: spherical aberration
   double share_within_acceptance = 0.0;   ///< of the aperture, narrowest cone; geometry alone, no Fresnel
   double mirror_half_angle_deg = 0.0;
+};
+
+/// What a base is like under its elements.
+struct BaseReport {
+  geometry::BaseMeasures measures;
+  double element_mm = 0.0;     ///< circle round an element, which the least radius is to exceed
+  geometry::InnerWalls walls;  ///< what stands open between neighbours, seen along the base's normal at its middle
 };
 
 /// What a design is, before any light is traced. Areas and counts of an infinite array are those of one period.
@@ -42,6 +50,7 @@ struct Inspection {
   /// From where light meets a facet most squarely, so that its total reflection ends first; 0 to below 360, the least
   /// of equal ones, of an unturned element. None where none is needed.
   std::optional<double> tir_limit_azimuth_deg;
+  std::optional<BaseReport> base;    ///< of elements that stand on one; there are no limits of total reflection then
   double dead_zone_share = 0.0;      ///< of an element's plan that rounded and chamfered edges take
   std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something
   std::string boundary;              ///< what the check of the boundary found

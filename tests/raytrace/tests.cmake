@@ -20,3 +20,7 @@ retrace_test(raytrace_test
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
   LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers rapidcheck)
+
+retrace_test(raytrace_base_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_trace_test.cpp ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
+  LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers)

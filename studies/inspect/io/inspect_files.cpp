@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.h"
@@ -14,6 +15,7 @@ namespace retrace::studies {
 namespace {
 
 std::string total_reflection(const Inspection& i) {
+  if (i.base) return "not stated: elements on a base stand at angles of their own";
   if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
   if (!i.tir_limit_deg) return "none at normal incidence";
   const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part.element);
@@ -33,6 +35,33 @@ std::string spectrum_text(const Inspection& i) {
   return fmt::format("  spectrum            {} wavelengths, {} to {} nm, index {} to {}\n", i.light.size(),
                      fixed(first.wavelength_nm, 1), fixed(last.wavelength_nm, 1), fixed(first.optics.index, 5),
                      fixed(last.optics.index, 5));
+}
+
+nlohmann::ordered_json base_json(const BaseReport& base) {
+  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = base.measures;
+  nlohmann::ordered_json json = {{"area_mm2", area_mm2},
+                                 {"height_range_mm", highest_mm - lowest_mm},
+                                 {"steepest_deg", steepest_deg},
+                                 {"element_mm", base.element_mm},
+                                 {"highest_step_mm", base.walls.highest_mm},
+                                 {"pocket_walls_mm2", base.walls.area_mm2},
+                                 {"pocket_projected_mm2", base.walls.projected_mm2}};
+  if (std::isfinite(least_radius_mm)) json["least_radius_mm"] = least_radius_mm;
+  return json;
+}
+
+std::string base_text(const Inspection& i) {
+  if (!i.base) return {};
+  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = i.base->measures;
+  const std::string radius = std::isfinite(least_radius_mm) ? fixed(least_radius_mm, 4) + " mm" : "plane";
+  return fmt::format("  base                {} mm2, {} mm high, up to {} degrees steep\n", fixed(area_mm2, 4),
+                     fixed(highest_mm - lowest_mm, 4), fixed(steepest_deg, 2)) +
+         fmt::format("  least radius        {}; an element measures {} mm across\n", radius,
+                     fixed(i.base->element_mm, 4)) +
+         fmt::format(
+             "  between elements    steps of up to {} mm, walls of {} mm2, {} mm2 seen along the base's normal\n",
+             fixed(i.base->walls.highest_mm, 6), fixed(i.base->walls.area_mm2, 4),
+             fixed(i.base->walls.projected_mm2, 4));
 }
 
 }  // namespace
@@ -85,6 +114,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (!i.design.mesh) json["dead_zone_share"] = i.dead_zone_share;
+  if (i.base) json["base"] = base_json(*i.base);
   json["boundary"] = i.boundary;
   json["version"] = kVersion;
   json["warnings"] = i.warnings;
@@ -136,6 +166,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
   text += fmt::format("  full elements       {} % of it\n", fixed(100.0 * i.full_element_share, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
+  text += base_text(i);
   text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
   text += spectrum_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
