@@ -13,18 +13,36 @@
 namespace {
 
 /// A design file of side x side prisms of 0.451 mm; 222 on a side make a lens of 100 cm^2.
-std::filesystem::path write_design(std::int64_t side) {
+/// \param base what they stand on, and the plate that covers it; "": the plane
+std::filesystem::path write_design(std::int64_t side, const std::string& base) {
   const auto path = std::filesystem::temp_directory_path() / ("retrace_scale_" + std::to_string(::getpid()) + ".toml");
   const double length = 0.451 * static_cast<double>(side);
   std::ofstream(path) << "[element]\nkind = \"rtp\"\nbase_mm = 0.451\nwidth_mm = 0.451\n"
                       << "[array]\narrangement = \"offset\"\nx_length_mm = " << length << "\ny_length_mm = " << length
-                      << "\n[body]\nthickness_mm = 3.0\nrefractive_index = 1.4917\n";
+                      << "\n"
+                      << base << "[body]\nthickness_mm = 3.0\nrefractive_index = 1.4917\n";
   return path;
 }
 
-/// Arg: elements along a side.
+/// What prisms stand on, by number: a plane that rises by 10 degrees, a cylinder and a sphere that bend alike at every
+/// size of the part.
+std::string base_of(std::int64_t kind, std::int64_t side) {
+  const double radius_mm = 0.451 * static_cast<double>(side);
+  switch (kind) {
+    case 1:
+      return "[base]\nkind = \"plane\"\nincline_deg = 10\n";
+    case 2:
+      return "[base]\nkind = \"cylinder\"\nradius_mm = " + std::to_string(radius_mm) + "\n";
+    case 3:
+      return "[base]\nkind = \"sphere\"\nradius_mm = " + std::to_string(radius_mm) + "\n";
+    default:
+      return "";
+  }
+}
+
+/// Args: elements along a side; the base.
 void scale(benchmark::State& state) {
-  const auto design = write_design(state.range(0));
+  const auto design = write_design(state.range(0), base_of(state.range(1), state.range(0)));
   rusage usage{};
   for (auto _ : state) {
     const pid_t child = ::fork();
@@ -45,13 +63,8 @@ void scale(benchmark::State& state) {
 }
 
 BENCHMARK(scale)
-    ->ArgName("side")
-    ->Arg(10)
-    ->Arg(32)
-    ->Arg(100)
-    ->Arg(222)
-    ->Arg(316)
-    ->Arg(1000)
+    ->ArgNames({"side", "base"})
+    ->ArgsProduct({{10, 32, 100, 222, 316, 1000}, {0, 1, 2, 3}})
     ->Iterations(1)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);

@@ -153,7 +153,8 @@ TEST(PinBundle, SendsBackLightAlongThePinsWhateverTheIncline) {
   policy.cutoff = 1e-9;
   const double level =
       BeamTracer(build_part(pins)).trace(ideal(), from(0.0), {0.5}, policy).ledgers[0][Account::retroreflected];
-  const double full = build_part(pins).elements_full * area(aperture_outline(pins.element)) / (6.2 * 5.3);
+  const double full =
+      static_cast<double>(build_part(pins).elements_full) * area(aperture_outline(pins.element)) / (6.2 * 5.3);
   EXPECT_GT(level, full - 1e-9);
   for (const double incline : {5.0, 17.0, 30.0}) {
     const Part part = build_part(on({PlaneBase{incline, 33.0}, Standing::parallel}, pins));

@@ -1,5 +1,5 @@
 retrace_test(studies_design_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/design_json_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_reader_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_reader_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_json_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_reader_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/facet_planes_reader_test.cpp
   LIBRARIES retrace::optical_model rapidcheck)
 retrace_test(studies_rre_test

@@ -123,7 +123,7 @@ _retrace() {
     --tool-width-mm | --shrinkage-percent | --from-element | --stop-every | --split-hours) return ;;
     --set)
       compopt -o nospace 2>/dev/null
-      _retrace_words "$word" 'element. array. body. light. detector. idealisation.'
+      _retrace_words "$word" 'element. array. base. body. light. detector. idealisation.'
       return
       ;;
     --threads | --seed | --incidence | --azimuth | --samples | --target-error | --cutoff) return ;;
