@@ -67,7 +67,8 @@ class OnBase : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(OnBase, NothingIsLost) {
   const Case c = cases()[GetParam()];
-  const MonteCarlo tracer(build_part(c.spec));
+  const Part part = build_part(c.spec);
+  const MonteCarlo tracer(part);
   for (const Optics& optics : {pmma(), ideal()})
     for (const double t : {0.0, 25.0, 70.0})
       for (const double p : {0.0, 70.0, 190.0}) {
@@ -98,8 +99,8 @@ TEST(OnBase, AgreesWithTheReference) {
   for (const std::size_t k : {2U, 5U}) {
     const Case c = cases()[k];
     const Part part = build_part(c.spec);
-    const ReferenceResult reference = reference_trace(part, pmma(), from(10.0, 70.0), 8.0, 6000, 7);
-    const MonteCarloResult traced = MonteCarlo(part).trace(pmma(), from(10.0, 70.0), {8.0}, rays(1U << 18), {});
+    const ReferenceResult reference = reference_trace(part, pmma(), from(10.0, 70.0), 8.0, 1500, 7);
+    const MonteCarloResult traced = MonteCarlo(part).trace(pmma(), from(10.0, 70.0), {8.0}, rays(1U << 16), {});
     const double z = student_bound(2 * kAccountCount);
     const double slack = reference.mean[Account::truncated] + 1e-3;
     for (std::size_t a = 0; a < kAccountCount; ++a) {
@@ -170,13 +171,13 @@ TEST(PinBundle, LosesLightContinuouslyAsTheInclineGrows) {
   pins.is_pin_bundle = true;
   const auto rre = [&](double incline) {
     const PartSpec spec = on({PlaneBase{incline, 0.0}, Standing::parallel}, pins);
-    return MonteCarlo(build_part(spec)).trace(pmma(), from(10.0, 0.0), {0.5}, rays(1U << 15), {}).cones[0].rre;
+    return MonteCarlo(build_part(spec)).trace(pmma(), from(10.0, 0.0), {0.5}, rays(1U << 14), {}).cones[0].rre;
   };
   double before = rre(0.0);
   const double first = before;
-  for (double incline = 1.0; incline <= 30.0; incline += 1.0) {
+  for (double incline = 1.0; incline <= 30.0; incline += 2.0) {
     const double here = rre(incline);
-    EXPECT_LT(std::abs(here - before), 0.03) << incline;
+    EXPECT_LT(std::abs(here - before), 0.05) << incline;
     before = here;
   }
   EXPECT_LT(before, first - 0.05);
@@ -189,7 +190,7 @@ TEST(InclinedArray, HasTheApertureOfCubesAtThatAngle) {
   const auto rre = [](double size_mm, double incline_deg) {
     const PartSpec spec = on({PlaneBase{incline_deg, 90.0}, Standing::normal},
                              finite(TriangularCube{1.0}, Arrangement::triangular, size_mm, size_mm, 1.0 + size_mm));
-    return MonteCarlo(build_part(spec)).trace(ideal(), from(0.0), {0.01}, rays(1U << 17), {}).cones[0];
+    return MonteCarlo(build_part(spec)).trace(ideal(), from(0.0), {0.01}, rays(1U << 16), {}).cones[0];
   };
   for (const double incline : {5.0, 12.0, 18.0}) {
     const ConeResult small = rre(30.0, incline);
