@@ -120,6 +120,7 @@ class ShareQuantity final : public Quantity {
 const geometry::RtpElement& prism_of(const Candidate& candidate) {
   const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part.element);
   if (prism == nullptr) throw InputError("machining time is known for prisms (element.kind = \"rtp\") alone");
+  candidate.design().require_no_base("machining time");
   return *prism;
 }
 
@@ -138,6 +139,7 @@ double facets_of_element_mm2(const geometry::PartSpec& spec) {
 }
 
 std::optional<double> total_reflection_limit_deg(const Candidate& candidate) {
+  if (candidate.design().part.base) return std::nullopt;  // elements stand at angles of their own
   const auto library = materials::MaterialLibrary::shipped();
   const OpticalModel model = make_model(candidate.design(), library);
   double least = model.spectral.front().optics.index;
@@ -167,7 +169,10 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
     case PlainQuantity::elements_partial:
       return static_cast<double>(candidate.part().elements_partial);
     case PlainQuantity::element_depth_mm:
-      return candidate.part().element_depth_mm;
+      // A part on a base is deeper than its elements.
+      return candidate.design().part.base
+                 ? geometry::element_depth_mm(candidate.part().spec.element, candidate.part().spec.angle_errors)
+                 : candidate.part().element_depth_mm;
     case PlainQuantity::lens_thickness_mm:
       return candidate.part().element_depth_mm + candidate.part().thickness_mm;
     case PlainQuantity::facet_area_mm2:
