@@ -10,9 +10,11 @@
 namespace retrace::app {
 namespace {
 
-/// Plan, section and view of the design; none of balls.
+/// Plan, section and view of the design; none of balls; of elements on a base the view alone, as their lengths lie in
+/// no plane.
 std::vector<OutputFile> drawings_of(const studies::Design& design, std::vector<std::string>& warnings) {
   if (design.balls) return {};  // no part of planes to draw
+  if (design.part.base) return {{"view.png", report::view_png(studies::view_of(design))}};
   const studies::DesignDrawing drawing = studies::draw_design(design, studies::part_of_design(design, nullptr));
   std::vector<OutputFile> files = {{"plan.svg", report::plan_svg(drawing)}};
   if (drawing.section) files.push_back({"section.svg", report::section_svg(drawing)});
