@@ -74,7 +74,7 @@ struct Bad {
 TEST(BaseReader, SaysWhatIsWrongAndWhere) {
   const std::vector<Bad> bad = {
       {kPrisms, "incline_deg = 3", "d.toml:8: base.kind: missing"},
-      {kPrisms, "kind = \"cone\"", "d.toml:9: base.kind: must be \"plane\", \"cylinder\", \"sphere\" or \"formula\""},
+      {kPrisms, "kind = \"cone\"", "d.toml:9: base.kind: must be one of \"plane\", \"cylinder\", \"sphere\" or \"f"},
       {kPrisms, "kind = \"plane\"", "d.toml:8: base.incline_deg: missing"},
       {kPrisms, "kind = \"plane\"\nincline_deg = 75", "d.toml:10: base.incline_deg: must be >= 0 and <= 60, got 75"},
       {kPrisms, "kind = \"plane\"\nincline_deg = 50",
