@@ -563,6 +563,8 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   if (design.mesh) {
     design.texture = read_mesh_surface(document);
   } else if (has_balls(document)) {
+    if (const toml::node* const base = document.root().get("base"))
+      throw InputError(document.location(*base, "base"), "not allowed for kind = \"ball\"");
     design.balls = read_balls(document);
     design.balls_location = TableReader(document, "element").where("kind");
   } else {

@@ -108,6 +108,9 @@ TEST(BaseReader, SaysWhatIsWrongAndWhere) {
 }
 
 TEST(BaseReader, RefusesWhatABaseCannotHave) {
+  const std::string balls = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[base]\nkind = \"plane\"\nincline_deg = 5\n";
+  EXPECT_EQ(complaint(balls).substr(0, 12), "d.toml:4: ba") << complaint(balls);
+  EXPECT_NE(complaint(balls).find("not allowed for kind = \"ball\""), std::string::npos) << complaint(balls);
   const std::string rounded = design(kPrisms, "kind = \"sphere\"\nradius_mm = 30") + "[surface]\nrim_radius_um = 20\n";
   EXPECT_NE(complaint(rounded).find("rounded or chamfered rims need elements"), std::string::npos)
       << complaint(rounded);
