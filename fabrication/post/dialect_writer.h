@@ -31,6 +31,7 @@ class NcText {
   NcText& words(const Words& words);
   /// Three decimals and a point.
   NcText& decimal(double value);
+  NcText& decimal(double value, int decimals);
   NcText& end_line();
   void line(std::string_view text) { add(text).end_line(); }
   std::string take() { return std::move(text_); }
@@ -63,6 +64,10 @@ class DialectWriter {
   virtual void rapid(NcText& out, const Words& words) const = 0;
   virtual void feed(NcText& out, const Words& words, double feed_mm_per_min) const = 0;
   virtual void dwell(NcText& out, int ms) const = 0;
+  /// A path without stops, its moves timed; afterwards exact stop and feeds per minute again.
+  virtual void begin_trace(NcText& out) const = 0;
+  virtual void trace_point(NcText& out, const Words& words, double seconds) const = 0;
+  virtual void end_trace(NcText& out) const = 0;
 };
 
 std::unique_ptr<DialectWriter> make_rs274ngc();

@@ -40,6 +40,14 @@ class Pmac : public DialectWriter {
     out.add("linear").words(words).add(" F").decimal(feed_mm_per_min).end_line();
   }
   void dwell(NcText& out, int ms) const override { out.add("dwell ").number(ms).end_line(); }
+  void begin_trace(NcText& out) const override {
+    out.line("Coord[1].NoBlend=0");
+    out.line("ta0 ts0");
+  }
+  void trace_point(NcText& out, const Words& words, double seconds) const override {
+    out.add("linear").words(words).add(" tm").decimal(1e3 * seconds, 6).end_line();
+  }
+  void end_trace(NcText& out) const override { out.line("Coord[1].NoBlend=1"); }
 };
 
 }  // namespace

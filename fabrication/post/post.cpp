@@ -70,6 +70,32 @@ class FileWriter {
     words.tilt_letter = program_.tilt_letter;
     dialect_.rapid(out_, words);
   }
+  void operator()(const Trace& trace) {
+    const TracePoint& first = trace.points.front();
+    Words start;
+    start.x_nm = first.x_nm;
+    start.y_nm = first.y_nm;
+    start.c = first.c;
+    dialect_.rapid(out_, start);
+    if (!mist_on_) dialect_.mist(out_, true);
+    mist_on_ = true;
+    Words down;
+    down.z_nm = first.z_nm;
+    dialect_.feed(out_, down, trace.approach_feed_mm_per_min);
+    dialect_.begin_trace(out_);
+    const TracePoint* last = &first;
+    for (const TracePoint& p : std::span(trace.points).subspan(1)) {
+      Words words;
+      words.x_nm = p.x_nm;
+      if (p.y_nm != last->y_nm) words.y_nm = p.y_nm;
+      words.z_nm = p.z_nm;
+      if (p.c != last->c) words.c = p.c;
+      dialect_.trace_point(out_, words, p.seconds);
+      last = &p;
+    }
+    dialect_.end_trace(out_);
+    at_ = {last->x_nm, last->y_nm, last->z_nm, at_.a, last->c};
+  }
   void operator()(const Visit& visit) {
     dialect_.comment(out_, fmt::format("element {}", visit.element));
     for (const Rapid& rapid : approach(at_, visit)) {
@@ -141,6 +167,11 @@ NcText& NcText::number(long long value) {
 
 NcText& NcText::end_line() {
   text_ += '\n';
+  return *this;
+}
+
+NcText& NcText::decimal(double value, int decimals) {
+  fmt::format_to(std::back_inserter(text_), "{:.{}f}", value, decimals);
   return *this;
 }
 

@@ -35,6 +35,18 @@ class Rs274ngc : public DialectWriter {
     out.add("G1").words(words).add(" F").decimal(feed_mm_per_min).end_line();
   }
   void dwell(NcText& out, int ms) const override { out.add("G4 P").decimal(1e-3 * ms).end_line(); }
+  void begin_trace(NcText& out) const override {
+    out.line("G64");
+    out.line("G93");
+  }
+  void trace_point(NcText& out, const Words& words, double seconds) const override {
+    // Inverse time: F is the number of such moves in a minute.
+    out.add("G1").words(words).add(" F").decimal(60.0 / seconds, 6).end_line();
+  }
+  void end_trace(NcText& out) const override {
+    out.line("G94");
+    out.line("G61");
+  }
 };
 
 }  // namespace

@@ -27,6 +27,30 @@ class Walker {
     move.to = at_;
     sink_(move);
   }
+  void operator()(const Trace& trace) {
+    const TracePoint& first = trace.points.front();
+    at_.x_nm = first.x_nm;
+    at_.y_nm = first.y_nm;
+    at_.c = first.c;
+    PlannedMove move;
+    move.rotary = true;
+    move.to = at_;
+    sink_(move);
+    move.rapid = false;
+    move.rotary = false;
+    move.feed_mm_per_min = trace.approach_feed_mm_per_min;
+    move.to.z_nm = first.z_nm;
+    sink_(move);
+    move.motion = Motion::plough;
+    move.feed_mm_per_min = 0.0;
+    for (std::size_t i = 1; i < trace.points.size(); ++i) {
+      const TracePoint& p = trace.points[i];
+      move.to = {p.x_nm, p.y_nm, p.z_nm, at_.a, p.c};
+      move.trace_s = p.seconds;
+      sink_(move);
+    }
+    at_ = move.to;
+  }
   void operator()(const Visit& visit) {
     for (const Rapid& rapid : approach(at_, visit)) {
       if (rapid.x_nm) at_.x_nm = rapid.x_nm;

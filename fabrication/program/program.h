@@ -82,10 +82,24 @@ struct Visit {
   Nanometres y_nm = 0;
   Nanometres z_nm = 0;
 };
+/// A point of a continuous path.
+struct TracePoint {
+  Nanometres x_nm = 0;
+  Nanometres y_nm = 0;
+  Nanometres z_nm = 0;
+  RotaryUnits c = 0;
+  double seconds = 0.0;  ///< since the point before it; > 0
+};
+/// A path of X, Y, Z and C that is followed without stopping, each point reached at its time: rapid moves to its first
+/// point without Z, down to it at the feed, then the others.
+struct Trace {
+  std::vector<TracePoint> points;  ///< 2 or more
+  double approach_feed_mm_per_min = 0.0;
+};
 /// The operator may stop here.
 struct OptionalStop {};
 
-using Item = std::variant<Comment, Message, Raise, Turn, Visit, OptionalStop>;
+using Item = std::variant<Comment, Message, Raise, Turn, Visit, Trace, OptionalStop>;
 
 /// A program that runs alone, free of any dialect: preparation, `items` in their order, end. Texts are one line of
 /// ASCII without brackets, quotes, semicolons and percent signs.
@@ -125,6 +139,7 @@ struct PlannedMove {
   Position to;
   double feed_mm_per_min = 0.0;  ///< 0 for rapids
   double dwell_s = 0.0;          ///< after the move
+  double trace_s = 0.0;          ///< time of a move of a trace; 0 for others
   std::int32_t element = -1;     ///< that is visited; -1: none
 };
 

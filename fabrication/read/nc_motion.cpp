@@ -88,7 +88,12 @@ class Runner {
     take_over(settings_.spindle_on, block.spindle_on);
     take_over(settings_.mist_on, block.mist_on);
     if (block.move) move_ = block.move;
-    if (block.feed) feed_ = *block.feed;
+    take_over(inverse_time_, block.inverse_time);
+    // Under inverse time F belongs to its line alone.
+    const bool is_feed = block.feed && !inverse_time_.value_or(false);
+    if (is_feed) feed_ = *block.feed;
+    if (is_feed) move_time_s_ = 0.0;
+    if (block.move_time_s) move_time_s_ = *block.move_time_s;
     if (block.dwell_s) sink_.dwell(*block.dwell_s, place_of(block), axes_of(position_));
     if (block.axes != 0) move(block);
   }
@@ -106,10 +111,18 @@ class Runner {
     // Without a setting a feed counts mm/min, but for PMAC, which starts with mm/s.
     const double default_time_s = program_.dialect == NcDialect::pmac ? 1.0 : 60.0;
     const double unit_mm = settings_.unit_mm.value_or(1.0);
-    if (motion.move == NcMove::linear)
+    if (motion.move == NcMove::linear) motion.duration_s = duration_of(block);
+    if (motion.move == NcMove::linear && motion.duration_s == 0.0)
       motion.feed_mm_per_min = feed_ * unit_mm * 60.0 / settings_.feed_time_s.value_or(default_time_s);
     motion.is_exact_stop = settings_.exact_stop.value_or(true);
     sink_.motion(motion, settings_);
+  }
+
+  /// Of a linear move; 0 where a feed says how fast it is.
+  double duration_of(const NcBlock& block) const {
+    if (!inverse_time_.value_or(false)) return move_time_s_;
+    if (!block.feed || !(*block.feed > 0.0)) fail(block, "under inverse time every linear move needs its own F > 0");
+    return 60.0 / *block.feed;
   }
 
   void move_axis(const NcBlock& block, std::size_t axis, NcMotion& motion) {
@@ -134,6 +147,8 @@ class Runner {
   NcSettings settings_;
   std::optional<NcMove> move_;
   double feed_ = 0.0;
+  std::optional<bool> inverse_time_;
+  double move_time_s_ = 0.0;
   std::array<double, kNcAxes> position_{};
   std::uint8_t known_ = 0;
 };

@@ -24,6 +24,7 @@ struct NcMotion {
   AxisPositions from;
   AxisPositions to;
   double feed_mm_per_min = 0.0;  ///< of a linear move; 0: none was given
+  double duration_s = 0.0;       ///< of a linear move whose time is given instead of a feed; 0: by the feed
   bool is_exact_stop = true;     ///< the move ends in its end point
 };
 
@@ -59,7 +60,7 @@ inline constexpr std::size_t kDeepestNcCall = 16;
 inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
 
 /// Carries out a program: calls, modal settings, absolute and incremental words.
-/// \throw InputError naming file and line: axes that move before G0 or G1, an incremental word for an axis whose
+/// \throw InputError naming file and line: a linear move under inverse time without F > 0, axes that move before G0 or G1, an incremental word for an axis whose
 /// position nobody has set, subroutines that call each other without end
 NcEnd run_nc(const NcProgram& program, NcSink& sink);
 

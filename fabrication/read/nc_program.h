@@ -37,6 +37,8 @@ struct NcBlock {
   Setting<double> unit_mm;         ///< of linear words: 1 or 25.4
   Setting<double> feed;            ///< as written
   Setting<double> feed_time_s;     ///< time that a feed is per: 60 for mm/min
+  Setting<bool> inverse_time;      ///< feeds are one over the time of their move, per minute
+  Setting<double> move_time_s;     ///< time of this and the following moves, until a feed says otherwise
   Setting<bool> exact_stop;        ///< false: blocks are blended
   Setting<bool> workpiece_offset;  ///< G54 chosen
   Setting<bool> compensation_off;  ///< of the tool's radius or length

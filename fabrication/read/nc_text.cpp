@@ -158,6 +158,10 @@ void IsoBlock::set_g(const NcWord& word, Meaning meaning) {
       break;
     case Code::feed_per_minute:
       block_.feed_time_s = 60.0;
+      block_.inverse_time = false;
+      break;
+    case Code::inverse_time:
+      block_.inverse_time = true;
       break;
   }
 }

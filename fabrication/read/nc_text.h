@@ -75,7 +75,8 @@ class IsoBlock {
     blending,
     absolute,
     incremental,
-    feed_per_minute
+    feed_per_minute,
+    inverse_time  ///< F is one over the time of the move, per minute
   };
 
   /// Codes of one modal group exclude each other in a line; 0: of no group.

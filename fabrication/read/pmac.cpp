@@ -112,6 +112,10 @@ class Reader {
       set_distance(name == "ABS", block);
     else if (name == "DWELL")
       iso.set_dwell(number_behind(text) / 1000.0);
+    else if (name == "TM")
+      read_move_time(text, block);
+    else if (name == "TA" || name == "TS")
+      read_ramp(text);
     else if (name == "CALL")
       read_call(text, block);
     else if (name == "FRAX")
@@ -125,6 +129,19 @@ class Reader {
   void set_distance(bool absolute, NcBlock& block) {
     if (block.absolute) lines_.fail("says abs or inc twice");
     block.absolute = absolute;
+  }
+
+  /// Time of a move in ms.
+  void read_move_time(std::string_view& text, NcBlock& block) {
+    if (block.move_time_s) lines_.fail("has two times of the move");
+    const double ms = number_behind(text);
+    if (!(ms > 0.0)) lines_.fail(fmt::format("TM must be > 0, got {}", ms));
+    block.move_time_s = ms / 1000.0;
+  }
+
+  /// Times of acceleration, which round the path unless they are 0.
+  void read_ramp(std::string_view& text) {
+    if (number_behind(text) != 0.0) lines_.fail("TA and TS must be 0: ramps between moves are not understood");
   }
 
   double number_behind(std::string_view& text) {

@@ -26,6 +26,7 @@ IsoBlock::Meaning meaning_of(double g) {
   if (g == 90) return {Code::absolute, 3};
   if (g == 91) return {Code::incremental, 3};
   if (g == 92.1) return {Code::no_effect, 0};  // shifts of G92 cancelled
+  if (g == 93) return {Code::inverse_time, 5};
   if (g == 94) return {Code::feed_per_minute, 5};
   return {};
 }

@@ -27,6 +27,7 @@ IsoBlock::Meaning meaning_of(double g) {
   if (g == 710) return {Code::millimetre, 13};
   if (g == 90) return {Code::absolute, 14};
   if (g == 91) return {Code::incremental, 14};
+  if (g == 93) return {Code::inverse_time, 15};
   if (g == 94) return {Code::feed_per_minute, 15};
   return {};
 }
