@@ -384,7 +384,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
   if (!app.get_subcommands().empty()) return otherwise;
   const std::string commands =
       "rre, inspect, photometry, roughness, metrology, sweep, optimize, tolerance, job, fabricate, verify, forces, "
-      "plane, "
+      "turn, plane, "
       "image, export, report, init and list";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
@@ -421,6 +421,10 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_study(app, line.study, "tolerance", "what becomes of a design in manufacture, as a study file says");
   add_verify(app, line.verify);
   add_forces(app, line.forces);
+  app.add_subcommand("turn", "NC programs of a turned freeform, and what they leave")
+      ->add_option("PART", line.turn_part, "part file")
+      ->required()
+      ->check(not_empty());
   add_plane(app, line.fabricate);
   add_image(app, line.image);
   add_export(app, line.solid);

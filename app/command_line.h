@@ -145,6 +145,7 @@ struct CommandLine {
   FabricateOptions fabricate;
   VerifyOptions verify;
   ForcesOptions forces;
+  std::string turn_part;
   ImageOptions image;
   ExportOptions solid;
   ReportOptions report;

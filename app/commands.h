@@ -20,6 +20,7 @@ ExitCode run_tolerance_command(const CommandLine& line);
 ExitCode run_verify_command(const CommandLine& line);
 ExitCode run_plane_command(const CommandLine& line);
 ExitCode run_forces_command(const CommandLine& line);
+ExitCode run_turn_command(const CommandLine& line);
 ExitCode run_image_command(const CommandLine& line);
 ExitCode run_export_command(const CommandLine& line);
 ExitCode run_report_command(const CommandLine& line);

@@ -30,6 +30,7 @@ ExitCode run(int argc, const char* const* argv) {
   if (line->command == "optimize") return app::run_optimize_command(*line);
   if (line->command == "tolerance") return app::run_tolerance_command(*line);
   if (line->command == "verify") return app::run_verify_command(*line);
+  if (line->command == "turn") return app::run_turn_command(*line);
   if (line->command == "plane") return app::run_plane_command(*line);
   if (line->command == "forces") return app::run_forces_command(*line);
   if (line->command == "image") return app::run_image_command(*line);

@@ -19,7 +19,8 @@ double effective_radius_mm(const TurningTool& tool) {
 }
 
 FinishFigures finish_figures(double effective_radius_mm, double feed_mm, double curvature_per_mm) {
-  const double h = feed_mm * feed_mm * (1.0 / effective_radius_mm - curvature_per_mm) * kNmPerMm;
+  const double h =
+      feed_mm * feed_mm / (effective_radius_mm * (1.0 - effective_radius_mm * curvature_per_mm)) * kNmPerMm;
   return {h / 8.0, h / (18.0 * kSqrt3), h / (12.0 * std::sqrt(5.0)), h / 24.0};
 }
 

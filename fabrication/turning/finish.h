@@ -17,8 +17,9 @@ struct FinishFigures {
   double rq_of_paper_nm = 0.0;     ///< f^2 / (24 r): Sohn, Naples, eq. 4, which is the mean height of the cusps
 };
 
-/// \param curvature_per_mm of the surface across the cuts, positive where it is a valley; the cusp is that of the
-/// difference of curvatures: r is replaced by 1 / (1 / r - curvature) \pre feed_mm > 0, the tool fits into the valley
+/// \param feed_mm between positions of the nose, along the surface's slope \param curvature_per_mm k of the surface
+/// across the cuts, positive in a valley: the nose's middle runs on the parallel curve, so that places where it touches
+/// lie f / (1 - r k) apart, and r is replaced by r (1 - r k) \pre feed_mm > 0, r k < 1: the nose fits into the valley
 FinishFigures finish_figures(double effective_radius_mm, double feed_mm, double curvature_per_mm = 0.0);
 
 /// The same of the ellipse itself on a flat, by integration: no expansion in the feed. \pre feed < 2 b

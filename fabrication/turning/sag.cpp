@@ -61,13 +61,17 @@ T evaluate_polynomial(const XyPolynomial& p, const T& x_mm, const T& y_mm) {
 }
 
 template <class T>
-T evaluate_formula(const Formula& formula, const T& x, const T& y) {
+T evaluate_formula(const Formula& formula, const T& x, const T& y, const std::array<double, 2>& place_mm) {
   using std::atan2;
   using std::sqrt;
   const T none = constant_like(x, 0.0);
   // Polar variables have no derivatives at the centre; there they must not spoil a formula that has none of them.
-  const std::array<T, 4> variables = {x, y, formula.uses(2) ? sqrt(x * x + y * y) : none,
-                                      formula.uses(3) ? atan2(y, x) : none};
+  const std::array<T, 6> variables = {x,
+                                      y,
+                                      formula.uses(2) ? sqrt(x * x + y * y) : none,
+                                      formula.uses(3) ? atan2(y, x) : none,
+                                      constant_like(x, place_mm[0]),
+                                      constant_like(x, place_mm[1])};
   return formula.evaluate(variables.data());
 }
 
@@ -88,7 +92,7 @@ T Sag::evaluate(const T& x, const T& y) const {
   if (polynomial && !has_asphere && !formula) return evaluate_polynomial(*polynomial, x, y);
   T z = has_asphere ? evaluate_asphere(asphere, x, y) : constant_like(x, 0.0);
   if (polynomial) z = z + evaluate_polynomial(*polynomial, x, y);
-  if (formula) z = z + evaluate_formula(*formula, x, y);
+  if (formula) z = z + evaluate_formula(*formula, x, y, place_mm);
   return z;
 }
 
@@ -99,7 +103,7 @@ template Series<Dual> Sag::evaluate(const Series<Dual>&, const Series<Dual>&) co
 template Series<Series<double>> Sag::evaluate(const Series<Series<double>>&, const Series<Series<double>>&) const;
 
 std::vector<std::string> sag_variables() {
-  return {"x", "y", "r", "theta"};
+  return {"x", "y", "r", "theta", "cx", "cy"};
 }
 
 }  // namespace retrace::fabrication::turning

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fabrication/turning/formula.h"
@@ -41,11 +43,12 @@ struct ZernikeTerm {
 XyPolynomial polynomial_of(const std::vector<ZernikeTerm>& terms, double radius_mm);
 
 /// A sag z(x, y) in mm that holds wherever it is finite: the sum of what is given. The formula has the variables x, y,
-/// r and theta (mm, rad).
+/// r, theta, cx and cy (mm, rad).
 struct Sag {
   Asphere asphere;
   std::optional<XyPolynomial> polynomial;
   std::optional<Formula> formula;
+  std::array<double, 2> place_mm{};  ///< of a lenslet: cx and cy of the formula
 
   /// z at (x, y) with all derivatives that T carries. Not a number where the sag has no value.
   template <class T>

@@ -46,6 +46,7 @@ const std::map<std::string, Names>& study_rooms() {
       {"metrology", {}},
       {"fabrication", {"design"}},
       {"forces", {}},
+      {"turning", {}},
       {"planing", {}},
       {"closed_loop", {"design"}},
       {"store", {}},

@@ -2,3 +2,6 @@ retrace_test(turning_surface_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/sag_test.cpp ${CMAKE_CURRENT_LIST_DIR}/boundary_test.cpp ${CMAKE_CURRENT_LIST_DIR}/surface_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/tool_test.cpp
   LIBRARIES retrace::turning)
+retrace_test(turning_path_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/path_test.cpp ${CMAKE_CURRENT_LIST_DIR}/envelope_test.cpp
+  LIBRARIES retrace::turning retrace::post)

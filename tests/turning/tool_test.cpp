@@ -171,6 +171,20 @@ TEST(TurningFinish, ExactFiguresTendToTheClosedForms) {
   EXPECT_NEAR(exact.rq_nm / closed.rq_nm, 1.0, 1e-5);
 }
 
+TEST(TurningFinish, CuspsOnACurveAreThoseOfCircles) {
+  // Circles of radius r about points of the circle of radius R + r meet at this distance from its middle.
+  const double r = 0.2;
+  const double feed = 0.01;
+  for (const double R : {2.0, 0.5}) {
+    const double half = 0.5 * feed / (R + r);
+    const double outer = (R + r) * std::cos(half) - std::sqrt(r * r - std::pow((R + r) * std::sin(half), 2)) - R;
+    EXPECT_NEAR(finish_figures(r, feed, -1.0 / R).peak_to_valley_nm, 1e6 * outer, 1e-3 * 1e6 * outer);
+    const double inside = 0.5 * feed / (R - r);
+    const double hollow = R - (R - r) * std::cos(inside) - std::sqrt(r * r - std::pow((R - r) * std::sin(inside), 2));
+    EXPECT_NEAR(finish_figures(r, feed, 1.0 / R).peak_to_valley_nm, 1e6 * hollow, 1e-3 * 1e6 * hollow);
+  }
+}
+
 TEST(TurningFinish, FeedForAScallop) {
   const double feed = feed_for_scallop_mm(0.2, 10.0);
   EXPECT_NEAR(finish_figures(0.2, feed).peak_to_valley_nm, 10.0, 1e-12);

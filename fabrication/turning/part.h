@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fabrication/turning/path.h"
+#include "fabrication/turning/surface.h"
+#include "fabrication/turning/tool.h"
+
+namespace retrace::fabrication::turning {
+
+/// A part to be turned: its surface, the tool, the path, the machine and what is asked of the result.
+struct TurnedPart {
+  std::string title;
+  TurnedSurface surface;
+  TurningTool tool;
+  bool skew_is_least = false;  ///< the file asks for the least skew that clears; `tool` has it
+  PathOptions path;
+  TurningMachine machine;
+  double form_tolerance_nm = 10.0;
+  std::size_t map_pixels = 101;
+  std::vector<std::string> warnings;
+};
+
+}  // namespace retrace::fabrication::turning

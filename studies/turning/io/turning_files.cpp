@@ -1,0 +1,144 @@
+#include "studies/turning/io/turning_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/json_text.h"
+#include "core/number_format.h"
+#include "core/version.h"
+
+namespace retrace::studies {
+namespace {
+
+namespace turning = fabrication::turning;
+using Json = nlohmann::ordered_json;
+
+Json axis_json(const turning::AxisFigures& f) {
+  return {{"low_mm", f.low_mm},
+          {"high_mm", f.high_mm},
+          {"speed_mm_per_s", f.speed_mm_per_s},
+          {"acceleration_mm_per_s2", f.acceleration_mm_per_s2},
+          {"jerk_mm_per_s3", f.jerk_mm_per_s3},
+          {"acceleration_jump_mm_per_s2", f.acceleration_jump_mm_per_s2}};
+}
+
+Json tool_json(const TurningResult& r) {
+  const turning::TurningTool& tool = r.part.tool;
+  return {{"nose_radius_mm", tool.nose_radius_mm},
+          {"effective_radius_mm", turning::effective_radius_mm(tool)},
+          {"window_deg", tool.window_deg},
+          {"window_needed_deg", r.clearance.window_needed_deg},
+          {"clearance_deg", tool.clearance_deg},
+          {"clearance_needed_deg", r.clearance.clearance_needed_deg},
+          {"clearance_at_x_mm", r.clearance.clearance_at_mm.x()},
+          {"clearance_at_y_mm", r.clearance.clearance_at_mm.y()},
+          {"rake_deg", tool.rake_deg},
+          {"skew_deg", tool.skew_deg},
+          {"skew_is_least", r.part.skew_is_least}};
+}
+
+Json verification_json(const TurningResult& r) {
+  const turning::Inspection& i = r.inspection;
+  return {{"verdict", r.passes_inspection() ? "pass" : "fail"},
+          {"findings", r.findings},
+          {"form_tolerance_nm", r.part.form_tolerance_nm},
+          {"form_error_nm", i.form_error_nm},
+          {"interference_nm", i.interference_nm},
+          {"scallop_nm", i.scallop_nm},
+          {"scallop_most_nm", i.scallop_most_nm},
+          {"scallop_ratio_low", i.scallop_ratio_low},
+          {"scallop_ratio_high", i.scallop_ratio_high},
+          {"rms_nm", i.rms_nm},
+          {"profiles", i.cusps.size()},
+          {"profiles_compared", i.compared}};
+}
+
+}  // namespace
+
+std::string turning_json(const TurningResult& r) {
+  Json programs = Json::array();
+  for (const TurningText& program : r.programs)
+    programs.push_back({{"dialect", program.dialect}, {"file", program.file}});
+  Json json = {{"schema", "retrace.turning/1"},
+               {"part", r.file},
+               {"title", r.part.title},
+               {"lenslets", r.part.surface.lenslets().size()},
+               {"points", r.points},
+               {"passes", r.passes.size()},
+               {"time_s", r.time_s},
+               {"feed_um", 1e3 * r.part.path.feed_mm},
+               {"tool", tool_json(r)},
+               {"finish",
+                {{"peak_to_valley_nm", r.finish.peak_to_valley_nm},
+                 {"ra_nm", r.finish.ra_nm},
+                 {"rq_nm", r.finish.rq_nm},
+                 {"rq_of_paper_nm", r.finish.rq_of_paper_nm}}},
+               {"axes", {{"x", axis_json(r.axes[0])}, {"y", axis_json(r.axes[1])}, {"z", axis_json(r.axes[2])}}}};
+  if (!r.servo_csv.empty()) json["axes"]["servo"] = axis_json(r.axes[3]);
+  json["programs"] = std::move(programs);
+  json["verification"] = verification_json(r);
+  json["version"] = kVersion;
+  json["warnings"] = r.part.warnings;
+  json["complete"] = true;
+  return to_text(json);
+}
+
+std::string turning_path_csv(const TurningResult& r) {
+  constexpr std::size_t kMostRows = 50000;
+  const std::size_t stride = r.points / kMostRows + 1;
+  std::string text =
+      "time_s,x_mm,y_mm,z_mm,c_deg,servo_mm,z_speed_mm_per_s,z_acceleration_mm_per_s2,z_jerk_mm_per_s3\n";
+  std::size_t count = 0;
+  double start_s = 0.0;
+  for (const turning::Pass& pass : r.passes) {
+    const std::vector<turning::AxisState> z = turning::axis_states(pass, 2);
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+      if (count++ % stride != 0) continue;
+      const turning::PathPoint& p = pass[i];
+      text += fmt::format("{},{},{},{},{},{},{},{},{}\n", fixed(start_s + z[i].time_s, 6), fixed(p.x_mm, 7),
+                          fixed(p.y_mm, 7), fixed(p.z_mm, 7), fixed(p.c_deg, 7), fixed(p.servo_mm, 7),
+                          fixed(z[i].speed_mm_per_s, 6), fixed(z[i].acceleration_mm_per_s2, 4),
+                          fixed(z[i].jerk_mm_per_s3, 2));
+    }
+    start_s += z.empty() ? 0.0 : z.back().time_s;
+  }
+  return text;
+}
+
+std::string turning_cusps_csv(const TurningResult& r) {
+  std::string text = "x_mm,y_mm,scallop_nm,predicted_nm,valley_nm\n";
+  for (const turning::CuspSample& s : r.inspection.cusps)
+    text += fmt::format("{},{},{},{},{}\n", shortest(s.at_mm.x()), shortest(s.at_mm.y()), shortest(s.scallop_nm),
+                        shortest(s.predicted_nm), shortest(s.valley_nm));
+  return text;
+}
+
+std::string turning_table(const TurningResult& r) {
+  const turning::TurningTool& tool = r.part.tool;
+  std::string text = fmt::format("{}: {} points in {} s, feed {} um\n", r.file, r.points, fixed(r.time_s, 1),
+                                 fixed(1e3 * r.part.path.feed_mm, 3));
+  const auto row = [&](const char* name, double value, int digits, const char* unit) {
+    text += fmt::format("  {:<34} {:>10} {}\n", name, fixed(value, digits), unit);
+  };
+  row("clearance needed", r.clearance.clearance_needed_deg, 2, "deg");
+  row("clearance of the tool", tool.clearance_deg, 2, "deg");
+  row("window needed", r.clearance.window_needed_deg, 2, "deg");
+  row("skew", tool.skew_deg, 2, "deg");
+  row("effective nose radius", turning::effective_radius_mm(tool), 4, "mm");
+  row("Ra on a flat", r.finish.ra_nm, 3, "nm");
+  row("Rq on a flat", r.finish.rq_nm, 3, "nm");
+  row("Rq by Sohn and Naples (mean height)", r.finish.rq_of_paper_nm, 3, "nm");
+  row("peak to valley on a flat", r.finish.peak_to_valley_nm, 3, "nm");
+  row("Z acceleration", r.axes[2].acceleration_mm_per_s2, 3, "mm/s^2");
+  row("largest jump of it", r.axes[2].acceleration_jump_mm_per_s2, 3, "mm/s^2");
+  row("form error of the programs", r.inspection.form_error_nm, 3, "nm");
+  row("deepest cut below the surface", r.inspection.interference_nm, 3, "nm");
+  row("scallops, mean", r.inspection.scallop_nm, 3, "nm");
+  text += fmt::format("  {:<34} {:>10}\n", "verdict", r.passes_inspection() ? "pass" : "fail");
+  for (const std::string& finding : r.findings) text += "  " + finding + "\n";
+  return text;
+}
+
+}  // namespace retrace::studies

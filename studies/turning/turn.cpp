@@ -1,0 +1,173 @@
+#include "studies/turning/turn.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "core/atomic_file.h"
+#include "core/number_format.h"
+#include "fabrication/post/post.h"
+#include "fabrication/read/nc_motion.h"
+#include "fabrication/turning/io/part_files.h"
+#include "fabrication/turning/turning_program.h"
+
+namespace retrace::studies {
+namespace {
+
+namespace turning = fabrication::turning;
+using geometry::Vec2;
+
+/// ASCII without what a comment of some dialect could not hold.
+std::string comment_of(const std::string& text) {
+  std::string result;
+  for (const char c : text.substr(0, 60))
+    result += (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == ',' ? c : ' ';
+  return result;
+}
+
+std::vector<std::string> header_of(const TurningResult& r) {
+  const turning::TurningTool& tool = r.part.tool;
+  return {comment_of(r.part.title.empty() ? "turned part" : r.part.title),
+          fmt::format("nose radius {} mm, rake {} deg, skew {} deg", shortest(tool.nose_radius_mm),
+                      shortest(tool.rake_deg), shortest(tool.skew_deg)),
+          fmt::format("{} points, {} s", r.points, fixed(r.time_s, 1))};
+}
+
+void write_programs(TurningResult& r) {
+  const auto program =
+      turning::turning_program(r.passes, r.part.path, std::filesystem::path(r.file).stem().string(), header_of(r));
+  for (const fabrication::Dialect& dialect : fabrication::dialects())
+    r.programs.push_back(
+        {std::string(dialect.name), "part" + std::string(dialect.ending), fabrication::nc_text(program, dialect.name)});
+  if (r.part.path.servo != turning::Servo::fast) return;
+  r.servo_csv = "c_deg,stroke_mm\n";
+  for (const turning::PathPoint& p : r.passes.front())
+    r.servo_csv += fmt::format("{:.7f},{:.6f}\n", p.c_deg, p.servo_mm);
+}
+
+/// Adds the strokes of the servo's file to the heights that the slide's program reaches.
+void add_strokes(const std::string& csv, std::vector<turning::CutPass>& cuts, std::vector<std::string>& findings) {
+  if (csv.empty()) return;
+  std::size_t i = 0;
+  std::size_t line = csv.find('\n') + 1;
+  while (line < csv.size() && i < cuts.front().z_mm.size()) {
+    const std::size_t comma = csv.find(',', line);
+    double stroke = 0.0;
+    std::from_chars(csv.data() + comma + 1, csv.data() + csv.size(), stroke);
+    cuts.front().z_mm[i++] += stroke;
+    line = csv.find('\n', comma) + 1;
+  }
+  if (i != cuts.front().z_mm.size() || line < csv.size())
+    findings.push_back("the servo's file does not have one stroke for every point of the program");
+}
+
+bool same_cuts(const std::vector<turning::CutPass>& a, const std::vector<turning::CutPass>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (a[i].x_mm != b[i].x_mm || a[i].y_mm != b[i].y_mm || a[i].z_mm != b[i].z_mm || a[i].c_rad != b[i].c_rad)
+      return false;
+  return true;
+}
+
+/// The cuts of the reference's text; the others must read as the same.
+std::vector<turning::CutPass> read_back(TurningResult& r) {
+  std::vector<turning::CutPass> reference;
+  for (std::size_t d = 0; d < r.programs.size(); ++d) {
+    const TurningText& program = r.programs[d];
+    turning::CutRecorder recorder;
+    const fabrication::NcEnd end = fabrication::run_nc(
+        fabrication::parse_nc(program.text, program.file, static_cast<fabrication::NcDialect>(d)), recorder);
+    if (!end.is_complete) r.findings.push_back(fmt::format("{}: {}", program.file, end.reason));
+    for (const std::string& finding : recorder.findings())
+      r.findings.push_back(fmt::format("{}: {}", program.file, finding));
+    std::vector<turning::CutPass> cuts = recorder.take();
+    if (d == 0)
+      reference = std::move(cuts);
+    else if (!same_cuts(reference, cuts))
+      r.findings.push_back(fmt::format("{}: moves otherwise than {}", program.file, r.programs.front().file));
+  }
+  return reference;
+}
+
+turning::InspectedRegion region_of(const turning::PathOptions& path) {
+  turning::InspectedRegion region;
+  region.is_round = path.strategy == turning::Strategy::spiral;
+  region.radius_mm = path.radius_mm;
+  region.half_width_mm = 0.5 * path.width_mm;
+  region.half_height_mm = 0.5 * path.height_mm;
+  region.feed_mm = path.feed_mm;
+  return region;
+}
+
+void judge(TurningResult& r) {
+  const double limit = r.part.form_tolerance_nm;
+  const auto check = [&](const char* what, double value) {
+    if (value > limit)
+      r.findings.push_back(
+          fmt::format("{} of {} nm exceeds the tolerance of {} nm", what, fixed(value, 2), shortest(limit)));
+  };
+  check("a form error", r.inspection.form_error_nm);
+  check("a cut below the surface", r.inspection.interference_nm);
+}
+
+/// Two turns round the largest jump of Z's acceleration.
+void find_stretch(TurningResult& r) {
+  const turning::Pass& pass = r.passes[r.passes.size() / 2];
+  const std::vector<turning::AxisState> states =
+      turning::axis_states(pass, r.part.path.servo == turning::Servo::fast ? 3 : 2);
+  std::size_t at = 0;
+  double most = -1.0;
+  for (std::size_t i = 2; i + 2 < states.size(); ++i) {
+    const double jump = std::abs(states[i].acceleration_mm_per_s2 - states[i - 1].acceleration_mm_per_s2);
+    if (jump > most) {
+      most = jump;
+      at = i;
+    }
+  }
+  const double half_s =
+      r.part.path.strategy == turning::Strategy::spiral ? 60.0 / r.part.path.spindle_rpm : states.back().time_s;
+  for (std::size_t i = 1; i + 1 < states.size(); ++i)
+    if (std::abs(states[i].time_s - states[at].time_s) <= half_s) r.stretch.z.push_back(states[i]);
+}
+
+/// Deviation along the x axis over eight cuts, half-way out.
+void find_profile(TurningResult& r, const turning::Envelope& envelope) {
+  constexpr int kPoints = 400;
+  const double extent =
+      r.part.path.strategy == turning::Strategy::spiral ? r.part.path.radius_mm : 0.5 * r.part.path.height_mm;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double x = 0.5 * extent + 8.0 * r.part.path.feed_mm * (static_cast<double>(i) / kPoints - 0.5);
+    const auto z = envelope.height_mm(x, 0.0);
+    if (z) r.stretch.profile.emplace_back(x, (*z - r.part.surface.height_mm(x, 0.0)) * 1e6);
+  }
+}
+
+}  // namespace
+
+TurningResult turn(const std::string& part_file) {
+  TurningResult r{
+      part_file, turning::parse_turned_part(read_file(part_file), part_file), {}, 0, 0.0, {}, {}, {}, {}, "", {}, {},
+      {}};
+  const turning::TurnedPart& part = r.part;
+  r.passes = turning::make_path(part.surface, part.tool, part.path, {part_file, 0, "path"});
+  for (const turning::Pass& pass : r.passes) r.points += pass.size();
+  r.time_s = turning::path_seconds(r.passes);
+  r.clearance = turning::clearance_figures(part.tool, turning::slopes_along(part.surface, part.path));
+  r.finish = turning::finish_figures(turning::effective_radius_mm(part.tool), part.path.feed_mm);
+  for (int axis = 0; axis < 4; ++axis) r.axes[static_cast<std::size_t>(axis)] = turning::axis_figures(r.passes, axis);
+  r.findings = turning::excesses(part.machine, r.passes, part.path);
+  write_programs(r);
+  std::vector<turning::CutPass> cuts = read_back(r);
+  add_strokes(r.servo_csv, cuts, r.findings);
+  const turning::Envelope envelope(part.tool, std::move(cuts));
+  r.inspection = turning::inspect(envelope, part.surface, part.tool, region_of(part.path), part.map_pixels);
+  find_stretch(r);
+  find_profile(r, envelope);
+  judge(r);
+  return r;
+}
+
+}  // namespace retrace::studies

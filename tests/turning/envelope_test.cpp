@@ -1,0 +1,187 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fabrication/post/post.h"
+#include "fabrication/turning/finish.h"
+#include "fabrication/turning/path.h"
+#include "fabrication/turning/turning_program.h"
+#include "fabrication/turning/verify/inspection.h"
+
+// What the programs' text leaves, against closed forms of cusps and against the design.
+
+namespace retrace::fabrication::turning {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+const InputLocation kHere{"part.toml", 3, "path"};
+
+Envelope cut(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o, double lower_nm = 0.0) {
+  std::vector<Pass> passes = make_path(surface, tool, o, kHere);
+  for (Pass& pass : passes)
+    for (PathPoint& p : pass) p.z_mm -= 1e-6 * lower_nm;
+  CutRecorder recorder;
+  run_nc(parse_nc(nc_text(turning_program(passes, o, "part", {}), "rs274ngc"), "part", NcDialect::rs274ngc), recorder);
+  return {tool, recorder.take()};
+}
+
+PathOptions spiral(double radius_mm, double feed_mm) {
+  PathOptions o;
+  o.radius_mm = radius_mm;
+  o.feed_mm = feed_mm;
+  o.points_per_turn = 90;
+  return o;
+}
+
+InspectedRegion disc(const PathOptions& o) {
+  InspectedRegion region;
+  region.radius_mm = o.radius_mm;
+  region.feed_mm = o.feed_mm;
+  return region;
+}
+
+TurnedSurface sphere(double curvature_per_mm) {
+  Sag sag;
+  sag.asphere.curvature_per_mm = curvature_per_mm;
+  return {sag, std::nullopt, {}, kHere};
+}
+
+void expect_cusps(const Inspection& i, std::size_t least_samples) {
+  EXPECT_GE(i.compared, least_samples);
+  EXPECT_GT(i.scallop_ratio_low, 0.99);
+  EXPECT_LT(i.scallop_ratio_high, 1.01);
+  EXPECT_LT(i.form_error_nm, 1.0);
+  EXPECT_LT(i.interference_nm, 1.0);
+}
+
+TEST(TurningEnvelope, CuspsOfAFlat) {
+  TurningTool tool;
+  const PathOptions o = spiral(0.8, 0.02);
+  const Inspection i = inspect(cut(sphere(0.0), tool, o), sphere(0.0), tool, disc(o), 41);
+  expect_cusps(i, 200);
+  // f^2 / (8 r) = 250 nm
+  EXPECT_NEAR(i.scallop_nm, 250.0, 2.5);
+}
+
+TEST(TurningEnvelope, CuspsOfAFlatWithSkewAndRake) {
+  TurningTool tool;
+  tool.skew_deg = 40.0;
+  tool.rake_deg = -25.0;
+  const PathOptions o = spiral(1.6, 0.02);
+  const Inspection i = inspect(cut(sphere(0.0), tool, o), sphere(0.0), tool, disc(o), 21);
+  expect_cusps(i, 200);
+  const double c = std::cos(40.0 * kDegree);
+  EXPECT_NEAR(i.scallop_nm, 250.0 * std::cos(25.0 * kDegree) / (c * c), 4.0);
+}
+
+TEST(TurningEnvelope, CuspsOfSpheres) {
+  TurningTool tool;
+  for (const double curvature : {-0.5, 0.5}) {
+    const PathOptions o = spiral(0.8, 0.02);
+    expect_cusps(inspect(cut(sphere(curvature), tool, o), sphere(curvature), tool, disc(o), 21), 200);
+  }
+}
+
+TEST(TurningEnvelope, CuspsOfARaster) {
+  TurningTool tool;
+  PathOptions o;
+  o.strategy = Strategy::raster;
+  o.width_mm = 1.0;
+  o.height_mm = 1.0;
+  o.feed_mm = 0.02;
+  o.arc_mm = 0.002;
+  InspectedRegion region;
+  region.is_round = false;
+  region.half_width_mm = region.half_height_mm = 0.5;
+  region.feed_mm = o.feed_mm;
+  expect_cusps(inspect(cut(sphere(-0.2), tool, o), sphere(-0.2), tool, region, 21), 200);
+}
+
+/// Lenslets of their own form, tilted to a curved base.
+TurnedSurface lenslet_array() {
+  Sag base;
+  base.asphere.curvature_per_mm = -0.2;
+  const TurnedSurface bare(base, std::nullopt, {}, kHere);
+  std::vector<Lenslet> lenslets;
+  for (int k = 0; k < 3; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / 3.0;
+    const geometry::Vec2 at(0.16 * std::cos(angle), 0.16 * std::sin(angle));
+    Lenslet lenslet;
+    lenslet.sag.asphere.curvature_per_mm = -0.7 - 0.1 * k;
+    lenslet.sag.formula = parse_formula("0.2*x^3-0.1*x*y", sag_variables(), kHere);
+    place_on_base(lenslet, bare, at.x(), at.y(), 0.002, true, kHere);
+    lenslet.inner = circle_boundary(at, 0.07, 4);
+    lenslet.outer = circle_boundary(at, 0.13, 4);
+    lenslet.blend_order = 3;
+    lenslets.push_back(lenslet);
+  }
+  return {base, std::nullopt, lenslets, kHere};
+}
+
+TEST(TurningEnvelope, CuspsAndFormOfALensletArray) {
+  TurningTool tool;
+  tool.nose_radius_mm = 0.1;
+  PathOptions o = spiral(0.32, 0.01);
+  o.sampling = Sampling::arc;
+  // The chord of a block sags by arc^2 k / 8: 0.3 nm at k = 2 per mm.
+  o.arc_mm = 0.001;
+  const TurnedSurface design = lenslet_array();
+  const Inspection i = inspect(cut(design, tool, o), design, tool, disc(o), 31);
+  expect_cusps(i, 60);
+}
+
+TEST(TurningEnvelope, FindsAnErrorOfTheProgram) {
+  TurningTool tool;
+  const PathOptions o = spiral(0.5, 0.02);
+  const Inspection low = inspect(cut(sphere(-0.5), tool, o, 7.0), sphere(-0.5), tool, disc(o), 15);
+  EXPECT_NEAR(low.interference_nm, 7.0, 1.0);
+  // Planned for another nose: a hollow sphere is cut too deep or too flat.
+  TurningTool other = tool;
+  other.nose_radius_mm = 0.21;
+  CutRecorder recorder;
+  const std::vector<Pass> passes = make_path(sphere(0.5), other, o, kHere);
+  run_nc(parse_nc(nc_text(turning_program(passes, o, "part", {}), "fanuc"), "part", NcDialect::fanuc), recorder);
+  const Inspection wrong = inspect(Envelope(tool, recorder.take()), sphere(0.5), tool, disc(o), 15);
+  EXPECT_GT(wrong.form_error_nm, 100.0);
+}
+
+TEST(TurningEnvelope, RefusesPlacesLeftUncut) {
+  TurningTool tool;
+  const PathOptions o = spiral(0.3, 0.02);
+  PathOptions larger = o;
+  larger.radius_mm = 0.9;
+  EXPECT_THROW(inspect(cut(sphere(0.0), tool, o), sphere(0.0), tool, disc(larger), 15), InputError);
+}
+
+TEST(TurningEnvelope, IsThatOfEdgesLaidOutOneByOne) {
+  // Lay the edge out point by point at many poses of the path and take the lowest that comes near a place.
+  TurningTool tool;
+  tool.nose_radius_mm = 0.05;
+  tool.skew_deg = 20.0;
+  PathOptions o = spiral(0.2, 0.02);
+  Sag sag;
+  sag.formula = parse_formula("0.1*x^2+0.3*x*y", sag_variables(), kHere);
+  const TurnedSurface surface(sag, std::nullopt, {}, kHere);
+  const std::vector<Pass> passes = make_path(surface, tool, o, kHere);
+  const Envelope envelope = cut(surface, tool, o);
+  const Pass& pass = passes.front();
+  for (int s = 0; s < 6; ++s) {
+    const geometry::Vec2 p(0.1 * std::cos(1.1 * s + 0.2), 0.1 * std::sin(1.1 * s + 0.2));
+    double lowest = 1.0;
+    for (std::size_t i = 0; i + 1 < pass.size(); ++i)
+      for (int k = 0; k < 40; ++k) {
+        const double share = k / 40.0;
+        const auto between = [&](double a, double b) { return a + share * (b - a); };
+        const double c = between(pass[i].c_deg, pass[i + 1].c_deg) * kDegree;
+        const double x = p.x() * std::cos(c) - p.y() * std::sin(c) - between(pass[i].x_mm, pass[i + 1].x_mm);
+        const double y = p.x() * std::sin(c) + p.y() * std::cos(c) - between(pass[i].y_mm, pass[i + 1].y_mm);
+        if (std::abs(y) < 1e-4 && std::abs(x) < 0.05 * std::sin(60.0 * kDegree))
+          lowest = std::min(lowest, between(pass[i].z_mm, pass[i + 1].z_mm) + 0.05 - std::sqrt(0.0025 - x * x));
+      }
+    EXPECT_NEAR(*envelope.height_mm(p.x(), p.y()), lowest, 2e-5);
+  }
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::turning
