@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces plane image export report init list'
+  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces turn plane image export report init list'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -191,7 +191,7 @@ _retrace() {
   fi
   case $command in
     '') _retrace_words "$word" "$commands" ;;
-    rre | inspect | photometry | roughness | sweep | optimize | tolerance | job | fabricate | forces | plane | image | export)
+    rre | inspect | photometry | roughness | sweep | optimize | tolerance | job | fabricate | forces | turn | plane | image | export)
       _retrace_files "$word" .toml
       ;;
     report)

@@ -1,0 +1,65 @@
+// Path points a second on one core: a polynomial, and an array of 1,000 tilted lenslets.
+#include <benchmark/benchmark.h>
+
+#include "fabrication/turning/path.h"
+
+namespace {
+
+using namespace retrace::fabrication::turning;
+
+TurningTool tool() {
+  TurningTool result;
+  result.nose_radius_mm = 0.05;
+  return result;
+}
+
+void polynomial_path(benchmark::State& state) {
+  Sag sag;
+  XyPolynomial p{1.0, 6, std::vector<double>(XyPolynomial::count(6), 0.0)};
+  for (int i = 0; i <= 6; ++i)
+    for (int j = 0; i + j <= 6; ++j) p.coefficients[p.index(i, j)] = 1e-3 / (1 + i + 2 * j);
+  sag.polynomial = p;
+  const TurnedSurface surface(sag, std::nullopt, {}, {});
+  PathOptions options;
+  options.radius_mm = 1.0;
+  options.feed_mm = 1e-3;
+  options.points_per_turn = 1000;
+  std::size_t points = 0;
+  for (auto _ : state) points += make_path(surface, tool(), options, {}).front().size();
+  state.SetItemsProcessed(static_cast<std::int64_t>(points));
+}
+
+/// 32 x 32 aspheres on a sphere, each tilted to its normal, C2 blends.
+TurnedSurface lenslet_array() {
+  Sag base;
+  base.asphere.curvature_per_mm = -0.02;
+  const TurnedSurface bare(base, std::nullopt, {}, {});
+  std::vector<Lenslet> lenslets;
+  for (int i = 0; i < 32; ++i)
+    for (int k = 0; k < 32; ++k) {
+      Lenslet lenslet;
+      lenslet.sag.asphere = {-0.8, -0.5, {1e-3}};
+      const retrace::geometry::Vec2 at(0.3 * (i - 15.5), 0.3 * (k - 15.5));
+      place_on_base(lenslet, bare, at.x(), at.y(), 5e-3, true, {});
+      lenslet.inner = circle_boundary(at, 0.11);
+      lenslet.outer = circle_boundary(at, 0.14);
+      lenslets.push_back(lenslet);
+    }
+  return {base, std::nullopt, lenslets, {}};
+}
+
+void lenslet_path(benchmark::State& state) {
+  const TurnedSurface surface = lenslet_array();
+  PathOptions options;
+  options.radius_mm = 4.5;
+  options.feed_mm = 0.1;
+  options.points_per_turn = 5000;
+  std::size_t points = 0;
+  for (auto _ : state) points += make_path(surface, tool(), options, {}).front().size();
+  state.SetItemsProcessed(static_cast<std::int64_t>(points));
+}
+
+}  // namespace
+
+BENCHMARK(polynomial_path)->Unit(benchmark::kMillisecond);
+BENCHMARK(lenslet_path)->Unit(benchmark::kMillisecond);

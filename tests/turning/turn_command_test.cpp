@@ -1,0 +1,155 @@
+// retrace turn: its files, its verdict, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/app/program.h"
+
+namespace retrace::test {
+namespace {
+
+const std::string kHead = "schema = \"retrace.turned_part/1\"\n";
+const std::string kBase = "[base]\nkind = \"formula\"\nformula = \"0.05*x^2-0.08*y^2\"\n";
+const std::string kTool = "[tool]\nnose_radius_mm = 0.2\nclearance_deg = 15\n";
+const std::string kPath = "[path]\nradius_mm = 0.6\nfeed_um = 10\nspindle_rpm = 60\n";
+const std::string kPart = kHead + kBase + kTool + kPath + "points_per_turn = 900\n";
+
+class Turn : public ::testing::Test {
+ protected:
+  TemporaryFolder folder_;
+
+  Json turned(const std::string& text, int code = 0) {
+    folder_.write("part.toml", text);
+    const Outcome outcome = retrace(folder_, {"turn", "part.toml", "--json", "-", "-o", "out"});
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    return Json::parse(outcome.out);
+  }
+};
+
+TEST_F(Turn, WritesProgramsInAllDialectsAndInspectsThem) {
+  const Json json = turned(kPart);
+  EXPECT_EQ(json["schema"], "retrace.turning/1");
+  EXPECT_EQ(json["points"], 60 * 900 + 1);
+  EXPECT_NEAR(json["time_s"].get<double>(), 60.0, 1e-6);
+  EXPECT_EQ(json["verification"]["verdict"], "pass");
+  EXPECT_LT(json["verification"]["form_error_nm"].get<double>(), 1.0);
+  EXPECT_GT(json["verification"]["scallop_ratio_low"].get<double>(), 0.98);
+  EXPECT_LT(json["verification"]["scallop_ratio_high"].get<double>(), 1.02);
+  EXPECT_TRUE(json["complete"].get<bool>());
+  ASSERT_EQ(json["programs"].size(), 4U);
+  for (const Json& program : json["programs"])
+    EXPECT_GT(folder_.read("out/" + program["file"].get<std::string>()).size(), 1000000U);
+  EXPECT_EQ(folder_.json("out/turning.json"), json);
+  EXPECT_TRUE(folder_.read("out/path.csv").starts_with("time_s,x_mm,y_mm,z_mm,c_deg,"));
+  EXPECT_TRUE(folder_.read("out/cusps.csv").starts_with("x_mm,y_mm,scallop_nm,predicted_nm,valley_nm\n"));
+  for (const char* name : {"out/acceleration.svg", "out/profile.svg"})
+    EXPECT_NE(folder_.read(name).find("<svg"), std::string::npos) << name;
+  EXPECT_TRUE(folder_.read("out/maps.png").starts_with("\x89PNG"));
+}
+
+TEST_F(Turn, WritesNothingWithoutAFolder) {
+  folder_.write("part.toml", kHead + kBase + kTool + kPath);
+  const Outcome outcome = retrace(folder_, {"turn", "part.toml"});
+  EXPECT_EQ(outcome.code, 1) << "chords of 360 points a turn are longer than 10 nm: " << outcome.out;
+  EXPECT_NE(outcome.out.find("form error"), std::string::npos);
+  EXPECT_EQ(folder_.names().size(), 1U);
+}
+
+TEST_F(Turn, AFastServoSharesTheStroke) {
+  const Json json = turned(kPart + "servo = \"fast\"\n[machine.servo]\nacceleration_mm_per_s2 = 1e-3\n", 1);
+  EXPECT_LT(json["verification"]["form_error_nm"].get<double>(), 1.0);
+  ASSERT_EQ(json["verification"]["findings"].size(), 1U);
+  EXPECT_NE(json["verification"]["findings"][0].get<std::string>().find("servo: acceleration"), std::string::npos);
+  const std::string servo = folder_.read("out/servo.csv");
+  EXPECT_EQ(std::count(servo.begin(), servo.end(), '\n'), 60 * 900 + 2);
+  EXPECT_LT(json["axes"]["z"]["acceleration_mm_per_s2"].get<double>(),
+            0.1 * json["axes"]["servo"]["acceleration_mm_per_s2"].get<double>());
+}
+
+TEST_F(Turn, FindsTheLeastSkew) {
+  const Json json = turned(kHead +
+                           "[base]\nkind = \"formula\"\nformula = \"sqrt(1-x^2)-1\"\n[tool]\nnose_radius_mm = "
+                           "0.1\nclearance_deg = 12\nfind_least_skew = true\n[path]\nradius_mm = 0.766\nfeed_um = "
+                           "50\nspindle_rpm = 60\nsampling = \"arc\"\narc_um = 4\n");
+  EXPECT_NEAR(json["tool"]["skew_deg"].get<double>(), -27.2, 0.05);
+  EXPECT_LE(json["tool"]["clearance_needed_deg"].get<double>(), 12.0);
+}
+
+TEST_F(Turn, WarnsOfUntriedTools) {
+  folder_.write("part.toml", kHead + "[base]\nkind = \"plane\"\n" + kTool + "skew_deg = 65\n" + kPath);
+  const Outcome outcome = retrace(folder_, {"turn", "part.toml"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("-60 to 60 degrees"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
+  const std::string rest = kTool + kPath;
+  const auto base = [&](const std::string& text) { return kHead + "[base]\n" + text + rest; };
+  const auto formula = [&](const std::string& text) {
+    return base("kind = \"formula\"\nformula = \"" + text + "\"\n");
+  };
+  const auto boundary = [&](const std::string& text) { return kHead + kBase + "[boundary]\n" + text + rest; };
+  const auto lenslets = [&](const std::string& text) { return kHead + kBase + "[lenslets]\n" + text + rest; };
+  const std::string cap =
+      "positions_mm = [[0.1, 0.1]]\nkind = \"conic\"\nradius_mm = -1\nheight_mm = 0.01\nboundary = ";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "schema: missing"},
+      {kHead + kBase + kTool, "path: missing"},
+      {formula("x +"), "part.toml:4: base.formula: does not parse at character"},
+      {formula("x + q"), "part.toml:4: base.formula: does not parse"},
+      {formula("sqrt(0.1-x^2-y^2)"), "base: must be finite all over the part, is not at x = "},
+      {formula("sqrt(0.7-x^2)"), "base: must clear the surface"},
+      {formula("tanh(200*x)"), "base: must have no vertical slope, at x = "},
+      {formula("0.4*x+3*x*y"), "tool.clearance_deg: must clear the surface, needs a clearance of "},
+      {base("kind = \"sphere\"\n"), "base.kind: must be "},
+      {base("kind = \"conic\"\nradius_mm = 0\n"), "base.radius_mm: must not be 0"},
+      {base("kind = \"plane\"\nradius = 3\n"), "base.radius"},
+      {base("kind = \"zernike\"\naperture_radius_mm = 1\nterms = [[3, 0, 1e-3]]\n"), "must have n - m even"},
+      {base("kind = \"xy_polynomial\"\nterms = [[1.5, 0, 1e-3]]\n"), "base.terms: must have whole numbers"},
+      {base("kind = \"asphere\"\nradius_mm = 5\neven = [[5, 1e-3]]\n"), "base.even: must have rows"},
+      {boundary("kind = \"points\"\npoints_mm = [[1,0],[0,1],[-1,0],[0.9,0.1],[0,-1],[0.5,-0.5]]\n"),
+       "boundary.points_mm: must not cross itself"},
+      {boundary("kind = \"points\"\npoints_mm = [[1,0],[0,1]]\n"), "boundary.points_mm: must have at least 5 points"},
+      {boundary("kind = \"formula\"\nformula = \"cos(theta)\"\n"), "boundary.formula: must give a finite radius > 0"},
+      {boundary("kind = \"circle\"\nradius_mm = -1\n"), "boundary.radius_mm: must be > 0"},
+      {kHead + kBase + "[extrapolation]\norder = 2\n" + rest, "extrapolation: needs a [boundary]"},
+      {boundary("kind = \"circle\"\nradius_mm = 1\n[extrapolation]\norder = 0\n"), "extrapolation.order: must be"},
+      {lenslets(cap + "\"circle\"\nboundary_radius_mm = 0.1\ninner_share = 1\nouter_share = 0.9\n"),
+       "lenslets.outer_share: must be above inner_share, or the boundaries cross"},
+      {lenslets(cap + "\"intersection\"\nsearch_mm = 0.01\ninner_share = 0.8\nouter_share = 1.1\n"),
+       "lenslets.boundary: must meet the base all round"},
+      {lenslets(
+           "positions_mm = [[0.1, 0.1], [0.2, 0.1]]\nkind = \"plane\"\nboundary = \"circle\"\nboundary_radius_mm = "
+           "0.1\ninner_share = 0.8\nouter_share = 1.1\n"),
+       "lenslets: must leave room between blends"},
+      {kHead + kBase + kTool + "[path]\nradius_mm = 1\nspindle_rpm = 60\n", "path.feed_um: must be given"},
+      {kHead + kBase + kTool + "[path]\nradius_mm = 1\nfeed_um = 1\nscallop_nm = 3\nspindle_rpm = 60\n",
+       "path.feed_um: must be given, or scallop_nm"},
+      {kHead + kBase + kTool + kPath + "sampling = \"arc\"\narc_um = 5\nservo = \"fast\"\n", "path.servo: must be"},
+      {kHead + kBase + "[tool]\nnose_radius_mm = 0\nclearance_deg = 15\n" + kPath, "tool.nose_radius_mm: must be"},
+      {kHead + "[base]\nkind = \"formula\"\nformula = \"sqrt(1-x^2)-1\"\n[tool]\nnose_radius_mm = 0.1\nclearance_deg = "
+               "0.3\nfind_least_skew = true\n[path]\nradius_mm = 0.8\nfeed_um = 10\nspindle_rpm = 60\n",
+       "tool.clearance_deg: must have a clearance and a window that clear the surface at some skew"},
+      {kHead + kBase + kTool + kPath + "[machine.x]\ntravel_mm = [3, 1]\n", "machine.x.travel_mm: must rise"},
+      {kHead + kBase + kTool + "[path]\nradius_mm = 5\nfeed_um = 0.001\nspindle_rpm = 60\n",
+       "path: must give at most"}};
+  for (const auto& [text, message] : cases) {
+    folder_.write("part.toml", text);
+    const Outcome outcome = retrace(folder_, {"turn", "part.toml", "-o", "out"});
+    EXPECT_EQ(outcome.code, 2) << text;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err << "instead of " << message;
+    EXPECT_NE(outcome.err.find("part.toml"), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_TRUE(outcome.out.empty());
+    EXPECT_EQ(folder_.names().size(), 1U);
+  }
+  EXPECT_EQ(retrace(folder_, {"turn", "nothing.toml"}).code, 2);
+  EXPECT_EQ(retrace(folder_, {"turn"}).code, 2);
+  EXPECT_EQ(retrace(folder_, {"turn", "part.toml", "--set", "a=1"}).code, 2);
+}
+
+}  // namespace
+}  // namespace retrace::test
