@@ -14,6 +14,7 @@ ExitCode run_turn_command(const CommandLine& line) {
   if (!line.common.out.empty()) {
     for (const studies::TurningText& program : result.programs) files.push_back({program.file, program.text});
     if (!result.servo_csv.empty()) files.push_back({"servo.csv", result.servo_csv});
+    if (!result.machined_stl.empty()) files.push_back({"machined.stl", result.machined_stl});
     files.push_back({"path.csv", studies::turning_path_csv(result)});
     files.push_back({"cusps.csv", studies::turning_cusps_csv(result)});
     files.push_back({"acceleration.svg", report::render_svg(report::turning_acceleration_plot(result))});

@@ -20,6 +20,8 @@ struct TurnedPart {
   TurningMachine machine;
   double form_tolerance_nm = 10.0;
   std::size_t map_pixels = 101;
+  std::optional<double> mesh_thickness_mm;  ///< of what is moulded in it, as a mesh; nothing: no mesh
+  int mesh_rings = 100;
   std::vector<std::string> warnings;
 };
 

@@ -18,8 +18,9 @@ constexpr std::size_t kMostPoints = std::size_t{1} << 26;
 
 /// Angles of the spindle at the points of a spiral, in turns.
 std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& where) {
-  const double turns = o.radius_mm / o.feed_mm;
-  const double mean_arc = std::numbers::pi * o.radius_mm;
+  const double start = o.radius_mm + o.overrun_mm;
+  const double turns = start / o.feed_mm;
+  const double mean_arc = std::numbers::pi * start;
   const double count = o.sampling == Sampling::angle ? turns * o.points_per_turn : turns * mean_arc / o.arc_mm;
   if (!(count < static_cast<double>(kMostPoints)))
     throw InputError(where, fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPoints, count));
@@ -50,7 +51,7 @@ Pass spiral(const TurnedSurface& surface, const TurningTool& tool, const PathOpt
   const std::vector<double> all_turns = spiral_turns(o, where);
   pass.reserve(all_turns.size());
   for (const double turns : all_turns) {
-    const double r = o.radius_mm - o.feed_mm * turns;
+    const double r = o.radius_mm + o.overrun_mm - o.feed_mm * turns;
     const double c = kTurn * (turns - std::floor(turns));
     const Vec2 across(std::cos(c), -std::sin(c));
     const Vec2 cut(-std::sin(c), -std::cos(c));

@@ -21,7 +21,8 @@ struct PathOptions {
   Strategy strategy = Strategy::spiral;
   Sampling sampling = Sampling::angle;
   Servo servo = Servo::slow;
-  double radius_mm = 1.0;     ///< spiral: where it starts
+  double radius_mm = 1.0;     ///< spiral: of the part
+  double overrun_mm = 0.0;    ///< spiral: beyond it, where the tool starts
   double width_mm = 0.0;      ///< raster: length of the lines
   double height_mm = 0.0;     ///< raster: across the lines
   double feed_mm = 5e-3;      ///< a turn, or from line to line

@@ -83,14 +83,15 @@ std::optional<Pass> polynomial_spiral(const TurnedSurface& surface, const Turnin
   if (!surface.is_polynomial_everywhere() || degree > kMostPolynomialDegree || o.sampling != Sampling::angle ||
       tool.skew_deg != 0.0 || tool.rake_deg != 0.0)
     return std::nullopt;
+  const double start = o.radius_mm + o.overrun_mm;
   std::vector<RadialPolynomial> lines;
   for (int i = 0; i < o.points_per_turn; ++i) {
     // C rises, the tool's angle in the part falls.
     lines.push_back(radial_polynomial(surface.base(), -kTurn * i / o.points_per_turn, degree));
-    if (steepest_bend(lines.back(), degree, o.radius_mm + tool.nose_radius_mm) * tool.nose_radius_mm > 0.99)
+    if (steepest_bend(lines.back(), degree, start + tool.nose_radius_mm) * tool.nose_radius_mm > 0.99)
       return std::nullopt;
   }
-  const auto whole = static_cast<std::size_t>(std::floor(o.radius_mm / o.feed_mm * o.points_per_turn + 1e-9));
+  const auto whole = static_cast<std::size_t>(std::floor(start / o.feed_mm * o.points_per_turn + 1e-9));
   const double step_s = 60.0 / o.spindle_rpm / o.points_per_turn;
   const double most_aside =
       tool.nose_radius_mm * std::min(0.9999, std::sin(0.5 * tool.window_deg * std::numbers::pi / 180.0));
@@ -99,7 +100,7 @@ std::optional<Pass> polynomial_spiral(const TurnedSurface& surface, const Turnin
   for (std::size_t i = 0; i <= whole; ++i) {
     const double turns = static_cast<double>(i) / o.points_per_turn;
     PathPoint& p = pass[i];
-    p.x_mm = o.radius_mm - o.feed_mm * turns;
+    p.x_mm = start - o.feed_mm * turns;
     p.c_deg = 360.0 * turns;
     p.seconds = i == 0 ? 0.0 : step_s;
     p.z_mm = touching_height(lines[line], degree, p.x_mm, tool.nose_radius_mm, most_aside);

@@ -13,6 +13,8 @@
 #include "fabrication/read/nc_motion.h"
 #include "fabrication/turning/io/part_files.h"
 #include "fabrication/turning/turning_program.h"
+#include "fabrication/turning/verify/machined_mesh.h"
+#include "geometry/io/stl_file.h"
 
 namespace retrace::studies {
 namespace {
@@ -148,9 +150,13 @@ void find_profile(TurningResult& r, const turning::Envelope& envelope) {
 }  // namespace
 
 TurningResult turn(const std::string& part_file) {
-  TurningResult r{
-      part_file, turning::parse_turned_part(read_file(part_file), part_file), {}, 0, 0.0, {}, {}, {}, {}, "", {}, {},
-      {}};
+  TurningResult r{part_file, turning::parse_turned_part(read_file(part_file), part_file),
+                  {},        0,
+                  0.0,       {},
+                  {},        {},
+                  {},        "",
+                  "",        {},
+                  {},        {}};
   const turning::TurnedPart& part = r.part;
   r.passes = turning::make_path(part.surface, part.tool, part.path, {part_file, 0, "path"});
   for (const turning::Pass& pass : r.passes) r.points += pass.size();
@@ -164,6 +170,10 @@ TurningResult turn(const std::string& part_file) {
   add_strokes(r.servo_csv, cuts, r.findings);
   const turning::Envelope envelope(part.tool, std::move(cuts));
   r.inspection = turning::inspect(envelope, part.surface, part.tool, region_of(part.path), part.map_pixels);
+  if (part.mesh_thickness_mm)
+    r.machined_stl = geometry::stl_text(
+        turning::machined_mesh(envelope, part.surface, region_of(part.path), part.mesh_rings, *part.mesh_thickness_mm),
+        "what is moulded in a turned surface");
   find_stretch(r);
   find_profile(r, envelope);
   judge(r);

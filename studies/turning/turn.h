@@ -33,7 +33,8 @@ struct TurningResult {
   fabrication::turning::FinishFigures finish;
   std::array<fabrication::turning::AxisFigures, 4> axes;  ///< X, Y, Z, servo
   std::vector<TurningText> programs;
-  std::string servo_csv;  ///< strokes of a fast tool servo; empty without
+  std::string machined_stl;  ///< what is moulded in the surface that is left; empty unless the part asks for it
+  std::string servo_csv;     ///< strokes of a fast tool servo; empty without
   fabrication::turning::Inspection inspection;
   TurningStretch stretch;
   std::vector<std::string> findings;  ///< none: the programs pass

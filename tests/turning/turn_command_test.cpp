@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,6 +57,22 @@ TEST_F(Turn, WritesNothingWithoutAFolder) {
   EXPECT_EQ(outcome.code, 1) << "chords of 360 points a turn are longer than 10 nm: " << outcome.out;
   EXPECT_NE(outcome.out.find("form error"), std::string::npos);
   EXPECT_EQ(folder_.names().size(), 1U);
+}
+
+TEST_F(Turn, WhatIsLeftCanBeTraced) {
+  // A flat with cusps of 0.6 nm: a plane plate, which sends back 2 R / (1 + R) at normal incidence.
+  const Json json =
+      turned(kHead + "[base]\nkind = \"plane\"\n[tool]\nnose_radius_mm = 0.2\nclearance_deg = 15\n[path]\n" +
+             "radius_mm = 0.1\nfeed_um = 1\nspindle_rpm = 60\n[inspect]\nmesh_thickness_mm = "
+             "0.5\nmesh_rings = 20\n");
+  EXPECT_EQ(json["verification"]["verdict"], "pass");
+  folder_.write("plate.toml", "[part]\nmesh = \"out/machined.stl\"\n[body]\nrefractive_index = 1.4917\n");
+  const Json rre = retrace_json(folder_, {"rre", "plate.toml", "--engine", "embree", "--samples", "4096"});
+  const double r = std::pow(0.4917 / 2.4917, 2);
+  EXPECT_NEAR(rre["points"][0]["rre"].get<double>(), 2.0 * r / (1.0 + r), 1e-3);
+  double sum = 0.0;
+  for (const auto& account : rre["points"][0]["ledger"]) sum += account.get<double>();
+  EXPECT_NEAR(sum, 1.0, 1e-6);
 }
 
 TEST_F(Turn, AFastServoSharesTheStroke) {
@@ -133,6 +150,10 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
       {kHead + "[base]\nkind = \"formula\"\nformula = \"sqrt(1-x^2)-1\"\n[tool]\nnose_radius_mm = 0.1\nclearance_deg = "
                "0.3\nfind_least_skew = true\n[path]\nradius_mm = 0.8\nfeed_um = 10\nspindle_rpm = 60\n",
        "tool.clearance_deg: must have a clearance and a window that clear the surface at some skew"},
+      {kHead + "[base]\nkind = \"plane\"\n" + kTool +
+           "[path]\nstrategy = \"raster\"\nsize_mm = [1, 1]\nfeed_um = 10\narc_um = "
+           "10\ncutting_mm_per_min = 60\n[inspect]\nmesh_thickness_mm = 1\n",
+       "inspect.mesh_thickness_mm: must not be given for a raster"},
       {kHead + kBase + kTool + kPath + "[machine.x]\ntravel_mm = [3, 1]\n", "machine.x.travel_mm: must rise"},
       {kHead + kBase + kTool + "[path]\nradius_mm = 5\nfeed_um = 0.001\nspindle_rpm = 60\n",
        "path: must give at most"}};

@@ -69,6 +69,7 @@ PathOptions read_path(TomlTable table, const TurningTool& tool) {
     return path;
   }
   path.radius_mm = table.required_number("radius_mm", kPositiveMm);
+  path.overrun_mm = table.number("overrun_mm", {.low = 0.0, .high = 1e3}).value_or(0.0);
   path.spindle_rpm = table.required_number("spindle_rpm", {.low = 0.01, .high = 1e5});
   path.sampling = static_cast<Sampling>(table.choice("sampling", kSamplings).value_or(0));
   if (path.sampling == Sampling::arc)
@@ -107,8 +108,8 @@ TurningMachine read_machine(TomlTable table) {
 
 /// How far the tool reaches: the path and the nose beyond it.
 double reach_mm(const PathOptions& path, const TurningTool& tool) {
-  const double radius =
-      path.strategy == Strategy::spiral ? path.radius_mm : 0.5 * std::hypot(path.width_mm, path.height_mm);
+  const double radius = path.strategy == Strategy::spiral ? path.radius_mm + path.overrun_mm
+                                                          : 0.5 * std::hypot(path.width_mm, path.height_mm);
   return radius + tool.nose_radius_mm;
 }
 
@@ -160,6 +161,10 @@ TurnedPart parse_turned_part(std::string_view text, const std::string& source_na
   TomlTable inspect = root.table("inspect");
   const double tolerance = inspect.number("form_tolerance_nm", kPositive).value_or(10.0);
   const auto pixels = inspect.whole("map_pixels", {.low = 11, .high = 2001}).value_or(101);
+  const auto mesh_thickness = inspect.number("mesh_thickness_mm", kPositiveMm);
+  const int mesh_rings = static_cast<int>(inspect.whole("mesh_rings", {.low = 2, .high = 1000}).value_or(100));
+  if (mesh_thickness && path.strategy == Strategy::raster)
+    inspect.fail("mesh_thickness_mm", "must not be given for a raster: meshes are round");
   root.finish();
   const InputLocation surface_where = root.where(lenslets.empty() ? "base" : "lenslets");
   TurnedPart part{std::move(title),
@@ -170,6 +175,8 @@ TurnedPart parse_turned_part(std::string_view text, const std::string& source_na
                   machine,
                   tolerance,
                   static_cast<std::size_t>(pixels),
+                  mesh_thickness,
+                  mesh_rings,
                   {}};
   check_surface(part.surface, reach_mm(part.path, part.tool), surface_where);
   settle_skew(part, tool_table.where("clearance_deg"));

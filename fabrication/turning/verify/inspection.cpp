@@ -57,8 +57,10 @@ std::pair<double, double> largest(const std::function<double(double)>& f, double
 
 /// Height of cusps square to the surface: in the plane across the cuts they are those of circle against circle, seen
 /// along the slope and then along z.
-double predicted_nm(const TurnedSurface& design, const TurningTool& tool, const Vec2& at, const Vec2& outward,
-                    double feed_mm) {
+double predicted_nm(const TurnedSurface& design, TurningTool tool, const Vec2& at, const Vec2& outward, double feed_mm,
+                    bool is_spiral) {
+  // A spiral leads inwards, which adds to the skew.
+  if (is_spiral) tool.skew_deg += std::atan(feed_mm / (2.0 * std::numbers::pi * at.norm())) * 180.0 / std::numbers::pi;
   const Series<double> z = design.evaluate(line_series(at.x(), outward.x(), 2), line_series(at.y(), outward.y(), 2));
   const Dual g = design.gradient(at.x(), at.y());
   const double length = std::sqrt(1.0 + z[1] * z[1]);
@@ -76,7 +78,7 @@ struct Extreme {
 }  // namespace
 
 std::optional<CuspSample> cusps_at(const Envelope& envelope, const TurnedSurface& design, const TurningTool& tool,
-                                   const Vec2& at_mm, const Vec2& outward, double feed_mm) {
+                                   const Vec2& at_mm, const Vec2& outward, double feed_mm, bool is_spiral) {
   constexpr int kPerFeed = 16;
   constexpr int kFeeds = 3;
   const double step = feed_mm / kPerFeed;
@@ -109,7 +111,9 @@ std::optional<CuspSample> cusps_at(const Envelope& envelope, const TurnedSurface
   sample.at_mm = at_mm + 0.5 * kFeeds * feed_mm * outward;
   int cusps = 0;
   bool is_even = true;
-  const auto predicted = [&](double s) { return predicted_nm(design, tool, at_mm + s * outward, outward, feed_mm); };
+  const auto predicted = [&](double s) {
+    return predicted_nm(design, tool, at_mm + s * outward, outward, feed_mm, is_spiral);
+  };
   for (std::size_t i = 0; i < extremes.size(); ++i) {
     if (!extremes[i].is_peak) {
       if (std::abs(extremes[i].value) > std::abs(sample.valley_nm)) sample.valley_nm = extremes[i].value;
@@ -199,7 +203,7 @@ Inspection inspect(const Envelope& envelope, const TurnedSurface& design, const 
   const auto places = profile_places(region);
   std::vector<std::optional<CuspSample>> samples(places.size());
   tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    samples[i] = cusps_at(envelope, design, tool, places[i].first, places[i].second, region.feed_mm);
+    samples[i] = cusps_at(envelope, design, tool, places[i].first, places[i].second, region.feed_mm, region.is_round);
   });
   for (const auto& sample : samples) {
     if (!sample) continue;

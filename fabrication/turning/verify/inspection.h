@@ -48,6 +48,7 @@ Inspection inspect(const Envelope& envelope, const TurnedSurface& design, const 
 /// One profile across the cuts from a place outwards (raster: along x), three feeds long. Nothing where the design
 /// changes from one zone to another along it, or a cut is missing.
 std::optional<CuspSample> cusps_at(const Envelope& envelope, const TurnedSurface& design, const TurningTool& tool,
-                                   const geometry::Vec2& at_mm, const geometry::Vec2& outward, double feed_mm);
+                                   const geometry::Vec2& at_mm, const geometry::Vec2& outward, double feed_mm,
+                                   bool is_spiral);
 
 }  // namespace retrace::fabrication::turning
