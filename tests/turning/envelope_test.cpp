@@ -146,6 +146,25 @@ TEST(TurningEnvelope, FindsAnErrorOfTheProgram) {
   EXPECT_GT(wrong.form_error_nm, 100.0);
 }
 
+TEST(TurningEnvelope, EveryTurnIsMetWhereItBegins) {
+  // With a skew the places at which the edge passes at C = 0 lie on a curve; none of the turns may be lost there.
+  TurningTool tool;
+  tool.skew_deg = -27.0;
+  PathOptions o = spiral(0.8, 0.02);
+  o.sampling = Sampling::arc;
+  o.arc_mm = 0.01;
+  const Envelope envelope = cut(sphere(0.0), tool, o);
+  const double cusp_mm = 1e-6 * finish_figures(effective_radius_mm(tool), o.feed_mm).peak_to_valley_nm;
+  double highest = 0.0;
+  for (int i = 0; i < 40000; ++i) {
+    const double r = 0.3 + 0.4 * (i % 200) / 200.0;
+    const double angle = 27.0 * kDegree + 0.2 * (i / 200 / 200.0 - 0.5);
+    highest = std::max(highest, *envelope.height_mm(r * std::cos(angle), r * std::sin(angle)));
+  }
+  EXPECT_GT(highest, 0.9 * cusp_mm);
+  EXPECT_LT(highest, 1.1 * cusp_mm);
+}
+
 TEST(TurningEnvelope, RefusesPlacesLeftUncut) {
   TurningTool tool;
   const PathOptions o = spiral(0.3, 0.02);

@@ -52,9 +52,9 @@ TEST_F(Turn, WritesProgramsInAllDialectsAndInspectsThem) {
 }
 
 TEST_F(Turn, WritesNothingWithoutAFolder) {
-  folder_.write("part.toml", kHead + kBase + kTool + kPath);
+  folder_.write("part.toml", kHead + kBase + kTool + kPath + "points_per_turn = 90\n");
   const Outcome outcome = retrace(folder_, {"turn", "part.toml"});
-  EXPECT_EQ(outcome.code, 1) << "chords of 360 points a turn are longer than 10 nm: " << outcome.out;
+  EXPECT_EQ(outcome.code, 1) << "chords of 90 points a turn are longer than 10 nm: " << outcome.out;
   EXPECT_NE(outcome.out.find("form error"), std::string::npos);
   EXPECT_EQ(folder_.names().size(), 1U);
 }
@@ -118,7 +118,7 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
       {formula("x +"), "part.toml:4: base.formula: does not parse at character"},
       {formula("x + q"), "part.toml:4: base.formula: does not parse"},
       {formula("sqrt(0.1-x^2-y^2)"), "base: must be finite all over the part, is not at x = "},
-      {formula("sqrt(0.7-x^2)"), "base: must clear the surface"},
+      {formula("sqrt(0.7-x^2)"), "tool.clearance_deg: must clear the surface, needs a clearance of "},
       {formula("tanh(200*x)"), "base: must have no vertical slope, at x = "},
       {formula("0.4*x+3*x*y"), "tool.clearance_deg: must clear the surface, needs a clearance of "},
       {base("kind = \"sphere\"\n"), "base.kind: must be "},
@@ -155,7 +155,7 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
            "10\ncutting_mm_per_min = 60\n[inspect]\nmesh_thickness_mm = 1\n",
        "inspect.mesh_thickness_mm: must not be given for a raster"},
       {kHead + kBase + kTool + kPath + "[machine.x]\ntravel_mm = [3, 1]\n", "machine.x.travel_mm: must rise"},
-      {kHead + kBase + kTool + "[path]\nradius_mm = 5\nfeed_um = 0.001\nspindle_rpm = 60\n",
+      {kHead + kBase + kTool + "[path]\nradius_mm = 0.6\nfeed_um = 0.001\nspindle_rpm = 60\n",
        "path: must give at most"}};
   for (const auto& [text, message] : cases) {
     folder_.write("part.toml", text);

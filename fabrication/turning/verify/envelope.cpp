@@ -108,32 +108,37 @@ void Envelope::cross_turning(const CutPass& pass, const Index& index, double x_m
       const double margin = 0.01 * reach_mm_ + 0.01 * std::abs(y);
       if (x < turn.x_low - reach_mm_ - margin || x > turn.x_high + reach_mm_ + margin) continue;
       const double phase = (beyond ? std::numbers::pi - std::asin(y / r) : std::asin(y / r)) - theta - start;
-      double c = start + kTurn * static_cast<double>(t) + (phase - kTurn * std::floor(phase / kTurn));
-      double aside = 0.0;
-      double z = 0.0;
-      double miss = 1.0;
-      auto i = static_cast<std::ptrdiff_t>(turn.first);
-      for (int step = 0; step < 8; ++step) {
-        const auto next = std::upper_bound(pass.c_rad.begin() + (step == 0 ? i : 0), pass.c_rad.end(), c);
-        i = std::clamp<std::ptrdiff_t>(next - pass.c_rad.begin() - 1, 0,
-                                       static_cast<std::ptrdiff_t>(pass.c_rad.size()) - 2);
-        const auto k = static_cast<std::size_t>(i);
-        const double share = (c - pass.c_rad[k]) / (pass.c_rad[k + 1] - pass.c_rad[k]);
-        const double tool_x = pass.x_mm[k] + share * (pass.x_mm[k + 1] - pass.x_mm[k]);
-        const double tool_y = pass.y_mm[k] + share * (pass.y_mm[k + 1] - pass.y_mm[k]);
-        z = pass.z_mm[k] + share * (pass.z_mm[k + 1] - pass.z_mm[k]);
-        aside = r * std::cos(theta + c) - tool_x;
-        if (std::abs(aside) > reach_mm_) break;
-        miss = r * std::sin(theta + c) - tool_y - lift_mm(aside) * sin_rake_;
-        const double slope = r * std::cos(theta + c);
-        c -= miss / slope;
-        if (std::abs(miss) < 1e-13) break;
-      }
-      if (std::abs(aside) > reach_mm_ || std::abs(miss) > 1e-9) continue;
-      if (c < pass.c_rad.front() || c > pass.c_rad.back()) continue;
-      lowest = std::min(lowest, z + lift_mm(aside) * cos_rake_);
+      const double within = phase - kTurn * std::floor(phase / kTurn);
+      const double c = start + kTurn * static_cast<double>(t) + within;
+      cross_at(pass, r, theta, c, lowest);
+      // Where a turn begins, its place may have been taken for the end of another.
+      constexpr double kNear = 0.5;
+      if (within < kNear) cross_at(pass, r, theta, c + kTurn, lowest);
+      if (within > kTurn - kNear) cross_at(pass, r, theta, c - kTurn, lowest);
     }
   }
+}
+
+void Envelope::cross_at(const CutPass& pass, double r, double theta, double c, double& lowest) const {
+  double aside = 0.0;
+  double z = 0.0;
+  double miss = 1.0;
+  for (int step = 0; step < 8; ++step) {
+    const auto next = std::upper_bound(pass.c_rad.begin(), pass.c_rad.end(), c);
+    const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
+        next - pass.c_rad.begin() - 1, 0, static_cast<std::ptrdiff_t>(pass.c_rad.size()) - 2));
+    const double share = (c - pass.c_rad[k]) / (pass.c_rad[k + 1] - pass.c_rad[k]);
+    const double tool_x = pass.x_mm[k] + share * (pass.x_mm[k + 1] - pass.x_mm[k]);
+    const double tool_y = pass.y_mm[k] + share * (pass.y_mm[k + 1] - pass.y_mm[k]);
+    z = pass.z_mm[k] + share * (pass.z_mm[k + 1] - pass.z_mm[k]);
+    aside = r * std::cos(theta + c) - tool_x;
+    if (std::abs(aside) > reach_mm_) return;
+    miss = r * std::sin(theta + c) - tool_y - lift_mm(aside) * sin_rake_;
+    c -= miss / (r * std::cos(theta + c));
+    if (std::abs(miss) < 1e-13) break;
+  }
+  if (std::abs(miss) > 1e-9 || c < pass.c_rad.front() || c > pass.c_rad.back()) return;
+  lowest = std::min(lowest, z + lift_mm(aside) * cos_rake_);
 }
 
 void Envelope::cross_line(const CutPass& pass, double x_mm, double y_mm, double& lowest) const {

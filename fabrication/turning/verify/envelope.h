@@ -67,6 +67,8 @@ class Envelope {
   Index index_of(const CutPass& pass) const;
   double lift_mm(double aside_mm) const;
   void cross_turning(const CutPass& pass, const Index& index, double x_mm, double y_mm, double& lowest) const;
+  /// The crossing near an angle of the spindle, if there is one.
+  void cross_at(const CutPass& pass, double r, double theta, double c, double& lowest) const;
   void cross_line(const CutPass& pass, double x_mm, double y_mm, double& lowest) const;
 
   double radius_mm_;
