@@ -90,7 +90,7 @@ Lattice sharp_lattice(const PartSpec& spec, bool rows_are_shifted) {
 
 Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted) {
   Lattice lattice = sharp_lattice(spec, rows_are_shifted);
-  for (Cell& cell : lattice.cells) cell = with_edges(cell, spec);
+  for (Cell& cell : lattice.cells) cell = finished_cell(cell, spec);
   return lattice;
 }
 

@@ -30,7 +30,7 @@ struct HeightPlane {
 struct CellFacet {
   Polygon outline;
   HeightPlane plane;
-  bool is_edge = false;  ///< a strip of a rounded or chamfered edge
+  bool is_edge = false;  ///< a strip of a rounded or chamfered edge, or a flank of a scratch
 };
 
 /// An element (its facets in the contract's order), or a piece of flat land (on z = 0).
@@ -73,6 +73,14 @@ Cell element_in_place_of(const Cell& cell, const Element& element, const AngleEr
 /// \pre the arcs fit into the facets
 Cell with_edges(const Cell& cell, const PartSpec& spec);
 
+/// The prism with its scratches: each facet, and each strip of its edges, is cut into flanks and what is left between
+/// them. Heights change along the roof edge alone, so that a root or rim whose sides differ is closed by walls.
+/// \pre the cell is a prism's, or there are no scratches
+Cell with_scratches(const Cell& cell, const PartSpec& spec);
+
+/// The element as it is: with its edges and its scratches.
+Cell finished_cell(const Cell& cell, const PartSpec& spec);
+
 /// Rectangular land at z = 0 between prisms, with what rounded rims take of it. `lower` and `upper` say whether a rim
 /// runs along its lower and upper side on `axis` (0: x, 1: y). \pre the arcs fit into the land
 Cell land_cell(const Rectangle& rectangle, const PartSpec& spec, Eigen::Index axis = 0, bool lower = false,
@@ -81,7 +89,7 @@ Cell land_cell(const Rectangle& rectangle, const PartSpec& spec, Eigen::Index ax
 /// How far a rounded rim reaches over the land beside a prism; 0 where rims are sharp.
 double rim_reach_over_land_mm(const PartSpec& spec);
 
-/// Share of an element's plan that its edges take.
+/// Share of an element's plan that its edges and scratches take.
 double edge_share(const Cell& cell);
 
 /// Depth of an element from z = 0 to its root or apex.

@@ -125,7 +125,7 @@ Cell own_cell(const Layout& layout, const Cell& cell, std::int64_t i, std::int64
   const ElementPlanes* const planes =
       layout.planes->at(layout.anchor + index.cwiseProduct(layout.lattice.period_mm) + place);
   if (planes != nullptr && planes->planes.empty()) return flared_land(cell, *planes, place);
-  if (planes != nullptr) return with_edges(cell_with_planes(cell, *planes, place), layout.spec);
+  if (planes != nullptr) return finished_cell(cell_with_planes(cell, *planes, place), layout.spec);
   Cell land = cell;
   land.is_element = false;
   land.facets = {CellFacet{cell.outline, HeightPlane{}, false}};
@@ -153,10 +153,10 @@ std::vector<Tile> tiles_of(const Layout& layout, const IndexRange& range, const 
         if (cell.is_element && layout.planes != nullptr)
           add_cell(tiles, layout, extent, block, own_cell(layout, cell, i, j), shift, number++, owned);
         else if (cell.is_element && layout.spec.random_tilts.sigma_arcmin > 0.0)
-          add_cell(
-              tiles, layout, extent, block,
-              with_edges(element_in_place_of(cell, layout.spec.element, errors_of(layout.spec, i, j, c)), layout.spec),
-              shift, number++, owned);
+          add_cell(tiles, layout, extent, block,
+                   finished_cell(element_in_place_of(cell, layout.spec.element, errors_of(layout.spec, i, j, c)),
+                                 layout.spec),
+                   shift, number++, owned);
         else
           add_cell(tiles, layout, extent, block, cell, shift, number++, owned);
       }
@@ -264,7 +264,7 @@ void build_single(Part& part, const Vec2& origin, const FacetPlanes* planes) {
     const ElementPlanes* const own = planes->at(place - bounding_box(sharp.outline).lower);
     if (own != nullptr && !own->planes.empty()) sharp = cell_with_planes(sharp, *own, place);
   }
-  const Cell cell = with_edges(sharp, part.spec);
+  const Cell cell = finished_cell(sharp, part.spec);
   const Vec2 shift = -bounding_box(cell.outline).lower;
   std::vector<Tile> tiles;
   for (std::size_t k = 0; k < cell.facets.size(); ++k) {
@@ -385,7 +385,8 @@ Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* plane
   }
   if (spec.base && spec.arrangement != Arrangement::single && spec.extent == Extent::finite)
     measure_layer_on_base(part);
-  else if (planes != nullptr || spec.random_tilts.sigma_arcmin > 0.0 || !spec.edges.is_sharp())
+  else if (planes != nullptr || spec.random_tilts.sigma_arcmin > 0.0 || !spec.edges.is_sharp() ||
+           !spec.scratches.empty())
     measure_layer(part);
   if (part.thickness_mm <= part.top_mm)
     throw InputError(

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "geometry/base_shape.h"
 
@@ -71,6 +73,14 @@ struct EdgeShape {
   friend bool operator==(const EdgeShape&, const EdgeShape&) = default;
 };
 
+/// A groove of V section that runs up one facet of a prism from root to rim: what a chip in the cutting edge leaves.
+struct Scratch {
+  std::size_t facet = 0;     ///< 0: towards -x, 1: towards +x (of a turned prism: turned with it)
+  double position_mm = 0.0;  ///< of its middle along the roof edge, from the prism's middle towards +y
+  double width_mm = 0.0;     ///< along the roof edge; > 0
+  double depth_mm = 0.0;     ///< normal to the facet, into the part's material; < 0: a ridge out of it
+};
+
 enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
 enum class Extent { finite, infinite };
 /// Which rows of an offset array are shifted; rows count from 1 at y = 0. A single row is never shifted.
@@ -85,6 +95,7 @@ struct PartSpec {
   AngleErrors angle_errors;
   RandomTilts random_tilts;  ///< finite parts only
   EdgeShape edges;
+  std::vector<Scratch> scratches;  ///< of every prism; on one facet they do not overlap
   Arrangement arrangement = Arrangement::aligned;
   Extent extent = Extent::finite;
   RowParity shifted_rows = RowParity::even;

@@ -30,16 +30,24 @@ struct Workpiece {
   double shrinkage_percent = 0.0;  ///< the mould is larger than the part by this much; 0..10
 };
 
+/// A piece that has broken out of the cutting edge: every facet that the edge cuts last keeps a ridge there.
+struct EdgeChip {
+  double position_um = 0.0;  ///< of its middle, from the edge's middle towards +X of the machine
+  double width_um = 0.0;     ///< along the edge; > 0
+  double depth_um = 0.0;     ///< normal to the clearance face; > 0, at most half the width
+};
+
 /// A diamond whose clearance face looks at the facet that it cuts; the clearance comes from how the tool is mounted.
 /// For prisms a chisel with a straight edge (single-point inverted cutting, thesis 2.1), for cube corners a V-shaped
 /// tool with two edges that meet in its tip (diamond micro chiseling, thesis 1.4.2).
 struct Tool {
-  double width_mm = 0.0;            ///< of a chisel's edge, 0.1..2; across the ends of a V's two edges, 0.01..10
-  double wedge_deg = 50.0;          ///< between clearance and rake face; of a V: behind either edge, 65 by default
-  double clearance_deg = 3.0;       ///< between clearance face and cut facet; 2..15
-  double edge_radius_um = 0.0;      ///< of a chisel's edge, of a V's nose; 0: sharp
-  double side_clearance_deg = 2.0;  ///< by which a chisel's side walls fall back from the edge's ends; > 0
-  double nose_angle_deg = 50.0;     ///< between the two edges of a V
+  double width_mm = 0.0;             ///< of a chisel's edge, 0.1..2; across the ends of a V's two edges, 0.01..10
+  double wedge_deg = 50.0;           ///< between clearance and rake face; of a V: behind either edge, 65 by default
+  double clearance_deg = 3.0;        ///< between clearance face and cut facet; 2..15
+  double edge_radius_um = 0.0;       ///< of a chisel's edge, of a V's nose; 0: sharp
+  double side_clearance_deg = 2.0;   ///< by which a chisel's side walls fall back from the edge's ends; > 0
+  double nose_angle_deg = 50.0;      ///< between the two edges of a V
+  std::vector<EdgeChip> edge_chips;  ///< of a chisel; they keep clear of each other
 };
 
 /// The wedge of a V-shaped tool with rake 22 and clearance 3 (thesis 1.4.2): they add up to 90.

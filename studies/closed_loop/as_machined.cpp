@@ -141,6 +141,37 @@ PredictedTexture predicted_texture(const Job& job) {
 
 namespace {
 
+/// What chips of the edge leave on the facets of the part. The edge lies along the roof edge, turned by 180 degrees
+/// where facet 2 is plunged; where it is ploughed the tool stands as for facet 1.
+std::vector<geometry::Scratch> scratches_of(const Job& job) {
+  const bool is_direct = job.workpiece.kind == WorkpieceKind::direct;
+  const double scale = 1.0 / blank_scale(job.workpiece);
+  std::vector<geometry::Scratch> scratches;
+  for (const std::size_t facet : {0U, 1U}) {
+    const double sense = facet == 1 && job.strategy != Strategy::unidirectional ? -1.0 : 1.0;
+    for (const EdgeChip& chip : job.tool.edge_chips) {
+      geometry::Scratch scratch;
+      scratch.facet = is_direct ? 1 - facet : facet;
+      scratch.position_mm = 1e-3 * sense * scale * chip.position_um;
+      scratch.width_mm = 1e-3 * scale * chip.width_um;
+      // The ridge in a mould is a groove in the part; one that is cut directly keeps the ridge.
+      scratch.depth_mm = 1e-3 * scale * (is_direct ? -chip.depth_um : chip.depth_um);
+      scratches.push_back(scratch);
+    }
+  }
+  return scratches;
+}
+
+std::string scratches_text(const std::vector<geometry::Scratch>& scratches) {
+  if (scratches.empty()) return "";
+  std::string text = "# Scratches that the chips of the tool's edge leave.\nscratches = [\n";
+  for (const geometry::Scratch& s : scratches)
+    text += fmt::format("  {{ facet = \"{}\", position_um = {}, width_um = {}, depth_um = {} }},\n",
+                        s.facet == 0 ? "-x" : "+x", shortest(1e3 * s.position_mm), shortest(1e3 * s.width_mm),
+                        shortest(1e3 * s.depth_mm));
+  return text + "]\n";
+}
+
 /// Tilts of one element's facets, opening is positive.
 std::vector<double> tilts_of(const ElementResult& element) {
   std::vector<double> tilt(element.figures.facets.size());
@@ -302,6 +333,7 @@ AsMachined as_machined(const VerificationRun& run) {
   part.root_radius_um = run.result.root_radius_um;
   part.root_chamfer_um = run.result.root_chamfer_um;
   part.texture = predicted_texture(run.job);
+  part.scratches = scratches_of(run.job);
   part.body = body_of(run, part.warnings);
   return part;
 }
@@ -331,6 +363,7 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
       "roughness_sq_nm = {}\ncorrelation_length_um = {}\nwaviness_sq_nm = {}\nwaviness_length_um = {}\n",
       fixed(t.sa_nm, 1), fixed(t.roughness_sq_nm, 3), shortest(t.correlation_length_um), fixed(t.waviness_sq_nm, 3),
       fixed(t.waviness_length_um, 3));
+  text += scratches_text(part.scratches);
   text += "\n[detector]\nacceptance_half_angle_deg = [0.05, 0.5]\n";
   return text;
 }

@@ -30,6 +30,7 @@ struct AsMachined {
   double root_radius_um = 0.0;
   double root_chamfer_um = 0.0;
   PredictedTexture texture;
+  std::vector<geometry::Scratch> scratches;  ///< that the chips of the tool's edge leave
   std::string body;  ///< the table [body] of the job's design, or a default
   std::vector<std::string> warnings;
 };

@@ -164,6 +164,11 @@ Json surface_json(const Design& design) {
   if (part.edges.rim_radius_mm > 0.0) json["rim_radius_um"] = 1e3 * part.edges.rim_radius_mm;
   if (part.edges.rim_chamfer_mm > 0.0) json["rim_chamfer_um"] = 1e3 * part.edges.rim_chamfer_mm;
   if (!part.edges.is_sharp()) json["edge_chords"] = part.edges.chords;
+  for (const geometry::Scratch& s : part.scratches)
+    json["scratches"].push_back({{"facet", s.facet == 0 ? "-x" : "+x"},
+                                 {"position_um", 1e3 * s.position_mm},
+                                 {"width_um", 1e3 * s.width_mm},
+                                 {"depth_um", 1e3 * s.depth_mm}});
   return json;
 }
 

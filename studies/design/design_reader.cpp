@@ -20,6 +20,7 @@
 #include "studies/design/ball_reader.h"
 #include "studies/design/base_reader.h"
 #include "studies/design/design_keys.h"
+#include "studies/design/scratch_reader.h"
 #include "studies/design/spectrum_reader.h"
 #include "studies/design/table_reader.h"
 #include "studies/design/texture_reader.h"
@@ -295,7 +296,7 @@ FacetTexture read_mesh_surface(const DesignDocument& document) {
   surface.refuse_unless_zero({"dihedral_error_arcmin", "facet_tilt_arcmin", "angle_error_sigma_arcmin",
                               "root_radius_um", "root_chamfer_um", "rim_radius_um", "rim_chamfer_um"},
                              why);
-  surface.refuse({"edge_chords", "angle_error_seed"}, why);
+  surface.refuse({"edge_chords", "angle_error_seed", "scratches"}, why);
   surface.finish();
   return texture;
 }
@@ -308,6 +309,7 @@ FacetTexture read_surface(const DesignDocument& document, PartSpec& part) {
   read_facet_tilt(surface, part);
   read_random_tilts(surface, part);
   read_edges(surface, part);
+  read_scratches(document, surface, part);
   surface.finish();
   const auto* rtp = std::get_if<geometry::RtpElement>(&part.element);
   if (rtp == nullptr) {

@@ -96,7 +96,8 @@ bool has_errors(const PartSpec& part) {
   const std::array<double, 3> none{};
   const bool is_prism = std::holds_alternative<geometry::RtpElement>(part.element);
   if (!is_prism && part.angle_errors.dihedral_error_arcmin != none) return true;
-  return !part.edges.is_sharp() || part.angle_errors.facet_tilt_arcmin != none || part.random_tilts.sigma_arcmin > 0.0;
+  return !part.edges.is_sharp() || !part.scratches.empty() || part.angle_errors.facet_tilt_arcmin != none ||
+         part.random_tilts.sigma_arcmin > 0.0;
 }
 
 /// Partial elements of the array, whether or not a mask is to leave out others.
@@ -108,6 +109,7 @@ std::int64_t partial_elements(const PartSpec& part) {
   nominal.angle_errors = {};
   nominal.random_tilts = {};
   nominal.edges = {};
+  nominal.scratches.clear();
   return geometry::build_part(nominal).elements_partial;
 }
 
@@ -123,7 +125,7 @@ void add_warnings(const Design& design, MadeJob& made) {
   }
   if (has_errors(design.part))
     made.warnings.push_back(
-        fmt::format("{}: {}facet tilts, random errors and edges of [surface] are not cut", name,
+        fmt::format("{}: {}facet tilts, random errors, edges and scratches of [surface] are not cut", name,
                     std::holds_alternative<geometry::RtpElement>(design.part.element) ? "" : "dihedral errors, "));
   if (design.part.arrangement == Arrangement::honeycomb)
     made.job.notes.push_back("cavities are triangular: those at the border reach beyond the elements' outlines");

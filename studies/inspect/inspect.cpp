@@ -300,7 +300,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
     if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part);
   }
   result.dead_zone_share = geometry::edge_share(
-      geometry::with_edges(geometry::element_cell(design.part.element, design.part.angle_errors), design.part));
+      geometry::finished_cell(geometry::element_cell(design.part.element, design.part.angle_errors), design.part));
   result.boundary = boundary_finding(design, part.size_mm);
   add_warnings(result, part);
   return result;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 #include "tests/app/program.h"
@@ -183,6 +184,27 @@ TEST(Photometry, ItsOutputReplacesNoInput) {
   const Outcome outcome = run_limits(folder, "S,,red,0.2,0,0,1,mcd/lx,read\n", {"--json=l.csv"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("would be overwritten"), std::string::npos) << outcome.err;
+}
+
+// The published ratio, 5.6 : 10, lies within what the observation angle alone does: docs/theory/photometry.md.
+TEST(LuminanceFixture, RatioOfThePublishedSamplesDependsOnTheObservationAngle) {
+  const TemporaryFolder folder;
+  const std::string examples = RETRACE_SOURCE_DIR "/examples/luminance_fixture/";
+  const auto r_a = [&](const std::string& design) {
+    const Outcome outcome =
+        retrace(folder, {"photometry", examples + design, "--standard", examples + "fixture.csv", "--area-cm2", "1.27",
+                         "--window-deg", "3", "--no-advice", "--samples", "16384", "--json", "-"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    std::map<double, double> values;
+    for (const Json& point : Json::parse(outcome.out)["points"])
+      values[point["observation_deg"].get<double>()] = point["r_a_cd_per_lx_m2"].get<double>();
+    return values;
+  };
+  const std::map<double, double> prisms = r_a("uspic_rtp.toml");
+  const std::map<double, double> cubes = r_a("pin_bundle_icc.toml");
+  EXPECT_GT(prisms.at(0.2) / cubes.at(0.2), 0.8);
+  EXPECT_LT(prisms.at(0.5) / cubes.at(0.5), 0.3);
+  EXPECT_GT(prisms.at(2.0) / cubes.at(2.0), 2.0);
 }
 
 TEST(List, ShowsTheStandards) {

@@ -133,6 +133,7 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   job.tool.width_mm = real(0.1, 0.451);
   job.tool.edge_radius_um = real(0.0, 5.0);
   job.tool.side_clearance_deg = real(0.1, 1.0);
+  if (*rc::gen::arbitrary<bool>()) job.tool.edge_chips = {{real(-20.0, 0.0), 3.0, real(0.1, 1.5)}, {20.0, 5.0, 0.25}};
   job.process.clearance_mm = real(0.01, 1.0);
   job.process.roughing_depth_um = real(1.0, 50.0);
   job.process.finishing_cuts = *rc::gen::inRange(1, 5);
@@ -165,6 +166,16 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
       {"\nwidth_mm = 0.451\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 2",
        "\nwidth_mm = 0.1\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 9",
        "tool.side_clearance_deg: must be < 8.911, or the diamond ends in a point within its element, got 9"},
+      {"side_clearance_deg = 2\n", "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 226\nwidth_um = 2\n",
+       "edge_chips.position_um: must be >= -224.5 and <= 224.5, got 226"},
+      {"side_clearance_deg = 2\n",
+       "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 1\nwidth_um = 2\ndepth_um = 1.1\n",
+       "edge_chips.depth_um: must be > 0 and <= 1, got 1.1"},
+      {"side_clearance_deg = 2\n",
+       "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 1\nwidth_um = 2\ndepth_um = 1\n"
+       "[[tool.edge_chips]]\nposition_um = 2\nwidth_um = 2\ndepth_um = 1\n",
+       "edge_chips.position_um: must keep clear of the other chips, got 2"},
+      {"side_clearance_deg = 2\n", "side_clearance_deg = 2\nedge_chips = 3\n", "tool.edge_chips: must be"},
       {"\nclearance_deg = 3", "\nclearance_deg = 1", "tool.clearance_deg: must be >= 2 and <= 15, got 1"},
       {"strategy = \"two-step\"", "strategy = \"two-steps\"", "strategy: must be"},
       {"arrangement = \"offset\"", "arrangement = \"honeycomb\"", "array.arrangement: must be"},

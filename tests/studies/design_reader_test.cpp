@@ -744,6 +744,38 @@ TEST(DesignReader, EdgesMustFitIntoTheFacets) {
         << value;
 }
 
+TEST(DesignReader, ScratchesAreThoseOfPrisms) {
+  const std::string good = "facet = \"-x\", position_um = 40, width_um = 3, depth_um = 0.5";
+  const auto with = [](const std::string& element, const std::string& list) {
+    return design_of(element, "extent = \"infinite\"") + "[surface]\nscratches = " + list + "\n";
+  };
+  const std::string other = "{ facet = \"+x\", position_um = 40, width_um = 3, depth_um = -0.5 }";
+  const Design design = parse_design(with(kRtp, "[{ " + good + " }, " + other + "]"), "d.toml", {});
+  ASSERT_EQ(design.part.scratches.size(), 2U);
+  EXPECT_EQ(design.part.scratches[0].facet, 0U);
+  EXPECT_DOUBLE_EQ(design.part.scratches[0].position_mm, 0.04);
+  EXPECT_EQ(design.part.scratches[1].facet, 1U);
+  EXPECT_DOUBLE_EQ(design.part.scratches[1].depth_mm, -5e-4);
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    std::string entry = good;
+    return complaint(with(kRtp, "[{ " + entry.replace(entry.find(from), from.size(), to) + " }]"));
+  };
+  EXPECT_NE(refused("-x", "y").find("surface.scratches[1].facet: must be one of \"-x\" or \"+x\""), std::string::npos);
+  EXPECT_NE(refused("40", "600").find("surface.scratches[1].position_um: must be >= "), std::string::npos);
+  EXPECT_NE(refused("3,", "0,").find("surface.scratches[1].width_um: must be >= 0.01 and <= 100, got 0"),
+            std::string::npos);
+  EXPECT_NE(refused("0.5", "1.6").find("surface.scratches[1].depth_um: must be >= -1.5 and <= 1.5, got 1.6"),
+            std::string::npos);
+  EXPECT_NE(refused("depth_um = 0.5", "depth = 0.5").find("surface.scratches[1].depth_um: missing"), std::string::npos);
+  EXPECT_NE(complaint(with(kRtp, "[{ " + good + " }, { " + good + " }]"))
+                .find("surface.scratches[2].position_um: must keep clear of the other scratches of its facet"),
+            std::string::npos);
+  EXPECT_NE(complaint(with(kRtp, "3")).find("surface.scratches: must be a list of tables"), std::string::npos);
+  EXPECT_NE(
+      complaint(with(kHexagonal, "[{ " + good + " }]")).find("surface.scratches: only allowed for kind = \"rtp\""),
+      std::string::npos);
+}
+
 TEST(DesignReader, RimsOfEveryKindAndWhatTheyNeed) {
   const auto rims = [](const std::string& element, const std::string& array, const std::string& lines) {
     return parse_design(design_of(element, array) + "[surface]\n" + lines, "d.toml", {}).part.edges;

@@ -65,6 +65,8 @@ constexpr NumberRange kMicrometres{.low = 0.0, .high = 1000.0};
 constexpr double kMostElements = 2e6;
 /// A tool this much wider than the element fits it all the same.
 constexpr double kFitToleranceMm = 1e-6;
+constexpr NumberRange kChipWidth{.low = 0.01, .high = 100.0};
+constexpr std::size_t kMostChips = 100;
 /// The chip needs this much between the rake face and the other facet (assumed: half of what wedge 50 and clearance 15
 /// leave of a right angle).
 constexpr double kChipRoomDeg = 12.5;
@@ -122,6 +124,25 @@ Array read_array(TomlTable table, const geometry::Element& element) {
   return array;
 }
 
+/// The chips of an edge, each with its own table.
+std::vector<EdgeChip> read_edge_chips(TomlTable& tool, double tool_width_mm) {
+  std::vector<EdgeChip> chips;
+  for (TomlTable table : tool.tables("edge_chips")) {
+    EdgeChip chip;
+    chip.width_um = table.required_number("width_um", kChipWidth);
+    const double reach_um = 0.5 * (1e3 * tool_width_mm - chip.width_um);
+    chip.position_um = table.required_number("position_um", {.low = -reach_um, .high = reach_um});
+    chip.depth_um = table.required_number("depth_um", {.low = 0.0, .low_included = false, .high = 0.5 * chip.width_um});
+    for (const EdgeChip& other : chips)
+      if (std::abs(other.position_um - chip.position_um) < 0.5 * (other.width_um + chip.width_um) * (1.0 - 1e-9))
+        table.fail("position_um", "must keep clear of the other chips, got " + shortest(chip.position_um));
+    chips.push_back(chip);
+  }
+  if (chips.size() > kMostChips)
+    tool.fail("edge_chips", fmt::format("must be at most {}, got {}", kMostChips, chips.size()));
+  return chips;
+}
+
 Tool read_tool(TomlTable table, Strategy strategy) {
   Tool tool;
   const bool is_v = strategy == Strategy::dmc;
@@ -129,10 +150,12 @@ Tool read_tool(TomlTable table, Strategy strategy) {
   tool.wedge_deg = table.number("wedge_deg", kWedge).value_or(is_v ? kDmcWedgeDeg : tool.wedge_deg);
   tool.clearance_deg = table.number("clearance_deg", kToolClearance).value_or(tool.clearance_deg);
   tool.edge_radius_um = table.number("edge_radius_um", kEdgeRadius).value_or(tool.edge_radius_um);
-  if (is_v)
+  if (is_v) {
     tool.nose_angle_deg = table.number("nose_angle_deg", kNoseAngle).value_or(tool.nose_angle_deg);
-  else
+  } else {
     tool.side_clearance_deg = table.number("side_clearance_deg", kSideClearance).value_or(tool.side_clearance_deg);
+    tool.edge_chips = read_edge_chips(table, tool.width_mm);
+  }
   return tool;
 }
 
@@ -446,6 +469,12 @@ std::string job_text(const Job& job) {
     out.number("nose_angle_deg", job.tool.nose_angle_deg);
   else
     out.number("side_clearance_deg", job.tool.side_clearance_deg);
+  for (const EdgeChip& chip : job.tool.edge_chips) {
+    out.raw("\n[[tool.edge_chips]]\n");
+    out.number("position_um", chip.position_um);
+    out.number("width_um", chip.width_um);
+    out.number("depth_um", chip.depth_um);
+  }
   write_process(out, job.process);
   return out.take();
 }

@@ -1,0 +1,127 @@
+// Scratches up the facets of prisms: dead widths and volumes by closed form, closed parts, agreement of the engines.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/error.h"
+#include "geometry/check/boundary_check.h"
+#include "geometry/closed_boundary.h"
+#include "raytrace/beam_tracer.h"
+#include "raytrace/monte_carlo.h"
+#include "tests/support/designs.h"
+
+namespace retrace::testing {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+constexpr double kBase = 0.5;
+constexpr double kWidth = 0.4;
+
+PartSpec scratched(PartSpec spec, std::vector<Scratch> scratches) {
+  spec.scratches = std::move(scratches);
+  return spec;
+}
+
+double exact_rre(const PartSpec& spec, const Optics& optics) {
+  BeamPolicy policy;
+  policy.truncated_goal = 1e-9;
+  return BeamTracer(build_part(spec)).trace(optics, from(0.0), {0.5}, policy).ledgers[0][Account::retroreflected];
+}
+
+double volume_mm3(const PartSpec& spec) {
+  const BoundaryMesh mesh = closed_boundary(build_part(spec));
+  double six = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) six += mesh.vertices[a].dot(mesh.vertices[b].cross(mesh.vertices[c]));
+  return six / 6.0;
+}
+
+// At normal incidence light meets both facets at the same place along the roof edge: a scratch of either takes its
+// width of the whole prism.
+TEST(Scratches, TakeTheirWidthOfAPrism) {
+  const PartSpec smooth = infinite(RtpElement{kBase, kWidth, 90.0}, Arrangement::aligned, 1.0);
+  Optics lossless = pmma();
+  lossless.lossless_entrance = true;
+  EXPECT_NEAR(exact_rre(smooth, lossless), 1.0, 1e-9);
+  const double w = 0.003;
+  for (const double depth : {5e-4, -5e-4}) {
+    EXPECT_NEAR(exact_rre(scratched(smooth, {{0, 0.05, w, depth}}), lossless), 1.0 - w / kWidth, 1e-8);
+    EXPECT_NEAR(exact_rre(scratched(smooth, {{1, -0.1, w, depth}}), lossless), 1.0 - w / kWidth, 1e-8);
+    EXPECT_NEAR(exact_rre(scratched(smooth, {{0, 0.05, w, depth}, {1, -0.1, w, depth}}), lossless),
+                1.0 - 2.0 * w / kWidth, 1e-8);
+    EXPECT_NEAR(exact_rre(scratched(smooth, {{0, 0.05, w, depth}, {1, 0.05, 2.0 * w, depth}}), lossless),
+                1.0 - 2.0 * w / kWidth, 1e-8);
+  }
+  EXPECT_NEAR(exact_rre(scratched(smooth, {{0, 0.05, w, 0.0}}), lossless), 1.0, 1e-9);
+}
+
+// A V of depth d normal to the facet takes half its width times d from every unit of the facet's length.
+TEST(Scratches, TakeTheirVolume) {
+  for (const double apex_deg : {90.0, 70.0}) {
+    const PartSpec smooth = single(RtpElement{kBase, kWidth, apex_deg}, 0.5);
+    const double facet_mm = 0.5 * kBase / std::sin(0.5 * apex_deg * std::acos(-1.0) / 180.0);
+    for (const double depth : {2e-3, -2e-3}) {
+      const PartSpec worn = scratched(smooth, {{0, 0.05, 0.01, depth}, {1, -0.02, 0.02, depth}});
+      EXPECT_NEAR(volume_mm3(smooth) - volume_mm3(worn), 0.5 * depth * (0.01 + 0.02) * facet_mm, 1e-12) << apex_deg;
+    }
+  }
+}
+
+std::vector<PartSpec> all_arrangements(const std::vector<Scratch>& scratches) {
+  PartSpec apart = finite(RtpElement{kBase, kBase, 90.0}, Arrangement::aligned, 1.5, 1.3, 0.5);
+  apart.x_gap_mm = 0.06;
+  PartSpec worn = single(RtpElement{kBase, kBase, 88.0}, 0.5);
+  worn.edges.root_radius_mm = 0.01;
+  worn.edges.chords = 4;
+  return {scratched(infinite(RtpElement{kBase, kBase, 90.0}, Arrangement::offset, 0.5), scratches),
+          scratched(finite(RtpElement{kBase, kBase, 90.0}, Arrangement::offset, 1.5, 1.5, 0.5), scratches),
+          scratched(finite(RtpElement{kBase, kBase, 84.0}, Arrangement::checker, 1.5, 1.5, 0.5), scratches),
+          scratched(apart, scratches), scratched(worn, scratches)};
+}
+
+const std::vector<Scratch> kTwo = {{0, 0.08, 0.03, 0.006}, {1, -0.1, 0.02, -0.004}};
+
+TEST(Scratches, PartsStayClosed) {
+  for (const PartSpec& spec : all_arrangements(kTwo)) {
+    if (spec.extent == Extent::infinite) continue;
+    const BoundaryReport report = check_boundary(closed_boundary(build_part(spec)));
+    EXPECT_TRUE(report.is_closed);
+    EXPECT_TRUE(report.is_manifold);
+    EXPECT_FALSE(report.self_intersects);
+  }
+}
+
+TEST(Scratches, EnginesAgree) {
+  for (const PartSpec& spec : all_arrangements(kTwo)) {
+    const Part part = build_part(spec);
+    BeamPolicy policy;
+    policy.cutoff = 1e-5;
+    const Ledger exact = BeamTracer(part).trace(pmma(), from(3.0), {0.5}, policy).ledgers[0];
+    const ConeResult sampled = MonteCarlo(part).trace(pmma(), from(3.0), {0.5}, rays(1U << 16), {}).cones[0];
+    EXPECT_NEAR(exact[Account::retroreflected], sampled.rre,
+                4.0 * sampled.std_error + exact[Account::truncated] + 1e-6);
+    EXPECT_LT(exact[Account::truncated], 0.03);
+    EXPECT_NEAR(exact.total(), 1.0, 1e-9);
+    EXPECT_LT(sampled.ledger[Account::lost], 1e-9);
+  }
+}
+
+// Turning a prism by 180 degrees swaps its facets and the sense along its roof edge.
+TEST(Scratches, TurnWithThePrism) {
+  const auto rre = [](const std::vector<Scratch>& scratches, double azimuth_deg) {
+    const PartSpec spec = scratched(single(RtpElement{kBase, kWidth, 90.0}, 0.5), scratches);
+    BeamPolicy policy;
+    policy.cutoff = 1e-6;
+    return BeamTracer(build_part(spec)).trace(pmma(), from(8.0, azimuth_deg), {0.5}, policy).ledgers[0];
+  };
+  const Ledger one = rre({{0, 0.08, 0.03, 0.006}}, 40.0);
+  const Ledger other = rre({{1, -0.08, 0.03, 0.006}}, 220.0);
+  EXPECT_NEAR(one[Account::retroreflected], other[Account::retroreflected],
+              one[Account::truncated] + other[Account::truncated] + 1e-12);
+  EXPECT_NEAR(one[Account::transmitted], other[Account::transmitted], 1e-4);
+}
+
+}  // namespace
+}  // namespace retrace::testing
