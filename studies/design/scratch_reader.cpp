@@ -53,6 +53,7 @@ void read_scratches(const DesignDocument& document, TableReader& surface, PartSp
     surface.fail(kKey, "must be a list of tables with facet, position_um, width_um and depth_um, got " + shown(*node));
   const auto* const element = std::get_if<RtpElement>(&part.element);
   if (element == nullptr) surface.fail(kKey, "only allowed for kind = \"rtp\"");
+  if (part.base) surface.fail(kKey, "not allowed with [base]");
   if (list->size() > kMost) surface.fail(kKey, fmt::format("must be at most {}, got {}", kMost, list->size()));
   for (const toml::node& entry : *list) {
     const std::string name = fmt::format("surface.scratches[{}]", part.scratches.size() + 1);
