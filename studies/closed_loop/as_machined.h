@@ -31,7 +31,7 @@ struct AsMachined {
   double root_chamfer_um = 0.0;
   PredictedTexture texture;
   std::vector<geometry::Scratch> scratches;  ///< that the chips of the tool's edge leave
-  std::string body;  ///< the table [body] of the job's design, or a default
+  std::string body;                          ///< the table [body] of the job's design, or a default
   std::vector<std::string> warnings;
 };
 
