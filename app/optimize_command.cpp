@@ -32,10 +32,21 @@ studies::MadeJob job_of(const CommandLine& line, const studies::Study& study, co
   return studies::make_job(candidate.design(), job_request(line.job, *width_mm));
 }
 
+/// Values that every parameter may have.
+studies::PointValues some_values(const studies::Study& study) {
+  studies::PointValues values;
+  for (const studies::Parameter& parameter : study.parameters)
+    values.push_back(parameter.interval ? studies::Parameter::value_of(parameter.interval->from)
+                                        : parameter.values.front());
+  return values;
+}
+
 /// What would otherwise be found wrong only after the search.
 void check_job_options(const CommandLine& line, const studies::Study& study) {
   if (line.study.job.empty()) return;
-  studies::check_making(job_request(line.job, line.job.tool_width_mm.value_or(1.0)));
+  const studies::JobRequest request = job_request(line.job, line.job.tool_width_mm.value_or(1.0));
+  studies::check_making(request);
+  studies::check_element(studies::make_candidate(study, some_values(study)).design(), request);
   std::vector<std::string> read = files_of_study(study);
   for (const std::string& file : files_of_making(line.job)) read.push_back(file);
   check_job_file(line.common, line.study.job, read, "--job");

@@ -152,6 +152,10 @@ void check_making(const JobRequest& request) {
   fabrication::load_process(request.process, {"", 0, "--process"});
 }
 
+void check_element(const Design& design, const JobRequest& request) {
+  element_of(design, request);
+}
+
 namespace {
 
 /// The tool as it was asked for. \throw InputError if it does not fit the element

@@ -31,6 +31,9 @@ struct MadeJob {
 /// What can be told of a request without a design: its words, machine and process. \throw InputError
 void check_making(const JobRequest& request);
 
+/// Whether the strategy cuts the design's element. \throw InputError at --strategy, and for designs that nothing cuts
+void check_element(const Design& design, const JobRequest& request);
+
 /// The fabrication job of a design: prisms of its array its dihedral error included, other errors and edges of
 /// [surface] not; partial elements are left out. \throw InputError for designs and requests that cannot be cut
 MadeJob make_job(const Design& design, const JobRequest& request);

@@ -174,7 +174,7 @@ TEST(Job, WarnsOfWhatItLeavesOut) {
   const Outcome outcome = retrace(folder, with(kJob, {"-o", "j.toml"}));
   EXPECT_EQ(outcome.code, 0);
   EXPECT_NE(outcome.err.find("leaves partial elements out: 4"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("facet tilts, random errors and edges"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("facet tilts, random errors, edges and scratches"), std::string::npos) << outcome.err;
   EXPECT_NE(folder.read("j.toml").find("4 partial elements are left out"), std::string::npos);
 }
 

@@ -317,7 +317,10 @@ TEST_F(VerifyCommand, ChipsOfTheEdgeBecomeScratches) {
                                     "idealisation.entrance=lossless"})["points"][0]["rre"]
           .get<double>();
     };
-    EXPECT_NEAR(lossless("part.toml") / lossless("design.toml"), kept, 1e-6);
+    // Light that one scratch turns aside comes back by another to second order.
+    const double share = lossless("part.toml") / lossless("design.toml");
+    EXPECT_GT(share, kept - 1e-6);
+    EXPECT_LT(share, kept + 0.02 * (1.0 - kept) * (1.0 - kept));
   }
 }
 

@@ -143,7 +143,9 @@ TEST(OptimizeJob, BadInputIsSaidInOneLine) {
   };
   EXPECT_NE(error({"--machine", "thesis"}).find("--job"), std::string::npos);
   EXPECT_NE(error({"--job", "j.toml", "--machine", "lathe"}).find("--machine"), std::string::npos);
-  EXPECT_NE(error({"--job", "j.toml", "--strategy", "dmc"}).find("--strategy"), std::string::npos);
+  EXPECT_NE(error({"--job", "j.toml", "--strategy", "drill"}).find("--strategy"), std::string::npos);
+  EXPECT_NE(error({"--job", "j.toml", "--strategy", "dmc"}).find("--strategy: dmc cuts cube corners"),
+            std::string::npos);
   EXPECT_NE(error({"--job", "j.toml", "--tool-width-mm", "3"}).find("--tool-width-mm: must be >= 0.1"),
             std::string::npos);
   EXPECT_EQ(error({"--job", "study.toml"}),
