@@ -1,6 +1,9 @@
 // Path points a second on one core: a polynomial, and an array of 1,000 tilted lenslets.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "fabrication/turning/path.h"
 
 namespace {
@@ -52,14 +55,38 @@ void lenslet_path(benchmark::State& state) {
   const TurnedSurface surface = lenslet_array();
   PathOptions options;
   options.radius_mm = 4.5;
-  options.feed_mm = 0.1;
+  options.feed_mm = 0.02;
   options.points_per_turn = 5000;
   std::size_t points = 0;
   for (auto _ : state) points += make_path(surface, tool(), options, {}).front().size();
   state.SetItemsProcessed(static_cast<std::int64_t>(points));
 }
 
+/// What a path pays once: that the nose touches this array in one place at a time.
+void lenslet_proof(benchmark::State& state) {
+  const TurnedSurface surface = lenslet_array();
+  for (auto _ : state) benchmark::DoNotOptimize(TouchMap(surface, tool(), 4.5).touches_once(0.0, 0.0));
+}
+
+/// The same points with the whole arc searched at each.
+void lenslet_search(benchmark::State& state) {
+  const TurnedSurface surface = lenslet_array();
+  const NoseCompensation nose(surface, tool());
+  double angle = 0.0;
+  double c = 0.0;
+  for (auto _ : state) {
+    c += 2.0 * std::numbers::pi / 5000.0;
+    const retrace::geometry::Vec2 across(std::cos(c), -std::sin(c));
+    const retrace::geometry::Vec2 cut(-std::sin(c), -std::cos(c));
+    const retrace::geometry::Vec2 tip = (4.5 - std::fmod(3e-3 * c, 4.0)) * across;
+    benchmark::DoNotOptimize(nose.height_mm(tip.x(), tip.y(), across, cut, angle));
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
 }  // namespace
 
 BENCHMARK(polynomial_path)->Unit(benchmark::kMillisecond);
 BENCHMARK(lenslet_path)->Unit(benchmark::kMillisecond);
+BENCHMARK(lenslet_proof)->Unit(benchmark::kMillisecond);
+BENCHMARK(lenslet_search)->Unit(benchmark::kMicrosecond);

@@ -196,9 +196,18 @@ T Formula::evaluate(const T* variables) const {
 
 template double Formula::evaluate(const double*) const;
 template Dual Formula::evaluate(const Dual*) const;
+template Jet2 Formula::evaluate(const Jet2*) const;
 template Series<double> Formula::evaluate(const Series<double>*) const;
 template Series<Dual> Formula::evaluate(const Series<Dual>*) const;
+template Series<Jet2> Formula::evaluate(const Series<Jet2>*) const;
 template Series<Series<double>> Formula::evaluate(const Series<Series<double>>*) const;
+template Series<Series<Dual>> Formula::evaluate(const Series<Series<Dual>>*) const;
+template Series<Series<Jet2>> Formula::evaluate(const Series<Series<Jet2>>*) const;
+template Series<Series<Series<double>>> Formula::evaluate(const Series<Series<Series<double>>>*) const;
+template Series<Jet2, 1> Formula::evaluate(const Series<Jet2, 1>*) const;
+template Series<Jet2, 2> Formula::evaluate(const Series<Jet2, 2>*) const;
+template Series<Jet2, 3> Formula::evaluate(const Series<Jet2, 3>*) const;
+template Series<Jet2, 4> Formula::evaluate(const Series<Jet2, 4>*) const;
 
 bool Formula::uses(int variable) const {
   std::vector<bool> is_used(nodes.size(), false);

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "fabrication/turning/jet.h"
+#include "fabrication/turning/second_order.h"
 
 namespace retrace::fabrication::turning {
 
@@ -60,11 +61,5 @@ inline constexpr std::size_t kLongestFormula = 2000;
 /// sinh cosh tanh abs. Angles are in radians.
 /// \throw InputError at `where` with the place in the formula where it does not parse
 Formula parse_formula(const std::string& text, const std::vector<std::string>& variables, const InputLocation& where);
-
-extern template double Formula::evaluate(const double*) const;
-extern template Dual Formula::evaluate(const Dual*) const;
-extern template Series<double> Formula::evaluate(const Series<double>*) const;
-extern template Series<Dual> Formula::evaluate(const Series<Dual>*) const;
-extern template Series<Series<double>> Formula::evaluate(const Series<Series<double>>*) const;
 
 }  // namespace retrace::fabrication::turning

@@ -3,7 +3,7 @@
 // Automatic differentiation for surfaces of turning: a dual number with the two partial derivatives, and truncated
 // Taylor series in one variable, both over the elementary functions that a sag may use (A. Griewank, A. Walther,
 // Evaluating Derivatives, 2nd ed., SIAM 2008, tables 13.1 and 13.2). They nest: Series<Dual> is a series whose
-// coefficients carry their own derivatives.
+// coefficients carry their own derivatives. second_order.h has the short series by which paths are found.
 
 #include <algorithm>
 #include <array>
@@ -75,9 +75,23 @@ inline Dual atan2(const Dual& y, const Dual& x) {
   return {std::atan2(y.v, x.v), (x.v * y.dx - y.v * x.dx) / square, (x.v * y.dy - y.v * x.dy) / square};
 }
 
+/// For Series: the order is known when it runs only.
+inline constexpr int kAnyOrder = -1;
+
 /// The start of a Taylor series: c[0] + c[1] t + ... + c[order] t^order. Results are as long as the shorter operand.
-template <class T>
+/// Of an order that the type fixes it is quicker, as the compiler writes the loops out.
+template <class T, int N = kAnyOrder>
 struct Series {
+  std::array<T, static_cast<std::size_t>(N) + 1> c{};
+  static constexpr int order = N;
+
+  Series() = default;
+  explicit Series(int) {}
+  T& operator[](int k) { return c[static_cast<std::size_t>(k)]; }
+  const T& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
+};
+template <class T>
+struct Series<T, kAnyOrder> {
   std::array<T, static_cast<std::size_t>(kMostOrder) + 1> c{};  ///< the first order + 1 of them count
   int order = 0;
 
@@ -94,50 +108,50 @@ inline double constant_like(double, double value) {
 inline Dual constant_like(const Dual&, double value) {
   return value;
 }
-template <class T>
-Series<T> constant_like(const Series<T>& like, double value) {
-  Series<T> s(like.order);
+template <class T, int N>
+Series<T, N> constant_like(const Series<T, N>& like, double value) {
+  Series<T, N> s(like.order);
   s[0] = constant_like(like[0], value);
   for (int k = 1; k <= like.order; ++k) s[k] = constant_like(like[0], 0.0);
   return s;
 }
 
 /// value + slope t, to that order.
-template <class T>
-Series<T> line_series(const T& value, const T& slope, int order) {
-  Series<T> s(order);
+template <class T, int N = kAnyOrder>
+Series<T, N> line_series(const T& value, const T& slope, int order) {
+  Series<T, N> s(order);
   s[0] = value;
-  if (order > 0) s[1] = slope;
-  for (int k = 2; k <= order; ++k) s[k] = constant_like(value, 0.0);
+  if (s.order > 0) s[1] = slope;
+  for (int k = 2; k <= s.order; ++k) s[k] = constant_like(value, 0.0);
   return s;
 }
 
-template <class T>
-double value_of(const Series<T>& a) {
+template <class T, int N>
+double value_of(const Series<T, N>& a) {
   return value_of(a[0]);
 }
 
-template <class T>
-Series<T> operator-(const Series<T>& a) {
-  Series<T> r(a.order);
+template <class T, int N>
+Series<T, N> operator-(const Series<T, N>& a) {
+  Series<T, N> r(a.order);
   for (int k = 0; k <= r.order; ++k) r[k] = -a[k];
   return r;
 }
-template <class T>
-Series<T> operator+(const Series<T>& a, const Series<T>& b) {
-  Series<T> r(std::min(a.order, b.order));
+template <class T, int N>
+Series<T, N> operator+(const Series<T, N>& a, const Series<T, N>& b) {
+  Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) r[k] = a[k] + b[k];
   return r;
 }
-template <class T>
-Series<T> operator-(const Series<T>& a, const Series<T>& b) {
-  Series<T> r(std::min(a.order, b.order));
+template <class T, int N>
+Series<T, N> operator-(const Series<T, N>& a, const Series<T, N>& b) {
+  Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) r[k] = a[k] - b[k];
   return r;
 }
-template <class T>
-Series<T> operator*(const Series<T>& a, const Series<T>& b) {
-  Series<T> r(std::min(a.order, b.order));
+template <class T, int N>
+Series<T, N> operator*(const Series<T, N>& a, const Series<T, N>& b) {
+  Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) {
     T sum = a[0] * b[k];
     for (int i = 1; i <= k; ++i) sum = sum + a[i] * b[k - i];
@@ -145,9 +159,9 @@ Series<T> operator*(const Series<T>& a, const Series<T>& b) {
   }
   return r;
 }
-template <class T>
-Series<T> operator/(const Series<T>& a, const Series<T>& b) {
-  Series<T> r(std::min(a.order, b.order));
+template <class T, int N>
+Series<T, N> operator/(const Series<T, N>& a, const Series<T, N>& b) {
+  Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) {
     T sum = a[k];
     for (int i = 1; i <= k; ++i) sum = sum - b[i] * r[k - i];
@@ -156,45 +170,45 @@ Series<T> operator/(const Series<T>& a, const Series<T>& b) {
   return r;
 }
 
-template <class T>
-Series<T> operator+(Series<T> a, double b) {
+template <class T, int N>
+Series<T, N> operator+(Series<T, N> a, double b) {
   a[0] = a[0] + b;
   return a;
 }
-template <class T>
-Series<T> operator+(double a, Series<T> b) {
+template <class T, int N>
+Series<T, N> operator+(double a, Series<T, N> b) {
   return std::move(b) + a;
 }
-template <class T>
-Series<T> operator-(Series<T> a, double b) {
+template <class T, int N>
+Series<T, N> operator-(Series<T, N> a, double b) {
   return std::move(a) + (-b);
 }
-template <class T>
-Series<T> operator-(double a, const Series<T>& b) {
+template <class T, int N>
+Series<T, N> operator-(double a, const Series<T, N>& b) {
   return -b + a;
 }
-template <class T>
-Series<T> operator*(Series<T> a, double b) {
+template <class T, int N>
+Series<T, N> operator*(Series<T, N> a, double b) {
   for (int k = 0; k <= a.order; ++k) a[k] = a[k] * b;
   return a;
 }
-template <class T>
-Series<T> operator*(double a, Series<T> b) {
+template <class T, int N>
+Series<T, N> operator*(double a, Series<T, N> b) {
   return std::move(b) * a;
 }
-template <class T>
-Series<T> operator/(Series<T> a, double b) {
+template <class T, int N>
+Series<T, N> operator/(Series<T, N> a, double b) {
   return std::move(a) * (1.0 / b);
 }
-template <class T>
-Series<T> operator/(double a, const Series<T>& b) {
+template <class T, int N>
+Series<T, N> operator/(double a, const Series<T, N>& b) {
   return constant_like(b, a) / b;
 }
 
-template <class T>
-Series<T> sqrt(const Series<T>& a) {
+template <class T, int N>
+Series<T, N> sqrt(const Series<T, N>& a) {
   using std::sqrt;
-  Series<T> r(a.order);
+  Series<T, N> r(a.order);
   r[0] = sqrt(a[0]);
   for (int k = 1; k <= a.order; ++k) {
     T sum = a[k];
@@ -203,10 +217,10 @@ Series<T> sqrt(const Series<T>& a) {
   }
   return r;
 }
-template <class T>
-Series<T> exp(const Series<T>& a) {
+template <class T, int N>
+Series<T, N> exp(const Series<T, N>& a) {
   using std::exp;
-  Series<T> r(a.order);
+  Series<T, N> r(a.order);
   r[0] = exp(a[0]);
   for (int k = 1; k <= a.order; ++k) {
     T sum = constant_like(a[0], 0.0);
@@ -216,33 +230,34 @@ Series<T> exp(const Series<T>& a) {
   return r;
 }
 /// The antiderivative of `slope` that is `start` at t = 0; one order longer than needed orders are cut.
-template <class T>
-Series<T> integral(const T& start, const Series<T>& slope, int order) {
-  Series<T> r(order);
+template <class T, int N>
+Series<T, N> integral(const T& start, const Series<T, N>& slope, int order) {
+  Series<T, N> r(order);
   r[0] = start;
-  for (int k = 1; k <= order; ++k) r[k] = slope[k - 1] / static_cast<double>(k);
+  const int last = std::min(r.order, static_cast<int>(r.c.size()) - 1);  // which the compiler cannot know
+  for (int k = 1; k <= last; ++k) r[k] = slope[k - 1] / static_cast<double>(k);
   return r;
 }
 /// The derivative, whose last coefficient, which is not known, is 0.
-template <class T>
-Series<T> derivative(const Series<T>& a) {
-  Series<T> r(a.order);
+template <class T, int N>
+Series<T, N> derivative(const Series<T, N>& a) {
+  Series<T, N> r(a.order);
   for (int k = 0; k < a.order; ++k) r[k] = static_cast<double>(k + 1) * a[k + 1];
   r[a.order] = constant_like(a[0], 0.0);
   return r;
 }
-template <class T>
-Series<T> log(const Series<T>& a) {
+template <class T, int N>
+Series<T, N> log(const Series<T, N>& a) {
   using std::log;
   return integral(log(a[0]), derivative(a) / a, a.order);
 }
 /// Sine and cosine together, as their recurrences need each other.
-template <class T>
-void sin_cos(const Series<T>& a, Series<T>& s, Series<T>& c) {
+template <class T, int N>
+void sin_cos(const Series<T, N>& a, Series<T, N>& s, Series<T, N>& c) {
   using std::cos;
   using std::sin;
-  s = Series<T>(a.order);
-  c = Series<T>(a.order);
+  s = Series<T, N>(a.order);
+  c = Series<T, N>(a.order);
   s[0] = sin(a[0]);
   c[0] = cos(a[0]);
   for (int k = 1; k <= a.order; ++k) {
@@ -256,24 +271,24 @@ void sin_cos(const Series<T>& a, Series<T>& s, Series<T>& c) {
     c[k] = -sum_c / static_cast<double>(k);
   }
 }
-template <class T>
-Series<T> sin(const Series<T>& a) {
-  Series<T> s;
-  Series<T> c;
+template <class T, int N>
+Series<T, N> sin(const Series<T, N>& a) {
+  Series<T, N> s;
+  Series<T, N> c;
   sin_cos(a, s, c);
   return s;
 }
-template <class T>
-Series<T> cos(const Series<T>& a) {
-  Series<T> s;
-  Series<T> c;
+template <class T, int N>
+Series<T, N> cos(const Series<T, N>& a) {
+  Series<T, N> s;
+  Series<T, N> c;
   sin_cos(a, s, c);
   return c;
 }
-template <class T>
-Series<T> atan2(const Series<T>& y, const Series<T>& x) {
+template <class T, int N>
+Series<T, N> atan2(const Series<T, N>& y, const Series<T, N>& x) {
   using std::atan2;
-  const Series<T> slope = (x * derivative(y) - y * derivative(x)) / (x * x + y * y);
+  const Series<T, N> slope = (x * derivative(y) - y * derivative(x)) / (x * x + y * y);
   return integral(atan2(y[0], x[0]), slope, std::min(x.order, y.order));
 }
 

@@ -41,12 +41,24 @@ std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& wher
   return result;
 }
 
+/// Where on the nose the next point touches, if the last three went on as a parabola.
+class TouchForecast {
+ public:
+  explicit TouchForecast(double end_rad) : end_rad_(end_rad) {}
+  double next() const { return std::clamp(3.0 * (angles_[0] - angles_[1]) + angles_[2], -end_rad_, end_rad_); }
+  void add(double angle_rad) { angles_ = {angle_rad, angles_[0], angles_[1]}; }
+
+ private:
+  double end_rad_;
+  std::array<double, 3> angles_{};  // the last first
+};
+
 Pass spiral(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o, const InputLocation& where) {
   if (const auto pass = polynomial_spiral(surface, tool, o)) return *pass;
-  const NoseCompensation nose(surface, tool);
+  const NoseCompensation nose(surface, tool, TouchMap(surface, tool, o.radius_mm + o.overrun_mm));
   const double skew = tool.skew_deg * kDegree;
   Pass pass;
-  double angle = 0.0;
+  TouchForecast forecast(nose.end_rad());
   double last = 0.0;
   const std::vector<double> all_turns = spiral_turns(o, where);
   pass.reserve(all_turns.size());
@@ -61,7 +73,9 @@ Pass spiral(const TurnedSurface& surface, const TurningTool& tool, const PathOpt
     p.c_deg = 360.0 * turns;
     p.seconds = (turns - last) * 60.0 / o.spindle_rpm;
     const Vec2 tip = p.x_mm * across - p.y_mm * cut;
+    double angle = forecast.next();
     p.z_mm = nose.height_mm(tip.x(), tip.y(), across, cut, angle);
+    forecast.add(angle);
     last = turns;
     pass.push_back(p);
   }
@@ -75,20 +89,22 @@ std::vector<Pass> raster(const TurnedSurface& surface, const TurningTool& tool, 
   if (!(lines * points < static_cast<double>(kMostPoints)))
     throw InputError(where,
                      fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPoints, lines * points));
-  const NoseCompensation nose(surface, tool);
+  const NoseCompensation nose(surface, tool, TouchMap(surface, tool, 0.5 * std::hypot(o.width_mm, o.height_mm)));
   const Vec2 across = Vec2::UnitX();
   const Vec2 cut = -Vec2::UnitY();
   const double step = o.width_mm / points;
   std::vector<Pass> passes;
   for (int line = 0; line < static_cast<int>(lines); ++line) {
     Pass pass;
-    double angle = 0.0;
+    TouchForecast forecast(nose.end_rad());
     for (int i = 0; i <= static_cast<int>(points); ++i) {
       PathPoint p;
       p.x_mm = 0.5 * o.height_mm - o.feed_mm * line;
       p.y_mm = 0.5 * o.width_mm - step * i;
       p.seconds = i == 0 ? 0.0 : 60.0 * step / o.cutting_mm_per_min;
+      double angle = forecast.next();
       p.z_mm = nose.height_mm(p.x_mm, p.y_mm, across, cut, angle);
+      forecast.add(angle);
       pass.push_back(p);
     }
     passes.push_back(std::move(pass));
@@ -125,8 +141,9 @@ void share_with_servo(Pass& pass, int points_per_turn) {
 
 }  // namespace
 
-NoseCompensation::NoseCompensation(const TurnedSurface& surface, const TurningTool& tool)
+NoseCompensation::NoseCompensation(const TurnedSurface& surface, const TurningTool& tool, TouchMap map)
     : surface_(surface),
+      map_(std::move(map)),
       radius_mm_(tool.nose_radius_mm),
       sin_rake_(std::sin(tool.rake_deg * kDegree)),
       cos_rake_(std::cos(tool.rake_deg * kDegree)),
@@ -139,40 +156,40 @@ double NoseCompensation::sampled(double x_mm, double y_mm, const Vec2& across, c
   return surface_.height_mm(p.x(), p.y()) - lift * cos_rake_;
 }
 
-double NoseCompensation::searched(double x_mm, double y_mm, const Vec2& across, const Vec2& cut, double& angle) const {
+NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, const Vec2& across, const Vec2& cut,
+                                                   double& angle) const {
   constexpr int kMostSteps = 12;
-  double height = 0.0;
+  // What a step leaves is of the third order in it: below 1e-14 mm.
+  constexpr double kSmallStep = 2e-5;
+  Touch touch;
   for (int step = 0; step < kMostSteps; ++step) {
     const double sine = std::sin(angle);
     const double cosine = std::cos(angle);
-    Series<double> aside(2);
-    aside[0] = radius_mm_ * sine;
-    aside[1] = radius_mm_ * cosine;
-    aside[2] = -0.5 * radius_mm_ * sine;
-    Series<double> lift(2);
-    lift[0] = radius_mm_ * (1.0 - cosine);
-    lift[1] = radius_mm_ * sine;
-    lift[2] = 0.5 * radius_mm_ * cosine;
-    const Series<double> back = lift * sin_rake_;
-    const Series<double> f =
+    const Jet2 aside(radius_mm_ * sine, radius_mm_ * cosine, -0.5 * radius_mm_ * sine);
+    const Jet2 lift(radius_mm_ * (1.0 - cosine), radius_mm_ * sine, 0.5 * radius_mm_ * cosine);
+    const Jet2 back = lift * sin_rake_;
+    const Jet2 f =
         surface_.evaluate(aside * across.x() - back * cut.x() + x_mm, aside * across.y() - back * cut.y() + y_mm) -
         lift * cos_rake_;
-    height = f[0];
+    touch.height_mm = f.v;
     // Where the surface is hollower than the nose there is no maximum here: another start finds it.
-    if (!(f[2] < 0.0)) return height;
-    const double change = std::clamp(-0.5 * f[1] / f[2], -0.5, 0.5);
+    if (!(f.b < 0.0)) return touch;
+    const double change = std::clamp(-0.5 * f.a / f.b, -0.5, 0.5);
     const double next = std::clamp(angle + change, -end_rad_, end_rad_);
     const double done = next - angle;
     angle = next;
-    height = f[0] + done * (f[1] + done * f[2]);
-    if (std::abs(done) < 1e-6) return height;
+    touch.height_mm = f.v + done * (f.a + done * f.b);
+    touch.is_found = std::abs(done) < kSmallStep;
+    if (touch.is_found) return touch;
   }
-  return height;
+  return touch;
 }
 
 double NoseCompensation::height_mm(double x_mm, double y_mm, const Vec2& across, const Vec2& cut,
                                    double& start_rad) const {
-  double height = searched(x_mm, y_mm, across, cut, start_rad);
+  const Touch touch = searched(x_mm, y_mm, across, cut, start_rad);
+  if (touch.is_found && map_.touches_once(x_mm, y_mm)) return touch.height_mm;
+  double height = touch.height_mm;
   // A steep place farther along the edge may touch first, as the far side of a lenslet does.
   constexpr int kPlaces = 8;
   double best = start_rad;
@@ -187,7 +204,7 @@ double NoseCompensation::height_mm(double x_mm, double y_mm, const Vec2& across,
   }
   if (highest > height) {
     double angle = best;
-    height = std::max(highest, searched(x_mm, y_mm, across, cut, angle));
+    height = std::max(highest, searched(x_mm, y_mm, across, cut, angle).height_mm);
     start_rad = angle;
   }
   return height;

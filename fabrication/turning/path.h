@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "fabrication/turning/surface.h"
 #include "fabrication/turning/tool.h"
+#include "fabrication/turning/touch_map.h"
 
 namespace retrace::fabrication::turning {
 
@@ -59,18 +60,28 @@ std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& too
 /// the cut's direction by the rake.
 class NoseCompensation {
  public:
-  NoseCompensation(const TurnedSurface& surface, const TurningTool& tool);
+  /// \param map where one touching place is known to be the only one; elsewhere the whole arc is searched for others
+  NoseCompensation(const TurnedSurface& surface, const TurningTool& tool, TouchMap map = {});
 
   /// \param across, cut unit vectors in the part \param start angle on the nose where the search starts; where it ends
   double height_mm(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut,
                    double& start_rad) const;
 
+  /// End of the sharp arc, to both sides.
+  double end_rad() const { return end_rad_; }
+
  private:
-  double searched(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut,
-                  double& angle) const;
+  /// What Newton's rule finds from an angle.
+  struct Touch {
+    double height_mm = 0.0;
+    bool is_found = false;  ///< a maximum, or the arc's end; not just the last step
+  };
+  Touch searched(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut,
+                 double& angle) const;
   double sampled(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut, double angle) const;
 
   const TurnedSurface& surface_;
+  TouchMap map_;
   double radius_mm_;
   double sin_rake_;
   double cos_rake_;

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "fabrication/turning/interval.h"
+
 namespace retrace::fabrication::turning {
 namespace {
 
@@ -87,20 +89,48 @@ XyPolynomial polynomial_of(const std::vector<ZernikeTerm>& terms, double radius_
 }
 
 template <class T>
-T Sag::evaluate(const T& x, const T& y) const {
+T Sag::evaluate_without_formula(const T& x, const T& y) const {
   const bool has_asphere = asphere.curvature_per_mm != 0.0 || !asphere.even.empty();
-  if (polynomial && !has_asphere && !formula) return evaluate_polynomial(*polynomial, x, y);
-  T z = has_asphere ? evaluate_asphere(asphere, x, y) : constant_like(x, 0.0);
-  if (polynomial) z = z + evaluate_polynomial(*polynomial, x, y);
-  if (formula) z = z + evaluate_formula(*formula, x, y, place_mm);
-  return z;
+  if (polynomial && !has_asphere) return evaluate_polynomial(*polynomial, x, y);
+  const T z = has_asphere ? evaluate_asphere(asphere, x, y) : constant_like(x, 0.0);
+  return polynomial ? z + evaluate_polynomial(*polynomial, x, y) : z;
+}
+
+template <class T>
+T Sag::evaluate(const T& x, const T& y) const {
+  const T z = evaluate_without_formula(x, y);
+  return formula ? z + evaluate_formula(*formula, x, y, place_mm) : z;
 }
 
 template double Sag::evaluate(const double&, const double&) const;
 template Dual Sag::evaluate(const Dual&, const Dual&) const;
+template Jet2 Sag::evaluate(const Jet2&, const Jet2&) const;
 template Series<double> Sag::evaluate(const Series<double>&, const Series<double>&) const;
 template Series<Dual> Sag::evaluate(const Series<Dual>&, const Series<Dual>&) const;
+template Series<Jet2> Sag::evaluate(const Series<Jet2>&, const Series<Jet2>&) const;
 template Series<Series<double>> Sag::evaluate(const Series<Series<double>>&, const Series<Series<double>>&) const;
+template Series<Series<Dual>> Sag::evaluate(const Series<Series<Dual>>&, const Series<Series<Dual>>&) const;
+template Series<Series<Jet2>> Sag::evaluate(const Series<Series<Jet2>>&, const Series<Series<Jet2>>&) const;
+template Series<Series<Series<double>>> Sag::evaluate(const Series<Series<Series<double>>>&,
+                                                      const Series<Series<Series<double>>>&) const;
+template Series<Jet2, 1> Sag::evaluate(const Series<Jet2, 1>&, const Series<Jet2, 1>&) const;
+template Series<Jet2, 2> Sag::evaluate(const Series<Jet2, 2>&, const Series<Jet2, 2>&) const;
+template Series<Jet2, 3> Sag::evaluate(const Series<Jet2, 3>&, const Series<Jet2, 3>&) const;
+template Series<Jet2, 4> Sag::evaluate(const Series<Jet2, 4>&, const Series<Jet2, 4>&) const;
+template SecondOrder<Interval> Sag::evaluate_without_formula(const SecondOrder<Interval>&,
+                                                             const SecondOrder<Interval>&) const;
+template Series<Jet2, 1> Sag::evaluate_without_formula(const Series<Jet2, 1>&, const Series<Jet2, 1>&) const;
+template Series<Jet2, 2> Sag::evaluate_without_formula(const Series<Jet2, 2>&, const Series<Jet2, 2>&) const;
+template Series<Jet2, 3> Sag::evaluate_without_formula(const Series<Jet2, 3>&, const Series<Jet2, 3>&) const;
+template Series<Jet2, 4> Sag::evaluate_without_formula(const Series<Jet2, 4>&, const Series<Jet2, 4>&) const;
+template Series<SecondOrder<Interval>, 1> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 1>&,
+                                                                        const Series<SecondOrder<Interval>, 1>&) const;
+template Series<SecondOrder<Interval>, 2> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 2>&,
+                                                                        const Series<SecondOrder<Interval>, 2>&) const;
+template Series<SecondOrder<Interval>, 3> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 3>&,
+                                                                        const Series<SecondOrder<Interval>, 3>&) const;
+template Series<SecondOrder<Interval>, 4> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 4>&,
+                                                                        const Series<SecondOrder<Interval>, 4>&) const;
 
 std::vector<std::string> sag_variables() {
   return {"x", "y", "r", "theta", "cx", "cy"};

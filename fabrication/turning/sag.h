@@ -7,6 +7,7 @@
 
 #include "fabrication/turning/formula.h"
 #include "fabrication/turning/jet.h"
+#include "fabrication/turning/second_order.h"
 
 namespace retrace::fabrication::turning {
 
@@ -53,6 +54,9 @@ struct Sag {
   /// z at (x, y) with all derivatives that T carries. Not a number where the sag has no value.
   template <class T>
   T evaluate(const T& x, const T& y) const;
+  /// The same less the formula: closed forms, which intervals can go through.
+  template <class T>
+  T evaluate_without_formula(const T& x, const T& y) const;
 };
 
 /// Names of a formula's variables, in the order in which a sag sets them.
@@ -62,12 +66,5 @@ std::vector<std::string> sag_variables();
 inline bool is_polynomial(const Sag& sag) {
   return !sag.formula && sag.asphere.curvature_per_mm == 0.0;
 }
-
-extern template double Sag::evaluate(const double&, const double&) const;
-extern template Dual Sag::evaluate(const Dual&, const Dual&) const;
-extern template Series<double> Sag::evaluate(const Series<double>&, const Series<double>&) const;
-extern template Series<Dual> Sag::evaluate(const Series<Dual>&, const Series<Dual>&) const;
-extern template Series<Series<double>> Sag::evaluate(const Series<Series<double>>&,
-                                                     const Series<Series<double>>&) const;
 
 }  // namespace retrace::fabrication::turning

@@ -15,24 +15,6 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// How often a correction of a value must be repeated until all parts of it that vanish to some power are right.
-int nilpotency(double) {
-  return 0;
-}
-int nilpotency(const Dual&) {
-  return 1;
-}
-template <class T>
-int nilpotency(const Series<T>& s) {
-  return s.order + nilpotency(s[0]);
-}
-
-double binomial(int n, int k) {
-  double b = 1.0;
-  for (int i = 1; i <= k; ++i) b = b * (n - k + i) / i;
-  return b;
-}
-
 /// A place in polar coordinates about a centre.
 template <class T>
 struct Polar {
@@ -52,90 +34,11 @@ Polar<T> polar(const T& x, const T& y, const Vec2& centre) {
   return {r, atan2(dy, dx), dx / r, dy / r};
 }
 
-/// A line through the place at that radius, outwards, as a pair of series in the distance along it.
-template <class T>
-struct RadialLine {
-  Series<T> x;
-  Series<T> y;
-};
-
-template <class T>
-RadialLine<T> radial_line(const Polar<T>& p, const Vec2& centre, const T& radius, int order) {
-  return {line_series(T(radius * p.cosine + centre.x()), p.cosine, order),
-          line_series(T(radius * p.sine + centre.y()), p.sine, order)};
-}
-
 std::string place(double x_mm, double y_mm) {
   return fmt::format("x = {}, y = {} mm", fixed(x_mm, 4), fixed(y_mm, 4));
 }
 
 }  // namespace
-
-template <class T>
-T hermite_blend(const T& share, const T& width, const Series<T>& first, const Series<T>& second, int order) {
-  const T rest = 1.0 - share;
-  const T to_first = power(rest, order + 1);
-  const T to_second = power(share, order + 1);
-  T sum = constant_like(share, 0.0);
-  T scale = constant_like(share, 1.0);
-  T share_k = constant_like(share, 1.0);
-  T rest_k = constant_like(share, 1.0);
-  for (int k = 0; k <= order; ++k) {
-    T near_first = constant_like(share, 0.0);
-    T near_second = constant_like(share, 0.0);
-    for (int j = order - k; j >= 0; --j) {
-      near_first = near_first * share + binomial(order + j, j);
-      near_second = near_second * rest + binomial(order + j, j);
-    }
-    const double sign = k % 2 == 0 ? 1.0 : -1.0;
-    sum = sum + scale * (first[k] * (share_k * to_first * near_first) +
-                         second[k] * (rest_k * to_second * near_second) * sign);
-    scale = scale * width;
-    share_k = share_k * share;
-    rest_k = rest_k * rest;
-  }
-  return sum;
-}
-template double hermite_blend(const double&, const double&, const Series<double>&, const Series<double>&, int);
-
-template <class T>
-T Lenslet::evaluate(const T& x_mm, const T& y_mm) const {
-  const Eigen::Matrix3d& r = part_from_lenslet;
-  const T px = x_mm - origin_mm.x();
-  const T py = y_mm - origin_mm.y();
-  if (r(2, 2) == 1.0) return sag.evaluate(px, py) + origin_mm.z();
-  // The height z over the origin solves F(z) = w - sag(u, v) = 0 with (u, v, w) the point in the lenslet's frame.
-  const double x = value_of(px);
-  const double y = value_of(py);
-  double z = -(x * r(0, 2) + y * r(1, 2)) / r(2, 2);
-  double slope = r(2, 2);
-  constexpr int kMostSteps = 50;
-  double last = 1e300;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const double u = x * r(0, 0) + y * r(1, 0) + z * r(2, 0);
-    const double v = x * r(0, 1) + y * r(1, 1) + z * r(2, 1);
-    const Dual s = sag.evaluate(Dual(u, 1.0, 0.0), Dual(v, 0.0, 1.0));
-    slope = r(2, 2) - s.dx * r(2, 0) - s.dy * r(2, 1);
-    const double change = (x * r(0, 2) + y * r(1, 2) + z * r(2, 2) - s.v) / slope;
-    z -= change;
-    if (!(std::abs(change) > 1e-16 * (std::abs(z) + 1e-3)) || (std::abs(change) < 1e-12 && std::abs(change) >= last))
-      break;
-    last = std::abs(change);
-  }
-  // F falling there would be the underside of an overhang.
-  if (!(slope > 0.0)) z = std::numeric_limits<double>::quiet_NaN();
-  T height = constant_like(x_mm, z);
-  for (int step = nilpotency(x_mm); step > 0; --step) {
-    const T u = px * r(0, 0) + py * r(1, 0) + height * r(2, 0);
-    const T v = px * r(0, 1) + py * r(1, 1) + height * r(2, 1);
-    const T w = px * r(0, 2) + py * r(1, 2) + height * r(2, 2);
-    height = height - (w - sag.evaluate(u, v)) / slope;
-  }
-  return height + origin_mm.z();
-}
-template double Lenslet::evaluate(const double&, const double&) const;
-template Dual Lenslet::evaluate(const Dual&, const Dual&) const;
-template Series<double> Lenslet::evaluate(const Series<double>&, const Series<double>&) const;
 
 TurnedSurface::TurnedSurface(Sag base, std::optional<Extrapolation> extrapolation, std::vector<Lenslet> lenslets,
                              const InputLocation& where)
@@ -143,10 +46,38 @@ TurnedSurface::TurnedSurface(Sag base, std::optional<Extrapolation> extrapolatio
   if (!lenslets_.empty()) sort_into_grid(where);
 }
 
+namespace {
+
+/// A line through the place at that radius, outwards, as a pair of series in the distance along it.
+template <class T, int N = kAnyOrder>
+struct RadialLine {
+  Series<T, N> x;
+  Series<T, N> y;
+};
+
+template <int N = kAnyOrder, class T>
+RadialLine<T, N> radial_line(const Polar<T>& p, const Vec2& centre, const T& radius, int order) {
+  return {line_series<T, N>(T(radius * p.cosine + centre.x()), p.cosine, order),
+          line_series<T, N>(T(radius * p.sine + centre.y()), p.sine, order)};
+}
+
+/// The blend round a lenslet at a place in polar coordinates. \param base z of the base along a line
+template <int N, class T, class Base>
+T blend_at(const Lenslet& lenslet, const Polar<T>& p, const Base& base) {
+  const Vec2& centre = lenslet.outer.centre_mm;
+  const T r = lenslet.inner.radius_mm.evaluate(p.angle);
+  const T R = lenslet.outer.radius_mm.evaluate(p.angle);
+  const int order = N == kAnyOrder ? lenslet.blend_order : N;
+  const RadialLine<T, N> near = radial_line<N>(p, centre, r, order);
+  const RadialLine<T, N> far = radial_line<N>(p, centre, R, order);
+  return hermite_blend(T((p.radius - r) / (R - r)), T(R - r), lenslet.evaluate(near.x, near.y), base(far.x, far.y),
+                       order);
+}
+
+}  // namespace
+
 template <class T>
-T TurnedSurface::evaluate_base(const T& x_mm, const T& y_mm) const {
-  if (!extrapolation_ || extrapolation_->boundary.contains(value_of(x_mm), value_of(y_mm)))
-    return base_.evaluate(x_mm, y_mm);
+T TurnedSurface::extrapolated(const T& x_mm, const T& y_mm) const {
   const Boundary& boundary = extrapolation_->boundary;
   const Polar<T> p = polar(x_mm, y_mm, boundary.centre_mm);
   const T edge = boundary.radius_mm.evaluate(p.angle);
@@ -159,27 +90,43 @@ T TurnedSurface::evaluate_base(const T& x_mm, const T& y_mm) const {
 }
 
 template <class T>
+T TurnedSurface::evaluate_base(const T& x_mm, const T& y_mm) const {
+  if (!extrapolation_ || extrapolation_->boundary.contains(value_of(x_mm), value_of(y_mm)))
+    return base_.evaluate(x_mm, y_mm);
+  return extrapolated(x_mm, y_mm);
+}
+
+template <class T>
+T TurnedSurface::evaluate_blend(const Lenslet& lenslet, const T& x_mm, const T& y_mm) const {
+  const Polar<T> p = polar(x_mm, y_mm, lenslet.outer.centre_mm);
+  const auto base = [this](const auto& x, const auto& y) { return base_.evaluate(x, y); };
+  if (!lenslet.ends_on_base)
+    return blend_at<kAnyOrder>(lenslet, p, [this](const auto& x, const auto& y) { return evaluate_base(x, y); });
+  if constexpr (std::is_same_v<T, Jet2>) {
+    // Paths spend most of their time here.
+    if (lenslet.blend_order == 1) return blend_at<1>(lenslet, p, base);
+    if (lenslet.blend_order == 2) return blend_at<2>(lenslet, p, base);
+    if (lenslet.blend_order == 3) return blend_at<3>(lenslet, p, base);
+    if (lenslet.blend_order == 4) return blend_at<4>(lenslet, p, base);
+  }
+  return blend_at<kAnyOrder>(lenslet, p, base);
+}
+
+template <class T>
 T TurnedSurface::evaluate(const T& x_mm, const T& y_mm) const {
   const Lenslet* const lenslet = lenslet_at(value_of(x_mm), value_of(y_mm));
   if (lenslet == nullptr) return evaluate_base(x_mm, y_mm);
   if (lenslet->inner.contains(value_of(x_mm), value_of(y_mm))) return lenslet->evaluate(x_mm, y_mm);
-  const Vec2& centre = lenslet->outer.centre_mm;
-  const Polar<T> p = polar(x_mm, y_mm, centre);
-  const T r = lenslet->inner.radius_mm.evaluate(p.angle);
-  const T R = lenslet->outer.radius_mm.evaluate(p.angle);
-  const RadialLine<T> near = radial_line(p, centre, r, lenslet->blend_order);
-  const RadialLine<T> far = radial_line(p, centre, R, lenslet->blend_order);
-  const Series<T> on_lenslet = lenslet->evaluate(near.x, near.y);
-  // Blends lie where the base is defined, so that its extrapolation is not met here.
-  const Series<T> on_base = base_.evaluate(far.x, far.y);
-  return hermite_blend(T((p.radius - r) / (R - r)), T(R - r), on_lenslet, on_base, lenslet->blend_order);
+  return evaluate_blend(*lenslet, x_mm, y_mm);
 }
 
 template double TurnedSurface::evaluate(const double&, const double&) const;
 template Dual TurnedSurface::evaluate(const Dual&, const Dual&) const;
+template Jet2 TurnedSurface::evaluate(const Jet2&, const Jet2&) const;
 template Series<double> TurnedSurface::evaluate(const Series<double>&, const Series<double>&) const;
 template double TurnedSurface::evaluate_base(const double&, const double&) const;
 template Dual TurnedSurface::evaluate_base(const Dual&, const Dual&) const;
+template Jet2 TurnedSurface::evaluate_base(const Jet2&, const Jet2&) const;
 template Series<double> TurnedSurface::evaluate_base(const Series<double>&, const Series<double>&) const;
 
 Zone TurnedSurface::zone_at(double x_mm, double y_mm) const {
@@ -218,18 +165,15 @@ void check_apart(const std::vector<Lenslet>& lenslets, std::uint32_t a, std::uin
   }
 }
 
-/// \throw InputError if a blend ends where the base is only extrapolated
-void check_on_base(const Lenslet& lenslet, const Boundary& base, std::size_t number, const InputLocation& where) {
+/// Whether a boundary lies inside another all round.
+bool is_inside(const Boundary& inner, const Boundary& outer) {
   constexpr int kAngles = 360;
   for (int i = 0; i < kAngles; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kAngles;
-    const Vec2 p =
-        lenslet.outer.centre_mm + lenslet.outer.radius_mm.evaluate(angle) * Vec2(std::cos(angle), std::sin(angle));
-    if (!base.contains(p.x(), p.y()))
-      throw InputError(where, fmt::format("must lie with its blend inside the base's boundary, lenslet {} crosses it "
-                                          "at {}",
-                                          number, place(p.x(), p.y())));
+    const Vec2 p = inner.centre_mm + inner.radius_mm.evaluate(angle) * Vec2(std::cos(angle), std::sin(angle));
+    if (!outer.contains(p.x(), p.y())) return false;
   }
+  return true;
 }
 
 }  // namespace
@@ -243,7 +187,7 @@ void TurnedSurface::sort_into_grid(const InputLocation& where) {
     low = low.cwiseMin(outer.centre_mm - Vec2::Constant(outer.most_mm));
     high = high.cwiseMax(outer.centre_mm + Vec2::Constant(outer.most_mm));
     cell_mm_ = std::max(cell_mm_, outer.most_mm);
-    if (extrapolation_) check_on_base(lenslets_[i], extrapolation_->boundary, i + 1, where);
+    lenslets_[i].ends_on_base = !extrapolation_ || is_inside(outer, extrapolation_->boundary);
   }
   grid_low_ = low;
   columns_ = static_cast<long>((high.x() - low.x()) / cell_mm_) + 1;

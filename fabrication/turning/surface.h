@@ -1,40 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
 #include "core/error.h"
 #include "fabrication/turning/boundary.h"
+#include "fabrication/turning/lenslet.h"
 #include "fabrication/turning/sag.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication::turning {
-
-/// Most derivatives that a blend matches.
-inline constexpr int kMostBlendOrder = 4;
-
-/// The polynomial of degree 2 d + 1 between two radii that has the first d + 1 Taylor coefficients of a curve at each
-/// end: Hermite's, in the share of the way between them, so that no system is solved (W. Gautschi, Numerical Analysis,
-/// 2nd ed., section 2.2.7, two-point case).
-/// \param share 0 at the first end, 1 at the second \param width of the interval
-/// \param first, second Taylor coefficients by radius at the ends, `order` + 1 each
-template <class T>
-T hermite_blend(const T& share, const T& width, const Series<T>& first, const Series<T>& second, int order);
-
-/// A surface of its own on the base, with a blend round it.
-struct Lenslet {
-  Sag sag;                                                          ///< in its own frame
-  geometry::Vec3 origin_mm = geometry::Vec3::Zero();                ///< of its frame, in that of the part
-  Eigen::Matrix3d part_from_lenslet = Eigen::Matrix3d::Identity();  ///< its z is the base's normal if it is tilted
-  Boundary inner;                                                   ///< where the blend leaves it
-  Boundary outer;                                                   ///< where the blend reaches the base
-  int blend_order = 2;                                              ///< d: C^d at both
-
-  /// Its surface as z(x, y) in the part's frame.
-  template <class T>
-  T evaluate(const T& x_mm, const T& y_mm) const;
-};
 
 /// How the base goes on outside of the region in which it is defined.
 struct Extrapolation {
@@ -52,7 +27,8 @@ class TurnedSurface {
   TurnedSurface(Sag base, std::optional<Extrapolation> extrapolation, std::vector<Lenslet> lenslets,
                 const InputLocation& where);
 
-  /// z in mm with all derivatives that T carries (double, Dual or Series<double>); not finite where there is no value.
+  /// z in mm with all derivatives that T carries (double, Dual, Jet2 or Series<double>); not finite where there is no
+  /// value.
   template <class T>
   T evaluate(const T& x_mm, const T& y_mm) const;
 
@@ -72,6 +48,10 @@ class TurnedSurface {
   bool is_polynomial_everywhere() const { return lenslets_.empty() && !extrapolation_ && is_polynomial(base_); }
 
  private:
+  template <class T>
+  T extrapolated(const T& x_mm, const T& y_mm) const;
+  template <class T>
+  T evaluate_blend(const Lenslet& lenslet, const T& x_mm, const T& y_mm) const;
   /// The lenslet whose outer boundary holds the point; null if none does.
   const Lenslet* lenslet_at(double x_mm, double y_mm) const;
   void sort_into_grid(const InputLocation& where);
@@ -101,13 +81,11 @@ void check_surface(const TurnedSurface& surface, double radius_mm, const InputLo
 
 extern template double TurnedSurface::evaluate(const double&, const double&) const;
 extern template Dual TurnedSurface::evaluate(const Dual&, const Dual&) const;
+extern template Jet2 TurnedSurface::evaluate(const Jet2&, const Jet2&) const;
 extern template Series<double> TurnedSurface::evaluate(const Series<double>&, const Series<double>&) const;
 extern template double TurnedSurface::evaluate_base(const double&, const double&) const;
 extern template Dual TurnedSurface::evaluate_base(const Dual&, const Dual&) const;
+extern template Jet2 TurnedSurface::evaluate_base(const Jet2&, const Jet2&) const;
 extern template Series<double> TurnedSurface::evaluate_base(const Series<double>&, const Series<double>&) const;
-extern template double hermite_blend(const double&, const double&, const Series<double>&, const Series<double>&, int);
-extern template double Lenslet::evaluate(const double&, const double&) const;
-extern template Dual Lenslet::evaluate(const Dual&, const Dual&) const;
-extern template Series<double> Lenslet::evaluate(const Series<double>&, const Series<double>&) const;
 
 }  // namespace retrace::fabrication::turning

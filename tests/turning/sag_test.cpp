@@ -31,6 +31,22 @@ TEST(Jet, IdentitiesHoldToEveryOrder) {
   expect_series(power(x, 5), x * x * x * x * x, 1e-13);
 }
 
+/// Everything that formulas are made of.
+template <class T>
+T mixture(const T& x, const T& y) {
+  return atan2(y * x, exp(x) + y) / sqrt(2.0 + x * x) - log(y + 3.0) * sin(x * 0.5) + cos(1.0 - y) * (x - 2.0) / 3.0;
+}
+
+TEST(Jet, ShortSeriesAreTheStartOfLongOnes) {
+  const Series<double> whole = mixture(line(0.7, 0.6, 4), line(-0.2, 1.1, 4));
+  const Jet2 second = mixture(Jet2(0.7, 0.6, 0.0), Jet2(-0.2, 1.1, 0.0));
+  EXPECT_NEAR(second.v, whole[0], 1e-15);
+  EXPECT_NEAR(second.a, whole[1], 1e-15);
+  EXPECT_NEAR(second.b, whole[2], 1e-14);
+  const Series<double, 3> fixed = mixture(line_series<double, 3>(0.7, 0.6, 3), line_series<double, 3>(-0.2, 1.1, 3));
+  for (int k = 0; k <= 3; ++k) EXPECT_EQ(fixed[k], whole[k]) << k;
+}
+
 TEST(Jet, ExponentialHasInverseFactorials) {
   const Series<double> e = exp(line(0.0, 1.0));
   double factorial = 1.0;

@@ -229,6 +229,43 @@ TEST(Blend, StaysBetweenItsBoundaries) {
   EXPECT_GT(blended, 1000);
 }
 
+TEST(Blend, ReachesAnExtrapolatedBase) {
+  // One lenslet across the base's boundary, one beyond it.
+  const Extrapolation extrapolation{wavy_boundary({0.1, -0.05}, 1.0, 5), 4};
+  const TurnedSurface bare(steep_polynomial(), extrapolation, {}, kHere);
+  std::vector<Lenslet> lenslets(2);
+  const Vec2 places[] = {{1.2, 0.1}, {-0.9, -1.1}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    lenslets[i].sag.asphere.curvature_per_mm = -0.8;
+    lenslets[i].blend_order = 2;
+    place_on_base(lenslets[i], bare, places[i].x(), places[i].y(), 0.01, true, kHere);
+    lenslets[i].inner = circle_boundary(places[i], 0.1);
+    lenslets[i].outer = circle_boundary(places[i], 0.15);
+  }
+  const TurnedSurface surface(steep_polynomial(), extrapolation, lenslets, kHere);
+  const auto whole = [&](const Series<double>& x, const Series<double>& y) { return surface.evaluate(x, y); };
+  int extrapolated = 0;
+  for (const Vec2& at : places)
+    for (double angle = 0.05; angle < kTurn; angle += 0.37) {
+      const double beyond = 1e-10;
+      const Series<double> inside = along_radius(whole, at, angle, 0.15 - beyond, 3);
+      const Series<double> outside = along_radius(whole, at, angle, 0.15 + beyond, 3);
+      for (int k = 0; k <= 2; ++k) EXPECT_NEAR(inside[k], outside[k], 1e-6) << k;
+      const Vec2 p = at + 0.15 * (1.0 + 1e-9) * Vec2(std::cos(angle), std::sin(angle));
+      EXPECT_EQ(surface.height_mm(p.x(), p.y()), bare.height_mm(p.x(), p.y()));
+      extrapolated += surface.zone_at(p.x(), p.y()) == Zone::extrapolation ? 1 : 0;
+      const Vec2 q = at + 0.12 * Vec2(std::cos(angle), std::sin(angle));
+      const Jet2 along = surface.evaluate(Jet2(q.x(), 0.6, 0.0), Jet2(q.y(), 0.8, 0.0));
+      const Dual slopes = surface.gradient(q.x(), q.y());
+      EXPECT_NEAR(along.v, slopes.v, 1e-14);
+      EXPECT_NEAR(along.a, 0.6 * slopes.dx + 0.8 * slopes.dy, 1e-11);
+      const auto height = [&](double t) { return surface.height_mm(q.x() + 0.6 * t, q.y() + 0.8 * t); };
+      EXPECT_NEAR(along.a, (height(1e-5) - height(-1e-5)) / 2e-5, 1e-6);
+    }
+  EXPECT_GT(extrapolated, 20);
+  EXPECT_LT(extrapolated, 34) << "of the first, a part lies within the boundary";
+}
+
 TEST(Surface, GradientIsThatOfItsValues) {
   const TurnedSurface surface = lens_on_base(2);
   const TurnedSurface extended(steep_polynomial(), Extrapolation{wavy_boundary({0, 0}, 1.0), 3}, {}, kHere);
@@ -295,7 +332,7 @@ TEST(Surface, FindsTheLensletOfAPlace) {
   lenslets[5].outer = circle_boundary({0.0, 2.5}, 0.4);
   EXPECT_THROW(TurnedSurface(base, std::nullopt, lenslets, kHere), InputError);
   lenslets[5].outer = circle_boundary({0.0, 2.5}, 0.2);
-  EXPECT_THROW(TurnedSurface(base, Extrapolation{circle_boundary({0, 0}, 3.0), 2}, lenslets, kHere), InputError);
+  EXPECT_NO_THROW(TurnedSurface(base, Extrapolation{circle_boundary({0, 0}, 3.0), 2}, lenslets, kHere));
 }
 
 std::string refusal(const std::string& formula, double radius) {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <boost/numeric/interval.hpp>
+
+namespace retrace::fabrication::turning {
+
+/// Enclosures of real numbers, for proofs. Their ends are not rounded outwards: what rounding adds, below 1e-9 of the
+/// figures at hand, is left to the margins of what is proved with them. Only for .cpp files.
+using Interval = boost::numeric::interval<
+    double, boost::numeric::interval_lib::policies<boost::numeric::interval_lib::save_state_nothing<
+                                                       boost::numeric::interval_lib::rounded_transc_exact<double>>,
+                                                   boost::numeric::interval_lib::checking_base<double>>>;
+
+}  // namespace retrace::fabrication::turning

@@ -1,0 +1,111 @@
+#include "fabrication/turning/lenslet.h"
+
+#include <cmath>
+#include <limits>
+
+namespace retrace::fabrication::turning {
+namespace {
+
+/// A place on the lenslet, from its origin along the part's axes.
+struct Root {
+  double z = 0.0;      ///< not a number under an overhang
+  double slope = 0.0;  ///< of F, below, by z
+};
+
+/// The height z over the origin solves F(z) = w - sag(u, v) = 0 with (u, v, w) the point in the lenslet's frame.
+Root root_at(const Lenslet& lenslet, double x, double y) {
+  const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
+  Root root{-(x * r(0, 2) + y * r(1, 2)) / r(2, 2), r(2, 2)};
+  constexpr int kMostSteps = 50;
+  double last = 1e300;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double u = x * r(0, 0) + y * r(1, 0) + root.z * r(2, 0);
+    const double v = x * r(0, 1) + y * r(1, 1) + root.z * r(2, 1);
+    const Dual s = lenslet.sag.evaluate(Dual(u, 1.0, 0.0), Dual(v, 0.0, 1.0));
+    root.slope = r(2, 2) - s.dx * r(2, 0) - s.dy * r(2, 1);
+    const double change = (x * r(0, 2) + y * r(1, 2) + root.z * r(2, 2) - s.v) / root.slope;
+    root.z -= change;
+    if (!(std::abs(change) > 1e-16 * (std::abs(root.z) + 1e-3)) ||
+        (std::abs(change) < 1e-12 && std::abs(change) >= last))
+      break;
+    last = std::abs(change);
+  }
+  // F falling there would be the underside of an overhang.
+  if (!(root.slope > 0.0)) root.z = std::numeric_limits<double>::quiet_NaN();
+  return root;
+}
+
+/// F at a height.
+template <class T>
+T residual(const Lenslet& lenslet, const T& x, const T& y, const T& z) {
+  const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
+  const T u = x * r(0, 0) + y * r(1, 0) + z * r(2, 0);
+  const T v = x * r(0, 1) + y * r(1, 1) + z * r(2, 1);
+  return x * r(0, 2) + y * r(1, 2) + z * r(2, 2) - lenslet.sag.evaluate(u, v);
+}
+
+/// The slope of F by z, with the derivatives that T carries: from a series of first order along z.
+template <class S, class T>
+T slope_of(const Lenslet& lenslet, const T& x, const T& y, const T& z) {
+  const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
+  const auto along = [&](Eigen::Index axis) {
+    S line(1);
+    line[0] = x * r(0, axis) + y * r(1, axis) + z * r(2, axis);
+    line[1] = constant_like(x, r(2, axis));
+    return line;
+  };
+  return r(2, 2) - lenslet.sag.evaluate(along(0), along(1))[1];
+}
+
+double height_over(const Lenslet& lenslet, double x, double y) {
+  return root_at(lenslet, x, y).z;
+}
+
+/// One corrector more for each power to which derivatives vanish: each makes the next order exact.
+template <class T>
+T corrected(const Lenslet& lenslet, const T& x, const T& y, int orders) {
+  const Root root = root_at(lenslet, value_of(x), value_of(y));
+  T z = constant_like(x, root.z);
+  for (int order = 0; order < orders; ++order) z = z - residual(lenslet, x, y, z) / root.slope;
+  return z;
+}
+Dual height_over(const Lenslet& lenslet, const Dual& x, const Dual& y) {
+  return corrected(lenslet, x, y, 1);
+}
+Jet2 height_over(const Lenslet& lenslet, const Jet2& x, const Jet2& y) {
+  return corrected(lenslet, x, y, 2);
+}
+
+/// First at t = 0 with all derivatives of T, then one order of t after the other.
+template <class T, int N>
+Series<T, N> height_over(const Lenslet& lenslet, const Series<T, N>& x, const Series<T, N>& y) {
+  Series<T, N> z = constant_like(x, 0.0);
+  z[0] = height_over(lenslet, x[0], y[0]);
+  using Line = Series<T, N == kAnyOrder ? kAnyOrder : 1>;
+  const T slope = slope_of<Line>(lenslet, x[0], y[0], z[0]);
+  for (int k = 1; k <= z.order; ++k) z[k] = -(residual(lenslet, x, y, z)[k] / slope);
+  return z;
+}
+
+}  // namespace
+
+template <class T>
+T Lenslet::evaluate(const T& x_mm, const T& y_mm) const {
+  const T px = x_mm - origin_mm.x();
+  const T py = y_mm - origin_mm.y();
+  if (part_from_lenslet(2, 2) == 1.0) return sag.evaluate(px, py) + origin_mm.z();
+  return height_over(*this, px, py) + origin_mm.z();
+}
+template double Lenslet::evaluate(const double&, const double&) const;
+template Dual Lenslet::evaluate(const Dual&, const Dual&) const;
+template Jet2 Lenslet::evaluate(const Jet2&, const Jet2&) const;
+template Series<double> Lenslet::evaluate(const Series<double>&, const Series<double>&) const;
+template Series<Dual> Lenslet::evaluate(const Series<Dual>&, const Series<Dual>&) const;
+template Series<Jet2> Lenslet::evaluate(const Series<Jet2>&, const Series<Jet2>&) const;
+template Series<Series<double>> Lenslet::evaluate(const Series<Series<double>>&, const Series<Series<double>>&) const;
+template Series<Jet2, 1> Lenslet::evaluate(const Series<Jet2, 1>&, const Series<Jet2, 1>&) const;
+template Series<Jet2, 2> Lenslet::evaluate(const Series<Jet2, 2>&, const Series<Jet2, 2>&) const;
+template Series<Jet2, 3> Lenslet::evaluate(const Series<Jet2, 3>&, const Series<Jet2, 3>&) const;
+template Series<Jet2, 4> Lenslet::evaluate(const Series<Jet2, 4>&, const Series<Jet2, 4>&) const;
+
+}  // namespace retrace::fabrication::turning
