@@ -1,12 +1,7 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "core/atomic_file.h"
 #include "core/data_directory.h"
@@ -15,6 +10,7 @@
 #include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
 #include "tests/fabrication/chiseling_jobs.h"
+#include "tests/fabrication/linuxcnc.h"
 
 // LinuxCNC's own interpreter reads our RS274/NGC text: its canonical moves are the planned ones. Golden programs pin
 // the text of every dialect.
@@ -29,53 +25,6 @@ const fs::path kSource = RETRACE_SOURCE_DIR;
 
 Machine machine(const std::string& name) {
   return parse_machine(read_file(kSource / "data" / "machines" / (name + ".toml")), name);
-}
-
-/// One move as the interpreter printed it.
-struct CanonicalMove {
-  bool rapid = false;
-  std::array<double, 6> at{};  ///< x, y, z, a, b, c
-  double feed = 0.0;
-  double dwell_s = 0.0;  ///< after it
-};
-
-/// Runs `rs274`, which writes its parameters into the working folder and maps a file of tools in the home folder: tests
-/// that run at a time must not share it.
-std::string interpreted(const std::string& text) {
-  const fs::path folder = fs::temp_directory_path() / ("retrace_rs274_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
-  std::ofstream(folder / "p.ngc") << text;
-  const std::string command = "cd '" + folder.string() + "' && HOME=. rs274 -g p.ngc > out.txt 2> err.txt < /dev/null";
-  const int code = std::system(command.c_str());
-  const std::string out = read_file(folder / "out.txt");
-  const std::string err = read_file(folder / "err.txt");
-  fs::remove_all(folder);
-  EXPECT_EQ(code, 0) << "LinuxCNC's rs274 (Debian package linuxcnc-uspace): " << err << out.substr(0, 500);
-  return out;
-}
-
-std::vector<CanonicalMove> canonical_moves(const std::string& printed) {
-  std::vector<CanonicalMove> moves;
-  double feed = 0.0;
-  std::istringstream lines(printed);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t open = line.find('(');
-    const auto number_after = [&] { return std::strtod(line.c_str() + open + 1, nullptr); };
-    const bool rapid = line.find("STRAIGHT_TRAVERSE(") != std::string::npos;
-    if (line.find("SET_FEED_RATE(") != std::string::npos) feed = number_after();
-    if (line.find("DWELL(") != std::string::npos && !moves.empty()) moves.back().dwell_s = number_after();
-    if (!rapid && line.find("STRAIGHT_FEED(") == std::string::npos) continue;
-    CanonicalMove move;
-    move.rapid = rapid;
-    move.feed = rapid ? 0.0 : feed;
-    std::istringstream numbers(line.substr(open + 1));
-    for (double& value : move.at) {
-      numbers >> value;
-      numbers.ignore(1);
-    }
-    moves.push_back(move);
-  }
-  return moves;
 }
 
 void expect_planned(const Plan& plan, const std::string& what) {

@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include "fabrication/planing/io/part_files.h"
+#include "fabrication/planing/plan.h"
+#include "fabrication/post/post.h"
+#include "tests/fabrication/linuxcnc.h"
+
+// LinuxCNC's interpreter reads the programs of the worked examples: its moves are the planned ones.
+
+namespace retrace::fabrication {
+namespace {
+
+void expect_read(const std::string& part_file) {
+  const PlaningPlan plan =
+      plan_planing(read_planed_part(std::string(RETRACE_SOURCE_DIR) + "/examples/planing/" + part_file));
+  for (const PlannedProgram& planned : plan.programs) {
+    SCOPED_TRACE(planned.program.name);
+    const std::string printed = test::interpreted(nc_text(planned.program, "rs274ngc"));
+    EXPECT_NE(printed.find("SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)"), std::string::npos);
+    EXPECT_NE(printed.find("PROGRAM_END()"), std::string::npos);
+    const std::vector<test::CanonicalMove> moves = test::canonical_moves(printed);
+    std::array<double, 3> at{};
+    std::size_t next = 0;
+    for (const auto& item : planned.program.items) {
+      const auto* const move = std::get_if<LinearMove>(&item);
+      if (move == nullptr) continue;
+      const std::array words = {move->x_nm, move->y_nm, move->z_nm};
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (words[axis]) at[axis] = static_cast<double>(*words[axis]) / kNanometresPerMm;
+      ASSERT_LT(next, moves.size());
+      for (std::size_t axis = 0; axis < 3; ++axis) ASSERT_NEAR(moves[next].at[axis], at[axis], 1e-4) << "move " << next;
+      for (std::size_t axis = 3; axis < 6; ++axis) ASSERT_EQ(moves[next].at[axis], 0.0);
+      ASSERT_EQ(moves[next].rapid, move->feed_mm_per_min == 0.0) << "move " << next;
+      ASSERT_EQ(moves[next].feed, move->feed_mm_per_min);
+      ++next;
+    }
+    EXPECT_EQ(next, moves.size());
+    EXPECT_GT(next, 30U);
+  }
+}
+
+TEST(LinuxCncPlaning, MillMovesAsPlanned) {
+  expect_read("zone_lens_60ghz.toml");
+}
+
+TEST(LinuxCncPlaning, LatheMovesAsPlanned) {
+  expect_read("round_zone_lens.toml");
+}
+
+}  // namespace
+}  // namespace retrace::fabrication
