@@ -3,9 +3,16 @@
 #include <optional>
 #include <string>
 
-#include "fabrication/planing/zone_profile.h"
-
 namespace retrace::fabrication {
+
+/// A flat lens of zones: flat on one side, stepped hyperbolas on the side of the focus. Lengths in mm, of a cylindrical
+/// lens across its zones, of a round one along the radius. Lengths > 0, index > 1.
+struct ZoneLens {
+  double focal_length_mm = 0.0;  ///< from the middle of the stepped face
+  double wavelength_mm = 0.0;    ///< in air
+  double refractive_index = 0.0;
+  double half_width_mm = 0.0;
+};
 
 /// A milling machine that planes: its spindle stands still, which it allows in fast feed alone, so that every move is
 /// of one axis and no shorter than the least that fast feed makes. X across the zones, Y along them, Z up.
@@ -24,11 +31,12 @@ struct PlaningMill {
   double clear_mm = 14.0;    ///< height above the blank of moves over it
 };
 
-/// A lathe: X is the radius, Z along the axis, both at a time.
+/// A lathe: X is the radius, Z along the axis, both at a time. Words are those of the nose's lowest point.
 struct PlaningLathe {
   double feed_mm_per_min = 0.0;
   double depth_of_cut_mm = 1.0;  ///< of a pass
   double clear_mm = 2.0;
+  double nose_radius_mm = 0.0;  ///< of the tool
 };
 
 /// A flat optical element that is to be planed or turned.

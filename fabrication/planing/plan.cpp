@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "fabrication/planing/mill_moves.h"
+#include "fabrication/planing/nose_path.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -156,15 +157,19 @@ void add_pass(const PlanedPart& part, const PlaningPlan& plan, double raised_mm,
 PlaningPlan plan_lathe(const PlanedPart& part) {
   const ZoneProfile profile(part.lens);
   PlaningPlan plan;
+  const double tolerance = path_tolerance_mm(profile, part.lathe->nose_radius_mm, part.tolerance_mm);
   const double spacing =
-      std::max(kPointsPerTolerance * part.tolerance_mm, part.lens.half_width_mm / static_cast<double>(kMostPoints));
-  plan.points = points_of(profile, spacing);
-  plan.chords = fewest_chords(plan.points, part.tolerance_mm);
-  plan.longest = longest_chords(plan.points, part.tolerance_mm);
+      std::max(kPointsPerTolerance * tolerance, part.lens.half_width_mm / static_cast<double>(kMostPoints));
+  plan.points = nose_points(profile, part.lathe->nose_radius_mm, spacing, tolerance);
+  plan.chords = fewest_chords(plan.points, tolerance);
+  plan.longest = longest_chords(plan.points, tolerance);
   plan.passes = static_cast<std::int64_t>(std::ceil(profile.step_mm() / part.lathe->depth_of_cut_mm));
   PlannedProgram planned;
   planned.set = "passes";
   planned.program.header = {"X is the radius"};
+  if (part.lathe->nose_radius_mm > 0.0)
+    planned.program.header.push_back(
+        fmt::format("nose radius {} mm, X and Z are those of its lowest point", shortest(part.lathe->nose_radius_mm)));
   for (std::int64_t pass = plan.passes; pass-- > 0;)
     add_pass(part, plan, static_cast<double>(pass) * part.lathe->depth_of_cut_mm, planned);
   planned.cuts = static_cast<std::int64_t>(plan.chords.size()) - 1;

@@ -3,16 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-namespace retrace::fabrication {
+#include "fabrication/planing/part.h"
 
-/// A flat lens of zones: flat on one side, stepped hyperbolas on the side of the focus. Lengths in mm, of a cylindrical
-/// lens across its zones, of a round one along the radius. Lengths > 0, index > 1.
-struct ZoneLens {
-  double focal_length_mm = 0.0;  ///< from the middle of the stepped face
-  double wavelength_mm = 0.0;    ///< in air
-  double refractive_index = 0.0;
-  double half_width_mm = 0.0;
-};
+namespace retrace::fabrication {
 
 /// One zone, from its step towards the middle to the next one.
 struct Zone {

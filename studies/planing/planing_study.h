@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "fabrication/planing/check.h"
+#include "fabrication/planing/verify/check.h"
 #include "fabrication/planing/plan.h"
 
 namespace retrace::studies {

@@ -72,6 +72,19 @@ const std::map<std::string, Names>& fabrication_rooms() {
   return rooms;
 }
 
+/// Inner rooms that check what the room around them has planned: which of its headers they may see, themselves or
+/// through others. The rest is the planner's.
+const std::map<std::string, Names>& inner_rooms() {
+  static const std::map<std::string, Names> rooms = {
+      {"fabrication/planing/verify/", {"fabrication/planing/part.h"}},
+      {"fabrication/turning/verify/",
+       {"fabrication/turning/boundary.h", "fabrication/turning/finish.h", "fabrication/turning/formula.h",
+        "fabrication/turning/jet.h", "fabrication/turning/lenslet.h", "fabrication/turning/periodic_spline.h",
+        "fabrication/turning/sag.h", "fabrication/turning/second_order.h", "fabrication/turning/surface.h",
+        "fabrication/turning/tool.h"}}};
+  return rooms;
+}
+
 /// The rooms of a folder that has such; null for others.
 const std::map<std::string, Names>* rooms_of(const std::string& folder) {
   if (folder == "studies") return &study_rooms();
@@ -219,6 +232,7 @@ class Checker {
       return;
     }
     check_order(path, include, target);
+    check_inner_room(path, include);
     // Types of a library must not reach files that may not include it through a header either.
     if (!(place_of(path) == target))
       for (const Library* library : leaked_by(include.target))
@@ -242,21 +256,37 @@ class Checker {
     }
   }
 
-  /// The kept-back libraries that including `path` brings along, directly or through other headers.
-  std::set<const Library*> leaked_by(const std::string& path) {
-    std::set<const Library*> leaked;
+  void check_inner_room(const std::string& path, const Include& include) {
+    for (const auto& [room, seen] : inner_rooms()) {
+      const std::string around = room.substr(0, room.rfind('/', room.size() - 2) + 1);
+      if (!path.starts_with(room)) continue;
+      for (const std::string& header : reached_from(include.target))
+        if (header.starts_with(around) && !header.starts_with(room) && !seen.contains(header))
+          report(path, include.line, room + " may not see " + header);
+    }
+  }
+
+  /// What including `path` brings: itself and all that it includes.
+  std::set<std::string> reached_from(const std::string& path) const {
     std::set<std::string> seen;
     std::vector<std::string> open = {path};
     while (!open.empty()) {
       const std::string next = open.back();
       open.pop_back();
-      const auto file = files_.find(next);
-      if (file == files_.end() || !seen.insert(next).second) continue;
-      for (const Include& include : file->second) {
-        if (const Library* const library = library_of(include.target)) leaked.insert(library);
-        open.push_back(include.target);
-      }
+      if (!seen.insert(next).second) continue;
+      if (const auto file = files_.find(next); file != files_.end())
+        for (const Include& include : file->second) open.push_back(include.target);
     }
+    return seen;
+  }
+
+  /// The kept-back libraries that including `path` brings along, directly or through other headers.
+  std::set<const Library*> leaked_by(const std::string& path) {
+    std::set<const Library*> leaked;
+    for (const std::string& header : reached_from(path))
+      if (const auto file = files_.find(header); file != files_.end())
+        for (const Include& include : file->second)
+          if (const Library* const library = library_of(include.target)) leaked.insert(library);
     return leaked;
   }
 

@@ -68,6 +68,21 @@ TEST_F(SyntheticTree, ReadersOfPrograms) {
                    "fabrication/program/program.h"}));
 }
 
+TEST_F(SyntheticTree, ChecksSeeNothingOfThePlannerAroundThem) {
+  add("fabrication/planing/part.h", "#pragma once\n");
+  add("fabrication/planing/zone_profile.h", "#pragma once\n#include \"fabrication/planing/part.h\"\n");
+  add("fabrication/planing/verify/check.h", "#pragma once\n#include \"fabrication/planing/part.h\"\n");
+  add("fabrication/planing/verify/mill.cpp",
+      "#include \"fabrication/planing/verify/check.h\"\n#include \"fabrication/planing/zone_profile.h\"\n");
+  add("fabrication/turning/path.h", "#pragma once\n");
+  add("fabrication/turning/surface.h", "#pragma once\n#include \"fabrication/turning/path.h\"\n");
+  add("fabrication/turning/verify/inspection.cpp", "#include \"fabrication/turning/surface.h\"\n");
+  EXPECT_EQ(found(), (Lines{"fabrication/planing/verify/mill.cpp:2: fabrication/planing/verify/ may not see "
+                            "fabrication/planing/zone_profile.h",
+                            "fabrication/turning/verify/inspection.cpp:1: fabrication/turning/verify/ may not see "
+                            "fabrication/turning/path.h"}));
+}
+
 TEST_F(SyntheticTree, InOrderPasses) {
   add("geometry/part.h", "#include \"core/error.h\"\n#include <Eigen/Core>\n");
   add("geometry/check/closed.cpp", "#include <CGAL/Surface_mesh.h>\n#include \"geometry/check/closed.h\"\n");

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/number_format.h"
 #include "fabrication/planing/io/part_files.h"
+#include "fabrication/planing/nose_path.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -46,6 +48,30 @@ TEST(PlanedPart, DefaultsAreThoseOfTheMachineOfThePaper) {
   EXPECT_EQ(part.mill->least_y_mm, 13.0);
   EXPECT_EQ(part.mill->least_z_mm, 6.0);
   EXPECT_EQ(part.mill->most_hours, 8.0);
+}
+
+const std::string kTurned = R"(schema = "retrace.planed_part/1"
+[element]
+kind = "round_zone_lens"
+focal_length_mm = 500
+wavelength_mm = 5
+refractive_index = 1.5
+width_mm = 400
+[tolerance]
+form_mm = 0.05
+[lathe]
+feed_mm_per_min = 200
+nose_radius_mm = 0.8
+)";
+
+TEST(PlanedPart, NoseOfALathe) {
+  EXPECT_EQ(parse_planed_part(kTurned, "p.toml").lathe->nose_radius_mm, 0.8);
+  EXPECT_EQ(refusal("nose_radius_mm = 0.8", "nose_radius_mm = -0.1", kTurned),
+            "p.toml:12: lathe.nose_radius_mm: must be >= 0 and <= 100, got -0.1");
+  const std::string most = fixed(largest_nose_mm(ZoneProfile({500.0, 5.0, 1.5, 200.0})), 3);
+  EXPECT_EQ(refusal("nose_radius_mm = 0.8", "nose_radius_mm = 40", kTurned),
+            "p.toml:12: lathe.nose_radius_mm: must be <= " + most +
+                ", or the nose does not reach the bottom of every zone, got 40");
 }
 
 TEST(PlanedPart, BadInputIsOneLineWithItsPlace) {

@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "fabrication/planing/check.h"
 #include "fabrication/planing/io/part_files.h"
 #include "fabrication/planing/plan.h"
+#include "fabrication/planing/verify/check.h"
 #include "fabrication/post/post.h"
 #include "studies/planing/io/planing_files.h"
 #include "studies/planing/planing_study.h"

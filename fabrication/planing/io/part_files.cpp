@@ -8,6 +8,7 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/toml_file.h"
+#include "fabrication/planing/nose_path.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -22,6 +23,7 @@ constexpr NumberRange kFrame{.low = 0.0, .high = 60.0};
 constexpr NumberRange kGrid{.low = 1e-3, .high = 1.0};
 constexpr NumberRange kLeastMove{.low = 0.0, .high = 1e3};
 constexpr NumberRange kHours{.low = 0.01, .high = 1000.0};
+constexpr NumberRange kNose{.low = 0.0, .high = 100.0};
 constexpr NumberRange kDepthOfCut{.low = 0.01, .high = 100.0};
 /// Quanta are tried from the tolerance down, step by step of the grid, and places are counted in such steps.
 constexpr double kMostQuanta = 200.0;
@@ -38,7 +40,7 @@ ZoneLens read_lens(TomlTable& element) {
   return lens;
 }
 
-PlaningMill read_mill(TomlTable table) {
+PlaningMill read_mill(TomlTable& table) {
   PlaningMill mill;
   mill.fast_feed_mm_per_min = table.required_number("fast_feed_mm_per_min", kFeed);
   mill.frame_s = table.number("frame_s", kFrame).value_or(0.0);
@@ -63,13 +65,21 @@ PlaningMill read_mill(TomlTable table) {
   return mill;
 }
 
-PlaningLathe read_lathe(TomlTable table) {
+PlaningLathe read_lathe(TomlTable& table) {
   PlaningLathe lathe;
   lathe.feed_mm_per_min = table.required_number("feed_mm_per_min", kFeed);
   lathe.depth_of_cut_mm = table.number("depth_of_cut_mm", kDepthOfCut).value_or(lathe.depth_of_cut_mm);
   lathe.clear_mm = table.number("clear_mm", kLength).value_or(lathe.clear_mm);
+  lathe.nose_radius_mm = table.number("nose_radius_mm", kNose).value_or(lathe.nose_radius_mm);
   table.finish();
   return lathe;
+}
+
+void check_nose(TomlTable& table, const PlanedPart& part) {
+  const ZoneProfile profile(part.lens);
+  if (nose_fits(profile, part.lathe->nose_radius_mm)) return;
+  table.fail("nose_radius_mm", fmt::format("must be <= {}, or the nose does not reach the bottom of every zone, got {}",
+                                           fixed(largest_nose_mm(profile), 3), shortest(part.lathe->nose_radius_mm)));
 }
 
 /// What would take beyond measure, or has no profile on the machine's grid.
@@ -122,12 +132,14 @@ PlanedPart parse_planed_part(std::string_view text, const std::string& source_na
   TomlTable tolerance = top.required_table("tolerance");
   part.tolerance_mm = tolerance.required_number("form_mm", kTolerance);
   tolerance.finish();
+  TomlTable machine = top.required_table(is_round ? "lathe" : "mill");
   if (is_round)
-    part.lathe = read_lathe(top.required_table("lathe"));
+    part.lathe = read_lathe(machine);
   else
-    part.mill = read_mill(top.required_table("mill"));
+    part.mill = read_mill(machine);
   top.finish();
   check_sizes(element, tolerance, part);
+  if (is_round) check_nose(machine, part);
   return part;
 }
 

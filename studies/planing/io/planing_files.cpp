@@ -11,6 +11,7 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/version.h"
+#include "fabrication/planing/zone_profile.h"
 
 namespace retrace::studies {
 namespace {
@@ -110,7 +111,9 @@ void add_machine(const PlaningResult& result, Json& json) {
   json["passes"] = result.plan.passes;
   json["chords"] = result.plan.chords.size() - 1;
   json["longest_chords"] = result.plan.longest.size() - 1;
+  json["nose_radius_mm"] = result.part.lathe->nose_radius_mm;
   json["form_error_mm_max"] = check.path_distance_mm_max;
+  json["unreached_mm_max"] = check.unreached_mm_max;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "fabrication/planing/check.h"
+#include "fabrication/planing/verify/check.h"
+#include "fabrication/planing/verify/phase_profile.h"
 #include "fabrication/read/nc_motion.h"
 
 namespace retrace::fabrication {
@@ -28,7 +29,7 @@ class MillCheck : public NcSink {
   void check_length(const NcMotion& motion, std::size_t axis, double length_mm);
   void check_grid(const NcMotion& motion, std::size_t axis, double place_mm);
   void check_place(const NcMotion& motion, std::size_t axis);
-  void measure_at(double x_mm, double left_mm, const ZoneProfile& profile);
+  void measure_at(double x_mm, double left_mm, const PhaseProfile& profile);
 
   const PlanedPart& part_;
   double flank_slope_;

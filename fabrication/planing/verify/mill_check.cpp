@@ -1,4 +1,4 @@
-#include "fabrication/planing/mill_check.h"
+#include "fabrication/planing/verify/mill_check.h"
 
 #include <fmt/format.h>
 
@@ -107,14 +107,14 @@ void MillCheck::end() {
          part_.mill->most_hours);
 }
 
-void MillCheck::measure_at(double x_mm, double left_mm, const ZoneProfile& profile) {
+void MillCheck::measure_at(double x_mm, double left_mm, const PhaseProfile& profile) {
   // Within a step of the grid of an upright wall either side of it may be meant.
   const double near_mm = part_.mill->grid_mm;
   const double design_mm = profile.depth_mm(x_mm);
   double standing = std::max(0.0, design_mm - left_mm);
   double gouge = std::max(0.0, left_mm - design_mm);
-  for (const Zone& zone : profile.zones())
-    if (zone.from_mm > 0.0 && std::abs(x_mm - zone.from_mm) <= near_mm) standing = gouge = 0.0;
+  for (const Wall& wall : profile.walls())
+    if (std::abs(x_mm - wall.x_mm) <= near_mm) standing = gouge = 0.0;
   if (x_mm > part_.lens.half_width_mm - near_mm) standing = 0.0;
   result_.standing_mm_max = std::max(result_.standing_mm_max, standing);
   result_.gouge_mm_max = std::max(result_.gouge_mm_max, gouge);
@@ -122,7 +122,7 @@ void MillCheck::measure_at(double x_mm, double left_mm, const ZoneProfile& profi
 }
 
 void MillCheck::measure() {
-  const ZoneProfile profile(part_.lens);
+  const PhaseProfile profile(part_.lens);
   std::sort(strokes_.begin(), strokes_.end(), [](const Stroke& a, const Stroke& b) { return a.x_mm < b.x_mm; });
   // From the outside in: the deepest flank over a place is that of the greatest depth - slope x of strokes beyond it.
   constexpr double kBeside = 1e-9;  // of the strokes, which stand on the grid: most stands just outside of one

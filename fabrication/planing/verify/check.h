@@ -38,7 +38,8 @@ struct PlaningCheck {
   double shortest_y_mm = 0.0;
   double shortest_z_mm = 0.0;
   std::vector<ProfileSample> profile;  ///< mill
-  double path_distance_mm_max = 0.0;   ///< lathe: of the last pass from the profile
+  double path_distance_mm_max = 0.0;   ///< lathe: of what the last pass leaves from what its nose can leave
+  double unreached_mm_max = 0.0;       ///< lathe: what a perfect pass leaves below the walls, as the nose is round
 
   bool passes() const { return findings.empty(); }
 };

@@ -1,0 +1,197 @@
+// The check of planed and turned lenses, which shares nothing with the planner: its profile against the planner's, its
+// sweep of a round nose against closed forms, and plans for other lenses and tools, which it must find out.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "fabrication/planing/nose_path.h"
+#include "fabrication/planing/plan.h"
+#include "fabrication/planing/verify/check.h"
+#include "fabrication/planing/verify/phase_profile.h"
+#include "fabrication/planing/verify/swept_nose.h"
+#include "fabrication/post/post.h"
+
+namespace retrace::fabrication {
+namespace {
+
+const ZoneLens kLenses[] = {{500.0, 5.0, 1.52, 250.0}, {200.0, 5.0, 1.52, 90.0}, {80.0, 2.0, 2.1, 70.0}};
+
+PlanedPart turned_part(double nose_mm = 0.0) {
+  PlanedPart part;
+  part.source = "part.toml";
+  part.lens = kLenses[1];
+  part.tolerance_mm = 0.05;
+  part.lathe = PlaningLathe{};
+  part.lathe->feed_mm_per_min = 200.0;
+  part.lathe->depth_of_cut_mm = 2.5;
+  part.lathe->nose_radius_mm = nose_mm;
+  return part;
+}
+
+/// What the plan for one part does to another.
+PlaningCheck check_of(const PlanedPart& planned, const PlanedPart& wanted) {
+  const PlaningPlan plan = plan_planing(planned);
+  std::vector<PlaningText> texts;
+  for (const PlannedProgram& p : plan.programs) texts.push_back({p.program.name, nc_text(p.program, "rs274ngc")});
+  return check_planing(wanted, plan.flank_slope, texts, NcDialect::rs274ngc);
+}
+
+bool finds(const PlaningCheck& check, const std::string& kind) {
+  return std::any_of(check.findings.begin(), check.findings.end(),
+                     [&](const PlaningFinding& f) { return f.kind == kind; });
+}
+
+TEST(PhaseProfile, IsThePlannersProfile) {
+  for (const ZoneLens& lens : kLenses) {
+    const PhaseProfile by_phase(lens);
+    const ZoneProfile by_formula(lens);
+    ASSERT_EQ(by_phase.walls().size() + 1, by_formula.zones().size());
+    for (std::size_t k = 0; k < by_phase.walls().size(); ++k) {
+      const Wall& wall = by_phase.walls()[k];
+      EXPECT_NEAR(wall.x_mm, by_formula.zones()[k].to_mm, 1e-9);
+      EXPECT_NEAR(wall.inner_depth_mm, by_formula.depth_in_zone_mm(k, wall.x_mm), 1e-9);
+      EXPECT_NEAR(wall.outer_depth_mm, by_formula.depth_in_zone_mm(k + 1, wall.x_mm), 1e-9);
+    }
+    for (double share = 0.0; share <= 1.0; share += 0.00317)
+      EXPECT_NEAR(by_phase.depth_mm(share * lens.half_width_mm), by_formula.depth_mm(share * lens.half_width_mm), 1e-9);
+  }
+}
+
+TEST(PhaseProfile, PlansOfOtherLensesAreFound) {
+  PlanedPart mill;
+  mill.source = "part.toml";
+  mill.lens = kLenses[1];
+  mill.length_mm = 100.0;
+  mill.tolerance_mm = 0.2;
+  mill.mill = PlaningMill{};
+  mill.mill->fast_feed_mm_per_min = 3000.0;
+  EXPECT_TRUE(check_of(mill, mill).passes());
+  EXPECT_TRUE(check_of(turned_part(), turned_part()).passes());
+  for (PlanedPart wanted : {mill, turned_part(), turned_part(0.8)}) {
+    const PlanedPart planned = wanted;
+    wanted.lens.refractive_index += 0.02;
+    EXPECT_FALSE(check_of(planned, wanted).passes());
+    wanted = planned;
+    wanted.lens.focal_length_mm += 4.0;
+    EXPECT_FALSE(check_of(planned, wanted).passes());
+    wanted = planned;
+    wanted.lens.wavelength_mm *= 1.02;
+    EXPECT_FALSE(check_of(planned, wanted).passes());
+  }
+}
+
+std::vector<double> places(double from, double to, int pieces) {
+  std::vector<double> result;
+  for (int i = 0; i <= pieces; ++i) result.push_back(from + (to - from) * i / pieces);
+  return result;
+}
+
+TEST(SweptNose, LeavesCuspsBetweenPlacesAndLinesAlongPieces) {
+  // Two places apart: circles; the cusp between them stands r - sqrt(r^2 - f^2 / 4) above the valleys.
+  const double nose = 0.8;
+  const double feed = 0.5;
+  const Section one = left_by_nose({{-feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
+  const Section two = left_by_nose({{feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
+  const double cusp = nose - std::sqrt(nose * nose - feed * feed / 4.0);
+  EXPECT_NEAR(std::min(one[40].z_mm, two[40].z_mm), cusp, 1e-15);
+  EXPECT_NEAR(one[15].z_mm, 0.0, 1e-15);
+  // A sloping piece leaves the parallel line at the radius' distance.
+  const Section line = left_by_nose({{-2.0, -1.0}, {4.0, 2.0}}, nose, places(-0.5, 0.5, 10));
+  for (const SectionPoint& p : line) EXPECT_NEAR(p.z_mm, 0.5 * p.x_mm - nose * std::sqrt(1.25), 1e-14);
+}
+
+TEST(SweptNose, ComesAsDeepAsACornerLetsIt) {
+  // An upright wall on a level floor: the nose leaves a quarter of a circle.
+  const double nose = 1.5;
+  const Section corner = {{-10.0, 0.0}, {0.0, 0.0}, {0.0, 6.0}, {10.0, 6.0}};
+  const auto at = places(-10.0, 10.0, 2000);
+  const Section left = left_by_nose(lowest_centres(corner, nose, at), nose, at);
+  for (const SectionPoint& p : left) {
+    if (p.x_mm < -9.0 || p.x_mm > 9.0 || std::abs(p.x_mm) < 1e-8) continue;
+    const double x = p.x_mm + nose;
+    const double expected = p.x_mm > 0.0 ? 6.0 : x <= 0.0 ? 0.0 : nose - std::sqrt(std::max(0.0, nose * nose - x * x));
+    EXPECT_NEAR(p.z_mm, expected, std::abs(p.x_mm) < 0.02 ? 0.3 : 1e-5) << p.x_mm;
+  }
+  EXPECT_NEAR(largest_distance(corner, left, 2.0 * nose), nose * (std::numbers::sqrt2 - 1.0), 1e-3);
+}
+
+TEST(SweptNose, DistancesAreThoseOfPieces) {
+  const Section line = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 2.0}, {3.0, 2.0}};
+  EXPECT_NEAR(largest_distance({{0.5, 0.3}}, line, 2.0), 0.3, 1e-15);
+  EXPECT_NEAR(largest_distance({{0.8, 1.0}}, line, 2.0), 0.2, 1e-15);
+  EXPECT_NEAR(largest_distance({{0.8, 1.0}, {2.0, 3.5}}, line, 2.0), 1.5, 1e-15);
+  EXPECT_GT(largest_distance({{8.0, 2.0}}, line, 1.0), 1e300) << "nothing is near";
+}
+
+TEST(NosePath, TouchesTheProfileEverywhereAndCutsItNowhere) {
+  for (const ZoneLens& lens : kLenses) {
+    const ZoneProfile profile(lens);
+    const double nose = 0.4 * largest_nose_mm(profile);
+    ASSERT_TRUE(nose_fits(profile, nose));
+    const std::vector<ProfilePoint> surface = points_of(profile, 0.01);
+    const std::vector<ProfilePoint> path = nose_points(profile, nose, 0.05, 0.05);
+    double largest_jump = 0.0;
+    for (std::size_t i = 0; i < path.size(); i += 7) {
+      const ProfilePoint middle{path[i].x_mm, path[i].z_mm + nose};
+      if (middle.x_mm > lens.half_width_mm) continue;
+      double nearest = 1e300;
+      for (std::size_t k = 1; k < surface.size(); ++k) {
+        const ProfilePoint& a = surface[k - 1];
+        const ProfilePoint& b = surface[k];
+        if (std::min(std::abs(a.x_mm - middle.x_mm), std::abs(b.x_mm - middle.x_mm)) > nose + 0.02) continue;
+        const double dx = b.x_mm - a.x_mm;
+        const double dz = b.z_mm - a.z_mm;
+        const double along = ((middle.x_mm - a.x_mm) * dx + (middle.z_mm - a.z_mm) * dz) / (dx * dx + dz * dz);
+        const double t = std::clamp(along, 0.0, 1.0);
+        nearest = std::min(nearest, std::hypot(middle.x_mm - a.x_mm - t * dx, middle.z_mm - a.z_mm - t * dz));
+      }
+      EXPECT_NEAR(nearest, nose, 1e-6) << path[i].x_mm;
+    }
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      EXPECT_GE(path[i].x_mm, path[i - 1].x_mm - 1e-12);
+      if (path[i].x_mm > path[i - 1].x_mm + 1e-9)
+        largest_jump = std::max(largest_jump, std::abs(path[i].z_mm - path[i - 1].z_mm));
+    }
+    EXPECT_LT(largest_jump, 0.06) << "but for the ways up beside walls";
+  }
+}
+
+TEST(NosePath, TheLargestNoseIsTheLargest) {
+  const ZoneProfile profile(kLenses[1]);
+  const double most = largest_nose_mm(profile);
+  EXPECT_GT(most, 1.0);
+  EXPECT_TRUE(nose_fits(profile, most));
+  EXPECT_FALSE(nose_fits(profile, 1.001 * most + 0.02));
+}
+
+TEST(Lathe, ARoundNoseKeepsTheTubeAndLeavesFillets) {
+  for (const double nose : {0.1, 0.8, 2.0}) {
+    const PlanedPart part = turned_part(nose);
+    const PlaningCheck check = check_of(part, part);
+    for (const PlaningFinding& f : check.findings) ADD_FAILURE() << f.kind << ' ' << f.message << ' ' << f.value_mm;
+    EXPECT_LE(check.path_distance_mm_max, 0.05 * 1.01);
+    EXPECT_GT(check.path_distance_mm_max, 0.03);
+    // A circle in the corner between an upright wall and a floor that falls towards it by the angle a.
+    const ZoneProfile profile(part.lens);
+    double corner = 0.0;
+    for (std::size_t zone = 0; zone + 1 < profile.zones().size(); ++zone) {
+      const double a = std::atan(profile.slope_in_zone(zone, profile.zones()[zone].to_mm));
+      corner = std::max(corner, nose * (1.0 / std::sin(0.25 * std::numbers::pi - 0.5 * a) - 1.0));
+    }
+    EXPECT_NEAR(check.unreached_mm_max, corner, 0.01 * corner);
+  }
+}
+
+TEST(Lathe, ANoseThatIsNotThePlannedOneIsFound) {
+  EXPECT_TRUE(finds(check_of(turned_part(0.0), turned_part(0.8)), "path"));
+  EXPECT_TRUE(finds(check_of(turned_part(0.8), turned_part(0.0)), "path"));
+  EXPECT_TRUE(finds(check_of(turned_part(0.8), turned_part(1.2)), "path"));
+  EXPECT_TRUE(finds(check_of(turned_part(1.2), turned_part(0.8)), "path"));
+}
+
+}  // namespace
+}  // namespace retrace::fabrication
