@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "fabrication/job/base_cells.h"
 #include "fabrication/job/cube_cells.h"
 #include "geometry/lattice.h"
 
@@ -128,7 +129,11 @@ std::vector<CutElement> cut_cubes(const Job& job) {
 }  // namespace
 
 std::vector<CutElement> cut_elements(const Job& job) {
-  return std::holds_alternative<geometry::RtpElement>(job.element) ? cut_prisms(job) : cut_cubes(job);
+  if (job.base) return elements_on_base(job);
+  std::vector<CutElement> elements =
+      std::holds_alternative<geometry::RtpElement>(job.element) ? cut_prisms(job) : cut_cubes(job);
+  for (CutElement& element : elements) element.foot_mm = {element.centre_mm.x(), element.centre_mm.y(), 0.0};
+  return elements;
 }
 
 }  // namespace retrace::fabrication

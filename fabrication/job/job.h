@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -102,6 +103,9 @@ struct Job {
   Workpiece workpiece;
   geometry::Element element;  ///< of the part, without cant
   Array array;
+  /// What the elements stand on, of moulds and of arrays without offsets and patterns; its highest place over the part
+  /// is z = 0, and the blank's face has its shape. None: the plane z = 0.
+  std::optional<geometry::Base> base;
   Tool tool;
   std::string machine = "ideal";  ///< name of a shipped machine, or a file
   Strategy strategy = Strategy::two_step;
@@ -112,10 +116,16 @@ struct Job {
 /// One element that is cut. In the workpiece frame: x_w = y_part, y_w = -x_part, origin at the centre of the extent on
 /// the blank's face.
 struct CutElement {
-  geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< of the aperture, in the workpiece frame
-  std::int32_t row = 0;                               ///< from 0 at y = 0
-  std::int32_t column = 0;                            ///< from 0 at x = 0
-  bool turned = false;  ///< a prism by 90 degrees about z: its roof edge lies along y_w; a cube corner by 180
+  /// Of the aperture, in the workpiece frame; of an array on a base with its elements along the normal the place on the
+  /// sheet that the base is when it is rolled out.
+  geometry::Vec2 centre_mm = geometry::Vec2::Zero();
+  std::int32_t row = 0;     ///< from 0 at y = 0
+  std::int32_t column = 0;  ///< from 0 at x = 0
+  bool turned = false;      ///< a prism by 90 degrees about z: its roof edge lies along y_w; a cube corner by 180
+  geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< on the blank: the middle of the aperture, or over the apex
+  /// Turns directions of an element on a flat blank into those of this one: the third column is its axis.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  std::int32_t orientation = 0;  ///< elements with the same `turn` have the same
 };
 
 /// Columns and rows of an array's cells.

@@ -67,28 +67,35 @@ double chiseling_allowance_mm(const Job& job) {
   return 1e-3 * job.process.finishing_cuts * job.process.finishing_depth_um;
 }
 
-int chiseling_layers(const Job& job) {
+int chiseling_layers(const Job& job, double stock_mm) {
   // The blank's face is 1 / sqrt(3) of the depth from the apex of each facet's normal.
-  const double across_mm = cavity_depth_mm(blank_element(job)) / std::numbers::sqrt3 - chiseling_allowance_mm(job);
+  const double across_mm =
+      (cavity_depth_mm(blank_element(job)) + stock_mm) / std::numbers::sqrt3 - chiseling_allowance_mm(job);
   return std::max(1, static_cast<int>(std::ceil(across_mm / (1e-3 * job.process.roughing_depth_um) - kWholeTolerance)));
 }
 
-CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg) {
+CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
+                           const Standing& standing) {
   const InputLocation where{job.source, 0, "machine"};
   const double azimuth_deg = facet_azimuth_deg(facet);
-  const Vec3 normal = cube_facet_normal(facet);
+  const Vec3 normal = standing.turn * cube_facet_normal(facet);
   CuttingPose pose;
   pose.facet = facet;
-  pose.root = Vec3::UnitZ().cross(horizontal(azimuth_deg));
+  pose.orientation = standing.orientation;
+  pose.turn = standing.turn;
+  pose.root = pose.turn * Vec3::UnitZ().cross(horizontal(azimuth_deg));
   const double tilt_deg = Angle::from_rad(std::asin(1.0 / std::numbers::sqrt3)).deg();
   const RotaryPose near{machine.a.sign.value * tilt_deg, -machine.c.sign.value * azimuth_deg};
   const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
   pose.root_tilt = solved.root_tilt;
   pose.a = std::llround(solved.pose.a_deg * kRotaryUnitsPerDeg);
-  pose.c = std::llround(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where) * kRotaryUnitsPerDeg);
+  pose.c = std::llround(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, standing.who()) *
+                        kRotaryUnitsPerDeg);
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
-  check_tilt(machine, pose.rounded.a_deg, where);
+  check_tilt(machine, pose.rounded.a_deg, where, standing.who());
   pose.section.depth_mm = cavity_depth_mm(blank_element(job));
+  pose.section.stock_mm = standing.stock_mm;
+  pose.section.start_mm = standing.start_mm;
   pose.section.apex = Angle::from_deg(90.0);
   pose.rounded_along = in_words(machine, pose.rounded, normal);
   return pose;
@@ -96,10 +103,14 @@ CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetCh
 
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
                           double feed_mm_per_min) {
-  const auto [down, up] = cube_facet_edges(pose.facet);
+  const auto edges = cube_facet_edges(pose.facet);
+  const double up_axis = edges[0].z();
+  const Vec3 down = pose.turn * edges[0];
+  const Vec3 up = pose.turn * edges[1];
   // From the design's apex to that of this layer, along the axis.
-  const Vec3 tip(0.0, 0.0, std::numbers::sqrt3 * left_mm);
-  const double to_go_mm = (pose.section.depth_mm + job.process.clearance_mm - tip.z()) / down.z();
+  const double tip_mm = std::numbers::sqrt3 * left_mm;
+  const Vec3 tip = pose.turn * Vec3(0.0, 0.0, tip_mm);
+  const double to_go_mm = (pose.section.depth_mm + pose.section.start_mm + job.process.clearance_mm - tip_mm) / up_axis;
   const Vec3 zero = words_of(machine, Vec3::Zero(), pose.rounded);
   const auto rounded = [&](const Vec3& from_apex) {
     return rounded_words(words_of(machine, from_apex, pose.rounded) - zero, pose.rounded_along);
@@ -120,6 +131,54 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
   if (dwell_ms > 0) steps.emplace_back(Dwell{dwell_ms});
   steps.emplace_back(move(Motion::retract, middle, end));
   return routine;
+}
+
+void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, const Standing& standing) {
+  if (standing.element < 0) return;
+  const InputLocation where{job.source, 0, "machine"};
+  const VToolEdges edges = v_tool_edges(job.tool);
+  std::array<Vec3, 3> spines;
+  for (std::size_t k = 0; k < 3; ++k) {
+    // The element is turned in the tool's view, so the tool the other way in the element's.
+    const Eigen::AngleAxisd turn(-poses[k].root_tilt.rad(), Vec3::UnitZ());
+    const auto azimuth_deg = [](const Vec3& v) { return Angle::from_rad(std::atan2(v.y(), v.x())).deg(); };
+    double room_deg = 90.0;
+    for (const Vec3& edge : {edges.leading, edges.trailing, edges.spine}) {
+      const double at_deg = azimuth_deg(edge);
+      room_deg = std::min(room_deg, poses[k].root_tilt.rad() > 0.0 ? at_deg : 90.0 - at_deg);
+    }
+    const double turned_deg = std::abs(poses[k].root_tilt.deg());
+    if (turned_deg > room_deg)
+      throw InputError(where,
+                       fmt::format("{}the tool would stand turned by {} degrees in facet {}, which B and C cannot "
+                                   "mend, and run into a neighbouring facet: at most {} fit its angles",
+                                   standing.who(), fixed(turned_deg, 3), k + 1, fixed(room_deg, 3)));
+    spines[k] = turn * edges.spine;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& along_second = spines[k];
+    const Vec3& along_first = spines[(k + 1) % 3];
+    const double covered_deg =
+        Angle::from_rad(std::atan2(along_second.z(), along_second.x()) + std::atan2(along_first.z(), along_first.y()))
+            .deg();
+    if (covered_deg < 90.0)
+      throw InputError(where,
+                       fmt::format("{}the tool stands so in facets {} and {} that a fin of {} degrees would stay "
+                                   "between its cuts, 0 are allowed: tool.wedge_deg must be larger",
+                                   standing.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 - covered_deg, 3)));
+  }
+  double most_turned = 0.0;
+  for (const CuttingPose& pose : poses) most_turned = std::max(most_turned, std::abs(pose.root_tilt.rad()));
+  const double half_nose = Angle::from_deg(0.5 * job.tool.nose_angle_deg).rad();
+  const double up_facet_mm =
+      (poses[0].section.depth_mm + standing.stock_mm) / std::sqrt(2.0 / 3.0) / std::cos(half_nose + most_turned);
+  const double least_mm = 2.0 * up_facet_mm * std::sin(half_nose);
+  if (job.tool.width_mm < least_mm - 1e-9)
+    throw InputError(
+        {job.source, 0, "tool.width_mm"},
+        fmt::format("{}must be >= {} for the cutting edges to reach from the apex to the blank's face, "
+                    "got {}",
+                    standing.who(), fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(job.tool.width_mm)));
 }
 
 std::vector<std::string> chiseling_description(const Job& job, std::size_t elements) {

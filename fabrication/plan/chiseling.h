@@ -20,11 +20,18 @@ std::array<geometry::Vec3, 2> cube_facet_edges(const FacetChoice& facet);
 /// What layers of roughing leave on all facets for the finishing layers.
 double chiseling_allowance_mm(const Job& job);
 /// Roughing layers: nested cube corners, each `roughing_depth_um` further along the normals of all three facets.
-int chiseling_layers(const Job& job);
+/// \param stock_mm by which the blank stands over the rims
+int chiseling_layers(const Job& job, double stock_mm = 0.0);
 
 /// The pose, with C as near to `previous_c_deg` as its limits let it. \throw InputError naming axis and limits if the
 /// machine cannot take it
-CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg);
+CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
+                           const Standing& standing = {});
+
+/// That the tool, which B and C lay on the facets but cannot turn in them, keeps clear of the other facets, leaves no
+/// fin between two and comes out of the blank. \param poses of the three facets of elements that stand alike
+/// \throw InputError naming element, tilt and limit
+void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, const Standing& standing);
 
 /// Down one edge and up the other of a cube corner that leaves `left_mm` on all facets.
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,

@@ -4,7 +4,9 @@
 
 namespace retrace::fabrication {
 
-std::vector<std::int32_t> cutting_order(const std::vector<CutElement>& elements, bool turned) {
+namespace {
+
+void put_in_order(const std::vector<CutElement>& elements, bool turned, std::vector<std::int32_t>& order) {
   const auto line_of = [&](std::int32_t k) {
     const CutElement& element = elements[static_cast<std::size_t>(k)];
     return turned ? element.row : element.column;
@@ -13,9 +15,6 @@ std::vector<std::int32_t> cutting_order(const std::vector<CutElement>& elements,
     const CutElement& element = elements[static_cast<std::size_t>(k)];
     return turned ? element.column : element.row;
   };
-  std::vector<std::int32_t> order;
-  for (std::size_t k = 0; k < elements.size(); ++k)
-    if (elements[k].turned == turned) order.push_back(static_cast<std::int32_t>(k));
   std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
     if (line_of(a) != line_of(b)) return line_of(a) < line_of(b);
     return place_of(a) < place_of(b);
@@ -28,7 +27,16 @@ std::vector<std::int32_t> cutting_order(const std::vector<CutElement>& elements,
     backwards = !backwards;
     first = last;
   }
-  return order;
+}
+
+}  // namespace
+
+std::map<ElementGroup, std::vector<std::int32_t>> cutting_orders(const std::vector<CutElement>& elements) {
+  std::map<ElementGroup, std::vector<std::int32_t>> orders;
+  for (std::size_t k = 0; k < elements.size(); ++k)
+    orders[{elements[k].turned, elements[k].orientation}].push_back(static_cast<std::int32_t>(k));
+  for (auto& [group, order] : orders) put_in_order(elements, group.first, order);
+  return orders;
 }
 
 }  // namespace retrace::fabrication

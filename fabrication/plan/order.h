@@ -1,14 +1,19 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "fabrication/job/job.h"
 
 namespace retrace::fabrication {
 
-/// The elements of one orientation in the order in which a pose cuts them: to and fro along lines that lie on machine X
+/// Elements that the same poses cut: CutElement::turned and CutElement::orientation.
+using ElementGroup = std::pair<bool, std::int32_t>;
+
+/// The elements of each group in the order in which a pose cuts them: to and fro along lines that lie on machine X
 /// (columns of the array; of turned elements rows), so that most moves are one pitch long and keep their height.
-std::vector<std::int32_t> cutting_order(const std::vector<CutElement>& elements, bool turned);
+std::map<ElementGroup, std::vector<std::int32_t>> cutting_orders(const std::vector<CutElement>& elements);
 
 }  // namespace retrace::fabrication

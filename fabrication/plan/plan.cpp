@@ -6,13 +6,18 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <span>
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/job/base_cells.h"
 #include "fabrication/plan/chiseling.h"
+#include "fabrication/plan/clear_way.h"
 #include "fabrication/plan/move_time.h"
 #include "fabrication/plan/order.h"
 #include "fabrication/plan/routines.h"
+#include "fabrication/plan/stages.h"
 #include "geometry/lattice.h"
 
 namespace retrace::fabrication {
@@ -21,8 +26,6 @@ namespace {
 using geometry::Vec3;
 
 constexpr double kSecondsPerHour = 3600.0;
-constexpr std::array kPoseOrder = {FacetChoice{false, 1}, FacetChoice{true, 1}, FacetChoice{false, 2},
-                                   FacetChoice{true, 2}};
 
 Nanometres nanometres(double mm) {
   return std::llround(mm * kNanometresPerMm);
@@ -43,129 +46,6 @@ std::string plain(std::string_view text) {
   }
   return result;
 }
-
-/// What the stages need to know of a routine beside its steps.
-struct Start {
-  Nanometres x_nm = 0;
-  Nanometres y_nm = 0;
-  Nanometres z_nm = 0;
-  Reach reach;
-};
-
-/// Makes poses, routines and stages of a job: what is cut in which order, without positions.
-class StageMaker {
- public:
-  StageMaker(const Job& job, const Machine& machine, Plan& plan) : job_(job), machine_(machine), plan_(plan) {}
-
-  std::vector<Start> run() {
-    if (job_.strategy == Strategy::dmc) {
-      chisel();
-      return std::move(starts_);
-    }
-    const std::array<bool, 2> has = orientations();
-    const bool one_facet = job_.strategy == Strategy::unidirectional;
-    for (const FacetChoice& facet : kPoseOrder) {
-      if (!has[facet.turned ? 1 : 0] || (one_facet && facet.facet == 2)) continue;
-      plan_.poses.push_back(cutting_pose(job_, machine_, facet, previous_c_deg_));
-      previous_c_deg_ = plan_.poses.back().rounded.c_deg;
-    }
-    switch (job_.strategy) {
-      case Strategy::unidirectional:
-        for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) add_roughing(pose);
-        break;
-      case Strategy::bidirectional:
-        add_plunges("layer", plan_.cuts_per_facet, job_.process.roughing_depth_um,
-                    job_.process.roughing_feed_mm_per_min, false);
-        break;
-      case Strategy::two_step:
-        add_plunges("finishing", job_.process.finishing_cuts, job_.process.finishing_depth_um,
-                    job_.process.finishing_feed_mm_per_min, true);
-        break;
-      case Strategy::dmc:
-        break;
-    }
-    return std::move(starts_);
-  }
-
- private:
-  /// Whether there are elements that are not turned, and such that are.
-  std::array<bool, 2> orientations() const {
-    std::array<bool, 2> has = {};
-    for (const CutElement& element : plan_.elements) has[element.turned ? 1 : 0] = true;
-    return has;
-  }
-
-  /// Layer by layer, all elements on one facet, then on the next: chips come off with the third.
-  void chisel() {
-    const std::array<bool, 2> has = orientations();
-    for (const bool turned : {false, true})
-      for (int facet = 1; facet <= 3 && has[turned ? 1 : 0]; ++facet) {
-        plan_.poses.push_back(chiseling_pose(job_, machine_, {turned, facet}, previous_c_deg_));
-        previous_c_deg_ = plan_.poses.back().rounded.c_deg;
-      }
-    const Process& process = job_.process;
-    const double left_mm = chiseling_allowance_mm(job_);
-    add_layers("layer", plan_.cuts_per_facet, process.roughing_depth_um, left_mm, process.roughing_feed_mm_per_min);
-    add_layers("finishing", process.finishing_cuts, process.finishing_depth_um, 0.0, process.finishing_feed_mm_per_min);
-  }
-
-  void add_layers(std::string_view what, int cuts, double depth_um, double left_mm, double feed_mm_per_min) {
-    for (int cut = 1; cut <= cuts; ++cut)
-      for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
-        const FacetChoice& facet = plan_.poses[pose].facet;
-        Stage stage;
-        stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, facet.facet, facet.turned ? "-turned" : "");
-        stage.roughs = what == "layer";
-        stage.cut = cut;
-        stage.cuts = cuts;
-        Routine routine = chiseling_routine(job_, machine_, plan_.poses[pose], left_mm + 1e-3 * depth_um * (cuts - cut),
-                                            feed_mm_per_min);
-        routine.subroutine.title = fmt::format("{}: down one edge, up the other", stage.name);
-        add(std::move(stage), pose, std::move(routine));
-      }
-  }
-
-  void add_roughing(std::size_t pose) {
-    Stage stage;
-    stage.name = std::string("roughing") + (plan_.poses[pose].facet.turned ? "-turned" : "");
-    stage.roughs = true;
-    Routine routine = unidirectional_routine(job_, plan_.poses[pose].section);
-    routine.subroutine.title = fmt::format("{}: {} cuts by plunging and ploughing", stage.name, plan_.cuts_per_facet);
-    add(std::move(stage), pose, std::move(routine));
-  }
-
-  /// Cut by cut, all poses in turn. \param rough_first roughs in the pose of a facet 1 before its first cut
-  void add_plunges(std::string_view what, int cuts, double depth_um, double feed_mm_per_min, bool rough_first) {
-    for (int cut = 1; cut <= cuts; ++cut)
-      for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
-        const FacetChoice& facet = plan_.poses[pose].facet;
-        if (rough_first && cut == 1 && facet.facet == 1) add_roughing(pose);
-        Stage stage;
-        stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, facet.facet, facet.turned ? "-turned" : "");
-        stage.cut = cut;
-        stage.cuts = cuts;
-        Routine routine =
-            plunge_routine(job_, plan_.poses[pose].section, 1e-3 * depth_um * (cuts - cut), feed_mm_per_min);
-        routine.subroutine.title = fmt::format("{}: one plunge", stage.name);
-        add(std::move(stage), pose, std::move(routine));
-      }
-  }
-
-  void add(Stage stage, std::size_t pose, Routine routine) {
-    stage.pose = pose;
-    stage.subroutine = static_cast<std::uint32_t>(plan_.subroutines.size());
-    routine.subroutine.number = 101 + static_cast<int>(plan_.subroutines.size());
-    starts_.push_back({routine.x_start_nm, routine.y_start_nm, routine.z_start_nm, reach_of(routine.subroutine)});
-    plan_.subroutines.push_back(std::move(routine.subroutine));
-    plan_.stages.push_back(std::move(stage));
-  }
-
-  const Job& job_;
-  const Machine& machine_;
-  Plan& plan_;
-  std::vector<Start> starts_;
-  double previous_c_deg_ = 0.0;
-};
 
 /// Leaves the stages that were asked for. \throw InputError for a phase that the job does not have
 void choose_stages(Plan& plan, const PlanOptions& options) {
@@ -213,9 +93,9 @@ TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
 /// Puts visits into programs, keeps time, and starts a new program where one has grown too long.
 class ProgramMaker {
  public:
-  ProgramMaker(const Job& job, const Machine& machine, const PlanOptions& options, const std::vector<Start>& starts,
-               Plan& plan)
-      : job_(job), machine_(machine), options_(options), starts_(starts), plan_(plan) {
+  ProgramMaker(const Job& job, const Machine& machine, const PlanOptions& options,
+               const std::vector<RoutineStart>& starts, Plan& plan)
+      : job_(job), machine_(machine), options_(options), starts_(starts), plan_(plan), way_(job, machine) {
     for (const Subroutine& subroutine : plan.subroutines) routine_times_.push_back(routine_time(machine, subroutine));
     safe_z_nm_ = nanometres(plan.safe_z_mm);
   }
@@ -225,16 +105,17 @@ class ProgramMaker {
                                             ? std::vector<double>{0.0}
                                             : pass_offsets_mm(blank_prism(job_).width_mm, job_.tool.width_mm);
     plan_.passes = static_cast<int>(offsets.size());
-    std::map<bool, std::vector<std::int32_t>> orders;
-    for (const bool turned : {false, true}) orders[turned] = cutting_order(plan_.elements, turned);
+    const std::map<ElementGroup, std::vector<std::int32_t>> orders = cutting_orders(plan_.elements);
+    const auto order_of = [&](const Stage& stage) -> const std::vector<std::int32_t>& {
+      const CuttingPose& pose = plan_.poses[stage.pose];
+      return orders.at({pose.facet.turned, pose.orientation});
+    };
     for (const Stage& stage : plan_.stages)
-      if (stage.roughs)
-        roughing_total_ += static_cast<std::int64_t>(orders[plan_.poses[stage.pose].facet.turned].size());
+      if (stage.roughs) roughing_total_ += static_cast<std::int64_t>(order_of(stage).size());
     bool waiting = options_.from_element.has_value();
     begin();
     for (Stage& stage : plan_.stages) {
-      const CuttingPose& pose = plan_.poses[stage.pose];
-      std::vector<std::int32_t> order = orders[pose.facet.turned];
+      std::vector<std::int32_t> order = order_of(stage);
       if (waiting) {
         const auto first = std::find(order.begin(), order.end(), static_cast<std::int32_t>(*options_.from_element));
         waiting = first == order.end();
@@ -277,7 +158,7 @@ class ProgramMaker {
     if (at_.z_nm != safe_z_nm_) {
       const double up_mm = at_.z_nm ? millimetres(safe_z_nm_ - *at_.z_nm) : 0.0;
       spend(nullptr, &TimeShares::fixed_s, linear_move_s(machine_, Vec3(0.0, 0.0, up_mm), std::nullopt));
-      program_.items.push_back(Raise{safe_z_nm_});
+      program_.items.emplace_back(Raise{safe_z_nm_});
     }
     at_.z_nm = safe_z_nm_;
     just_turned_ = true;
@@ -289,7 +170,7 @@ class ProgramMaker {
     constexpr double kRotationDeg = 45.0;
     if (std::abs(degrees(c - at_.c)) > kRotationDeg) ++plan_.c_rotations;
     spend(nullptr, &TimeShares::fixed_s, rotary_move_s(machine_, degrees(a - at_.a), degrees(c - at_.c)));
-    program_.items.push_back(Turn{a, c});
+    program_.items.emplace_back(Turn{a, c});
     at_.a = a;
     at_.c = c;
   }
@@ -299,18 +180,18 @@ class ProgramMaker {
     const CuttingPose& pose = plan_.poses[stage.pose];
     turn(pose.a, pose.c);
     if (stage.roughs) {
-      program_.items.push_back(Comment{plain("Stage " + stage.name)});
+      program_.items.emplace_back(Comment{plain("Stage " + stage.name)});
       return;
     }
     const auto c_deg = static_cast<long>(std::lround(pose.rounded.c_deg));
     const std::string what = stage.name.starts_with("layer") ? "Layer" : "Finishing cut";
-    program_.items.push_back(Message{fmt::format("{} {} of {} C-axis at {}", what, stage.cut, stage.cuts, c_deg)});
+    program_.items.emplace_back(Message{fmt::format("{} {} of {} C-axis at {}", what, stage.cut, stage.cuts, c_deg)});
   }
 
   void visit(Stage& stage, std::int32_t element, const std::vector<double>& offsets) {
     const CuttingPose& pose = plan_.poses[stage.pose];
-    const geometry::Vec2& centre = plan_.elements[static_cast<std::size_t>(element)].centre_mm;
-    const Vec3 root(centre.x(), centre.y(), -pose.section.depth_mm);
+    const Vec3 root =
+        plan_.elements[static_cast<std::size_t>(element)].foot_mm - pose.section.depth_mm * pose.turn.col(2);
     if (is_full(stage)) {
       finish_program();
       begin();
@@ -321,16 +202,29 @@ class ProgramMaker {
     for (std::size_t k = 0; k < offsets.size(); ++k) {
       const double offset_mm = offsets[forth_ ? k : offsets.size() - 1 - k];
       const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
-      const Start& start = starts_[stage.subroutine];
+      const RoutineStart& start = starts_[stage.subroutine];
       const auto [x_nm, y_nm, z_nm] = rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along);
       const Visit visit{element, stage.subroutine, x_nm + start.x_nm, y_nm + start.y_nm, z_nm + start.z_nm};
       check_limits(visit, start.reach);
+      clear_way(visit, pose);
       add(stage, visit, start.reach);
     }
     ++stage.visits;
     ++visits_;
-    if (options_.stop_every && visits_ % *options_.stop_every == 0) program_.items.push_back(OptionalStop{});
+    if (options_.stop_every && visits_ % *options_.stop_every == 0) program_.items.emplace_back(OptionalStop{});
     if (stage.roughs) tell_progress();
+  }
+
+  /// Up to the safe height first where the way there would come too near to the blank.
+  void clear_way(const Visit& visit, const CuttingPose& pose) {
+    if (way_.is_clear(at_, visit, pose)) return;
+    raise();
+    if (way_.is_clear(at_, visit, pose)) return;
+    throw InputError({job_.source, 0, "machine"},
+                     fmt::format("element {}: the tool cannot come down to it at {}{} C{} without coming nearer to the "
+                                 "blank than process.clearance_mm, {}",
+                                 visit.element, machine_.tilt_letter(), fixed(pose.rounded.a_deg, 4),
+                                 fixed(pose.rounded.c_deg, 4), shortest(job_.process.clearance_mm)));
   }
 
   void tell_progress() {
@@ -338,7 +232,7 @@ class ProgramMaker {
     for (const int percent : {25, 50, 75, 100}) {
       // The first visit with which so much of the roughing is done.
       const std::int64_t due = (roughing_total_ * percent + 99) / 100;
-      if (roughing_done_ == due) program_.items.push_back(Message{fmt::format("Roughing {} percent", percent)});
+      if (roughing_done_ == due) program_.items.emplace_back(Message{fmt::format("Roughing {} percent", percent)});
     }
   }
 
@@ -364,7 +258,8 @@ class ProgramMaker {
     *at_.x_nm += reach.x_end_nm;
     *at_.y_nm += reach.y_end_nm;
     *at_.z_nm += reach.z_end_nm;
-    program_.items.push_back(visit);
+    program_.items.emplace_back(visit);
+    if (job_.base) used_.insert(visit.subroutine);
   }
 
   void spend(Stage* stage, double TimeShares::*on, double seconds) {
@@ -374,10 +269,32 @@ class ProgramMaker {
   }
 
   bool is_full(const Stage& stage) const {
-    if (!options_.split_hours || program_.items.size() < 4) return false;
+    if (program_.items.size() < 4) return false;
+    if (job_.base && is_out_of_numbers(stage)) return true;
+    if (!options_.split_hours) return false;
     constexpr double kToLeaveS = 30.0;  // for the way home
     return program_seconds_ + routine_times_[stage.subroutine].total_s() + kToLeaveS >
            *options_.split_hours * kSecondsPerHour;
+  }
+
+  /// Whether a program that calls one subroutine more would need numbers of more than four digits.
+  bool is_out_of_numbers(const Stage& stage) const {
+    constexpr std::size_t kMostSubroutines = 9000;
+    return used_.size() >= kMostSubroutines && !used_.contains(stage.subroutine);
+  }
+
+  /// Leaves the subroutines that the program calls: of a base there is one for each tilt of its elements.
+  void leave_used_subroutines() {
+    std::vector<Subroutine> left;
+    std::map<std::uint32_t, std::uint32_t> places;
+    for (const std::uint32_t index : used_) {
+      places[index] = static_cast<std::uint32_t>(left.size());
+      left.push_back(std::move(program_.subroutines[index]));
+      left.back().number = kFirstSubroutine + static_cast<int>(left.size()) - 1;
+    }
+    program_.subroutines = std::move(left);
+    for (Item& item : program_.items)
+      if (auto* const visit = std::get_if<Visit>(&item)) visit->subroutine = places.at(visit->subroutine);
   }
 
   void check_axis(char axis, Nanometres low_nm, Nanometres high_nm, const Interval& limits,
@@ -405,6 +322,8 @@ class ProgramMaker {
     raise();
     turn(0, 0);
     program_.header = header();
+    if (job_.base) leave_used_subroutines();
+    used_.clear();
     plan_.program_times_s.push_back(program_seconds_);
     plan_.programs.push_back(std::move(program_));
   }
@@ -444,10 +363,13 @@ class ProgramMaker {
     lines.push_back(plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
                                       shortest(p.roughing_depth_um), is_finished ? p.finishing_cuts : 0,
                                       shortest(p.finishing_depth_um), shortest(p.clearance_mm))));
-    for (const CuttingPose& pose : plan_.poses)
+    constexpr std::size_t kMostPoses = 24;
+    for (const CuttingPose& pose : std::span(plan_.poses).first(std::min(kMostPoses, plan_.poses.size())))
       lines.push_back(fmt::format("Pose: facet {}{} {}{:.7f} C{:.7f}", pose.facet.facet,
                                   pose.facet.turned ? " of turned elements" : "", tilt, pose.rounded.a_deg,
                                   pose.rounded.c_deg));
+    if (plan_.poses.size() > kMostPoses)
+      lines.push_back(fmt::format("And {} poses more, each where it begins", plan_.poses.size() - kMostPoses));
     const auto minutes = static_cast<std::int64_t>(std::ceil(program_seconds_ / 60.0));
     lines.push_back(fmt::format("Expected time: {} h {} min", minutes / 60, minutes % 60));
     return lines;
@@ -456,7 +378,7 @@ class ProgramMaker {
   const Job& job_;
   const Machine& machine_;
   const PlanOptions& options_;
-  const std::vector<Start>& starts_;
+  const std::vector<RoutineStart>& starts_;
   Plan& plan_;
   std::vector<TimeShares> routine_times_;
   Program program_;
@@ -464,6 +386,8 @@ class ProgramMaker {
   Position at_;
   Nanometres safe_z_nm_ = 0;
   bool just_turned_ = true;
+  ClearWay way_;
+  std::set<std::uint32_t> used_;  ///< subroutines that the program calls
   bool forth_ = false;
   std::int64_t visits_ = 0;
   std::int64_t roughing_total_ = 0;
@@ -521,8 +445,10 @@ Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& option
   plan.elements = cut_elements(job);
   check_options(options, plan.elements.size());
   check_machine(job, machine);
-  plan.cuts_per_facet = job.strategy == Strategy::dmc ? chiseling_layers(job) : cuts_per_facet(job);
-  const std::vector<Start> starts = StageMaker(job, machine, plan).run();
+  if (job.base) plan.stock_mm = stock_mm(job, plan.elements);
+  plan.cuts_per_facet =
+      job.strategy == Strategy::dmc ? chiseling_layers(job, plan.stock_mm) : cuts_per_facet(job, plan.stock_mm);
+  const std::vector<RoutineStart> starts = add_stages(job, machine, plan);
   plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);
   plan.aperture_area_mm2 =
       geometry::area(geometry::aperture_outline(blank_element(job))) * static_cast<double>(plan.elements.size());

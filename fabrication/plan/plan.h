@@ -46,6 +46,9 @@ struct Stage {
   TimeShares time;
 };
 
+/// Number of a program's first subroutine.
+inline constexpr int kFirstSubroutine = 101;
+
 /// A job as the moves of a machine.
 struct Plan {
   std::vector<CutElement> elements;
@@ -56,6 +59,7 @@ struct Plan {
   int passes = 1;                  ///< side by side, for elements wider than the tool
   int c_rotations = 0;             ///< moves of C by more than 45 degrees, the last return to 0 included
   double safe_z_mm = 0.0;          ///< height at which the rotary axes turn
+  double stock_mm = 0.0;           ///< by which a blank with a base stands over its elements' rims
   double aperture_area_mm2 = 0.0;  ///< of all elements that are cut
   TimeShares time;
   std::vector<double> program_times_s;
@@ -66,8 +70,8 @@ struct Plan {
 /// \throw InputError for a job that the machine cannot do (which axis, which element), or options without meaning
 Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& options = {});
 
-/// The least height of machine Z above which no corner of the blank comes while A goes from 0 to that of the poses and
-/// C turns all the way; `rotary_clearance_mm` on top.
+/// The least height of machine Z above which no corner of the blank, all of which lies below z = 0, comes while A goes
+/// from 0 to that of the poses and C turns all the way; `rotary_clearance_mm` on top.
 double safe_height_mm(const Job& job, const Machine& machine, const std::vector<CuttingPose>& poses);
 
 }  // namespace retrace::fabrication

@@ -48,7 +48,7 @@ Vec2 start_of_cut(const Section& section, double y, double clearance_mm) {
 
 /// The point above the blank's face where a line from `point` leaves the clearance plane.
 Vec2 on_clearance_plane(const Section& section, const Vec2& point, const Vec2& direction, double clearance_mm) {
-  const double to_go = section.depth_mm + clearance_mm - section.face_normal.dot(point);
+  const double to_go = section.depth_mm + section.start_mm + clearance_mm - section.face_normal.dot(point);
   return point + to_go / section.face_normal.dot(direction) * direction;
 }
 
@@ -72,10 +72,10 @@ double finishing_allowance_mm(const Job& job) {
   return job.strategy == Strategy::two_step ? 1e-3 * job.process.finishing_cuts * job.process.finishing_depth_um : 0.0;
 }
 
-int cuts_per_facet(const Job& job) {
+int cuts_per_facet(const Job& job, double stock_mm) {
   const geometry::RtpElement element = blank_prism(job);
   const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
-  const double facet_mm = 0.5 * element.base_mm / std::sin(0.5 * apex_rad);
+  const double facet_mm = 0.5 * element.base_mm / std::sin(0.5 * apex_rad) + stock_mm / std::cos(0.5 * apex_rad);
   const double depth_mm = 1e-3 * job.process.roughing_depth_um;
   double across_mm = facet_mm * std::sin(apex_rad) - finishing_allowance_mm(job);
   if (job.strategy == Strategy::bidirectional) across_mm *= 0.5;
@@ -89,7 +89,7 @@ double shortest_plough_mm(const Job& job, const Section& section) {
 Routine unidirectional_routine(const Job& job, const Section& section) {
   const Process& process = job.process;
   const double left_mm = finishing_allowance_mm(job);
-  const int cuts = cuts_per_facet(job);
+  const int cuts = cuts_per_facet(job, section.stock_mm);
   const auto wall_y = [&](int cut) {
     return section.wall_y * (left_mm + 1e-3 * process.roughing_depth_um * (cuts - cut));
   };

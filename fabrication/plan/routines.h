@@ -16,7 +16,8 @@ struct Routine {
 /// How many cuts a facet takes (roughing; layers of a bidirectional strategy). Unidirectional cuts are slices of
 /// `roughing_depth_um` parallel to facet 1: ceil((base / sqrt 2 - allowance) / DOC) at 90 degrees. Bidirectional layers
 /// are nested V shells that take as much off either facet.
-int cuts_per_facet(const Job& job);
+/// \param stock_mm by which the blank stands over the rims
+int cuts_per_facet(const Job& job, double stock_mm = 0.0);
 
 /// What roughing leaves on both facets for the finishing cuts.
 double finishing_allowance_mm(const Job& job);

@@ -33,6 +33,20 @@ Vec3 in_words(const Machine& machine, const Vec3& normal) {
           normal.dot(machine.z.direction.value)};
 }
 
+/// A and C lay a facet's normal where the tool plunges it, and nothing is left to lay its root along the tool's edge: a
+/// root that slopes against the table's axes keeps material at one end of the edge, of which a finishing cut's depth is
+/// borne.
+void check_root(const Job& job, const CuttingPose& pose, const InputLocation& where, const Standing& standing) {
+  if (standing.element < 0) return;
+  const double limit = std::atan(1e-3 * job.process.finishing_depth_um / job.tool.width_mm);
+  if (std::abs(pose.root_tilt.rad()) <= limit) return;
+  throw InputError(
+      where,
+      fmt::format("{}its root would stand at {} degrees to the tool's edge, which A and C cannot turn "
+                  "in the facet, at most {} are borne: a finishing cut over the edge's width",
+                  standing.who(), fixed(std::abs(pose.root_tilt.deg()), 4), fixed(Angle::from_rad(limit).deg(), 4)));
+}
+
 Vec2 direction_in_words(const Machine& machine, double y, double z) {
   const auto words = linear_words(machine, Vec3(0.0, y, z));
   return {words[1], words[2]};
@@ -56,7 +70,14 @@ double root_depth_mm(const geometry::RtpElement& element) {
   return 0.5 * element.base_mm / std::tan(half_apex_rad(element));
 }
 
-double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where) {
+std::string Standing::who() const {
+  if (element < 0) return "";
+  const double tilt_deg = Angle::from_rad(std::atan2(turn.col(2).head<2>().norm(), turn(2, 2))).deg();
+  return fmt::format("element {}, tilted by {} degrees: ", element, fixed(tilt_deg, 4));
+}
+
+double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where,
+                     const std::string& who) {
   const Interval& limits = machine.c.limits_deg.value;
   std::optional<double> best;
   for (const int turns : {0, 1, -1, 2, -2}) {
@@ -66,38 +87,44 @@ double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg
     if (!best || std::abs(candidate - previous_c_deg) < std::abs(*best - previous_c_deg) - kAsFarDeg) best = candidate;
   }
   if (!best)
-    throw InputError(where, fmt::format("machine {}: axis C would go to {} degrees, beyond its limits of {} to {}",
-                                        machine.name, fixed(c_deg, 4), shortest(limits.low), shortest(limits.high)));
+    throw InputError(where,
+                     fmt::format("{}machine {}: axis C would go to {} degrees, beyond its limits of {} to {}", who,
+                                 machine.name, fixed(c_deg, 4), shortest(limits.low), shortest(limits.high)));
   return *best;
 }
 
-void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where) {
+void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where, const std::string& who) {
   const Interval& limits = machine.a.limits_deg.value;
   if (limits.contains(tilt_deg)) return;
-  throw InputError(
-      where, fmt::format("machine {}: axis {} would go to {} degrees, beyond its limits of {} to {}", machine.name,
-                         machine.tilt_letter(), fixed(tilt_deg, 4), shortest(limits.low), shortest(limits.high)));
+  throw InputError(where, fmt::format("{}machine {}: axis {} would go to {} degrees, beyond its limits of {} to {}",
+                                      who, machine.name, machine.tilt_letter(), fixed(tilt_deg, 4),
+                                      shortest(limits.low), shortest(limits.high)));
 }
 
-CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg) {
+CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
+                         const Standing& standing) {
   const InputLocation where{job.source, 0, "machine"};
   const geometry::RtpElement element = blank_prism(job);
   const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
   const double nominal_c_deg = (facet.facet == 1 ? 0.0 : 180.0) + (facet.turned ? 90.0 : 0.0);
   CuttingPose pose;
   pose.facet = facet;
-  pose.root = root_direction(facet);
+  pose.orientation = standing.orientation;
+  pose.turn = standing.turn;
+  pose.root = pose.turn * root_direction(facet);
+  const Vec3 normal = pose.turn * facet_normal(element, facet);
   const RotaryPose near{machine.a.sign.value * 0.5 * element.apex_angle_deg, machine.c.sign.value * nominal_c_deg};
-  const PlungePose solved = solve_plunge_pose(machine, facet_normal(element, facet), pose.root, near);
+  const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
   pose.root_tilt = solved.root_tilt;
   pose.a = rounded_units(solved.pose.a_deg);
-  pose.c = rounded_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where));
+  pose.c = rounded_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, standing.who()));
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
-  check_tilt(machine, pose.rounded.a_deg, where);
+  check_tilt(machine, pose.rounded.a_deg, where, standing.who());
+  check_root(job, pose, where, standing);
 
   const RigidMotion motion = machine_from_workpiece(machine, pose.rounded);
   Section& section = pose.section;
-  const Vec3 wall = in_words(machine, motion.direction(facet_normal(element, facet)));
+  const Vec3 wall = in_words(machine, motion.direction(normal));
   section.wall_y = 1.0 / wall.y();
   // A floor that is ploughed makes exactly the apex angle with the wall; the other facet's own normal is turned away
   // from it by the root's tilt, and touches the deeper end of the edge.
@@ -106,11 +133,13 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   section.floor_direction = direction_in_words(machine, -std::sin(apex_rad), std::cos(apex_rad));
   section.bisector = direction_in_words(machine, -std::sin(0.5 * apex_rad), std::cos(0.5 * apex_rad));
   const FacetChoice other{facet.turned, 3 - facet.facet};
-  const Vec3 design_floor = in_words(machine, motion.direction(facet_normal(element, other)));
+  const Vec3 design_floor = in_words(machine, motion.direction(pose.turn * facet_normal(element, other)));
   section.lift_mm = std::abs(design_floor.x() / design_floor.z()) * 0.5 * job.tool.width_mm;
-  const Vec3 face = in_words(machine, motion.direction(Vec3::UnitZ()));
+  const Vec3 face = in_words(machine, motion.direction(pose.turn.col(2)));
   section.face_normal = {face.y(), face.z()};
   section.depth_mm = root_depth_mm(element);
+  section.stock_mm = standing.stock_mm;
+  section.start_mm = standing.start_mm;
   section.edge_mm = 1e-3 * job.tool.edge_radius_um * (1.0 - std::sin(apex_rad) + std::cos(apex_rad));
   section.apex = Angle::from_rad(apex_rad);
   return pose;

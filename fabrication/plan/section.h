@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "core/angle.h"
 #include "core/error.h"
 #include "fabrication/job/job.h"
@@ -23,8 +26,10 @@ struct Section {
   geometry::Vec2 floor_normal;     ///< (Y, Z) parts; floor_normal . (y, z) = what stays on the floor
   geometry::Vec2 floor_direction;  ///< along the floor away from the wall, of length 1 mm
   geometry::Vec2 bisector;         ///< between wall and floor, of length 1 mm
-  geometry::Vec2 face_normal;      ///< face_normal . (y, z) = depth + height above the blank's face
-  double depth_mm = 0.0;           ///< of the root below the blank's face
+  geometry::Vec2 face_normal;      ///< face_normal . (y, z) = depth + start + height above the blank's face
+  double depth_mm = 0.0;           ///< of the root below the element's rims
+  double stock_mm = 0.0;           ///< by which the blank's face stands over them
+  double start_mm = 0.0;           ///< likewise, for a start that keeps the clearance from it
   double lift_mm = 0.0;            ///< by which the tool stays up so that the deeper end of its edge touches the floor
   double edge_mm = 0.0;            ///< the floor's distance that the edge's radius asks of the reference point
   Angle apex;
@@ -34,14 +39,16 @@ struct Section {
   }
   /// Z at a height above the blank's face, measured normal to it.
   double face_z(double y, double height_mm) const {
-    return (depth_mm + height_mm - face_normal.x() * y) / face_normal.y();
+    return (depth_mm + start_mm + height_mm - face_normal.x() * y) / face_normal.y();
   }
 };
 
 /// A pose of the rotary axes in which one facet of the elements of one orientation is plunged.
 struct CuttingPose {
   FacetChoice facet;
-  RotaryUnits a = 0;  ///< as written, after rounding
+  std::int32_t orientation = 0;                        ///< of the elements that are cut in it
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< theirs
+  RotaryUnits a = 0;                                   ///< as written, after rounding
   RotaryUnits c = 0;
   RotaryPose rounded;   ///< the same in degrees: what positions are computed from
   Angle root_tilt;      ///< of the root line against the tool's edge
@@ -61,12 +68,26 @@ double root_depth_mm(const geometry::RtpElement& element);
 
 /// The turn of C by whole revolutions that lies within the limits, nearest to where C was; as it is if others are no
 /// nearer. \throw InputError at `where`
-double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where);
-/// That the axis that tilts may go there. \throw InputError at `where`
-void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where);
+double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where,
+                     const std::string& who = "");
+/// That the axis that tilts may go there. \throw InputError at `where`, whose text begins with `who`
+void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where, const std::string& who = "");
+
+/// Elements that a pose cuts: how they are turned on their base, and how far the blank stands over their rims.
+struct Standing {
+  std::int32_t orientation = 0;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  double stock_mm = 0.0;
+  double start_mm = 0.0;      ///< the same for a start that keeps the clearance
+  std::int64_t element = -1;  ///< one of them, for messages; -1: they stand on a flat blank
+
+  /// What a message about the pose begins with; nothing on a flat blank.
+  std::string who() const;
+};
 
 /// The pose, with C as near to `previous_c_deg` as its limits let it.
 /// \throw InputError naming axis and limits if the machine cannot take it
-CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg);
+CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
+                         const Standing& standing = {});
 
 }  // namespace retrace::fabrication

@@ -28,10 +28,11 @@ constexpr double kBesideLeadingRad = 1e-5;
 /// Places of a facet: along its two dihedral edges, from the apex.
 class Places {
  public:
-  Places(double edge_mm, bool is_hexagonal, double nose_angle_deg)
+  /// \param turn of the facet in the tool's view
+  Places(double edge_mm, bool is_hexagonal, double nose_angle_deg, Angle turn)
       : edge_mm_(edge_mm),
         is_hexagonal_(is_hexagonal),
-        leading_rad_(Angle::from_deg(45.0 + 0.5 * nose_angle_deg).rad()) {}
+        leading_rad_(Angle::from_deg(45.0 + 0.5 * nose_angle_deg).rad() - turn.rad()) {}
 
   std::vector<Vec2> all() const {
     std::vector<Vec2> places;
@@ -89,22 +90,23 @@ void take(FacetFigures& figures, const Vec2& place, const LineSurface& surface) 
 }  // namespace
 
 ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const Sweep> sweeps,
-                              std::span<const RigidMotion> poses, const ToolWedge& wedge, double nose_angle_deg) {
+                              std::span<const RigidMotion> poses, const ToolWedge& wedge, double nose_angle_deg,
+                              const Prediction& prediction) {
   ElementFigures figures;
   figures.is_cut = !sweeps.empty();
   if (!figures.is_cut) return figures;
   const double edge_mm = cavity.facet_length_mm;
-  const std::vector<Vec2> places = Places(edge_mm, is_hexagonal, nose_angle_deg).all();
   std::vector<LineSpan> spans;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& first = cavity.edges[k];
     const Vec3& second = cavity.edges[(k + 1) % 3];
+    const std::vector<Vec2> places = Places(edge_mm, is_hexagonal, nose_angle_deg, prediction.poses[k].root_tilt).all();
     FacetFigures facet;
     PlaneFit plane;
     for (const Vec2& place : places) {
       const Vec3 point = cavity.root_mm + place.x() * first + place.y() * second;
       const Vec3& normal = cavity.facets[k].normal;
-      const double at_face = -point.z() / normal.z();
+      const double at_face = cavity.to_face_mm(point, normal);
       const double exit = place.minCoeff() <= kStripMm ? std::min(at_face, kStripMm) : at_face;
       const LineSurface surface = surface_at(point, normal, exit, sweeps, poses, wedge, spans);
       take(facet, place, surface);

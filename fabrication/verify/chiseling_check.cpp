@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/number_format.h"
 
@@ -21,14 +22,14 @@ ChiselingCheck::ChiselingCheck(const Job& job, const std::vector<Groove>& caviti
     : job_(job), cavities_(cavities), tolerance_mm_(tolerance_mm), report_(std::move(report)) {
   for (const Groove& cavity : cavities) {
     State state;
-    // The blank's face cuts the axis a third of an edge from each facet.
-    state.left_mm.fill(cavity.facet_length_mm / 3.0);
+    // Where the blank's face cuts the axis, which makes equal angles with the facets.
+    state.left_mm.fill((cavity.face_mm - cavity.axis.dot(cavity.root_mm)) / std::numbers::sqrt3);
     states_.push_back(state);
   }
 }
 
 void ChiselingCheck::move(const Sweep& sweep, const RigidMotion& back, const ToolWedge& wedge, std::size_t element) {
-  const bool goes_down = back.direction(sweep.to_mm - sweep.from_mm).z() < 0.0;
+  const bool goes_down = cavities_[element].axis.dot(back.direction(sweep.to_mm - sweep.from_mm)) < 0.0;
   if (goes_down) {
     close();
     open(sweep, back, wedge, element);

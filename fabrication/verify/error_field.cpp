@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 
+#include "core/error.h"
 #include "fabrication/verify/dexel.h"
 #include "fabrication/verify/findings.h"
 #include "fabrication/verify/groove.h"
@@ -80,6 +81,7 @@ ElementField field_of(const Groove& groove, std::span<const Sweep> sweeps, std::
 
 ErrorField error_field(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                        std::size_t pixels) {
+  if (job.base) throw InputError({job.source, 0, "base"}, "no map is drawn of elements on a base, only of flat arrays");
   const Workpiece3d workpiece = workpiece_of(job, machine, {});
   FindingList findings;
   ProgramCheck check(workpiece, findings);

@@ -178,7 +178,7 @@ class Measurer {
         if (sweep.pose == pose)
           if (const auto span = swept_span(wedge_, sweep, p, d)) spans_.push_back(*span);
     }
-    return surface_along(spans_, is_at_root ? -point.z() / direction.z() : exit_of(facet, point));
+    return surface_along(spans_, is_at_root ? groove_.to_face_mm(point, direction) : exit_of(facet, point));
   }
 
   /// Height over the other facet for each mm up a facet: the sine of the angle that they include.
@@ -204,7 +204,7 @@ class Measurer {
   /// Where a line normal to a facet leaves what the design takes away: at the blank's face, or before the other facet.
   double exit_of(std::size_t facet, const Vec3& point) const {
     const DesignFacet& design = groove_.facets[facet];
-    const double at_face = -point.z() / design.normal.z();
+    const double at_face = groove_.to_face_mm(point, design.normal);
     const double towards = approach_of_other();
     if (towards <= 0.0) return at_face;
     const double free = groove_.facets[1 - facet].height_mm(point) - residue_of_other_mm();

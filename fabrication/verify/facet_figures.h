@@ -46,8 +46,9 @@ ElementFigures element_figures(const Groove& groove, std::span<const Sweep> swee
 /// Of a cube corner: the surface along lines normal to each facet over the whole of it, close to the dihedral edges and
 /// on both sides of where the leading edge stands with its tip in the apex.
 /// \param is_hexagonal the facets are squares of half the edges' length, not triangles up to the blank's face
-/// \param nose_angle_deg of the tool
+/// \param nose_angle_deg of the tool \param prediction how the facets stand to it
 ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const Sweep> sweeps,
-                              std::span<const RigidMotion> poses, const ToolWedge& wedge, double nose_angle_deg);
+                              std::span<const RigidMotion> poses, const ToolWedge& wedge, double nose_angle_deg,
+                              const Prediction& prediction);
 
 }  // namespace retrace::fabrication

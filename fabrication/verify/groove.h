@@ -21,8 +21,14 @@ struct DesignFacet {
   double height_mm(const geometry::Vec3& p) const { return normal.dot(p) - offset_mm; }
 };
 
-/// An element as designed, in the blank's face z_w = 0: the groove of a prism, or the cavity of a cube corner.
+/// An element as designed, in the blank's face: the groove of a prism, or the cavity of a cube corner.
 struct Groove {
+  /// Where the blank begins, seen from the element: a plane across its axis that no part of the blank stands over
+  /// within what its cut opens. On a flat blank the blank's face, z_w = 0.
+  geometry::Vec3 axis = geometry::Vec3::UnitZ();  ///< out of the blank, of length 1
+  double face_mm = 0.0;                           ///< axis . p there
+  double depth_mm = 0.0;                          ///< of the root or apex below the rims
+
   geometry::Vec3 root_mm = geometry::Vec3::Zero();  ///< middle of the root line, or the apex
   geometry::Vec3 root_direction = geometry::Vec3::UnitX();
   /// Of a prism: facet 1 faces -y_w (of a turned element -x_w), facet 2 the other way. Of a cube corner: facet k lies
@@ -31,19 +37,26 @@ struct Groove {
   double half_width_mm = 0.0;    ///< along the root; of a cube corner the radius of its aperture
   double half_base_mm = 0.0;     ///< likewise
   double facet_length_mm = 0.0;  ///< from the root to the rim; of a cube corner from the apex along a dihedral edge
-  bool turned = false;
+  std::size_t group = 0;         ///< of elements that stand alike: index of Workpiece3d::predictions
   /// Of a cube corner: the three dihedral edges, of length 1, from the apex. Facet k lies between k - 1 and k.
   std::vector<geometry::Vec3> edges;
 
   bool is_cube() const { return !edges.empty(); }
 
+  /// Over the plane where the blank begins.
+  double over_face_mm(const geometry::Vec3& p) const { return axis.dot(p) - face_mm; }
+  /// From a point along a direction to that plane.
+  double to_face_mm(const geometry::Vec3& p, const geometry::Vec3& direction) const {
+    return -over_face_mm(p) / axis.dot(direction);
+  }
   /// Along the root, from its middle.
   double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }
 };
 
-Groove groove_of(const CutElement& element, const geometry::RtpElement& size);
+/// \param stock_mm by which the blank stands over the element's rims
+Groove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm = 0.0);
 /// The cavity of a cube corner. \pre size is one
-Groove cavity_of(const CutElement& element, const geometry::Element& size);
+Groove cavity_of(const CutElement& element, const geometry::Element& size, double stock_mm = 0.0);
 
 /// Finds the element whose aperture a point of the blank's face lies in; of cube corners the nearest within the radius
 /// of their apertures.
@@ -51,7 +64,9 @@ class GrooveMap {
  public:
   explicit GrooveMap(const std::vector<Groove>& grooves);
   /// The element under the point; nothing on flat land or beyond the array.
-  std::optional<std::size_t> at(double x_mm, double y_mm) const;
+  std::optional<std::size_t> at(double x_mm, double y_mm) const { return at(geometry::Vec3(x_mm, y_mm, 0.0)); }
+  /// The element whose aperture the point lies over or under, seen along the element's axis.
+  std::optional<std::size_t> at(const geometry::Vec3& p) const;
   /// The element whose design lies deepest under the point: that of at(), or of cube corners the one whose cavity takes
   /// the point, beyond its aperture too. Nothing where the face stays.
   std::optional<std::size_t> deepest(double x_mm, double y_mm) const;
@@ -61,6 +76,7 @@ class GrooveMap {
   Cell cell_of(double x_mm, double y_mm, int dx, int dy) const;
 
   const std::vector<Groove>& grooves_;
+  int cells_around_ = 1;  ///< in which an element may be whose axis leans
   double cell_mm_ = 1.0;
   std::unordered_multimap<Cell, std::size_t> cells_;
 };

@@ -19,7 +19,7 @@ Prediction predict_cube(const Machine& machine, const Groove& cavity) {
     RotaryPose near;
     near.c_deg = machine.c.sign.value * Angle::from_rad(std::numbers::pi - facing).deg();
     near.a_deg = machine.a.sign.value * Angle::from_rad(std::asin(facet.normal.z())).deg();
-    const Vec3 level = facet.normal.cross(Vec3::UnitZ()).normalized();
+    const Vec3 level = facet.normal.cross(cavity.axis).normalized();
     prediction.poses.push_back(solve_plunge_pose(machine, facet.normal, level, near));
   }
   return prediction;
@@ -38,7 +38,7 @@ Prediction predict(const Machine& machine, const Groove& groove, double tool_wid
     RotaryPose near;
     near.c_deg = machine.c.sign.value * Angle::from_rad(-0.5 * std::numbers::pi - facing).deg();
     near.a_deg = machine.a.sign.value * Angle::from_rad(std::asin(normal.z())).deg();
-    prediction.poses[f] = solve_plunge_pose(machine, normal, Vec3::UnitZ().cross(normal).normalized(), near);
+    prediction.poses[f] = solve_plunge_pose(machine, normal, groove.axis.cross(normal).normalized(), near);
     const double tilt = std::abs(std::tan(prediction.poses[f].root_tilt.rad()));
     prediction.root_mm = std::max(prediction.root_mm, tool_width_mm * tilt);
     prediction.wall_mm = std::max(prediction.wall_mm, groove.facet_length_mm * tilt);

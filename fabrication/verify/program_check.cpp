@@ -43,12 +43,7 @@ Vec3 interpolated(const Vec3& a, const Vec3& b, double a_height, double b_height
 /// How much of the diamond counts as a body: more than the deepest groove; what holds it, the machine file says.
 double diamond_mm(const Workpiece3d& workpiece) {
   constexpr double kDepths = 2.0;
-  return workpiece.grooves.empty() ? 1.0 : -kDepths * workpiece.grooves.front().root_mm.z();
-}
-
-ToolWedge wedge_of(const Job& job, const Machine& machine) {
-  if (job.strategy == Strategy::dmc) return v_tool_wedge(job.tool, machine);
-  return tool_wedge(job.tool, machine, Angle::from_deg(prism_of(job).apex_angle_deg));
+  return workpiece.grooves.empty() ? 1.0 : kDepths * workpiece.grooves.front().depth_mm;
 }
 
 /// Time of a move that starts and ends at rest.
@@ -61,16 +56,20 @@ double trapezoid_s(double distance, double speed_per_s, double acceleration_per_
 
 }  // namespace
 
-const Prediction& Workpiece3d::prediction(std::size_t element) const {
-  return *predictions[grooves[element].turned ? 1 : 0];
+ToolWedge wedge_of(const Job& job, const Machine& machine) {
+  if (job.strategy == Strategy::dmc) return v_tool_wedge(job.tool, machine);
+  return tool_wedge(job.tool, machine, Angle::from_deg(prism_of(job).apex_angle_deg));
 }
 
-ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings)
+ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
+                           std::vector<std::optional<std::size_t>> visits)
     : workpiece_(workpiece),
       job_(*workpiece.job),
       machine_(*workpiece.machine),
       findings_(findings),
       map_(workpiece.grooves),
+      face_(*workpiece.job),
+      visits_(std::move(visits)),
       wedge_(wedge_of(*workpiece.job, machine_)),
       tool_bodies_(tool_bodies(machine_, wedge_, diamond_mm(workpiece))),
       sweeps_(workpiece.grooves.size()),
@@ -119,6 +118,7 @@ void ProgramCheck::finish() {
 
 void ProgramCheck::end(const NcEnd& end) {
   close_plunge();
+  runs_.end();
   if (end.is_complete) return;
   report("truncated", {end.line, 0}, -1, "the program stops in the middle: " + end.reason, 0.0, 0.0);
 }
@@ -127,6 +127,7 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   check_axes(motion);
   check_limits(motion);
   count_time(motion);
+  const std::optional<std::size_t> run = visits_.empty() ? std::nullopt : runs_.of(motion);
   if (motion.moved == 0) return;
   const std::uint8_t rotary = rotary_bits(machine_);
   if ((motion.moved & rotary) != 0) {
@@ -143,7 +144,8 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   sweep.is_rapid = motion.move == NcMove::rapid;
   sweep.from_mm = machine_point(machine_, motion.from) + wedge_.tip_mm;
   sweep.to_mm = machine_point(machine_, motion.to) + wedge_.tip_mm;
-  find_corners(sweep);
+  const std::optional<std::size_t> element = run ? visits_[*run] : element_of(sweep);
+  find_corners(sweep, element);
   check_fixtures(sweep);
   if (sweep.is_rapid) check_rapid(motion, sweep);
   if (corners_.empty()) {
@@ -153,7 +155,6 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   }
   check_settings(settings, motion.place);
   check_holder(sweep);
-  const std::optional<std::size_t> element = element_of(sweep);
   if (!element) {
     close_plunge();
     return check_outside(sweep);
@@ -246,9 +247,16 @@ void ProgramCheck::check_turn_of_head(const NcMotion& motion) {
            lowest_mm, 0.0);
 }
 
-void ProgramCheck::find_corners(const Sweep& sweep) {
+void ProgramCheck::find_corners(const Sweep& sweep, std::optional<std::size_t> element) {
   corners_.clear();
   const RigidMotion& back = back_[sweep.pose];
+  // Beside the elements the blank ends in the plane that touches its face under the tool.
+  const Vec3 tip = back.point(sweep.to_mm);
+  const Vec3 out = element ? workpiece_.grooves[*element].axis : face_.normal_at(tip);
+  const double face_mm = element           ? workpiece_.grooves[*element].face_mm
+                         : face_.is_flat() ? 0.0
+                                           : out.dot(tip) - face_.height_mm(tip);
+  const auto height_mm = [&](const Vec3& p) { return out.dot(p) - face_mm; };
   const Vec3 half_edge = wedge_.half_width_mm * wedge_.edge;
   // The four corners of the parallelogram that the edge sweeps, in order.
   const std::array<Vec3, 4> swept = {back.point(sweep.from_mm - half_edge), back.point(sweep.from_mm + half_edge),
@@ -256,29 +264,44 @@ void ProgramCheck::find_corners(const Sweep& sweep) {
   for (std::size_t i = 0; i < 4; ++i) {
     const Vec3& a = swept[i];
     const Vec3& b = swept[(i + 1) % 4];
-    if (a.z() < 0.0) {
+    const double a_mm = height_mm(a);
+    const double b_mm = height_mm(b);
+    if (a_mm < 0.0) {
       corners_.push_back(a);
       // Up the faces of the wedge to where they leave the blank.
       for (const Vec3& face : wedge_.rays) {
         const Vec3 up = back.direction(face);
-        if (up.z() > 1e-3) corners_.push_back(a - up * (a.z() / up.z()));
+        const double rise = out.dot(up);
+        if (rise > 1e-3) corners_.push_back(a - up * (a_mm / rise));
       }
     }
-    if ((a.z() < 0.0) != (b.z() < 0.0)) corners_.push_back(interpolated(a, b, a.z(), b.z()));
+    if ((a_mm < 0.0) != (b_mm < 0.0)) corners_.push_back(interpolated(a, b, a_mm, b_mm));
   }
 }
 
 std::optional<std::size_t> ProgramCheck::element_of(const Sweep& sweep) const {
   const Vec3 from = back_[sweep.pose].point(sweep.from_mm);
   const Vec3 to = back_[sweep.pose].point(sweep.to_mm);
-  const Vec3& low = from.z() < to.z() ? from : to;
-  return map_.at(low.x(), low.y());
+  return map_.at(from.z() < to.z() ? from : to);
+}
+
+/// Least height of the tip over the blank on the way; over a flat one at an end of it.
+double ProgramCheck::lowest_over_blank_mm(const Sweep& sweep) const {
+  const Vec3 from = back_[sweep.pose].point(sweep.from_mm);
+  const Vec3 to = back_[sweep.pose].point(sweep.to_mm);
+  double lowest_mm = std::min(face_.height_mm(from), face_.height_mm(to));
+  if (face_.is_flat()) return lowest_mm;
+  constexpr double kStepMm = 0.05;
+  constexpr double kMostSteps = 4000.0;
+  const int steps = static_cast<int>(std::min(kMostSteps, std::ceil((to - from).norm() / kStepMm)));
+  for (int i = 1; i < steps; ++i)
+    lowest_mm = std::min(lowest_mm, face_.height_mm(from + (to - from) * (static_cast<double>(i) / steps)));
+  return lowest_mm;
 }
 
 void ProgramCheck::check_rapid(const NcMotion& motion, const Sweep& sweep) {
   const double clearance_mm = kClearanceShare * job_.process.clearance_mm;
-  const auto height_mm = [&](const Vec3& tip) { return back_[sweep.pose].point(tip).z(); };
-  const double lowest_mm = std::min(height_mm(sweep.from_mm), height_mm(sweep.to_mm));
+  const double lowest_mm = lowest_over_blank_mm(sweep);
   const bool goes_down = motion.to.z_mm < motion.from.z_mm;
   const std::optional<std::size_t> element = element_of(sweep);
   if (lowest_mm < -workpiece_.tolerance_mm)
@@ -320,8 +343,9 @@ void ProgramCheck::check_holder(const Sweep& sweep) {
     if (body.carrier != Carrier::tool) continue;
     for (const Vec3& corner : body.points_mm.value)
       for (const Vec3& tip : {sweep.from_mm, sweep.to_mm}) {
-        const double height_mm = back.point(tip + corner).z();
-        const double rise = back.direction(Vec3::UnitZ()).z();
+        const Vec3 at = back.point(tip + corner);
+        const double height_mm = face_.height_mm(at);
+        const double rise = face_.normal_at(at).dot(back.direction(Vec3::UnitZ()));
         // How long the tool would have to be for this corner to clear the face.
         if (rise > 1e-3) least_free_tool_mm_ = std::max(least_free_tool_mm_, corner.z() - height_mm / rise);
         if (height_mm < 0.0)
@@ -333,7 +357,7 @@ void ProgramCheck::check_holder(const Sweep& sweep) {
 
 void ProgramCheck::check_outside(const Sweep& sweep) {
   double deepest_mm = 0.0;
-  for (const Vec3& corner : corners_) deepest_mm = std::min(deepest_mm, corner.z());
+  for (const Vec3& corner : corners_) deepest_mm = std::min(deepest_mm, face_.height_mm(corner));
   if (deepest_mm < -workpiece_.tolerance_mm)
     report("gouge", sweep.place, -1,
            fmt::format("the tool cuts {} nm deep beside the elements", fixed(-deepest_mm * kNmPerMm, 1)),
@@ -403,7 +427,7 @@ void ProgramCheck::check_plunge(const NcMotion& motion, const Sweep& sweep, std:
   const Vec3 tip = back_[sweep.pose].point(sweep.to_mm);
   // Where nothing was cut before, the blank's face ends the chip.
   plunge.chip_mm = std::min(state.surface_mm[plunge.facet] - plunge.tip_mm[plunge.facet],
-                            -tip.z() / groove.facets[plunge.facet].normal.z());
+                            groove.to_face_mm(tip, groove.facets[plunge.facet].normal));
   check_chip_thickness(plunge);
   for (const auto& known : state.tips)
     if (known[3] == static_cast<double>(plunge.facet) && (Vec3(known[0], known[1], known[2]) - tip).norm() < kSameTipMm)

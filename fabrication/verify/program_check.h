@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fabrication/job/base_cells.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_motion.h"
@@ -16,6 +17,7 @@
 #include "fabrication/verify/groove.h"
 #include "fabrication/verify/prediction.h"
 #include "fabrication/verify/sweep.h"
+#include "fabrication/verify/visits.h"
 
 namespace retrace::fabrication {
 
@@ -33,16 +35,22 @@ struct Workpiece3d {
   const Job* job = nullptr;
   const Machine* machine = nullptr;
   std::vector<Groove> grooves;
-  std::array<std::optional<Prediction>, 2> predictions;  ///< for upright and turned elements, where there are such
+  std::vector<Prediction> predictions;     ///< for elements that stand alike: Groove::group
+  std::vector<geometry::Vec2> centres_mm;  ///< of the elements, as CutElement has them
   double tolerance_mm = 1e-5;
 
-  const Prediction& prediction(std::size_t element) const;
+  const Prediction& prediction(std::size_t element) const { return predictions[grooves[element].group]; }
 };
+
+/// The cutting wedge of a job's tool.
+ToolWedge wedge_of(const Job& job, const Machine& machine);
 
 /// Follows the moves of programs, one after the other: process findings by line, and the sweeps of every element.
 class ProgramCheck : public NcSink {
  public:
-  ProgramCheck(const Workpiece3d& workpiece, FindingList& findings);
+  /// \param visits what VisitFinder found in the same programs, of jobs with a base
+  ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
+               std::vector<std::optional<std::size_t>> visits = {});
 
   /// What follows comes from that program.
   void begin(const std::string& program);
@@ -91,6 +99,7 @@ class ProgramCheck : public NcSink {
   void check_turn_of_head(const NcMotion& motion);
   void check_chiseling(const NcMotion& motion, const Sweep& sweep, std::size_t element);
   void check_rapid(const NcMotion& motion, const Sweep& sweep);
+  double lowest_over_blank_mm(const Sweep& sweep) const;
   void check_feed(const NcMotion& motion, double allowed);
   void check_holder(const Sweep& sweep);
   void check_fixtures(const Sweep& sweep);
@@ -104,7 +113,7 @@ class ProgramCheck : public NcSink {
   void check_chip();
   void count_time(const NcMotion& motion);
   /// Corners of the tool within the blank during a move, in the workpiece frame.
-  void find_corners(const Sweep& sweep);
+  void find_corners(const Sweep& sweep, std::optional<std::size_t> element);
   std::optional<std::size_t> element_of(const Sweep& sweep) const;
 
   const Workpiece3d& workpiece_;
@@ -112,6 +121,9 @@ class ProgramCheck : public NcSink {
   const Machine& machine_;
   FindingList& findings_;
   GrooveMap map_;
+  BlankFace face_;
+  std::vector<std::optional<std::size_t>> visits_;  ///< of jobs with a base
+  CutRuns runs_;
   ToolWedge wedge_;
   std::vector<PlacedBody> tool_bodies_;
   std::string program_;

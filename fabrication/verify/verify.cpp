@@ -7,13 +7,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 #include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/job/base_cells.h"
 #include "fabrication/job/v_tool.h"
+#include "fabrication/verify/visits.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -27,14 +30,12 @@ bool has_poses_of(const Machine& machine, const Workpiece3d& workpiece, const st
   // Poses are written with seven digits; between the shipped machines they differ by far more.
   constexpr double same_deg = 1e-5;
   const auto is_solved = [&](const RotaryPose& word) {
-    for (const auto& prediction : workpiece.predictions) {
-      if (!prediction) continue;
-      for (const PlungePose& p : prediction->poses) {
+    for (const Prediction& prediction : workpiece.predictions)
+      for (const PlungePose& p : prediction.poses) {
         const double c = word.c_deg - p.pose.c_deg;
         if (std::abs(word.a_deg - p.pose.a_deg) < same_deg && std::abs(c - 360.0 * std::round(c / 360.0)) < same_deg)
           return true;
       }
-    }
     return false;
   };
   static_cast<void>(machine);
@@ -61,7 +62,7 @@ double dihedral_error_arcmin(const Groove& cavity, const ElementFigures& figures
   std::vector<Vec3> normals;
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const DesignFacet& design = cavity.facets[f];
-    const Vec3 level = design.normal.cross(Vec3::UnitZ()).normalized();
+    const Vec3 level = design.normal.cross(cavity.axis).normalized();
     normals.push_back(
         (design.normal - figures.facets[f].slope_up * design.up_slope - figures.facets[f].slope_along * level)
             .normalized());
@@ -137,13 +138,15 @@ class Judge {
 double design_volume_mm3(const Groove& groove, bool is_hexagonal) {
   const double edge_mm = groove.facet_length_mm;
   if (groove.is_cube()) return edge_mm * edge_mm * edge_mm / (is_hexagonal ? 8.0 : 6.0);
-  return groove.half_base_mm * -groove.root_mm.z() * 2.0 * groove.half_width_mm;
+  return groove.half_base_mm * groove.depth_mm * 2.0 * groove.half_width_mm;
 }
 
 /// What triangular cavities take beyond the hexagons of their elements. In units of the cube's edge a the blank's face
 /// passes above N cubes that lie open, of which it leaves a sixth each, and cuts a sixth off each of the M cubes above
 /// them: M corners of hexagons at dihedral edges (docs/theory/micro_chiseling.md).
-double border_overcut_mm3(const std::vector<Groove>& cavities, const std::vector<ElementResult>& elements) {
+/// On a base that is so of the array when it is rolled out.
+double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
+  const std::vector<Groove>& cavities = workpiece.grooves;
   std::set<std::pair<std::int64_t, std::int64_t>> corners;
   std::int64_t cut = 0;
   double edge_mm = 0.0;
@@ -151,8 +154,12 @@ double border_overcut_mm3(const std::vector<Groove>& cavities, const std::vector
     if (!elements[i].figures.is_cut) continue;
     ++cut;
     edge_mm = 0.5 * cavities[i].facet_length_mm;
-    for (const Vec3& edge : cavities[i].edges) {
-      const Vec3 from_first = cavities[i].root_mm + edge_mm * edge - cavities.front().root_mm;
+    for (int k = 0; k < 3; ++k) {
+      // Edges go out at -90, 30 and 150 degrees; hexagons are not turned.
+      const double azimuth = 2.0 * std::numbers::pi / 3.0 * k - 0.5 * std::numbers::pi;
+      const geometry::Vec2 outwards(std::cos(azimuth), std::sin(azimuth));
+      const geometry::Vec2 from_first =
+          workpiece.centres_mm[i] - workpiece.centres_mm.front() + cavities[i].half_base_mm * outwards;
       // Corners lie on a grid of half the radius by half the width of the hexagons.
       const double half_radius_mm = 0.5 * cavities[i].half_base_mm;
       corners.emplace(std::llround(from_first.x() / (std::numbers::sqrt3 * half_radius_mm)),
@@ -160,6 +167,19 @@ double border_overcut_mm3(const std::vector<Groove>& cavities, const std::vector
     }
   }
   return edge_mm * edge_mm * edge_mm * static_cast<double>(static_cast<std::int64_t>(corners.size()) - cut) / 6.0;
+}
+
+/// Which elements the runs of a job with a base belong to; none for others.
+std::vector<std::optional<std::size_t>> visits_of(const Workpiece3d& workpiece,
+                                                  const std::vector<NcProgram>& programs) {
+  if (!workpiece.job->base) return {};
+  const Machine& machine = *workpiece.machine;
+  VisitFinder finder(machine, workpiece.grooves, wedge_of(*workpiece.job, machine).tip_mm);
+  for (const NcProgram& program : programs) {
+    run_nc(program, finder);
+    finder.end();
+  }
+  return finder.elements();
 }
 
 }  // namespace
@@ -176,10 +196,16 @@ Workpiece3d workpiece_of(const Job& job, const Machine& machine, const VerifyOpt
                                  is_dmc ? "head" : "table", machine.name));
   const geometry::Element size = blank_element(job);
   const auto* const prism = std::get_if<geometry::RtpElement>(&size);
-  for (const CutElement& element : cut_elements(job)) {
-    workpiece.grooves.push_back(prism != nullptr ? groove_of(element, *prism) : cavity_of(element, size));
-    auto& prediction = workpiece.predictions[element.turned ? 1 : 0];
-    if (!prediction) prediction = predict(machine, workpiece.grooves.back(), job.tool.width_mm);
+  const std::vector<CutElement> elements = cut_elements(job);
+  const double stock = stock_mm(job, elements);
+  std::map<std::pair<bool, std::int32_t>, std::size_t> groups;
+  for (const CutElement& element : elements) {
+    Groove groove = prism != nullptr ? groove_of(element, *prism, stock) : cavity_of(element, size, stock);
+    const auto [group, is_new] = groups.try_emplace({element.turned, element.orientation}, groups.size());
+    if (is_new) workpiece.predictions.push_back(predict(machine, groove, job.tool.width_mm));
+    groove.group = group->second;
+    workpiece.grooves.push_back(std::move(groove));
+    workpiece.centres_mm.push_back(element.centre_mm);
   }
   return workpiece;
 }
@@ -189,7 +215,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
                              const Cancellation* cancellation) {
   const Workpiece3d workpiece = workpiece_of(job, machine, options);
   FindingList findings;
-  ProgramCheck check(workpiece, findings);
+  ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));
   for (const NcProgram& program : programs) {
     check.begin(program.file);
     check.end(run_nc(program, check));
@@ -215,9 +241,9 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
       const Prediction& prediction = workpiece.prediction(i);
       const Groove& groove = workpiece.grooves[i];
       const ElementFigures figures =
-          groove.is_cube()
-              ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses, check.wedge(), job.tool.nose_angle_deg)
-              : element_figures(groove, check.sweeps()[i], poses, check.wedge(), prediction, ploughs);
+          groove.is_cube() ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses, check.wedge(),
+                                            job.tool.nose_angle_deg, prediction)
+                           : element_figures(groove, check.sweeps()[i], poses, check.wedge(), prediction, ploughs);
       result.elements[i] = result_of(groove, figures, prediction);
     }
   });
@@ -229,13 +255,12 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
     result.removed_volume_mm3 += design_volume_mm3(workpiece.grooves[i], is_hexagonal);
     for (const FacetFigures& facet : result.elements[i].figures.facets) result.removed_volume_mm3 -= facet.residual_mm3;
   }
-  for (const auto& prediction : workpiece.predictions) {
-    if (!prediction) continue;
-    result.root_residual_nm_predicted = std::max(result.root_residual_nm_predicted, prediction->root_mm * kNmPerMm);
-    result.wall_overcut_nm_predicted = std::max(result.wall_overcut_nm_predicted, prediction->wall_mm * kNmPerMm);
+  for (const Prediction& prediction : workpiece.predictions) {
+    result.root_residual_nm_predicted = std::max(result.root_residual_nm_predicted, prediction.root_mm * kNmPerMm);
+    result.wall_overcut_nm_predicted = std::max(result.wall_overcut_nm_predicted, prediction.wall_mm * kNmPerMm);
   }
   result.wall_overcut_nm_max = check.deepest_wall_mm() * kNmPerMm;
-  if (is_hexagonal) result.border_overcut_mm3 = border_overcut_mm3(workpiece.grooves, result.elements);
+  if (is_hexagonal) result.border_overcut_mm3 = border_overcut_mm3(workpiece, result.elements);
   result.removed_volume_mm3 += result.border_overcut_mm3;
   if (job.strategy == Strategy::dmc)
     result.root_chamfer_um = 1e3 * std::numbers::sqrt2 * nose_strip_mm(job.tool);

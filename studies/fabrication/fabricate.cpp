@@ -34,9 +34,8 @@ geometry::Vec2 in_section(const FabricationResult& result, const fabrication::Cu
       1e-6 * static_cast<double>(at.z_nm.value_or(0)), 0.0, 1e-7 * static_cast<double>(at.c)};
   (result.machine.tilt == fabrication::Tilt::table ? axes.a_deg : axes.b_deg) = 1e-7 * static_cast<double>(at.a);
   const Vec3 tip = fabrication::forward(result.machine, axes).reference_mm;
-  const Vec3 root(element.centre_mm.x(), element.centre_mm.y(),
-                  -geometry::element_depth_mm(fabrication::blank_element(result.job)));
-  const Vec3 from_root = tip - root;
+  const Vec3 root(0.0, 0.0, -geometry::element_depth_mm(fabrication::blank_element(result.job)));
+  const Vec3 from_root = element.turn.transpose() * (tip - element.foot_mm) - root;
   if (result.job.strategy == fabrication::Strategy::dmc) {
     const auto [first, second] = fabrication::cube_facet_edges({element.turned, 1});
     return {(second - first).normalized().dot(from_root), (second + first).normalized().dot(from_root)};
@@ -60,10 +59,11 @@ FabricationResult fabricate(const FabricationRequest& request) {
 
 std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing) {
   const bool is_dmc = result.job.strategy == fabrication::Strategy::dmc;
-  std::set<std::uint32_t> wanted;
+  // By their titles: programs hold the subroutines that they call, under numbers of their own.
+  std::set<std::string> wanted;
   for (const fabrication::Stage& stage : result.plan.stages)
     if (stage.roughs == roughing && (!is_dmc || result.plan.poses[stage.pose].facet.facet == 1))
-      wanted.insert(stage.subroutine);
+      wanted.insert(result.plan.subroutines[stage.subroutine].title);
   std::vector<SectionMove> moves;
   for (const fabrication::Program& program : result.plan.programs) {
     fabrication::Program first_only;
@@ -73,7 +73,7 @@ std::vector<SectionMove> section_moves(const FabricationResult& result, bool rou
     for (const fabrication::Item& item : program.items) {
       if (std::holds_alternative<fabrication::Turn>(item)) first_only.items.push_back(item);
       const auto* const visit = std::get_if<fabrication::Visit>(&item);
-      if (visit == nullptr || !wanted.contains(visit->subroutine)) continue;
+      if (visit == nullptr || !wanted.contains(program.subroutines[visit->subroutine].title)) continue;
       const bool turned = result.plan.elements[static_cast<std::size_t>(visit->element)].turned;
       if (!element && !turned) element = visit->element;
       // Side-by-side passes look the same in the section.

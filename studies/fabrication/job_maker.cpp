@@ -102,7 +102,7 @@ bool has_errors(const PartSpec& part) {
 
 /// Partial elements of the array, whether or not a mask is to leave out others.
 std::int64_t partial_elements(const PartSpec& part) {
-  if (part.arrangement != Arrangement::offset && part.arrangement != Arrangement::honeycomb &&
+  if (!part.base && part.arrangement != Arrangement::offset && part.arrangement != Arrangement::honeycomb &&
       part.arrangement != Arrangement::triangular)
     return 0;
   PartSpec nominal = part;
@@ -177,8 +177,23 @@ fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
 
 }  // namespace
 
+namespace {
+
+/// Pins are ground one by one and bundled; elements that are cut into a base are cut into a mould.
+void check_base(const Design& design, const JobRequest& request) {
+  if (!design.part.base) return;
+  if (design.part.is_pin_bundle)
+    throw InputError({design.source_name(), 0, "array.arrangement"},
+                     "pins are ground one by one and bundled, not cut: must be \"honeycomb\" for a job, got \"pins\"");
+  if (request.workpiece != fabrication::kWorkpieceWords[0])
+    throw InputError({"", 0, "--workpiece"},
+                     "must be mould for a design with [base], got " + in_quotes(request.workpiece));
+}
+
+}  // namespace
+
 MadeJob make_job(const Design& design, const JobRequest& request) {
-  design.require_no_base("retrace job");
+  check_base(design, request);
   if (design.facet_planes)
     throw InputError(design.facet_planes->location, "planes of single facets are traced, not cut, in this version");
   MadeJob made;
@@ -188,6 +203,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.strategy = strategy_of(request.strategy);
   job.element = element_of(design, request);
   job.array = array_of(design);
+  job.base = design.part.base;
   check_making(request);
   job.workpiece.kind = static_cast<fabrication::WorkpieceKind>(
       word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords));

@@ -14,6 +14,7 @@
 #include "core/number_format.h"
 #include "core/toml_file.h"
 #include "fabrication/job/cube_cells.h"
+#include "fabrication/job/io/base_keys.h"
 #include "fabrication/job/v_tool.h"
 
 namespace retrace::fabrication {
@@ -199,6 +200,7 @@ struct Places {
   InputLocation x_length;
   InputLocation y_length;
   InputLocation pattern;
+  InputLocation base;
 };
 
 void check_chisel(const Job& job, const Places& at) {
@@ -307,11 +309,13 @@ void check_strategy(const Job& job, const InputLocation& at_strategy, const Inpu
 
 void check_together(const Job& job, const Places& at) {
   check_strategy(job, at.strategy, at.workpiece);
+  if (job.base) check_array_on_base(job, at.base);
   check_array(job, at);
   if (is_prism(job))
     check_chisel(job, at);
   else
     check_v_tool(blank_element(job), job.tool, {at.tool_width, at.tool_nose, at.tool_wedge, at.tool_radius});
+  if (job.base) check_base_of(job, at.base);
 }
 
 std::string rows_text(const std::vector<std::string>& pattern) {
@@ -400,7 +404,7 @@ void check_job(const Job& job, const InputLocation& where) {
   check_together(
       job, {at("strategy"), at("workpiece.kind"), at("element.width_mm"), at("tool.width_mm"), at("tool.wedge_deg"),
             at("tool.side_clearance_deg"), at("tool.nose_angle_deg"), at("tool.edge_radius_um"),
-            at("array.x_length_mm"), at("array.y_length_mm"), at("array.pattern")});
+            at("array.x_length_mm"), at("array.y_length_mm"), at("array.pattern"), at("base")});
 }
 
 Job parse_job(std::string_view text, const std::string& source_name) {
@@ -424,13 +428,15 @@ Job parse_job(std::string_view text, const std::string& source_name) {
   job.element = read_element(element);
   check_strategy(job, root.where("strategy"), workpiece.where("kind"));
   job.array = read_array(array, job.element);
+  InputLocation base_at;
+  if (root.has("base")) job.base = read_base(root.required_table("base"), base_at);
   job.tool = read_tool(tool, job.strategy);
   job.process = read_process(process);
   root.finish();
   check_together(job, {root.where("strategy"), workpiece.where("kind"), element.where("width_mm"),
                        tool.where("width_mm"), tool.where("wedge_deg"), tool.where("side_clearance_deg"),
                        tool.where("nose_angle_deg"), tool.where("edge_radius_um"), array.where("x_length_mm"),
-                       array.where("y_length_mm"), array.where("pattern")});
+                       array.where("y_length_mm"), array.where("pattern"), base_at});
   return job;
 }
 
@@ -460,6 +466,10 @@ std::string job_text(const Job& job) {
   out.number("shrinkage_percent", job.workpiece.shrinkage_percent);
   write_element(out, job.element);
   write_array(out, job.array, job.element);
+  if (job.base) {
+    out.head("base");
+    out.raw(base_text(*job.base));
+  }
   out.head("tool");
   out.number("width_mm", job.tool.width_mm);
   out.number("wedge_deg", job.tool.wedge_deg);
