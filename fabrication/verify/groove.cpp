@@ -18,6 +18,7 @@ namespace {
 void stand(Groove& groove, const CutElement& element, double stock_mm) {
   groove.axis = element.turn.col(2);
   groove.face_mm = groove.axis.dot(element.foot_mm) + stock_mm;
+  groove.stock_mm = stock_mm;
   groove.root_mm = element.foot_mm + element.turn * groove.root_mm;
   groove.root_direction = element.turn * groove.root_direction;
   for (Vec3& edge : groove.edges) edge = element.turn * edge;

@@ -28,6 +28,7 @@ struct Groove {
   geometry::Vec3 axis = geometry::Vec3::UnitZ();  ///< out of the blank, of length 1
   double face_mm = 0.0;                           ///< axis . p there
   double depth_mm = 0.0;                          ///< of the root or apex below the rims
+  double stock_mm = 0.0;                          ///< by which the face stands over them
 
   geometry::Vec3 root_mm = geometry::Vec3::Zero();  ///< middle of the root line, or the apex
   geometry::Vec3 root_direction = geometry::Vec3::UnitX();

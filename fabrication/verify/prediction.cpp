@@ -31,6 +31,8 @@ Prediction predict(const Machine& machine, const Groove& groove, double tool_wid
   if (groove.is_cube()) return predict_cube(machine, groove);
   Prediction prediction;
   prediction.poses.resize(2);
+  // Up a facet, from the rim to where the blank ends.
+  const double stock_mm = groove.stock_mm / groove.axis.dot(groove.facets[0].up_slope);
   for (std::size_t f = 0; f < 2; ++f) {
     const Vec3& normal = groove.facets[f].normal;
     // Nominal pose: C turns what the facet faces to -y_w, A stands it up.
@@ -41,7 +43,7 @@ Prediction predict(const Machine& machine, const Groove& groove, double tool_wid
     prediction.poses[f] = solve_plunge_pose(machine, normal, groove.axis.cross(normal).normalized(), near);
     const double tilt = std::abs(std::tan(prediction.poses[f].root_tilt.rad()));
     prediction.root_mm = std::max(prediction.root_mm, tool_width_mm * tilt);
-    prediction.wall_mm = std::max(prediction.wall_mm, groove.facet_length_mm * tilt);
+    prediction.wall_mm = std::max(prediction.wall_mm, (groove.facet_length_mm + stock_mm) * tilt);
     const RigidMotion motion = machine_from_workpiece(machine, prediction.poses[f].pose);
     // The edge stays level while it ploughs the other facet, whose normal has a part along it.
     const std::size_t other = 1 - f;

@@ -16,6 +16,7 @@
 #include "core/number_format.h"
 #include "fabrication/job/base_cells.h"
 #include "fabrication/job/v_tool.h"
+#include "fabrication/verify/rim_overcut.h"
 #include "fabrication/verify/visits.h"
 
 namespace retrace::fabrication {
@@ -261,6 +262,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   }
   result.wall_overcut_nm_max = check.deepest_wall_mm() * kNmPerMm;
   if (is_hexagonal) result.border_overcut_mm3 = border_overcut_mm3(workpiece, result.elements);
+  if (job.base) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
   result.removed_volume_mm3 += result.border_overcut_mm3;
   if (job.strategy == Strategy::dmc)
     result.root_chamfer_um = 1e3 * std::numbers::sqrt2 * nose_strip_mm(job.tool);

@@ -44,6 +44,8 @@ struct Verification {
   /// Volume that the cavities of hexagonal cube corners, which are triangular, take beyond the elements' apertures:
   /// what the outermost of them must.
   double border_overcut_mm3 = 0.0;
+  /// By which cuts of neighbours go under an element's rims where these stand at different heights, as they must.
+  double rim_overcut_um_max = 0.0;
   double removed_volume_mm3 = 0.0;
   double free_tool_length_mm = 0.0;  ///< that the tool needs to keep its holder clear of the blank
   ProgramTime time;

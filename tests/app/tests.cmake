@@ -3,6 +3,7 @@ retrace_test(app_test
   SOURCES
     app/bad_input_test.cpp
     app/balls_test.cpp
+    app/base_job_test.cpp
     app/commands_test.cpp
     app/derivatives_test.cpp
     app/chiseling_command_test.cpp

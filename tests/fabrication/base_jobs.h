@@ -28,8 +28,7 @@ inline Base formula_base(const std::string& text, geometry::Standing standing) {
 }
 
 /// n x n prisms side by side on a base, with room for elements that lean.
-inline Job prisms_on(const Base& base, int n = 3,
-                     geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
+inline Job prisms_on(const Base& base, int n = 3, geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
   Job job = square_job(n, arrangement);
   job.array.x_length_mm = job.array.y_length_mm = 0.451 * n;
   job.process.roughing_depth_um = 30.0;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -18,8 +19,10 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
+#include "fabrication/verify/dexel.h"
 #include "fabrication/verify/verify.h"
 #include "geometry/base_part.h"
+#include "geometry/closed_boundary.h"
 #include "geometry/lattice.h"
 #include "geometry/part.h"
 #include "tests/fabrication/base_jobs.h"
@@ -90,25 +93,398 @@ std::vector<Named> jobs() {
     all.push_back({kind + "along a cylinder", cubes_on(cylinder_base(3.0, false, normal), is_hexagonal)});
     all.push_back({kind + "in parallel on a cylinder", cubes_on(cylinder_base(-3.0, true, parallel), is_hexagonal)});
     all.push_back({kind + "along a sphere", cubes_on(sphere_base(-4.0, normal), is_hexagonal)});
-    all.push_back({kind + "in parallel on a formula", cubes_on(formula_base("0.1*x + 0.1*x*y", parallel), is_hexagonal)});
+    all.push_back(
+        {kind + "in parallel on a formula", cubes_on(formula_base("0.1*x + 0.1*x*y", parallel), is_hexagonal)});
   }
   return all;
 }
 
-TEST(OnBase, Explore) {
+/// Where the elements of a job stand, and their planes, are those of the part that light is traced in.
+TEST(OnBase, ElementsStandWhereThePartHasThem) {
   for (const Named& named : jobs()) {
-    try {
-      const Plan plan = make_plan(named.job, machine_of(named.job));
-      const std::string text = nc_text(plan.programs.front(), "rs274ngc");
-      const Verification v = verified(named.job, text);
-      fmt::print("{}: {} elements, stock {} um, {} poses, facets {} nm {} arcmin root {} walls {} volume {} findings {} text {}\n{}",
-                 named.what, v.elements_cut, 1e3 * plan.stock_mm, plan.poses.size(), v.facet_distance_nm_max, v.facet_angle_arcmin_max,
-                 v.root_residual_nm_max, v.wall_overcut_nm_max, v.removed_volume_mm3, v.findings.size(), text.size(), listed(v));
-    } catch (const InputError& e) {
-      fmt::print("{}: {}\n", named.what, e.what()); (void)kinds_of; (void)text_of;
+    SCOPED_TRACE(named.what);
+    geometry::PartSpec spec = part_on_base(named.job);
+    spec.thickness_mm = 2.0;
+    const geometry::Part part = geometry::build_part(spec);
+    const std::vector<CutElement> elements = cut_elements(named.job);
+    EXPECT_EQ(static_cast<std::int64_t>(elements.size()), part.elements_full);
+    const auto* const prism = std::get_if<geometry::RtpElement>(&named.job.element);
+    std::vector<Groove> grooves;
+    for (const CutElement& element : elements)
+      grooves.push_back(prism != nullptr ? groove_of(element, *prism) : cavity_of(element, named.job.element));
+    const geometry::BoundaryMesh mesh = geometry::closed_boundary(part);
+    std::set<std::pair<std::size_t, std::size_t>> seen;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (mesh.roles[t] != geometry::FacetRole::retro_facet) continue;
+      std::array<Vec3, 3> corners;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& p = mesh.vertices[mesh.triangles[t][k]];
+        corners[k] = {p.y() - 0.5 * spec.y_length_mm, 0.5 * spec.x_length_mm - p.x(), p.z()};
+      }
+      const Vec3 across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+      if (across.norm() < 1e-9) continue;
+      const Vec3 into_cavity = -across.normalized();
+      double nearest = 1.0;
+      for (std::size_t i = 0; i < grooves.size(); ++i)
+        for (std::size_t f = 0; f < grooves[i].facets.size(); ++f) {
+          const DesignFacet& facet = grooves[i].facets[f];
+          if (facet.normal.dot(into_cavity) < 1.0 - 1e-9) continue;
+          double off = 0.0;
+          for (const Vec3& corner : corners) off = std::max(off, std::abs(facet.height_mm(corner)));
+          if (off < 1e-9) seen.insert({i, f});
+          nearest = std::min(nearest, off);
+        }
+      EXPECT_LT(nearest, 1e-9);
+    }
+    EXPECT_EQ(seen.size(), grooves.size() * (prism != nullptr ? 2U : 3U)) << "every facet is one of the part's";
+  }
+}
+
+TEST(OnBase, ProgramsVerifyBelowANanometre) {
+  for (const Named& named : jobs()) {
+    SCOPED_TRACE(named.what);
+    const Verification v = verified(named.job, text_of(named.job));
+    EXPECT_TRUE(v.passes()) << listed(v);
+    EXPECT_EQ(v.elements_cut, static_cast<std::int64_t>(cut_elements(named.job).size()));
+    EXPECT_GE(v.elements_cut, 8);
+    EXPECT_LT(v.facet_distance_nm_max, 1.0);
+    EXPECT_LT(v.facet_angle_arcmin_max, 0.02);
+    EXPECT_LT(v.root_residual_nm_max, 5.0);
+    EXPECT_LT(v.wall_overcut_nm_max, 1.0);
+    if (named.job.strategy == Strategy::dmc) continue;
+    EXPECT_NEAR(v.removed_volume_mm3, static_cast<double>(v.elements_cut) * std::pow(0.451, 3) / 4.0, 1e-5);
+  }
+}
+
+TEST(OnBase, AllStrategiesCutPrismsAlongACylinder) {
+  for (const Strategy strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step})
+    for (const double radius_mm : {5.0, -5.0}) {
+      Job job = prisms_on(cylinder_base(radius_mm, false, Standing::normal));
+      job.strategy = strategy;
+      job.tool.width_mm = 0.3;
+      const Verification v = verified(job, text_of(job));
+      EXPECT_TRUE(v.passes()) << static_cast<int>(strategy) << " " << radius_mm << "\n" << listed(v);
+      EXPECT_LT(v.facet_distance_nm_max, 1.0);
+    }
+}
+
+/// A machine with measured axes leaves no more on an incline than on a plane.
+TEST(OnBase, MeasuredAxesAreAllowedFor) {
+  for (const char* const name : {"paper", "thesis"}) {
+    const Machine m = machine(name);
+    for (const Base& base : {plane_base(9.0, 0.0, Standing::normal), cylinder_base(8.0, true, Standing::parallel)}) {
+      const Job job = prisms_on(base);
+      const Plan plan = make_plan(job, m);
+      const Verification v = verify_programs(
+          job, m, {parse_nc(nc_text(plan.programs.front(), "rs274ngc"), "p", NcDialect::rs274ngc)}, {}, {});
+      EXPECT_TRUE(v.passes()) << name << "\n" << listed(v);
+      EXPECT_LT(v.facet_distance_nm_max, 5.0) << name;
     }
   }
 }
+
+TEST(OnBase, EveryDialectCutsTheSame) {
+  for (const Job& job :
+       {prisms_on(cylinder_base(6.0, false, Standing::normal)), cubes_on(sphere_base(4.0, Standing::normal), false)}) {
+    const Verification first = verified(job, text_of(job));
+    for (const auto& [name, dialect] : {std::pair{"sinumerik", NcDialect::sinumerik},
+                                        std::pair{"fanuc", NcDialect::fanuc}, std::pair{"pmac", NcDialect::pmac}}) {
+      const Verification v = verified(job, text_of(job, name), dialect);
+      EXPECT_TRUE(v.passes()) << name << "\n" << listed(v);
+      EXPECT_EQ(v.facet_distance_nm_max, first.facet_distance_nm_max) << name;
+      EXPECT_EQ(v.removed_volume_mm3, first.removed_volume_mm3) << name;
+      EXPECT_NEAR(v.time.total_s(), first.time.total_s(), 1e-6) << name;
+    }
+  }
+}
+
+/// All moves of a plan.
+std::vector<PlannedMove> moves_of(const Job& job) {
+  std::vector<PlannedMove> moves;
+  const Plan plan = make_plan(job, machine_of(job));
+  for (const Program& program : plan.programs)
+    for_each_move(program, [&](const PlannedMove& move) { moves.push_back(move); });
+  return moves;
+}
+
+std::vector<Job> flat_jobs() {
+  Job cubes = cube_job(true, 0.15);
+  cubes.array.pattern.clear();
+  return {square_job(3), square_job(3, Arrangement::checker), cubes, cube_job(false, 0.15)};
+}
+
+/// The same words, to the last digit.
+TEST(OnBase, APlaneGivenAsAFormulaMovesAsTheFlatArray) {
+  for (Job job : flat_jobs()) {
+    const std::vector<PlannedMove> flat = moves_of(job);
+    for (const Standing standing : {Standing::normal, Standing::parallel})
+      for (const Base& base : {formula_base("0*x", standing), plane_base(0.0, 0.0, standing)}) {
+        job.base = base;
+        const std::vector<PlannedMove> moves = moves_of(job);
+        ASSERT_EQ(moves.size(), flat.size());
+        for (std::size_t k = 0; k < flat.size(); ++k) {
+          ASSERT_EQ(moves[k].to.x_nm, flat[k].to.x_nm) << k;
+          ASSERT_EQ(moves[k].to.y_nm, flat[k].to.y_nm) << k;
+          ASSERT_EQ(moves[k].to.z_nm, flat[k].to.z_nm) << k;
+          ASSERT_EQ(moves[k].to.a, flat[k].to.a) << k;
+          ASSERT_EQ(moves[k].to.c, flat[k].to.c) << k;
+          ASSERT_EQ(moves[k].feed_mm_per_min, flat[k].feed_mm_per_min) << k;
+          ASSERT_EQ(moves[k].dwell_s, flat[k].dwell_s) << k;
+        }
+      }
+  }
+}
+
+/// Where a feed move brings the tool: in the workpiece, and the words of the rotary axes.
+struct Cut {
+  Vec3 reference_mm;
+  RotaryUnits a = 0;
+  RotaryUnits c = 0;
+};
+
+/// The feed moves of each element.
+std::vector<std::vector<Cut>> cuts_by_element(const Job& job) {
+  const Machine m = machine_of(job);
+  const auto mm = [](Nanometres nm) { return static_cast<double>(nm) / kNanometresPerMm; };
+  std::vector<std::vector<Cut>> cuts(cut_elements(job).size());
+  for (const PlannedMove& move : moves_of(job)) {
+    if (move.rapid || move.element < 0) continue;
+    AxisPositions axes{mm(*move.to.x_nm), mm(*move.to.y_nm), mm(*move.to.z_nm), 0.0,
+                       static_cast<double>(move.to.c) / kRotaryUnitsPerDeg};
+    (m.tilt == Tilt::table ? axes.a_deg : axes.b_deg) = static_cast<double>(move.to.a) / kRotaryUnitsPerDeg;
+    cuts[static_cast<std::size_t>(move.element)].push_back({forward(m, axes).reference_mm, move.to.a, move.to.c});
+  }
+  return cuts;
+}
+
+TEST(OnBase, AHugeCylinderMovesAsTheFlatArrayToAMillionth) {
+  constexpr double kRounding = 1.74e-6;  // of three words in whole nanometres, twice
+  for (Job job : flat_jobs()) {
+    if (job.array.arrangement == Arrangement::checker) continue;  // as aligned ones
+    const auto flat = cuts_by_element(job);
+    for (const Standing standing : {Standing::normal, Standing::parallel})
+      for (const bool axis_is_x : {false, true})
+        for (const double radius_mm : {1e7, -1e7}) {
+          job.base = cylinder_base(radius_mm, axis_is_x, standing);
+          const auto cuts = cuts_by_element(job);
+          ASSERT_EQ(cuts.size(), flat.size());
+          for (std::size_t i = 0; i < flat.size(); ++i) {
+            ASSERT_EQ(cuts[i].size(), flat[i].size());
+            for (std::size_t k = 0; k < flat[i].size(); ++k) {
+              ASSERT_LT((cuts[i][k].reference_mm - flat[i][k].reference_mm).norm(), 1e-6 + kRounding);
+              ASSERT_NEAR(static_cast<double>(cuts[i][k].a), static_cast<double>(flat[i][k].a), 100.0);
+              const double turn = static_cast<double>(cuts[i][k].c - flat[i][k].c) / (360.0 * kRotaryUnitsPerDeg);
+              ASSERT_NEAR(turn, std::round(turn), 100.0 / (360.0 * kRotaryUnitsPerDeg));
+            }
+          }
+        }
+  }
+}
+
+/// On an incline across its roofs each prism is cut as on a plane, with A turned on by the incline.
+TEST(OnBase, AnInclineAcrossTheRoofsTurnsA) {
+  const Plan plan = make_plan(prisms_on(plane_base(12.0, 0.0, Standing::normal)), machine("ideal"));
+  ASSERT_EQ(plan.poses.size(), 2U);
+  // The part rises towards +x, that is the blank towards -Y: facet 1, which faces -Y, leans back by as much.
+  EXPECT_NEAR(plan.poses[0].rounded.a_deg, 57.0, 1e-7);
+  EXPECT_NEAR(plan.poses[1].rounded.a_deg, 33.0, 1e-7);
+  EXPECT_EQ(plan.poses[0].rounded.c_deg, 0.0);
+  EXPECT_EQ(plan.stock_mm, 0.0);
+}
+
+/// Of prisms in parallel on an incline the blank stands over the rims by half a base times its slope, and more where
+/// the cut opens wider for it: h = s (b / 2 + h) along x.
+TEST(OnBase, TheBlankStandsOverTheRimsOfParallelElements) {
+  const Job job = prisms_on(plane_base(10.0, 0.0, Standing::parallel));
+  const double slope = std::tan(Angle::from_deg(10.0).rad());
+  EXPECT_NEAR(stock_mm(job, cut_elements(job)), slope * 0.2255 / (1.0 - slope), 1e-7);
+  const Job bulging = prisms_on(sphere_base(20.0, Standing::normal));
+  EXPECT_EQ(stock_mm(bulging, cut_elements(bulging)), 0.0);
+}
+
+/// A neighbour that stands lower by d cuts d / sqrt(2) deep under a prism's rim, normal to its own facet.
+TEST(OnBase, RimsAreCutAsDeepAsNeighboursStandLower) {
+  const auto overcut_um = [](const Job& job) { return verified(job, text_of(job)).rim_overcut_um_max; };
+  const double d_mm = 0.451 * std::tan(Angle::from_deg(8.0).rad());
+  EXPECT_NEAR(overcut_um(prisms_on(plane_base(8.0, 0.0, Standing::parallel))), 1e3 * d_mm / std::sqrt(2.0), 1e-6);
+  // Along the roofs rims do not run beside each other: the tool's ends stand where the walls are.
+  EXPECT_EQ(overcut_um(prisms_on(plane_base(8.0, 90.0, Standing::parallel))), 0.0);
+  EXPECT_EQ(overcut_um(prisms_on(plane_base(8.0, 0.0, Standing::normal))), 0.0);
+  EXPECT_EQ(overcut_um(cubes_on(plane_base(6.0, 40.0, Standing::normal), true)), 0.0);
+  EXPECT_EQ(overcut_um(cubes_on(plane_base(6.0, 40.0, Standing::normal), false)), 0.0);
+}
+
+/// Collects the sweeps of a program, for dexels.
+struct SweepSink : NcSink {
+  explicit SweepSink(const Machine& m) : machine_of(m) {}
+  void motion(const NcMotion& motion, const NcSettings&) override {
+    if ((motion.known & 7) != 7 || (motion.moved & 7) == 0) return;
+    poses.push_back(machine_from_workpiece(machine_of, rotary_pose(machine_of, motion.to)));
+    sweeps.push_back({static_cast<std::uint32_t>(poses.size() - 1), motion.place, false,
+                      machine_point(machine_of, motion.from), machine_point(machine_of, motion.to)});
+  }
+  void dwell(double, const NcPlace&, const AxisPositions&) override {}
+  const Machine& machine_of;
+  std::vector<Sweep> sweeps;
+  std::vector<RigidMotion> poses;
+};
+
+/// Height of the lowest of all elements' cuts over a place, each open upwards without end; 0 where none is.
+double lowest_cut_mm(const std::vector<Groove>& grooves, double x_mm, double y_mm, bool& is_beside_an_end) {
+  double lowest_mm = 0.0;
+  is_beside_an_end = false;
+  for (const Groove& groove : grooves) {
+    double height_mm = -1e9;
+    for (const DesignFacet& facet : groove.facets)
+      height_mm =
+          std::max(height_mm, (facet.offset_mm - facet.normal.head<2>().dot(Vec2(x_mm, y_mm))) / facet.normal.z());
+    const double over_mm = std::abs(groove.along_mm({x_mm, y_mm, height_mm})) - groove.half_width_mm;
+    if (!groove.is_cube() && std::abs(over_mm) < 1e-6) is_beside_an_end = true;
+    if (groove.is_cube() || over_mm < 0.0) lowest_mm = std::min(lowest_mm, height_mm);
+  }
+  return lowest_mm;
+}
+
+/// What is cut, by dexels of all programs' moves together, is the lowest of all elements' cavities and no more: no
+/// element's cut goes into a neighbour but where that element's own facets do.
+TEST(OnBase, WhatIsLeftIsTheLowestOfAllCavities) {
+  for (const Named& named : jobs()) {
+    SCOPED_TRACE(named.what);
+    const Machine m = machine_of(named.job);
+    SweepSink sink(m);
+    run_nc(parse_nc(text_of(named.job), "p", NcDialect::rs274ngc), sink);
+    const Workpiece3d workpiece = workpiece_of(named.job, m, {});
+    const Vec2 half = 0.45 * blank_extent_mm(named.job);
+    double lowest_mm = 0.0;
+    for (const Groove& groove : workpiece.grooves) lowest_mm = std::min(lowest_mm, groove.root_mm.z());
+    const DexelBox box{{-half.x(), -half.y(), lowest_mm - 0.1}, {half.x(), half.y(), 0.0}};
+    const DexelField field = cut_dexels(sink.sweeps, sink.poses, wedge_of(named.job, m), box, 2, 41);
+    double worst_mm = 0.0;
+    std::size_t compared = 0;
+    for (std::size_t row = 0; row < field.rows; ++row)
+      for (std::size_t column = 0; column < field.columns; ++column) {
+        const double x =
+            box.low_mm.x() + (static_cast<double>(column) + 0.5) / static_cast<double>(field.columns) * 2.0 * half.x();
+        const double y =
+            box.low_mm.y() + (static_cast<double>(row) + 0.5) / static_cast<double>(field.rows) * 2.0 * half.y();
+        bool is_beside_an_end = false;
+        const double expected_mm = lowest_cut_mm(workpiece.grooves, x, y, is_beside_an_end);
+        if (is_beside_an_end) continue;
+        ++compared;
+        worst_mm = std::max(worst_mm, std::abs(field.lowest_mm[row * field.columns + column] - expected_mm));
+      }
+    EXPECT_GT(compared, 1000U);
+    EXPECT_LT(worst_mm, 5e-6);
+  }
+}
+
+std::string complaint(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no complaint";
+}
+
+TEST(OnBase, TiltsThatTheMachineCannotReachAreNamed) {
+  const auto planned = [](const Job& job, const Machine& m) { return complaint([&] { make_plan(job, m); }); };
+  // sin(turn) = sin(tilt) / cos(A), with sin(A) = cos(tilt) / sqrt(2): by hand.
+  const std::string along_roofs = planned(prisms_on(cylinder_base(20.0, true, Standing::normal)), machine("ideal"));
+  EXPECT_EQ(along_roofs,
+            "machine: element 0, tilted by 1.2920 degrees: its root would stand at 1.8269 degrees to the tool's edge, "
+            "which A and C cannot turn in the facet, at most 0.6352 are borne: a finishing cut over the edge's width");
+  Machine stiff = machine("ideal");
+  stiff.a.limits_deg.value = {0.0, 50.0};
+  EXPECT_EQ(
+      planned(prisms_on(plane_base(12.0, 0.0, Standing::normal)), stiff),
+      "machine: element 0, tilted by 12.0000 degrees: machine ideal: axis A would go to 57.0000 degrees, beyond its "
+      "limits of 0 to 50");
+  const std::string steep = planned(cubes_on(plane_base(30.0, 90.0, Standing::normal), false), machine("ideal-dmc"));
+  EXPECT_NE(steep.find("element 0, tilted by 30.0000 degrees: the tool would stand turned by"), std::string::npos)
+      << steep;
+}
+
+/// Faults that are planted in the text of a program.
+class BaseFaults : public ::testing::TestWithParam<bool> {
+ protected:
+  BaseFaults()
+      : job_(GetParam() ? cubes_on(sphere_base(4.0, Standing::normal), false)
+                        : prisms_on(cylinder_base(6.0, false, Standing::normal))),
+        text_(text_of(job_)) {}
+
+  /// The text with one word of a line changed, the line after `from` that begins with `start`.
+  std::string changed(std::size_t from, const std::string& start, char letter, double by) const {
+    const std::size_t line = text_.find("\n" + start, from) + 1;
+    const std::size_t word = text_.find(letter, line) + 1;
+    const std::size_t end = text_.find_first_of(" \n", word);
+    const double value = std::stod(text_.substr(word, end - word));
+    return text_.substr(0, word) + fmt::format("{:.7f}", value + by) + text_.substr(end);
+  }
+  std::string without_line(std::size_t at) const {
+    const std::size_t first = text_.rfind('\n', at) + 1;
+    return text_.substr(0, first) + text_.substr(text_.find('\n', at) + 1);
+  }
+  std::size_t last_visit(int element) const { return text_.rfind(fmt::format("(element {})", element)); }
+
+  Job job_;
+  std::string text_;
+};
+
+TEST_P(BaseFaults, NoneWithoutAFault) {
+  EXPECT_EQ(kinds_of(verified(job_, text_)), "");
+}
+
+TEST_P(BaseFaults, AShiftedElement) {
+  // Words that stay are not written: Y, or X where Y stays.
+  const std::size_t visit = last_visit(4);
+  const bool has_y = text_.find(" Y", visit) < text_.find(" call", visit);
+  const std::size_t word = text_.find(has_y ? " Y" : " X", visit);
+  ASSERT_LT(word, text_.find(" call", visit));
+  const Verification v =
+      verified(job_, changed(visit, text_.substr(text_.rfind('\n', word) + 1, 4), has_y ? 'Y' : 'X', 0.0005));
+  ASSERT_FALSE(v.passes());
+  for (const Finding& finding : v.findings) EXPECT_EQ(finding.element, 4) << listed(v);
+}
+
+TEST_P(BaseFaults, AWrongTilt) {
+  const std::size_t turn = text_.rfind(GetParam() ? "\nG0 B" : "\nG0 A", last_visit(4));
+  const Verification v = verified(job_, changed(turn - 1, GetParam() ? "G0 B" : "G0 A", GetParam() ? 'B' : 'A', 0.02));
+  EXPECT_FALSE(v.passes());
+}
+
+TEST_P(BaseFaults, AWrongC) {
+  const std::size_t turn = text_.rfind(GetParam() ? "\nG0 B" : "\nG0 A", last_visit(4));
+  const Verification v = verified(job_, changed(turn - 1, GetParam() ? "G0 B" : "G0 A", 'C', 0.02));
+  EXPECT_FALSE(v.passes());
+}
+
+TEST_P(BaseFaults, AMissingPlunge) {
+  const Verification v = verified(job_, without_line(text_.find(" call", last_visit(4))));
+  ASSERT_FALSE(v.passes());
+  EXPECT_EQ(v.findings.front().element, 4) << listed(v);
+}
+
+TEST_P(BaseFaults, ATurnLost) {
+  const std::size_t turn = text_.rfind(GetParam() ? "\nG0 B" : "\nG0 A", last_visit(4));
+  EXPECT_FALSE(verified(job_, without_line(turn + 1)).passes());
+}
+
+TEST_P(BaseFaults, AnElementCutAtTheHeightOfAFlatArray) {
+  Job flat = job_;
+  flat.base.reset();
+  EXPECT_FALSE(verified(job_, text_of(flat)).passes());
+}
+
+TEST_P(BaseFaults, ARapidMoveThroughTheBlank) {
+  const std::size_t line = text_.find("\nG0 Z", last_visit(4)) + 1;
+  const double z_mm = std::stod(text_.substr(line + 4));
+  const std::string low = text_.substr(0, line) + fmt::format("G0 Z{:.6f}\n", z_mm - 0.8) + text_.substr(line);
+  const std::string kinds = kinds_of(verified(job_, low));
+  EXPECT_NE(kinds.find("rapid_in_material"), std::string::npos) << kinds;
+}
+
+INSTANTIATE_TEST_SUITE_P(OfPrismsAndCubes, BaseFaults, ::testing::Values(false, true));
 
 }  // namespace
 }  // namespace retrace::fabrication::test

@@ -208,6 +208,66 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
   }
 }
 
+TEST(JobFile, BasesReadBackEqual) {
+  for (const char* const base : {"kind = \"plane\"\nincline_deg = 7.5\nazimuth_deg = 30\nelements = \"parallel\"\n",
+                                 "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelements = \"parallel\"\n",
+                                 "kind = \"cylinder\"\nradius_mm = 30\naxis = \"y\"\nelements = \"normal\"\n",
+                                 "kind = \"sphere\"\nradius_mm = 40\nelements = \"normal\"\n",
+                                 "kind = \"formula\"\nsag_mm = \"0.01*x^2 - y/9\"\nelements = \"parallel\"\n"}) {
+    const std::string text = job_text(square_job(4)) + "\n[base]\n" + base;
+    const Job job = parse_job(text, "j.toml");
+    ASSERT_TRUE(job.base) << base;
+    const std::string again = job_text(job);
+    EXPECT_NE(again.find(std::string("\n[base]\n") + base), std::string::npos) << again;
+    EXPECT_EQ(job_text(parse_job(again, "j.toml")), again);
+    EXPECT_EQ(cut_elements(job).front().foot_mm, cut_elements(parse_job(again, "j.toml")).front().foot_mm);
+  }
+}
+
+TEST(JobFile, BasesThatCannotBeAreRefused) {
+  const auto complaint = [](const Job& job, const std::string& base) -> std::string {
+    try {
+      parse_job(job_text(job) + "\n[base]\n" + base, "j.toml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  const Job good = square_job(4);
+  const std::string plane = "kind = \"plane\"\nincline_deg = 5\n";
+  ASSERT_EQ(complaint(good, plane), "none");
+  const auto expect = [&](const Job& job, const std::string& base, const std::string& message) {
+    const std::string said = complaint(job, base);
+    EXPECT_TRUE(said.starts_with("j.toml:")) << said;
+    EXPECT_NE(said.find(": base" + message), std::string::npos) << said << "\nnot " << message;
+    EXPECT_EQ(said.find('\n'), std::string::npos);
+  };
+  expect(good, "kind = \"cone\"\n", ".kind: must be");
+  expect(good, "kind = \"plane\"\n", ".incline_deg: ");
+  expect(good, "kind = \"plane\"\nincline_deg = 61\n", ".incline_deg: must be >= 0 and <= 60, got 61");
+  expect(good, plane + "radius_mm = 3\n", ".radius_mm: unknown key");
+  expect(good, plane + "elements = \"upright\"\n", ".elements: must be");
+  expect(good, "kind = \"sphere\"\nradius_mm = 0\n", ".radius_mm: must not be 0");
+  expect(good, "kind = \"cylinder\"\nradius_mm = 0.3\n", ".radius_mm: ");
+  expect(good, "kind = \"cylinder\"\nradius_mm = 9\naxis = \"z\"\n", ".axis: must be");
+  expect(good, "kind = \"formula\"\nsag_mm = \"x +\"\n", ".sag_mm: ");
+  expect(good, "kind = \"formula\"\nsag_mm = \"1/x\"\n", ".sag_mm: is not finite");
+  expect(good, "kind = \"plane\"\nincline_deg = 55\nelements = \"parallel\"\n",
+         ".incline_deg: must rise less over its elements for a tool to come out of its cuts");
+  Job direct = good;
+  direct.workpiece.kind = WorkpieceKind::direct;
+  expect(direct, plane, ".incline_deg: needs a mould: workpiece.kind must be \"mould\"");
+  Job offset = good;
+  offset.array.x_offset_mm = 0.1;
+  expect(offset, plane, ".incline_deg: not allowed together with array.x_offset_mm");
+  Job masked = good;
+  masked.array.pattern = {"####", "###-", "####", "###-"};
+  expect(masked, plane, ".incline_deg: not allowed together with array.pattern");
+  expect(square_job(1), plane, ".incline_deg: not allowed for arrangement = \"single\"");
+  Job small = square_job(2, Arrangement::aligned);
+  expect(small, "kind = \"plane\"\nincline_deg = 40\nazimuth_deg = 45\nelements = \"normal\"\n", ".incline_deg: ");
+}
+
 TEST(JobFile, APatternMustLeaveSomethingToCut) {
   Job job = square_job(2, Arrangement::offset);
   job.array.pattern = {"-#", "--"};  // the only cell that is cut lies in the shifted row's last column

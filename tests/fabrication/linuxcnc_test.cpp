@@ -9,7 +9,7 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "tests/fabrication/chiseling_jobs.h"
+#include "tests/fabrication/base_jobs.h"
 #include "tests/fabrication/linuxcnc.h"
 
 // LinuxCNC's own interpreter reads our RS274/NGC text: its canonical moves are the planned ones. Golden programs pin
@@ -73,6 +73,14 @@ TEST(LinuxCnc, MovesAsPlannedForAllStrategiesArrangementsAndMachines) {
 TEST(LinuxCnc, MovesAsPlannedForCubeCorners) {
   for (const bool is_hexagonal : {false, true})
     expect_planned(make_plan(cube_job(is_hexagonal), machine("ideal-dmc")), is_hexagonal ? "hexagonal" : "triangular");
+}
+
+TEST(LinuxCnc, MovesAsPlannedForElementsOnBases) {
+  expect_planned(make_plan(prisms_on(plane_base(12.0, 0.0, Standing::normal)), machine("ideal")), "incline");
+  expect_planned(make_plan(prisms_on(cylinder_base(6.0, false, Standing::normal)), machine("thesis")), "cylinder");
+  expect_planned(make_plan(prisms_on(sphere_base(-12.0, Standing::parallel)), machine("paper")), "bowl");
+  expect_planned(make_plan(cubes_on(cylinder_base(3.0, true, Standing::normal), true), machine("ideal-dmc")),
+                 "hexagons");
 }
 
 TEST(LinuxCnc, TakesSplitAndStoppedPrograms) {

@@ -76,6 +76,7 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"wall_overcut_nm_predicted", r.wall_overcut_nm_predicted},
                      {"removed_volume_mm3", r.removed_volume_mm3},
                      {"border_overcut_mm3", r.border_overcut_mm3},
+                     {"rim_overcut_um_max", r.rim_overcut_um_max},
                      {"free_tool_length_mm", r.free_tool_length_mm},
                      {"poses", poses_json(r, run.machine)},
                      {"time_s", r.time.total_s()},
@@ -108,6 +109,8 @@ std::string verification_table(const VerificationRun& run) {
   row("removed", fixed(r.removed_volume_mm3, 6) + " mm3");
   if (r.border_overcut_mm3 > 0.0)
     row("beyond the apertures", fixed(r.border_overcut_mm3, 6) + " mm3, as triangular cavities must");
+  if (r.rim_overcut_um_max > 0.0)
+    row("under rims", fixed(r.rim_overcut_um_max, 3) + " um, as neighbours at other heights must");
   row("free tool length", fixed(r.free_tool_length_mm, 2) + " mm needed");
   row("time", fixed(r.time.total_s(), 1) + " s");
   for (std::size_t i = 0; i < r.findings.size() && i < kShownFindings; ++i) {

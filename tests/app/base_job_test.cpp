@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/app/program.h"
+
+// Elements on bases from a design to NC text and back, as users do it.
+
+namespace retrace::test {
+namespace {
+
+const char* const kExample = "fabrication/prisms_on_cylinder.toml";
+
+class BaseJob : public ::testing::Test {
+ protected:
+  /// A refusal: exit code 2, one line, nothing written.
+  void expect_refused(const Arguments& arguments, const std::string& what) {
+    const auto before = folder_.names();
+    const Outcome refused = retrace(folder_, arguments);
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    EXPECT_NE(refused.err.find(what), std::string::npos) << refused.err;
+    EXPECT_EQ(refused.err.find('\n'), refused.err.size() - 1) << refused.err;
+    EXPECT_EQ(folder_.names(), before);
+  }
+  Json verified(const std::string& dialect) {
+    const Outcome made = retrace(folder_, {"fabricate", "job.toml", "--dialect", dialect, "-o", dialect, "--quiet"});
+    EXPECT_EQ(made.code, 0) << made.err;
+    const Json plan = folder_.json(dialect + "/fabrication.json");
+    const std::string file = dialect + "/" + plan["programs"][0].get<std::string>();
+    const Json json = retrace_json(folder_, {"verify", "job.toml", file});
+    EXPECT_NEAR(json["time_s"].get<double>(), plan["time_s"].get<double>(), 0.01 * plan["time_s"].get<double>());
+    return json;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BaseJob, OfTheExampleVerifiesInEveryDialect) {
+  const Outcome job =
+      retrace(folder_, {"job", example(kExample), "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet"});
+  ASSERT_EQ(job.code, 0) << job.err;
+  for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"}) {
+    const Json json = verified(dialect);
+    EXPECT_EQ(json["verdict"], "pass") << json.dump().substr(0, 1000);
+    EXPECT_EQ(json["elements"], json["elements_cut"]);
+    EXPECT_EQ(json["elements"], 60);
+    EXPECT_LT(json["facet_distance_nm_max"].get<double>(), 1.0);
+    // Ten rows of roofs, each with its own A for either facet.
+    EXPECT_EQ(json["poses"].size(), 20U);
+  }
+  expect_refused({"verify", "job.toml", "rs274ngc/program.ngc", "--as-machined", "part.toml"},
+                 "--as-machined: the facets");
+  expect_refused({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}, "base: no map is drawn");
+}
+
+TEST_F(BaseJob, OfCubeCornersOnASphere) {
+  folder_.write("design.toml",
+                "[element]\nkind = \"triangular_icc\"\naperture_mm = 0.3\n[array]\nx_length_mm = 0.76\n"
+                "y_length_mm = 0.53\npartial_elements = \"omit\"\n[base]\nkind = \"sphere\"\nradius_mm = 8\n"
+                "[body]\nthickness_mm = 1\nrefractive_index = 1.49\n");
+  ASSERT_EQ(retrace(folder_,
+                    {"job", "design.toml", "--strategy", "dmc", "--tool-width-mm", "0.6", "-o", "job.toml", "--quiet"})
+                .code,
+            0);
+  const Json json = verified("rs274ngc");
+  EXPECT_EQ(json["verdict"], "pass") << json.dump().substr(0, 1000);
+  EXPECT_LT(json["facet_distance_nm_max"].get<double>(), 1.0);
+  expect_refused(
+      {"job", "design.toml", "--strategy", "dmc", "--tool-width-mm", "0.6", "--workpiece", "direct", "-o", "d.toml"},
+      "--workpiece: must be mould for a design with [base], got \"direct\"");
+}
+
+TEST_F(BaseJob, OfWhatCannotBeCutIsRefused) {
+  expect_refused({"job", example("pin_bundle.toml"), "--strategy", "dmc", "--tool-width-mm", "9", "-o", "pins.toml"},
+                 "pins are ground one by one and bundled, not cut");
+  ASSERT_EQ(retrace(folder_, {"job", example(kExample), "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet", "--set",
+                              "base.axis=x"})
+                .code,
+            0);
+  expect_refused({"fabricate", "job.toml", "-o", "program"}, "which A and C cannot turn in the facet");
+}
+
+}  // namespace
+}  // namespace retrace::test
