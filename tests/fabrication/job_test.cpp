@@ -264,8 +264,8 @@ TEST(JobFile, BasesThatCannotBeAreRefused) {
   masked.array.pattern = {"####", "###-", "####", "###-"};
   expect(masked, plane, ".incline_deg: not allowed together with array.pattern");
   expect(square_job(1), plane, ".incline_deg: not allowed for arrangement = \"single\"");
-  Job small = square_job(2, Arrangement::aligned);
-  expect(small, "kind = \"plane\"\nincline_deg = 40\nazimuth_deg = 45\nelements = \"normal\"\n", ".incline_deg: ");
+  expect(good, "kind = \"plane\"\nincline_deg = 50\n",
+         ".incline_deg: must leave the facets of its elements at most 88");
 }
 
 TEST(JobFile, APatternMustLeaveSomethingToCut) {
