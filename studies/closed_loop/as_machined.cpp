@@ -305,9 +305,10 @@ bool has_flares(const VerificationRun& run) {
 
 AsMachined as_machined(const VerificationRun& run) {
   if (run.job.base)
-    throw InputError({"", 0, "--as-machined"},
-                     "the facets of [part] stand on a plane: no design is written of elements on a base, got a job with "
-                     "[base]");
+    throw InputError(
+        {"", 0, "--as-machined"},
+        "the facets of [part] stand on a plane: no design is written of elements on a base, got a job with "
+        "[base]");
   AsMachined part;
   std::int64_t cut = 0;
   for (const ElementResult& element : run.result.elements) {
