@@ -90,8 +90,11 @@ std::vector<Pass> raster(const TurnedSurface& surface, const TurningTool& tool, 
     throw InputError(where,
                      fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPoints, lines * points));
   const NoseCompensation nose(surface, tool, TouchMap(surface, tool, 0.5 * std::hypot(o.width_mm, o.height_mm)));
-  const Vec2 across = Vec2::UnitX();
-  const Vec2 cut = -Vec2::UnitY();
+  // The rake face is square to the machine's Y: a skew turns the part against it, the lines with the part.
+  const double cosine = std::cos(tool.skew_deg * kDegree);
+  const double sine = std::sin(tool.skew_deg * kDegree);
+  const Vec2 across(cosine, sine);
+  const Vec2 cut(sine, -cosine);
   const double step = o.width_mm / points;
   std::vector<Pass> passes;
   for (int line = 0; line < static_cast<int>(lines); ++line) {
@@ -99,11 +102,13 @@ std::vector<Pass> raster(const TurnedSurface& surface, const TurningTool& tool, 
     TouchForecast forecast(nose.end_rad());
     for (int i = 0; i <= static_cast<int>(points); ++i) {
       PathPoint p;
-      p.x_mm = 0.5 * o.height_mm - o.feed_mm * line;
-      p.y_mm = 0.5 * o.width_mm - step * i;
+      const Vec2 tip(0.5 * o.height_mm - o.feed_mm * line, 0.5 * o.width_mm - step * i);
+      p.x_mm = across.dot(tip);
+      p.y_mm = -cut.dot(tip);
+      p.c_deg = tool.skew_deg == 0.0 ? 0.0 : -tool.skew_deg;
       p.seconds = i == 0 ? 0.0 : 60.0 * step / o.cutting_mm_per_min;
       double angle = forecast.next();
-      p.z_mm = nose.height_mm(p.x_mm, p.y_mm, across, cut, angle);
+      p.z_mm = nose.height_mm(tip.x(), tip.y(), across, cut, angle);
       forecast.add(angle);
       pass.push_back(p);
     }

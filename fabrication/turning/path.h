@@ -49,7 +49,8 @@ using Pass = std::vector<PathPoint>;
 
 /// Frame of the machine: X to the side on which the tool stands, Z along the spindle, out of the part. C rises and
 /// turns the part by the right hand about Z, so that the tool cuts towards -Y and, in the part, against the sense of
-/// angles. A skew puts the tool to X = r cos(skew), Y = -r sin(skew): its rake face stays square to Y. Nose radius
+/// angles. A skew of a spiral puts the tool to X = r cos(skew), Y = -r sin(skew), that of a raster turns the part to
+/// C = -skew: the rake face stays square to Y. Nose radius
 /// compensation is along Z alone: the tool is raised by what it would otherwise cut too much, so that X, Y and C stay
 /// smooth. \throw InputError at `where` for a path of more than 2^26 points
 std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& options,

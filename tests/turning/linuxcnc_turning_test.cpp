@@ -88,9 +88,12 @@ TEST(LinuxCncTurning, RastersInTheirTimes) {
   o.height_mm = 0.3;
   o.feed_mm = 0.05;
   o.arc_mm = 0.02;
-  TurningTool tool;
-  tool.nose_radius_mm = 0.1;
-  expect_read(make_path(wavy(), tool, o, kHere), o);
+  for (const double skew : {0.0, -25.0}) {
+    TurningTool tool;
+    tool.nose_radius_mm = 0.1;
+    tool.skew_deg = skew;
+    expect_read(make_path(wavy(), tool, o, kHere), o);
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -93,6 +94,18 @@ TEST_F(Turn, FindsTheLeastSkew) {
                            "50\nspindle_rpm = 60\nsampling = \"arc\"\narc_um = 4\n");
   EXPECT_NEAR(json["tool"]["skew_deg"].get<double>(), -27.2, 0.05);
   EXPECT_LE(json["tool"]["clearance_needed_deg"].get<double>(), 12.0);
+}
+
+TEST_F(Turn, FindsTheLeastSkewOfARaster) {
+  // A slope of 18 degrees along the lines: sin 18 cos s = sin 12 of the tool, or less of it.
+  const Json json = turned(kHead +
+                           "[base]\nkind = \"formula\"\nformula = \"0.325*y\"\n[tool]\nnose_radius_mm = "
+                           "0.1\nclearance_deg = 12\nfind_least_skew = true\n[path]\nstrategy = \"raster\"\nsize_mm = "
+                           "[0.4, 0.4]\nfeed_um = 20\narc_um = 4\ncutting_mm_per_min = 60\n");
+  const double slope = std::atan(0.325);
+  const double skew = std::acos(std::sin(12.0 * std::numbers::pi / 180.0) / std::sin(slope)) * 180.0 / std::numbers::pi;
+  EXPECT_NEAR(std::abs(json["tool"]["skew_deg"].get<double>()), skew, 0.05);
+  EXPECT_EQ(json["verification"]["verdict"], "pass");
 }
 
 TEST_F(Turn, WarnsOfUntriedTools) {

@@ -65,7 +65,6 @@ PathOptions read_path(TomlTable table, const TurningTool& tool) {
     path.sampling = Sampling::arc;
     path.arc_mm = 1e-3 * table.required_number("arc_um", {.low = 0.1, .high = 1e4});
     path.cutting_mm_per_min = table.required_number("cutting_mm_per_min", {.low = 0.1, .high = 1e5});
-    if (tool.skew_deg != 0.0) table.fail("strategy", "must be \"spiral\" for a tool with a skew, got \"raster\"");
     return path;
   }
   path.radius_mm = table.required_number("radius_mm", kPositiveMm);
@@ -127,8 +126,7 @@ void settle_skew(TurnedPart& part, const InputLocation& where) {
   }
   const ClearanceFigures figures = clearance_figures(part.tool, slopes);
   if (figures.clears(part.tool)) return;
-  const auto skew =
-      part.path.strategy == Strategy::spiral ? least_skew_deg(part.tool, slopes, kTriedSkewDeg) : std::nullopt;
+  const auto skew = least_skew_deg(part.tool, slopes, kTriedSkewDeg);
   throw InputError(
       where,
       fmt::format(
@@ -153,8 +151,6 @@ TurnedPart parse_turned_part(std::string_view text, const std::string& source_na
   const TurningTool tool = read_tool(tool_table, skew_is_least);
   TomlTable path_table = root.required_table("path");
   const PathOptions path = read_path(path_table, tool);
-  if (skew_is_least && path.strategy == Strategy::raster)
-    tool_table.fail("find_least_skew", "must be false for a raster, which has no skew");
   const TurnedSurface bare(base, extrapolation, {}, base_table.where("kind"));
   std::vector<Lenslet> lenslets = read_lenslets(root, bare);
   const TurningMachine machine = read_machine(root.table("machine"));

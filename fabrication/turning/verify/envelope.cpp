@@ -145,23 +145,26 @@ void Envelope::cross_line(const CutPass& pass, double x_mm, double y_mm, double&
   const double c = pass.c_rad.front();
   const double x = x_mm * std::cos(c) - y_mm * std::sin(c);
   const double y = x_mm * std::sin(c) + y_mm * std::cos(c);
-  // X may change along the line, so that the sideways distance is found with the place.
+  // X may change along the line, so that the sideways distance is found with the place: by Newton's rule.
   double at = y;
-  for (int step = 0; step < 4; ++step) {
+  constexpr int kMostSteps = 20;
+  for (int step = 0; step < kMostSteps; ++step) {
     const auto above = std::lower_bound(pass.y_mm.begin(), pass.y_mm.end(), at, std::greater<>());
     if (above == pass.y_mm.begin() && at > pass.y_mm.front()) return;
     if (above == pass.y_mm.end()) return;
     const auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - pass.y_mm.begin(), 1)) - 1;
-    const double share = (at - pass.y_mm[k]) / (pass.y_mm[k + 1] - pass.y_mm[k]);
-    const double aside = x - (pass.x_mm[k] + share * (pass.x_mm[k + 1] - pass.x_mm[k]));
+    const double across = (pass.x_mm[k + 1] - pass.x_mm[k]) / (pass.y_mm[k + 1] - pass.y_mm[k]);
+    const double aside = x - (pass.x_mm[k] + across * (at - pass.y_mm[k]));
     if (std::abs(aside) > reach_mm_) return;
-    const double z = pass.z_mm[k] + share * (pass.z_mm[k + 1] - pass.z_mm[k]);
-    const double next = y - lift_mm(aside) * sin_rake_;
-    if (std::abs(next - at) < 1e-13) {
+    const double miss = at - y + lift_mm(aside) * sin_rake_;
+    if (std::abs(miss) < 1e-13) {
+      const double share = (at - pass.y_mm[k]) / (pass.y_mm[k + 1] - pass.y_mm[k]);
+      const double z = pass.z_mm[k] + share * (pass.z_mm[k + 1] - pass.z_mm[k]);
       lowest = std::min(lowest, z + lift_mm(aside) * cos_rake_);
       return;
     }
-    at = next;
+    const double lift_slope = aside / std::sqrt(radius_mm_ * radius_mm_ - aside * aside);
+    at -= miss / (1.0 - lift_slope * across * sin_rake_);
   }
 }
 

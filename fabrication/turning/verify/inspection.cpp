@@ -11,49 +11,17 @@
 
 #include "core/number_format.h"
 #include "fabrication/turning/finish.h"
+#include "fabrication/turning/verify/deviation_map.h"
 
 namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::Vec2;
-constexpr double kNmPerMm = 1e6;
-/// Turns or lines next to the rim and the centre that have no neighbours or turn on the spot.
+/// Turns or lines next to the rim that have no neighbours.
 constexpr double kRimFeeds = 4.0;
+constexpr int kGoldenSteps = 40;
 /// Nearer to the centre the cut turns so much from one end of a cusp to the other that closed forms do not hold.
 constexpr double kCentreFeeds = 20.0;
-
-/// Square to the surface, in nm.
-std::optional<double> deviation_nm(const Envelope& envelope, const TurnedSurface& design, const Vec2& p) {
-  const auto height = envelope.height_mm(p.x(), p.y());
-  if (!height) return std::nullopt;
-  const Dual z = design.gradient(p.x(), p.y());
-  return (*height - z.v) / std::sqrt(1.0 + z.dx * z.dx + z.dy * z.dy) * kNmPerMm;
-}
-
-/// Where f is largest between a and b, and its value there; golden section.
-std::pair<double, double> largest(const std::function<double(double)>& f, double a, double b) {
-  constexpr double kShare = 0.6180339887498949;
-  double c = b - kShare * (b - a);
-  double d = a + kShare * (b - a);
-  double fc = f(c);
-  double fd = f(d);
-  for (int step = 0; step < 40; ++step) {
-    if (fc > fd) {
-      b = d;
-      d = c;
-      fd = fc;
-      c = b - kShare * (b - a);
-      fc = f(c);
-    } else {
-      a = c;
-      c = d;
-      fc = fd;
-      d = a + kShare * (b - a);
-      fd = f(d);
-    }
-  }
-  return fc > fd ? std::pair(c, fc) : std::pair(d, fd);
-}
 
 /// Height of cusps square to the surface: in the plane across the cuts they are those of circle against circle, seen
 /// along the slope and then along z.
@@ -99,11 +67,11 @@ std::optional<CuspSample> cusps_at(const Envelope& envelope, const TurnedSurface
     const double a = step * static_cast<double>(i - 1);
     const double b = step * static_cast<double>(i + 1);
     if (e[i] > e[i - 1] && e[i] >= e[i + 1]) {
-      const auto [at, value] = largest(along, a, b);
+      const auto [at, value] = largest_between(along, a, b, kGoldenSteps);
       extremes.push_back({at, value, true});
     }
     if (e[i] < e[i - 1] && e[i] <= e[i + 1]) {
-      const auto [at, value] = largest([&](double s) { return -along(s); }, a, b);
+      const auto [at, value] = largest_between([&](double s) { return -along(s); }, a, b, kGoldenSteps);
       extremes.push_back({at, -value, false});
     }
   }
@@ -157,41 +125,6 @@ std::vector<std::pair<Vec2, Vec2>> profile_places(const InspectedRegion& region)
       }
     }
   return places;
-}
-
-bool is_within(const InspectedRegion& region, const Vec2& p) {
-  const double rim = kRimFeeds * region.feed_mm;
-  if (region.is_round) return p.norm() <= region.radius_mm - rim && p.norm() >= rim;
-  return std::abs(p.x()) <= region.half_height_mm - rim && std::abs(p.y()) <= region.half_width_mm - rim;
-}
-
-void fill_map(Inspection& result, const Envelope& envelope, const TurnedSurface& design, const InspectedRegion& region,
-              std::size_t pixels) {
-  result.columns = pixels;
-  result.map_width_mm =
-      2.0 * (region.is_round ? region.radius_mm : std::max(region.half_height_mm, region.half_width_mm));
-  result.map_nm.assign(pixels * pixels, std::numeric_limits<double>::quiet_NaN());
-  const double pixel = result.map_width_mm / static_cast<double>(pixels);
-  tbb::parallel_for(std::size_t{0}, pixels, [&](std::size_t row) {
-    for (std::size_t column = 0; column < pixels; ++column) {
-      const Vec2 p(pixel * (static_cast<double>(column) + 0.5) - 0.5 * result.map_width_mm,
-                   0.5 * result.map_width_mm - pixel * (static_cast<double>(row) + 0.5));
-      if (!is_within(region, p)) continue;
-      const auto deviation = deviation_nm(envelope, design, p);
-      result.map_nm[row * pixels + column] = deviation ? *deviation : std::numeric_limits<double>::infinity();
-    }
-  });
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < result.map_nm.size(); ++i) {
-    const double e = result.map_nm[i];
-    if (std::isnan(e)) continue;
-    if (std::isinf(e)) throw InputError("the programs leave a place of the part uncut");
-    result.interference_nm = std::max(result.interference_nm, -e);
-    sum += e * e;
-    ++count;
-  }
-  result.rms_nm = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
 }
 
 }  // namespace

@@ -35,10 +35,10 @@ struct Inspection {
   double scallop_most_nm = 0.0;
   double scallop_ratio_low = 0.0;  ///< of simulated by predicted heights, over those
   double scallop_ratio_high = 0.0;
-  double rms_nm = 0.0;      ///< of the map about the design
+  double rms_nm = 0.0;      ///< about the design, at a place drawn in each pixel of the map
   std::size_t columns = 0;  ///< of the map, a square round the region; x rises along a row
   double map_width_mm = 0.0;
-  std::vector<double> map_nm;  ///< not a number outside; rows from the largest y down
+  std::vector<double> map_nm;  ///< greatest by size in each pixel; not a number outside; rows from the largest y down
 };
 
 /// \param pixels of the map on a side \throw InputError if the programs leave a place of the region uncut
