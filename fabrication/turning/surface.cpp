@@ -99,9 +99,10 @@ T TurnedSurface::evaluate_base(const T& x_mm, const T& y_mm) const {
 template <class T>
 T TurnedSurface::evaluate_blend(const Lenslet& lenslet, const T& x_mm, const T& y_mm) const {
   const Polar<T> p = polar(x_mm, y_mm, lenslet.outer.centre_mm);
-  const auto base = [this](const auto& x, const auto& y) { return base_.evaluate(x, y); };
+  const TurnedSurface& self = *this;
+  const auto base = [&self](const auto& x, const auto& y) { return self.base_.evaluate(x, y); };
   if (!lenslet.ends_on_base)
-    return blend_at<kAnyOrder>(lenslet, p, [this](const auto& x, const auto& y) { return evaluate_base(x, y); });
+    return blend_at<kAnyOrder>(lenslet, p, [&self](const auto& x, const auto& y) { return self.evaluate_base(x, y); });
   if constexpr (std::is_same_v<T, Jet2>) {
     // Paths spend most of their time here.
     if (lenslet.blend_order == 1) return blend_at<1>(lenslet, p, base);

@@ -178,7 +178,7 @@ TEST(TurningEnvelope, MapsShowCuspsAndNoWavesOfThePixels) {
   const PathOptions o = spiral(0.8, 0.02);
   const Envelope envelope = cut(sphere(0.0), tool, o);
   const double cusp = finish_figures(effective_radius_mm(tool), o.feed_mm).peak_to_valley_nm;
-  for (const std::size_t pixels : {std::size_t{20}, std::size_t{39}, std::size_t{79}}) {
+  for (const std::size_t pixels : {std::size_t{20}, std::size_t{39}, std::size_t{79}, std::size_t{200}}) {
     SCOPED_TRACE(pixels);
     const Inspection i = inspect(envelope, sphere(0.0), tool, disc(o), pixels);
     for (std::size_t k = 0; k < i.map_nm.size(); ++k) {

@@ -18,6 +18,8 @@ constexpr double kUncut = std::numeric_limits<double>::infinity();
 /// Turns or lines next to the rim and the centre that have no neighbours or turn on the spot.
 constexpr double kRimFeeds = 4.0;
 constexpr int kMostSamples = 12;
+/// Of a feed: pixels smaller than this show cusps one by one.
+constexpr double kResolved = 0.25;
 
 /// What is found in one pixel, nm; not a number outside of the region, infinite where no cut passes.
 struct Pixel {
@@ -51,7 +53,7 @@ class PixelProbe {
     const Vec2 first = drawn(0);
     pixel_.any = take(first);
     const double per_feed = side_ / region_.feed_mm;
-    if (per_feed >= 1.0)
+    if (per_feed >= kResolved)
       take_feed_through(first);
     else
       for (int k = 1; k < std::ceil(kMostSamples * per_feed); ++k) take(drawn(static_cast<std::uint32_t>(k)));
