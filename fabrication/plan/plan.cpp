@@ -148,7 +148,7 @@ class ProgramMaker {
   void begin() {
     program_ = {};
     program_seconds_ = 0.0;
-    program_.subroutines = plan_.subroutines;
+    if (!job_.base) program_.subroutines = plan_.subroutines;
     program_.tilt_letter = machine_.tilt_letter();
     at_ = {};
     raise();
@@ -283,13 +283,13 @@ class ProgramMaker {
     return used_.size() >= kMostSubroutines && !used_.contains(stage.subroutine);
   }
 
-  /// Leaves the subroutines that the program calls: of a base there is one for each tilt of its elements.
-  void leave_used_subroutines() {
+  /// The subroutines that the program calls alone: of a base there is one for each tilt of its elements.
+  void add_used_subroutines() {
     std::vector<Subroutine> left;
     std::map<std::uint32_t, std::uint32_t> places;
     for (const std::uint32_t index : used_) {
       places[index] = static_cast<std::uint32_t>(left.size());
-      left.push_back(std::move(program_.subroutines[index]));
+      left.push_back(plan_.subroutines[index]);
       left.back().number = kFirstSubroutine + static_cast<int>(left.size()) - 1;
     }
     program_.subroutines = std::move(left);
@@ -322,7 +322,7 @@ class ProgramMaker {
     raise();
     turn(0, 0);
     program_.header = header();
-    if (job_.base) leave_used_subroutines();
+    if (job_.base) add_used_subroutines();
     used_.clear();
     plan_.program_times_s.push_back(program_seconds_);
     plan_.programs.push_back(std::move(program_));

@@ -70,19 +70,37 @@ class StageMaker {
 
   /// Layer by layer, all elements on one facet, then on the next: chips come off with the third.
   void chisel() {
-    for (const auto& [group, standing] : groups_) {
-      std::array<CuttingPose, 3> poses;
-      for (std::size_t k = 0; k < 3; ++k) {
-        poses[k] = chiseling_pose(job_, machine_, {group.first, static_cast<int>(k) + 1}, previous_c_deg_, standing);
-        previous_c_deg_ = poses[k].rounded.c_deg;
-      }
-      check_v_in_poses(job_, poses, standing);
-      plan_.poses.insert(plan_.poses.end(), poses.begin(), poses.end());
-    }
+    has_tilts_ ? add_poses_by_facet() : add_poses_by_group();
     const Process& process = job_.process;
     const double left_mm = chiseling_allowance_mm(job_);
     add_layers("layer", plan_.cuts_per_facet, process.roughing_depth_um, left_mm, process.roughing_feed_mm_per_min);
     add_layers("finishing", process.finishing_cuts, process.finishing_depth_um, 0.0, process.finishing_feed_mm_per_min);
+  }
+
+  CuttingPose next_pose(const ElementGroup& group, int facet) {
+    CuttingPose pose = chiseling_pose(job_, machine_, {group.first, facet}, previous_c_deg_, groups_.at(group));
+    previous_c_deg_ = pose.rounded.c_deg;
+    return pose;
+  }
+
+  void add_poses_by_group() {
+    for (const auto& [group, standing] : groups_) {
+      const std::size_t first = plan_.poses.size();
+      for (int facet = 1; facet <= 3; ++facet) plan_.poses.push_back(next_pose(group, facet));
+      check_v_in_poses(job_, {plan_.poses[first], plan_.poses[first + 1], plan_.poses[first + 2]}, standing);
+    }
+  }
+
+  /// Between elements that lean differently C turns by little, between facets by 120 degrees.
+  void add_poses_by_facet() {
+    for (int facet = 1; facet <= 3; ++facet)
+      for (const auto& [group, standing] : groups_) plan_.poses.push_back(next_pose(group, facet));
+    std::size_t k = 0;
+    const std::size_t count = groups_.size();
+    for (const auto& [group, standing] : groups_) {
+      check_v_in_poses(job_, {plan_.poses[k], plan_.poses[k + count], plan_.poses[k + 2 * count]}, standing);
+      ++k;
+    }
   }
 
   void add_layers(std::string_view what, int cuts, double depth_um, double left_mm, double feed_mm_per_min) {

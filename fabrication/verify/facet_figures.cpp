@@ -36,7 +36,9 @@ class Measurer {
   Measurer(const Groove& groove, std::span<const Sweep> sweeps, std::span<const RigidMotion> poses,
            const ToolWedge& wedge, const Prediction& prediction)
       : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
-    for (const RigidMotion& pose : poses) back_.push_back(pose.inverse());
+    for (const Sweep& sweep : sweeps) used_poses_.push_back(sweep.pose);
+    std::sort(used_poses_.begin(), used_poses_.end());
+    used_poses_.erase(std::unique(used_poses_.begin(), used_poses_.end()), used_poses_.end());
     find_stations();
     strip_mm_ = std::max(kRootMargin * prediction.root_mm, kLeastStripMm);
     find_burr();
@@ -143,7 +145,7 @@ class Measurer {
     std::vector<double> corners = {strip_mm_, burr_end_mm_, groove_.facet_length_mm};
     for (const Sweep& sweep : sweeps_)
       for (const Vec3& tip : {sweep.from_mm, sweep.to_mm}) {
-        const Vec3 p = back_[sweep.pose].point(tip);
+        const Vec3 p = poses_[sweep.pose].inverse().point(tip);
         corners.push_back(groove_.facets[facet].up_slope.dot(p - groove_.root_mm));
       }
     std::sort(corners.begin(), corners.end());
@@ -171,7 +173,7 @@ class Measurer {
     // What is left at the root is told along the other facet: how far up that its cuts end.
     const Vec3& direction = is_at_root ? groove_.facets[1 - facet].up_slope : design.normal;
     spans_.clear();
-    for (std::size_t pose = 0; pose < poses_.size(); ++pose) {
+    for (const std::uint32_t pose : used_poses_) {
       const Vec3 p = poses_[pose].point(point);
       const Vec3 d = poses_[pose].direction(direction);
       for (const Sweep& sweep : sweeps_)
@@ -248,7 +250,7 @@ class Measurer {
   std::span<const RigidMotion> poses_;
   const ToolWedge& wedge_;
   const Prediction& prediction_;
-  std::vector<RigidMotion> back_;
+  std::vector<std::uint32_t> used_poses_;  ///< in which the element is cut
   Stations stations_;
   double strip_mm_ = 0.0;
   double plane_end_mm_ = 0.0;

@@ -96,8 +96,8 @@ void ProgramCheck::report(std::string kind, const NcPlace& place, std::int64_t e
 }
 
 std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
-  for (std::size_t i = pose_words_.size(); i-- > 0;)
-    if (pose_words_[i].a_deg == pose.a_deg && pose_words_[i].c_deg == pose.c_deg) return i;
+  const auto [known, is_new] = known_poses_.try_emplace({pose.a_deg, pose.c_deg}, pose_words_.size());
+  if (!is_new) return known->second;
   pose_words_.push_back(pose);
   poses_.push_back(machine_from_workpiece(machine_, pose));
   back_.push_back(poses_.back().inverse());

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fabrication/job/base_cells.h"
@@ -128,6 +130,7 @@ class ProgramCheck : public NcSink {
   std::vector<PlacedBody> tool_bodies_;
   std::string program_;
   std::vector<RotaryPose> pose_words_;
+  std::map<std::pair<double, double>, std::size_t> known_poses_;
   std::vector<RigidMotion> poses_;
   std::vector<RigidMotion> back_;
   std::vector<std::vector<PlacedBody>> standing_;  ///< table, cradle and fixtures in each pose
