@@ -405,6 +405,26 @@ TEST(OnBase, TiltsThatTheMachineCannotReachAreNamed) {
       << steep;
 }
 
+/// A holder that clears a flat blank runs into a hollow one.
+TEST(OnBase, HoldersAreSeenToReachIntoHollowBlanks) {
+  Machine m = machine("ideal");
+  MachineBody holder;
+  holder.name = "shank";
+  holder.carrier = Carrier::tool;
+  for (const double x : {-0.1, 0.1})
+    for (const double y : {-0.2, 0.75})
+      for (const double z : {1.2, 3.0}) holder.points_mm.value.emplace_back(x, y, z);
+  m.bodies = {holder};
+  const auto kinds = [&](const Base& base) {
+    const Job job = prisms_on(base, 6);
+    const std::string text = nc_text(make_plan(job, m).programs.front(), "rs274ngc");
+    return kinds_of(verify_programs(job, m, {parse_nc(text, "p", NcDialect::rs274ngc)}, {}, {}));
+  };
+  EXPECT_EQ(kinds(plane_base(0.0, 0.0, Standing::normal)), "");
+  EXPECT_EQ(kinds(cylinder_base(3.0, false, Standing::normal)), "");
+  EXPECT_EQ(kinds(cylinder_base(-3.0, false, Standing::normal)), "holder_collision");
+}
+
 /// Faults that are planted in the text of a program.
 class BaseFaults : public ::testing::TestWithParam<bool> {
  protected:
