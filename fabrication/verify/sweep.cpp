@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/angle.h"
@@ -17,9 +18,9 @@ constexpr double kTouchMm = 1e-10;
 
 /// One inequality  s a <= c + t b  of the linear programme.
 struct Inequality {
-  double a = 0.0;
-  double b = 0.0;
-  double c = 0.0;
+  double a;  // without values of their own: most of the room for them is never used
+  double b;
+  double c;
 };
 
 /// Narrows [low, high] by s a <= c. \return whether something is left
@@ -52,10 +53,10 @@ ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex) {
   wedge.clearance_direction = -std::sin(clearance) * y + std::cos(clearance) * z;
   wedge.rake_direction = -std::sin(rake) * y + std::cos(rake) * z;
   wedge.rays = {wedge.clearance_direction, wedge.rake_direction};
-  wedge.sides = {{{std::cos(clearance) * y + std::sin(clearance) * z, 0.0},
-                  {-std::cos(rake) * y - std::sin(rake) * z, 0.0},
-                  {x, wedge.half_width_mm},
-                  {-x, wedge.half_width_mm}}};
+  wedge.sides = {{std::cos(clearance) * y + std::sin(clearance) * z, 0.0},
+                 {-std::cos(rake) * y - std::sin(rake) * z, 0.0},
+                 {x, wedge.half_width_mm},
+                 {-x, wedge.half_width_mm}};
   return wedge;
 }
 
@@ -90,8 +91,10 @@ std::optional<LineSpan> swept_span(const ToolWedge& wedge, const Sweep& sweep, c
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   const Vec3 start = point_mm - sweep.from_mm;
   // t is bounded from below where b > 0 and from above where b < 0; its own bounds are 0 <= t and t <= 1.
-  std::array<Inequality, 5> lower{Inequality{0.0, 1.0, 0.0}};
-  std::array<Inequality, 5> upper{Inequality{0.0, -1.0, 1.0}};
+  std::array<Inequality, ToolWedge::kMostSides + 1> lower;
+  std::array<Inequality, ToolWedge::kMostSides + 1> upper;
+  lower[0] = {0.0, 1.0, 0.0};
+  upper[0] = {0.0, -1.0, 1.0};
   std::size_t lowers = 1;
   std::size_t uppers = 1;
   double low = -std::numeric_limits<double>::infinity();

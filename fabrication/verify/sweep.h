@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -21,14 +21,15 @@ namespace retrace::fabrication {
 /// edge's circle that lie in the facets, so that a rounded edge sweeps the same two planes as the sharp one
 /// (docs/theory/verification.md).
 struct ToolWedge {
+  static constexpr std::size_t kMostSides = 40;
   /// inward . p <= bound
   struct Side {
     geometry::Vec3 outward = geometry::Vec3::Zero();
     double bound_mm = 0.0;
   };
   /// Clearance face, rake face, ends of the edge at +X and -X; of a V clearance face, leading and trailing flank, and
-  /// the trailing one again.
-  std::array<Side, 4> sides;
+  /// the trailing one again; of one with a nose the planes that touch it too. At most kMostSides.
+  std::vector<Side> sides;
   geometry::Vec3 edge = geometry::Vec3::UnitX();
   geometry::Vec3 clearance_direction = geometry::Vec3::UnitZ();  ///< up the clearance face
   geometry::Vec3 rake_direction = geometry::Vec3::UnitZ();       ///< up the rake face

@@ -16,6 +16,7 @@
 #include "core/number_format.h"
 #include "fabrication/job/base_cells.h"
 #include "fabrication/job/v_tool.h"
+#include "fabrication/verify/nose.h"
 #include "fabrication/verify/rim_overcut.h"
 #include "fabrication/verify/visits.h"
 
@@ -183,6 +184,24 @@ std::vector<std::optional<std::size_t>> visits_of(const Workpiece3d& workpiece,
   return finder.elements();
 }
 
+/// What the tool's nose leaves in the dihedral edges of all elements.
+void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, const std::vector<RigidMotion>& poses,
+                   Verification& result) {
+  const Tool& tool = workpiece.job->tool;
+  if (tool.edge_radius_um <= 0.0) return;
+  const ToolWedge nosed = nosed_wedge(tool, *workpiece.machine);
+  std::vector<NoseResidue> residues(workpiece.grooves.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, residues.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      if (result.elements[i].figures.is_cut)
+        residues[i] = nose_residue(workpiece.grooves[i], 1e-3 * tool.edge_radius_um, check.sweeps()[i], poses, nosed);
+  });
+  for (const NoseResidue& residue : residues) {
+    result.root_chamfer_um = std::max(result.root_chamfer_um, 1e3 * std::numbers::sqrt2 * residue.strip_mm);
+    result.root_ridge_um = std::max(result.root_ridge_um, 1e3 * residue.ridge_mm);
+  }
+}
+
 }  // namespace
 
 Workpiece3d workpiece_of(const Job& job, const Machine& machine, const VerifyOptions& options) {
@@ -265,7 +284,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   if (job.base) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
   result.removed_volume_mm3 += result.border_overcut_mm3;
   if (job.strategy == Strategy::dmc)
-    result.root_chamfer_um = 1e3 * std::numbers::sqrt2 * nose_strip_mm(job.tool);
+    cut_with_nose(workpiece, check, poses, result);
   else
     result.root_radius_um = job.tool.edge_radius_um;
   result.free_tool_length_mm = check.least_free_tool_mm();

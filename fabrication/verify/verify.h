@@ -40,7 +40,8 @@ struct Verification {
   double wall_overcut_nm_max = 0.0;
   double wall_overcut_nm_predicted = 0.0;
   double root_radius_um = 0.0;   ///< that the tool's edge leaves at the root
-  double root_chamfer_um = 0.0;  ///< width across what the nose of a V leaves in dihedral edges
+  double root_chamfer_um = 0.0;  ///< width across the strips that the nose of a V leaves beside dihedral edges
+  double root_ridge_um = 0.0;    ///< height of the ridge that stays between them, over the edge
   /// Volume that the cavities of hexagonal cube corners, which are triangular, take beyond the elements' apertures:
   /// what the outermost of them must.
   double border_overcut_mm3 = 0.0;

@@ -337,6 +337,10 @@ AsMachined as_machined(const VerificationRun& run) {
                     shortest(run.job.process.roughing_plunge_sa_nm), shortest(run.job.process.plough_sa_nm)));
   part.root_radius_um = run.result.root_radius_um;
   part.root_chamfer_um = run.result.root_chamfer_um;
+  if (run.result.root_ridge_um > 0.0)
+    part.warnings.push_back(fmt::format(
+        "the nose of the tool leaves ridges {} um high in dihedral edges: the design has flats of {} um there",
+        fixed(run.result.root_ridge_um, 2), fixed(run.result.root_chamfer_um, 2)));
   part.texture = predicted_texture(run.job);
   part.scratches = scratches_of(run.job);
   part.body = body_of(run, part.warnings);

@@ -182,6 +182,71 @@ TEST(Chiseling, PlannedForIdealAxesShowsTheErrorsOfTheMachine) {
   EXPECT_NEAR(v.facet_distance_nm_max, expected_nm, 1.0 + 0.01 * expected_nm);
 }
 
+/// A V with a round nose in closed form, along a facet's first edge, its second one and its normal. Every support of it
+/// is that of its circle.
+struct RoundV {
+  explicit RoundV(const Tool& tool) : edges(v_tool_edges(tool)), radius_mm(1e-3 * tool.edge_radius_um) {
+    const double half_nose = Angle::from_deg(0.5 * tool.nose_angle_deg).rad();
+    centre_mm = radius_mm / std::sin(half_nose) * (edges.leading + edges.trailing).normalized();
+  }
+  /// How far all of it stays off the plane through the sharp tip with that normal, towards it.
+  double off_mm(const Vec3& normal) const {
+    const Vec3 face = edges.leading.cross(edges.trailing).normalized();
+    return normal.dot(centre_mm) - radius_mm * (normal - face * face.dot(normal)).norm();
+  }
+  /// From a dihedral edge, along the middle of its two facets, to the flank of the cut along one of them.
+  /// \param in_facet across the edge
+  double ridge_mm(const Vec3& edge, const Vec3& in_facet) const {
+    Vec3 normal = edge.cross(edges.spine).normalized();
+    if (normal.dot(in_facet) < 0.0) normal = -normal;
+    return off_mm(normal) / normal.dot((in_facet + Vec3::UnitZ()).normalized());
+  }
+  VToolEdges edges;
+  double radius_mm;
+  Vec3 centre_mm;
+};
+
+/// The nose is cut, and leaves what formulas say: strips beside the edges, and between them a ridge up to where the
+/// flanks of the two cuts begin.
+TEST(Chiseling, ANoseLeavesTheStripsOfTheFormulaAndARidge) {
+  constexpr double kWordUm = 1e-3;  // of programs
+  for (const double radius_um : {0.5, 2.0})
+    for (const double wedge_deg : {62.0, 65.0, 68.0}) {
+      Job job = cube_job(radius_um > 1.0, 0.3);
+      job.tool.wedge_deg = wedge_deg;
+      const std::string text = text_of(job, machine());
+      const Verification sharp = verified(job, machine(), text);
+      EXPECT_EQ(sharp.root_chamfer_um, 0.0);
+      EXPECT_EQ(sharp.root_ridge_um, 0.0);
+      job.tool.edge_radius_um = radius_um;
+      const Verification v = verified(job, machine(), text);
+      EXPECT_TRUE(v.passes()) << listed(v);
+      EXPECT_EQ(v.facet_distance_nm_max, sharp.facet_distance_nm_max);
+      // The formula is that of an arc in the facet; the arc leans by the clearance, of which the square counts.
+      const double clearance = Angle::from_deg(job.tool.clearance_deg).rad();
+      EXPECT_NEAR(v.root_chamfer_um, 1e3 * std::sqrt(2.0) * nose_strip_mm(job.tool), clearance * clearance * radius_um);
+      const RoundV tool(job.tool);
+      const double strip_mm = std::max(tool.off_mm(Vec3::UnitX()), tool.off_mm(Vec3::UnitY()));
+      EXPECT_NEAR(v.root_chamfer_um, 1e3 * std::sqrt(2.0) * strip_mm, 4e-4 * radius_um + kWordUm);
+      const double ridge_mm =
+          std::min(tool.ridge_mm(Vec3::UnitX(), Vec3::UnitY()), tool.ridge_mm(Vec3::UnitY(), Vec3::UnitX()));
+      EXPECT_NEAR(v.root_ridge_um, 1e3 * ridge_mm, 2e-3 * 1e3 * ridge_mm) << wedge_deg;
+    }
+}
+
+/// Without its last layer an element keeps a whole layer more beside its edges.
+TEST(Chiseling, StripsBesideEdgesShowAMissingLayer) {
+  Job job = cube_job(false, 0.15);
+  job.tool.edge_radius_um = 1.0;
+  Job rough = job;
+  PlanOptions options;
+  options.phase = "roughing";
+  const std::string text = nc_text(make_plan(rough, machine(), options).programs.front(), "rs274ngc");
+  const Verification v = verified(job, machine(), text);
+  EXPECT_FALSE(v.passes());
+  EXPECT_GT(v.root_chamfer_um, 1e3 * std::sqrt(2.0) * nose_strip_mm(job.tool) + job.process.finishing_depth_um);
+}
+
 /// The union of overlapping triangular cavities is the full-cube array: surface and volume of dexels against a stair of
 /// unit cubes, told by whole numbers alone (docs/theory/micro_chiseling.md).
 TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {

@@ -72,6 +72,7 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"root_residual_nm_predicted", r.root_residual_nm_predicted},
                      {"root_radius_um", r.root_radius_um},
                      {"root_chamfer_um", r.root_chamfer_um},
+                     {"root_ridge_um", r.root_ridge_um},
                      {"wall_overcut_nm_max", r.wall_overcut_nm_max},
                      {"wall_overcut_nm_predicted", r.wall_overcut_nm_predicted},
                      {"removed_volume_mm3", r.removed_volume_mm3},
