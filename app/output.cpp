@@ -58,7 +58,8 @@ std::vector<std::string> files_read(const std::vector<studies::Design>& designs)
     files.push_back(design.source);
     if (!design.texture.height_map_file.empty()) files.push_back(design.texture.height_map_file.string());
     if (design.mask) files.push_back(design.mask->file.string());
-    if (design.mesh) files.push_back(design.mesh->file.string());
+    if (design.mesh && !design.mesh->file.empty()) files.push_back(design.mesh->file.string());
+    if (design.front) files.push_back(design.front->file.string());
     if (design.spectrum && !design.spectrum->file.empty()) files.push_back(design.spectrum->file.string());
   }
   return files;

@@ -39,6 +39,12 @@ Vec3 source_axis(const Vec3& direction) {
   return direction.cross(Vec3::UnitX()).cross(direction).normalized();
 }
 
+Light light_of_beam(const Stokes& stokes, const Vec3& to_source) {
+  Light light{stokes, source_axis(to_source)};
+  light.stokes.u = -stokes.u;  // p = direction x s is the second axis of the source reversed
+  return light;
+}
+
 Stokes seen_from_above(Light light, const Vec3& direction) {
   light.turn_to_axis(direction, source_axis(direction));
   return light.stokes;

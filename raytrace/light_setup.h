@@ -78,6 +78,9 @@ struct Tally {
 /// \pre direction not along x
 Vec3 source_axis(const Vec3& direction);
 
+/// Light of the incident beam, which travels along -`to_source`. \param stokes along source_axis(to_source)
+Light light_of_beam(const Stokes& stokes, const Vec3& to_source);
+
 /// Stokes parameters of light that leaves the entrance face, along source_axis().
 Stokes seen_from_above(Light light, const Vec3& direction);
 

@@ -36,7 +36,8 @@ std::array<double, 2> random_point(std::uint32_t seed, std::uint32_t replicate, 
 }  // namespace
 
 struct MonteCarlo::Scene {
-  Scene(const geometry::Part& p, Engine engine) : part(p), entrance(p) {
+  Scene(const geometry::Part& p, Engine engine, const geometry::Front* curved) : part(p), entrance(p) {
+    if (curved != nullptr) front = make_front_face(*curved, p, entrance.centre_mm());
     if (engine == Engine::cell) cells = CellArray::make(p);
     if (engine == Engine::embree || !p.period_mm) surface.emplace(p, entrance.centre_mm());
   }
@@ -45,6 +46,7 @@ struct MonteCarlo::Scene {
   EntranceSampler entrance;
   std::optional<BackSurface> surface;  ///< for Embree, and borders
   std::optional<CellArray> cells;
+  std::unique_ptr<const FrontFace> front;  ///< null: the entrance face is plane
 };
 
 /// Rays first..last-1 of one replicate.
@@ -54,7 +56,8 @@ struct MonteCarlo::Task {
   std::uint32_t last = 0;
 };
 
-MonteCarlo::MonteCarlo(const geometry::Part& part, Engine engine) : scene_(std::make_unique<Scene>(part, engine)) {}
+MonteCarlo::MonteCarlo(const geometry::Part& part, Engine engine, const geometry::Front* front)
+    : scene_(std::make_unique<Scene>(part, engine, front)) {}
 MonteCarlo::~MonteCarlo() = default;
 
 bool MonteCarlo::cell_serves(const geometry::Part& part) {
@@ -122,7 +125,8 @@ MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& ill
   PathPolicy how = policy;
   if (sampling.kind == Sampling::Kind::plain) how.split_power = std::numeric_limits<double>::infinity();
   const Vec2 centre = scene_->entrance.centre_mm();
-  if (scene_->surface) paths.emplace(scene_->part, *scene_->surface, centre, optics, illumination, cones_deg, how);
+  if (scene_->surface)
+    paths.emplace(scene_->part, *scene_->surface, centre, optics, illumination, cones_deg, how, scene_->front.get());
   if (paths) paths->score = score;
   if (scene_->cells && paths) {
     trace_task = by_cells(*paths, &*paths, policy, sampling.seed, cancel);

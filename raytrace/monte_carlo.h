@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "geometry/front_surface.h"
 #include "geometry/part.h"
 #include "raytrace/ledger.h"
 #include "raytrace/light_setup.h"
@@ -65,7 +66,10 @@ class MonteCarlo {
   /// Independent scrambles: the estimate is their mean, its standard error comes from their spread.
   static constexpr std::uint32_t kReplicates = 32;
 
-  explicit MonteCarlo(const geometry::Part& part, Engine engine = Engine::embree);
+  /// \param front in place of the plane entrance face, above the part's back; null: that plane
+  /// \pre with a front: a finite part and Engine::embree
+  explicit MonteCarlo(const geometry::Part& part, Engine engine = Engine::embree,
+                      const geometry::Front* front = nullptr);
   ~MonteCarlo();
 
   /// Traces in the calling thread's TBB arena. \pre for Engine::cell: cell_serves()

@@ -15,9 +15,11 @@ constexpr int kMaxWraps = 1000;
 }  // namespace
 
 PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const Vec2& centre_mm, const Optics& how,
-                     const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& paths)
+                     const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& paths,
+                     const FrontFace* curved)
     : LightSetup(part, centre_mm, how, illumination, cones_deg),
       surface(back),
+      front(curved),
       policy(paths),
       clearance_mm(part.top_mm + std::min(0.01 * part.element_depth_mm, 0.5 * (part.thickness_mm - part.top_mm))) {
   if (part.period_mm) {
@@ -25,6 +27,7 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
     // The cells of the outermost periods do not fill them to the edge.
     tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
   }
+  if (front != nullptr) incident = light_of_beam(illumination.stokes, to_source);
 }
 
 void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample) {
@@ -64,6 +67,7 @@ void PathWalker::follow_pending() {
 }
 
 void PathWalker::enter(const Vec2& entry_mm) {
+  if (setup_.front != nullptr) return enter_front(entry_mm);
   const LightSetup::Entry& entry = setup_.entry;
   tally_.front[entry.front_cone] += entry.front;
   if (setup_.score != nullptr) setup_.score->add(entry.front_direction, entry.front.i, tally_.score);
@@ -80,6 +84,7 @@ bool PathWalker::advance(State& state) {
   if (power < setup_.policy.cutoff || state.events++ >= setup_.policy.max_events)
     return finish(state, Account::truncated);
   ++tally_.segments;
+  if (state.above) return advance_above(state);
   const Step step = state.inside ? (setup_.infinite() ? step_inside_periodic(state) : step_inside(state))
                                  : (setup_.infinite() ? step_outside_periodic(state) : step_outside(state));
   if (state.inside && setup_.optics.absorption_per_mm > 0.0 && step.end != End::miss) {
@@ -91,7 +96,7 @@ bool PathWalker::advance(State& state) {
     case End::facet:
       return meet_facet(state, step.hit);
     case End::entrance:
-      return meet_entrance(state);
+      return setup_.front == nullptr ? meet_entrance(state) : meet_front(state, step.hit, step.front_normal);
     case End::side:
       return meet_side(state, setup_.sides[step.side].normal);
     case End::escape:
@@ -124,7 +129,7 @@ std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const
 PathWalker::Step PathWalker::step_inside(State& state) const {
   Step step;
   double limit = kInfinity;
-  if (state.direction.z() > 0.0) {
+  if (state.direction.z() > 0.0 && setup_.front == nullptr) {
     limit = (setup_.thickness_mm - state.position.z()) / state.direction.z();
     step.end = End::entrance;
   }
@@ -137,6 +142,7 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
     step.end = End::side;
     step.side = k;
   }
+  if (setup_.front != nullptr) limit = reach_front(state, limit, step);
   // Above the clearance only falling rays can meet the back surface, and not before they are down there.
   double skipped = 0.0;
   if (state.position.z() > setup_.clearance_mm) {
@@ -329,6 +335,7 @@ bool PathWalker::meet_side(State& state, const Vec3& normal) {
   state.light = reflected;
   state.direction = mirrored(state.direction, normal);
   state.source = {};
+  state.front_source = {};
   // Where a side meets the back surface, single precision may not tell on which side of the edge the ray starts.
   state.near_edge = state.position.z() < setup_.clearance_mm;
   return branch != Branch::transmitted;
@@ -341,6 +348,7 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   if (is_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
   const bool is_retro = facet.role == FacetRole::retro_facet;
   state.source = hit.facet;
+  state.front_source = {};
   state.near_edge = hit.near_edge;
   if (is_retro && !optics.is_smooth()) return meet_textured(state, facet.normal);
   const Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;

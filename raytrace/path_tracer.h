@@ -8,6 +8,7 @@
 #include "geometry/part.h"
 #include "raytrace/back_surface.h"
 #include "raytrace/exit_observer.h"
+#include "raytrace/front/front_face.h"
 #include "raytrace/light_setup.h"
 #include "raytrace/path_policy.h"
 #include "raytrace/textured_facet.h"
@@ -17,9 +18,12 @@ namespace retrace::raytrace {
 /// What every path of a run shares.
 struct PathSetup : LightSetup {
   PathSetup(const geometry::Part& part, const BackSurface& surface, const Vec2& centre_mm, const Optics& optics,
-            const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& policy);
+            const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& policy,
+            const FrontFace* front = nullptr);
 
   const BackSurface& surface;
+  const FrontFace* front = nullptr;  ///< in place of the plane z = thickness_mm; null: that plane
+  Light incident;                    ///< on a front: the light of the beam
   PathPolicy policy;
   double clearance_mm = 0.0;         ///< height above z = 0 from which the back surface is looked for
   Vec2 period_mm = Vec2::Zero();     ///< infinite part
@@ -48,9 +52,12 @@ class PathWalker {
     Vec3 position = Vec3::Zero();
     Vec3 direction = Vec3::UnitZ();
     Light light;
-    FacetRef source;  ///< facet that the path has just left
+    FacetRef source;        ///< facet that the path has just left
+    FacetRef front_source;  ///< the same, of a front
     bool near_edge = false;
     bool inside = true;
+    bool above = false;                                                   ///< in the air on the front's side
+    bool entered = false;                                                 ///< it has passed a front
     bool scattered = false;                                               ///< a non-specular event lies behind it
     geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through
     std::uint32_t events = 0;
@@ -59,6 +66,7 @@ class PathWalker {
   struct Step {
     End end = End::miss;
     SurfaceHit hit;
+    Vec3 front_normal = Vec3::UnitZ();  ///< where `hit` is on a front
     std::size_t side = 0;
     double length_mm = 0.0;
   };
@@ -77,6 +85,11 @@ class PathWalker {
   void wrap(State& state) const;
   bool is_over_part(const Vec3& position) const;
 
+  void enter_front(const Vec2& entry_mm);
+  double reach_front(const State& state, double limit, Step& step) const;
+  bool advance_above(State& state);
+  bool meet_front(State& state, const SurfaceHit& hit, const Vec3& normal);
+  bool leave_front(const State& state);
   bool meet_entrance(State& state);
   void leave(const State& state, const Light& light, const Vec3& direction);
   bool meet_side(State& state, const Vec3& normal);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -78,21 +79,35 @@ struct FacetPlanesFile {
   InputLocation location;      ///< where it was given, for whoever cannot use it
 };
 
-/// A mesh in place of element and array.
+/// A mesh in place of element and array, or a plate.
 struct PartMesh {
   std::string name;            ///< of the STL file, as given
   std::filesystem::path file;  ///< the same, from the working directory; read by part_of_design()
   bool allow_open = false;     ///< trace it although it is not closed: openings are closed by flat pieces
   InputLocation location;      ///< where it was given, for whoever cannot use it
+  /// A plate of these lengths in x and y, whose flat back is its retro facet, in place of a file.
+  std::optional<std::array<double, 2>> plate_mm;
+};
+
+/// A face through which light enters, in place of the plane one.
+struct FrontFile {
+  std::string name;            ///< of the file, as given
+  std::filesystem::path file;  ///< the same, from the working directory; read by front_of_design()
+  bool is_mesh = false;        ///< an STL file; else that of a turned part
+  bool mesh_bottom = false;    ///< the mesh is the counterpart: its triangles that look down are the front
+  /// Where in the part's plane the origin of the file's frame lies; the part's middle if it was not given.
+  std::optional<std::array<double, 2>> centre_mm;
+  InputLocation location;  ///< where the file was given, for whoever cannot use it
 };
 
 /// Everything a design file says, checked and with its defaults filled in.
 struct Design {
-  std::string source;            ///< file name as given, "-" for standard input
-  std::string title;             ///< empty if none was given
-  InputLocation base_location;   ///< what of [base] decides its shape, for whoever cannot stand on it
-  geometry::PartSpec part;       ///< means little where there is a mesh: thickness_mm is then 0 or what was given
-  std::optional<PartMesh> mesh;  ///< in place of element and array
+  std::string source;              ///< file name as given, "-" for standard input
+  std::string title;               ///< empty if none was given
+  InputLocation base_location;     ///< what of [base] decides its shape, for whoever cannot stand on it
+  geometry::PartSpec part;         ///< means little where there is a mesh: thickness_mm is then 0 or what was given
+  std::optional<PartMesh> mesh;    ///< in place of element and array
+  std::optional<FrontFile> front;  ///< none: the plane z = thickness_mm
   std::optional<raytrace::BallLayer> balls;  ///< kind = "ball": `part` then means nothing
   InputLocation balls_location;              ///< where the kind was given, for whoever cannot trace balls
   std::optional<ArrayMask> mask;
@@ -123,6 +138,8 @@ struct Design {
   void require_no_balls() const;
   /// \throw InputError if its elements stand on a base. \param what does not take it, such as "retrace job"
   void require_no_base(const std::string& what) const;
+  /// \throw InputError if light enters through a curved front. \param what does not take it, such as "retrace job"
+  void require_plane_front(const std::string& what) const;
   /// Whether the retro facets rely on total reflection.
   bool needs_total_reflection() const { return !idealisation.mirror_facets && !aluminised_facets; }
 };

@@ -215,6 +215,22 @@ struct ElementName {
 
 }  // namespace
 
+namespace {
+
+Json part_json(const PartMesh& mesh) {
+  if (mesh.plate_mm) return {{"plate_mm", *mesh.plate_mm}};
+  return {{"mesh", mesh.name}, {"allow_open", mesh.allow_open}};
+}
+
+Json front_json(const FrontFile& front) {
+  Json json = {{front.is_mesh ? "mesh" : "turned", front.name}};
+  if (front.is_mesh) json["mesh_side"] = front.mesh_bottom ? "bottom" : "top";
+  if (front.centre_mm) json["centre_mm"] = *front.centre_mm;
+  return json;
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const Design& design) {
   Json body = Json::object();
   if (design.part.thickness_mm > 0.0) body["thickness_mm"] = design.part.thickness_mm;
@@ -228,7 +244,7 @@ nlohmann::ordered_json to_json(const Design& design) {
   Json json = {{"source", design.source}};
   if (!design.title.empty()) json["title"] = design.title;
   if (design.mesh) {
-    json["part"] = {{"mesh", design.mesh->name}, {"allow_open", design.mesh->allow_open}};
+    json["part"] = part_json(*design.mesh);
   } else if (design.balls) {
     json["element"] = ball_json(*design.balls);
     json["array"] = ball_array_json(*design.balls);
@@ -238,6 +254,7 @@ nlohmann::ordered_json to_json(const Design& design) {
     if (design.part.base) json["base"] = base_json(*design.part.base);
   }
   if (design.facet_planes) json["part"] = {{"facets", design.facet_planes->name}};
+  if (design.front) json["front"] = front_json(*design.front);
   json["body"] = body;
   json["light"] = light_json(design);
   json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};

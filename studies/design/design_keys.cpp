@@ -81,21 +81,18 @@ constexpr std::array kSurfaceKeys = {KeyRule{"model"},
 constexpr std::array kIdealisationKeys = {KeyRule{"facets"}, KeyRule{"entrance"}};
 constexpr std::array kBaseKeys = {KeyRule{"kind"}, KeyRule{"incline_deg"}, KeyRule{"azimuth_deg"}, KeyRule{"radius_mm"},
                                   KeyRule{"axis"}, KeyRule{"sag_mm"},      KeyRule{"elements"}};
-constexpr std::array kPartKeys = {KeyRule{"mesh"}, KeyRule{"allow_open"}, KeyRule{"facets"}};
+constexpr std::array kPartKeys = {KeyRule{"mesh"}, KeyRule{"allow_open"}, KeyRule{"facets"}, KeyRule{"plate_mm"}};
+constexpr std::array kFrontKeys = {KeyRule{"turned"}, KeyRule{"mesh"}, KeyRule{"mesh_side"}, KeyRule{"centre_mm"}};
 
 struct TableRule {
   std::string_view name;
   std::span<const KeyRule> keys;
 };
-constexpr std::array kTables = {TableRule{"element", kElementKeys},
-                                TableRule{"array", kArrayKeys},
-                                TableRule{"body", kBodyKeys},
-                                TableRule{"light", kLightKeys},
-                                TableRule{"detector", kDetectorKeys},
-                                TableRule{"surface", kSurfaceKeys},
-                                TableRule{"base", kBaseKeys},
-                                TableRule{"part", kPartKeys},
-                                TableRule{"idealisation", kIdealisationKeys}};
+constexpr std::array kTables = {TableRule{"element", kElementKeys},   TableRule{"array", kArrayKeys},
+                                TableRule{"body", kBodyKeys},         TableRule{"light", kLightKeys},
+                                TableRule{"detector", kDetectorKeys}, TableRule{"surface", kSurfaceKeys},
+                                TableRule{"base", kBaseKeys},         TableRule{"part", kPartKeys},
+                                TableRule{"front", kFrontKeys},       TableRule{"idealisation", kIdealisationKeys}};
 constexpr std::array<std::string_view, 2> kTopLevelKeys = {"schema", "title"};
 
 /// One entry of the design: its table's rule (null at top level) and its name there.

@@ -21,6 +21,7 @@
 #include "studies/design/base_reader.h"
 #include "studies/design/design_keys.h"
 #include "studies/design/edge_reader.h"
+#include "studies/design/front_reader.h"
 #include "studies/design/scratch_reader.h"
 #include "studies/design/spectrum_reader.h"
 #include "studies/design/table_reader.h"
@@ -293,11 +294,30 @@ PartSpec read_part(const DesignDocument& document) {
   return part;
 }
 
+/// A plate in place of element and array.
+PartMesh read_plate(const DesignDocument& document, TableReader& part) {
+  constexpr std::string_view key = "plate_mm";
+  for (const char* other : {"element", "array", "base"})
+    if (const toml::node* const node = document.root().get(other))
+      throw InputError(document.location(*node, other), "not allowed beside part.plate_mm, which is the whole part");
+  part.refuse({"mesh", "allow_open", "facets"}, "not allowed beside plate_mm");
+  const std::vector<double> size = *part.numbers(key, kSaneSize);
+  if (part.list_size(key) != 2)
+    part.fail(key, "must be a list of two lengths, along x and y, got " + part.shown_value(key));
+  part.finish();
+  PartMesh plate;
+  plate.name = fmt::format("plate {} x {} mm", shortest(size[0]), shortest(size[1]));
+  plate.location = part.where(key);
+  plate.plate_mm = std::array{size[0], size[1]};
+  return plate;
+}
+
 /// A mesh in place of element and array; none if there is no such table.
 std::optional<PartMesh> read_mesh(const DesignDocument& document) {
   const toml::node* const table = document.root().get("part");
   if (table == nullptr) return std::nullopt;
   TableReader part(document, "part");
+  if (part.has("plate_mm")) return read_plate(document, part);
   if (!part.has("mesh")) {
     // With an element it is for planes of single facets.
     if (document.root().contains("element")) return std::nullopt;
@@ -342,6 +362,7 @@ void read_absorption(TableReader& body, Design& design) {
 
 void read_thickness(TableReader& body, Design& design) {
   design.part.thickness_mm = read_size(body, "thickness_mm");
+  if (design.mesh) return;
   const double top_mm = geometry::element_top_mm(design.part.element, design.part.angle_errors);
   const double least_mm = top_mm > 0.0 ? top_mm + kSaneSize.low : 0.0;
   if (design.part.thickness_mm < least_mm)
@@ -352,7 +373,7 @@ void read_thickness(TableReader& body, Design& design) {
 void read_body(TableReader& body, Design& design) {
   if (design.balls) {
     body.refuse({"thickness_mm"}, "not allowed for kind = \"ball\", which has no plate");
-  } else if (design.mesh) {
+  } else if (design.mesh && !design.mesh->plate_mm) {
     body.number("thickness_mm", kPositive);
     design.part.thickness_mm = body.number("thickness_mm", kSaneSize).value_or(0.0);
   } else {
@@ -498,7 +519,13 @@ void Design::require_no_balls() const {
 
 void Design::require_elements(const std::string& what) const {
   require_no_balls();
-  if (mesh) throw InputError(mesh->location, what + " takes no mesh, only [element] and [array]");
+  if (mesh)
+    throw InputError(mesh->location, fmt::format("{} takes no {}, only [element] and [array]", what,
+                                                 mesh->plate_mm ? "plate" : "mesh"));
+}
+
+void Design::require_plane_front(const std::string& what) const {
+  if (front) throw InputError(front->location, what + " takes no [front], only a plane entrance face");
 }
 
 void Design::require_no_base(const std::string& what) const {
@@ -534,6 +561,7 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   read_light_and_detector(document, design);
   read_idealisation(document, design);
   check_ball_mirror(document, design);
+  design.front = read_front(document, design);
   return design;
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/number_format.h"
 #include "materials/io/spectrum_reader.h"
+#include "studies/design/front_of_design.h"
 #include "studies/design/part_of_design.h"
 #include "surface_models/form.h"
 #include "surface_models/io/height_map_reader.h"
@@ -226,10 +227,13 @@ const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double w
 
 }  // namespace
 
-OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library) {
+OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Fronts fronts) {
   design.require_no_balls();
+  if (fronts == Fronts::plane && design.front)
+    throw InputError(design.front->location, "a [front] is taken by retrace rre, photometry and inspect alone");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
+  if (design.front) model.front = front_of_design(design, model.part, &model.warnings);
   return model;
 }
 

@@ -10,6 +10,7 @@
 #include "geometry/faceted_solid.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/mesh_part.h"
+#include "geometry/plate.h"
 #include "studies/design/design_part.h"
 
 namespace retrace::studies {
@@ -64,6 +65,8 @@ void check_thickness(const Design& design, const geometry::Part& part) {
 }  // namespace
 
 geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::string>* warnings) {
+  if (const auto& plate = design.mesh->plate_mm)
+    return geometry::box_mesh({(*plate)[0], (*plate)[1]}, design.part.thickness_mm);
   const std::string name = design.mesh->file.string();
   try {
     geometry::TriangleMesh mesh = geometry::parse_stl(read_file(design.mesh->file), name);
@@ -79,6 +82,8 @@ geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::str
 
 geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings) {
   if (!design.mesh) return part_of(design);
+  if (const auto& plate = design.mesh->plate_mm)
+    return geometry::build_plate({(*plate)[0], (*plate)[1]}, design.part.thickness_mm);
   const geometry::TriangleMesh mesh = mesh_of_design(design, warnings);
   try {
     geometry::Part part = geometry::part_of_mesh(mesh);

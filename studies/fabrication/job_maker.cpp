@@ -54,6 +54,7 @@ geometry::Element upright(const Cube& cube, const Design& design) {
 /// \throw InputError for one that the strategy does not cut
 geometry::Element element_of(const Design& design, const JobRequest& request) {
   design.require_elements("retrace job");
+  design.require_plane_front("retrace job");
   if (design.part.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
   if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part.element)) {

@@ -86,6 +86,7 @@ std::string design_text(const Design& design, const std::string& facets_file) {
 
 void check_design(const Design& design, const JobRequest& request) {
   design.require_elements("retrace job");
+  design.require_plane_front("retrace job");
   const geometry::PartSpec& part = design.part;
   if (std::holds_alternative<geometry::RtpElement>(part.element))
     throw InputError({"", 0, "--reachable"}, "is for cube corners: a chisel reaches all of a prism");

@@ -272,7 +272,7 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
 
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library) {
   if (design.balls) return inspect_balls(design, library);
-  const OpticalModel model = make_model(design, library);
+  const OpticalModel model = make_model(design, library, Fronts::any);
   const geometry::Part& part = model.part;
   Inspection result;
   result.design = design;
@@ -286,6 +286,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.refractive_index = mean_index(model.spectral);
   result.light = model.spectral;
   if (design.needs_total_reflection()) result.wavelength_nm = model.wavelength_nm;
+  if (model.front) result.front = report_front(*model.front, part);
   if (design.mesh) {
     // make_model() refuses one that is not; what was mended is in the warnings.
     result.boundary = result.warnings.empty() ? "closed, free of self-intersections" : "see warnings";
@@ -295,7 +296,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   if (design.part.base) {
     add_base(result, part);
-  } else {
+  } else if (!design.front) {
     result.tir_limit_deg = tir_limit_deg(design.part, least_index(model.spectral), model.optics.back_index);
     if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part);
   }

@@ -10,6 +10,7 @@
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
+#include "studies/inspect/front_report.h"
 
 namespace retrace::studies {
 
@@ -51,6 +52,8 @@ struct Inspection {
   /// of equal ones, of an unturned element. None where none is needed.
   std::optional<double> tir_limit_azimuth_deg;
   std::optional<BaseReport> base;    ///< of elements that stand on one; there are no limits of total reflection then
+  std::optional<FrontReport> front;  ///< of a part with one; limits of total reflection are those of light that
+                                     ///< enters through a plane
   double dead_zone_share = 0.0;      ///< of an element's plan that rounded and chamfered edges take
   std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something
   std::string boundary;              ///< what the check of the boundary found

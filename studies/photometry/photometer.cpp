@@ -76,7 +76,7 @@ double way_through_mm(const Design& design) {
 }
 
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library) {
-  return design.balls ? make_light_model(design, library) : make_model(design, library);
+  return design.balls ? make_light_model(design, library) : make_model(design, library, Fronts::any);
 }
 
 /// R_A is of an area, which a single ball has none of, and rays are followed in one way alone.
@@ -166,6 +166,8 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   if (design_.balls) check_balls(design_, request);
+  if (design_.front && (request.engine == Engine::exact || request.engine == Engine::cell))
+    throw InputError({"", 0, "--engine"}, "must be auto, montecarlo or embree for a [front]");
   if (request.own_light) {
     model_ = model_of(design_, library);
     for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
@@ -174,7 +176,7 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
-  is_exact_ = !design_.balls && model_.optics.is_smooth() &&
+  is_exact_ = !design_.balls && !design_.front && model_.optics.is_smooth() &&
               (request.engine == Engine::exact || request.engine == Engine::automatic);
 }
 
@@ -330,7 +332,8 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vec
     });
   } else {
     std::optional<raytrace::MonteCarlo> tracer;
-    if (!design_.balls) tracer.emplace(model_.part);
+    if (!design_.balls)
+      tracer.emplace(model_.part, raytrace::MonteCarlo::Engine::embree, model_.front ? &*model_.front : nullptr);
     for (std::size_t k = 0; k < settings.size() * wavelengths; ++k) {
       if (cancel != nullptr && cancel->requested()) return std::nullopt;
       pieces[k / wavelengths][k % wavelengths] =

@@ -232,7 +232,8 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
     for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);
     result.verdict = verdict_of(result.points, request.programme);
     if (request.pictures) result.complete = add_pictures(design, request, photometer.is_exact(), cancel, result);
-    if (result.verdict == Verdict::fail && request.advice && result.complete && !design.mesh && !design.balls) {
+    if (result.verdict == Verdict::fail && request.advice && result.complete && !design.mesh && !design.balls &&
+        !design.front) {
       const auto measure = [&](const Design& changed, std::size_t parts) {
         Photometer other(changed, request, parts);
         if (!photometer.is_exact()) other.leave_exact();

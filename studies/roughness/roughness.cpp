@@ -26,6 +26,7 @@ void check(const std::vector<double>& values, double most, bool zero_allowed, co
 
 void check(const Design& design) {
   design.require_no_balls();
+  design.require_plane_front("retrace roughness");
   if (design.texture.model != FacetTexture::Model::smooth)
     throw InputError(design.texture.location, "must be left out here: the roughness is what is varied");
   if (design.acceptance_half_angle_deg.size() != 1)

@@ -103,9 +103,25 @@ std::string_view engine_name(Engine engine) {
 
 namespace {
 
+/// Beams and cells know plane entrance faces alone.
+void check_front(const Design& design, const RreRequest& request) {
+  if (!design.front) return;
+  if (request.engine == Engine::exact || request.engine == Engine::cell)
+    throw InputError({"", 0, "--engine"}, fmt::format("{} takes a plane entrance face alone, {} has a [front]: use "
+                                                      "--engine embree",
+                                                      engine_name(request.engine), design.source_name()));
+  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
+                                      {request.far_field, "--far-field"},
+                                      {request.derivatives, "--derivatives"}})
+    if (asked) design.require_plane_front(option);
+}
+
 /// Balls have one engine of their own.
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreRequest& request) {
-  if (!design.balls) return make_model(design, library);
+  if (!design.balls) {
+    check_front(design, request);
+    return make_model(design, library, Fronts::any);
+  }
   if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
     throw InputError({"", 0, "--engine"},
                      fmt::format("must be auto or montecarlo for balls, got {}", engine_name(request.engine)));
@@ -302,7 +318,8 @@ RrePoint spectral_point(const Direction& direction, const SpectralOptics& light)
 
 raytrace::MonteCarlo::Engine engine_for(const OpticalModel& model, const RreRequest& request) {
   using raytrace::MonteCarlo;
-  const bool may_be_cell = request.engine != Engine::embree && request.sampling == raytrace::Sampling::Kind::stratified;
+  const bool may_be_cell =
+      !model.front && request.engine != Engine::embree && request.sampling == raytrace::Sampling::Kind::stratified;
   return may_be_cell && MonteCarlo::cell_serves(model.part) ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
 }
 
@@ -338,7 +355,8 @@ void trace_by_monte_carlo(const std::vector<Design>& designs, const std::vector<
     const Design& design = designs[direction.at.design];
     const OpticalModel& model = models[direction.at.design];
     const SpectralOptics& light = model.spectral[w];
-    if (direction.at.design != traced_design && !design.balls) tracer.emplace(model.part, engine_for(model, request));
+    if (direction.at.design != traced_design && !design.balls)
+      tracer.emplace(model.part, engine_for(model, request), model.front ? &*model.front : nullptr);
     traced_design = direction.at.design;
     const raytrace::Illumination illumination = illumination_of(direction.at, design);
     const raytrace::Sampling sampling = sampling_of(request, light.weight, w);
@@ -428,7 +446,8 @@ bool trace_exactly_if_cheap(const std::vector<Design>& designs, const std::vecto
                             const Cancellation* cancel) {
   const bool all_smooth = std::all_of(models.begin(), models.end(), [](const auto& m) { return m.optics.is_smooth(); });
   const bool has_balls = std::any_of(designs.begin(), designs.end(), is_ball);
-  if (!may_be_exact(request) || !all_smooth || has_balls) return false;
+  const bool has_fronts = std::any_of(models.begin(), models.end(), [](const auto& m) { return m.front.has_value(); });
+  if (!may_be_exact(request) || !all_smooth || has_balls || has_fronts) return false;
   try {
     trace_exactly(designs, models, request, directions, progress, cancel);
     return true;

@@ -111,6 +111,7 @@ Solid make_solid(const Design& design, const SolidRequest& request) {
   if (request.block_mm && !(*request.block_mm > 0.0 && *request.block_mm <= 1e6))
     throw InputError({"", 0, "--block-mm"}, fmt::format("must be > 0 and <= 1e6, got {}", *request.block_mm));
   design.require_no_balls();
+  design.require_plane_front("retrace export");
   Solid solid;
   solid.design = design;
   solid.what = request.what;

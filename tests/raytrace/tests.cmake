@@ -25,3 +25,6 @@ retrace_test(raytrace_test
 retrace_test(raytrace_base_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_trace_test.cpp ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
   LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers)
+retrace_test(raytrace_front_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/front_test.cpp
+  LIBRARIES retrace::raytrace)

@@ -15,6 +15,7 @@ namespace retrace::studies {
 namespace {
 
 std::string total_reflection(const Inspection& i) {
+  if (i.front) return "not stated: light comes from a curved front in many directions";
   if (i.base) return "not stated: elements on a base stand at angles of their own";
   if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
   if (!i.tir_limit_deg) return "none at normal incidence";
@@ -48,6 +49,19 @@ nlohmann::ordered_json base_json(const BaseReport& base) {
                                  {"pocket_projected_mm2", base.walls.projected_mm2}};
   if (std::isfinite(least_radius_mm)) json["least_radius_mm"] = least_radius_mm;
   return json;
+}
+
+nlohmann::ordered_json front_json(const FrontReport& front) {
+  return {{"lowest_mm", front.range.lowest_mm},
+          {"highest_mm", front.range.highest_mm},
+          {"steepest_deg", front.steepest_deg}};
+}
+
+std::string front_text(const Inspection& i) {
+  if (!i.front) return {};
+  return fmt::format("  front               {}, z = {} to {} mm, up to {} degrees steep\n",
+                     printable(i.design.front->name), fixed(i.front->range.lowest_mm, 6),
+                     fixed(i.front->range.highest_mm, 6), fixed(i.front->steepest_deg, 2));
 }
 
 std::string base_text(const Inspection& i) {
@@ -115,6 +129,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (!i.design.mesh) json["dead_zone_share"] = i.dead_zone_share;
   if (i.base) json["base"] = base_json(*i.base);
+  if (i.front) json["front"] = front_json(*i.front);
   json["boundary"] = i.boundary;
   json["version"] = kVersion;
   json["warnings"] = i.warnings;
@@ -128,6 +143,7 @@ std::string mesh_text(const Inspection& i) {
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));
   text += fmt::format("  depth               {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  plate               {} mm\n", fixed(i.thickness_mm, 6));
+  text += front_text(i);
   text += fmt::format("  entrance area       {} mm2\n", fixed(i.entrance_area_mm2, 4));
   text += fmt::format("  retro facet area    {} mm2\n", fixed(i.facet_area_mm2, 4));
   text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
@@ -167,6 +183,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  full elements       {} % of it\n", fixed(100.0 * i.full_element_share, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += base_text(i);
+  text += front_text(i);
   text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
   text += spectrum_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));

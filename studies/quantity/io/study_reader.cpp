@@ -470,6 +470,7 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
   for_design.insert(for_design.begin(), as_cut.begin(), as_cut.end());
   const Design varied = parse_design(study.design_texts.at(design), design, for_design);
   varied.require_elements("a study");
+  varied.require_plane_front("a study");
   return {varied, read_analysis(document, study.seed), machining};
 }
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "geometry/front_surface.h"
+#include "geometry/triangle_mesh.h"
+
+namespace retrace::geometry {
+
+/// Which triangles of a mesh are the front.
+enum class MeshSide {
+  top,    ///< those that look towards +z
+  bottom  ///< those that look towards -z, turned over: the mesh is the counterpart of the part
+};
+
+/// The front of a part from a mesh, as triangles that look towards +z; upright ones are left out.
+/// \param move_mm from the mesh's frame into the part's
+/// \throw InputError unless they cover the outline, once
+SurfacePatch front_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline);
+
+/// front_range() of a mesh.
+FrontRange range_of_front_mesh(const SurfacePatch& patch, const Polygon& outline);
+
+}  // namespace retrace::geometry

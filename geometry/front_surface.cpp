@@ -1,0 +1,114 @@
+#include "geometry/front_surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "geometry/front_mesh.h"
+
+namespace retrace::geometry {
+namespace {
+
+constexpr int kCellsPerFeature = 8;
+constexpr int kFewestCells = 64;
+constexpr int kMostCells = 1024;
+
+bool is_inside(const Polygon& outline, const Vec2& p) {
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2 along = outline[(k + 1) % outline.size()] - outline[k];
+    const Vec2 to = p - outline[k];
+    if (along.x() * to.y() - along.y() * to.x() < -1e-12 * along.squaredNorm()) return false;
+  }
+  return true;
+}
+
+/// Grid points over the outline, and points of its edges.
+std::vector<Vec2> sample_points(const Polygon& outline, int cells) {
+  const Rectangle box = bounding_box(outline);
+  std::vector<Vec2> points;
+  for (int j = 0; j <= cells; ++j)
+    for (int i = 0; i <= cells; ++i) {
+      const Vec2 share(static_cast<double>(i) / cells, static_cast<double>(j) / cells);
+      const Vec2 p = box.lower + share.cwiseProduct(box.size());
+      if (is_inside(outline, p)) points.push_back(p);
+    }
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    for (int i = 0; i < cells; ++i) {
+      const double share = static_cast<double>(i) / cells;
+      points.push_back(outline[k] + share * (outline[(k + 1) % outline.size()] - outline[k]));
+    }
+  return points;
+}
+
+/// Climbs from a point to the nearest place that is highest (sign 1) or lowest (-1) over the outline: a search in ever
+/// smaller steps along the axes, the diagonals and the outline's edges (R. Hooke, T. A. Jeeves, J. ACM 8 (1961), 212).
+Vec2 climb(const FrontSurface& surface, const Polygon& outline, Vec2 from, double step_mm, double sign) {
+  std::vector<Vec2> directions = {Vec2(1, 0), Vec2(0, 1), Vec2(1, 1).normalized(), Vec2(1, -1).normalized()};
+  for (std::size_t k = 0; k < outline.size() && k < 8; ++k)
+    directions.push_back((outline[(k + 1) % outline.size()] - outline[k]).normalized());
+  double best = sign * surface.at(from).height_mm;
+  const double least_mm = 1e-9 * step_mm;
+  while (step_mm > least_mm) {
+    bool moved = false;
+    for (const Vec2& direction : directions)
+      for (const double way : {step_mm, -step_mm}) {
+        const Vec2 p = from + way * direction;
+        if (!is_inside(outline, p)) continue;
+        const double value = sign * surface.at(p).height_mm;
+        if (!(value > best)) continue;
+        best = value;
+        from = p;
+        moved = true;
+      }
+    if (!moved) step_mm *= 0.5;
+  }
+  return from;
+}
+
+FrontRange range_of(const FrontSurface& surface, const Polygon& outline) {
+  const Rectangle box = bounding_box(outline);
+  const int cells = cells_to_show(surface, box.size().maxCoeff());
+  FrontRange range;
+  range.lowest_mm = INFINITY;
+  range.highest_mm = -INFINITY;
+  for (const Vec2& p : sample_points(outline, cells)) {
+    const FrontSurface::Place place = surface.at(p);
+    if (!std::isfinite(place.height_mm) || !place.slope.allFinite())
+      throw InputError(fmt::format("must cover the part, has no finite height or slope at x = {}, y = {} mm",
+                                   fixed(p.x(), 4), fixed(p.y(), 4)));
+    range.steepest_slope = std::max(range.steepest_slope, place.slope.norm());
+    if (place.height_mm < range.lowest_mm) {
+      range.lowest_mm = place.height_mm;
+      range.lowest_at_mm = p;
+    }
+    if (place.height_mm > range.highest_mm) {
+      range.highest_mm = place.height_mm;
+      range.highest_at_mm = p;
+    }
+  }
+  const double step_mm = box.size().maxCoeff() / cells;
+  range.lowest_at_mm = climb(surface, outline, range.lowest_at_mm, step_mm, -1.0);
+  range.lowest_mm = surface.at(range.lowest_at_mm).height_mm;
+  range.highest_at_mm = climb(surface, outline, range.highest_at_mm, step_mm, 1.0);
+  range.highest_mm = surface.at(range.highest_at_mm).height_mm;
+  return range;
+}
+
+}  // namespace
+
+int cells_to_show(const FrontSurface& surface, double size_mm) {
+  const double wanted = kCellsPerFeature * size_mm / surface.finest_mm();
+  return static_cast<int>(std::clamp(std::ceil(wanted), double{kFewestCells}, double{kMostCells}));
+}
+
+FrontRange front_range(const Front& front, const Polygon& outline) {
+  if (const auto* const mesh = std::get_if<std::shared_ptr<const SurfacePatch>>(&front))
+    return range_of_front_mesh(**mesh, outline);
+  return range_of(*std::get<0>(front), outline);
+}
+
+}  // namespace retrace::geometry

@@ -1,0 +1,145 @@
+#include "studies/design/front_of_design.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/atomic_file.h"
+#include "core/number_format.h"
+#include "fabrication/turning/io/part_files.h"
+#include "geometry/front_mesh.h"
+#include "geometry/io/stl_file.h"
+
+namespace retrace::studies {
+namespace {
+
+namespace turning = fabrication::turning;
+using geometry::Vec2;
+using geometry::Vec3;
+
+/// The design surface of a turned part, moved into the frame of an optical part.
+class TurnedFront : public geometry::FrontSurface {
+ public:
+  TurnedFront(turning::TurnedSurface surface, const Vec3& origin_mm)
+      : surface_(std::move(surface)), origin_mm_(origin_mm) {
+    for (const turning::Lenslet& lenslet : surface_.lenslets())
+      finest_mm_ = std::min(finest_mm_, lenslet.outer.least_mm);
+  }
+
+  Place at(const Vec2& p) const override {
+    const turning::Dual z = surface_.gradient(p.x() - origin_mm_.x(), p.y() - origin_mm_.y());
+    return {origin_mm_.z() + z.v, {z.dx, z.dy}};
+  }
+  double finest_mm() const override { return finest_mm_; }
+
+ private:
+  turning::TurnedSurface surface_;
+  Vec3 origin_mm_;
+  double finest_mm_ = std::numeric_limits<double>::infinity();
+};
+
+/// Corners of the outline and points of its edges, in the frame of the file.
+std::vector<Vec2> border_points(const geometry::Polygon& outline, const Vec2& origin_mm) {
+  constexpr int kPointsOfEdge = 64;
+  std::vector<Vec2> points;
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    for (int i = 0; i < kPointsOfEdge; ++i)
+      points.push_back(outline[k] +
+                       (static_cast<double>(i) / kPointsOfEdge) * (outline[(k + 1) % outline.size()] - outline[k]) -
+                       origin_mm);
+  return points;
+}
+
+/// What of the part lies beyond what is turned, or where the design's surface is only extrapolated.
+void check_region(const turning::TurnedPart& part, const std::vector<Vec2>& border) {
+  constexpr double kRoom = 1.0 + 1e-9;
+  const turning::PathOptions& path = part.path;
+  const bool is_round = path.strategy == turning::Strategy::spiral;
+  const auto is_turned = [&](const Vec2& p) {
+    if (is_round) return p.norm() <= kRoom * path.radius_mm;
+    return 2.0 * std::abs(p.x()) <= kRoom * path.height_mm && 2.0 * std::abs(p.y()) <= kRoom * path.width_mm;
+  };
+  const auto place = [](const Vec2& p) {
+    return fmt::format("x = {}, y = {} mm of its frame lies outside", fixed(p.x(), 4), fixed(p.y(), 4));
+  };
+  for (const Vec2& p : border) {
+    if (!is_turned(p))
+      throw InputError(
+          fmt::format("must be turned all over the part, its path {}, {}",
+                      is_round ? fmt::format("has a radius of {} mm", shortest(path.radius_mm))
+                               : fmt::format("covers {} x {} mm", shortest(path.height_mm), shortest(path.width_mm)),
+                      place(p)));
+    const auto& beyond = part.surface.extrapolation();
+    if (beyond && !beyond->boundary.contains(p.x() / kRoom, p.y() / kRoom))
+      throw InputError("must have a boundary round the whole part, " + place(p));
+  }
+}
+
+geometry::Front turned_front(const Design& design, const geometry::Part& part, const Vec3& origin_mm,
+                             std::vector<std::string>* warnings) {
+  const std::string name = design.front->file.string();
+  turning::TurnedPart turned = turning::parse_turned_part(read_file(design.front->file), name);
+  try {
+    check_region(turned, border_points(part.outline, origin_mm.head<2>()));
+  } catch (const InputError& error) {
+    throw InputError({name, 0, ""}, error.what());
+  }
+  if (warnings != nullptr)
+    for (const std::string& warning : turned.warnings)
+      warnings->push_back(fmt::format("{}: {}: {}", design.source_name(), name, warning));
+  return std::make_shared<const TurnedFront>(std::move(turned.surface), origin_mm);
+}
+
+geometry::Front mesh_front(const FrontFile& file, const geometry::Part& part, const Vec3& origin_mm) {
+  const std::string name = file.file.string();
+  const geometry::TriangleMesh mesh = geometry::parse_stl(read_file(file.file), name);
+  try {
+    return std::make_shared<const geometry::SurfacePatch>(geometry::front_of_mesh(
+        mesh, file.mesh_bottom ? geometry::MeshSide::bottom : geometry::MeshSide::top, origin_mm, part.outline));
+  } catch (const InputError& error) {
+    throw InputError({name, 0, ""}, error.what());
+  }
+}
+
+Vec3 origin_of(const FrontFile& file, const geometry::Part& part) {
+  const geometry::Rectangle box = geometry::bounding_box(part.outline);
+  Vec2 centre = 0.5 * (box.lower + box.upper);
+  if (file.centre_mm) centre = {(*file.centre_mm)[0], (*file.centre_mm)[1]};
+  return {centre.x(), centre.y(), part.thickness_mm};
+}
+
+/// \throw InputError unless it lies above the highest place of the back
+void check_room(const geometry::Front& front, const geometry::Part& part, const std::string& name) {
+  try {
+    const geometry::FrontRange range = geometry::front_range(front, part.outline);
+    if (range.lowest_mm > part.top_mm) return;
+    throw InputError(
+        fmt::format("must lie above the part's back, whose highest place is z = {}, it comes down to {} mm at x = {}, "
+                    "y = {} mm: give "
+                    "more body.thickness_mm",
+                    fixed(part.top_mm, 4), fixed(range.lowest_mm, 4), fixed(range.lowest_at_mm.x(), 4),
+                    fixed(range.lowest_at_mm.y(), 4)));
+  } catch (const InputError& error) {
+    throw InputError({name, 0, ""}, error.what());
+  }
+}
+
+}  // namespace
+
+geometry::Front front_of_design(const Design& design, const geometry::Part& part, std::vector<std::string>* warnings) {
+  const FrontFile& file = *design.front;
+  try {
+    const Vec3 origin_mm = origin_of(file, part);
+    const geometry::Front front =
+        file.is_mesh ? mesh_front(file, part, origin_mm) : turned_front(design, part, origin_mm, warnings);
+    check_room(front, part, file.file.string());
+    return front;
+  } catch (const InputError& error) {
+    throw InputError(file.location, error.what());  // which does not know who named the file
+  }
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/front_surface.h"
+#include "geometry/part.h"
+#include "studies/design/design.h"
+
+namespace retrace::studies {
+
+/// The curved front of a design, read from its file, in the frame of the part: the heights of the file count from
+/// z = thickness_mm, its origin lies over FrontFile::centre_mm. It covers the part, within what the file says is
+/// turned, and lies above the highest place of the part's back. \param warnings gets what the user should know of a
+/// turned part; null: not wanted \throw InputError naming file and line \pre design.front
+geometry::Front front_of_design(const Design& design, const geometry::Part& part, std::vector<std::string>* warnings);
+
+}  // namespace retrace::studies
