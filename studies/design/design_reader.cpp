@@ -302,8 +302,9 @@ PartMesh read_plate(const DesignDocument& document, TableReader& part) {
       throw InputError(document.location(*node, other), "not allowed beside part.plate_mm, which is the whole part");
   part.refuse({"mesh", "allow_open", "facets"}, "not allowed beside plate_mm");
   const std::vector<double> size = *part.numbers(key, kSaneSize);
-  if (part.list_size(key) != 2)
-    part.fail(key, "must be a list of two lengths, along x and y, got " + part.shown_value(key));
+  if (const std::size_t given = part.list_size(key).value_or(1); given != 2)
+    part.fail(key, fmt::format("must be a list of two lengths, along x and y, got {}",
+                               part.list_size(key) ? fmt::format("a list of {}", given) : shortest(size[0])));
   part.finish();
   PartMesh plate;
   plate.name = fmt::format("plate {} x {} mm", shortest(size[0]), shortest(size[1]));

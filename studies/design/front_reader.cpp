@@ -1,5 +1,7 @@
 #include "studies/design/front_reader.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <string>
 
@@ -33,7 +35,7 @@ std::optional<FrontFile> read_front(const DesignDocument& document, const Design
   front.mesh_bottom = table.choice("mesh_side", std::span<const Choice<bool>>(kSides)).value_or(false);
   if (const auto centre = table.numbers("centre_mm", kPlace)) {
     if (centre->size() != 2)
-      table.fail("centre_mm", "must be a list of two, x and y, got " + table.shown_value("centre_mm"));
+      table.fail("centre_mm", fmt::format("must be a list of two, x and y, got a list of {}", centre->size()));
     front.centre_mm = std::array{(*centre)[0], (*centre)[1]};
   }
   table.finish();

@@ -21,3 +21,7 @@ retrace_test(app_test
     app/verify_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 add_dependencies(app_test retrace)
+retrace_test(front_command_test
+  SOURCES app/front_test.cpp app/program.cpp
+  LIBRARIES retrace::core nlohmann_json::nlohmann_json)
+add_dependencies(front_command_test retrace)

@@ -340,14 +340,19 @@ TEST(Front, SurfaceAndItsMeshAgreeOverPrisms) {
   const Front surface = egg_box_front(0.6, 0.08, 2.0 * std::numbers::pi / 0.4);
   const Front mesh = std::make_shared<const SurfacePatch>(
       front_of_mesh(meshed(*std::get<0>(surface), 1.0, 320), MeshSide::top, Vec3::Zero(), part.outline));
+  PathPolicy policy;
+  policy.split_power = 1e-3;  // the same rays but for little that is left to chance
   for (const double incidence : {0.0, 35.0, 70.0}) {
-    const MonteCarloResult exact = traced(part, &surface, pmma(), from(incidence, 15.0), 1U << 14, {}, 20.0);
+    const MonteCarloResult exact = traced(part, &surface, pmma(), from(incidence, 15.0), 1U << 13, policy, 20.0);
     EXPECT_NEAR(exact.cones[0].ledger.total(), 1.0, 1e-9);
     EXPECT_EQ(exact.misses, 0U);
-    const MonteCarloResult by_mesh = traced(part, &mesh, pmma(), from(incidence, 15.0), 1U << 14, {}, 20.0);
+    const MonteCarloResult by_mesh = traced(part, &mesh, pmma(), from(incidence, 15.0), 1U << 13, policy, 20.0);
     EXPECT_EQ(by_mesh.misses, 0U);
+    // Both are estimates; of the facets of the mesh 1e-3 is left.
+    const double bound = 4.0 * std::hypot(exact.cones[0].std_error, by_mesh.cones[0].std_error) + 1e-3;
+    EXPECT_LT(bound, 0.02);
     for (std::size_t k = 0; k < kAccountCount; ++k)
-      EXPECT_NEAR(exact.cones[0].ledger.power[k], by_mesh.cones[0].ledger.power[k], 4e-3) << kAccountNames[k];
+      EXPECT_NEAR(exact.cones[0].ledger.power[k], by_mesh.cones[0].ledger.power[k], bound) << kAccountNames[k];
   }
 }
 
