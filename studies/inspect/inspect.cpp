@@ -285,7 +285,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.warnings = model.warnings;
   result.refractive_index = mean_index(model.spectral);
   result.light = model.spectral;
-  if (design.needs_total_reflection()) result.wavelength_nm = model.wavelength_nm;
+  result.wavelength_nm = model.wavelength_nm;
   if (model.front) result.front = report_front(*model.front, part);
   if (design.mesh) {
     // make_model() refuses one that is not; what was mended is in the warnings.

@@ -156,10 +156,10 @@ TEST_F(Front, MachinedMeshActsAsTheDesign) {
 
 // The example: lenslets in a hexagonal lattice on a square, which half a turn leaves alike; and a cat's eye.
 TEST_F(Front, LensletsAreACatsEye) {
-  const Json json = retrace_json(folder_, {"rre", example("cats_eye_lenslets.toml"), "--samples", "16384",
+  const Json json = retrace_json(folder_, {"rre", example("fronts/cats_eye_lenslets.toml"), "--samples", "16384",
                                            "--incidence=0,2", "--azimuth=40,220", "--set", "body.absorption_per_mm=0"});
   EXPECT_EQ(json["engine"], "embree");
-  EXPECT_EQ(json["designs"][0]["front"]["turned"], "turning/cats_eye_lenslets.toml");
+  EXPECT_EQ(json["designs"][0]["front"]["turned"], "../turning/cats_eye_lenslets.toml");
   for (const Json& point : json["points"]) {
     EXPECT_NEAR(total(point), 1.0, 1e-9);
     EXPECT_EQ(point["ledger"]["lost"], 0.0);
@@ -171,8 +171,8 @@ TEST_F(Front, LensletsAreACatsEye) {
   EXPECT_EQ(other["azimuth_deg"], 220.0);
   EXPECT_NEAR(one["rre"].get<double>(), other["rre"].get<double>(),
               5.0 * std::hypot(one["std_error"].get<double>(), other["std_error"].get<double>()));
-  const Json defocused = retrace_json(
-      folder_, {"rre", example("cats_eye_lenslets.toml"), "--samples", "16384", "--set", "body.thickness_mm=2.2"});
+  const Json defocused = retrace_json(folder_, {"rre", example("fronts/cats_eye_lenslets.toml"), "--samples", "16384",
+                                                "--set", "body.thickness_mm=2.2"});
   EXPECT_GT(json["points"][1]["rre"].get<double>(), 2.0 * defocused["points"][1]["rre"].get<double>());
 }
 
