@@ -75,27 +75,27 @@ int chiseling_layers(const Job& job, double stock_mm) {
 }
 
 CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
-                           const Standing& standing) {
+                           const Stance& stance) {
   const InputLocation where{job.source, 0, "machine"};
   const double azimuth_deg = facet_azimuth_deg(facet);
-  const Vec3 normal = standing.turn * cube_facet_normal(facet);
+  const Vec3 normal = stance.turn * cube_facet_normal(facet);
   CuttingPose pose;
   pose.facet = facet;
-  pose.orientation = standing.orientation;
-  pose.turn = standing.turn;
+  pose.orientation = stance.orientation;
+  pose.turn = stance.turn;
   pose.root = pose.turn * Vec3::UnitZ().cross(horizontal(azimuth_deg));
   const double tilt_deg = Angle::from_rad(std::asin(1.0 / std::numbers::sqrt3)).deg();
   const RotaryPose near{machine.a.sign.value * tilt_deg, -machine.c.sign.value * azimuth_deg};
   const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
   pose.root_tilt = solved.root_tilt;
   pose.a = std::llround(solved.pose.a_deg * kRotaryUnitsPerDeg);
-  pose.c = std::llround(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, standing.who()) *
-                        kRotaryUnitsPerDeg);
+  pose.c =
+      std::llround(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()) * kRotaryUnitsPerDeg);
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
-  check_tilt(machine, pose.rounded.a_deg, where, standing.who());
+  check_tilt(machine, pose.rounded.a_deg, where, stance.who());
   pose.section.depth_mm = cavity_depth_mm(blank_element(job));
-  pose.section.stock_mm = standing.stock_mm;
-  pose.section.start_mm = standing.start_mm;
+  pose.section.stock_mm = stance.stock_mm;
+  pose.section.start_mm = stance.start_mm;
   pose.section.apex = Angle::from_deg(90.0);
   pose.rounded_along = in_words(machine, pose.rounded, normal);
   return pose;
@@ -133,8 +133,8 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
   return routine;
 }
 
-void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, const Standing& standing) {
-  if (standing.element < 0) return;
+void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, const Stance& stance) {
+  if (stance.element < 0) return;
   const InputLocation where{job.source, 0, "machine"};
   const VToolEdges edges = v_tool_edges(job.tool);
   std::array<Vec3, 3> spines;
@@ -152,7 +152,7 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
       throw InputError(where,
                        fmt::format("{}the tool would stand turned by {} degrees in facet {}, which B and C cannot "
                                    "mend, and run into a neighbouring facet: at most {} fit its angles",
-                                   standing.who(), fixed(turned_deg, 3), k + 1, fixed(room_deg, 3)));
+                                   stance.who(), fixed(turned_deg, 3), k + 1, fixed(room_deg, 3)));
     spines[k] = turn * edges.spine;
   }
   for (std::size_t k = 0; k < 3; ++k) {
@@ -165,20 +165,20 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
       throw InputError(where,
                        fmt::format("{}the tool stands so in facets {} and {} that a fin of {} degrees would stay "
                                    "between its cuts, 0 are allowed: tool.wedge_deg must be larger",
-                                   standing.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 - covered_deg, 3)));
+                                   stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 - covered_deg, 3)));
   }
   double most_turned = 0.0;
   for (const CuttingPose& pose : poses) most_turned = std::max(most_turned, std::abs(pose.root_tilt.rad()));
   const double half_nose = Angle::from_deg(0.5 * job.tool.nose_angle_deg).rad();
   const double up_facet_mm =
-      (poses[0].section.depth_mm + standing.stock_mm) / std::sqrt(2.0 / 3.0) / std::cos(half_nose + most_turned);
+      (poses[0].section.depth_mm + stance.stock_mm) / std::sqrt(2.0 / 3.0) / std::cos(half_nose + most_turned);
   const double least_mm = 2.0 * up_facet_mm * std::sin(half_nose);
   if (job.tool.width_mm < least_mm - 1e-9)
     throw InputError(
         {job.source, 0, "tool.width_mm"},
         fmt::format("{}must be >= {} for the cutting edges to reach from the apex to the blank's face, "
                     "got {}",
-                    standing.who(), fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(job.tool.width_mm)));
+                    stance.who(), fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(job.tool.width_mm)));
 }
 
 std::vector<std::string> chiseling_description(const Job& job, std::size_t elements) {

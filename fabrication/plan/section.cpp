@@ -36,15 +36,17 @@ Vec3 in_words(const Machine& machine, const Vec3& normal) {
 /// A and C lay a facet's normal where the tool plunges it, and nothing is left to lay its root along the tool's edge: a
 /// root that slopes against the table's axes keeps material at one end of the edge, of which a finishing cut's depth is
 /// borne.
-void check_root(const Job& job, const CuttingPose& pose, const InputLocation& where, const Standing& standing) {
-  if (standing.element < 0) return;
+void check_root(const Job& job, const CuttingPose& pose, const InputLocation& where, const Stance& stance) {
+  if (stance.element < 0) return;
   const double limit = std::atan(1e-3 * job.process.finishing_depth_um / job.tool.width_mm);
   if (std::abs(pose.root_tilt.rad()) <= limit) return;
+  const double width_mm = 1e-3 * job.process.finishing_depth_um / std::tan(std::abs(pose.root_tilt.rad()));
   throw InputError(
       where,
-      fmt::format("{}its root would stand at {} degrees to the tool's edge, which A and C cannot turn "
-                  "in the facet, at most {} are borne: a finishing cut over the edge's width",
-                  standing.who(), fixed(std::abs(pose.root_tilt.deg()), 4), fixed(Angle::from_rad(limit).deg(), 4)));
+      fmt::format("{}its root would stand at {} degrees to the tool's edge, which A and C cannot turn in the facet, at "
+                  "most {} are borne: a finishing cut over the edge's width, which would have to be {} mm",
+                  stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4), fixed(Angle::from_rad(limit).deg(), 4),
+                  fixed(width_mm, 4)));
 }
 
 Vec2 direction_in_words(const Machine& machine, double y, double z) {
@@ -70,7 +72,7 @@ double root_depth_mm(const geometry::RtpElement& element) {
   return 0.5 * element.base_mm / std::tan(half_apex_rad(element));
 }
 
-std::string Standing::who() const {
+std::string Stance::who() const {
   if (element < 0) return "";
   const double tilt_deg = Angle::from_rad(std::atan2(turn.col(2).head<2>().norm(), turn(2, 2))).deg();
   return fmt::format("element {}, tilted by {} degrees: ", element, fixed(tilt_deg, 4));
@@ -102,25 +104,25 @@ void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& wh
 }
 
 CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
-                         const Standing& standing) {
+                         const Stance& stance) {
   const InputLocation where{job.source, 0, "machine"};
   const geometry::RtpElement element = blank_prism(job);
   const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
   const double nominal_c_deg = (facet.facet == 1 ? 0.0 : 180.0) + (facet.turned ? 90.0 : 0.0);
   CuttingPose pose;
   pose.facet = facet;
-  pose.orientation = standing.orientation;
-  pose.turn = standing.turn;
+  pose.orientation = stance.orientation;
+  pose.turn = stance.turn;
   pose.root = pose.turn * root_direction(facet);
   const Vec3 normal = pose.turn * facet_normal(element, facet);
   const RotaryPose near{machine.a.sign.value * 0.5 * element.apex_angle_deg, machine.c.sign.value * nominal_c_deg};
   const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
   pose.root_tilt = solved.root_tilt;
   pose.a = rounded_units(solved.pose.a_deg);
-  pose.c = rounded_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, standing.who()));
+  pose.c = rounded_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()));
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
-  check_tilt(machine, pose.rounded.a_deg, where, standing.who());
-  check_root(job, pose, where, standing);
+  check_tilt(machine, pose.rounded.a_deg, where, stance.who());
+  check_root(job, pose, where, stance);
 
   const RigidMotion motion = machine_from_workpiece(machine, pose.rounded);
   Section& section = pose.section;
@@ -138,8 +140,8 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   const Vec3 face = in_words(machine, motion.direction(pose.turn.col(2)));
   section.face_normal = {face.y(), face.z()};
   section.depth_mm = root_depth_mm(element);
-  section.stock_mm = standing.stock_mm;
-  section.start_mm = standing.start_mm;
+  section.stock_mm = stance.stock_mm;
+  section.start_mm = stance.start_mm;
   section.edge_mm = 1e-3 * job.tool.edge_radius_um * (1.0 - std::sin(apex_rad) + std::cos(apex_rad));
   section.apex = Angle::from_rad(apex_rad);
   return pose;

@@ -74,7 +74,7 @@ double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg
 void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where, const std::string& who = "");
 
 /// Elements that a pose cuts: how they are turned on their base, and how far the blank stands over their rims.
-struct Standing {
+struct Stance {
   std::int32_t orientation = 0;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   double stock_mm = 0.0;
@@ -88,6 +88,6 @@ struct Standing {
 /// The pose, with C as near to `previous_c_deg` as its limits let it.
 /// \throw InputError naming axis and limits if the machine cannot take it
 CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
-                         const Standing& standing = {});
+                         const Stance& stance = {});
 
 }  // namespace retrace::fabrication

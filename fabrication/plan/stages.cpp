@@ -29,8 +29,8 @@ class StageMaker {
     }
     const int facets = job_.strategy == Strategy::unidirectional ? 1 : 2;
     for (int facet = 1; facet <= facets; ++facet)
-      for (const auto& [group, standing] : groups_) {
-        plan_.poses.push_back(cutting_pose(job_, machine_, {group.first, facet}, previous_c_deg_, standing));
+      for (const auto& [group, stance] : groups_) {
+        plan_.poses.push_back(cutting_pose(job_, machine_, {group.first, facet}, previous_c_deg_, stance));
         previous_c_deg_ = plan_.poses.back().rounded.c_deg;
       }
     switch (job_.strategy) {
@@ -57,13 +57,13 @@ class StageMaker {
     const double start_mm = job_.base ? stock_mm(job_, plan_.elements, job_.process.clearance_mm) : 0.0;
     for (std::size_t k = 0; k < plan_.elements.size(); ++k) {
       const CutElement& element = plan_.elements[k];
-      Standing standing;
-      standing.orientation = element.orientation;
-      standing.turn = element.turn;
-      standing.stock_mm = plan_.stock_mm;
-      standing.start_mm = start_mm;
-      if (job_.base) standing.element = static_cast<std::int64_t>(k);
-      groups_.try_emplace({element.turned, element.orientation}, standing);
+      Stance stance;
+      stance.orientation = element.orientation;
+      stance.turn = element.turn;
+      stance.stock_mm = plan_.stock_mm;
+      stance.start_mm = start_mm;
+      if (job_.base) stance.element = static_cast<std::int64_t>(k);
+      groups_.try_emplace({element.turned, element.orientation}, stance);
       has_tilts_ = has_tilts_ || element.orientation > 0;
     }
   }
@@ -84,21 +84,21 @@ class StageMaker {
   }
 
   void add_poses_by_group() {
-    for (const auto& [group, standing] : groups_) {
+    for (const auto& [group, stance] : groups_) {
       const std::size_t first = plan_.poses.size();
       for (int facet = 1; facet <= 3; ++facet) plan_.poses.push_back(next_pose(group, facet));
-      check_v_in_poses(job_, {plan_.poses[first], plan_.poses[first + 1], plan_.poses[first + 2]}, standing);
+      check_v_in_poses(job_, {plan_.poses[first], plan_.poses[first + 1], plan_.poses[first + 2]}, stance);
     }
   }
 
   /// Between elements that lean differently C turns by little, between facets by 120 degrees.
   void add_poses_by_facet() {
     for (int facet = 1; facet <= 3; ++facet)
-      for (const auto& [group, standing] : groups_) plan_.poses.push_back(next_pose(group, facet));
+      for (const auto& [group, stance] : groups_) plan_.poses.push_back(next_pose(group, facet));
     std::size_t k = 0;
     const std::size_t count = groups_.size();
-    for (const auto& [group, standing] : groups_) {
-      check_v_in_poses(job_, {plan_.poses[k], plan_.poses[k + count], plan_.poses[k + 2 * count]}, standing);
+    for (const auto& [group, stance] : groups_) {
+      check_v_in_poses(job_, {plan_.poses[k], plan_.poses[k + count], plan_.poses[k + 2 * count]}, stance);
       ++k;
     }
   }
@@ -163,7 +163,7 @@ class StageMaker {
   const Job& job_;
   const Machine& machine_;
   Plan& plan_;
-  std::map<ElementGroup, Standing> groups_;
+  std::map<ElementGroup, Stance> groups_;
   bool has_tilts_ = false;
   std::vector<RoutineStart> starts_;
   double previous_c_deg_ = 0.0;

@@ -42,7 +42,11 @@ class Places {
     for (int i = 0; i < kDirections; ++i) directions.push_back((i + 0.4871) / kDirections * kQuarter);
     for (const double direction : directions) {
       const Vec2 unit(std::cos(direction), std::sin(direction));
-      for (const double share : shares()) places.push_back(share * reach(unit) * unit);
+      for (const double share : shares()) {
+        const Vec2 place = share * reach(unit) * unit;
+        // Nearer to the apex than that a line runs along both other facets, as near as their words are rounded.
+        if (place.maxCoeff() >= kBesideEdgeMm) places.push_back(place);
+      }
     }
     for (const double off : {kAtEdgeMm, kBesideEdgeMm})
       for (const double share : shares()) {

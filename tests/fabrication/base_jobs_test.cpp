@@ -168,6 +168,79 @@ TEST(OnBase, AllStrategiesCutPrismsAlongACylinder) {
     }
 }
 
+/// What the less usual keys of a job ask for.
+TEST(OnBase, VariantsVerifyAsOnAPlane) {
+  const std::vector<std::pair<std::string, std::function<void(Job&)>>> variants = {
+      {"shrinkage", [](Job& job) { job.workpiece.shrinkage_percent = 2.0; }},
+      {"gaps", [](Job& job) { job.array.x_gap_mm = job.array.y_gap_mm = 0.03; }},
+      {"narrow apex", [](Job& job) { prism_of(job).apex_angle_deg = 80.0; }},
+      {"wide apex", [](Job& job) { prism_of(job).apex_angle_deg = 95.0; }},
+      {"blunt edge", [](Job& job) { job.tool.edge_radius_um = 0.5; }},
+      {"short ploughs", [](Job& job) { job.process.shortest_plough = true; }},
+      {"slow retract", [](Job& job) { job.process.slow_retract_um = 4.0; }},
+      {"two passes", [](Job& job) { job.tool.width_mm = 0.25; }}};
+  for (const auto& [what, change] : variants)
+    for (const Base& base : {cylinder_base(-6.0, false, Standing::normal), sphere_base(10.0, Standing::parallel)}) {
+      Job job = prisms_on(base);
+      job.array.x_length_mm = job.array.y_length_mm = 1.5;
+      change(job);
+      const Verification v = verified(job, text_of(job));
+      EXPECT_TRUE(v.passes()) << what << "\n" << listed(v);
+      EXPECT_GE(v.elements_cut, 9) << what;
+      // Tips that are rounded to whole nanometres leave a burr of a few at the root of an open V.
+      EXPECT_LT(v.facet_distance_nm_max, what == "wide apex" ? 4.0 : 1.0) << what;
+    }
+  Job large = cubes_on(sphere_base(4.0, Standing::normal), true);
+  large.workpiece.shrinkage_percent = 5.0;
+  EXPECT_TRUE(verified(large, text_of(large)).passes());
+}
+
+/// An incline is either refused or cut right, whichever way it rises.
+TEST(OnBase, EveryInclineIsRefusedOrCutRight) {
+  int refused = 0;
+  int cut = 0;
+  for (const double incline_deg : {3.0, 9.0, 14.0, 19.0, 24.0, 29.0, 33.0})
+    for (double azimuth_deg = 0.0; azimuth_deg < 360.0; azimuth_deg += 24.0) {
+      Job job = cubes_on(plane_base(incline_deg, azimuth_deg, Standing::normal), false);
+      job.process.roughing_depth_um = 40.0;
+      std::string text;
+      try {
+        text = text_of(job);
+      } catch (const InputError&) {
+        ++refused;
+        continue;
+      }
+      const Verification v = verified(job, text);
+      EXPECT_TRUE(v.passes()) << incline_deg << " towards " << azimuth_deg << "\n" << listed(v);
+      EXPECT_LT(v.facet_distance_nm_max, 1.0) << incline_deg << " towards " << azimuth_deg;
+      ++cut;
+    }
+  EXPECT_GT(refused, 20);
+  EXPECT_GT(cut, 40);
+  for (const double incline_deg : {10.0, 20.0, 30.0, 42.0}) {
+    const Job job = prisms_on(plane_base(incline_deg, 180.0, Standing::normal));
+    const Verification v = verified(job, text_of(job));
+    EXPECT_TRUE(v.passes()) << incline_deg << "\n" << listed(v);
+    EXPECT_LT(v.facet_distance_nm_max, 1.0) << incline_deg;
+  }
+}
+
+TEST(OnBase, SplitProgramsVerifyTogether) {
+  const Job job = cubes_on(sphere_base(4.0, Standing::normal), false);
+  PlanOptions options;
+  options.split_hours = 0.05;
+  options.stop_every = 5;
+  const Plan plan = make_plan(job, machine("ideal-dmc"), options);
+  ASSERT_GT(plan.programs.size(), 2U);
+  std::vector<NcProgram> programs;
+  for (const Program& program : plan.programs) {
+    EXPECT_LT(program.subroutines.size(), plan.subroutines.size());
+    programs.push_back(parse_nc(nc_text(program, "fanuc"), program.name, NcDialect::fanuc));
+  }
+  const Verification v = verify_programs(job, machine("ideal-dmc"), programs, {}, {});
+  EXPECT_TRUE(v.passes()) << listed(v);
+}
+
 /// A machine with measured axes leaves no more on an incline than on a plane.
 TEST(OnBase, MeasuredAxesAreAllowedFor) {
   for (const char* const name : {"paper", "thesis"}) {
@@ -393,7 +466,9 @@ TEST(OnBase, TiltsThatTheMachineCannotReachAreNamed) {
   const std::string along_roofs = planned(prisms_on(cylinder_base(20.0, true, Standing::normal)), machine("ideal"));
   EXPECT_EQ(along_roofs,
             "machine: element 0, tilted by 1.2920 degrees: its root would stand at 1.8269 degrees to the tool's edge, "
-            "which A and C cannot turn in the facet, at most 0.6352 are borne: a finishing cut over the edge's width");
+            "which A and C cannot turn in the facet, at most 0.6352 are borne: a finishing cut over the edge's width, "
+            "which would "
+            "have to be 0.1568 mm");
   Machine stiff = machine("ideal");
   stiff.a.limits_deg.value = {0.0, 50.0};
   EXPECT_EQ(
