@@ -151,6 +151,7 @@ Design design_of_json(const Json& json) {
       {"element", {}},
       {"array", {}},
       {"part", {}},
+      {"front", {}},  // which make_scene() refuses: a plane one in its place would be another part
       {"body", {}},
       {"light", {"wavelength_nm"}},
       {"detector", {}},

@@ -193,6 +193,32 @@ TEST_F(Front, InspectTellsAndDrawsIt) {
             (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/front.svg", "out/inspect.json"}));
 }
 
+// A report draws no part with a plane entrance face in place of the one that was traced.
+TEST_F(Front, ReportSaysThatItIsNotShown) {
+  folder_.write("lens.toml", turned(kCap));
+  rre(kPlate + kFront + kBody, {"--samples", "64", "-o", "out"});
+  const Outcome outcome = retrace(folder_, {"report", "out"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("no view in three dimensions"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("a [front] is taken by retrace rre, photometry and inspect alone"), std::string::npos);
+}
+
+// The freeform lenslets of turning's example, steep blends and all, over prisms.
+TEST_F(Front, FreeformLensletsOverPrismsKeepAllLight) {
+  const Json json =
+      rre("[element]\nkind = \"rtp\"\nbase_mm = 0.05\nwidth_mm = 0.05\n[array]\nx_length_mm = 0.5\ny_length_mm = 0.4\n"
+          "[front]\nturned = \"" +
+              example("turning/lenslet_array.toml") +
+              "\"\n[body]\nthickness_mm = 0.1\nrefractive_index = 1.4917\nabsorption_per_mm = 0.1\n",
+          {"--samples", "8192", "--incidence=0,30,70", "--azimuth=25"});
+  for (const Json& point : json["points"]) {
+    EXPECT_NEAR(total(point), 1.0, 1e-9);
+    EXPECT_EQ(point["ledger"]["lost"], 0.0);
+    EXPECT_GT(point["ledger"]["absorbed"].get<double>(), 0.001);
+    EXPECT_GT(point["ledger"]["front_specular"].get<double>(), 0.01);
+  }
+}
+
 TEST_F(Front, PhotometryTakesIt) {
   folder_.write("lens.toml", turned(kFlat));
   const Arguments plain = {"photometry", "design.toml", "--standard", "r150", "--class",    "IA",

@@ -122,7 +122,8 @@ TEST(PlaneAsFormula, SendsBackWhatThePlanarArrayDoes) {
   for (const PartSpec& plain : planar())
     for (const double t : {0.0, 7.0, 30.0}) {
       const auto traced = [&](const PartSpec& spec) {
-        return MonteCarlo(build_part(spec)).trace(pmma(), from(t, 20.0), {0.5}, rays(1U << 14), {}).cones[0].ledger;
+        const Part part = build_part(spec);
+        return MonteCarlo(part).trace(pmma(), from(t, 20.0), {0.5}, rays(1U << 14), {}).cones[0].ledger;
       };
       const Ledger expected = traced(plain);
       const Ledger found = traced(on(formula("0.3"), plain));
@@ -171,7 +172,8 @@ TEST(PinBundle, LosesLightContinuouslyAsTheInclineGrows) {
   pins.is_pin_bundle = true;
   const auto rre = [&](double incline) {
     const PartSpec spec = on({PlaneBase{incline, 0.0}, Standing::parallel}, pins);
-    return MonteCarlo(build_part(spec)).trace(pmma(), from(10.0, 0.0), {0.5}, rays(1U << 14), {}).cones[0].rre;
+    const Part part = build_part(spec);
+    return MonteCarlo(part).trace(pmma(), from(10.0, 0.0), {0.5}, rays(1U << 14), {}).cones[0].rre;
   };
   double before = rre(0.0);
   const double first = before;
@@ -190,7 +192,8 @@ TEST(InclinedArray, HasTheApertureOfCubesAtThatAngle) {
   const auto rre = [](double size_mm, double incline_deg) {
     const PartSpec spec = on({PlaneBase{incline_deg, 90.0}, Standing::normal},
                              finite(TriangularCube{1.0}, Arrangement::triangular, size_mm, size_mm, 1.0 + size_mm));
-    return MonteCarlo(build_part(spec)).trace(ideal(), from(0.0), {0.01}, rays(1U << 16), {}).cones[0];
+    const Part part = build_part(spec);
+    return MonteCarlo(part).trace(ideal(), from(0.0), {0.01}, rays(1U << 16), {}).cones[0];
   };
   for (const double incline : {5.0, 12.0, 18.0}) {
     const ConeResult small = rre(30.0, incline);

@@ -5,12 +5,11 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/check/boundary_check.h"
-#include "geometry/closed_boundary.h"
 #include "materials/fresnel.h"
 #include "raytrace/beam_tracer.h"
 #include "raytrace/monte_carlo.h"
 #include "tests/support/designs.h"
+#include "tests/support/engines.h"
 
 namespace retrace::testing {
 namespace {
@@ -144,25 +143,15 @@ std::vector<PartSpec> all_kinds(const EdgeShape& edges) {
 TEST(Edges, EnginesAgree) {
   for (EdgeShape edges : {EdgeShape{0.02, 0.0, 0.01}, EdgeShape{0.0, 0.03, 0.0, 0.02}}) {
     edges.chords = 4;
-    for (const PartSpec& spec : all_kinds(edges)) {
-      const Part part = build_part(spec);
-      BeamPolicy policy;
-      policy.cutoff = 1e-5;
-      const Ledger exact = BeamTracer(part).trace(pmma(), from(3.0), {0.5}, policy).ledgers[0];
-      const ConeResult sampled = MonteCarlo(part).trace(pmma(), from(3.0), {0.5}, rays(1U << 16), {}).cones[0];
-      EXPECT_NEAR(exact[Account::retroreflected], sampled.rre,
-                  4.0 * sampled.std_error + exact[Account::truncated] + 1e-6);
-      EXPECT_LT(exact[Account::truncated], 0.06);
-      EXPECT_NEAR(exact.total(), 1.0, 1e-9);
-      EXPECT_LT(sampled.ledger[Account::lost], 1e-9);
-    }
+    for (const PartSpec& spec : all_kinds(edges)) expect_engines_agree(spec, 0.06);
   }
 }
 
 // The wider the edge the less comes back, and none of it at a radius of nothing.
 TEST(Edges, EffectGrowsFromNothing) {
   const auto rre = [](const PartSpec& spec) {
-    return MonteCarlo(build_part(spec)).trace(pmma(), from(0.0), {0.5}, rays(1U << 13), {}).cones[0];
+    const Part part = build_part(spec);
+    return MonteCarlo(part).trace(pmma(), from(0.0), {0.5}, rays(1U << 13), {}).cones[0];
   };
   const std::vector<PartSpec> sharp = all_kinds({});
   for (std::size_t k = 0; k < sharp.size(); ++k) {
@@ -184,11 +173,7 @@ TEST(Edges, EffectGrowsFromNothing) {
 TEST(Edges, PartsStayClosed) {
   for (const EdgeShape& edges : {EdgeShape{0.02, 0.0, 0.01}, EdgeShape{0.0, 0.03, 0.0, 0.02}})
     for (const PartSpec& spec : all_kinds(edges)) {
-      if (spec.extent == Extent::infinite) continue;
-      const BoundaryReport report = check_boundary(closed_boundary(build_part(spec)));
-      EXPECT_TRUE(report.is_closed);
-      EXPECT_TRUE(report.is_manifold);
-      EXPECT_FALSE(report.self_intersects);
+      if (spec.extent == Extent::finite) expect_closed_part(spec);
     }
 }
 

@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "geometry/check/boundary_check.h"
 #include "geometry/closed_boundary.h"
 #include "raytrace/beam_tracer.h"
-#include "raytrace/monte_carlo.h"
 #include "tests/support/designs.h"
+#include "tests/support/engines.h"
 
 namespace retrace::testing {
 namespace {
@@ -88,27 +87,12 @@ const std::vector<Scratch> kTwo = {{0, 0.08, 0.03, 0.006}, {1, -0.1, 0.02, -0.00
 
 TEST(Scratches, PartsStayClosed) {
   for (const PartSpec& spec : all_arrangements(kTwo)) {
-    if (spec.extent == Extent::infinite) continue;
-    const BoundaryReport report = check_boundary(closed_boundary(build_part(spec)));
-    EXPECT_TRUE(report.is_closed);
-    EXPECT_TRUE(report.is_manifold);
-    EXPECT_FALSE(report.self_intersects);
+    if (spec.extent == Extent::finite) expect_closed_part(spec);
   }
 }
 
 TEST(Scratches, EnginesAgree) {
-  for (const PartSpec& spec : all_arrangements(kTwo)) {
-    const Part part = build_part(spec);
-    BeamPolicy policy;
-    policy.cutoff = 1e-5;
-    const Ledger exact = BeamTracer(part).trace(pmma(), from(3.0), {0.5}, policy).ledgers[0];
-    const ConeResult sampled = MonteCarlo(part).trace(pmma(), from(3.0), {0.5}, rays(1U << 16), {}).cones[0];
-    EXPECT_NEAR(exact[Account::retroreflected], sampled.rre,
-                4.0 * sampled.std_error + exact[Account::truncated] + 1e-6);
-    EXPECT_LT(exact[Account::truncated], 0.03);
-    EXPECT_NEAR(exact.total(), 1.0, 1e-9);
-    EXPECT_LT(sampled.ledger[Account::lost], 1e-9);
-  }
+  for (const PartSpec& spec : all_arrangements(kTwo)) expect_engines_agree(spec, 0.03);
 }
 
 // Turning a prism by 180 degrees swaps its facets and the sense along its roof edge.
