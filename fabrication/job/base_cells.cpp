@@ -263,6 +263,31 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
   return stock < 1e-9 ? 0.0 : stock;
 }
 
+namespace {
+
+struct ShapeWords {
+  std::string operator()(const geometry::PlaneBase& plane) const {
+    return fmt::format("a plane that rises by {} deg towards {} deg from x of the part", shortest(plane.incline_deg),
+                       shortest(plane.azimuth_deg));
+  }
+  std::string operator()(const geometry::CylinderBase& cylinder) const {
+    return fmt::format("a cylinder of radius {} mm along {} of the part", shortest(cylinder.radius_mm),
+                       cylinder.axis_is_x ? "x" : "y");
+  }
+  std::string operator()(const geometry::SphereBase& sphere) const {
+    return fmt::format("a sphere of radius {} mm", shortest(sphere.radius_mm));
+  }
+  std::string operator()(const geometry::FormulaBase&) const { return "the job's formula"; }
+};
+
+}  // namespace
+
+std::string base_description(const Job& job) {
+  return "Face of the blank: " + std::visit(ShapeWords{}, job.base->shape) +
+         (job.base->standing == geometry::Standing::normal ? ", elements along its normal" : ", elements in parallel") +
+         ". Z0 is its highest place, X0 Y0 its middle";
+}
+
 BlankFace::BlankFace(const Job& job) {
   if (!job.base) return;
   const geometry::PartSpec spec = part_on_base(job);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fabrication/job/job.h"
@@ -22,6 +23,9 @@ std::vector<CutElement> elements_on_base(const Job& job);
 /// \param clearance_mm above 0: how much higher a tool starts that keeps that distance from the blank
 /// \throw InputError, whose text begins with "must", if the base rises so steeply that no cut comes out of it
 double stock_mm(const Job& job, const std::vector<CutElement>& elements, double clearance_mm = 0.0);
+
+/// One line for people: what the blank's face is like, and where its zero is. \pre job.base
+std::string base_description(const Job& job);
 
 /// The face of the blank before anything is cut: its plane, or the job's base.
 class BlankFace {

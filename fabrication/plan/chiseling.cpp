@@ -181,14 +181,13 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
                     stance.who(), fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(job.tool.width_mm)));
 }
 
-std::vector<std::string> chiseling_description(const Job& job, std::size_t elements) {
+std::vector<std::string> chiseling_description(const Job& job, std::size_t elements, const std::string& zero) {
   const geometry::Element element = blank_element(job);
   const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(element);
   return {fmt::format("{} {} cube corners, apex {} mm deep, edges {} mm to the face", elements,
                       is_hexagonal ? "hexagonal" : "triangular", fixed(cavity_depth_mm(element), 6),
                       fixed(cavity_edge_mm(element), 6)),
-          "Zero: centre of the array on the face of the blank, dihedral edges along -Y and 120 deg apart at B0 C0. "
-          "Controller transformation off",
+          zero + ", dihedral edges along -Y and 120 deg apart at B0 C0. Controller transformation off",
           fmt::format("Tool: V of {} deg, width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: the tip",
                       shortest(job.tool.nose_angle_deg), shortest(job.tool.width_mm), shortest(job.tool.wedge_deg),
                       shortest(job.tool.clearance_deg))};

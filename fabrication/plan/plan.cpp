@@ -333,16 +333,21 @@ class ProgramMaker {
     finish_program();
   }
 
+  /// Where the tool is touched off.
+  std::string zero() const {
+    return job_.base ? "Zero: centre of the array, as high as the highest place of the blank"
+                     : "Zero: centre of the array on the face of the blank";
+  }
+
   /// What is cut, by which tool.
   std::vector<std::string> description() const {
-    if (job_.strategy == Strategy::dmc) return chiseling_description(job_, plan_.elements.size());
+    if (job_.strategy == Strategy::dmc) return chiseling_description(job_, plan_.elements.size(), zero());
     const geometry::RtpElement element = blank_prism(job_);
     return {
         fmt::format("{} elements, base {} width {} apex {} deg, root {} mm deep", plan_.elements.size(),
                     shortest(element.base_mm), shortest(element.width_mm), shortest(element.apex_angle_deg),
                     fixed(root_depth_mm(element), 6)),
-        "Zero: centre of the array on the face of the blank, roof edges along X at A0 C0. Controller transformation "
-        "off",
+        zero() + ", roof edges along X at A0 C0. Controller transformation off",
         fmt::format("Tool: width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: middle of the edge",
                     shortest(job_.tool.width_mm), shortest(job_.tool.wedge_deg), shortest(job_.tool.clearance_deg))};
   }
@@ -358,6 +363,7 @@ class ProgramMaker {
         fmt::format("Blank: {}, array of {} x {} mm along X and Y at {}0 C0",
                     kWorkpieceWords[static_cast<std::size_t>(job_.workpiece.kind)], fixed(extent.x(), 3),
                     fixed(extent.y(), 3), tilt)};
+    if (job_.base) lines.push_back(plain(base_description(job_)));
     for (const std::string& line : description()) lines.push_back(line);
     const bool is_finished = is_dmc || job_.strategy == Strategy::two_step;
     lines.push_back(plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
