@@ -115,8 +115,11 @@ class Placer {
     const double scale = blank_scale(job_.workpiece);
     const Vec2 on_sheet_mm = element.centre_mm / scale;
     const Vec2 arc = middle_ + Vec2(-on_sheet_mm.y(), on_sheet_mm.x());
-    if (!is_within(arc, element.turned)) return false;
     const BaseFrame frame = surface_.frame_at(arc);
+    // Corners lie no further away in plan than on the sheet, but for how rows draw together.
+    const double room_mm = 2.0 * geometry::width_across_mm(job_.element);
+    const bool is_inside = ((frame.origin.head<2>().cwiseAbs().array() + room_mm) < half_mm_.array()).all();
+    if (!is_inside && !is_within(arc, element.turned)) return false;
     element.foot_mm = scale * in_workpiece(frame.origin - top_mm_ * Vec3::UnitZ());
     // Along x of the workpiece a flat array has y of the part, along y it has -x.
     element.turn.col(0) = in_workpiece(frame.along_v);
@@ -247,8 +250,9 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
         const Vec2 at = (opening.depth_mm + stock + clearance_mm) * opening.grows[k] + opening.stays[k];
         const Vec3 p = cut.foot_mm + cut.turn * Vec3(at.x(), at.y(), 0.0);
         // How far up the element's axis the face lies over that place.
-        const double rise = std::max(face.normal_at(p).dot(cut.turn.col(2)), 0.05);
-        highest = std::max(highest, (clearance_mm - face.height_mm(p)) / rise - clearance_mm);
+        const BlankFace::Place under = face.under(p);
+        const double rise = std::max(under.normal.dot(cut.turn.col(2)), 0.05);
+        highest = std::max(highest, (clearance_mm - under.height_mm) / rise - clearance_mm);
       }
       const double more = highest - stock;
       stock = highest;
@@ -305,16 +309,11 @@ geometry::Jet BlankFace::jet_at(const Vec3& p) const {
   return jet;
 }
 
-double BlankFace::height_mm(const Vec3& p) const {
-  if (!surface_) return p.z();
+BlankFace::Place BlankFace::under(const Vec3& p) const {
+  if (!surface_) return {p.z(), Vec3::UnitZ()};
   const geometry::Jet jet = jet_at(p);
-  return (p.z() - scale_ * (jet.value - top_mm_)) / std::sqrt(1.0 + jet.x * jet.x + jet.y * jet.y);
-}
-
-Vec3 BlankFace::normal_at(const Vec3& p) const {
-  if (!surface_) return Vec3::UnitZ();
-  const geometry::Jet jet = jet_at(p);
-  return in_workpiece(Vec3(-jet.x, -jet.y, 1.0).normalized());
+  const Vec3 normal = in_workpiece(Vec3(-jet.x, -jet.y, 1.0).normalized());
+  return {(p.z() - scale_ * (jet.value - top_mm_)) * normal.z(), normal};
 }
 
 }  // namespace retrace::fabrication

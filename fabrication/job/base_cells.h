@@ -32,11 +32,15 @@ class BlankFace {
  public:
   explicit BlankFace(const Job& job);
 
-  /// How far a point of the workpiece frame lies off the face, along its normal over or under the point; negative:
-  /// within the blank. Beyond the part's border the face goes on straight.
-  double height_mm(const geometry::Vec3& p) const;
-  /// The face's normal there.
-  geometry::Vec3 normal_at(const geometry::Vec3& p) const;
+  struct Place {
+    double height_mm = 0.0;
+    geometry::Vec3 normal = geometry::Vec3::UnitZ();
+  };
+  /// The face over or under a point of the workpiece frame: its normal there, and how far the point lies off it along
+  /// that; negative: within the blank. Beyond the part's border the face goes on straight.
+  Place under(const geometry::Vec3& p) const;
+  double height_mm(const geometry::Vec3& p) const { return under(p).height_mm; }
+  geometry::Vec3 normal_at(const geometry::Vec3& p) const { return under(p).normal; }
   bool is_flat() const { return !surface_.has_value(); }
 
  private:
