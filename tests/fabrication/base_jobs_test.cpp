@@ -256,6 +256,25 @@ TEST(OnBase, MeasuredAxesAreAllowedFor) {
   }
 }
 
+/// Nor does one with B on its head: what its axes leave only turns the tool in the facets a little more.
+TEST(OnBase, MeasuredAxesOfAHeadAreAllowedFor) {
+  Machine m = machine("ideal-dmc");
+  m.name = "crooked";
+  m.a.direction.value = Vec3(0.0013, 1.0, -0.0021).normalized();
+  m.a.point_mm.value = {0.2, -0.1, 90.0};
+  m.c.direction.value = Vec3(-0.0008, 0.0011, 1.0).normalized();
+  m.c.point_mm.value = {0.3, 0.15, -2.0};
+  for (const bool is_hexagonal : {false, true}) {
+    const Job job = cubes_on(sphere_base(5.0, Standing::normal), is_hexagonal);
+    const std::string text = nc_text(make_plan(job, m).programs.front(), "rs274ngc");
+    const Verification v = verify_programs(job, m, {parse_nc(text, "p", NcDialect::rs274ngc)}, {}, {});
+    EXPECT_TRUE(v.passes()) << listed(v);
+    EXPECT_LT(v.facet_distance_nm_max, 1.0);
+    // The same program is wrong on a machine without those errors.
+    EXPECT_FALSE(verified(job, text).passes());
+  }
+}
+
 TEST(OnBase, EveryDialectCutsTheSame) {
   for (const Job& job :
        {prisms_on(cylinder_base(6.0, false, Standing::normal)), cubes_on(sphere_base(4.0, Standing::normal), false)}) {
