@@ -30,12 +30,22 @@ class TurnedFront : public geometry::FrontSurface {
   }
 
   Place at(const Vec2& p) const override {
-    const turning::Dual z = surface_.gradient(p.x() - origin_mm_.x(), p.y() - origin_mm_.y());
-    return {origin_mm_.z() + z.v, {z.dx, z.dy}};
+    const Vec2 place = p - origin_mm_.head<2>();
+    const turning::Dual z = surface_.gradient(place.x(), place.y());
+    if (std::isfinite(z.dx) && std::isfinite(z.dy)) return {origin_mm_.z() + z.v, {z.dx, z.dy}};
+    return {origin_mm_.z() + surface_.height_mm(place.x(), place.y()), slope_across(place)};
   }
   double finest_mm() const override { return finest_mm_; }
 
  private:
+  /// A formula of r has no slope at the very centre, though its surface may be smooth there: from both sides.
+  Vec2 slope_across(const Vec2& p) const {
+    constexpr double kStep = 1e-5;
+    return Vec2(surface_.height_mm(p.x() + kStep, p.y()) - surface_.height_mm(p.x() - kStep, p.y()),
+                surface_.height_mm(p.x(), p.y() + kStep) - surface_.height_mm(p.x(), p.y() - kStep)) /
+           (2.0 * kStep);
+  }
+
   turning::TurnedSurface surface_;
   Vec3 origin_mm_;
   double finest_mm_ = std::numeric_limits<double>::infinity();

@@ -72,6 +72,20 @@ TEST_F(Front, FlatTurnedFrontIsThePlaneEntranceFace) {
   }
 }
 
+// -r^2 / 6 has no derivative by formula at its centre, where a grid of samples has a point; the conic is the same
+// paraboloid.
+TEST_F(Front, FormulaOfTheRadiusIsItsConic) {
+  const std::string body = kBody + "[detector]\nacceptance_half_angle_deg = 10\n[idealisation]\nfacets = \"mirror\"\n";
+  const Arguments how = {"--samples", "2048", "--incidence=0,5"};
+  folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -3\nconic = -1\n"));
+  const Json conic = rre(kPlate + kFront + body, how);
+  folder_.write("lens.toml", turned("kind = \"formula\"\nformula = \"-r^2/6\"\n"));
+  const Json formula = rre(kPlate + kFront + body, how);
+  for (std::size_t k = 0; k < 2; ++k)
+    for (const auto& [account, power] : conic["points"][k]["ledger"].items())
+      EXPECT_NEAR(formula["points"][k]["ledger"][account].get<double>(), power.get<double>(), 1e-9) << account;
+}
+
 using Vector = std::array<double, 3>;
 
 double dot(const Vector& a, const Vector& b) {
