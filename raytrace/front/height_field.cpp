@@ -20,6 +20,8 @@ constexpr double kSameBend = 1.3;
 constexpr int kMostCells = 1024;
 // Heights that differ by less, relative to the part, are the same: rounding of doubles.
 constexpr double kSameHeight = 4e-16;
+// Beyond the lowest and highest place, relative to the part.
+constexpr double kRoom = 1e-12;
 constexpr int kMostSteps = 200;
 // Roundings within which a ray that goes away from the surface has only just left it.
 constexpr double kStillOn = 8.0;
@@ -63,29 +65,31 @@ void HeightField::make_cells(const geometry::Polygon& outline, int cells) {
           at(lower_.x() + i * cell_mm_.x(), lower_.y() + j * cell_mm_.y());
   });
   cells_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), {});
-  const double diagonal_mm = cell_mm_.norm();
   for (int j = 0; j < rows_; ++j)
     for (int i = 0; i < columns_; ++i) {
       const std::size_t n = static_cast<std::size_t>(j) * across + static_cast<std::size_t>(i);
       const std::array<const FrontSurface::Place*, 4> corner = {&nodes[n], &nodes[n + 1], &nodes[n + across],
                                                                 &nodes[n + across + 1]};
-      Cell& cell =
-          cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
-      cell.low_mm = kInfinity;
-      cell.high_mm = -kInfinity;
-      for (const FrontSurface::Place* place : corner) {
-        // Outside of the outline there may be no surface, so that nothing is known of a cell on its border.
-        const bool known = std::isfinite(place->height_mm);
-        cell.low_mm = std::min(cell.low_mm, known ? place->height_mm : -kInfinity);
-        cell.high_mm = std::max(cell.high_mm, known ? place->height_mm : kInfinity);
-      }
-      cell.bend_per_mm =
-          kBendMargin *
-          std::max(
-              {bend_between(*corner[0], *corner[1], cell_mm_.x()), bend_between(*corner[2], *corner[3], cell_mm_.x()),
-               bend_between(*corner[0], *corner[2], cell_mm_.y()), bend_between(*corner[1], *corner[3], cell_mm_.y()),
-               bend_between(*corner[0], *corner[3], diagonal_mm), bend_between(*corner[1], *corner[2], diagonal_mm)});
+      cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)] =
+          cell_between(corner);
     }
+}
+
+HeightField::Cell HeightField::cell_between(const std::array<const FrontSurface::Place*, 4>& corner) const {
+  Cell cell{kInfinity, -kInfinity, 0.0};
+  for (const FrontSurface::Place* place : corner) {
+    // Outside of the outline there may be no surface, so that nothing is known of a cell on its border.
+    const bool known = std::isfinite(place->height_mm);
+    cell.low_mm = std::min(cell.low_mm, known ? place->height_mm : -kInfinity);
+    cell.high_mm = std::max(cell.high_mm, known ? place->height_mm : kInfinity);
+  }
+  const double diagonal_mm = cell_mm_.norm();
+  cell.bend_per_mm =
+      kBendMargin *
+      std::max({bend_between(*corner[0], *corner[1], cell_mm_.x()), bend_between(*corner[2], *corner[3], cell_mm_.x()),
+                bend_between(*corner[0], *corner[2], cell_mm_.y()), bend_between(*corner[1], *corner[3], cell_mm_.y()),
+                bend_between(*corner[0], *corner[3], diagonal_mm), bend_between(*corner[1], *corner[2], diagonal_mm)});
+  return cell;
 }
 
 double HeightField::most_bend() const {
@@ -199,63 +203,79 @@ std::optional<FrontHit> HeightField::Search::within(const Cell& cell, double fro
   return hit_at(t, g);  // along the surface: as near as steps get
 }
 
-std::optional<FrontHit> HeightField::first_hit(const SurfaceRay& ray) const {
+/// Column by column and row by row along a ray.
+struct HeightField::Walk {
+  std::array<int, 2> index{};
+  std::array<int, 2> step{};
+  std::array<double, 2> next{};  ///< where the ray leaves the column and the row
+  std::array<double, 2> pace{};  ///< from one border to the next
+
+  Walk(const HeightField& field, const SurfaceRay& ray, double from) {
+    const std::array<int, 2> count = {field.columns_, field.rows_};
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      const double along = ray.direction[axis];
+      const double place = (ray.origin[axis] + from * along - field.lower_[axis]) / field.cell_mm_[axis];
+      index[k] = std::clamp(static_cast<int>(std::floor(place)), 0, count[k] - 1);
+      step[k] = along > 0.0 ? 1 : -1;
+      pace[k] = along != 0.0 ? field.cell_mm_[axis] / std::abs(along) : kInfinity;
+      const double border = field.lower_[axis] + (index[k] + (along > 0.0 ? 1 : 0)) * field.cell_mm_[axis];
+      next[k] = along != 0.0 ? (border - ray.origin[axis]) / along : kInfinity;
+    }
+  }
+  std::size_t axis() const { return next[0] < next[1] ? 0 : 1; }
+  void advance(std::size_t over) {
+    index[over] += step[over];
+    next[over] += pace[over];
+  }
+};
+
+/// Where the ray is between the front's lowest and highest place: nowhere else is there anything to meet.
+std::optional<std::array<double, 2>> HeightField::span_of(const SurfaceRay& ray, double room_mm) const {
   const double dz = ray.direction.z();
   const double z = ray.origin.z();
-  const double part_mm = lower_.cwiseAbs().maxCoeff() + std::abs(z);
-  const double room_mm = 1e-12 * part_mm;
-  // Only between the front's lowest and highest place is there anything to meet.
-  const bool starts_on = ray.source.placement != FacetRef::kNone;
-  double t = 0.0;
-  double end = ray.t_max;
   const double near_mm = ray.inside ? lowest_mm() - room_mm : highest_mm() + room_mm;
   const double far_mm = ray.inside ? highest_mm() + room_mm : lowest_mm() - room_mm;
   const double way = ray.inside ? 1.0 : -1.0;  // towards the front, along z
   if (way * dz > 0.0) {
-    if (!starts_on) t = std::max(0.0, (near_mm - z) / dz);
-    end = std::min(end, (far_mm - z) / dz);
-  } else if (way * (near_mm - z) > 0.0) {
-    return std::nullopt;  // short of it, and going away
-  } else if (dz != 0.0) {
-    end = std::min(end, (near_mm - z) / dz);
+    const bool starts_on = ray.source.placement != FacetRef::kNone;
+    const double from = starts_on ? 0.0 : std::max(0.0, (near_mm - z) / dz);
+    return std::array{from, std::min(ray.t_max, (far_mm - z) / dz)};
   }
-  const Vec2 direction = ray.direction.head<2>();
-  Search search{*this, ray, ray.inside ? -1.0 : 1.0, direction.squaredNorm(), kSameHeight * part_mm, -1.0};
-  // Column by column and row by row along the ray.
-  std::array<int, 2> index{};
-  std::array<int, 2> step{};
-  std::array<double, 2> next{};
-  std::array<double, 2> pace{};
-  const std::array<int, 2> count = {columns_, rows_};
-  for (int axis = 0; axis < 2; ++axis) {
-    const auto k = static_cast<std::size_t>(axis);
-    const double place = (ray.origin[axis] + t * direction[axis] - lower_[axis]) / cell_mm_[axis];
-    index[k] = std::clamp(static_cast<int>(std::floor(place)), 0, count[k] - 1);
-    step[k] = direction[axis] > 0.0 ? 1 : -1;
-    pace[k] = direction[axis] != 0.0 ? cell_mm_[axis] / std::abs(direction[axis]) : kInfinity;
-    const double border = lower_[axis] + (index[k] + (step[k] > 0 ? 1 : 0)) * cell_mm_[axis];
-    next[k] = direction[axis] != 0.0 ? (border - ray.origin[axis]) / direction[axis] : kInfinity;
-  }
-  bool on_surface = starts_on;
+  if (way * (near_mm - z) > 0.0) return std::nullopt;  // short of it, and going away
+  return std::array{0.0, dz != 0.0 ? std::min(ray.t_max, (near_mm - z) / dz) : ray.t_max};
+}
+
+std::optional<FrontHit> HeightField::first_hit(const SurfaceRay& ray) const {
+  const double dz = ray.direction.z();
+  const double z = ray.origin.z();
+  const double part_mm = lower_.cwiseAbs().maxCoeff() + std::abs(z);
+  const auto span = span_of(ray, kRoom * part_mm);
+  if (!span) return std::nullopt;
+  auto [t, end] = *span;
+  Search search{*this, ray, ray.inside ? -1.0 : 1.0, ray.direction.head<2>().squaredNorm(), kSameHeight * part_mm,
+                -1.0};
+  Walk walk(*this, ray, t);
+  bool on_surface = ray.source.placement != FacetRef::kNone;
   while (t <= end) {
-    const std::size_t axis = next[0] < next[1] ? 0 : 1;
-    const double leave = std::max(t, std::min(next[axis], end));
-    const Cell& c = cell(index[0], index[1]);
+    const std::size_t axis = walk.axis();
+    const bool goes_on = walk.next[axis] < end;
+    const double leave = std::max(t, goes_on ? walk.next[axis] : end);
+    const Cell& c = cell(walk.index[0], walk.index[1]);
     const double z_from = z + t * dz;
-    const double z_to = z + (std::isfinite(leave) ? leave * dz : 0.0);
+    const double z_to = z + leave * dz;
     const bool is_clear = ray.inside ? std::max(z_from, z_to) < c.low_mm : std::min(z_from, z_to) > c.high_mm;
-    if (!is_clear || !std::isfinite(leave)) {
-      const auto hit = search.within(c, t, next[axis] < end ? leave : std::nextafter(end, kInfinity), on_surface);
-      if (hit) return hit->hit.t <= ray.t_max ? hit : std::nullopt;
-    } else {
+    if (is_clear) {
       search.last_clear = leave;
+    } else {
+      const auto hit = search.within(c, t, goes_on ? leave : std::nextafter(end, kInfinity), on_surface);
+      if (hit) return hit->hit.t <= ray.t_max ? hit : std::nullopt;
     }
     on_surface = false;
-    if (!(next[axis] < end)) break;
+    if (!goes_on) break;
     t = leave;
-    index[axis] += step[axis];
-    next[axis] += pace[axis];
-    if (index[axis] < 0 || index[axis] >= count[axis]) break;
+    walk.advance(axis);
+    if (walk.index[0] < 0 || walk.index[0] >= columns_ || walk.index[1] < 0 || walk.index[1] >= rows_) break;
   }
   return std::nullopt;
 }
