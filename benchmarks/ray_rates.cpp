@@ -80,7 +80,6 @@ std::vector<SurfaceRay> incoherent_rays(const Scene& scene, std::size_t count) {
     if (!hit) continue;
     ray.origin += hit->t * ray.direction;
     ray.source = hit->facet;
-    ray.starts_near_edge = hit->near_edge;
     ray.direction = Vec3(normal(generator), normal(generator), normal(generator)).normalized();
     const Vec3 n = surface.facet(hit->facet).normal;
     const double out = ray.direction.dot(n);

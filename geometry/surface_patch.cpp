@@ -34,6 +34,7 @@ class PatchBuilder {
     sort_walls();
     emit_facets();
     emit_border();
+    shrink();
     return std::move(patch_);
   }
 
@@ -290,6 +291,16 @@ class PatchBuilder {
       Strip s = strip(from, to, height(tile, from), height(tile, to), rim_from, rim_to);
       if (s.corners.size() >= 3) patch_.border_walls.push_back(std::move(s.ring));
     }
+  }
+
+  /// Parts may have millions of these.
+  void shrink() {
+    patch_.vertices.shrink_to_fit();
+    patch_.facets.shrink_to_fit();
+    patch_.corners.shrink_to_fit();
+    patch_.cells.shrink_to_fit();
+    patch_.triangles.shrink_to_fit();
+    patch_.triangle_facet.shrink_to_fit();
   }
 
   const std::vector<Tile>& tiles_;

@@ -3,7 +3,6 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -14,188 +13,187 @@
 namespace retrace::raytrace {
 namespace {
 
-// Single-precision roundings that may add up between a ray and the hit that Embree names, relative to the coordinates.
-constexpr double kSinglePrecisionBand = 32.0 * 0x1p-24;
+using FacetRange = ExactSurface::FacetRange;
 
-/// Passed through Embree to the filter: the facet that the ray starts from.
-struct QueryContext {
-  RTCIntersectContext base;
-  FacetRef source;
-};
+// Single-precision roundings that may add up in Embree's walk through boxes, relative to the coordinates.
+constexpr double kSinglePrecisionBand = 32.0 * 0x1p-24;
+// Facets of a cell that are met one after another; cells of more have a box for each.
+constexpr std::uint32_t kFewFacets = 16;
 
 void throw_on_error(void*, RTCError code, const char* text) {
   if (code == RTC_ERROR_OUT_OF_MEMORY) throw BudgetError("out of memory while building the scene");
   throw std::runtime_error(std::string("Embree: ") + (text != nullptr ? text : "unknown error"));
 }
 
-/// Rejects hits on the facet that the ray starts from; `geometryUserPtr` is the facet number of each triangle.
-void reject_source(const RTCFilterFunctionNArguments* args) {
-  const auto* context = reinterpret_cast<const QueryContext*>(args->context);
-  const auto* facet_of = static_cast<const std::uint32_t*>(args->geometryUserPtr);
-  const std::uint32_t triangle = RTCHitN_primID(args->hit, args->N, 0);
-  const std::uint32_t instance = RTCHitN_instID(args->hit, args->N, 0, 0);
-  const std::uint32_t placement = instance == RTC_INVALID_GEOMETRY_ID ? 0 : instance;
-  if (context->source == FacetRef{placement, facet_of[triangle]}) args->valid[0] = 0;
+float below(double value) {
+  return std::nextafter(static_cast<float>(value), -INFINITY);
 }
 
-}  // namespace
+float above(double value) {
+  return std::nextafter(static_cast<float>(value), INFINITY);
+}
 
-struct BackSurface::Embree {
-  Embree(const geometry::Part& part, const std::vector<geometry::Placement>& placements) {
-    device = rtcNewDevice(nullptr);
-    if (device == nullptr) throw BudgetError("Embree cannot start: not enough memory or address space");
-    rtcSetDeviceErrorFunction(device, throw_on_error, nullptr);
-    for (const auto& patch : part.patches) facet_of_triangle.push_back(patch.triangle_facet);
-    scene = new_scene();
-    if (placements.size() == 1) {
-      // One patch needs no instance: a level of the hierarchy less for every ray.
-      attach_mesh(scene, part.patches[placements[0].patch], placements[0].patch, placements[0]);
-    } else {
-      attach_instances(part, placements);
-    }
-    rtcCommitScene(scene);
+/// What shares a box.
+std::vector<FacetRange> ranges_of(const geometry::SurfacePatch& patch) {
+  std::vector<FacetRange> ranges;
+  ranges.reserve(patch.cells.size());
+  for (const auto& cell : patch.cells) {
+    const std::uint32_t step = cell.facet_count <= kFewFacets ? kFewFacets : 1;
+    for (std::uint32_t f = 0; f < cell.facet_count; f += step)
+      ranges.push_back({cell.first_facet + f, std::min(step, cell.facet_count - f)});
   }
-  Embree(const Embree&) = delete;
-  Embree& operator=(const Embree&) = delete;
-  ~Embree() {
-    for (RTCScene s : patch_scenes) rtcReleaseScene(s);
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
+  return ranges;
+}
 
-  RTCScene new_scene() const {
-    RTCScene s = rtcNewScene(device);
-    rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
-    return s;
-  }
-
-  void attach_mesh(RTCScene target, const geometry::SurfacePatch& patch, std::uint32_t number,
-                   const geometry::Placement& at) {
-    RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), patch.vertices.size()));
-    for (const Vec3& p : patch.vertices) {
-      *vertices++ = static_cast<float>(p.x() + at.offset_mm.x());
-      *vertices++ = static_cast<float>(p.y() + at.offset_mm.y());
-      *vertices++ = static_cast<float>(p.z() + at.height_mm);
-    }
-    auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), patch.triangles.size()));
-    for (const auto& t : patch.triangles) triangles = std::copy(t.begin(), t.end(), triangles);
-    rtcSetGeometryUserData(mesh, facet_of_triangle[number].data());
-    rtcSetGeometryIntersectFilterFunction(mesh, reject_source);
-    rtcCommitGeometry(mesh);
-    rtcAttachGeometry(target, mesh);
-    rtcReleaseGeometry(mesh);
-  }
-
-  void attach_instances(const geometry::Part& part, const std::vector<geometry::Placement>& placements) {
-    for (std::size_t k = 0; k < part.patches.size(); ++k) {
-      patch_scenes.push_back(new_scene());
-      attach_mesh(patch_scenes.back(), part.patches[k], static_cast<std::uint32_t>(k), geometry::Placement{});
-      rtcCommitScene(patch_scenes.back());
-    }
-    for (std::uint32_t k = 0; k < placements.size(); ++k) {
-      RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-      rtcSetGeometryInstancedScene(instance, patch_scenes[placements[k].patch]);
-      const std::array<float, 12> matrix = {1,
-                                            0,
-                                            0,
-                                            0,
-                                            1,
-                                            0,
-                                            0,
-                                            0,
-                                            1,
-                                            static_cast<float>(placements[k].offset_mm.x()),
-                                            static_cast<float>(placements[k].offset_mm.y()),
-                                            static_cast<float>(placements[k].height_mm)};
-      rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
-      rtcCommitGeometry(instance);
-      rtcAttachGeometryByID(scene, instance, k);
-      rtcReleaseGeometry(instance);
-    }
-  }
-
-  /// The facet that single precision names, if any.
-  FacetRef candidate(const SurfaceRay& ray, const std::vector<geometry::Placement>& placements) const {
-    QueryContext context;
-    rtcInitIntersectContext(&context.base);
-    context.source = ray.source;
-    alignas(16) RTCRayHit query;
-    query.ray.org_x = static_cast<float>(ray.origin.x());
-    query.ray.org_y = static_cast<float>(ray.origin.y());
-    query.ray.org_z = static_cast<float>(ray.origin.z());
-    query.ray.dir_x = static_cast<float>(ray.direction.x());
-    query.ray.dir_y = static_cast<float>(ray.direction.y());
-    query.ray.dir_z = static_cast<float>(ray.direction.z());
-    query.ray.tnear = 0.0F;
-    query.ray.tfar = static_cast<float>(ray.t_max);
-    query.ray.time = 0.0F;
-    query.ray.mask = UINT32_MAX;
-    query.ray.id = 0;
-    query.ray.flags = 0;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene, &context.base, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    const std::uint32_t placement = query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? 0 : query.hit.instID[0];
-    return {placement, facet_of_triangle[placements[placement].patch][query.hit.primID]};
-  }
-
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  std::vector<RTCScene> patch_scenes;
-  std::vector<std::vector<std::uint32_t>> facet_of_triangle;  ///< by patch
-};
-
-BackSurface::BackSurface(const geometry::Part& part, const Vec2& centre_mm)
-    : exact_(part, centre_mm), embree_(std::make_unique<Embree>(part, exact_.placements())) {
+/// Of the coordinates of the surface.
+double greatest_reach_mm(const geometry::Part& part, const std::vector<geometry::Placement>& placements) {
   double reach = part.size_mm + part.element_depth_mm;
-  for (const auto& placement : exact_.placements()) {
+  for (const auto& placement : placements) {
     for (const auto& cell : part.patches[placement.patch].cells) {
       const Vec2 lower = cell.lower.head<2>() + placement.offset_mm;
       const Vec2 upper = cell.upper.head<2>() + placement.offset_mm;
       reach = std::max({reach, lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff()});
     }
   }
-  edge_band_mm_ = kSinglePrecisionBand * reach;
+  return reach;
 }
+
+/// Passed through Embree to the facets: the ray in double precision, and what it has met.
+struct Query {
+  RTCIntersectContext base;
+  const SurfaceRay* ray = nullptr;
+  double tolerance_mm = 0.0;
+  SurfaceHit best;
+};
+
+RTCRayHit embree_ray(const SurfaceRay& ray) {
+  alignas(16) RTCRayHit query;
+  query.ray.org_x = static_cast<float>(ray.origin.x());
+  query.ray.org_y = static_cast<float>(ray.origin.y());
+  query.ray.org_z = static_cast<float>(ray.origin.z());
+  query.ray.dir_x = static_cast<float>(ray.direction.x());
+  query.ray.dir_y = static_cast<float>(ray.direction.y());
+  query.ray.dir_z = static_cast<float>(ray.direction.z());
+  query.ray.tnear = 0.0F;
+  query.ray.tfar = INFINITY;
+  query.ray.time = 0.0F;
+  query.ray.mask = UINT32_MAX;
+  query.ray.id = 0;
+  query.ray.flags = 0;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return query;
+}
+
+}  // namespace
+
+struct BackSurface::Boxes {
+  /// What stands in boxes at one placement: one geometry of the scene.
+  struct Group {
+    const Boxes* owner = nullptr;
+    std::uint32_t placement = 0;
+  };
+
+  Boxes(const geometry::Part& its_part, const ExactSurface& its_surface)
+      : part(its_part),
+        surface(its_surface),
+        band_mm(kSinglePrecisionBand * greatest_reach_mm(part, surface.placements()) + surface.wide_tolerance_mm()) {
+    for (const auto& patch : part.patches) ranges.push_back(ranges_of(patch));
+    device = rtcNewDevice(nullptr);
+    if (device == nullptr) throw BudgetError("Embree cannot start: not enough memory or address space");
+    rtcSetDeviceErrorFunction(device, throw_on_error, nullptr);
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+    groups.reserve(surface.placements().size());
+    for (std::uint32_t k = 0; k < surface.placements().size(); ++k) attach(groups.emplace_back(Group{this, k}));
+    rtcCommitScene(scene);
+  }
+  Boxes(const Boxes&) = delete;
+  Boxes& operator=(const Boxes&) = delete;
+  ~Boxes() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+
+  void attach(Group& group) const {
+    const std::uint32_t patch = surface.placements()[group.placement].patch;
+    RTCGeometry boxes = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(boxes, static_cast<unsigned>(ranges[patch].size()));
+    rtcSetGeometryUserData(boxes, &group);
+    rtcSetGeometryBoundsFunction(boxes, bounds, nullptr);
+    rtcSetGeometryIntersectFunction(boxes, intersect);
+    rtcCommitGeometry(boxes);
+    rtcAttachGeometryByID(scene, boxes, group.placement);
+    rtcReleaseGeometry(boxes);
+  }
+
+  static void bounds(const RTCBoundsFunctionArguments* args) {
+    const auto& group = *static_cast<const Group*>(args->geometryUserPtr);
+    const Boxes& self = *group.owner;
+    const geometry::Placement& at = self.surface.placements()[group.placement];
+    const geometry::SurfacePatch& patch = self.part.patches[at.patch];
+    const FacetRange& range = self.ranges[at.patch][args->primID];
+    Vec3 lower = Vec3::Constant(INFINITY);
+    Vec3 upper = Vec3::Constant(-INFINITY);
+    for (std::uint32_t f = range.first; f < range.first + range.count; ++f)
+      for (std::uint32_t c = 0; c < patch.facets[f].corner_count; ++c) {
+        const Vec3& p = patch.vertices[patch.corners[patch.facets[f].first_corner + c]];
+        lower = lower.cwiseMin(p);
+        upper = upper.cwiseMax(p);
+      }
+    const Vec3 place(at.offset_mm.x(), at.offset_mm.y(), at.height_mm);
+    lower += place - Vec3::Constant(self.band_mm);
+    upper += place + Vec3::Constant(self.band_mm);
+    *args->bounds_o = {below(lower.x()), below(lower.y()), below(lower.z()), 0.0F,
+                       above(upper.x()), above(upper.y()), above(upper.z()), 0.0F};
+  }
+
+  static void intersect(const RTCIntersectFunctionNArguments* args) {
+    if (args->valid[0] == 0) return;
+    const auto& group = *static_cast<const Group*>(args->geometryUserPtr);
+    const Boxes& self = *group.owner;
+    auto& query = *reinterpret_cast<Query*>(args->context);
+    const double before = query.best.t;
+    const std::uint32_t patch = self.surface.placements()[group.placement].patch;
+    self.surface.search(*query.ray, group.placement, self.ranges[patch][args->primID], query.tolerance_mm, query.best);
+    if (query.best.t < before)
+      RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0) = above(query.best.t + self.band_mm);
+  }
+
+  std::optional<SurfaceHit> first_hit(const SurfaceRay& ray, double tolerance_mm) const {
+    Query query;
+    rtcInitIntersectContext(&query.base);
+    query.ray = &ray;
+    query.tolerance_mm = tolerance_mm;
+    query.best.t = ray.t_max;
+    RTCRayHit embree = embree_ray(ray);
+    if (std::isfinite(ray.t_max)) embree.ray.tfar = above(ray.t_max + band_mm);
+    rtcIntersect1(scene, &query.base, &embree);
+    if (query.best.facet.placement == FacetRef::kNone) return std::nullopt;
+    return query.best;
+  }
+
+  const geometry::Part& part;
+  const ExactSurface& surface;
+  double band_mm;                               ///< what single precision may put wrong of rays and boxes
+  std::vector<std::vector<FacetRange>> ranges;  ///< by patch
+  std::vector<Group> groups;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+};
+
+BackSurface::BackSurface(const geometry::Part& part, const Vec2& centre_mm)
+    : exact_(part, centre_mm), boxes_(std::make_unique<Boxes>(part, exact_)) {}
 
 BackSurface::~BackSurface() = default;
-BackSurface::BackSurface(BackSurface&&) noexcept = default;
-BackSurface& BackSurface::operator=(BackSurface&&) noexcept = default;
 
-// Seen at a slant, an error across the ray is a longer one along the facet.
-bool BackSurface::is_near_edge(FacetRef facet, const Vec3& point, const Vec3& direction) const {
-  return exact_.margin(facet, point) * std::abs(exact_.facet(facet).normal.dot(direction)) < edge_band_mm_;
-}
-
-std::optional<SurfaceHit> BackSurface::marked(std::optional<SurfaceHit> hit, const SurfaceRay& ray) const {
-  if (hit) hit->near_edge = is_near_edge(hit->facet, ray.origin + hit->t * ray.direction, ray.direction);
-  return hit;
-}
-
-std::optional<SurfaceHit> BackSurface::exact_first_hit(const SurfaceRay& ray) const {
-  return marked(exact_.first_hit(ray), ray);
+std::optional<SurfaceHit> BackSurface::first_hit(const SurfaceRay& ray) const {
+  return boxes_->first_hit(ray, exact_.tolerance_mm());
 }
 
 std::optional<SurfaceHit> BackSurface::certain_first_hit(const SurfaceRay& ray) const {
-  const auto hit = exact_.first_hit(ray);
-  return marked(hit ? hit : exact_.first_hit_of_widened(ray), ray);
-}
-
-std::optional<SurfaceHit> BackSurface::first_hit(const SurfaceRay& ray) const {
-  if (ray.starts_near_edge) return exact_first_hit(ray);
-  const FacetRef named = embree_->candidate(ray, exact_.placements());
-  if (named.placement == FacetRef::kNone) return std::nullopt;
-  const double towards = exact_.facet(named).normal.dot(ray.direction);
-  if (ray.inside ? towards <= 0.0 : towards >= 0.0) return exact_first_hit(ray);
-  const SurfaceHit hit{named, exact_.distance(named, ray.origin, ray.direction), false};
-  if (hit.t < 0.0 || is_near_edge(named, ray.origin + hit.t * ray.direction, ray.direction))
-    return exact_first_hit(ray);
-  if (hit.t > ray.t_max) return std::nullopt;
-  return hit;
+  const auto hit = first_hit(ray);
+  return hit ? hit : boxes_->first_hit(ray, exact_.wide_tolerance_mm());
 }
 
 }  // namespace retrace::raytrace

@@ -9,36 +9,33 @@
 
 namespace retrace::raytrace {
 
-/// The part's back surface, ready for rays. Embree says which facet a ray meets; the plane in double precision says
-/// where. Where single precision might name the wrong one - near edges, or when what it names does not fit the ray -
-/// the answer comes from double precision alone. Safe to use from many threads.
+/// The part's back surface, ready for rays. Embree says which cells a ray passes; which of their facets it meets, and
+/// where, is found in double precision. Safe to use from many threads.
 class BackSurface {
  public:
+  /// \param part must outlive this
   /// \param centre_mm point of the plane that becomes the origin of rays: keeps single-precision coordinates small
+  /// \throw BudgetError when memory ends
   BackSurface(const geometry::Part& part, const Vec2& centre_mm);
+  BackSurface(geometry::Part&&, const Vec2&) = delete;
+  BackSurface(const BackSurface&) = delete;
+  BackSurface& operator=(const BackSurface&) = delete;
   ~BackSurface();
-  BackSurface(BackSurface&&) noexcept;
-  BackSurface& operator=(BackSurface&&) noexcept;
 
   /// The first facet that the ray meets from its own side, or nothing up to `t_max`.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
-  /// The same in double precision alone.
-  std::optional<SurfaceHit> exact_first_hit(const SurfaceRay& ray) const;
-
-  /// For a ray that must meet the surface: exactly if it does, else with facets slightly widened.
+  /// For a ray that must meet the surface: as first_hit if that finds any, else with facets slightly widened, as
+  /// rounding may have left a gap between two of them.
   std::optional<SurfaceHit> certain_first_hit(const SurfaceRay& ray) const;
 
   const ExactSurface::Facet& facet(FacetRef ref) const { return exact_.facet(ref); }
 
  private:
-  struct Embree;
-  std::optional<SurfaceHit> marked(std::optional<SurfaceHit> hit, const SurfaceRay& ray) const;
-  bool is_near_edge(FacetRef facet, const Vec3& point, const Vec3& direction) const;
+  struct Boxes;
 
   ExactSurface exact_;
-  std::unique_ptr<Embree> embree_;
-  double edge_band_mm_ = 0.0;
+  std::unique_ptr<Boxes> boxes_;
 };
 
 }  // namespace retrace::raytrace

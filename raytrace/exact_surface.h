@@ -8,61 +8,51 @@
 
 namespace retrace::raytrace {
 
-/// The back surface in double precision: its planes and outlines. Finds hits by itself (slowly, in time linear in the
-/// cells near the ray) where single precision cannot be trusted.
+/// The back surface in double precision: its planes and outlines. Finds hits by itself in time linear in the cells near
+/// the ray; BackSurface knows which cells those are.
 class ExactSurface {
  public:
-  struct Edge {
-    Vec3 inward = Vec3::Zero();  ///< unit, in the facet's plane
-    double offset_mm = 0.0;
-  };
-  struct Facet {
-    Vec3 normal = Vec3::Zero();
-    double offset_mm = 0.0;
-    std::uint32_t first_edge = 0;
-    std::uint32_t edge_count = 0;
-    geometry::FacetRole role = geometry::FacetRole::retro_facet;
+  using Facet = geometry::PatchFacet;
+
+  /// Consecutive facets of a patch.
+  struct FacetRange {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
   };
 
+  /// \param part must outlive this
   /// \param centre_mm point of the plane that becomes the origin of rays
   ExactSurface(const geometry::Part& part, const Vec2& centre_mm);
+  ExactSurface(geometry::Part&&, const Vec2&) = delete;
 
-  const Facet& facet(FacetRef ref) const { return patches_[placements_[ref.placement].patch].facets[ref.facet]; }
-
-  /// Distance along the ray to the facet's plane.
-  double distance(FacetRef ref, const Vec3& origin, const Vec3& direction) const;
-
-  /// How far inside its outline a point of the facet's plane lies; negative outside.
-  double margin(FacetRef ref, const Vec3& point) const;
+  const Facet& facet(FacetRef ref) const { return part_->patches[placements_[ref.placement].patch].facets[ref.facet]; }
 
   /// The first facet that the ray meets from its own side: one that it leaves the part through if inside, enters
   /// through if outside. Nothing beyond `t_max`.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
-  /// The same with facets a little larger than they are: for a ray that cannot have missed the surface but did, through
-  /// what rounding left open between two pieces of it.
-  std::optional<SurfaceHit> first_hit_of_widened(const SurfaceRay& ray) const;
+  /// Takes into `best` what the ray meets of some facets of a placement before that. \param tolerance_mm how much
+  /// larger facets are taken than they are
+  void search(const SurfaceRay& ray, std::uint32_t placement, const FacetRange& range, double tolerance_mm,
+              SurfaceHit& best) const;
 
+  /// Moved to their places as rays see them.
   const std::vector<geometry::Placement>& placements() const { return placements_; }
 
+  /// Rounding of doubles at large coordinates stays below the first; what it may leave open where pieces of the surface
+  /// meet stays below the second.
+  double tolerance_mm() const;
+  double wide_tolerance_mm() const;
+
  private:
-  struct Patch {
-    std::vector<Facet> facets;
-    std::vector<Edge> edges;
-    std::vector<geometry::PatchCell> cells;
-    Vec3 lower = Vec3::Zero();
-    Vec3 upper = Vec3::Zero();
+  struct Box {
+    Vec3 lower;
+    Vec3 upper;
   };
 
-  static Patch compile(const geometry::SurfacePatch& source);
-  double local_margin(const Patch& patch, const Facet& facet, const Vec3& local) const;
-  std::optional<SurfaceHit> first_within(const SurfaceRay& ray, double tolerance_mm) const;
-  void search_cell(const SurfaceRay& ray, std::uint32_t placement, const geometry::PatchCell& cell, double tolerance_mm,
-                   SurfaceHit& best) const;
-
-  std::vector<Patch> patches_;
+  const geometry::Part* part_;
+  std::vector<Box> boxes_;  ///< by patch
   std::vector<geometry::Placement> placements_;
-  double size_mm_ = 0.0;
 };
 
 }  // namespace retrace::raytrace

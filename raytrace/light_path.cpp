@@ -62,7 +62,7 @@ class Follower {
       limit = t;
       side = &candidate;
     }
-    const auto hit = surface_.first_hit({position_, direction_, source_, true, true, limit});
+    const auto hit = surface_.first_hit({position_, direction_, source_, true, limit});
     if (hit) return meet_facet(*hit);
     if (!std::isfinite(limit)) return false;
     absorb(limit);
@@ -74,7 +74,7 @@ class Follower {
 
   bool advance_outside() {
     const auto hit =
-        surface_.first_hit({position_, direction_, source_, false, true, std::numeric_limits<double>::infinity()});
+        surface_.first_hit({position_, direction_, source_, false, std::numeric_limits<double>::infinity()});
     if (!hit) {
       path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * direction_));
       path_.steps.push_back(

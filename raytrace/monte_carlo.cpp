@@ -102,7 +102,7 @@ MonteCarlo::TraceTask MonteCarlo::by_cells(const LightSetup& setup, const PathSe
     PathWalker border(*paths, tally);
     std::uint32_t choices = walker.choices();
     for (const CellWalker::HandedOver& ray : walker.handed_over())
-      border.resume(ray.position, ray.ray, ray.near_edge, key, task.replicate, task.first, choices);
+      border.resume(ray.position, ray.ray, key, task.replicate, task.first, choices);
     return tally;
   };
 }

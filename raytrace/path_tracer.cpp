@@ -39,7 +39,7 @@ void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replic
   follow_pending();
 }
 
-void PathWalker::resume(const Vec3& position, const Ray& ray, bool near_edge, RandomKey key, std::uint32_t replicate,
+void PathWalker::resume(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate,
                         std::uint32_t sample, std::uint32_t& choices) {
   key_ = key;
   replicate_ = replicate;
@@ -49,7 +49,6 @@ void PathWalker::resume(const Vec3& position, const Ray& ray, bool near_edge, Ra
   state.position = position;
   state.direction = ray.direction;
   state.light = ray.light;
-  state.near_edge = near_edge;
   state.inside = ray.inside;
   state.scattered = ray.scattered;
   pending_.push_back(state);
@@ -111,18 +110,12 @@ bool PathWalker::advance(State& state) {
 }
 
 std::optional<SurfaceHit> PathWalker::search(const State& state, double t_max) const {
-  return setup_.surface.first_hit(
-      {state.position, state.direction, state.source, state.inside, state.near_edge, t_max});
-}
-
-std::optional<SurfaceHit> PathWalker::search_exactly(const State& state, double t_max) const {
-  return setup_.surface.exact_first_hit({state.position, state.direction, state.source, state.inside, true, t_max});
+  return setup_.surface.first_hit({state.position, state.direction, state.source, state.inside, t_max});
 }
 
 /// For a ray that must meet the surface: it would leave the part's bounds otherwise.
 std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const {
-  return setup_.surface.certain_first_hit(
-      {state.position, state.direction, state.source, state.inside, true, kInfinity});
+  return setup_.surface.certain_first_hit({state.position, state.direction, state.source, state.inside, kInfinity});
 }
 
 /// Inside a finite part: the nearest of entrance, sides and back surface.
@@ -150,7 +143,6 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
     if (skipped < limit) {
       state.position += skipped * state.direction;
       state.source = {};
-      state.near_edge = false;
     }
   }
   if (skipped < limit) {
@@ -159,9 +151,6 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
     if (!hit && (step.end == End::miss || end_z < -setup_.depth_mm - setup_.clearance_mm)) {
       step.end = End::miss;
       hit = search_certainly(state);
-    } else if (!hit && step.end == End::side && end_z < setup_.top_mm) {
-      // Below the highest rim a side may be reached where a ray slipped between two pieces of the surface.
-      hit = search_exactly(state, limit - skipped);
     }
     if (hit) {
       step.end = End::facet;
@@ -278,7 +267,6 @@ void PathWalker::wrap(State& state) const {
   for (const Eigen::Index axis : {0, 1})
     state.position[axis] -= setup_.period_mm[axis] * std::floor(state.position[axis] / setup_.period_mm[axis] + 0.5);
   state.source = {};
-  state.near_edge = false;
 }
 
 bool PathWalker::is_over_part(const Vec3& position) const {
@@ -308,7 +296,6 @@ bool PathWalker::meet_entrance(State& state) {
   state.light = reflected;
   state.direction = mirrored(state.direction, down);
   state.source = {};
-  state.near_edge = false;
   return branch != Branch::transmitted;
 }
 
@@ -336,8 +323,6 @@ bool PathWalker::meet_side(State& state, const Vec3& normal) {
   state.direction = mirrored(state.direction, normal);
   state.source = {};
   state.front_source = {};
-  // Where a side meets the back surface, single precision may not tell on which side of the edge the ray starts.
-  state.near_edge = state.position.z() < setup_.clearance_mm;
   return branch != Branch::transmitted;
 }
 
@@ -349,7 +334,6 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   const bool is_retro = facet.role == FacetRole::retro_facet;
   state.source = hit.facet;
   state.front_source = {};
-  state.near_edge = hit.near_edge;
   if (is_retro && !optics.is_smooth()) return meet_textured(state, facet.normal);
   const Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
   const double cos_incidence = -against.dot(state.direction);

@@ -42,10 +42,10 @@ class PathWalker {
   /// `replicate` and `sample` alone.
   void trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
 
-  /// Traces light that is on its way already. \param near_edge edges of facets may be as near as rounding
+  /// Traces light that is on its way already.
   /// \param choices made so far with these numbers; counts on
-  void resume(const Vec3& position, const Ray& ray, bool near_edge, RandomKey key, std::uint32_t replicate,
-              std::uint32_t sample, std::uint32_t& choices);
+  void resume(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample,
+              std::uint32_t& choices);
 
  private:
   struct State {
@@ -54,7 +54,6 @@ class PathWalker {
     Light light;
     FacetRef source;        ///< facet that the path has just left
     FacetRef front_source;  ///< the same, of a front
-    bool near_edge = false;
     bool inside = true;
     bool above = false;                                                   ///< in the air on the front's side
     bool entered = false;                                                 ///< it has passed a front
@@ -79,7 +78,6 @@ class PathWalker {
   Step step_outside(State& state) const;
   Step step_outside_periodic(State& state) const;
   std::optional<SurfaceHit> search(const State& state, double t_max) const;
-  std::optional<SurfaceHit> search_exactly(const State& state, double t_max) const;
   std::optional<SurfaceHit> search_certainly(const State& state) const;
   double distance_to_tile_border(const State& state) const;
   void wrap(State& state) const;

@@ -25,15 +25,13 @@ struct SurfaceRay {
   Vec3 origin = Vec3::Zero();
   Vec3 direction = Vec3::UnitZ();
   FacetRef source;
-  bool inside = true;             ///< in the part's material
-  bool starts_near_edge = false;  ///< the origin is too near an edge of its facet for single precision
+  bool inside = true;  ///< in the part's material
   double t_max = std::numeric_limits<double>::infinity();
 };
 
 struct SurfaceHit {
   FacetRef facet;
   double t = std::numeric_limits<double>::infinity();
-  bool near_edge = false;
 };
 
 }  // namespace retrace::raytrace

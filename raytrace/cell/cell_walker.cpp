@@ -179,7 +179,7 @@ void CellWalker::come_in(std::uint32_t number, std::size_t more, const Vec2& shi
   if (array_.inner()) {
     std::fill_n(branches_.begin(), more, 0.0);
     if (lanes::mark_beyond(rays, more, {0.0, inner_.lower, inner_.upper}, 0.0, kHandedOver, branches_.data()) > 0) {
-      hand_over(rays, more, branches_, kHandedOver, stream.place == Place::inside, stream.scattered, true);
+      hand_over(rays, more, branches_, kHandedOver, stream.place == Place::inside, stream.scattered);
       more = lanes::select(branches_.data(), 0.0, more, rays, rays);
     }
   }
@@ -195,11 +195,11 @@ Ray CellWalker::ray_of(const lanes::Rays& rays, std::size_t k, bool inside, bool
 }
 
 void CellWalker::hand_over(const lanes::Rays& rays, std::size_t count, const std::vector<double>& which, double number,
-                           bool inside, bool scattered, bool near_edge) {
+                           bool inside, bool scattered) {
   for (std::size_t k = 0; k < count; ++k)
     if (which[k] == number)
       handed_over_.push_back({vector_of(rays, lanes::kX, k) + Vec3(rays[lanes::kOx][k], rays[lanes::kOy][k], 0.0),
-                              ray_of(rays, k, inside, scattered), near_edge});
+                              ray_of(rays, k, inside, scattered)});
 }
 
 /// Where the next rays of a stream go, with room for `most`.
@@ -232,7 +232,7 @@ void CellWalker::fall(bool scattered) {
     std::fill_n(branches_.begin(), chosen_.size(), 0.0);
     const lanes::Reach down{-height_mm, inner_.lower, inner_.upper};
     if (lanes::mark_beyond(chosen_.rays(), chosen_.size(), down, 0.0, kHandedOver, branches_.data()) > 0) {
-      hand_over(chosen_.rays(), chosen_.size(), branches_, kHandedOver, true, scattered, false);
+      hand_over(chosen_.rays(), chosen_.size(), branches_, kHandedOver, true, scattered);
       chosen_.resize(lanes::select(branches_.data(), 0.0, chosen_.size(), chosen_.rays(), chosen_.rays()));
     }
   }
@@ -426,7 +426,7 @@ void CellWalker::meet_entrance(bool scattered) {
   // What reaches a side first.
   if (array_.inner() && lanes::mark_beyond(rays, moved_.size(), {height_mm, outline_.lower, outline_.upper},
                                            kTopOrNothing, kHandedOver, met_.data()) > 0)
-    hand_over(rays, moved_.size(), met_, kHandedOver, true, scattered, false);
+    hand_over(rays, moved_.size(), met_, kHandedOver, true, scattered);
   const lanes::Entrance entrance = {
       height_mm,        optics.index,      optics.absorption_per_mm, optics.lossless_entrance,
       setup_.to_source, setup_.cone_chord2};

@@ -23,7 +23,6 @@ class CellWalker {
   struct HandedOver {
     Vec3 position = Vec3::Zero();  ///< relative to the centre of the entrance face
     Ray ray;
-    bool near_edge = false;  ///< edges of facets may be as near as rounding
   };
 
   /// \param centre_mm of the entrance face; finite parts
@@ -101,7 +100,7 @@ class CellWalker {
   void grow(std::uint32_t stream, std::size_t more);
   void come_in(std::uint32_t stream, std::size_t more, const Vec2& shift);
   void hand_over(const lanes::Rays& rays, std::size_t count, const std::vector<double>& which, double number,
-                 bool inside, bool scattered, bool near_edge);
+                 bool inside, bool scattered);
   Ray ray_of(const lanes::Rays& rays, std::size_t k, bool inside, bool scattered) const;
   void waits(std::uint32_t stream);
   std::optional<std::uint32_t> fullest();

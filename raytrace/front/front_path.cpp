@@ -18,8 +18,7 @@ void PathWalker::enter_front(const Vec2& entry_mm) {
 
 /// From inside: how far the path goes if it meets the front within `limit`, else `limit`.
 double PathWalker::reach_front(const State& state, double limit, Step& step) const {
-  const auto met =
-      setup_.front->first_hit({state.position, state.direction, state.front_source, true, state.near_edge, limit});
+  const auto met = setup_.front->first_hit({state.position, state.direction, state.front_source, true, limit});
   if (!met) return limit;
   step.end = End::entrance;
   step.hit = met->hit;
@@ -36,8 +35,7 @@ bool PathWalker::advance_above(State& state) {
     if (towards <= 0.0) continue;
     limit = std::min(limit, std::max(0.0, (side.offset_mm - side.normal.dot(state.position)) / towards));
   }
-  const auto met =
-      setup_.front->first_hit({state.position, state.direction, state.front_source, false, state.near_edge, limit});
+  const auto met = setup_.front->first_hit({state.position, state.direction, state.front_source, false, limit});
   if (!met) return leave_front(state);
   state.position += met->hit.t * state.direction;
   return meet_front(state, met->hit, met->normal);
@@ -53,7 +51,6 @@ bool PathWalker::meet_front(State& state, const SurfaceHit& hit, const Vec3& nor
   state.light.turn_to(state.direction, against);
   state.source = {};
   state.front_source = hit.facet;
-  state.near_edge = hit.near_edge;
   const bool is_lossless = setup_.optics.lossless_entrance;
   if (is_lossless && f.total_reflection) {
     (state.scattered ? tally_.scattered : tally_.returned).back().i += state.light.power();

@@ -141,7 +141,7 @@ struct HeightField::Search {
 
   static FrontHit hit_at(double t, const Gap& at) {
     const Vec3 normal = Vec3(-at.place.slope.x(), -at.place.slope.y(), 1.0).normalized();
-    return {{{0, 0}, t, false}, normal};
+    return {{{0, 0}, t}, normal};
   }
 
   /// Where a step went across the surface: between a place on this side and one on the other.

@@ -21,7 +21,8 @@ geometry::Part part_of(const geometry::SurfacePatch& patch, const geometry::Fron
 
 MeshFront::MeshFront(const geometry::SurfacePatch& patch, const geometry::Polygon& outline, const Vec2& centre_mm)
     : FrontFace(geometry::range_of_front_mesh(patch, outline)),
-      surface_(part_of(patch, {lowest_mm(), highest_mm(), {}, {}, 0.0}, outline), centre_mm) {}
+      part_(part_of(patch, {lowest_mm(), highest_mm(), {}, {}, 0.0}, outline)),
+      surface_(part_, centre_mm) {}
 
 bool MeshFront::crosses(const SurfaceRay& ray) const {
   const double dz = ray.direction.z();
@@ -34,7 +35,7 @@ std::optional<FrontHit> MeshFront::first_hit(const SurfaceRay& ray) const {
   SurfaceRay local = ray;
   local.origin.z() -= lowest_mm();
   std::optional<SurfaceHit> hit = surface_.first_hit(local);
-  // Single precision may let a ray slip between two triangles.
+  // Rounding may let a ray slip between two triangles.
   if (!hit && crosses(ray)) hit = surface_.certain_first_hit(local);
   if (!hit || hit->t > ray.t_max) return std::nullopt;
   return FrontHit{*hit, surface_.facet(hit->facet).normal};

@@ -6,7 +6,7 @@
 
 namespace retrace::raytrace {
 
-/// A front of plane triangles: Embree names them, their planes in double precision say where.
+/// A front of plane triangles, searched as the back of a part is.
 class MeshFront : public FrontFace {
  public:
   MeshFront(const geometry::SurfacePatch& patch, const geometry::Polygon& outline, const Vec2& centre_mm);
@@ -17,7 +17,8 @@ class MeshFront : public FrontFace {
   /// Whether the ray comes to the heights of the front from the side that it is on, and has time to cross them.
   bool crosses(const SurfaceRay& ray) const;
 
-  BackSurface surface_;  ///< in heights above the lowest place
+  geometry::Part part_;  ///< in heights above the lowest place
+  BackSurface surface_;
 };
 
 }  // namespace retrace::raytrace

@@ -354,8 +354,7 @@ double CameraTracer::Hidden::follow(const WorldRay& ray, std::size_t wavelength,
     }
   }
   std::uint32_t choices = 0;
-  walker.resume(contact.local, start, contact.what == Contact::What::side, {seed, kChoiceStream}, point, pixel,
-                choices);
+  walker.resume(contact.local, start, {seed, kChoiceStream}, point, pixel, choices);
   behind += tally.other[Account::transmitted] + tally.other[Account::side_exit] - elsewhere;
   return sight.luminance() + scene.surroundings.behind * behind;
 }
