@@ -227,5 +227,21 @@ TEST(StudyReader, PlanesOfFacetsArePartOfTheStudy) {
   fs::remove_all(folder);
 }
 
+TEST(StudyReader, ReadsEveryExample) {
+  int read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kFolder + "studies")) {
+    if (entry.path().extension() != ".toml") continue;
+    std::ifstream file(entry.path());
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    // Optimisations and tolerances have readers and tests of their own.
+    if (text.find("retrace.study/1") == std::string::npos || text.find("[optimize]") != std::string::npos ||
+        text.find("[tolerance]") != std::string::npos)
+      continue;
+    EXPECT_NO_THROW(read_sweep(read_study(entry.path().string(), {}))) << entry.path();
+    ++read;
+  }
+  EXPECT_GE(read, 6);
+}
+
 }  // namespace
 }  // namespace retrace::studies
