@@ -300,7 +300,7 @@ TEST(Front, FindsTheFirstCrossing) {
     for (int axis = 0; axis < 2; ++axis)
       until = std::min(until, (direction[axis] > 0.0 ? 2.0 - from[axis] : -from[axis]) / direction[axis]);
     const double t = crossing_by_steps(surface, from, direction, until, inside);
-    SurfaceRay ray{from, direction, starts_on ? FacetRef{0, 0} : FacetRef{}, inside, false, until};
+    SurfaceRay ray{from, direction, starts_on ? FacetRef{0, 0} : FacetRef{}, inside, until};
     const auto hit = face->first_hit(ray);
     ASSERT_EQ(hit.has_value(), std::isfinite(t)) << k << " " << t << " of " << until;
     if (!hit) continue;
