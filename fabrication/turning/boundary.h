@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "fabrication/turning/formula.h"
+#include "fabrication/turning/numbers.h"
 #include "fabrication/turning/periodic_spline.h"
 #include "geometry/vec.h"
 

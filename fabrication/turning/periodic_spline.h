@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "fabrication/turning/jet.h"
+#include "fabrication/turning/numbers.h"
 
 namespace retrace::fabrication::turning {
 

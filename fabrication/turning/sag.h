@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fabrication/turning/formula.h"
-#include "fabrication/turning/jet.h"
-#include "fabrication/turning/second_order.h"
+#include "fabrication/turning/numbers.h"
 
 namespace retrace::fabrication::turning {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/angle.h"
-#include "fabrication/turning/jet.h"
+#include "fabrication/turning/numbers.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication::turning {

@@ -4,5 +4,5 @@ retrace_test(geometry_test
   LIBRARIES retrace::geometry retrace::geometry_check)
 
 retrace_test(base_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_part_test.cpp ${CMAKE_CURRENT_LIST_DIR}/formula_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_part_test.cpp
   LIBRARIES retrace::geometry retrace::geometry_check)

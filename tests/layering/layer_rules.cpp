@@ -78,10 +78,9 @@ const std::map<std::string, Names>& inner_rooms() {
   static const std::map<std::string, Names> rooms = {
       {"fabrication/planing/verify/", {"fabrication/planing/part.h"}},
       {"fabrication/turning/verify/",
-       {"fabrication/turning/boundary.h", "fabrication/turning/finish.h", "fabrication/turning/formula.h",
-        "fabrication/turning/jet.h", "fabrication/turning/lenslet.h", "fabrication/turning/periodic_spline.h",
-        "fabrication/turning/sag.h", "fabrication/turning/second_order.h", "fabrication/turning/surface.h",
-        "fabrication/turning/tool.h"}}};
+       {"fabrication/turning/boundary.h", "fabrication/turning/finish.h", "fabrication/turning/lenslet.h",
+        "fabrication/turning/numbers.h", "fabrication/turning/periodic_spline.h", "fabrication/turning/sag.h",
+        "fabrication/turning/surface.h", "fabrication/turning/tool.h"}}};
   return rooms;
 }
 
@@ -152,6 +151,7 @@ const std::vector<Library>& libraries() {
       {"OpenCASCADE", "BRep", "geometry/io/step_module.cpp", is_step_module},
       {"OpenCASCADE", "Geom_", "geometry/io/step_module.cpp", is_step_module},
       {"OpenCASCADE", "gp_", "geometry/io/step_module.cpp", is_step_module},
+      {"muParser", "muParser", "core/formula.cpp", [](const std::string& path) { return path == "core/formula.cpp"; }},
       {"OpenImageIO", "OpenImageIO/", "an io/ room", in_io_room},
       {"CLI11", "CLI/", "app/", [](const std::string& path) { return path.starts_with("app/"); }},
       {"FFTW", "fftw3", "a .cpp file of surface_models/",

@@ -1,16 +1,16 @@
 #pragma once
 
-// Automatic differentiation for surfaces of turning: a dual number with the two partial derivatives, and truncated
-// Taylor series in one variable, both over the elementary functions that a sag may use (A. Griewank, A. Walther,
-// Evaluating Derivatives, 2nd ed., SIAM 2008, tables 13.1 and 13.2). They nest: Series<Dual> is a series whose
-// coefficients carry their own derivatives. second_order.h has the short series by which paths are found.
+// Automatic differentiation: a dual number with the two partial derivatives, and truncated Taylor series in one
+// variable, both over the elementary functions of formulas (A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed.,
+// SIAM 2008, tables 13.1 and 13.2). They nest: Series<Dual> is a series whose coefficients carry their own derivatives.
+// second_order.h has short series and second partial derivatives.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
-namespace retrace::fabrication::turning {
+namespace retrace::jets {
 
 /// Most derivatives that a series carries.
 inline constexpr int kMostOrder = 9;
@@ -312,4 +312,4 @@ T horner(const double* coefficients, int count, const T& x) {
   return sum;
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::jets

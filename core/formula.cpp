@@ -1,16 +1,17 @@
-#include "fabrication/turning/formula.h"
+#include "core/formula.h"
 
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 #include <numbers>
 
+#include "core/formula_evaluation.h"
 #include "core/message_text.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace {
 namespace {
 
 using Step = Formula::Step;
@@ -84,141 +85,60 @@ void set_grammar(mu::Parser& parser) {
   parser.DefineFun("atan2", binary<Step::atan2>, false);
 }
 
-template <class T>
-T absolute(const T& a) {
-  return value_of(a) < 0.0 ? -a : a;
-}
-
-template <class T>
-T arc_tangent(const T& y) {
-  using std::atan2;
-  return atan2(y, constant_like(y, 1.0));
-}
-
-template <class T>
-T hyperbolic_sine(const T& a) {
-  using std::exp;
-  return (exp(a) - exp(-a)) * 0.5;
-}
-template <class T>
-T hyperbolic_cosine(const T& a) {
-  using std::exp;
-  return (exp(a) + exp(-a)) * 0.5;
-}
-
-/// Whole exponents are products, which also exist where the base is not positive.
-template <class T>
-T to_the_power(const T& a, const T& b, const Formula::Node& exponent) {
-  using std::exp;
-  using std::log;
-  if (exponent.step == Step::constant) {
-    const double e = exponent.number;
-    if (e == std::floor(e) && std::abs(e) <= 64.0) {
-      const T positive = power(a, static_cast<int>(std::abs(e)));
-      return e < 0.0 ? constant_like(a, 1.0) / positive : positive;
-    }
-  }
-  return exp(b * log(a));
-}
-
-template <class T>
-T one_step(const Formula::Node& node, const std::vector<T>& v, const T* variables,
-           const std::vector<Formula::Node>& nodes) {
-  using std::atan2;
-  using std::cos;
-  using std::exp;
-  using std::log;
-  using std::sin;
-  using std::sqrt;
+/// Works out what is constant, and leaves out what the value does not need.
+std::vector<Formula::Node> simplified(std::vector<Formula::Node> nodes, std::size_t result) {
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
-  if (node.step == Step::constant) return constant_like(variables[0], node.number);
-  if (node.step == Step::variable) return variables[node.a];
-  const T& a = v[index(node.a)];
-  const T& b = v[index(node.b)];
-  const T one = constant_like(a, 1.0);
-  switch (node.step) {
-    case Step::add:
-      return a + b;
-    case Step::subtract:
-      return a - b;
-    case Step::multiply:
-      return a * b;
-    case Step::divide:
-      return a / b;
-    case Step::negate:
-      return -a;
-    case Step::power:
-      return to_the_power(a, b, nodes[index(node.b)]);
-    case Step::sqrt:
-      return sqrt(a);
-    case Step::exp:
-      return exp(a);
-    case Step::log:
-      return log(a);
-    case Step::sin:
-      return sin(a);
-    case Step::cos:
-      return cos(a);
-    case Step::tan:
-      return sin(a) / cos(a);
-    case Step::asin:
-      return atan2(a, sqrt(one - a * a));
-    case Step::acos:
-      return atan2(sqrt(one - a * a), a);
-    case Step::atan:
-      return arc_tangent(a);
-    case Step::atan2:
-      return atan2(a, b);
-    case Step::sinh:
-      return hyperbolic_sine(a);
-    case Step::cosh:
-      return hyperbolic_cosine(a);
-    case Step::tanh:
-      return hyperbolic_sine(a) / hyperbolic_cosine(a);
-    case Step::abs:
-      return absolute(a);
-    case Step::constant:
-    case Step::variable:
-      break;
+  const auto is_leaf = [](const Formula::Node& n) { return n.step == Step::constant || n.step == Step::variable; };
+  std::vector<bool> is_needed(nodes.size(), false);
+  for (Formula::Node& node : nodes) {
+    if (is_leaf(node)) continue;
+    const Formula::Node& a = nodes[index(node.a)];
+    const Formula::Node& b = is_binary(node.step) ? nodes[index(node.b)] : a;
+    if (a.step != Step::constant || b.step != Step::constant) continue;
+    const Formula alone{"", {a, b, {node.step, 0, 1, 0.0}}};
+    const double none = 0.0;
+    node = {Step::constant, 0, 0, alone.evaluate(&none)};
   }
-  return one;
+  is_needed[result] = true;
+  for (std::size_t i = result + 1; i-- > 0;) {
+    if (!is_needed[i] || is_leaf(nodes[i])) continue;
+    is_needed[index(nodes[i].a)] = true;
+    if (is_binary(nodes[i].step)) is_needed[index(nodes[i].b)] = true;
+  }
+  std::vector<Formula::Node> kept;
+  std::vector<int> place(nodes.size(), 0);
+  for (std::size_t i = 0; i <= result; ++i) {
+    if (!is_needed[i]) continue;
+    place[i] = static_cast<int>(kept.size());
+    Formula::Node node = nodes[i];
+    if (!is_leaf(node)) {
+      node.a = place[index(node.a)];
+      node.b = is_binary(node.step) ? place[index(node.b)] : 0;
+    }
+    kept.push_back(node);
+  }
+  return kept;
 }
 
 }  // namespace
 
-template <class T>
-T Formula::evaluate(const T* variables) const {
-  std::vector<T> values;
-  values.reserve(nodes.size());
-  for (const Node& node : nodes) values.push_back(one_step(node, values, variables, nodes));
-  return values[static_cast<std::size_t>(result)];
+bool is_binary(Formula::Step step) {
+  switch (step) {
+    case Step::add:
+    case Step::subtract:
+    case Step::multiply:
+    case Step::divide:
+    case Step::power:
+    case Step::atan2:
+      return true;
+    default:
+      return false;
+  }
 }
 
-template double Formula::evaluate(const double*) const;
-template Dual Formula::evaluate(const Dual*) const;
-template Jet2 Formula::evaluate(const Jet2*) const;
-template Series<double> Formula::evaluate(const Series<double>*) const;
-template Series<Dual> Formula::evaluate(const Series<Dual>*) const;
-template Series<Jet2> Formula::evaluate(const Series<Jet2>*) const;
-template Series<Series<double>> Formula::evaluate(const Series<Series<double>>*) const;
-template Series<Series<Dual>> Formula::evaluate(const Series<Series<Dual>>*) const;
-template Series<Series<Jet2>> Formula::evaluate(const Series<Series<Jet2>>*) const;
-template Series<Series<Series<double>>> Formula::evaluate(const Series<Series<Series<double>>>*) const;
-template Series<Jet2, 1> Formula::evaluate(const Series<Jet2, 1>*) const;
-template Series<Jet2, 2> Formula::evaluate(const Series<Jet2, 2>*) const;
-template Series<Jet2, 3> Formula::evaluate(const Series<Jet2, 3>*) const;
-template Series<Jet2, 4> Formula::evaluate(const Series<Jet2, 4>*) const;
-
 bool Formula::uses(int variable) const {
-  std::vector<bool> is_used(nodes.size(), false);
-  is_used[static_cast<std::size_t>(result)] = true;
-  for (std::size_t i = nodes.size(); i-- > 0;) {
-    if (!is_used[i]) continue;
-    if (nodes[i].step == Step::variable && nodes[i].a == variable) return true;
-    if (nodes[i].step == Step::variable || nodes[i].step == Step::constant) continue;
-    is_used[static_cast<std::size_t>(nodes[i].a)] = true;
-    is_used[static_cast<std::size_t>(nodes[i].b)] = true;
-  }
+  for (const Node& node : nodes)
+    if (node.step == Step::variable && node.a == variable) return true;
   return false;
 }
 
@@ -235,8 +155,7 @@ Formula parse_formula(const std::string& text, const std::vector<std::string>& v
   for (std::size_t i = 0; i < variables.size(); ++i)
     handles.push_back(record.add(Step::variable, static_cast<double>(i)));
   double pi = record.add(Step::constant, 0.0, 0.0, std::numbers::pi);
-  Formula formula;
-  formula.text = text;
+  std::size_t result = 0;
   try {
     mu::Parser parser;
     set_grammar(parser);
@@ -246,13 +165,14 @@ Formula parse_formula(const std::string& text, const std::vector<std::string>& v
     int results = 0;
     const double* const values = parser.Eval(results);
     if (results != 1) throw InputError(where, "must be one formula, got several: " + in_quotes(text));
-    formula.result = static_cast<int>(values[0]);
+    result = static_cast<std::size_t>(values[0]);
   } catch (const mu::Parser::exception_type& error) {
-    throw InputError(where, fmt::format("does not parse at character {}: {}, got {}", error.GetPos() + 1,
+    // At the end of the text the library counts one more.
+    const std::size_t place = std::min(static_cast<std::size_t>(error.GetPos()), text.size()) + 1;
+    throw InputError(where, fmt::format("does not parse at character {}: {}, got {}", place,
                                         printable(error.GetMsg(), 120), in_quotes(text)));
   }
-  formula.nodes = std::move(record.nodes);
-  return formula;
+  return {text, simplified(std::move(record.nodes), result)};
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace

@@ -1,0 +1,23 @@
+#pragma once
+
+// The numbers and formulas of core that surfaces of turning are made of.
+
+#include "core/formula.h"
+#include "core/jets.h"
+#include "core/second_order.h"
+
+namespace retrace::fabrication::turning {
+
+using jets::constant_like;
+using jets::Dual;
+using jets::horner;
+using jets::Jet2;
+using jets::kAnyOrder;
+using jets::kMostOrder;
+using jets::line_series;
+using jets::power;
+using jets::SecondOrder;
+using jets::Series;
+using jets::value_of;
+
+}  // namespace retrace::fabrication::turning

@@ -1,0 +1,42 @@
+// Whatever a formula says, it is read or refused in one line; what is read has the same value by every kind of number.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+#include "core/formula_evaluation.h"
+
+namespace {
+
+bool differ(double a, double b) {
+  return std::isfinite(a) && std::isfinite(b) && std::abs(a - b) > 1e-6 * (std::abs(a) + std::abs(b)) + 1e-9;
+}
+
+void evaluate(const retrace::Formula& formula) {
+  using namespace retrace::jets;
+  const std::array<double, 2> numbers = {0.7, -1.3};
+  const std::array<Dual, 2> duals = {Dual(0.7, 1.0, 0.0), Dual(-1.3, 0.0, 1.0)};
+  const std::array<Series<double>, 2> series = {line_series(0.7, 1.0, 5), line_series(-1.3, 0.5, 5)};
+  const double value = formula.evaluate(numbers.data());
+  if (differ(value, formula.evaluate(duals.data()).v) || differ(value, formula.evaluate(series.data())[0]))
+    std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    evaluate(retrace::parse_formula(std::string(reinterpret_cast<const char*>(data), size), {"x", "y"}, {}));
+  } catch (const retrace::InputError& error) {
+    const std::string_view message = error.what();
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+  }
+  return 0;
+}
