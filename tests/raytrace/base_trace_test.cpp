@@ -27,7 +27,7 @@ using namespace raytrace;
 constexpr double kDeg = std::numbers::pi / 180.0;
 
 Base formula(const std::string& text, Standing standing = Standing::normal) {
-  return {FormulaBase{std::make_shared<const Formula>(text)}, standing};
+  return {FormulaBase{std::make_shared<const geometry::Formula>(text)}, standing};
 }
 
 PartSpec on(const Base& base, PartSpec spec) {
