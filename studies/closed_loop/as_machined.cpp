@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/toml_file.h"
+#include "fabrication/job/io/base_keys.h"
 #include "geometry/lattice.h"
 #include "studies/design/design_reader.h"
 
@@ -117,7 +118,8 @@ std::string array_text(const Job& job, bool has_planes) {
     put("x_offset_mm", a.x_offset_mm);
     put("y_offset_mm", a.y_offset_mm);
   }
-  if (!is_prism(job)) text += "partial_elements = \"omit\"\n";
+  if (!is_prism(job) || (job.base && a.arrangement != geometry::Arrangement::offset))
+    text += "partial_elements = \"omit\"\n";
   if (a.arrangement == geometry::Arrangement::offset)
     text += fmt::format("overlap_percent = {}\nshifted_rows = \"{}\"\npartial_elements = \"omit\"\n",
                         shortest(a.overlap_percent), a.shifted_rows == geometry::RowParity::odd ? "odd" : "even");
@@ -278,12 +280,10 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
 }
 
 /// What a design with all elements alike leaves out.
-void warn_of(const Unlikeness& unlike, AsMachined& part) {
+void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
   if (unlike.along_arcmin > kShownArcmin)
-    part.warnings.push_back(
-        fmt::format("facets are turned by up to {} arcmin along the root: left out of a part that is "
-                    "cut directly",
-                    fixed(unlike.along_arcmin, 2)));
+    part.warnings.push_back(fmt::format("facets are turned by up to {} arcmin along the root: left out {}",
+                                        fixed(unlike.along_arcmin, 2), where));
   if (unlike.spread_arcmin > kShownArcmin)
     part.warnings.push_back(fmt::format("facets of single elements differ from the mean by up to {} arcmin",
                                         fixed(unlike.spread_arcmin, 2)));
@@ -301,14 +301,25 @@ bool has_flares(const VerificationRun& run) {
   return run.result.border_overcut_mm3 > 0.0 && run.job.array.arrangement != geometry::Arrangement::single;
 }
 
+/// A design has a base and elements that are alike, and no table of planes on it.
+void check_on_base(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
+  if (unlike.missing > 0)
+    throw InputError(
+        {"", 0, "--as-machined"},
+        fmt::format("a design with [base] has all its elements: must be cut all, {} are not", unlike.missing));
+  warn_of(unlike, part, "on a base");
+  if (run.result.rim_overcut_um_max > 0.0)
+    part.warnings.push_back(fmt::format(
+        "cuts of neighbours go up to {} um under rims that stand at different heights: the design has walls there",
+        fixed(run.result.rim_overcut_um_max, 3)));
+  if (has_flares(run))
+    part.warnings.push_back(
+        "cavities of hexagons reach beyond the elements' outlines at the border: left out on a base");
+}
+
 }  // namespace
 
 AsMachined as_machined(const VerificationRun& run) {
-  if (run.job.base)
-    throw InputError(
-        {"", 0, "--as-machined"},
-        "the facets of [part] stand on a plane: no design is written of elements on a base, got a job with "
-        "[base]");
   AsMachined part;
   std::int64_t cut = 0;
   for (const ElementResult& element : run.result.elements) {
@@ -325,7 +336,9 @@ AsMachined as_machined(const VerificationRun& run) {
   // Facet 1 lies at -x of a moulded part; a blank that is cut directly is turned about y.
   if (is_direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
   if (is_direct)
-    warn_of(unlike, part);
+    warn_of(unlike, part, "of a part that is cut directly");
+  else if (run.job.base)
+    check_on_base(run, unlike, part);
   else if (has_flares(run) || unlike.along_arcmin > kShownArcmin || unlike.spread_arcmin > kShownArcmin ||
            unlike.missing > 0)
     part.planes = facet_planes_of(run);
@@ -343,6 +356,10 @@ AsMachined as_machined(const VerificationRun& run) {
         fixed(run.result.root_ridge_um, 2), fixed(run.result.root_chamfer_um, 2)));
   part.texture = predicted_texture(run.job);
   part.scratches = scratches_of(run.job);
+  if (run.job.base && !part.scratches.empty()) {
+    part.warnings.push_back("scratches of a chipped edge are left out on a base");
+    part.scratches.clear();
+  }
   part.body = body_of(run, part.warnings);
   return part;
 }
@@ -355,6 +372,7 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
   text += fmt::format("title = {}\n", toml_text((run.job.title.empty() ? "Part" : run.job.title) + ", as machined"));
   text += "\n[element]\n" + element_text(run.job);
   text += "\n[array]\n" + array_text(run.job, part.planes.has_value());
+  if (run.job.base) text += "\n[base]\n" + fabrication::base_text(*run.job.base);
   text += "\n[body]\n" + part.body;
   if (part.planes)
     text += fmt::format("\n# Facets as the programs leave them: a plane each.\n[part]\nfacets = {}\n\n[surface]\n",

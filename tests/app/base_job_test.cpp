@@ -48,9 +48,42 @@ TEST_F(BaseJob, OfTheExampleVerifiesInEveryDialect) {
     // Ten rows of roofs, each with its own A for either facet.
     EXPECT_EQ(json["poses"].size(), 20U);
   }
-  expect_refused({"verify", "job.toml", "rs274ngc/program.ngc", "--as-machined", "part.toml"},
-                 "--as-machined: the facets");
   expect_refused({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}, "base: no map is drawn");
+}
+
+/// What is left returns what the design does, but for the texture of its facets.
+TEST_F(BaseJob, AsMachinedReturnsWhatTheDesignDoes) {
+  std::string design = read_text(example(kExample));
+  design.replace(design.find("x_length_mm = 5"), 15, "x_length_mm = 2");
+  design.replace(design.find("y_length_mm = 3"), 15, "y_length_mm = 1");
+  folder_.write("design.toml", design);
+  ASSERT_EQ(retrace(folder_, {"job", "design.toml", "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet"}).code, 0);
+  EXPECT_EQ(verified("rs274ngc")["verdict"], "pass");
+  const Arguments verify = {"verify", "job.toml", "rs274ngc/program.ngc", "--as-machined", "part.toml", "--quiet"};
+  ASSERT_EQ(retrace(folder_, verify).code, 0);
+  std::string part = folder_.read("part.toml");
+  EXPECT_NE(part.find("[base]\nkind = \"cylinder\"\nradius_mm = 20\n"), std::string::npos) << part;
+  const std::size_t texture = part.find("# Sa ");
+  part.erase(texture, part.find("\n[detector]") - texture);
+  folder_.write("smooth.toml", part);
+  const auto rre = [&](const std::string& name) {
+    return retrace_json(folder_, {"rre", name, "--engine", "exact", "--incidence=0,3", "--set",
+                                  "detector.acceptance_half_angle_deg=0.5"})["points"];
+  };
+  const Json designed = rre("design.toml");
+  const Json machined = rre("smooth.toml");
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_NEAR(machined[k]["rre"].get<double>(), designed[k]["rre"].get<double>(), 1e-6);
+  // Without its last element there is no such design.
+  const std::string text = folder_.read("rs274ngc/program.ngc");
+  std::string cut;
+  bool skips = false;
+  for (const std::string& line : lines_of(text)) {
+    if (line.starts_with("(element ")) skips = line == "(element 7)";
+    if (!(skips && line.find("call") != std::string::npos)) cut += line + "\n";
+  }
+  folder_.write("cut.ngc", cut);
+  expect_refused({"verify", "job.toml", "cut.ngc", "--as-machined", "other.toml"}, "must be cut all, 1 are not");
 }
 
 TEST_F(BaseJob, OfCubeCornersOnASphere) {
