@@ -9,17 +9,13 @@
 #include <vector>
 
 #include "core/error.h"
+#include "raytrace/facet_boxes.h"
 
 namespace retrace::raytrace {
 namespace {
 
-using FacetRange = ExactSurface::FacetRange;
-
 // Single-precision roundings that may add up in Embree's walk through boxes, relative to the coordinates.
 constexpr double kSinglePrecisionBand = 32.0 * 0x1p-24;
-// Facets of a cell that are met one after another; cells of more have a box for each.
-constexpr std::uint32_t kFewFacets = 16;
-
 void throw_on_error(void*, RTCError code, const char* text) {
   if (code == RTC_ERROR_OUT_OF_MEMORY) throw BudgetError("out of memory while building the scene");
   throw std::runtime_error(std::string("Embree: ") + (text != nullptr ? text : "unknown error"));
@@ -31,18 +27,6 @@ float below(double value) {
 
 float above(double value) {
   return std::nextafter(static_cast<float>(value), INFINITY);
-}
-
-/// What shares a box.
-std::vector<FacetRange> ranges_of(const geometry::SurfacePatch& patch) {
-  std::vector<FacetRange> ranges;
-  ranges.reserve(patch.cells.size());
-  for (const auto& cell : patch.cells) {
-    const std::uint32_t step = cell.facet_count <= kFewFacets ? kFewFacets : 1;
-    for (std::uint32_t f = 0; f < cell.facet_count; f += step)
-      ranges.push_back({cell.first_facet + f, std::min(step, cell.facet_count - f)});
-  }
-  return ranges;
 }
 
 /// Of the coordinates of the surface.
@@ -98,7 +82,7 @@ struct BackSurface::Boxes {
       : part(its_part),
         surface(its_surface),
         band_mm(kSinglePrecisionBand * greatest_reach_mm(part, surface.placements()) + surface.wide_tolerance_mm()) {
-    for (const auto& patch : part.patches) ranges.push_back(ranges_of(patch));
+    for (const auto& patch : part.patches) contents.push_back(box_contents(patch));
     device = rtcNewDevice(nullptr);
     if (device == nullptr) throw BudgetError("Embree cannot start: not enough memory or address space");
     rtcSetDeviceErrorFunction(device, throw_on_error, nullptr);
@@ -118,7 +102,7 @@ struct BackSurface::Boxes {
   void attach(Group& group) const {
     const std::uint32_t patch = surface.placements()[group.placement].patch;
     RTCGeometry boxes = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(boxes, static_cast<unsigned>(ranges[patch].size()));
+    rtcSetGeometryUserPrimitiveCount(boxes, static_cast<unsigned>(contents[patch].size()));
     rtcSetGeometryUserData(boxes, &group);
     rtcSetGeometryBoundsFunction(boxes, bounds, nullptr);
     rtcSetGeometryIntersectFunction(boxes, intersect);
@@ -131,19 +115,10 @@ struct BackSurface::Boxes {
     const auto& group = *static_cast<const Group*>(args->geometryUserPtr);
     const Boxes& self = *group.owner;
     const geometry::Placement& at = self.surface.placements()[group.placement];
-    const geometry::SurfacePatch& patch = self.part.patches[at.patch];
-    const FacetRange& range = self.ranges[at.patch][args->primID];
-    Vec3 lower = Vec3::Constant(INFINITY);
-    Vec3 upper = Vec3::Constant(-INFINITY);
-    for (std::uint32_t f = range.first; f < range.first + range.count; ++f)
-      for (std::uint32_t c = 0; c < patch.facets[f].corner_count; ++c) {
-        const Vec3& p = patch.vertices[patch.corners[patch.facets[f].first_corner + c]];
-        lower = lower.cwiseMin(p);
-        upper = upper.cwiseMax(p);
-      }
+    const Box box = box_round(self.part.patches[at.patch], self.contents[at.patch][args->primID]);
     const Vec3 place(at.offset_mm.x(), at.offset_mm.y(), at.height_mm);
-    lower += place - Vec3::Constant(self.band_mm);
-    upper += place + Vec3::Constant(self.band_mm);
+    const Vec3 lower = box.lower + place - Vec3::Constant(self.band_mm);
+    const Vec3 upper = box.upper + place + Vec3::Constant(self.band_mm);
     *args->bounds_o = {below(lower.x()), below(lower.y()), below(lower.z()), 0.0F,
                        above(upper.x()), above(upper.y()), above(upper.z()), 0.0F};
   }
@@ -155,7 +130,8 @@ struct BackSurface::Boxes {
     auto& query = *reinterpret_cast<Query*>(args->context);
     const double before = query.best.t;
     const std::uint32_t patch = self.surface.placements()[group.placement].patch;
-    self.surface.search(*query.ray, group.placement, self.ranges[patch][args->primID], query.tolerance_mm, query.best);
+    self.surface.search(*query.ray, group.placement, self.contents[patch][args->primID].range, query.tolerance_mm,
+                        query.best);
     if (query.best.t < before)
       RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0) = above(query.best.t + self.band_mm);
   }
@@ -175,8 +151,8 @@ struct BackSurface::Boxes {
 
   const geometry::Part& part;
   const ExactSurface& surface;
-  double band_mm;                               ///< what single precision may put wrong of rays and boxes
-  std::vector<std::vector<FacetRange>> ranges;  ///< by patch
+  double band_mm;                                 ///< what single precision may put wrong of rays and boxes
+  std::vector<std::vector<BoxContent>> contents;  ///< by patch
   std::vector<Group> groups;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
