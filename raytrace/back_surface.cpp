@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -72,10 +73,12 @@ RTCRayHit embree_ray(const SurfaceRay& ray) {
 }  // namespace
 
 struct BackSurface::Boxes {
-  /// What stands in boxes at one placement: one geometry of the scene.
+  /// What a geometry of Embree's holds: the boxes of a patch, where a placement has it or, for instances, in its own
+  /// frame.
   struct Group {
     const Boxes* owner = nullptr;
-    std::uint32_t placement = 0;
+    std::uint32_t patch = 0;
+    Vec3 place = Vec3::Zero();
   };
 
   Boxes(const geometry::Part& its_part, const ExactSurface& its_surface)
@@ -86,39 +89,84 @@ struct BackSurface::Boxes {
     device = rtcNewDevice(nullptr);
     if (device == nullptr) throw BudgetError("Embree cannot start: not enough memory or address space");
     rtcSetDeviceErrorFunction(device, throw_on_error, nullptr);
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
-    groups.reserve(surface.placements().size());
-    for (std::uint32_t k = 0; k < surface.placements().size(); ++k) attach(groups.emplace_back(Group{this, k}));
+    scene = new_scene();
+    if (repeats_much())
+      attach_instances();
+    else
+      attach_all();
     rtcCommitScene(scene);
   }
   Boxes(const Boxes&) = delete;
   Boxes& operator=(const Boxes&) = delete;
   ~Boxes() {
+    for (RTCScene s : patch_scenes) rtcReleaseScene(s);
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
   }
 
-  void attach(Group& group) const {
-    const std::uint32_t patch = surface.placements()[group.placement].patch;
+  RTCScene new_scene() const {
+    RTCScene made = rtcNewScene(device);
+    rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+    return made;
+  }
+
+  /// Whether instances save most of the boxes. They are as fast, and faster in large arrays.
+  bool repeats_much() const {
+    std::size_t different = 0;
+    std::size_t all = 0;
+    for (const auto& patch : contents) different += patch.size();
+    for (const auto& placement : surface.placements()) all += contents[placement.patch].size();
+    return all > 4 * different;
+  }
+
+  void attach_all() {
+    const auto& placements = surface.placements();
+    groups.reserve(placements.size());
+    for (std::uint32_t k = 0; k < placements.size(); ++k) {
+      const geometry::Placement& at = placements[k];
+      attach(scene, groups.emplace_back(Group{this, at.patch, {at.offset_mm.x(), at.offset_mm.y(), at.height_mm}}), k);
+    }
+  }
+
+  void attach_instances() {
+    groups.reserve(contents.size());
+    for (std::uint32_t k = 0; k < contents.size(); ++k) {
+      patch_scenes.push_back(new_scene());
+      attach(patch_scenes.back(), groups.emplace_back(Group{this, k, Vec3::Zero()}), 0);
+      rtcCommitScene(patch_scenes.back());
+    }
+    for (std::uint32_t k = 0; k < surface.placements().size(); ++k) {
+      const geometry::Placement& at = surface.placements()[k];
+      RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(instance, patch_scenes[at.patch]);
+      std::array<float, 12> matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+      matrix[9] = static_cast<float>(at.offset_mm.x());
+      matrix[10] = static_cast<float>(at.offset_mm.y());
+      matrix[11] = static_cast<float>(at.height_mm);
+      rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
+      rtcCommitGeometry(instance);
+      rtcAttachGeometryByID(scene, instance, k);
+      rtcReleaseGeometry(instance);
+    }
+  }
+
+  void attach(RTCScene target, Group& group, std::uint32_t number) const {
     RTCGeometry boxes = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(boxes, static_cast<unsigned>(contents[patch].size()));
+    rtcSetGeometryUserPrimitiveCount(boxes, static_cast<unsigned>(contents[group.patch].size()));
     rtcSetGeometryUserData(boxes, &group);
     rtcSetGeometryBoundsFunction(boxes, bounds, nullptr);
     rtcSetGeometryIntersectFunction(boxes, intersect);
     rtcCommitGeometry(boxes);
-    rtcAttachGeometryByID(scene, boxes, group.placement);
+    rtcAttachGeometryByID(target, boxes, number);
     rtcReleaseGeometry(boxes);
   }
 
   static void bounds(const RTCBoundsFunctionArguments* args) {
     const auto& group = *static_cast<const Group*>(args->geometryUserPtr);
     const Boxes& self = *group.owner;
-    const geometry::Placement& at = self.surface.placements()[group.placement];
-    const Box box = box_round(self.part.patches[at.patch], self.contents[at.patch][args->primID]);
-    const Vec3 place(at.offset_mm.x(), at.offset_mm.y(), at.height_mm);
-    const Vec3 lower = box.lower + place - Vec3::Constant(self.band_mm);
-    const Vec3 upper = box.upper + place + Vec3::Constant(self.band_mm);
+    const Box box = box_round(self.part.patches[group.patch], self.contents[group.patch][args->primID]);
+    const Vec3 lower = box.lower + group.place - Vec3::Constant(self.band_mm);
+    const Vec3 upper = box.upper + group.place + Vec3::Constant(self.band_mm);
     *args->bounds_o = {below(lower.x()), below(lower.y()), below(lower.z()), 0.0F,
                        above(upper.x()), above(upper.y()), above(upper.z()), 0.0F};
   }
@@ -129,8 +177,9 @@ struct BackSurface::Boxes {
     const Boxes& self = *group.owner;
     auto& query = *reinterpret_cast<Query*>(args->context);
     const double before = query.best.t;
-    const std::uint32_t patch = self.surface.placements()[group.placement].patch;
-    self.surface.search(*query.ray, group.placement, self.contents[patch][args->primID].range, query.tolerance_mm,
+    const std::uint32_t instance = args->context->instID[0];
+    const std::uint32_t placement = instance == RTC_INVALID_GEOMETRY_ID ? args->geomID : instance;
+    self.surface.search(*query.ray, placement, self.contents[group.patch][args->primID].range, query.tolerance_mm,
                         query.best);
     if (query.best.t < before)
       RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0) = above(query.best.t + self.band_mm);
@@ -156,6 +205,7 @@ struct BackSurface::Boxes {
   std::vector<Group> groups;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  std::vector<RTCScene> patch_scenes;  ///< instances
 };
 
 BackSurface::BackSurface(const geometry::Part& part, const Vec2& centre_mm)
