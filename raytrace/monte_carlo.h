@@ -66,10 +66,13 @@ class MonteCarlo {
   /// Independent scrambles: the estimate is their mean, its standard error comes from their spread.
   static constexpr std::uint32_t kReplicates = 32;
 
+  /// \param part is kept by reference: it must outlive the tracer
   /// \param front in place of the plane entrance face, above the part's back; null: that plane
   /// \pre with a front: a finite part and Engine::embree
   explicit MonteCarlo(const geometry::Part& part, Engine engine = Engine::embree,
                       const geometry::Front* front = nullptr);
+  explicit MonteCarlo(geometry::Part&& part, Engine engine = Engine::embree,
+                      const geometry::Front* front = nullptr) = delete;
   ~MonteCarlo();
 
   /// Traces in the calling thread's TBB arena. \pre for Engine::cell: cell_serves()

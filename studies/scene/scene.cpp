@@ -138,6 +138,12 @@ using Json = nlohmann::ordered_json;
 
 std::string toml_value(const Json& value) {
   if (value.is_string()) return toml_text(value.get<std::string>());
+  if (value.is_object()) {
+    std::string table = "{";
+    for (const auto& [key, item] : value.items())
+      table += (table.size() > 1 ? ", " : "") + toml_text(key) + " = " + toml_value(item);
+    return table + "}";
+  }
   if (!value.is_array()) return value.is_number_float() ? shortest(value.get<double>()) : value.dump();
   std::string list = "[";
   for (const Json& item : value) list += (list.size() > 1 ? ", " : "") + toml_value(item);
@@ -150,6 +156,7 @@ Design design_of_json(const Json& json) {
   static const std::vector<std::pair<std::string, std::set<std::string>>> tables = {
       {"element", {}},
       {"array", {}},
+      {"base", {}},
       {"part", {}},
       {"front", {}},  // which make_scene() refuses: a plane one in its place would be another part
       {"body", {}},
@@ -157,7 +164,7 @@ Design design_of_json(const Json& json) {
       {"detector", {}},
       {"surface",
        {"dihedral_error_arcmin", "facet_tilt_arcmin", "angle_error_sigma_arcmin", "angle_error_seed", "root_radius_um",
-        "root_chamfer_um", "rim_radius_um", "rim_chamfer_um", "edge_chords"}},
+        "root_chamfer_um", "rim_radius_um", "rim_chamfer_um", "edge_chords", "scratches"}},
       {"idealisation", {}}};
   std::string text;
   for (const auto& [name, kept] : tables) {

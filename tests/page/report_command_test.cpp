@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <map>
+#include <numbers>
 
 #include "tests/app/program.h"
 
@@ -106,6 +109,31 @@ TEST(Report, TakesMeshesAndTablesOfFacets) {
   const Json solid = retrace_json(folder, {"export", "facets.toml", "facets.stl"});
   EXPECT_NEAR(solid["volume_mm3"].get<double>(), 2.0 * 1.0 * 1.0 + 0.25 + 0.02, 1e-9);
   EXPECT_NEAR(retrace_json(folder, {"export", "mesh.toml", "again.stl"})["volume_mm3"].get<double>(), 2.5, 1e-5);
+}
+
+/// Elements on a base stand on it in the view too, and scratches are seen.
+TEST(Report, ShowsBasesAndScratches) {
+  const TemporaryFolder folder;
+  const std::string array =
+      "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nx_length_mm = 4\ny_length_mm = 4\n"
+      "[body]\nthickness_mm = 1\nrefractive_index = 1.5\n";
+  folder.write("flat.toml", array);
+  folder.write("inclined.toml", array + "[base]\nkind = \"plane\"\nincline_deg = 20\nelements = \"parallel\"\n");
+  folder.write("scratched.toml",
+               array + "[surface]\nscratches = [{facet = \"-x\", position_um = 0, width_um = 20, depth_um = 5}]\n");
+  std::map<std::string, double> lowest;
+  std::map<std::string, std::size_t> triangles;
+  for (const std::string name : {"flat", "inclined", "scratched"}) {
+    ASSERT_EQ(retrace(folder, {"inspect", name + ".toml", "-o", name, "--quiet"}).code, 0) << name;
+    ASSERT_EQ(retrace(folder, {"report", name}).code, 0) << name;
+    const Json scene = data_of(folder.read(name + "/report.html"))["scene"];
+    for (const Json& vertex : scene["vertices"]) lowest[name] = std::min(lowest[name], vertex[2].get<double>());
+    triangles[name] = scene["triangles"].size();
+  }
+  EXPECT_NEAR(lowest["flat"], -0.5, 1e-6);
+  // Roofs run across the slope; the last one's middle lies 3.5 mm from the highest place.
+  EXPECT_NEAR(lowest["inclined"], -0.5 - 3.5 * std::tan(20.0 * std::numbers::pi / 180.0), 1e-6);
+  EXPECT_GT(triangles["scratched"], triangles["flat"] + 16);
 }
 
 TEST(Report, FoldersWithoutResultsAreRefused) {
