@@ -14,8 +14,8 @@ bool nose_fits(const ZoneProfile& profile, double nose_mm);
 /// The largest nose that fits, to a thousandth. \pre some nose does
 double largest_nose_mm(const ZoneProfile& profile);
 
-/// How far the nose may leave its path for what it leaves to keep a tolerance: the edges at the upper ends of walls stand
-/// between two flanks, and move by more than either does. Without a nose the tolerance itself.
+/// How far the nose may leave its path for what it leaves to keep a tolerance: the edges at the upper ends of walls
+/// stand between two flanks, and move by more than either does. Without a nose the tolerance itself.
 double path_tolerance_mm(const ZoneProfile& profile, double nose_mm, double tolerance_mm);
 
 /// Where the lowest point of a round nose goes that touches the profile everywhere it can: along it at the radius'

@@ -19,9 +19,9 @@ bool is_inspected(const InspectedRegion& region, const geometry::Vec2& p);
 
 /// Fills the map of the result, its interference and its rms. A pixel shows the greatest deviation, with its sign, over
 /// the length of a feed across the cuts at a place drawn within it, found between samples by golden section; of
-/// pixels smaller than a quarter of a feed, the greatest at places drawn within them. So cusps finer than pixels do not show as
-/// waves that are not there. The rms is that of one place drawn in each pixel. \throw InputError if the programs leave
-/// a place of the region uncut
+/// pixels smaller than a quarter of a feed, the greatest at places drawn within them. So cusps finer than pixels do not
+/// show as waves that are not there. The rms is that of one place drawn in each pixel. \throw InputError if the
+/// programs leave a place of the region uncut
 void fill_map(Inspection& result, const Envelope& envelope, const TurnedSurface& design, const InspectedRegion& region,
               std::size_t pixels);
 
