@@ -1,6 +1,8 @@
 retrace_test(studies_design_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_reader_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_json_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_reader_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/facet_planes_reader_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_reader_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_array_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_json_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/design_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_reader_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/design_surface_test.cpp ${CMAKE_CURRENT_LIST_DIR}/facet_planes_reader_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/init_templates_test.cpp
   LIBRARIES retrace::optical_model rapidcheck)
 retrace_test(studies_rre_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/derivatives_test.cpp ${CMAKE_CURRENT_LIST_DIR}/returned_light_test.cpp

@@ -1,0 +1,146 @@
+// What designs say of light and of what absorbs it.
+#include "studies/design/design_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/studies/design_texts.h"
+
+namespace retrace::studies {
+namespace {
+
+TEST(DesignReader, PolarisationIsAWordOrStokesParameters) {
+  const auto stokes = [](const std::vector<std::string>& overrides) { return set(overrides).polarisation.values(); };
+  using Values = std::array<double, 4>;
+  EXPECT_EQ(stokes({"light.polarisation=unpolarised"}), (Values{1, 0, 0, 0}));
+  EXPECT_EQ(stokes({"light.polarisation=linear"}), (Values{1, 1, 0, 0}));
+  EXPECT_EQ(stokes({"light.polarisation=right_circular"}), (Values{1, 0, 0, 1}));
+  EXPECT_EQ(stokes({"light.polarisation=left_circular"}), (Values{1, 0, 0, -1}));
+  EXPECT_EQ(stokes({"light.polarisation=[1, 0, 0, 0]"}), (Values{1, 0, 0, 0}));
+  EXPECT_EQ(stokes({"light.polarisation=[2, 1, -0.5, 0.25]"}), (Values{1, 0.5, -0.25, 0.125}));
+  EXPECT_EQ(stokes({"light.polarisation=[1, 0.6, 0.8, 0]"}), (Values{1, 0.6, 0.8, 0}));
+  const auto expect_linear = [&](const std::string& angle, double q, double u) {
+    const Values values = stokes({"light.polarisation=linear", "light.polarisation_angle_deg=" + angle});
+    EXPECT_EQ(values[0], 1.0);
+    EXPECT_NEAR(values[1], q, 1e-15);
+    EXPECT_NEAR(values[2], u, 1e-15);
+    EXPECT_EQ(values[3], 0.0);
+  };
+  expect_linear("45", 0.0, 1.0);
+  expect_linear("90", -1.0, 0.0);
+  expect_linear("-30", 0.5, -0.5 * std::sqrt(3.0));
+  expect_linear("360", 1.0, 0.0);
+}
+
+TEST(DesignReader, WhatIsNoPolarisationIsRefused) {
+  const auto refused = [](const std::string& value) {
+    return complaint(with_line(11, "[light]\npolarisation = " + value));
+  };
+  const std::string where = "d.toml:12: light.polarisation: ";
+  const std::string words =
+      "must be one of \"unpolarised\", \"linear\", \"right_circular\" or \"left_circular\" or a list of four Stokes "
+      "parameters, got ";
+  EXPECT_EQ(refused("\"liner\""), where + words + "\"liner\"; did you mean \"linear\"?");
+  EXPECT_EQ(refused("1"), where + "must be a string or a list of four Stokes parameters, got 1");
+  EXPECT_EQ(refused("[1, 0, 0]"), where + "must be a list of four Stokes parameters, got a list of 3");
+  EXPECT_EQ(refused("[]"), where + "must be a list of four Stokes parameters, got a list of 0");
+  EXPECT_EQ(refused("[1, 0, 0, \"x\"]"), where + "must be a number, got \"x\"");
+  EXPECT_EQ(refused("[1, 0, 0, inf]"), where + "must be a finite number, got inf");
+  const std::string stokes = where + "must be [i, q, u, v] with i > 0 and q^2 + u^2 + v^2 <= i^2, got ";
+  EXPECT_EQ(refused("[0, 0, 0, 0]"), stokes + "[0, 0, 0, 0]");
+  EXPECT_EQ(refused("[-1, 0, 0, 1]"), stokes + "[-1, 0, 0, 1]");
+  EXPECT_EQ(refused("[1, 0.8, 0, 0.7]"), stokes + "[1, 0.8, 0, 0.7]");
+  EXPECT_EQ(refused("\"linear\"\npolarisation_angle_deg = 361"),
+            "d.toml:13: light.polarisation_angle_deg: must be >= -360 and <= 360, got 361");
+  const std::string alone =
+      "--set light.polarisation_angle_deg=0: light.polarisation_angle_deg: only allowed for polarisation = \"linear\", "
+      "got 0";
+  EXPECT_EQ(set_complaint({"light.polarisation_angle_deg=0"}), alone);
+  EXPECT_EQ(set_complaint({"light.polarisation=left_circular", "light.polarisation_angle_deg=0"}), alone);
+  EXPECT_EQ(set_complaint({"light.polarisation=[1, 1, 0, 0]", "light.polarisation_angle_deg=0"}), alone);
+}
+
+TEST(DesignReader, SpectrumIsANameAFileOrLines) {
+  using Kind = LightSpectrum::Kind;
+  EXPECT_FALSE(set({}).spectrum);
+  const auto spectrum = [](const std::string& value) { return *set({"light.spectrum=" + value}).spectrum; };
+  EXPECT_EQ(spectrum("A").kind, Kind::illuminant_a);
+  EXPECT_EQ(spectrum("D65").kind, Kind::illuminant_d65);
+  EXPECT_TRUE(spectrum("A").photopic);
+  EXPECT_FALSE(set({"light.spectrum=A", "light.weighting=radiant"}).spectrum->photopic);
+  EXPECT_TRUE(set({"light.spectrum=A", "light.weighting=photopic"}).spectrum->photopic);
+  const LightSpectrum file = spectrum("\"lamps/led.csv\"");
+  EXPECT_EQ(file.kind, Kind::file);
+  EXPECT_EQ(file.name, "lamps/led.csv");
+  EXPECT_EQ(file.file, "lamps/led.csv") << "of an override: from the working directory";
+  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"led.csv\"\n", "a/d.toml", {}).spectrum->file,
+            "a/led.csv");
+  const LightSpectrum lines = spectrum("[[589.6, 1], [589.0, 2]]");
+  EXPECT_EQ(lines.kind, Kind::lines);
+  ASSERT_EQ(lines.lines.size(), 2U);
+  EXPECT_EQ(lines.lines[0].wavelength_nm, 589.0) << "ascending";
+  EXPECT_EQ(lines.lines[0].power, 2.0);
+  EXPECT_EQ(lines.lines[1].wavelength_nm, 589.6);
+  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"A\"\n", "d.toml", {}).spectrum->location.line, 12);
+}
+
+TEST(DesignReader, AbsorptionIsANumberOrPairsOverTheWavelength) {
+  const std::string key = "body.absorption_per_mm";
+  const Design red = set({key + "=[[400, 2], [600, 0.5], [800, 0]]"});
+  EXPECT_FALSE(red.absorption_per_mm);
+  ASSERT_EQ(red.absorption_by_wavelength.size(), 3U);
+  EXPECT_EQ(red.absorption_by_wavelength[1].wavelength_nm, 600.0);
+  EXPECT_EQ(red.absorption_by_wavelength[1].per_mm, 0.5);
+  EXPECT_TRUE(set({key + "=0.1"}).absorption_by_wavelength.empty());
+  const auto refused = [&](const std::string& value) {
+    return complaint(with_line(11, "absorption_per_mm = " + value));
+  };
+  const std::string where = "d.toml:11: " + key + ": ";
+  EXPECT_EQ(refused("[[400, 1], [400, 2]]"), where + "wavelengths must ascend, got 400 after 400");
+  EXPECT_EQ(refused("[[500, 1], [400, 2]]"), where + "wavelengths must ascend, got 400 after 500");
+  EXPECT_EQ(refused("[[500, 1]]"), where + "must be a number or a list of two or more pairs, got a list of one");
+  EXPECT_EQ(refused("[[500, -1], [600, 1]]"), where + "must be >= 0, got -1");
+  EXPECT_EQ(refused("[500, 600]"), where + "must be a list of [wavelength_nm, absorption_per_mm], got 500 in it");
+  EXPECT_EQ(refused("[]"), where + "must be a list of [wavelength_nm, absorption_per_mm], got an empty list");
+  EXPECT_EQ(refused("\"much\""), where + "must be a number, got \"much\"");
+}
+
+TEST(DesignReader, WhatIsNoSpectrumIsRefused) {
+  const auto refused = [](const std::string& value) {
+    return complaint(with_line(11, "[light]\nspectrum = " + value));
+  };
+  const std::string where = "d.toml:12: light.spectrum: ";
+  const std::string allowed =
+      where + "must be \"A\", \"D65\", a file that ends in .csv or a list of [wavelength_nm, power], got ";
+  EXPECT_EQ(refused("\"F11\""), allowed + "\"F11\"");
+  EXPECT_EQ(refused("\"a\""), allowed + "\"a\"");
+  EXPECT_EQ(refused("\"\""), allowed + "\"\"");
+  EXPECT_EQ(refused("\"a\\u0000.csv\""), allowed + "\"a\\x00.csv\"");
+  EXPECT_EQ(refused("555"), allowed + "555");
+  EXPECT_EQ(refused("{ a = 1 }"), allowed + "a table");
+  const std::string list = where + "must be a list of [wavelength_nm, power], got ";
+  EXPECT_EQ(refused("[]"), list + "an empty list");
+  EXPECT_EQ(refused("[555, 1]"), list + "555 in it");
+  EXPECT_EQ(refused("[[555]]"), list + "a list of 1 in it");
+  EXPECT_EQ(refused("[[555, 1, 2]]"), list + "a list of 3 in it");
+  EXPECT_EQ(refused("[[555, \"x\"]]"), where + "must be a number, got \"x\"");
+  EXPECT_EQ(refused("[[555, 1], [0, 1]]"), where + "must be > 0, got 0");
+  EXPECT_EQ(refused("[[555, -1]]"), where + "must be >= 0, got -1");
+  EXPECT_EQ(refused("[[555, nan]]"), where + "must be a finite number, got nan");
+  EXPECT_EQ(refused("[[555, 1], [555.0, 2]]"), where + "must name each wavelength once, got 555 twice");
+  EXPECT_EQ(
+      refused("\"A\"\nwavelength_nm = 555"),
+      "d.toml:13: light.wavelength_nm: not allowed together with spectrum: one of the two says what the light is, "
+      "got 555");
+  EXPECT_EQ(refused("\"A\"\nweighting = \"eye\""),
+            "d.toml:13: light.weighting: must be one of \"photopic\" or \"radiant\", got \"eye\"");
+  EXPECT_EQ(set_complaint({"light.weighting=photopic"}),
+            "--set light.weighting=photopic: light.weighting: only allowed together with spectrum, got \"photopic\"");
+}
+
+}  // namespace
+}  // namespace retrace::studies

@@ -1,0 +1,300 @@
+// What designs say of facets: errors, textures, edges, scratches.
+#include "studies/design/design_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "geometry/lattice.h"
+#include "tests/studies/design_texts.h"
+
+namespace retrace::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using geometry::AngleErrors;
+
+TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
+  const std::string text = with_line(11, "[surface]\nheight_map = \"maps/m.gsf\"");
+  const FacetTexture texture = parse_design(text, "parts/d.toml").texture;
+  EXPECT_EQ(texture.model, FacetTexture::Model::height_map);
+  EXPECT_EQ(texture.height_map, "maps/m.gsf");
+  EXPECT_EQ(texture.height_map_file, fs::path("parts/maps/m.gsf"));
+  EXPECT_EQ(texture.height_map_level_axis, HeightMapAxis::x);
+  EXPECT_EQ(texture.height_map_form_degree, 1);
+  EXPECT_EQ(parse_design(text, "standard input").texture.height_map_file, fs::path("maps/m.gsf"));
+  const std::vector<std::string> overrides = {"surface.height_map=m.txt", "surface.height_map_level_axis=y",
+                                              "surface.height_map_form=poly3"};
+  const FacetTexture other = parse_design(text, "parts/d.toml", overrides).texture;
+  EXPECT_EQ(other.height_map_file, fs::path("m.txt")) << "as typed, from the working directory";
+  EXPECT_EQ(other.height_map_level_axis, HeightMapAxis::y);
+  EXPECT_EQ(other.height_map_form_degree, 3);
+}
+
+TEST(DesignReader, HeightMapKeysAreChecked) {
+  const auto said = [](const std::string& lines) { return complaint(with_line(11, "[surface]\n" + lines)); };
+  EXPECT_EQ(said("model = \"height_map\""),
+            "d.toml:11: surface.height_map: missing, must name the file of a measured map");
+  EXPECT_EQ(said("height_map = \"\""), "d.toml:12: surface.height_map: must name a file, got \"\"");
+  EXPECT_EQ(said("height_map = 3"), "d.toml:12: surface.height_map: must be a string, got 3");
+  EXPECT_EQ(said("model = \"smooth\"\nheight_map = \"m.txt\""),
+            "d.toml:13: surface.height_map: only allowed for model = \"height_map\", got \"m.txt\"");
+  EXPECT_EQ(said("height_map_form = \"poly2\""),
+            "d.toml:12: surface.height_map_form: only allowed for model = \"height_map\", got \"poly2\"");
+  EXPECT_EQ(said("model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9"),
+            "d.toml:14: surface.waviness_sq_nm: must be 0 for model = \"height_map\", whose map holds both, got 5");
+  EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_level_axis = \"z\"")
+                  .starts_with("d.toml:13: surface.height_map_level_axis: must be one of \"x\" or \"y\", got \"z\""));
+  EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_form = \"none\"")
+                  .starts_with("d.toml:13: surface.height_map_form: must be one of \"plane\""));
+}
+
+TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
+  const std::string text =
+      "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 1\ny_length_mm = 1\n"
+      "[body]\nthickness_mm = 1\n[part]\nfacets = \"planes.csv\"\n";
+  const Design design = parse_design(text, "folder/d.toml");
+  ASSERT_TRUE(design.facet_planes);
+  EXPECT_EQ(design.facet_planes->name, "planes.csv");
+  EXPECT_EQ(design.facet_planes->file, std::filesystem::path("folder/planes.csv"));
+  const auto refused = [&](const std::vector<std::string>& sets) {
+    try {
+      parse_design(text, "d.toml", sets);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refused({"surface.facet_tilt_arcmin=[1,1]"}),
+            "d.toml:11: part.facets: not allowed together with errors of angle, which its planes hold");
+  EXPECT_NE(refused({"surface.angle_error_sigma_arcmin=1"}), "accepted");
+  EXPECT_NE(refused({"part.facets=3"}), "accepted");
+  EXPECT_NE(refused({"part.facet=a.csv"}), "accepted");
+}
+
+TEST(DesignReader, CantIsReadForCubeCornersAlone) {
+  const auto read = [](const std::string& element, const std::vector<std::string>& overrides) {
+    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part;
+  };
+  const auto refused = [&](const std::string& element, const std::vector<std::string>& overrides) -> std::string {
+    try {
+      read(element, overrides);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const std::string& cube : {kHexagonal, kTriangular}) {
+    const std::string azimuth = "element.cant_azimuth_deg=-90";
+    const geometry::Cant cant =
+        geometry::cant_of(read(cube, {"element.cant_deg=7.5", azimuth, "body.thickness_mm=9"}).element);
+    EXPECT_EQ(cant.deg, 7.5);
+    EXPECT_EQ(cant.azimuth_deg, -90.0);
+    EXPECT_EQ(geometry::cant_of(read(cube, {}).element).deg, 0.0);
+    EXPECT_EQ(refused(cube, {"element.cant_deg=31"}),
+              "--set element.cant_deg=31: element.cant_deg: must be >= 0 and <= 30, got 31");
+    EXPECT_EQ(refused(cube, {"element.cant_azimuth_deg=361"}),
+              "--set element.cant_azimuth_deg=361: element.cant_azimuth_deg: must be >= -360 and <= 360, got 361");
+    EXPECT_EQ(refused(cube, {"element.cant_deg=30", "surface.facet_tilt_arcmin=[0, -300, 0]"}),
+              "--set surface.facet_tilt_arcmin=[0, -300, 0]: surface.facet_tilt_arcmin: the steepest facet of the "
+              "canted cube with its errors must be <= 88 degrees, got 89.74");
+    EXPECT_NE(
+        refused(cube, {"element.cant_deg=20", "body.thickness_mm=1e-3"}).find("rims that errors of angle or cant"),
+        std::string::npos);
+  }
+  for (const std::string key : {"element.cant_deg", "element.cant_azimuth_deg"}) {
+    EXPECT_EQ(refused(kRtp, {key + "=2"}), "--set " + key + "=2: " + key + ": only allowed for cube corners, got 2");
+    EXPECT_EQ(refused(kRtp, {key + "=0"}), "");
+  }
+}
+
+TEST(DesignReader, AngleErrorsAreReadForEveryKind) {
+  const auto errors = [](const std::string& element, const std::vector<std::string>& overrides) {
+    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part.angle_errors;
+  };
+  EXPECT_EQ(errors(kRtp, {"surface.dihedral_error_arcmin=2"}), (AngleErrors{{2.0, 0.0, 0.0}, {}}));
+  EXPECT_EQ(errors(kRtp, {"surface.facet_tilt_arcmin=[2, -300]"}), (AngleErrors{{}, {2.0, -300.0, 0.0}}));
+  for (const std::string& cube : {kHexagonal, kTriangular}) {
+    EXPECT_EQ(errors(cube, {"surface.dihedral_error_arcmin=-2"}), (AngleErrors{{-2.0, -2.0, -2.0}, {}}));
+    EXPECT_EQ(errors(cube, {"surface.dihedral_error_arcmin=[3]"}), (AngleErrors{{3.0, 3.0, 3.0}, {}}));
+    EXPECT_EQ(errors(cube, {"surface.dihedral_error_arcmin=[1, -2, 0.5]", "surface.facet_tilt_arcmin=[4, 5, 6]"}),
+              (AngleErrors{{1.0, -2.0, 0.5}, {4.0, 5.0, 6.0}}));
+    EXPECT_EQ(errors(cube, {"surface.facet_tilt_arcmin=0"}), AngleErrors{});
+  }
+}
+
+TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
+  const std::string key = "surface.angle_error_sigma_arcmin";
+  const Design design = parse_design(design_of(kHexagonal, "x_length_mm = 10\ny_length_mm = 10"), "d",
+                                     std::vector<std::string>{key + "=1.5", "surface.angle_error_seed=7"});
+  EXPECT_EQ(design.part.random_tilts.sigma_arcmin, 1.5);
+  EXPECT_EQ(design.part.random_tilts.seed, 7U);
+  EXPECT_EQ(set_complaint({key + "=-1"}), "--set " + key + "=-1: " + key + ": must be >= 0 and <= 60, got -1");
+  EXPECT_EQ(set_complaint({"surface.angle_error_seed=1.5"}),
+            "--set surface.angle_error_seed=1.5: surface.angle_error_seed: must be a whole number >= 0 and <= "
+            "4294967295, got 1.5");
+  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"") + "[surface]\nangle_error_sigma_arcmin = 1"),
+            "d.toml:10: " + key +
+                ": must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
+}
+
+TEST(DesignReader, TexturesOfFacetsAreRead) {
+  using Model = FacetTexture::Model;
+  const auto texture = [](const std::vector<std::string>& overrides) {
+    return parse_design(design_of(kRtp, "extent = \"infinite\""), "d", overrides).texture;
+  };
+  const FacetTexture rough = texture({"surface.roughness_sq_nm=5", "surface.correlation_length_um=2"});
+  EXPECT_EQ(rough.model, Model::harvey_shack) << "usual for a roughness";
+  EXPECT_EQ(rough.roughness_sq_nm, 5.0);
+  EXPECT_EQ(rough.correlation_length_um, 2.0);
+  EXPECT_EQ(texture({"surface.roughness_sq_nm=0"}).model, Model::smooth);
+  EXPECT_EQ(texture({"surface.model=harvey_shack"}).model, Model::smooth) << "0 is the smooth answer";
+  EXPECT_EQ(texture({"surface.model=abg", "surface.abg_a=1e-4", "surface.abg_b=1e-4", "surface.abg_g=2"}).model,
+            Model::abg);
+  const FacetTexture waves = texture({"surface.model=microfacet", "surface.waviness_sq_nm=300",
+                                      "surface.waviness_length_um=80", "surface.slope_distribution=ggx"});
+  EXPECT_EQ(waves.model, Model::microfacet);
+  EXPECT_TRUE(waves.ggx);
+  EXPECT_TRUE(texture({"surface.walls=absorbing"}).absorbing_walls);
+}
+
+TEST(DesignReader, TexturesThatSayTooLittleOrTooMuchAreRefused) {
+  const auto refused = [](const std::vector<std::string>& overrides) { return set_complaint(overrides); };
+  EXPECT_EQ(refused({"surface.roughness_sq_nm=5"}),
+            "d.toml: surface.correlation_length_um: must be > 0 where roughness_sq_nm is given, got 0");
+  EXPECT_EQ(refused({"surface.waviness_sq_nm=5"}),
+            "d.toml: surface.waviness_length_um: must be > 0 where waviness_sq_nm is given, got 0");
+  EXPECT_NE(refused({"surface.roughness_sq_nm=-1"}).find("must be >= 0 and <= 1e+05, got -1"), std::string::npos);
+  EXPECT_NE(refused({"surface.roughness_sq_nm=rough"}).find("must be a number, got \"rough\""), std::string::npos);
+  EXPECT_NE(refused({"surface.model=matt"}).find("surface.model: must be one of \"smooth\""), std::string::npos);
+  EXPECT_NE(refused({"surface.model=abg"}).find("surface.abg_a: missing"), std::string::npos);
+  EXPECT_NE(refused({"surface.abg_a=1"}).find("only allowed for model = \"abg\""), std::string::npos);
+  EXPECT_NE(refused({"surface.slope_distribution=ggx"}).find("only allowed for model = \"microfacet\""),
+            std::string::npos);
+  EXPECT_NE(refused({"surface.model=smooth", "surface.roughness_sq_nm=5", "surface.correlation_length_um=2"})
+                .find("surface.roughness_sq_nm: must be 0 for this model"),
+            std::string::npos);
+  EXPECT_NE(refused({"surface.walls=rough"}).find("surface.walls: must be one of \"smooth\" or \"absorbing\""),
+            std::string::npos);
+}
+
+TEST(DesignReader, EdgesMustFitIntoTheFacets) {
+  const Design design = parse_design(design_of(kRtp, "extent = \"infinite\""), "d",
+                                     std::vector<std::string>{"surface.root_radius_um=5", "surface.rim_radius_um=2"});
+  EXPECT_EQ(design.part.edges, (geometry::EdgeShape{5e-3, 0.0, 2e-3}));
+  for (const std::string key :
+       {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um", "surface.rim_chamfer_um"})
+    for (const std::string value : {"-1", "1e6", "nan", "wide"})
+      EXPECT_NE(set_complaint({key + "=" + value}).find(key + ": must be "), std::string::npos)
+          << set_complaint({key + "=" + value});
+  EXPECT_NE(set_complaint({"surface.root_radius_um=1", "surface.root_chamfer_um=1"}).find("root_chamfer_um: must be 0"),
+            std::string::npos);
+  EXPECT_NE(set_complaint({"surface.rim_radius_um=1", "surface.rim_chamfer_um=1"})
+                .find("surface.rim_chamfer_um: must be 0 where rim_radius_um is given"),
+            std::string::npos);
+  for (const std::string value : {"2", "66", "7", "8.5", "-8"})
+    EXPECT_NE(set_complaint({"surface.edge_chords=" + value}).find("surface.edge_chords: must be "), std::string::npos)
+        << value;
+}
+
+TEST(DesignReader, ScratchesAreThoseOfPrisms) {
+  const std::string good = "facet = \"-x\", position_um = 40, width_um = 3, depth_um = 0.5";
+  const auto with = [](const std::string& element, const std::string& list) {
+    return design_of(element, "extent = \"infinite\"") + "[surface]\nscratches = " + list + "\n";
+  };
+  const std::string other = "{ facet = \"+x\", position_um = 40, width_um = 3, depth_um = -0.5 }";
+  const Design design = parse_design(with(kRtp, "[{ " + good + " }, " + other + "]"), "d.toml", {});
+  ASSERT_EQ(design.part.scratches.size(), 2U);
+  EXPECT_EQ(design.part.scratches[0].facet, 0U);
+  EXPECT_DOUBLE_EQ(design.part.scratches[0].position_mm, 0.04);
+  EXPECT_EQ(design.part.scratches[1].facet, 1U);
+  EXPECT_DOUBLE_EQ(design.part.scratches[1].depth_mm, -5e-4);
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    std::string entry = good;
+    return complaint(with(kRtp, "[{ " + entry.replace(entry.find(from), from.size(), to) + " }]"));
+  };
+  EXPECT_NE(refused("-x", "y").find("surface.scratches[1].facet: must be one of \"-x\" or \"+x\""), std::string::npos);
+  EXPECT_NE(refused("40", "600").find("surface.scratches[1].position_um: must be >= "), std::string::npos);
+  EXPECT_NE(refused("3,", "0,").find("surface.scratches[1].width_um: must be >= 0.01 and <= 100, got 0"),
+            std::string::npos);
+  EXPECT_NE(refused("0.5", "1.6").find("surface.scratches[1].depth_um: must be >= -1.5 and <= 1.5, got 1.6"),
+            std::string::npos);
+  EXPECT_NE(refused("depth_um = 0.5", "depth = 0.5").find("surface.scratches[1].depth_um: missing"), std::string::npos);
+  EXPECT_NE(complaint(with(kRtp, "[{ " + good + " }, { " + good + " }]"))
+                .find("surface.scratches[2].position_um: must keep clear of the other scratches of its facet"),
+            std::string::npos);
+  EXPECT_NE(complaint(with(kRtp, "3")).find("surface.scratches: must be a list of tables"), std::string::npos);
+  EXPECT_NE(
+      complaint(with(kHexagonal, "[{ " + good + " }]")).find("surface.scratches: only allowed for kind = \"rtp\""),
+      std::string::npos);
+}
+
+TEST(DesignReader, RimsOfEveryKindAndWhatTheyNeed) {
+  const auto rims = [](const std::string& element, const std::string& array, const std::string& lines) {
+    return parse_design(design_of(element, array) + "[surface]\n" + lines, "d.toml", {}).part.edges;
+  };
+  EXPECT_EQ(rims(kHexagonal, "extent = \"infinite\"", "rim_radius_um = 1"), (geometry::EdgeShape{0.0, 0.0, 1e-3}));
+  EXPECT_EQ(rims(kTriangular, "extent = \"infinite\"", "rim_chamfer_um = 2\nedge_chords = 8"),
+            (geometry::EdgeShape{0.0, 0.0, 0.0, 2e-3, 8}));
+  const std::string apart = "extent = \"infinite\"\nx_gap_mm = 0.01";
+  EXPECT_EQ(rims(kRtp, apart, "rim_radius_um = 12"), (geometry::EdgeShape{0.0, 0.0, 12e-3}));
+  // tan(22.5 degrees) 20 um on either side
+  EXPECT_NE(complaint(design_of(kRtp, apart) + "[surface]\nrim_radius_um = 20")
+                .find("surface.rim_radius_um: rims of that shape need an array.x_gap_mm of 0 or >= 0.0165"),
+            std::string::npos);
+  EXPECT_NE(complaint(design_of(kRtp, apart) + "[surface]\nrim_chamfer_um = 20")
+                .find("surface.rim_chamfer_um: rims of that shape need an array.x_gap_mm of 0 or >= 0.0216"),
+            std::string::npos);
+  EXPECT_NE(complaint(design_of(kRtp, "arrangement = \"checker\"\nextent = \"infinite\"\ny_gap_mm = 0.001") +
+                      "[surface]\nrim_radius_um = 20")
+                .find("surface.rim_radius_um: rims of that shape need an array.y_gap_mm of 0 or >= 0.0082"),
+            std::string::npos);
+}
+
+TEST(DesignReader, AngleErrorsThatDoNotFitAreRefused) {
+  const auto refused = [](const std::string& element, const std::string& line) {
+    return complaint(design_of(element, "extent = \"infinite\"") + "[surface]\n" + line);
+  };
+  const std::string dihedral = ": surface.dihedral_error_arcmin: ";
+  const std::string tilt = ": surface.facet_tilt_arcmin: ";
+  EXPECT_EQ(refused(kRtp, "dihedral_error_arcmin = [1, 2, 3]"),
+            "d.toml:10" + dihedral + "must be a number, got a list");
+  EXPECT_EQ(refused(kRtp, "dihedral_error_arcmin = 301"),
+            "d.toml:10" + dihedral + "must be >= -300 and <= 300, got 301");
+  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = [1, -301, 0]"),
+            "d.toml:9" + dihedral + "must be >= -300 and <= 300, got -301");
+  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = [1, 2]"),
+            "d.toml:9" + dihedral + "must be a number or a list of three, one for each dihedral edge, got a list of 2");
+  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = \"1\""),
+            "d.toml:9" + dihedral + "must be a number or a list of numbers, got \"1\"");
+  EXPECT_EQ(refused(kRtp, "facet_tilt_arcmin = [1, 2, 3]"),
+            "d.toml:10" + tilt + "must be a list of 2, one for each facet, or 0, got a list of 3");
+  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = [1, 2]"),
+            "d.toml:9" + tilt + "must be a list of 3, one for each facet, or 0, got a list of 2");
+  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = 1"),
+            "d.toml:9" + tilt + "must be a list of 3, one for each facet, or 0, got 1");
+  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = [1, nan, 2]"),
+            "d.toml:9" + tilt + "must be a finite number, got nan");
+  EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 119", "facet_tilt_arcmin = [30, 31]"),
+            "d.toml:11" + tilt + "the apex angle with its errors must be >= 60 and <= 120, got 120.01666666666667");
+  EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 61", "facet_tilt_arcmin = [-30, -30]\ndihedral_error_arcmin = -60"),
+            "d.toml:12" + dihedral + "the apex angle with its errors must be >= 60 and <= 120, got 59");
+  EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 120", "facet_tilt_arcmin = [7, -7]"), "");
+  EXPECT_EQ(
+      set_complaint({"surface.facet_tilt_arcmin=[1]"}),
+      "--set surface.facet_tilt_arcmin=[1]" + tilt + "must be a list of 2, one for each facet, or 0, got a list of 1");
+}
+
+TEST(DesignReader, PlateMustBeThickerThanRimsStand) {
+  const std::vector<std::string> errors = {"surface.facet_tilt_arcmin=[-60, 60]"};
+  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 0.001"), errors).substr(0, 46),
+            "d.toml:10: body.thickness_mm: must be >= 0.008");
+  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 0.01"), errors), "");
+  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 1e-6")), "");
+}
+
+}  // namespace
+}  // namespace retrace::studies

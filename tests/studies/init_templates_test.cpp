@@ -1,0 +1,61 @@
+// The designs that `retrace init` writes.
+#include "studies/design/init_templates.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+#include "core/error.h"
+#include "tests/studies/design_texts.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::HexagonalCube;
+using geometry::RtpElement;
+using geometry::TriangularCube;
+
+TEST(InitTemplates, EveryKindParsesAndIsCommented) {
+  ASSERT_EQ(design_kinds().size(), 3U);
+  for (const std::string_view kind : design_kinds()) {
+    const std::string text = design_template(kind);
+    EXPECT_NO_THROW(parse_design(text, "t.toml", {})) << kind;
+    EXPECT_EQ(text.substr(0, 2), "# ");
+  }
+  EXPECT_TRUE(std::holds_alternative<RtpElement>(parse_design(design_template("rtp"), "t", {}).part.element));
+  EXPECT_TRUE(
+      std::holds_alternative<HexagonalCube>(parse_design(design_template("hexagonal_icc"), "t", {}).part.element));
+  EXPECT_TRUE(
+      std::holds_alternative<TriangularCube>(parse_design(design_template("triangular_icc"), "t", {}).part.element));
+}
+
+/// The lines that show a default must be valid when their "#" is taken away.
+TEST(InitTemplates, CommentedDefaultsAreValidAndTheDefaults) {
+  for (const std::string_view kind : design_kinds()) {
+    std::istringstream lines(design_template(kind));
+    std::string text;
+    int uncommented = 0;
+    for (std::string line; std::getline(lines, line);) {
+      const bool is_setting = line.substr(0, 2) == "# " && (line.find(" = ") != std::string::npos || line[2] == '[');
+      const bool needs_more =
+          line.find("refractive_index") != std::string::npos || line.find("absorption") != std::string::npos;
+      uncommented += is_setting ? 1 : 0;
+      text += (is_setting && !needs_more ? line.substr(2) : line) + "\n";
+    }
+    EXPECT_GT(uncommented, 5);
+    EXPECT_NO_THROW(parse_design(text, "t.toml", {})) << text;
+  }
+}
+
+TEST(InitTemplates, UnknownKindIsRefused) {
+  try {
+    design_template("cube");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "KIND must be one of \"rtp\", \"hexagonal_icc\" or \"triangular_icc\", got \"cube\"");
+  }
+}
+
+}  // namespace
+}  // namespace retrace::studies
