@@ -164,7 +164,7 @@ struct BackSurface::Boxes {
   static void bounds(const RTCBoundsFunctionArguments* args) {
     const auto& group = *static_cast<const Group*>(args->geometryUserPtr);
     const Boxes& self = *group.owner;
-    const Box box = box_round(self.part.patches[group.patch], self.contents[group.patch][args->primID]);
+    const FacetBox box = box_round(self.part.patches[group.patch], self.contents[group.patch][args->primID]);
     const Vec3 lower = box.lower + group.place - Vec3::Constant(self.band_mm);
     const Vec3 upper = box.upper + group.place + Vec3::Constant(self.band_mm);
     *args->bounds_o = {below(lower.x()), below(lower.y()), below(lower.z()), 0.0F,

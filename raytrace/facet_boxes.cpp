@@ -89,8 +89,8 @@ std::vector<BoxContent> box_contents(const geometry::SurfacePatch& patch) {
   return contents;
 }
 
-Box box_round(const geometry::SurfacePatch& patch, const BoxContent& content) {
-  Box box{Vec3::Constant(INFINITY), Vec3::Constant(-INFINITY)};
+FacetBox box_round(const geometry::SurfacePatch& patch, const BoxContent& content) {
+  FacetBox box{Vec3::Constant(INFINITY), Vec3::Constant(-INFINITY)};
   for (std::uint32_t f = content.range.first; f < content.range.first + content.range.count; ++f)
     for (const Vec3& p : piece_of(corners_of(patch, patch.facets[f]), content)) {
       box.lower = box.lower.cwiseMin(p);

@@ -15,7 +15,7 @@ struct BoxContent {
   std::uint16_t pieces = 1;
 };
 
-struct Box {
+struct FacetBox {
   Vec3 lower;
   Vec3 upper;
 };
@@ -24,6 +24,6 @@ struct Box {
 std::vector<BoxContent> box_contents(const geometry::SurfacePatch& patch);
 
 /// In the patch's coordinates.
-Box box_round(const geometry::SurfacePatch& patch, const BoxContent& content);
+FacetBox box_round(const geometry::SurfacePatch& patch, const BoxContent& content);
 
 }  // namespace retrace::raytrace
