@@ -48,7 +48,8 @@ int number_at(const char* text, int* position, double* value) {
   const std::string_view rest(text);
   double number = 0.0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-  if (error != std::errc{}) return 0;
+  // Left to the library's own reader it would become a number that is taken for a step.
+  if (error != std::errc{}) throw mu::Parser::exception_type("a number too large or too small");
   *position += static_cast<int>(end - rest.data());
   *value = recorder->add(Step::constant, 0.0, 0.0, number);
   return 1;
@@ -145,6 +146,12 @@ bool Formula::uses(int variable) const {
 Formula parse_formula(const std::string& text, const std::vector<std::string>& variables, const InputLocation& where) {
   if (text.size() > kLongestFormula)
     throw InputError(where, fmt::format("must have at most {} characters, got {}", kLongestFormula, text.size()));
+  if (const auto at =
+          std::find_if(text.begin(), text.end(),
+                       [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0 && c != '\t'; });
+      at != text.end())
+    throw InputError(where, fmt::format("does not parse at character {}: it is none that shows, got {}",
+                                        at - text.begin() + 1, in_quotes(text)));
   // The library takes conditions whatever its operators are; they would have no derivatives.
   if (const std::size_t at = text.find_first_of("?:"); at != std::string::npos)
     throw InputError(where, fmt::format("does not parse at character {}: conditions are not allowed, got {}", at + 1,

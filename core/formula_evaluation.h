@@ -56,7 +56,10 @@ T constant_power(const T& a, double exponent) {
   return exp(log(a) * exponent);
 }
 
-/// Whole exponents are products, which also exist where the base is not positive.
+inline double constant_power(double a, double exponent) {
+  return std::pow(a, exponent);
+}
+
 /// Whole exponents are products, which also exist where the base is not positive.
 template <class T>
 T to_the_power(const T& a, const T& b, const Formula::Node& exponent) {

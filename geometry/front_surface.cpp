@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -15,7 +16,12 @@ namespace {
 
 constexpr int kCellsPerFeature = 8;
 constexpr int kFewestCells = 64;
-constexpr int kMostCells = 1024;
+// Grids that see the same features agree in their mean bend to this ratio.
+constexpr double kSameBend = 1.3;
+// Slopes that change by less over the part are those of a plane but for rounding.
+constexpr double kFlat = 1e-9;
+// Of a cell: how near to a corner the bend there is measured.
+constexpr double kSmall = 1e-3;
 
 bool is_inside(const Polygon& outline, const Vec2& p) {
   for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -35,6 +41,8 @@ std::vector<Vec2> sample_points(const Polygon& outline, int cells) {
       const Vec2 share(static_cast<double>(i) / cells, static_cast<double>(j) / cells);
       const Vec2 p = box.lower + share.cwiseProduct(box.size());
       if (is_inside(outline, p)) points.push_back(p);
+      const Vec2 within = p + Vec2(kWithinFrontCell[0], kWithinFrontCell[1]).cwiseProduct(box.size()) / cells;
+      if (is_inside(outline, within)) points.push_back(within);
     }
   for (std::size_t k = 0; k < outline.size(); ++k)
     for (int i = 0; i < cells; ++i) {
@@ -42,6 +50,30 @@ std::vector<Vec2> sample_points(const Polygon& outline, int cells) {
       points.push_back(outline[k] + share * (outline[(k + 1) % outline.size()] - outline[k]));
     }
   return points;
+}
+
+/// The mean over a grid's cells of how much slopes change from their corners to places within, a mm.
+/// \param reach 1: as far within as the grid tells; less: nearer to the corners by so much
+double mean_bend(const FrontSurface& surface, const Rectangle& box, int cells, double reach) {
+  const Vec2 cell_mm = box.size() / cells;
+  // Two, as what repeats just so often between a corner and one of them does not between it and the other.
+  const std::array<Vec2, 2> ways = {reach * Vec2(kWithinFrontCell[0], kWithinFrontCell[1]).cwiseProduct(cell_mm),
+                                    reach * Vec2(0.7548776662, 0.5698402910).cwiseProduct(cell_mm)};
+  double sum = 0.0;
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      const Vec2 corner = box.lower + Vec2(i, j).cwiseProduct(cell_mm);
+      const Vec2 slope = surface.at(corner).slope;
+      for (const Vec2& way : ways) {
+        const double bend = (surface.at(corner + way).slope - slope).norm() / way.norm();
+        if (std::isfinite(bend)) sum += bend;
+      }
+    }
+  return sum / (2.0 * cells * cells);
+}
+
+bool same_bend(double a, double b, double size_mm) {
+  return std::max(a, b) * size_mm < kFlat || (a <= kSameBend * b && b <= kSameBend * a);
 }
 
 /// Climbs from a point to the nearest place that is highest (sign 1) or lowest (-1) over the outline: a search in ever
@@ -71,7 +103,7 @@ Vec2 climb(const FrontSurface& surface, const Polygon& outline, Vec2 from, doubl
 
 FrontRange range_of(const FrontSurface& surface, const Polygon& outline) {
   const Rectangle box = bounding_box(outline);
-  const int cells = cells_to_show(surface, box.size().maxCoeff());
+  const int cells = cells_to_show(surface, outline);
   FrontRange range;
   range.lowest_mm = INFINITY;
   range.highest_mm = -INFINITY;
@@ -100,9 +132,31 @@ FrontRange range_of(const FrontSurface& surface, const Polygon& outline) {
 
 }  // namespace
 
-int cells_to_show(const FrontSurface& surface, double size_mm) {
-  const double wanted = kCellsPerFeature * size_mm / surface.finest_mm();
-  return static_cast<int>(std::clamp(std::ceil(wanted), double{kFewestCells}, double{kMostCells}));
+int cells_to_show(const FrontSurface& surface, const Polygon& outline) {
+  const Rectangle box = bounding_box(outline);
+  const double size_mm = box.size().maxCoeff();
+  const auto refuse = [] {
+    throw InputError(fmt::format("must be smooth enough for {} places across the part to show it", kMostFrontCells));
+  };
+  const double wanted = std::max(std::ceil(kCellsPerFeature * size_mm / surface.finest_mm()), double{kFewestCells});
+  if (wanted > kMostFrontCells) refuse();
+  int cells = static_cast<int>(wanted);
+  const bool is_known = std::isfinite(surface.finest_mm());
+  double before = mean_bend(surface, box, cells, 1.0);
+  for (int same = 0; same < (is_known ? 1 : 2);) {
+    if (2 * cells > kMostFrontCells) {
+      if (!is_known) refuse();
+      break;
+    }
+    cells *= 2;
+    const double bend = mean_bend(surface, box, cells, 1.0);
+    // What a grid does not see bends more in the small than from place to place of the grid.
+    const double in_the_small = mean_bend(surface, box, cells, kSmall);
+    const bool sees_all = in_the_small <= bend || same_bend(in_the_small, bend, size_mm);
+    same = sees_all && same_bend(before, bend, size_mm) ? same + 1 : 0;
+    before = bend;
+  }
+  return cells;
 }
 
 FrontRange front_range(const Front& front, const Polygon& outline) {

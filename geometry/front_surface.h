@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <variant>
 
@@ -24,7 +25,7 @@ class FrontSurface {
 
   /// Not finite where there is no surface. Safe to call from many threads.
   virtual Place at(const Vec2& point_mm) const = 0;
-  /// Size of its finest features, such as lenslets; infinite where it has none.
+  /// Size of its finest features, such as lenslets; infinite where none is known.
   virtual double finest_mm() const = 0;
 };
 
@@ -44,7 +45,15 @@ struct FrontRange {
 /// \throw InputError for a surface that has no finite height somewhere over the outline
 FrontRange front_range(const Front& front, const Polygon& outline);
 
-/// How many cells along an axis show all features of a surface over a box of this size.
-int cells_to_show(const FrontSurface& surface, double size_mm);
+/// How many cells across the longer side of an outline's box show all features of a surface: where none is known, so
+/// many that twice and four times as many see the same bends. \throw InputError, whose text begins with "must", if
+/// there are features that kMostFrontCells do not show
+int cells_to_show(const FrontSurface& surface, const Polygon& outline);
+
+inline constexpr int kMostFrontCells = 1024;
+
+/// Where between its corners a cell is looked at once more, as shares of its sides: at no fraction of a period that
+/// corners could share.
+inline constexpr std::array<double, 2> kWithinFrontCell = {0.3819660113, 0.6180339887};
 
 }  // namespace retrace::geometry

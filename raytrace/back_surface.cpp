@@ -30,14 +30,16 @@ float above(double value) {
   return std::nextafter(static_cast<float>(value), INFINITY);
 }
 
-/// Of the coordinates of the surface.
+/// Of the coordinates of the surface and of where rays to it start, in the plate above.
 double greatest_reach_mm(const geometry::Part& part, const std::vector<geometry::Placement>& placements) {
-  double reach = part.size_mm + part.element_depth_mm;
+  double reach = part.size_mm + part.element_depth_mm + part.thickness_mm;
   for (const auto& placement : placements) {
     for (const auto& cell : part.patches[placement.patch].cells) {
       const Vec2 lower = cell.lower.head<2>() + placement.offset_mm;
       const Vec2 upper = cell.upper.head<2>() + placement.offset_mm;
-      reach = std::max({reach, lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff()});
+      const double height = std::max(std::abs(cell.lower.z()), std::abs(cell.upper.z())) +
+                            std::abs(placement.height_mm) + part.thickness_mm;
+      reach = std::max({reach, lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff(), height});
     }
   }
   return reach;
@@ -194,8 +196,7 @@ struct BackSurface::Boxes {
     RTCRayHit embree = embree_ray(ray);
     if (std::isfinite(ray.t_max)) embree.ray.tfar = above(ray.t_max + band_mm);
     rtcIntersect1(scene, &query.base, &embree);
-    if (query.best.facet.placement == FacetRef::kNone) return std::nullopt;
-    return query.best;
+    return ExactSurface::settled(query.best);
   }
 
   const geometry::Part& part;

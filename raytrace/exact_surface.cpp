@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace retrace::raytrace {
 namespace {
@@ -16,6 +17,11 @@ constexpr double kWideTolerance = 1e-6;
 
 Vec3 place_of(const geometry::Placement& placement) {
   return {placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm};
+}
+
+/// Of two facets that are met at once, so that the order in which they are searched does not tell.
+bool precedes(const FacetRef& a, const FacetRef& b) {
+  return b.placement != FacetRef::kNone && std::pair(a.placement, a.facet) < std::pair(b.placement, b.facet);
 }
 
 /// True if a point of the facet's plane lies in its outline, or outside by no more than the tolerance.
@@ -87,7 +93,12 @@ std::optional<SurfaceHit> ExactSurface::first_hit(const SurfaceRay& ray) const {
       if (meets_box(local, ray.direction, cell.lower, cell.upper, tolerance, best.t))
         search(ray, p, {cell.first_facet, cell.facet_count}, tolerance, best);
   }
+  return settled(best);
+}
+
+std::optional<SurfaceHit> ExactSurface::settled(SurfaceHit best) {
   if (best.facet.placement == FacetRef::kNone) return std::nullopt;
+  best.t = std::max(best.t, 0.0);
   return best;
 }
 
@@ -101,10 +112,11 @@ void ExactSurface::search(const SurfaceRay& ray, std::uint32_t placement, const 
     if (ray.inside ? towards <= 0.0 : towards >= 0.0) continue;
     if (ray.source == FacetRef{placement, f}) continue;
     const double t = (facet.offset_mm - facet.normal.dot(local)) / towards;
-    if (t < -tolerance_mm || t >= best.t) continue;
+    const FacetRef ref{placement, f};
+    if (t < -tolerance_mm || t > best.t || (t == best.t && !precedes(ref, best.facet))) continue;
     if (!is_within(patch, facet, local + t * ray.direction, tolerance_mm)) continue;
-    best.facet = {placement, f};
-    best.t = std::max(t, 0.0);
+    best.facet = ref;
+    best.t = t;
   }
 }
 

@@ -31,10 +31,13 @@ class ExactSurface {
   /// through if outside. Nothing beyond `t_max`.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
-  /// Takes into `best` what the ray meets of some facets of a placement before that. \param tolerance_mm how much
-  /// larger facets are taken than they are
+  /// Takes into `best` what the ray meets of some facets of a placement before that, whatever the order of searches; a
+  /// t just below 0 is kept as it is. \param tolerance_mm how much larger facets are taken than they are
   void search(const SurfaceRay& ray, std::uint32_t placement, const FacetRange& range, double tolerance_mm,
               SurfaceHit& best) const;
+
+  /// What searches have found, if anything.
+  static std::optional<SurfaceHit> settled(SurfaceHit best);
 
   /// Moved to their places as rays see them.
   const std::vector<geometry::Placement>& placements() const { return placements_; }

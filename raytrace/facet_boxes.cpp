@@ -39,6 +39,7 @@ std::uint16_t pieces_of(const std::vector<Vec3>& corners) {
     length = std::max(length, from.norm());
     width = std::max(width, (from - from.dot(along) * along).norm());
   }
+  if (!(length > 0.0)) return 1;
   return static_cast<std::uint16_t>(std::clamp(length / std::max(width, length / kMostPieces), 1.0, kMostPieces));
 }
 

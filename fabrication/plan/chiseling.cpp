@@ -12,14 +12,12 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "fabrication/job/v_tool.h"
+#include "fabrication/plan/routines.h"
 
 namespace retrace::fabrication {
 namespace {
 
 using geometry::Vec3;
-
-/// A whole number of layers is not made one more by rounding.
-constexpr double kWholeTolerance = 1e-9;
 
 /// Azimuth of dihedral edge 0, 1 or 2 in the workpiece frame, whose x runs along y of the part.
 double edge_azimuth_deg(bool turned, int edge) {
@@ -71,7 +69,7 @@ int chiseling_layers(const Job& job, double stock_mm) {
   // The blank's face is 1 / sqrt(3) of the depth from the apex of each facet's normal.
   const double across_mm =
       (cavity_depth_mm(blank_element(job)) + stock_mm) / std::numbers::sqrt3 - chiseling_allowance_mm(job);
-  return std::max(1, static_cast<int>(std::ceil(across_mm / (1e-3 * job.process.roughing_depth_um) - kWholeTolerance)));
+  return whole_cuts(job, across_mm / (1e-3 * job.process.roughing_depth_um));
 }
 
 CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,

@@ -1,5 +1,7 @@
 #include "fabrication/plan/routines.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +12,8 @@ using geometry::Vec2;
 
 /// A whole number of cuts or passes is not made one more by rounding.
 constexpr double kWholeTolerance = 1e-9;
+// Of a facet: more are a mistake in a unit, and a program that nobody waits for.
+constexpr int kMostCuts = 100'000;
 constexpr double kFitToleranceMm = 1e-6;
 
 /// Puts points in whole nanometres in a row, as moves between them.
@@ -79,7 +83,15 @@ int cuts_per_facet(const Job& job, double stock_mm) {
   const double depth_mm = 1e-3 * job.process.roughing_depth_um;
   double across_mm = facet_mm * std::sin(apex_rad) - finishing_allowance_mm(job);
   if (job.strategy == Strategy::bidirectional) across_mm *= 0.5;
-  return std::max(1, static_cast<int>(std::ceil(across_mm / depth_mm - kWholeTolerance)));
+  return whole_cuts(job, across_mm / depth_mm);
+}
+
+int whole_cuts(const Job& job, double cuts) {
+  if (!(cuts <= kMostCuts))
+    throw InputError({job.source, 0, "process.roughing_depth_um"},
+                     fmt::format("must leave at most {} cuts a facet, {} um would make {:.3g}", kMostCuts,
+                                 job.process.roughing_depth_um, cuts));
+  return std::max(1, static_cast<int>(std::ceil(cuts - kWholeTolerance)));
 }
 
 double shortest_plough_mm(const Job& job, const Section& section) {

@@ -102,7 +102,7 @@ bool is_proved_not_hollow(const Lenslet& lenslet, double limit_per_mm) {
     const Bend bend = bend_over(lenslet.sag, along_x(box), along_y(box));
     // Of n = (-h_u, -h_v, 1), the part's z component: the slope of w - h by the part's z.
     const Interval upright = r(2, 2) - bend.x * r(2, 0) - bend.y * r(2, 1);
-    if (!(upright.lower() > 0.0)) return false;
+    if (!(upright.lower() > 0.0) || !std::isfinite(bend.largest)) return false;
     const double square = 1.0 + std::pow(norm(bend.x), 2) + std::pow(norm(bend.y), 2);
     // Along a curve over the part's plan z'' = h'' / upright, and h'' takes (u', v') of length up to |n| / upright.
     return std::max(0.0, bend.largest) * square / std::pow(upright.lower(), 3) < limit_per_mm;

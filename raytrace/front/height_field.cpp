@@ -12,12 +12,12 @@ namespace {
 
 using geometry::FrontSurface;
 
+constexpr double kWithinX = geometry::kWithinFrontCell[0];
+constexpr double kWithinY = geometry::kWithinFrontCell[1];
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of what differences of slopes between the corners of a cell say: what they may have missed.
 constexpr double kBendMargin = 2.0;
-// A grid twice as fine whose bends exceed the last ones' by less sees all that there is.
-constexpr double kSameBend = 1.3;
-constexpr int kMostCells = 1024;
 // Heights that differ by less, relative to the part, are the same: rounding of doubles.
 constexpr double kSameHeight = 4e-16;
 // Beyond the lowest and highest place, relative to the part.
@@ -40,13 +40,7 @@ HeightField::HeightField(std::shared_ptr<const geometry::FrontSurface> surface, 
       surface_(std::move(surface)),
       x0_(centre_mm.x()),
       y0_(centre_mm.y()) {
-  int cells = geometry::cells_to_show(*surface_, geometry::bounding_box(outline).size().maxCoeff());
-  make_cells(outline, cells);
-  for (double before = most_bend(); 2 * cells <= kMostCells; before = most_bend()) {
-    cells *= 2;
-    make_cells(outline, cells);
-    if (most_bend() <= kSameBend * before) break;
-  }
+  make_cells(outline, geometry::cells_to_show(*surface_, outline));
   widen_bends();
 }
 
@@ -65,37 +59,35 @@ void HeightField::make_cells(const geometry::Polygon& outline, int cells) {
           at(lower_.x() + i * cell_mm_.x(), lower_.y() + j * cell_mm_.y());
   });
   cells_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), {});
-  for (int j = 0; j < rows_; ++j)
+  tbb::parallel_for(0, rows_, [&](int j) {
     for (int i = 0; i < columns_; ++i) {
       const std::size_t n = static_cast<std::size_t>(j) * across + static_cast<std::size_t>(i);
-      const std::array<const FrontSurface::Place*, 4> corner = {&nodes[n], &nodes[n + 1], &nodes[n + across],
-                                                                &nodes[n + across + 1]};
+      const FrontSurface::Place within =
+          at(lower_.x() + (i + kWithinX) * cell_mm_.x(), lower_.y() + (j + kWithinY) * cell_mm_.y());
+      const std::array<const FrontSurface::Place*, 5> places = {&nodes[n], &nodes[n + 1], &nodes[n + across],
+                                                                &nodes[n + across + 1], &within};
       cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)] =
-          cell_between(corner);
+          cell_between(places);
     }
+  });
 }
 
-HeightField::Cell HeightField::cell_between(const std::array<const FrontSurface::Place*, 4>& corner) const {
+HeightField::Cell HeightField::cell_between(const std::array<const FrontSurface::Place*, 5>& places) const {
   Cell cell{kInfinity, -kInfinity, 0.0};
-  for (const FrontSurface::Place* place : corner) {
+  for (const FrontSurface::Place* place : places) {
     // Outside of the outline there may be no surface, so that nothing is known of a cell on its border.
     const bool known = std::isfinite(place->height_mm);
     cell.low_mm = std::min(cell.low_mm, known ? place->height_mm : -kInfinity);
     cell.high_mm = std::max(cell.high_mm, known ? place->height_mm : kInfinity);
   }
-  const double diagonal_mm = cell_mm_.norm();
-  cell.bend_per_mm =
-      kBendMargin *
-      std::max({bend_between(*corner[0], *corner[1], cell_mm_.x()), bend_between(*corner[2], *corner[3], cell_mm_.x()),
-                bend_between(*corner[0], *corner[2], cell_mm_.y()), bend_between(*corner[1], *corner[3], cell_mm_.y()),
-                bend_between(*corner[0], *corner[3], diagonal_mm), bend_between(*corner[1], *corner[2], diagonal_mm)});
-  return cell;
-}
-
-double HeightField::most_bend() const {
+  static const std::array<Vec2, 5> shares = {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(kWithinX, kWithinY)};
   double most = 0.0;
-  for (const Cell& cell : cells_) most = std::max(most, cell.bend_per_mm);
-  return most;
+  for (std::size_t a = 0; a < places.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      most =
+          std::max(most, bend_between(*places[a], *places[b], (shares[a] - shares[b]).cwiseProduct(cell_mm_).norm()));
+  cell.bend_per_mm = kBendMargin * most;
+  return cell;
 }
 
 /// A bend may lie just beyond the corners that saw it: cells get the most of their neighbours', and heights the room

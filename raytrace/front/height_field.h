@@ -30,11 +30,10 @@ class HeightField : public FrontFace {
 
   geometry::FrontSurface::Place at(double x_mm, double y_mm) const { return surface_->at({x_mm + x0_, y_mm + y0_}); }
   void make_cells(const geometry::Polygon& outline, int cells);
-  /// \param corner places at the corners of a cell: along x, then along y
-  Cell cell_between(const std::array<const geometry::FrontSurface::Place*, 4>& corner) const;
+  /// \param places at the corners of a cell, along x, then along y, and one within
+  Cell cell_between(const std::array<const geometry::FrontSurface::Place*, 5>& places) const;
   void widen_bends();
   std::optional<std::array<double, 2>> span_of(const SurfaceRay& ray, double room_mm) const;
-  double most_bend() const;
   const Cell& cell(int i, int j) const {
     return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
   }

@@ -13,6 +13,7 @@ geometry::Part part_of(const geometry::SurfacePatch& patch, const geometry::Fron
   part.placements.push_back({0, Vec2::Zero(), -range.lowest_mm});
   part.outline = outline;
   part.element_depth_mm = range.highest_mm - range.lowest_mm;
+  part.thickness_mm = part.element_depth_mm;
   part.size_mm = std::sqrt(geometry::area(outline) / static_cast<double>(patch.triangles.size()));
   return part;
 }

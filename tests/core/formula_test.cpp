@@ -148,10 +148,15 @@ TEST(Formula, TakesLongOnes) {
   EXPECT_DOUBLE_EQ(at(formula(nested), 1.0, 0.5).value, 151.0);
 }
 
+// By a logarithm it would have no value where the base is negative.
+TEST(Formula, HighWholePowersOfNegativeConstants) {
+  EXPECT_DOUBLE_EQ(at(formula("(-2)^66*x"), 1.0, 0.0).value, std::ldexp(1.0, 66));
+}
+
 TEST(Formula, SaysWhereItDoesNotParse) {
   const char* const bad[] = {"",         "x+",     "(x",   "x)",     "3x",    "z+1",       "sin()",
                              "sin(x,y)", "x,y",    "x=3",  "1..2",   "\"a\"", "x ? y : 1", "x == y",
-                             "atan2(x)", "pi = 3", "x; y", "foo(x)", "1e400"};
+                             "atan2(x)", "pi = 3", "x; y", "foo(x)", "1e400", "1e-400*x"};
   for (const char* const text : bad) {
     try {
       parse_formula(text, {"x", "y"}, {"part.toml", 7, "base.formula"});
@@ -175,6 +180,7 @@ TEST(Formula, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(complaint("(x + y").find("got \"(x + y\""), std::string::npos);
   EXPECT_NE(complaint("x y").find("does not parse at character 3: "), std::string::npos) << complaint("x y");
   EXPECT_NE(complaint("z^2").find("does not parse at character 1: "), std::string::npos) << complaint("z^2");
+  EXPECT_NE(complaint(std::string("x\0+((", 5)).find("does not parse at character 2: "), std::string::npos);
   EXPECT_EQ(complaint(std::string(2001, '(')), "must have at most 2000 characters, got 2001");
   EXPECT_NE(complaint(std::string(1990, '(')), "");
 }

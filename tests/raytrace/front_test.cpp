@@ -316,6 +316,37 @@ TEST(Front, FindsTheFirstCrossing) {
   EXPECT_GT(found_again, 20);
 }
 
+// Waves of a size that the first grids see nothing of: refused, or met everywhere.
+TEST(Front, WavesFinerThanTheFirstGridAreNotPassedBy) {
+  const Part plate = build_plate({2.0, 2.0}, 0.5);
+  for (const double waves : {31.7, 32.0, 64.0}) {
+    const double k = 2.0 * std::numbers::pi * waves / 2.0;
+    const Front front = front_of(
+        [=](double x, double y) {
+          return FrontSurface::Place{
+              1.0 + 0.005 * std::cos(k * x) * std::cos(k * y),
+              {-0.005 * k * std::sin(k * x) * std::cos(k * y), -0.005 * k * std::cos(k * x) * std::sin(k * y)}};
+        },
+        INFINITY);
+    const FrontSurface& surface = *std::get<0>(front);
+    const auto face = make_front_face(front, plate, Vec2::Zero());
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(0.1, 1.9);
+    for (int i = 0; i < 100; ++i) {
+      const Vec3 from(uniform(random), uniform(random), 1.006);
+      const Vec3 direction = Vec3(0.2, 0.1, -1.0).normalized();
+      const double t = crossing_by_steps(surface, from, direction, 0.05, false);
+      const auto hit = face->first_hit({from, direction, {}, false, 0.05});
+      ASSERT_TRUE(hit.has_value()) << waves << " " << i;
+      EXPECT_NEAR(hit->hit.t, t, 1e-9) << waves << " " << i;
+    }
+  }
+  const auto fine = [](double x, double) {
+    return FrontSurface::Place{1.0 + 1e-3 * std::cos(9e3 * x), {-9.0 * std::sin(9e3 * x), 0.0}};
+  };
+  EXPECT_THROW(make_front_face(front_of(fine, INFINITY), plate, Vec2::Zero()), InputError);
+}
+
 /// A surface as triangles on a grid over a square.
 TriangleMesh meshed(const FrontSurface& surface, double size_mm, std::uint32_t cells) {
   TriangleMesh mesh;
