@@ -35,9 +35,8 @@ bool MeshFront::crosses(const SurfaceRay& ray) const {
 std::optional<FrontHit> MeshFront::first_hit(const SurfaceRay& ray) const {
   SurfaceRay local = ray;
   local.origin.z() -= lowest_mm();
-  std::optional<SurfaceHit> hit = surface_.first_hit(local);
   // Rounding may let a ray slip between two triangles.
-  if (!hit && crosses(ray)) hit = surface_.certain_first_hit(local);
+  const std::optional<SurfaceHit> hit = crosses(ray) ? surface_.certain_first_hit(local) : surface_.first_hit(local);
   if (!hit || hit->t > ray.t_max) return std::nullopt;
   return FrontHit{*hit, surface_.facet(hit->facet).normal};
 }

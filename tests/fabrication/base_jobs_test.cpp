@@ -25,10 +25,11 @@
 #include "geometry/closed_boundary.h"
 #include "geometry/lattice.h"
 #include "geometry/part.h"
-#include "tests/fabrication/base_jobs.h"
+#include "tests/fabrication/base_programs.h"
+#include "tests/fabrication/sweep_sink.h"
 
 // Jobs of elements on inclined, curved and freeform bases: where they stand, against the part that light is traced in;
-// their programs, read back and cut again; and faults that are planted in them.
+// and their programs, read back and cut again.
 
 namespace retrace::fabrication::test {
 namespace {
@@ -36,35 +37,6 @@ namespace {
 using geometry::Arrangement;
 using geometry::Vec2;
 using geometry::Vec3;
-
-Machine machine(const std::string& name) {
-  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
-}
-Machine machine_of(const Job& job) {
-  return machine(job.strategy == Strategy::dmc ? "ideal-dmc" : "ideal");
-}
-
-std::string text_of(const Job& job, std::string_view dialect = "rs274ngc") {
-  return nc_text(make_plan(job, machine_of(job)).programs.front(), dialect);
-}
-
-Verification verified(const Job& job, const std::string& text, NcDialect dialect = NcDialect::rs274ngc) {
-  return verify_programs(job, machine_of(job), {parse_nc(text, "p", dialect)}, {}, {});
-}
-
-std::string listed(const Verification& v) {
-  std::string text;
-  for (const Finding& f : v.findings)
-    text += fmt::format("{}:{} {} [{}] {} ({} > {}) x{}\n", f.program, f.line, f.kind, f.element, f.message, f.value,
-                        f.limit, f.count);
-  return text.substr(0, 2000);
-}
-
-std::string kinds_of(const Verification& v) {
-  std::set<std::string> kinds;
-  for (const Finding& finding : v.findings) kinds.insert(finding.kind);
-  return fmt::format("{}", fmt::join(kinds, " "));
-}
 
 struct Named {
   std::string what;
@@ -406,21 +378,6 @@ TEST(OnBase, RimsAreCutAsDeepAsNeighboursStandLower) {
   EXPECT_EQ(overcut_um(cubes_on(plane_base(6.0, 40.0, Standing::normal), false)), 0.0);
 }
 
-/// Collects the sweeps of a program, for dexels.
-struct SweepSink : NcSink {
-  explicit SweepSink(const Machine& m) : machine_of(m) {}
-  void motion(const NcMotion& motion, const NcSettings&) override {
-    if ((motion.known & 7) != 7 || (motion.moved & 7) == 0) return;
-    poses.push_back(machine_from_workpiece(machine_of, rotary_pose(machine_of, motion.to)));
-    sweeps.push_back({static_cast<std::uint32_t>(poses.size() - 1), motion.place, false,
-                      machine_point(machine_of, motion.from), machine_point(machine_of, motion.to)});
-  }
-  void dwell(double, const NcPlace&, const AxisPositions&) override {}
-  const Machine& machine_of;
-  std::vector<Sweep> sweeps;
-  std::vector<RigidMotion> poses;
-};
-
 /// Height of the lowest of all elements' cuts over a place, each open upwards without end; 0 where none is.
 double lowest_cut_mm(const std::vector<Groove>& grooves, double x_mm, double y_mm, bool& is_beside_an_end) {
   double lowest_mm = 0.0;
@@ -518,87 +475,6 @@ TEST(OnBase, HoldersAreSeenToReachIntoHollowBlanks) {
   EXPECT_EQ(kinds(cylinder_base(3.0, false, Standing::normal)), "");
   EXPECT_EQ(kinds(cylinder_base(-3.0, false, Standing::normal)), "holder_collision");
 }
-
-/// Faults that are planted in the text of a program.
-class BaseFaults : public ::testing::TestWithParam<bool> {
- protected:
-  BaseFaults()
-      : job_(GetParam() ? cubes_on(sphere_base(4.0, Standing::normal), false)
-                        : prisms_on(cylinder_base(6.0, false, Standing::normal))),
-        text_(text_of(job_)) {}
-
-  /// The text with one word of a line changed, the line after `from` that begins with `start`.
-  std::string changed(std::size_t from, const std::string& start, char letter, double by) const {
-    const std::size_t line = text_.find("\n" + start, from) + 1;
-    const std::size_t word = text_.find(letter, line) + 1;
-    const std::size_t end = text_.find_first_of(" \n", word);
-    const double value = std::stod(text_.substr(word, end - word));
-    return text_.substr(0, word) + fmt::format("{:.7f}", value + by) + text_.substr(end);
-  }
-  std::string without_line(std::size_t at) const {
-    const std::size_t first = text_.rfind('\n', at) + 1;
-    return text_.substr(0, first) + text_.substr(text_.find('\n', at) + 1);
-  }
-  std::size_t last_visit(int element) const { return text_.rfind(fmt::format("(element {})", element)); }
-
-  Job job_;
-  std::string text_;
-};
-
-TEST_P(BaseFaults, NoneWithoutAFault) {
-  EXPECT_EQ(kinds_of(verified(job_, text_)), "");
-}
-
-TEST_P(BaseFaults, AShiftedElement) {
-  // Words that stay are not written: Y, or X where Y stays.
-  const std::size_t visit = last_visit(4);
-  const bool has_y = text_.find(" Y", visit) < text_.find(" call", visit);
-  const std::size_t word = text_.find(has_y ? " Y" : " X", visit);
-  ASSERT_LT(word, text_.find(" call", visit));
-  const Verification v =
-      verified(job_, changed(visit, text_.substr(text_.rfind('\n', word) + 1, 4), has_y ? 'Y' : 'X', 0.0005));
-  ASSERT_FALSE(v.passes());
-  for (const Finding& finding : v.findings) EXPECT_EQ(finding.element, 4) << listed(v);
-}
-
-TEST_P(BaseFaults, AWrongTilt) {
-  const std::size_t turn = text_.rfind(GetParam() ? "\nG0 B" : "\nG0 A", last_visit(4));
-  const Verification v = verified(job_, changed(turn - 1, GetParam() ? "G0 B" : "G0 A", GetParam() ? 'B' : 'A', 0.02));
-  EXPECT_FALSE(v.passes());
-}
-
-TEST_P(BaseFaults, AWrongC) {
-  const std::size_t turn = text_.rfind(GetParam() ? "\nG0 B" : "\nG0 A", last_visit(4));
-  const Verification v = verified(job_, changed(turn - 1, GetParam() ? "G0 B" : "G0 A", 'C', 0.02));
-  EXPECT_FALSE(v.passes());
-}
-
-TEST_P(BaseFaults, AMissingPlunge) {
-  const Verification v = verified(job_, without_line(text_.find(" call", last_visit(4))));
-  ASSERT_FALSE(v.passes());
-  EXPECT_EQ(v.findings.front().element, 4) << listed(v);
-}
-
-TEST_P(BaseFaults, ATurnLost) {
-  const std::size_t turn = text_.rfind(GetParam() ? "\nG0 B" : "\nG0 A", last_visit(4));
-  EXPECT_FALSE(verified(job_, without_line(turn + 1)).passes());
-}
-
-TEST_P(BaseFaults, AnElementCutAtTheHeightOfAFlatArray) {
-  Job flat = job_;
-  flat.base.reset();
-  EXPECT_FALSE(verified(job_, text_of(flat)).passes());
-}
-
-TEST_P(BaseFaults, ARapidMoveThroughTheBlank) {
-  const std::size_t line = text_.find("\nG0 Z", last_visit(4)) + 1;
-  const double z_mm = std::stod(text_.substr(line + 4));
-  const std::string low = text_.substr(0, line) + fmt::format("G0 Z{:.6f}\n", z_mm - 0.8) + text_.substr(line);
-  const std::string kinds = kinds_of(verified(job_, low));
-  EXPECT_NE(kinds.find("rapid_in_material"), std::string::npos) << kinds;
-}
-
-INSTANTIATE_TEST_SUITE_P(OfPrismsAndCubes, BaseFaults, ::testing::Values(false, true));
 
 }  // namespace
 }  // namespace retrace::fabrication::test

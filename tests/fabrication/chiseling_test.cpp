@@ -28,6 +28,7 @@
 #include "geometry/lattice.h"
 #include "geometry/part.h"
 #include "tests/fabrication/chiseling_jobs.h"
+#include "tests/fabrication/sweep_sink.h"
 
 // Diamond micro chiseling: poses and paths against the geometry of cubes, programs cut again from their text, and
 // faults that are planted in them.
@@ -51,21 +52,6 @@ Machine crooked_machine() {
   m.c.point_mm.value = {0.3, 0.15, -2.0};
   return m;
 }
-
-/// Collects the sweeps of a program, for dexels.
-struct SweepSink : NcSink {
-  explicit SweepSink(const Machine& m) : machine_of(m) {}
-  void motion(const NcMotion& motion, const NcSettings&) override {
-    if ((motion.known & 7) != 7 || (motion.moved & 7) == 0) return;
-    poses.push_back(machine_from_workpiece(machine_of, rotary_pose(machine_of, motion.to)));
-    sweeps.push_back({static_cast<std::uint32_t>(poses.size() - 1), motion.place, false,
-                      machine_point(machine_of, motion.from), machine_point(machine_of, motion.to)});
-  }
-  void dwell(double, const NcPlace&, const AxisPositions&) override {}
-  const Machine& machine_of;
-  std::vector<Sweep> sweeps;
-  std::vector<RigidMotion> poses;
-};
 
 std::string text_of(const Job& job, const Machine& m, std::string_view dialect = "rs274ngc") {
   return nc_text(make_plan(job, m).programs.front(), dialect);

@@ -365,7 +365,7 @@ TriangleMesh meshed(const FrontSurface& surface, double size_mm, std::uint32_t c
 }
 
 // Steep lenslets in front of prisms: light goes from lenslet to lenslet and in again. All of it is booked, none is
-// lost, and a fine mesh of the same surface, in which Embree finds the hits, sends it to the same accounts.
+// lost, and a fine mesh of the same surface, met triangle by triangle, sends it to the same accounts.
 TEST(Front, SurfaceAndItsMeshAgreeOverPrisms) {
   const Part part = build_part(finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0, 1.0, 0.6));
   const Front surface = egg_box_front(0.6, 0.08, 2.0 * std::numbers::pi / 0.4);
