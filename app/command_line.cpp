@@ -68,13 +68,17 @@ void add_common(CLI::App& app, CommonOptions& common) {
 void add_rre(CLI::App& app, RreOptions& rre) {
   CLI::App* command = app.add_subcommand("rre", "retroreflective efficiency against angle");
   command->add_option("DESIGN", rre.designs, "design files; - is standard input")->required()->check(not_empty());
-  command->add_option("--incidence", rre.incidence, "incidence angles in degrees: a,b,c and start:stop:step")
+  command
+      ->add_option("--incidence", rre.incidence,
+                   "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto")
       ->type_name("LIST")
       ->capture_default_str();
-  command->add_option("--azimuth", rre.azimuth, "azimuths of the source in degrees, likewise")
+  command->add_option("--azimuth", rre.azimuth, "azimuths of the source in degrees: a,b,c and start:stop:step")
       ->type_name("LIST")
       ->capture_default_str();
-  command->add_option("--engine", rre.engine, "exact, montecarlo (cell or embree), or auto: exact where that is cheap")
+  command
+      ->add_option("--engine", rre.engine,
+                   "exact, montecarlo (cell or embree), or auto: the faster one for each direction")
       ->type_name("ENGINE")
       ->capture_default_str();
   auto* samples =
@@ -85,16 +89,17 @@ void add_rre(CLI::App& app, RreOptions& rre) {
       ->add_option("--sampling", rre.sampling, "stratified, or plain: random points and no splitting, to compare with")
       ->type_name("KIND")
       ->capture_default_str();
-  command->add_option("--target-error", rre.target_error, "standard error of RRE to reach, as a fraction")
+  command
+      ->add_option("--target-error", rre.target_error,
+                   "standard error of RRE to reach, and most that exact may leave truncated, as a fraction "
+                   "[0.0001; --engine exact: 1e-10]")
       ->type_name("E")
-      ->capture_default_str()
       ->check(real_number())
       ->excludes(samples);
   command
       ->add_option(
           "--cutoff", rre.cutoff,
-          "least power that is followed, as a share of the incident power [1e-10; exact: what leaves less than "
-          "1e-10 truncated]")
+          "least power that is followed, as a share of the incident power [1e-10; exact: as the target error asks]")
       ->type_name("W")
       ->check(real_number());
   command->add_flag("--derivatives", rre.derivatives, "of RRE by the parameters of the design (--engine exact)");
@@ -429,8 +434,8 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   add_image(app, line.image);
   add_export(app, line.solid);
   add_report(app, line.report);
-  app.add_subcommand("init", "a commented design file to start from")
-      ->add_option("KIND", line.kind, "rtp, hexagonal_icc or triangular_icc")
+  app.add_subcommand("init", "a commented design or part file to start from")
+      ->add_option("KIND", line.kind, "rtp, hexagonal_icc, triangular_icc or round_zone_lens")
       ->required();
   app.add_subcommand("list", "what is shipped")
       ->add_option("WHAT", line.what, "materials, machines, processes or standards")

@@ -26,7 +26,7 @@ struct RreOptions {
   std::string engine = "auto";
   std::string sampling = "stratified";
   std::optional<std::uint64_t> samples;
-  double target_error = 1e-4;
+  std::optional<double> target_error;
   std::optional<double> cutoff;
   bool derivatives = false;
   bool footprint = false;

@@ -18,16 +18,6 @@ std::string output_file(const CommandLine& line) {
   return line.solid.file.empty() ? line.common.out : line.solid.file;
 }
 
-void check_file(const std::string& file, const std::string& json, const std::vector<std::string>& files_read) {
-  for (const std::string& read : files_read) {
-    std::error_code ignored;
-    if (read != "-" && fs::equivalent(read, file, ignored))
-      throw InputError({"", 0, "--out"}, file + " is a file that is read; it would be overwritten");
-  }
-  if (!json.empty() && fs::absolute(json).lexically_normal() == fs::absolute(file).lexically_normal())
-    throw InputError({"", 0, "--json"}, json + " is the file that --out writes; give another name");
-}
-
 }  // namespace
 
 ExitCode run_export_command(const CommandLine& line) {
@@ -44,7 +34,7 @@ ExitCode run_export_command(const CommandLine& line) {
   const std::vector<std::string> read = files_read({design});
   prepare_outputs(outputs, {read, "", {}});
   if (!file.empty()) {
-    check_file(file, outputs.json, read);
+    check_output_file(outputs, "--out", file, read);
     write_file_atomically(file, studies::solid_text(solid, format));
   }
   write_outputs(outputs, studies::solid_json(solid, file), {},

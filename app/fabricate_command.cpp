@@ -47,7 +47,7 @@ ExitCode run_fabricate_command(const CommandLine& line) {
       files.push_back({result.program_file(k), fabrication::nc_text(result.plan.programs[k], result.dialect)});
   }
   FileNames names{{line.fabricate.job}, "fabrication.json", {}};
-  if (std::filesystem::path(result.job.machine).has_extension()) names.designs.push_back(result.job.machine);
+  if (std::filesystem::path(result.job.machine).has_extension()) names.inputs.push_back(result.job.machine);
   for (const OutputFile& file : files)
     if (file.name != "fabrication.json") names.others.push_back(file.name);
   prepare_outputs(line.common, names);

@@ -15,7 +15,6 @@
 #include "core/data_directory.h"
 #include "core/message_text.h"
 #include "materials/io/spectrum_reader.h"
-#include "raytrace/threads.h"
 #include "report/picture_plot.h"
 #include "report/road_plot.h"
 #include "studies/design/design_reader.h"
@@ -128,8 +127,7 @@ ExitCode run_detector(const CommandLine& line, studies::Design design) {
   studies::DetectorResult result;
   {
     ProgressBar bar("tracing", !line.common.quiet);
-    raytrace::run_with_threads(line.common.threads.value_or(0),
-                               [&] { result = study.run(&bar, &interrupt.cancellation()); });
+    interrupt.run(line.common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
   }
   const std::string json = studies::detector_json(result);
   std::vector<OutputFile> files;
@@ -177,8 +175,8 @@ ExitCode run_camera(const CommandLine& line, studies::Design design) {
   {
     ProgressBar bar("rendering", !line.common.quiet);
     Preview preview(line);
-    raytrace::run_with_threads(line.common.threads.value_or(0), [&] {
-      result = study.run(&bar, &interrupt.cancellation(), [&](const raytrace::CameraImage& image) { preview(image); });
+    interrupt.run(line.common.threads, [&](const Cancellation* cancel) {
+      result = study.run(&bar, cancel, [&](const raytrace::CameraImage& image) { preview(image); });
     });
   }
   const std::string json = studies::camera_json(result);
@@ -222,8 +220,7 @@ ExitCode run_road(const CommandLine& line, studies::Design design) {
   studies::RoadResult result;
   {
     ProgressBar bar("tracing", !line.common.quiet);
-    raytrace::run_with_threads(line.common.threads.value_or(0),
-                               [&] { result = study.run(&bar, &interrupt.cancellation()); });
+    interrupt.run(line.common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
   }
   const std::string json = studies::road_json(result);
   std::vector<OutputFile> files;

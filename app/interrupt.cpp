@@ -4,8 +4,10 @@
 
 #include <atomic>
 #include <csignal>
+#include <ctime>
 
 #include "core/error.h"
+#include "raytrace/threads.h"
 
 namespace retrace::app {
 namespace {
@@ -13,15 +15,32 @@ namespace {
 Cancellation cancellation_asked;
 std::atomic<bool> is_orderly{false};
 
+// The time that work has to stop in order, and the clock of it, which sends SIGALRM.
+constexpr itimerspec kPatience{{0, 0}, {0, 900'000'000}};
+constexpr itimerspec kNever{{0, 0}, {0, 0}};
+timer_t deadline;
+bool has_deadline = false;
+
+void set_deadline(const itimerspec& when) {
+  if (has_deadline) ::timer_settime(deadline, 0, &when, nullptr);
+}
+
+extern "C" void end_now(int) {
+  ::_exit(static_cast<int>(ExitCode::interrupted));
+}
+
 extern "C" void on_interrupt(int) {
   // Work that nobody stops in order, such as waiting for standard input, must not swallow the interrupt.
-  if (!is_orderly.load() || cancellation_asked.requested()) ::_exit(static_cast<int>(ExitCode::interrupted));
+  if (!is_orderly.load() || cancellation_asked.requested()) end_now(0);
   cancellation_asked.request();
+  set_deadline(kPatience);
 }
 
 }  // namespace
 
 void install_interrupt_handlers() {
+  std::signal(SIGALRM, end_now);
+  has_deadline = ::timer_create(CLOCK_MONOTONIC, nullptr, &deadline) == 0;
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
 }
@@ -33,8 +52,10 @@ OrderlyInterrupt::~OrderlyInterrupt() {
   is_orderly.store(false);
 }
 
-const Cancellation& OrderlyInterrupt::cancellation() const {
-  return cancellation_asked;
+void OrderlyInterrupt::run(std::optional<unsigned> threads,
+                           const std::function<void(const Cancellation*)>& work) const {
+  raytrace::run_with_threads(threads.value_or(0), [&] { work(&cancellation_asked); });
+  set_deadline(kNever);
 }
 
 }  // namespace retrace::app

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <optional>
+
 #include "core/progress.h"
 
 namespace retrace::app {
@@ -16,7 +19,10 @@ class OrderlyInterrupt {
   OrderlyInterrupt(const OrderlyInterrupt&) = delete;
   OrderlyInterrupt& operator=(const OrderlyInterrupt&) = delete;
 
-  const Cancellation& cancellation() const;
+  /// Does work that asks whether to stop. Work that has not stopped within a second of the interrupt ends the program
+  /// with it, and nothing is written; once it has stopped, what it has is written however long that takes.
+  /// \param threads none or 0: as many as there are cores
+  void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;
 };
 
 }  // namespace retrace::app

@@ -23,10 +23,10 @@ ExitCode write_reachable(const CommandLine& line, const studies::Design& design)
   const studies::JobRequest request = job_request(line.job, *line.job.tool_width_mm);
   const studies::ReachablePart part = studies::reachable_part(design, request, facets_file.filename().string());
   FileNames names{files_read({design}), "", {}};
-  for (const std::string& read : files_of_making(line.job)) names.designs.push_back(read);
+  for (const std::string& read : files_of_making(line.job)) names.inputs.push_back(read);
   prepare_outputs(line.common, names);
   for (const fs::path& written : {file, facets_file})
-    check_job_file(line.common, written, names.designs, "--reachable");
+    check_output_file(line.common, "--reachable", written, names.inputs);
   write_file_atomically(facets_file, part.facets);
   write_file_atomically(file, part.design);
   write_outputs(line.common, studies::reach_json(part, request), {},
@@ -46,10 +46,10 @@ ExitCode run_job_command(const CommandLine& line) {
   outputs.out.clear();
   const std::string text = job_text_at(made, out);
   FileNames names{files_read({design}), "", {}};
-  for (const std::string& file : files_of_making(line.job)) names.designs.push_back(file);
+  for (const std::string& file : files_of_making(line.job)) names.inputs.push_back(file);
   prepare_outputs(outputs, names);
   if (!out.empty()) {
-    check_job_file(outputs, out, names.designs, "--out");
+    check_output_file(outputs, "--out", out, names.inputs);
     write_file_atomically(out, text);
   }
   // Without --out the job is the result itself, which --quiet does not take away.

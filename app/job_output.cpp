@@ -1,6 +1,5 @@
 #include "app/job_output.h"
 
-#include "core/error.h"
 #include "fabrication/job/io/job_files.h"
 
 namespace retrace::app {
@@ -22,17 +21,6 @@ std::vector<std::string> files_of_making(const JobOptions& options) {
   for (const std::string& name : {options.machine, options.process})
     if (fs::path(name).has_extension()) files.push_back(name);
   return files;
-}
-
-void check_job_file(const CommonOptions& common, const fs::path& file, const std::vector<std::string>& files_read,
-                    const std::string& option) {
-  for (const std::string& read : files_read) {
-    std::error_code ignored;
-    if (read != "-" && fs::equivalent(read, file, ignored))
-      throw InputError({"", 0, option}, file.string() + " is a file that is read; it would be overwritten");
-  }
-  if (!common.json.empty() && fs::absolute(common.json).lexically_normal() == fs::absolute(file).lexically_normal())
-    throw InputError({"", 0, "--json"}, common.json + " is the file that " + option + " writes; give another name");
 }
 
 std::string job_text_at(studies::MadeJob& made, const fs::path& file) {

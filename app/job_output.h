@@ -15,11 +15,6 @@ studies::JobRequest job_request(const JobOptions& options, double tool_width_mm)
 /// Files that making a job reads beside the design. Names without an ending are shipped ones, not files.
 std::vector<std::string> files_of_making(const JobOptions& options);
 
-/// Refuses, before anything is written, a job file that is one of the files that are read, or that is also another
-/// output. \param option that names the file \throw InputError
-void check_job_file(const CommonOptions& common, const std::filesystem::path& file,
-                    const std::vector<std::string>& files_read, const std::string& option);
-
 /// The text of a job that is to lie at a place: its machine's file is named as seen from there. \param file empty: the
 /// working directory
 std::string job_text_at(studies::MadeJob& made, const std::filesystem::path& file);

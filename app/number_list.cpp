@@ -26,9 +26,10 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 
 class ListReader {
  public:
-  explicit ListReader(const std::string& option) : option_(option) {}
+  ListReader(const std::string& option, bool may_choose) : option_(option), may_choose_(may_choose) {}
 
   std::vector<double> values;
+  std::vector<NumberRange> chosen;
 
   void read_item(std::string_view item) {
     const auto parts = split(item, ':');
@@ -36,13 +37,21 @@ class ListReader {
       add(number(parts[0], item));
       return;
     }
-    if (parts.size() != 3) fail(fmt::format("a range must be start:stop:step, got \"{}\"", item));
+    if (parts.size() != 3) fail(fmt::format("a range must be {}, got \"{}\"", ranges(), item));
+    if (may_choose_ && parts[2] == "auto") {
+      chosen.push_back({number(parts[0], item) + 0.0, number(parts[1], item) + 0.0});  // -0 is 0
+      if (!(chosen.back().low < chosen.back().high))
+        fail(fmt::format("a range start:stop:auto must have start < stop, got \"{}\"", item));
+      return;
+    }
     add_range(number(parts[0], item), number(parts[1], item), number(parts[2], item), item);
   }
 
   [[noreturn]] void fail(const std::string& text) const { throw InputError({"", 0, option_}, text); }
 
  private:
+  std::string_view ranges() const { return may_choose_ ? "start:stop:step or start:stop:auto" : "start:stop:step"; }
+
   double number(std::string_view text, std::string_view item) const {
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
     while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
@@ -50,7 +59,7 @@ class ListReader {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-      fail(fmt::format("must be numbers a,b,c or ranges start:stop:step, got \"{}\"", item));
+      fail(fmt::format("must be numbers a,b,c or ranges {}, got \"{}\"", ranges(), item));
     return value;
   }
 
@@ -77,16 +86,27 @@ class ListReader {
   }
 
   const std::string& option_;
+  bool may_choose_;
   std::unordered_set<double> seen_;
 };
+
+void read_items(std::string_view text, ListReader& reader) {
+  if (text.find_first_not_of(' ') == std::string_view::npos) reader.fail("the list is empty");
+  for (const std::string_view item : split(text, ',')) reader.read_item(item);
+}
 
 }  // namespace
 
 std::vector<double> read_number_list(std::string_view text, const std::string& option) {
-  ListReader reader(option);
-  if (text.find_first_not_of(' ') == std::string_view::npos) reader.fail("the list is empty");
-  for (const std::string_view item : split(text, ',')) reader.read_item(item);
+  ListReader reader(option, false);
+  read_items(text, reader);
   return reader.values;
+}
+
+CurveList read_curve_list(std::string_view text, const std::string& option) {
+  ListReader reader(option, true);
+  read_items(text, reader);
+  return {reader.values, reader.chosen};
 }
 
 }  // namespace retrace::app

@@ -11,4 +11,18 @@ namespace retrace::app {
 /// that runs the wrong way, or more than 100,000 values
 std::vector<double> read_number_list(std::string_view text, const std::string& option);
 
+struct NumberRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// A LIST in which `start:stop:auto` leaves numbers to be chosen.
+struct CurveList {
+  std::vector<double> values;
+  std::vector<NumberRange> chosen;  ///< low < high
+};
+
+/// \throw InputError as read_number_list(), and for a range that is empty or runs down
+CurveList read_curve_list(std::string_view text, const std::string& option);
+
 }  // namespace retrace::app

@@ -11,7 +11,6 @@
 #include "app/progress_bar.h"
 #include "app/study_options.h"
 #include "core/atomic_file.h"
-#include "raytrace/threads.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"
@@ -32,13 +31,11 @@ studies::MadeJob job_of(const CommandLine& line, const studies::Study& study, co
   return studies::make_job(candidate.design(), job_request(line.job, *width_mm));
 }
 
-/// Values that every parameter may have.
-studies::PointValues some_values(const studies::Study& study) {
-  studies::PointValues values;
-  for (const studies::Parameter& parameter : study.parameters)
-    values.push_back(parameter.interval ? studies::Parameter::value_of(parameter.interval->from)
-                                        : parameter.values.front());
-  return values;
+std::vector<std::string> inputs_of(const CommandLine& line, const studies::Study& study) {
+  std::vector<std::string> files = study.files;
+  if (!line.study.job.empty())
+    for (const std::string& file : files_of_making(line.job)) files.push_back(file);
+  return files;
 }
 
 /// What would otherwise be found wrong only after the search.
@@ -47,9 +44,7 @@ void check_job_options(const CommandLine& line, const studies::Study& study) {
   const studies::JobRequest request = job_request(line.job, line.job.tool_width_mm.value_or(1.0));
   studies::check_making(request);
   studies::check_element(studies::make_candidate(study, some_values(study)).design(), request);
-  std::vector<std::string> read = files_of_study(study);
-  for (const std::string& file : files_of_making(line.job)) read.push_back(file);
-  check_job_file(line.common, line.study.job, read, "--job");
+  check_output_file(line.common, "--job", line.study.job, inputs_of(line, study));
 }
 
 class LooksBar : public studies::OptimiseObserver {
@@ -70,15 +65,15 @@ ExitCode run_optimize_command(const CommandLine& line) {
   const studies::OptimiseRequest request = studies::read_optimise(study);
   check_job_options(line, study);
   const OrderlyInterrupt interrupt;
-  prepare_outputs(line.common, {files_of_study(study), "optimum.json", {"front.csv", kStore}});
+  prepare_outputs(line.common, {inputs_of(line, study), "optimum.json", {"front.csv", kStore}});
   const std::filesystem::path file =
       line.common.out.empty() ? std::filesystem::path() : std::filesystem::path(line.common.out) / kStore;
   studies::ResultStore store(file, studies::optimise_layout(study), if_exists_of(line.study));
   studies::Optimum optimum;
   {
     LooksBar bar(!line.common.quiet);
-    raytrace::run_with_threads(line.common.threads.value_or(0), [&] {
-      optimum = studies::optimise(study, request, store, &bar, &interrupt.cancellation());
+    interrupt.run(line.common.threads, [&](const Cancellation* cancel) {
+      optimum = studies::optimise(study, request, store, &bar, cancel);
     });
   }
   std::optional<studies::MadeJob> made;

@@ -14,9 +14,11 @@ namespace retrace::app {
 namespace fs = std::filesystem;
 namespace {
 
-/// Whether both name one file, which need not exist yet.
+/// Whether both name one file, which need not exist yet. Hard links to one are the same.
 bool is_same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  error.clear();
   const auto resolved = [&](const fs::path& path) {
     return fs::weakly_canonical(fs::absolute(path, error), error).lexically_normal();
   };
@@ -24,25 +26,25 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
   return !first.empty() && first == resolved(b) && !error;
 }
 
+void refuse_input(const std::string& option, const fs::path& output, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(output, ignored)) return;
+  for (const std::string& input : inputs)
+    if (input != "-" && is_same_file(output, input))
+      throw InputError({"", 0, option}, output.string() + " is a file that is read; it would be overwritten");
+}
+
 void refuse_overlaps(const CommonOptions& options, const FileNames& names) {
   const bool has_json = !options.json.empty() && options.json != "-";
-  const auto refuse_design = [&](const std::string& option, const fs::path& output) {
-    std::error_code ignored;
-    if (!fs::is_regular_file(output, ignored)) return;
-    for (const std::string& design : names.designs)
-      if (design != "-" && is_same_file(output, design))
-        throw InputError({"", 0, option},
-                         output.string() + " is a design or a file that is read; it would be overwritten");
-  };
-  if (has_json) refuse_design("--json", options.json);
+  if (has_json) refuse_input("--json", options.json, names.inputs);
   if (options.out.empty()) return;
   for (const std::string& name : names.others) {
     const fs::path output = fs::path(options.out) / name;
-    refuse_design("--out", output);
+    refuse_input("--out", output, names.inputs);
     if (has_json && is_same_file(options.json, output))
       throw InputError({"", 0, "--json"}, options.json + " is a file that --out writes; give another name");
   }
-  if (!names.document.empty()) refuse_design("--out", fs::path(options.out) / names.document);
+  if (!names.document.empty()) refuse_input("--out", fs::path(options.out) / names.document, names.inputs);
 }
 
 }  // namespace
@@ -56,13 +58,16 @@ std::vector<std::string> files_read(const std::vector<studies::Design>& designs)
   std::vector<std::string> files;
   for (const studies::Design& design : designs) {
     files.push_back(design.source);
-    if (!design.texture.height_map_file.empty()) files.push_back(design.texture.height_map_file.string());
-    if (design.mask) files.push_back(design.mask->file.string());
-    if (design.mesh && !design.mesh->file.empty()) files.push_back(design.mesh->file.string());
-    if (design.front) files.push_back(design.front->file.string());
-    if (design.spectrum && !design.spectrum->file.empty()) files.push_back(design.spectrum->file.string());
+    for (const fs::path& file : design.files) files.push_back(file.string());
   }
   return files;
+}
+
+void check_output_file(const CommonOptions& options, const std::string& option, const fs::path& file,
+                       const std::vector<std::string>& inputs) {
+  refuse_input(option, file, inputs);
+  if (!options.json.empty() && options.json != "-" && is_same_file(options.json, file))
+    throw InputError({"", 0, "--json"}, options.json + " is the file that " + option + " writes; give another name");
 }
 
 void prepare_outputs(const CommonOptions& options, const FileNames& names) {

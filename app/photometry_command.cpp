@@ -10,7 +10,6 @@
 #include "app/progress_bar.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "raytrace/threads.h"
 #include "report/photometry_plot.h"
 #include "studies/design/design_reader.h"
 #include "studies/photometry/io/photometry_files.h"
@@ -85,8 +84,7 @@ ExitCode run_photometry_command(const CommandLine& line) {
   studies::PhotometryResult result;
   {
     ProgressBar bar("tracing", !line.common.quiet);
-    raytrace::run_with_threads(line.common.threads.value_or(0),
-                               [&] { result = study.run(&bar, &interrupt.cancellation()); });
+    interrupt.run(line.common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
   }
   const std::string json = studies::photometry_json(result);
   std::vector<OutputFile> files;
@@ -97,7 +95,7 @@ ExitCode run_photometry_command(const CommandLine& line) {
     say("retrace: interrupted; what is finished is in the result");
     return ExitCode::interrupted;
   }
-  return result.verdict == studies::Verdict::fail ? ExitCode::answer_is_no : ExitCode::done;
+  return result.passes() ? ExitCode::done : ExitCode::answer_is_no;
 }
 
 }  // namespace retrace::app

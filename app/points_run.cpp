@@ -13,7 +13,6 @@
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/study_options.h"
-#include "raytrace/threads.h"
 #include "studies/sweep/mpi_session.h"
 
 namespace retrace::app {
@@ -51,12 +50,19 @@ ExitCode serve(const CommandLine& line, const PointsCommand& command, studies::M
   try {
     const studies::Sweep sweep = command.read();
     const OrderlyInterrupt interrupt;
-    raytrace::run_with_threads(line.common.threads.value_or(0),
-                               [&] { session.serve(sweep, slots(line), &interrupt.cancellation()); });
+    interrupt.run(line.common.threads, [&](const Cancellation* cancel) { session.serve(sweep, slots(line), cancel); });
   } catch (const Error& error) {
     session.leave(error.what());
   }
   return ExitCode::done;
+}
+
+/// Points none of which could be computed answer nothing.
+ExitCode exit_code_of(const std::vector<studies::StoredPoint>& points, ExitCode code) {
+  const auto failed = [](const studies::StoredPoint& point) { return point.failed; };
+  if (points.empty() || !std::all_of(points.begin(), points.end(), failed)) return code;
+  say(fmt::format("retrace: every point failed, the first of {}: {}", points.size(), points.front().reason));
+  return ExitCode::answer_is_no;
 }
 
 /// \param session null without MPI
@@ -66,15 +72,14 @@ ExitCode compute(const CommandLine& line, const PointsCommand& command, studies:
   const OrderlyInterrupt interrupt;
   std::vector<std::string> others = command.others;
   others.push_back(command.store);
-  prepare_outputs(line.common, {files_of_study(sweep.study()), command.document, others});
+  prepare_outputs(line.common, {sweep.study().files, command.document, others});
   const std::filesystem::path file =
       line.common.out.empty() ? std::filesystem::path() : std::filesystem::path(line.common.out) / command.store;
   studies::ResultStore store(file, sweep.layout(), if_exists_of(line.study));
   bool complete = false;
   {
     PointsBar bar(command.doing, !line.common.quiet);
-    const Cancellation* const cancel = &interrupt.cancellation();
-    raytrace::run_with_threads(line.common.threads.value_or(0), [&] {
+    interrupt.run(line.common.threads, [&](const Cancellation* cancel) {
       complete = session != nullptr ? session->deal(sweep, store, slots(line), &bar, cancel)
                                     : studies::run_sweep(sweep, store, &bar, cancel);
     });
@@ -85,7 +90,7 @@ ExitCode compute(const CommandLine& line, const PointsCommand& command, studies:
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const ExitCode code = command.write(result);
   print_warnings(line.common, result.warnings);
-  if (complete) return code;
+  if (complete) return exit_code_of(result.points, code);
   say(fmt::format("retrace: interrupted; finished points: {} of {}", result.points.size(), sweep.size()));
   return ExitCode::interrupted;
 }

@@ -25,6 +25,13 @@ fs::path page_file(const CommandLine& line) {
   return out.extension() == ".html" || out.extension() == ".htm" ? out : out / kPageName;
 }
 
+std::vector<std::string> files_read(const report::ResultFolder& folder) {
+  std::vector<std::string> files;
+  for (const auto& document : folder.documents) files.push_back((fs::path(folder.path) / document.name).string());
+  for (const auto& picture : folder.pictures) files.push_back((fs::path(folder.path) / picture.name).string());
+  return files;
+}
+
 /// A page without its view in three dimensions is better than none.
 void add_scene(report::Page& page, const report::ResultFolder& folder, std::vector<std::string>& warnings) {
   const auto* const design = report::first_design(folder);
@@ -80,7 +87,7 @@ ExitCode run_report_command(const CommandLine& line) {
   const fs::path file = page_file(line);
   CommonOptions outputs = line.common;
   outputs.out.clear();
-  prepare_outputs(outputs, {});
+  prepare_outputs(outputs, {files_read(folder), "", {}});
   if (!outputs.json.empty() && fs::absolute(outputs.json).lexically_normal() == fs::absolute(file).lexically_normal())
     throw InputError({"", 0, "--json"}, outputs.json + " is the page itself; give another name");
   if (!line.common.out.empty() && file != fs::path(line.common.out)) make_output_folder(line.common.out);

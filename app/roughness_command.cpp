@@ -8,7 +8,6 @@
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "core/data_directory.h"
-#include "raytrace/threads.h"
 #include "report/roughness_plot.h"
 #include "studies/design/design_reader.h"
 #include "studies/roughness/io/facet_table_reader.h"
@@ -57,8 +56,7 @@ ExitCode run_roughness_command(const CommandLine& line) {
   studies::RoughnessResult result;
   {
     ProgressBar bar("tracing", !line.common.quiet);
-    raytrace::run_with_threads(line.common.threads.value_or(0),
-                               [&] { result = study.run(&bar, &interrupt.cancellation()); });
+    interrupt.run(line.common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
   }
   const std::string json = studies::roughness_json(result);
   std::vector<OutputFile> files;

@@ -9,7 +9,6 @@
 #include "app/number_list.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
-#include "raytrace/threads.h"
 #include "report/footprint_plot.h"
 #include "report/rre_plot.h"
 #include "studies/design/design_reader.h"
@@ -33,12 +32,14 @@ void check_has_folder(const CommandLine& line, bool asked, const char* option) {
 
 studies::RreRequest request_of(const CommandLine& line) {
   studies::RreRequest request;
-  request.incidence_deg = read_number_list(line.rre.incidence, "--incidence");
+  const CurveList incidence = read_curve_list(line.rre.incidence, "--incidence");
+  request.incidence_deg = incidence.values;
+  for (const NumberRange& range : incidence.chosen) request.incidence_spans.push_back({range.low, range.high});
   request.azimuth_deg = read_number_list(line.rre.azimuth, "--azimuth");
   request.engine = studies::engine_from_name(line.rre.engine);
   request.sampling = studies::sampling_from_name(line.rre.sampling);
   request.rays = line.rre.samples;
-  check_share(line.rre.target_error, false, "--target-error");
+  if (line.rre.target_error) check_share(*line.rre.target_error, false, "--target-error");
   if (line.rre.cutoff) check_share(*line.rre.cutoff, true, "--cutoff");
   request.target_error = line.rre.target_error;
   request.cutoff = line.rre.cutoff;
@@ -107,8 +108,7 @@ ExitCode run_rre_command(const CommandLine& line) {
   studies::RreResult result;
   {
     ProgressBar bar("tracing", !line.common.quiet);
-    raytrace::run_with_threads(line.common.threads.value_or(0),
-                               [&] { result = study.run(&bar, &interrupt.cancellation()); });
+    interrupt.run(line.common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
   }
   warn_of_panels(result);
   const std::string json = studies::rre_json(result);

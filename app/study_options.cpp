@@ -16,10 +16,4 @@ studies::IfExists if_exists_of(const StudyOptions& options) {
   return options.overwrite ? studies::IfExists::overwrite : studies::IfExists::refuse;
 }
 
-std::vector<std::string> files_of_study(const studies::Study& study) {
-  std::vector<std::string> files = {study.source};
-  for (const auto& [file, text] : study.design_texts) files.push_back(file);
-  return files;
-}
-
 }  // namespace retrace::app

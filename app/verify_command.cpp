@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "app/output.h"
 #include "core/atomic_file.h"
+#include "fabrication/job/io/job_files.h"
 #include "raytrace/threads.h"
 #include "report/error_map_plot.h"
 #include "studies/closed_loop/as_machined.h"
@@ -30,15 +31,6 @@ studies::VerificationRun verified(const CommandLine& line, double& elapsed_s) {
   return run;
 }
 
-void check_output(const char* option, const std::string& out, const std::vector<std::string>& files_read) {
-  if (out.empty()) return;
-  for (const std::string& file : files_read) {
-    std::error_code ignored;
-    if (fs::equivalent(file, out, ignored))
-      throw InputError({"", 0, option}, out + " is a file that is read; it would be overwritten");
-  }
-}
-
 /// The table of planes that goes with an as-machined design: part.toml -> part_facets.csv.
 fs::path facets_file_of(const fs::path& design) {
   return design.parent_path() / (design.stem().string() + "_facets.csv");
@@ -50,10 +42,13 @@ ExitCode run_verify_command(const CommandLine& line) {
   if (!line.common.overrides.empty()) throw InputError({"", 0, "--set"}, "verify reads no design");
   std::vector<std::string> files_read = line.verify.programs;
   files_read.push_back(line.verify.job);
+  if (const fs::path machine = fabrication::read_job(line.verify.job).machine; machine.has_extension())
+    files_read.push_back(machine.string());
   const fs::path facets_file = facets_file_of(line.verify.as_machined);
-  check_output("--as-machined", line.verify.as_machined, files_read);
-  if (!line.verify.as_machined.empty()) check_output("--as-machined", facets_file.string(), files_read);
-  check_output("--map", line.verify.map, files_read);
+  if (!line.verify.as_machined.empty())
+    for (const fs::path& written : {fs::path(line.verify.as_machined), facets_file})
+      check_output_file(line.common, "--as-machined", written, files_read);
+  if (!line.verify.map.empty()) check_output_file(line.common, "--map", line.verify.map, files_read);
   double elapsed_s = 0.0;
   studies::VerificationRun run = verified(line, elapsed_s);
   std::string design;

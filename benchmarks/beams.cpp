@@ -6,7 +6,7 @@
 #include "benchmarks/scenes.h"
 #include "raytrace/beam_tracer.h"
 
-namespace retrace::benchmarks {
+namespace retrace::benchmarks::beams_benchmark {
 namespace {
 
 raytrace::Optics pmma() {
@@ -67,4 +67,4 @@ BENCHMARK(beams_of_a_finite_array)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace retrace::benchmarks
+}  // namespace retrace::benchmarks::beams_benchmark

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string>
 
+namespace retrace::benchmarks::camera_benchmark {
 namespace {
 
 double seconds(const timeval& time) {
@@ -42,3 +43,4 @@ void camera(benchmark::State& state) {
 BENCHMARK(camera)->ArgName("columns")->Arg(250)->Arg(1000)->Iterations(1)->UseRealTime()->Unit(benchmark::kSecond);
 
 }  // namespace
+}  // namespace retrace::benchmarks::camera_benchmark

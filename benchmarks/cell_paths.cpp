@@ -9,7 +9,7 @@
 #include "raytrace/monte_carlo.h"
 #include "raytrace/threads.h"
 
-namespace retrace::benchmarks {
+namespace retrace::benchmarks::cell_paths_benchmark {
 namespace {
 
 using raytrace::MonteCarlo;
@@ -116,4 +116,4 @@ BENCHMARK(endless_paths)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace retrace::benchmarks
+}  // namespace retrace::benchmarks::cell_paths_benchmark

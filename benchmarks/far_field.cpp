@@ -7,7 +7,7 @@
 #include "benchmarks/scenes.h"
 #include "raytrace/farfield/far_field.h"
 
-namespace retrace::benchmarks {
+namespace retrace::benchmarks::far_field_benchmark {
 namespace {
 
 /// Arg: corners.
@@ -75,4 +75,4 @@ BENCHMARK(intensity_at_a_receiver)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace retrace::benchmarks
+}  // namespace retrace::benchmarks::far_field_benchmark

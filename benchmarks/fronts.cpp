@@ -9,9 +9,9 @@
 #include "raytrace/monte_carlo.h"
 #include "raytrace/threads.h"
 
+namespace retrace::benchmarks::fronts_benchmark {
 namespace {
 
-using namespace retrace;
 using geometry::Vec2;
 using geometry::Vec3;
 
@@ -78,3 +78,4 @@ void front_paths(benchmark::State& state) {
 BENCHMARK(front_paths)->Arg(0)->Arg(1)->Arg(2)->UseRealTime();
 
 }  // namespace
+}  // namespace retrace::benchmarks::fronts_benchmark

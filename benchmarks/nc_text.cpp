@@ -9,6 +9,7 @@
 #include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
 
+namespace retrace::benchmarks::nc_text_benchmark {
 namespace {
 
 using namespace retrace::fabrication;
@@ -50,3 +51,4 @@ void job_to_nc_text(benchmark::State& state) {
 BENCHMARK(job_to_nc_text)->Arg(32)->Arg(100)->Arg(317)->Unit(benchmark::kSecond)->Iterations(1);
 
 }  // namespace
+}  // namespace retrace::benchmarks::nc_text_benchmark

@@ -1,5 +1,4 @@
-// Peak memory and time of the program against the number of elements. A program of its own: a process started from one
-// with much memory is charged for that too.
+// Peak memory and time of the program against the number of elements.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -10,6 +9,7 @@
 #include <fstream>
 #include <string>
 
+namespace retrace::benchmarks::scale_benchmark {
 namespace {
 
 /// A design file of side x side prisms of 0.451 mm; 222 on a side make a lens of 100 cm^2.
@@ -70,3 +70,4 @@ BENCHMARK(scale)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
+}  // namespace retrace::benchmarks::scale_benchmark

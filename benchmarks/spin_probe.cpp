@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace retrace::benchmarks {
+namespace retrace::benchmarks::spin_probe_benchmark {
 namespace {
 
 /// Fused steps in one dependent chain: neither memory nor vector units decide.
@@ -41,4 +41,4 @@ BENCHMARK(spin_probe)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace retrace::benchmarks
+}  // namespace retrace::benchmarks::spin_probe_benchmark

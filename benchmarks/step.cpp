@@ -10,6 +10,7 @@
 #include <fstream>
 #include <string>
 
+namespace retrace::benchmarks::step_benchmark {
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,3 +80,4 @@ BENCHMARK(stl)
 BENCHMARK(obj)->ArgNames({"columns", "rows"})->Args({40, 25})->Iterations(1)->UseRealTime()->Unit(kMilliseconds);
 
 }  // namespace
+}  // namespace retrace::benchmarks::step_benchmark

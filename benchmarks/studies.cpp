@@ -1,6 +1,6 @@
 // What a study costs beside its points: rates with the exact engine, the store, and MPI.
-//   retrace_study_benchmark
-//   mpirun -np 3 retrace_study_benchmark     # the share of the ranks' time that dealing takes, at 10 ms a point
+//   retrace_benchmarks --benchmark_filter=points|store
+//   mpirun -np 3 retrace_benchmarks     # the share of the ranks' time that dealing takes, at 10 ms a point
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
@@ -20,9 +20,9 @@
 #include "studies/sweep/io/sweep_reader.h"
 #include "studies/sweep/mpi_session.h"
 
+namespace retrace::benchmarks::studies_benchmark {
 namespace {
 
-using namespace retrace;
 using Clock = std::chrono::steady_clock;
 namespace fs = std::filesystem;
 
@@ -155,9 +155,10 @@ int run_under_mpi() {
 }
 
 }  // namespace
+}  // namespace retrace::benchmarks::studies_benchmark
 
 int main(int argc, char** argv) {
-  if (studies::MpiSession::is_launched()) return run_under_mpi();
+  if (retrace::studies::MpiSession::is_launched()) return retrace::benchmarks::studies_benchmark::run_under_mpi();
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

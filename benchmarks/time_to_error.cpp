@@ -9,7 +9,7 @@
 #include "raytrace/monte_carlo.h"
 #include "raytrace/threads.h"
 
-namespace retrace::benchmarks {
+namespace retrace::benchmarks::time_to_error_benchmark {
 namespace {
 
 constexpr std::array<const char*, 3> kWays = {"cell", "Embree", "Embree, plain"};
@@ -66,4 +66,4 @@ BENCHMARK(time_to_error)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace retrace::benchmarks
+}  // namespace retrace::benchmarks::time_to_error_benchmark

@@ -6,6 +6,7 @@
 
 #include "fabrication/turning/path.h"
 
+namespace retrace::benchmarks::turning_benchmark {
 namespace {
 
 using namespace retrace::fabrication::turning;
@@ -84,9 +85,10 @@ void lenslet_search(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 
-}  // namespace
-
 BENCHMARK(polynomial_path)->Unit(benchmark::kMillisecond);
 BENCHMARK(lenslet_path)->Unit(benchmark::kMillisecond);
 BENCHMARK(lenslet_proof)->Unit(benchmark::kMillisecond);
 BENCHMARK(lenslet_search)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace retrace::benchmarks::turning_benchmark

@@ -10,7 +10,7 @@
 #include "fabrication/post/post.h"
 #include "fabrication/verify/verify.h"
 
-namespace retrace::benchmarks {
+namespace retrace::benchmarks::verify_benchmark {
 namespace {
 
 using namespace fabrication;
@@ -54,4 +54,4 @@ void verify(benchmark::State& state) {
 BENCHMARK(verify)->Arg(250)->Arg(1250)->Arg(5000)->Arg(50000)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
 
 }  // namespace
-}  // namespace retrace::benchmarks
+}  // namespace retrace::benchmarks::verify_benchmark

@@ -10,6 +10,10 @@ target_compile_options(retrace_options INTERFACE -Wall -Wextra -Wpedantic -Wshad
                                                  -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align)
 # GCC 12 warns of overlaps in std::string that cannot be (GCC bug 105651).
 target_compile_options(retrace_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+# In a unity build sources are included in another file, and GCC takes their anonymous namespaces for a header's.
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(retrace_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 if(RETRACE_WARNINGS_AS_ERRORS)
   target_compile_options(retrace_options INTERFACE -Werror)
 endif()
@@ -29,4 +33,19 @@ function(retrace_library name)
   add_library(retrace_${name} STATIC ${arg_SOURCES})
   add_library(retrace::${name} ALIAS retrace_${name})
   target_link_libraries(retrace_${name} PUBLIC retrace_options ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+endfunction()
+
+# retrace_module(TARGET) - a library that is loaded at run time, beside the program's bin/ before and after installation.
+function(retrace_module target)
+  set_target_properties(${target} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib/retrace")
+  install(TARGETS ${target} LIBRARY DESTINATION lib/retrace)
+  set_property(GLOBAL APPEND PROPERTY RETRACE_MODULES ${target})
+endfunction()
+
+# retrace_needs_modules(TARGET) - builds them with a program. Not with the libraries: all else would wait for them.
+function(retrace_needs_modules target)
+  get_property(modules GLOBAL PROPERTY RETRACE_MODULES)
+  if(modules)
+    add_dependencies(${target} ${modules})
+  endif()
 endfunction()

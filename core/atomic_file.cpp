@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
-#include <iterator>
+#include <iostream>
 #include <system_error>
 
 #include "core/error.h"
@@ -62,6 +63,29 @@ class TemporaryFile {
   bool moved_ = false;
 };
 
+[[noreturn]] void refuse_unreadable(const fs::path& path, const std::string& why) {
+  throw InputError(InputLocation{path.string(), 0, ""}, "cannot be read: " + why);
+}
+
+[[noreturn]] void refuse_long(const std::string& name, std::size_t most_bytes) {
+  throw InputError(InputLocation{name, 0, ""}, fmt::format("must have at most {} bytes, got more", most_bytes));
+}
+
+/// Everything from a stream that may never end; no more is read than shows that it is too long.
+std::string read_all(std::istream& stream, const std::string& name, std::size_t most_bytes) {
+  constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+  std::string text;
+  while (stream && text.size() <= most_bytes) {
+    const std::size_t before = text.size();
+    text.resize(before + std::min(kPieceBytes, most_bytes + 1 - before));
+    stream.read(text.data() + before, static_cast<std::streamsize>(text.size() - before));
+    text.resize(before + static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad()) refuse_unreadable(name, "read error");
+  require_short_text(text, name, most_bytes);
+  return text;
+}
+
 }  // namespace
 
 void write_file_atomically(const fs::path& path, std::string_view content) {
@@ -93,21 +117,29 @@ void make_output_folder(const fs::path& folder) {
     throw OutputError(fmt::format("{}: the output folder cannot be written to: {}", folder.string(), reason(errno)));
 }
 
-std::string read_file(const fs::path& path) {
-  const auto refuse = [&](const std::string& why) -> std::string {
-    throw InputError(InputLocation{path.string(), 0, ""}, "cannot be read: " + why);
-  };
-  std::error_code error;
-  if (fs::is_directory(path, error)) return refuse("it is a folder");
+void require_short_text(std::string_view text, const std::string& name, std::size_t most_bytes) {
+  if (text.size() > most_bytes) refuse_long(name, most_bytes);
+}
+
+void require_short_file(const fs::path& path, std::size_t most_bytes) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return;
+  if (!fs::is_regular_file(path, ignored)) refuse_unreadable(path, "it is no regular file");
+  if (fs::file_size(path, ignored) > most_bytes) refuse_long(path.string(), most_bytes);
+}
+
+std::string read_file(const fs::path& path, std::size_t most_bytes) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) refuse_unreadable(path, "it is a folder");
+  if (fs::is_regular_file(path, ignored)) require_short_file(path, most_bytes);
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) return refuse(reason(errno != 0 ? errno : ENOENT));
-  try {
-    // The buffer itself throws where reading fails, whatever the stream's exception mask.
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  } catch (const std::ios_base::failure&) {
-    return refuse("read error");
-  }
+  if (!stream) refuse_unreadable(path, reason(errno != 0 ? errno : ENOENT));
+  return read_all(stream, path.string(), most_bytes);
+}
+
+std::string read_standard_input(std::size_t most_bytes) {
+  return read_all(std::cin, "standard input", most_bytes);
 }
 
 }  // namespace retrace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -14,7 +15,21 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 /// folder that can be written to.
 void make_output_folder(const std::filesystem::path& folder);
 
-/// The whole content of a file. \throw InputError if it cannot be opened or read; folders are refused.
-std::string read_file(const std::filesystem::path& path);
+/// Most bytes that files of a kind may have, so that one without end, such as /dev/zero, is refused.
+inline constexpr std::size_t kMostTextBytes = std::size_t{64} << 20;  ///< jobs, machines, parts, tables
+inline constexpr std::size_t kMostDataBytes = std::size_t{1} << 30;   ///< meshes, height maps, NC programs, pictures
+
+/// The whole content of a file. \throw InputError if it cannot be opened or read or is longer; folders are refused.
+std::string read_file(const std::filesystem::path& path, std::size_t most_bytes = kMostTextBytes);
+
+/// What is left of standard input. \throw InputError as read_file()
+std::string read_standard_input(std::size_t most_bytes);
+
+/// Before a library reads a file by itself. What is not there is left to the library. \throw InputError if it is no
+/// regular file or is longer
+void require_short_file(const std::filesystem::path& path, std::size_t most_bytes);
+
+/// \throw InputError if the text of a file is longer
+void require_short_text(std::string_view text, const std::string& name, std::size_t most_bytes);
 
 }  // namespace retrace

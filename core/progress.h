@@ -14,6 +14,11 @@ class Cancellation {
   std::atomic<bool> requested_{false};
 };
 
+/// Whether there is somebody who may stop work, and did.
+inline bool is_cancelled(const Cancellation* cancel) {
+  return cancel != nullptr && cancel->requested();
+}
+
 /// Told how far long work has come. Calls come from one thread at a time.
 class Progress {
  public:

@@ -71,11 +71,8 @@ class TomlTable {
   std::shared_ptr<Hidden> hidden_;
 };
 
-/// Longest file that parse_toml() takes.
-inline constexpr std::size_t kLongestTomlBytes = std::size_t{64} << 20;
-
 /// The text of a TOML file; `source_name` stands for the file in messages.
-/// \throw InputError for text that is not TOML, that is too long, or whose keys nest too deeply
+/// \throw InputError for text that is not TOML, that is longer than kMostTextBytes, or whose keys nest too deeply
 TomlTable parse_toml(std::string_view text, const std::string& source_name);
 
 /// `text` between double quotes, with what TOML wants escaped.

@@ -14,16 +14,16 @@
 namespace retrace::geometry {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
+constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kMostIncline = 60.0;
 constexpr double kSteepestFacet = 88.0;
-constexpr int kSteps = 64;  // of the grids on which facets and pins are tried
+constexpr int kGridSteps = 64;  // of the grids on which facets and pins are tried
 
 template <class Visit>
 void visit_grid(const Vec2& half_mm, const Visit& visit) {
-  for (int j = 0; j <= kSteps; ++j)
-    for (int i = 0; i <= kSteps; ++i)
-      visit(Vec2(half_mm.cwiseProduct(Vec2(2.0 * i / kSteps - 1.0, 2.0 * j / kSteps - 1.0))));
+  for (int j = 0; j <= kGridSteps; ++j)
+    for (int i = 0; i <= kGridSteps; ++i)
+      visit(Vec2(half_mm.cwiseProduct(Vec2(2.0 * i / kGridSteps - 1.0, 2.0 * j / kGridSteps - 1.0))));
 }
 
 /// On spheres and formulas no element is like another, and each takes some kilobytes.
@@ -60,7 +60,7 @@ void check_steepness(const PartSpec& spec, const BaseSurface& surface, const Vec
       least = std::min(least, n.x() * frame.along_u.z() + n.y() * frame.along_v.z() + n.z() * frame.normal.z());
   });
   const double spare = 6.0 * spec.random_tilts.sigma_arcmin / 60.0;
-  const double steepest = std::acos(std::clamp(least, -1.0, 1.0)) / kDeg + spare;
+  const double steepest = std::acos(std::clamp(least, -1.0, 1.0)) / kRadPerDegree + spare;
   if (steepest > kSteepestFacet)
     throw InputError(fmt::format("must leave the facets of its elements at most {} degrees steep, one is {:.2f}",
                                  kSteepestFacet, steepest));
@@ -74,7 +74,7 @@ void check_contact(const PartSpec& spec, const BaseSurface& surface, const Vec2&
   double most = 0.0;
   visit_grid(half_mm, [&](const Vec2& p) {
     for (const double degrees : {30.0, 90.0, 150.0}) {
-      const Vec2 next = p + pitch * Vec2(std::cos(degrees * kDeg), std::sin(degrees * kDeg));
+      const Vec2 next = p + pitch * Vec2(std::cos(degrees * kRadPerDegree), std::sin(degrees * kRadPerDegree));
       most = std::max(most, std::abs(surface.at(next).value - surface.at(p).value));
     }
   });

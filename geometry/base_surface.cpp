@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/overloaded.h"
 
 namespace retrace::geometry {
 namespace {
@@ -20,13 +21,6 @@ namespace {
 constexpr double kDeg = std::numbers::pi / 180.0;
 // Of a radius: how far from the middle circles are followed; beyond, only what the border cuts away stands.
 constexpr double kMostSine = 0.999;
-
-template <class... Handlers>
-struct Overloaded : Handlers... {
-  using Handlers::operator()...;
-};
-template <class... Handlers>
-Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
 Eigen::Matrix3d turn_of(const PlaneBase& plane) {
   const double azimuth = plane.azimuth_deg * kDeg;

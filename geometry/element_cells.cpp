@@ -5,17 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/overloaded.h"
 #include "geometry/lattice.h"
 
 namespace retrace::geometry {
 namespace {
-
-template <class... Handlers>
-struct Overloaded : Handlers... {
-  using Handlers::operator()...;
-};
-template <class... Handlers>
-Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
 double rad_from_arcmin(double arcmin) {
   return arcmin / 60.0 * std::numbers::pi / 180.0;

@@ -1,4 +1,5 @@
 #include "geometry/faceted_solid.h"
+#include "geometry/triangle_mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -16,10 +17,6 @@ constexpr double kFlatTolerance = 1e-10;
 
 using Loop = std::vector<std::uint32_t>;
 
-std::uint64_t key(std::uint32_t from, std::uint32_t to) {
-  return (static_cast<std::uint64_t>(from) << 32) | to;
-}
-
 /// Half-edge 3 t + k runs from corner k of triangle t to the next one.
 using HalfEdge = std::uint32_t;
 using EdgeMap = std::unordered_map<std::uint64_t, HalfEdge>;
@@ -30,7 +27,7 @@ std::optional<EdgeMap> edges_of(const BoundaryMesh& mesh) {
   edges.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::uint32_t k = 0; k < 3; ++k)
-      if (!edges.emplace(key(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]), 3 * t + k).second)
+      if (!edges.emplace(directed_edge(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]), 3 * t + k).second)
         return std::nullopt;
   return edges;
 }

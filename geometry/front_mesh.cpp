@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "geometry/front_tiling.h"
 
 namespace retrace::geometry {
 namespace {
@@ -19,6 +20,8 @@ namespace {
 constexpr double kUpright = 1e-6;
 // Share of the outline that single precision may leave open along its border, or cover twice.
 constexpr double kSameArea = 1e-5;
+// Of the largest coordinate: what single precision and a few operations leave.
+constexpr double kSingleRounding = 1e-6;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -62,13 +65,28 @@ Vec3 normal_of(const std::vector<Vec3>& vertices, const Triangle& t) {
   return length > 0.0 ? Vec3(twice / length) : Vec3(Vec3::Zero());
 }
 
-/// Those of the wanted side that meet the outline, looking towards +z.
+/// The mesh with the wanted side up.
+std::vector<Triangle> turned_up(const TriangleMesh& mesh, MeshSide side) {
+  std::vector<Triangle> triangles = mesh.triangles;
+  if (side == MeshSide::bottom)
+    for (Triangle& t : triangles) std::swap(t[1], t[2]);
+  return triangles;
+}
+
+/// How far single precision may have moved a corner.
+double rounding_mm(const TriangleMesh& mesh) {
+  double largest_mm = 0.0;
+  for (const Vec3& p : mesh.vertices) largest_mm = std::max(largest_mm, p.cwiseAbs().maxCoeff());
+  return kSingleRounding * largest_mm;
+}
+
+/// Those that look towards +z and meet the outline.
 std::vector<Triangle> wanted(const TriangleMesh& mesh, const std::vector<Vec3>& vertices, MeshSide side,
-                             const Polygon& outline) {
+                             const Vec3& move_mm, const Polygon& outline) {
+  const std::vector<Triangle> all = turned_up(mesh, side);
   std::vector<Triangle> triangles;
   double covered_mm2 = 0.0;
-  for (Triangle t : mesh.triangles) {
-    if (side == MeshSide::bottom) std::swap(t[1], t[2]);
+  for (const Triangle& t : all) {
     if (normal_of(vertices, t).z() < kUpright) continue;
     const double area_mm2 = plan_area(over(outline, vertices, t));
     if (!(area_mm2 > 0.0)) continue;
@@ -76,11 +94,15 @@ std::vector<Triangle> wanted(const TriangleMesh& mesh, const std::vector<Vec3>& 
     triangles.push_back(t);
   }
   const double share = covered_mm2 / area(outline);
-  if (std::abs(share - 1.0) > kSameArea)
-    throw InputError(fmt::format("the {} of the mesh must cover the part once, it covers {} % of it",
+  const auto gap = find_gap(vertices, triangles, all, outline, rounding_mm(mesh));
+  if (!gap && std::abs(share - 1.0) <= kSameArea) return triangles;
+  std::string text = fmt::format("the {} of the mesh must cover the part once, it covers {} % of it",
                                  side == MeshSide::top ? "top" : "bottom",
-                                 fixed(100.0 * share, share > 0.999 && share < 1.001 ? 6 : 2)));
-  return triangles;
+                                 fixed(100.0 * share, share > 0.999 && share < 1.001 ? 6 : 2));
+  if (gap)
+    text += fmt::format("; at x = {}, y = {} mm of its frame {}", fixed(gap->at_mm.x() - move_mm.x(), 4),
+                        fixed(gap->at_mm.y() - move_mm.y(), 4), gap->what);
+  throw InputError(text);
 }
 
 void add_facet(SurfacePatch& patch, PatchCell& cell, const Triangle& t) {
@@ -105,7 +127,7 @@ void add_facet(SurfacePatch& patch, PatchCell& cell, const Triangle& t) {
 SurfacePatch front_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline) {
   SurfacePatch patch;
   for (const Vec3& p : mesh.vertices) patch.vertices.push_back(p + move_mm);
-  const std::vector<Triangle> triangles = wanted(mesh, patch.vertices, side, outline);
+  const std::vector<Triangle> triangles = wanted(mesh, patch.vertices, side, move_mm, outline);
   // Triangles that stand near each other make a cell: some sixteen.
   const double cell_mm = 4.0 * std::sqrt(area(outline) / static_cast<double>(triangles.size()));
   std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Triangle>> bins;

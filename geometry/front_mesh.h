@@ -11,9 +11,10 @@ enum class MeshSide {
   bottom  ///< those that look towards -z, turned over: the mesh is the counterpart of the part
 };
 
-/// The front of a part from a mesh, as triangles that look towards +z; upright ones are left out.
+/// The front of a part from a mesh, as triangles that look towards +z.
 /// \param move_mm from the mesh's frame into the part's
-/// \throw InputError unless they cover the outline, once
+/// \throw InputError unless they cover the outline once, each beside the next along whole sides: holes, overlaps,
+/// steps, corners on sides and triangles that stand upright or hang over are named with their place in the mesh's frame
 SurfacePatch front_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline);
 
 /// front_range() of a mesh.

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "core/error.h"
+#include "geometry/triangle_mesh.h"
 
 namespace retrace::geometry {
 namespace {
@@ -21,17 +22,13 @@ constexpr double kLevel = 1e-4;
 
 using Ring = std::vector<std::uint32_t>;
 
-std::uint64_t key(std::uint32_t from, std::uint32_t to) {
-  return (static_cast<std::uint64_t>(from) << 32) | to;
-}
-
 /// The next vertex along the borders of some triangles, which lie on the left of them. \throw InputError if one
 /// branches
 std::map<std::uint32_t, std::uint32_t> borders(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                                const char* what) {
   std::unordered_map<std::uint64_t, int> passed;
   for (const auto& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) ++passed[key(t[k], t[(k + 1) % 3])];
+    for (std::size_t k = 0; k < 3; ++k) ++passed[directed_edge(t[k], t[(k + 1) % 3])];
   std::map<std::uint32_t, std::uint32_t> next;
   for (const auto& [edge, times] : passed) {
     if (passed.contains((edge << 32) | (edge >> 32))) continue;

@@ -1,4 +1,5 @@
 #include "geometry/mould_boundary.h"
+#include "geometry/triangle_mesh.h"
 
 #include <algorithm>
 #include <map>
@@ -12,20 +13,16 @@ namespace {
 using Ring = std::vector<std::uint32_t>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-std::uint64_t key(std::uint32_t from, std::uint32_t to) {
-  return (static_cast<std::uint64_t>(from) << 32) | to;
-}
-
 /// The directed edges of triangles that no neighbour passes the other way, in the order of the triangles.
 std::vector<Edge> open_edges(const BoundaryMesh& mesh) {
   std::unordered_map<std::uint64_t, int> passed;
   passed.reserve(3 * mesh.triangles.size());
   for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) ++passed[key(t[k], t[(k + 1) % 3])];
+    for (std::size_t k = 0; k < 3; ++k) ++passed[directed_edge(t[k], t[(k + 1) % 3])];
   std::vector<Edge> open;
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k)
-      if (!passed.contains(key(t[(k + 1) % 3], t[k]))) open.emplace_back(t[k], t[(k + 1) % 3]);
+      if (!passed.contains(directed_edge(t[(k + 1) % 3], t[k]))) open.emplace_back(t[k], t[(k + 1) % 3]);
   return open;
 }
 

@@ -14,4 +14,9 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// A key that tells the edge of a mesh from one vertex to another from all its other edges, the opposite one included.
+inline std::uint64_t directed_edge(std::uint32_t from, std::uint32_t to) {
+  return (static_cast<std::uint64_t>(from) << 32) | to;
+}
+
 }  // namespace retrace::geometry

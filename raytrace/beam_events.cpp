@@ -3,10 +3,12 @@
 
 #include "core/error.h"
 #include "raytrace/beam_walk.h"
+#include "raytrace/textured_facet.h"
 
 namespace retrace::raytrace {
 
 using geometry::FacetRole;
+using surface_models::Lobe;
 
 /// A piece of a beam where the beam starts.
 Beam BeamWalk::at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) {
@@ -42,7 +44,7 @@ void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3
   beam.direction = direction;
   beam.light = light;
   beam.inside = inside;
-  pending_.push_back(std::move(beam));
+  pend(std::move(beam));
 }
 
 void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
@@ -62,14 +64,25 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   if (!f.total_reflection) {
     Beam through = beam;
     if (from.inside) through.left_through = candidate.role;
+    const CoherentLight left =
+        mean_field(beam.light.transmitted(f), beam, candidate.role, cos_incidence, Lobe::transmission);
     send(std::move(through), candidate.plane, -against,
-         refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), beam.light.transmitted(f),
-         !from.inside);
+         refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), left, !from.inside);
   }
   const CoherentLight reflected = beam.light.reflected(f);
   if (setup_.optics.coating_index && candidate.role == FacetRole::retro_facet)
     tally_.other[Account::absorbed] += transmission_of(beam) * (beam.light.power() - reflected.power());
-  send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), reflected, from.inside);
+  const CoherentLight left = mean_field(reflected, beam, candidate.role, cos_incidence, Lobe::reflection);
+  send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), left, from.inside);
+}
+
+CoherentLight BeamWalk::mean_field(CoherentLight light, const Beam& beam, FacetRole role, double cos_incidence,
+                                   Lobe lobe) {
+  if (role != FacetRole::retro_facet || setup_.optics.is_smooth()) return light;
+  const double before = light.power();
+  light.scale(mean_field_share(setup_.optics, beam.inside, cos_incidence, lobe));
+  tally_.other[Account::truncated] += transmission_of(beam) * (before - light.power());
+  return light;
 }
 
 void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
@@ -149,12 +162,10 @@ void BeamWalk::observe_front() const {
 }
 
 void BeamWalk::fail_on_budget() const {
-  double open = deferred_power_;
-  for (const Beam& beam : pending_) open += power_of(beam);
   throw BudgetError(
       fmt::format("the budget of {} beams ran out with {:.3g} of the power not accounted for; a larger "
                   "--cutoff follows fewer beams",
-                  policy_.max_beams, open));
+                  policy_.max_beams, open_power()));
 }
 
 }  // namespace retrace::raytrace

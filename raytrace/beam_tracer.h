@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -13,12 +14,20 @@
 
 namespace retrace::raytrace {
 
+class BeamWalk;
+
+/// Power that the exact engine leaves behind where nothing else is asked: far below what anything else is known to.
+inline constexpr double kFinestGoal = 1e-10;
+
 /// How far beams are followed.
 struct BeamPolicy {
   /// Least power of a beam that is followed. Without one it starts at 1e-6 and falls until less than `truncated_goal`
   /// is left behind.
   std::optional<double> cutoff;
-  double truncated_goal = 1e-10;
+  double truncated_goal = kFinestGoal;
+  /// Work of BeamTrace within which beams are followed below the goal, down to `kFinestGoal`: what costs next to
+  /// nothing is not left behind.
+  std::uint64_t spare_work = 0;
   std::uint64_t max_beams = 100'000'000;  ///< followed in all, while the cut-off is being found
   /// Facets of neighbouring cells are kept apart even where they lie in one plane, so that every returned beam belongs
   /// to its cell.
@@ -31,7 +40,7 @@ struct BeamResult {
   std::uint64_t beams = 0;
   std::uint32_t depth = 0;  ///< interfaces on the longest path
   double cutoff = 0.0;      ///< that was used in the end
-  bool complete = true;     ///< false if it was cancelled; the ledgers are then of no use
+  bool complete = true;     ///< false if it was cancelled or not taken to its end; the ledgers are then of no use
 };
 
 /// A beam that leaves the part through the entrance face, or is reflected there from outside.
@@ -62,7 +71,8 @@ using BeamObserver = std::function<void(const ReturnedBeam&)>;
 
 /// Follows parallel beams of polygonal cross-section from facet to facet: plane smooth facets turn one beam into
 /// finitely many, so nothing is sampled. What is cut off or falls between polygons by rounding is booked in
-/// `truncated`. A value shared by all threads.
+/// `truncated`. Of textured facets it follows the mean field alone (mean_field_share()): what scatters is booked there
+/// as well. A value shared by all threads.
 class BeamTracer {
  public:
   /// \pre `part` outlives the tracer
@@ -74,13 +84,41 @@ class BeamTracer {
                    const BeamObserver& observer = {}) const;
 
  private:
-  BeamResult follow(const LightSetup& setup, const BeamPolicy& policy, double cutoff, const Cancellation* cancel,
-                    const BeamObserver& observer) const;
-  BeamResult find_cutoff(const LightSetup& setup, BeamPolicy policy, const Cancellation* cancel) const;
+  friend class BeamTrace;
 
   const geometry::Part& part_;
   Vec2 centre_mm_;
   CellIndex cells_;
+};
+
+/// One trace of a BeamTracer that can be paused: to be dropped if something else is quicker. For one thread at a time.
+class BeamTrace {
+ public:
+  /// \pre `tracer` outlives the trace
+  BeamTrace(const BeamTracer& tracer, const Optics& optics, const Illumination& illumination,
+            const std::vector<double>& cones_deg, const BeamPolicy& policy, BeamObserver observer = {});
+  ~BeamTrace();
+
+  /// Goes on until the goal is reached or `most_work` is done in all. \return true when the goal is reached; false as
+  /// well if it was cancelled \throw BudgetError as BeamTracer::trace()
+  bool advance(std::uint64_t most_work, const Cancellation* cancel);
+  /// Done so far and expected in all, in looks at a facet's bounding box: some 20 ns each, and the same number on every
+  /// machine.
+  double work() const;
+  double expected_work() const;
+  BeamResult result() const;
+
+ private:
+  void start();
+
+  const BeamTracer& tracer_;
+  const LightSetup setup_;
+  BeamPolicy policy_;
+  BeamObserver observer_;
+  double cutoff_;
+  double work_before_ = 0.0;  ///< of walks whose cut-off was too high
+  bool is_done_ = false;
+  std::unique_ptr<BeamWalk> walk_;
 };
 
 }  // namespace retrace::raytrace

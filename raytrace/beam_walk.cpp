@@ -1,7 +1,7 @@
 #include "raytrace/beam_walk.h"
+#include "core/infinity.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace retrace::raytrace {
 namespace {
@@ -11,7 +11,6 @@ using geometry::PatchCell;
 using geometry::PatchFacet;
 using geometry::SurfacePatch;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Pieces of a cross-section smaller than this share of an element's area are rounding: booked, not followed.
 constexpr double kLeastAreaShare = 1e-15;
 // Pieces are joined if their union is convex but for this share of an element's area.
@@ -22,8 +21,21 @@ constexpr double kMergeShare = 1e-11;
 constexpr double kGrazing = 1e-12;
 // A level beam is followed this many elements at a time, and so often.
 constexpr double kReachInElements = 4.0;
+// A beam that falls so flatly that its far side comes into the layer more than this many elements behind its near side
+// is followed in such steps as well. One that is level above the layer never meets anything.
+constexpr double kFarInElements = 64.0;
 constexpr std::uint32_t kMaxLevelSteps = 1000;
 constexpr double kLastCutoff = 1e-25;
+// Facets of an element above which its light is divided, each part for as many.
+constexpr double kFacetsOfPiece = 30.0;
+// The cut-off falls by this factor: gently where little is asked, as each pass may settle more than enough.
+constexpr double kFall = 0.1;
+constexpr double kGentleFall = 0.3;
+// Work in looks at a bounding box, as measured: cutting two polygons, and what every beam takes besides.
+constexpr std::uint64_t kWorkOfCut = 30;
+constexpr std::uint64_t kWorkOfBeam = 50;
+// Work grows as the power that is left behind falls, to this power, before two passes have told.
+constexpr double kUsualSlope = 0.5;
 // Beams that are kept for a lower cut-off: some 100 MB.
 constexpr std::size_t kMostDeferred = 200'000;
 
@@ -42,7 +54,9 @@ BeamWalk::BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const Cell
       join_area_(kJoinShare * part.size_mm * part.size_mm),
       merge_mm_(kMergeShare * part.size_mm) {}
 
-void BeamWalk::enter(const geometry::Polygon& entrance) {
+void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach approach) {
+  cutoff_ = cutoff;
+  approach_ = approach;
   const LightSetup::Entry& entry = setup_.entry;
   tally_.front[entry.front_cone] += entry.front;
   if (observer_ && entry.front.i > 0.0) observe_front();
@@ -58,17 +72,38 @@ void BeamWalk::enter(const geometry::Polygon& entrance) {
   whole.entry = whole.entry.continued(whole.start, whole.direction);
   for (const auto& p : entrance)
     whole.corners.push_back({p.x() - centre_mm_.x(), p.y() - centre_mm_.y(), setup_.thickness_mm});
-  if (setup_.infinite())
-    pending_.push_back(whole);
+  const double parts = parts_of_element();
+  if (setup_.infinite() && parts == 1.0)
+    pend(whole);
   else
-    enter_in_pieces(whole);
+    enter_in_pieces(whole, parts);
+  pass_ = {0.0, pending_power_};
+  // Where little is asked, the first pass is one of beams that are strong beside those that enter an element.
+  if (approach_ == Approach::falling && policy_.truncated_goal > kFinestGoal)
+    cutoff_ *= pending_power_ / static_cast<double>(pending_.size());
 }
 
-/// A large entrance in pieces of an element, so that each meets few facets.
-void BeamWalk::enter_in_pieces(const Beam& whole) {
+void BeamWalk::pend(Beam beam) {
+  beam.power = power_of(beam);
+  pending_power_ += beam.power;
+  pending_.push_back(std::move(beam));
+}
+
+/// Into how many parts along either axis light that falls on an element is divided: what facets hide of each other
+/// takes work as the square of their number, and rounded edges make dozens.
+double BeamWalk::parts_of_element() const {
+  double facets = 0.0;
+  for (const SurfacePatch& patch : part_.patches)
+    facets = std::max(facets, static_cast<double>(patch.facets.size()) / static_cast<double>(patch.cells.size()));
+  return std::max(1.0, std::ceil(std::sqrt(facets / kFacetsOfPiece)));
+}
+
+/// An entrance in pieces of an element or less, so that each meets few facets.
+void BeamWalk::enter_in_pieces(const Beam& whole, double parts) {
   Vec2 step = Vec2::Constant(part_.size_mm);
   if (const auto* rtp = std::get_if<geometry::RtpElement>(&part_.spec.element))
     step = Vec2(rtp->base_mm + part_.spec.x_gap_mm, rtp->width_mm + part_.spec.y_gap_mm);
+  step /= parts;
   const Frame from_above(-Vec3::UnitZ());
   const double whole_area = area(flattened(whole.corners, from_above, merge_mm_));
   PlanBox box;
@@ -83,39 +118,78 @@ void BeamWalk::enter_in_pieces(const Beam& whole) {
       piece.share = area(flattened(piece.corners, from_above, merge_mm_)) / whole_area;
       if (piece.share <= 0.0) continue;
       entered += piece.share;
-      pending_.push_back(std::move(piece));
+      pend(std::move(piece));
     }
   }
   book_rest(whole, 1.0 - entered);
 }
 
-BeamWalk::End BeamWalk::run(double cutoff, Approach approach, const Cancellation* cancel) {
-  cutoff_ = cutoff;
+BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel) {
+  cancel_ = cancel;
   for (;;) {
-    while (!pending_.empty()) {
-      if (cancel != nullptr && cancel->requested()) return End::cancelled;
+    while (!pending_.empty() && !may_stop()) {
+      if (is_cancelled(cancel)) return End::cancelled;
+      if (work_ >= most_work) return End::paused;
       const Beam beam = std::move(pending_.back());
       pending_.pop_back();
-      const double power = power_of(beam);
-      if (power < cutoff_) {
-        defer(beam, power);
+      pending_power_ -= beam.power;
+      if (beam.power < cutoff_) {
+        defer(beam);
         continue;
       }
       if (++beams_ > policy_.max_beams) fail_on_budget();
       advance(beam);
     }
-    const bool is_enough = approach == Approach::fixed || deferred_power_ <= policy_.truncated_goal;
-    if (is_enough || cutoff_ < kLastCutoff) break;
-    if (deferred_.size() > kMostDeferred) return End::cutoff_too_high;
-    cutoff_ *= 0.1;
-    pending_.swap(deferred_);
-    deferred_power_ = 0.0;
+    const bool is_enough = approach_ == Approach::fixed || open_power() <= policy_.truncated_goal;
+    if ((is_enough && (may_stop() || policy_.spare_work <= work_)) || cutoff_ < kLastCutoff) break;
+    if (deferred_.size() > kMostDeferred) {
+      if (is_enough) break;
+      return End::cutoff_too_high;
+    }
+    lower_cutoff();
   }
-  tally_.other[Account::truncated] += deferred_power_;
+  close();
   return End::done;
 }
 
-BeamResult BeamWalk::result(End end) const {
+/// Enough is settled, and work on more of it would cost something. Power that is open only ever falls, so that this may
+/// be asked at any time; sums of it that are kept up to date are too coarse for the finest goals.
+bool BeamWalk::may_stop() const {
+  if (approach_ == Approach::fixed) return pending_.empty();
+  if (policy_.truncated_goal <= kFinestGoal) return pending_.empty() && deferred_power_ <= policy_.truncated_goal;
+  return open_power() <= (work_ < policy_.spare_work ? kFinestGoal : policy_.truncated_goal);
+}
+
+void BeamWalk::lower_cutoff() {
+  cutoff_ *= policy_.truncated_goal <= kFinestGoal ? kFall : kGentleFall;
+  pass_ = {static_cast<double>(work_), deferred_power_};
+  pending_.swap(deferred_);
+  pending_power_ = deferred_power_;
+  deferred_power_ = 0.0;
+}
+
+/// What is open stays behind.
+void BeamWalk::close() {
+  for (const Beam& beam : pending_) deferred_power_ += beam.power;
+  pending_.clear();
+  pending_power_ = 0.0;
+  tally_.other[Account::truncated] += deferred_power_;
+}
+
+/// Work and open power follow each other as powers do; within a pass both are taken in proportion to the power that it
+/// has been through.
+double BeamWalk::expected_work() const {
+  const auto work = static_cast<double>(work_);
+  const double settled = 1.0 - pending_power_ / pass_.power;
+  if (settled < 0.01) return 2.0 * work;
+  const Pass end{pass_.work + (work - pass_.work) / settled, std::max(deferred_power_ / settled, 1e-300)};
+  if (approach_ == Approach::fixed || end.power <= policy_.truncated_goal) return std::max(end.work, work);
+  const bool tells = pass_.work > 0.0 && end.power < 0.9 * pass_.power;
+  const double slope = tells ? std::log(end.work / pass_.work) / std::log(pass_.power / end.power) : kUsualSlope;
+  return end.work * std::pow(end.power / policy_.truncated_goal, std::clamp(slope, 0.2, 2.0));
+}
+
+BeamResult BeamWalk::result() const {
   BeamResult result;
   for (std::size_t cone = 0; cone < setup_.cone_chord2.size(); ++cone) {
     result.ledgers.push_back(tally_.ledger(cone));
@@ -124,18 +198,18 @@ BeamResult BeamWalk::result(End end) const {
   result.beams = beams_;
   result.depth = depth_;
   result.cutoff = cutoff_;
-  result.complete = end == End::done;
   return result;
 }
 
 /// Beams below the cut-off are kept for a lower one, unless they are so many that they are better found again.
-void BeamWalk::defer(const Beam& beam, double power) {
-  deferred_power_ += power;
+void BeamWalk::defer(const Beam& beam) {
+  deferred_power_ += beam.power;
   if (deferred_.size() <= kMostDeferred) deferred_.push_back(beam);
 }
 
 void BeamWalk::advance(const Beam& beam) {
   depth_ = std::max(depth_, beam.depth);
+  work_ += kWorkOfBeam;
   const Frame frame(beam.direction);
   const FlatPolygon whole = flattened(beam.corners, frame, merge_mm_);
   const double whole_area = area(whole);
@@ -154,9 +228,11 @@ void BeamWalk::advance(const Beam& beam) {
   FlatPolygons rest;
   rest.push_back(whole);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    if (is_cancelled(cancel_)) return;
     for (const FlatPolygon& piece : visible_on_plane_of(k))
       meet_facet(beam, frame, candidates_[k], piece, share_of(piece));
     FlatPolygons left;
+    work_ += kWorkOfCut * rest.size();
     for (const FlatPolygon& piece : rest) subtract(piece, candidates_[k].piece, least_area_, merge_mm_, left);
     rest = std::move(left);
   }
@@ -175,12 +251,13 @@ Horizon BeamWalk::horizon_of(const Beam& beam) const {
   }
   const double dz = beam.direction.z();
   const double slack = 1e-6 * part_.size_mm;
-  if (dz >= 0.0 && low >= setup_.top_mm - slack) return {};
-  double first = 0.0;  // when the last of the beam has come into the layer
+  if (dz > -kGrazing && low >= setup_.top_mm - slack) return {};
+  double first = 0.0;  // when the last of the beam has come into the layer, or its first if that takes very long
   double last = kInfinity;
   if (dz > 0.0) last = (setup_.top_mm - low) / dz;
   if (dz < 0.0) {
     first = std::max(0.0, (high - setup_.top_mm) / -dz);
+    if (first > kFarInElements * part_.size_mm) first = std::max(0.0, (low - setup_.top_mm) / -dz);
     last = (high + setup_.depth_mm + slack) / -dz;
   }
   const double reach = first + kReachInElements * part_.size_mm;
@@ -233,6 +310,7 @@ void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatP
 
 void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const PlanBox& box,
                         const Plane* far, const SurfacePatch& patch, const PatchFacet& facet, const CellPlace& cell) {
+  ++work_;
   const Vec3 shift(cell.offset_mm.x(), cell.offset_mm.y(), cell.height_mm);
   const double towards = facet.normal.dot(beam.direction);
   if (beam.inside ? towards <= kGrazing : towards >= -kGrazing) return;
@@ -245,6 +323,7 @@ void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon&
     all_ahead = all_ahead && beam.start.height(corners.back()) >= 0.0;
   }
   if (!own.overlaps(box)) return;
+  work_ += kWorkOfCut;
   if (!all_ahead) corners = cut(corners, beam.start);
   if (far != nullptr) corners = cut(corners, *far);
   if (corners.empty()) return;
@@ -265,6 +344,7 @@ FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
   for (std::size_t j = 0; j < candidates_.size() && !visible.empty(); ++j) {
     const Candidate& other = candidates_[j];
     if (j == k || !own.box.overlaps(other.box)) continue;
+    work_ += kWorkOfCut;
     const FlatPolygon common = intersection(own.piece, other.piece, merge_mm_);
     if (common.size() < 3 || area(common) <= least_area_) continue;
     const Vec2 at = middle(common);
@@ -272,6 +352,7 @@ FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
     // Of two at the same distance the first counts.
     if (behind < 0.0 || (behind == 0.0 && k < j)) continue;
     FlatPolygons left;
+    work_ += kWorkOfCut * visible.size();
     for (const FlatPolygon& piece : visible) subtract(piece, other.piece, least_area_, merge_mm_, left);
     visible = std::move(left);
   }
@@ -311,7 +392,7 @@ void BeamWalk::pass_by(const Beam& from, const Frame& frame, const FlatPolygon& 
     beam.depth = from.depth;
     beam.level_steps = from.level_steps + 1;
     if (beam.level_steps < kMaxLevelSteps)
-      pending_.push_back(std::move(beam));
+      pend(std::move(beam));
     else
       tally_.other[Account::truncated] += power_of(beam);
     return;

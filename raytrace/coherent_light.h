@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <complex>
 
 #include "raytrace/light.h"
@@ -30,6 +31,12 @@ struct CoherentLight : Light {
     const double norm2 = across.squaredNorm();
     if (norm2 < kNormalIncidence) return;
     turn_to_axis(direction, across / std::sqrt(norm2));
+  }
+
+  /// \param share of the power that is left
+  void scale(double share) {
+    Light::scale(share);
+    jones *= std::sqrt(share);
   }
 
   CoherentLight reflected(const materials::FresnelCoefficients& f) const {

@@ -21,6 +21,9 @@ enum class Account : std::size_t {
 
 inline constexpr std::size_t kAccountCount = 9;
 
+/// `lost` above which a run counts as unsound.
+inline constexpr double kLostLimit = 1e-9;
+
 /// The accounts' names in files, in the order of the enumeration.
 inline constexpr std::array<std::string_view, kAccountCount> kAccountNames = {
     "retroreflected", "front_specular", "scattered_out", "returned_elsewhere", "side_exit", "transmitted",

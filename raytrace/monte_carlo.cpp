@@ -21,7 +21,6 @@ namespace retrace::raytrace {
 namespace {
 
 // Philox streams: of choices on the way; replicates.cpp has that of the scrambles of the entry points.
-constexpr std::uint32_t kChoiceStream = 2;
 constexpr std::uint32_t kEntryStream = 3;  // plain sampling
 
 std::size_t score_size(const LightSetup& setup) {
@@ -115,32 +114,64 @@ bool MonteCarlo::trace_range(const TraceTask& trace_task, std::uint32_t from, st
                           });
 }
 
+/// What the rounds of a run refer to, in the order in which it is made.
+struct MonteCarlo::Run::Question {
+  PathPolicy policy;
+  std::optional<LightSetup> light;
+  std::optional<PathSetup> paths;
+  TraceTask trace_task;
+  std::optional<Rounds> rounds;
+};
+
+MonteCarlo::Run::Run(const MonteCarlo& tracer, const Optics& optics, const Illumination& illumination,
+                     const std::vector<double>& cones_deg, const Sampling& sampling, const PathPolicy& policy,
+                     const Cancellation* cancel, const DirectionScore* score)
+    : question_(std::make_unique<Question>()) {
+  Question& q = *question_;
+  const Scene& scene = *tracer.scene_;
+  q.policy = policy;
+  PathPolicy how = policy;
+  if (sampling.kind == Sampling::Kind::plain) how.split_power = std::numeric_limits<double>::infinity();
+  const Vec2 centre = scene.entrance.centre_mm();
+  if (scene.surface)
+    q.paths.emplace(scene.part, *scene.surface, centre, optics, illumination, cones_deg, how, scene.front.get());
+  if (q.paths) q.paths->score = score;
+  if (scene.cells && q.paths) {
+    q.trace_task = tracer.by_cells(*q.paths, &*q.paths, q.policy, sampling.seed, cancel);
+  } else if (scene.cells) {
+    q.light.emplace(scene.part, centre, optics, illumination, cones_deg);
+    q.light->score = score;
+    q.trace_task = tracer.by_cells(*q.light, nullptr, q.policy, sampling.seed, cancel);
+  } else {
+    q.trace_task = tracer.one_by_one(*q.paths, sampling, cancel);
+  }
+  q.rounds.emplace(sampling, cones_deg, score != nullptr ? score->size() : 0,
+                   [&tracer, &q](std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates) {
+                     return tracer.trace_range(q.trace_task, from, until, replicates);
+                   });
+}
+
+MonteCarlo::Run::~Run() = default;
+
+bool MonteCarlo::Run::advance() {
+  return question_->rounds->advance();
+}
+
+const MonteCarloResult& MonteCarlo::Run::result() const {
+  return question_->rounds->result();
+}
+
+double MonteCarlo::Run::expected_segments() const {
+  return question_->rounds->expected_segments();
+}
+
 MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& illumination,
                                    const std::vector<double>& cones_deg, const Sampling& sampling,
                                    const PathPolicy& policy, const Cancellation* cancel,
                                    const DirectionScore* score) const {
-  std::optional<LightSetup> light;
-  std::optional<PathSetup> paths;
-  TraceTask trace_task;
-  PathPolicy how = policy;
-  if (sampling.kind == Sampling::Kind::plain) how.split_power = std::numeric_limits<double>::infinity();
-  const Vec2 centre = scene_->entrance.centre_mm();
-  if (scene_->surface)
-    paths.emplace(scene_->part, *scene_->surface, centre, optics, illumination, cones_deg, how, scene_->front.get());
-  if (paths) paths->score = score;
-  if (scene_->cells && paths) {
-    trace_task = by_cells(*paths, &*paths, policy, sampling.seed, cancel);
-  } else if (scene_->cells) {
-    light.emplace(scene_->part, centre, optics, illumination, cones_deg);
-    light->score = score;
-    trace_task = by_cells(*light, nullptr, policy, sampling.seed, cancel);
-  } else {
-    trace_task = one_by_one(*paths, sampling, cancel);
-  }
-  return trace_in_rounds(sampling, cones_deg, score != nullptr ? score->size() : 0,
-                         [&](std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates) {
-                           return trace_range(trace_task, from, until, replicates);
-                         });
+  Run run(*this, optics, illumination, cones_deg, sampling, policy, cancel, score);
+  while (!run.advance()) continue;
+  return run.result();
 }
 
 }  // namespace retrace::raytrace

@@ -82,6 +82,26 @@ class MonteCarlo {
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
                          const DirectionScore* score = nullptr) const;
 
+  /// The same round by round, to be dropped if something else is quicker.
+  class Run {
+   public:
+    /// Parameters as those of trace(). \pre `tracer`, `cancel` and `score` outlive the run
+    Run(const MonteCarlo& tracer, const Optics& optics, const Illumination& illumination,
+        const std::vector<double>& cones_deg, const Sampling& sampling, const PathPolicy& policy,
+        const Cancellation* cancel = nullptr, const DirectionScore* score = nullptr);
+    ~Run();
+
+    /// As Rounds::advance().
+    bool advance();
+    const MonteCarloResult& result() const;
+    /// As Rounds::expected_segments().
+    double expected_segments() const;
+
+   private:
+    struct Question;
+    std::unique_ptr<Question> question_;
+  };
+
  private:
   struct Scene;
   struct Task;

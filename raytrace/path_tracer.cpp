@@ -1,4 +1,5 @@
 #include "raytrace/path_tracer.h"
+#include "core/infinity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,6 @@ namespace {
 
 using geometry::FacetRole;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Pieces of an infinite surface that one straight line may cross before it counts as trapped.
 constexpr int kMaxWraps = 1000;
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 #include "core/random.h"
+#include "raytrace/ledger.h"
 #include "raytrace/threads.h"
 
 namespace retrace::raytrace {
@@ -21,11 +23,8 @@ constexpr std::uint32_t kRaysPerSlice = 64 * kRaysPerTask;
 constexpr std::uint32_t kMostRaysPerReplicate = UINT32_MAX - kRaysPerSlice;
 // Rays of a replicate before its error is looked at for the first time.
 constexpr std::uint32_t kFirstRound = 256;
-// Power that may be missing before the run counts as unsound.
-constexpr double kLostLimit = 1e-9;
-
-// Philox stream of the scrambles of the entry points.
-constexpr std::uint32_t kScrambleStream = 1;
+// The error falls about as rays to this power: 0.5 by chance, 1 where all is smooth.
+constexpr double kConvergence = 0.75;
 
 ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double half_angle_deg, std::size_t cone) {
   ConeResult result;
@@ -121,27 +120,38 @@ bool trace_replicates(std::uint32_t from, std::uint32_t until, std::vector<Tally
   return true;
 }
 
-MonteCarloResult trace_in_rounds(const Sampling& sampling, const std::vector<double>& cones_deg, std::size_t score_size,
-                                 const TraceRange& trace_range) {
-  const std::uint64_t rays = sampling.rays.value_or(sampling.max_rays);
-  const auto goal = static_cast<std::uint32_t>(
-      std::min<std::uint64_t>((rays + kReplicates - 1) / kReplicates, kMostRaysPerReplicate));
-  std::vector<Tally> replicates(kReplicates, Tally(cones_deg.size(), score_size));
-  MonteCarloResult result;
-  for (std::uint32_t done = 0; done < goal;) {
-    // Doubling keeps every round's points the first 2^k of their sequence, where they are best stratified.
-    const std::uint32_t until = done == 0 ? std::min(goal, kFirstRound) : (done > goal / 2 ? goal : 2 * done);
-    if (!trace_range(done, until, replicates)) {
-      result.complete = false;
-      return result;  // what the rounds before gave
-    }
-    done = until;
-    result = result_of(replicates, done, cones_deg);
-    check_lost(result);
-    if (!sampling.rays && largest_error(result) <= sampling.target_error) return result;
+Rounds::Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::size_t score_size, TraceRange trace_range)
+    : sampling_(sampling),
+      cones_deg_(std::move(cones_deg)),
+      trace_range_(std::move(trace_range)),
+      goal_(static_cast<std::uint32_t>(std::min<std::uint64_t>(
+          (sampling.rays.value_or(sampling.max_rays) + kReplicates - 1) / kReplicates, kMostRaysPerReplicate))),
+      replicates_(kReplicates, Tally(cones_deg_.size(), score_size)) {}
+
+/// Doubling keeps every round's points the first 2^k of their sequence, where they are best stratified.
+std::uint32_t Rounds::next_end() const {
+  if (done_ == 0) return std::min(goal_, kFirstRound);
+  return done_ > goal_ / 2 ? goal_ : 2 * done_;
+}
+
+bool Rounds::advance() {
+  const std::uint32_t end = next_end();
+  if (!trace_range_(done_, end, replicates_)) {
+    result_.complete = false;  // with what the rounds before gave
+    return true;
   }
-  result.reached_target = sampling.rays.has_value();
-  return result;
+  done_ = end;
+  result_ = result_of(replicates_, done_, cones_deg_);
+  check_lost(result_);
+  result_.reached_target = sampling_.rays || largest_error(result_) <= sampling_.target_error;
+  return done_ >= goal_ || (!sampling_.rays && result_.reached_target);
+}
+
+double Rounds::expected_segments() const {
+  const double miss = largest_error(result_) / sampling_.target_error;
+  const auto segments = static_cast<double>(result_.segments);
+  if (sampling_.rays || miss <= 1.0) return segments;
+  return segments * std::exp2(std::ceil(std::log2(miss) / kConvergence));
 }
 
 }  // namespace retrace::raytrace

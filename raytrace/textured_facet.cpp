@@ -1,5 +1,8 @@
 #include "raytrace/textured_facet.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace retrace::raytrace {
 namespace {
 
@@ -12,6 +15,13 @@ struct LocalEvent {
   surface_models::Facet piece;
 };
 
+/// Light that meets a retro facet from inside or outside, in the facet's frame.
+surface_models::ScatterEvent event_of(const Optics& optics, bool inside, const Vec3& direction) {
+  const double from = inside ? optics.index : optics.back_index;
+  const double to = inside ? optics.back_index : optics.index;
+  return {direction, from, to, optics.wavelength_nm, inside};
+}
+
 LocalEvent local_event(const Optics& optics, const Vec3& normal, const Ray& ray, surface_models::RandomStream& random) {
   LocalEvent local;
   const Vec3 z = ray.inside ? Vec3(-normal) : normal;
@@ -19,11 +29,7 @@ LocalEvent local_event(const Optics& optics, const Vec3& normal, const Ray& ray,
   const Vec3 level = normal.cross(Vec3::UnitZ());
   const Vec3 x = level.norm() > 1e-9 ? level.normalized() : normal.cross(Vec3::UnitX()).normalized();
   local.world_from_local << x, z.cross(x), z;
-  local.event.direction_in = local.world_from_local.transpose() * ray.direction;
-  local.event.index_from = ray.inside ? optics.index : optics.back_index;
-  local.event.index_to = ray.inside ? optics.back_index : optics.index;
-  local.event.wavelength_nm = optics.wavelength_nm;
-  local.event.inside_material = ray.inside;
+  local.event = event_of(optics, ray.inside, local.world_from_local.transpose() * ray.direction);
   local.piece = surface_models::sample_facet(optics.facet_scatter, local.event, random);
   return local;
 }
@@ -76,6 +82,12 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
   if (branch != Branch::reflected) scatter(transmitted, optics, local, Lobe::transmission, split_power, result, random);
   if (branch != Branch::transmitted) scatter(reflected, optics, local, Lobe::reflection, split_power, result, random);
   return result;
+}
+
+double mean_field_share(const Optics& optics, bool inside, double cos_incidence, Lobe lobe) {
+  const double sin_incidence = std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence));
+  const Vec3 direction(sin_incidence, 0.0, -cos_incidence);
+  return surface_models::mean_field_share(optics.facet_scatter, event_of(optics, inside, direction), lobe);
 }
 
 }  // namespace retrace::raytrace

@@ -48,4 +48,7 @@ struct TexturedReturn {
 TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
                                    surface_models::RandomStream& random);
 
+/// Share of a lobe's power that the texture of a retro facet leaves in its mean field.
+double mean_field_share(const Optics& optics, bool inside, double cos_incidence, surface_models::Lobe lobe);
+
 }  // namespace retrace::raytrace

@@ -19,20 +19,20 @@ constexpr Colour kWhite{1.0, 1.0, 1.0};
 constexpr Colour kAxis{0.35, 0.35, 0.35};
 constexpr Colour kText{0.13, 0.13, 0.13};
 constexpr Font kTitleFont{16.0, true};
-constexpr Font kPanelFont{12.5, true};
-constexpr Font kLabelFont{11.5, false};
-constexpr Font kTickFont{10.5, false};
+constexpr Font kImagePanelFont{12.5, true};
+constexpr Font kImageLabelFont{11.5, false};
+constexpr Font kImageTickFont{10.5, false};
 
 constexpr double kMargin = 22.0;
 constexpr double kRemarkHeight = 17.0;
-constexpr double kPicture = 340.0;  ///< longer side of a picture
-constexpr double kPanelTop = 30.0;  ///< for its title
-constexpr double kBelow = 40.0;     ///< for its scale bar
-constexpr double kBarGap = 14.0;
-constexpr double kBarWidth = 14.0;
+constexpr double kPicture = 340.0;    ///< longer side of a picture
+constexpr double kPanelTop = 30.0;    ///< for its title
+constexpr double kImageBelow = 40.0;  ///< for its scale bar
+constexpr double kImageBarGap = 14.0;
+constexpr double kImageBarWidth = 14.0;
 constexpr double kBarTexts = 86.0;
 constexpr int kBarSteps = 128;
-constexpr double kDecades = 4.0;
+constexpr double kImageDecades = 4.0;
 
 /// How values become shares of the colour scale.
 struct ValueScale {
@@ -41,7 +41,7 @@ struct ValueScale {
 
   double share(double value) const {
     if (!is_logarithmic) return value / full;
-    return value > 0.0 ? 1.0 + std::log10(value / full) / kDecades : 0.0;
+    return value > 0.0 ? 1.0 + std::log10(value / full) / kImageDecades : 0.0;
   }
 };
 
@@ -64,7 +64,7 @@ Size picture_size(const ImagePanel& panel) {
 }
 
 double panel_width(const ImagePanel& panel) {
-  return std::max(200.0, picture_size(panel).width) + kBarGap + kBarWidth + kBarTexts;
+  return std::max(200.0, picture_size(panel).width) + kImageBarGap + kImageBarWidth + kBarTexts;
 }
 
 void draw_frame(Canvas& canvas, Point corner, Size size) {
@@ -74,19 +74,19 @@ void draw_frame(Canvas& canvas, Point corner, Size size) {
 
 void draw_tick(Canvas& canvas, Point at, const std::string& label) {
   canvas.line({at, {at.x + 4.0, at.y}}, {kAxis, 1.0, {}});
-  canvas.text({at.x + 7.0, at.y + 3.6}, label, kTickFont, kText, Align::left);
+  canvas.text({at.x + 7.0, at.y + 3.6}, label, kImageTickFont, kText, Align::left);
 }
 
 void draw_value_bar(Canvas& canvas, const ImagePanel& panel, const ValueScale& scale, Point corner, double height) {
   std::vector<Colour> colours;
   for (int k = 0; k < kBarSteps; ++k) colours.push_back(colour_of(1.0 - (k + 0.5) / kBarSteps));
-  canvas.image(corner, {kBarWidth, height}, 1, colours);
-  draw_frame(canvas, corner, {kBarWidth, height});
+  canvas.image(corner, {kImageBarWidth, height}, 1, colours);
+  draw_frame(canvas, corner, {kImageBarWidth, height});
   const auto y_at = [&](double value) { return corner.y + height * (1.0 - scale.share(value)); };
-  const double x = corner.x + kBarWidth;
+  const double x = corner.x + kImageBarWidth;
   if (scale.is_logarithmic) {
     const int top = static_cast<int>(std::floor(std::log10(scale.full) + 1e-9));
-    for (int e = top; e > std::log10(scale.full) - kDecades - 1e-9; --e)
+    for (int e = top; e > std::log10(scale.full) - kImageDecades - 1e-9; --e)
       draw_tick(canvas, {x, y_at(std::pow(10.0, e))},
                 std::abs(e) < 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e));
   } else {
@@ -95,8 +95,8 @@ void draw_value_bar(Canvas& canvas, const ImagePanel& panel, const ValueScale& s
       draw_tick(canvas, {x, y_at(ticks.positions[k])}, ticks.labels[k]);
   }
   if (height > 150.0)
-    canvas.text({x + kBarTexts - 22.0, corner.y + 0.5 * height}, panel.value_label, kLabelFont, kText, Align::centre,
-                true);
+    canvas.text({x + kBarTexts - 22.0, corner.y + 0.5 * height}, panel.value_label, kImageLabelFont, kText,
+                Align::centre, true);
 }
 
 void draw_scale_bar(Canvas& canvas, const ImagePanel& panel, Point corner, double picture_width) {
@@ -106,12 +106,12 @@ void draw_scale_bar(Canvas& canvas, const ImagePanel& panel, Point corner, doubl
   const double y = corner.y + 16.0;
   canvas.line({{corner.x, y}, {corner.x + drawn, y}}, {kText, 3.0, {}});
   const std::string gap = panel.length_unit == "°" ? "" : " ";
-  canvas.text({corner.x + drawn + 8.0, y + 4.0}, shortest(length) + gap + panel.length_unit, kLabelFont, kText,
+  canvas.text({corner.x + drawn + 8.0, y + 4.0}, shortest(length) + gap + panel.length_unit, kImageLabelFont, kText,
               Align::left);
 }
 
 void draw(Canvas& canvas, const ImagePanel& panel, Point corner) {
-  canvas.text({corner.x, corner.y + 16.0}, panel.title, kPanelFont, kText, Align::left);
+  canvas.text({corner.x, corner.y + 16.0}, panel.title, kImagePanelFont, kText, Align::left);
   const ValueScale scale = scale_of(panel);
   std::vector<Colour> colours;
   colours.reserve(panel.values.size());
@@ -120,7 +120,7 @@ void draw(Canvas& canvas, const ImagePanel& panel, Point corner) {
   const Size size = picture_size(panel);
   canvas.image(at, size, panel.columns, colours);
   draw_frame(canvas, at, size);
-  draw_value_bar(canvas, panel, scale, {at.x + size.width + kBarGap, at.y}, size.height);
+  draw_value_bar(canvas, panel, scale, {at.x + size.width + kImageBarGap, at.y}, size.height);
   draw_scale_bar(canvas, panel, {at.x, at.y + size.height}, size.width);
 }
 
@@ -141,7 +141,7 @@ std::string render_png(const ImagePlot& plot, double scale) {
   double height = 0.0;
   for (const ImagePanel& panel : plot.panels) {
     width += panel_width(panel);
-    height = std::max(height, kPanelTop + picture_size(panel).height + kBelow);
+    height = std::max(height, kPanelTop + picture_size(panel).height + kImageBelow);
   }
   width = std::max(width, 420.0);
   const double head = kMargin + 26.0 + kRemarkHeight * static_cast<double>(plot.remarks.size());
@@ -154,7 +154,7 @@ std::string render_png(const ImagePlot& plot, double scale) {
   };
   line(plot.title, kTitleFont, kMargin + 12.0);
   for (std::size_t k = 0; k < plot.remarks.size(); ++k)
-    line(plot.remarks[k], kLabelFont, kMargin + 32.0 + kRemarkHeight * static_cast<double>(k));
+    line(plot.remarks[k], kImageLabelFont, kMargin + 32.0 + kRemarkHeight * static_cast<double>(k));
   double x = kMargin;
   for (const ImagePanel& panel : plot.panels) {
     draw(canvas, panel, {x, head});

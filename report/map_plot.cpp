@@ -24,24 +24,24 @@ constexpr Colour kHatch{0.80, 0.80, 0.80};
 constexpr Colour kLine{0.55, 0.55, 0.55};  ///< seen on the palest and the darkest region
 
 // YlGnBu of ColorBrewer (Harrower and Brewer 2003): sequential in lightness, safe with any kind of colour vision.
-constexpr std::array<Colour, 9> kScale = {{{1.000, 1.000, 0.851},
-                                           {0.929, 0.973, 0.694},
-                                           {0.780, 0.914, 0.706},
-                                           {0.498, 0.804, 0.733},
-                                           {0.255, 0.714, 0.769},
-                                           {0.114, 0.569, 0.753},
-                                           {0.133, 0.369, 0.659},
-                                           {0.145, 0.204, 0.580},
-                                           {0.031, 0.114, 0.345}}};
+constexpr std::array<Colour, 9> kMapScale = {{{1.000, 1.000, 0.851},
+                                              {0.929, 0.973, 0.694},
+                                              {0.780, 0.914, 0.706},
+                                              {0.498, 0.804, 0.733},
+                                              {0.255, 0.714, 0.769},
+                                              {0.114, 0.569, 0.753},
+                                              {0.133, 0.369, 0.659},
+                                              {0.145, 0.204, 0.580},
+                                              {0.031, 0.114, 0.345}}};
 constexpr int kColourSteps = 200;
 
-constexpr Font kRemarkFont{11.0, false};
-constexpr Font kLabelFont{13.0, false};
-constexpr Font kTickFont{11.0, false};
+constexpr Font kMapRemarkFont{11.0, false};
+constexpr Font kMapLabelFont{13.0, false};
+constexpr Font kMapTickFont{11.0, false};
 
-constexpr double kTickLength = 4.0;
+constexpr double kMapTickLength = 4.0;
 constexpr double kPlanLeft = 40.0;  ///< in its cell: room for the labels of the axis
-constexpr double kBarWidth = 16.0;
+constexpr double kMapBarWidth = 16.0;
 constexpr double kHatchSpacing = 6.0;
 /// Smoothed edges of neighbours would leave some of what is below.
 constexpr double kSwell = 0.15;
@@ -51,12 +51,12 @@ constexpr double kSurroundingsVeil = 0.62;
 /// Thin lines need this much room each.
 constexpr double kLeastCell = 3.0;
 
-Colour colour_at(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kScale.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(at), kScale.size() - 2);
+Colour map_colour_at(double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kMapScale.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(at), kMapScale.size() - 2);
   const double t = at - static_cast<double>(k);
-  const Colour& a = kScale[k];
-  const Colour& b = kScale[k + 1];
+  const Colour& a = kMapScale[k];
+  const Colour& b = kMapScale[k + 1];
   return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
 }
 
@@ -71,7 +71,7 @@ Rectangle shown_by(const MapPanel& panel) {
 }
 
 /// Measures that all panels share.
-struct Layout {
+struct MapLayout {
   std::size_t columns = 1;
   std::size_t rows = 1;
   Size box;           ///< of the largest plan
@@ -118,8 +118,8 @@ double plan_height(const MapPlot& plot, double width) {
   return width * std::clamp(plot.panels.empty() ? 1.0 : aspect, 0.12, 1.25);
 }
 
-Layout lay_out(const MapPlot& plot, const Canvas& canvas) {
-  Layout layout;
+MapLayout lay_out(const MapPlot& plot, const Canvas& canvas) {
+  MapLayout layout;
   const std::size_t count = plot.panels.size();
   layout.columns = columns_for(count);
   layout.rows = std::max<std::size_t>(1, (count + layout.columns - 1) / layout.columns);
@@ -127,28 +127,28 @@ Layout lay_out(const MapPlot& plot, const Canvas& canvas) {
   layout.box.height = plan_height(plot, layout.box.width);
   std::size_t remarks = 0;
   for (const MapPanel& panel : plot.panels) remarks = std::max(remarks, panel.remarks.size());
-  layout.head = kPanelFont.size + 11.0 + (kRemarkFont.size + 5.0) * static_cast<double>(remarks);
-  layout.cell = {layout.box.width + 58.0, layout.box.height + layout.head + kTickLength + kTickFont.size + 26.0};
+  layout.head = kPanelFont.size + 11.0 + (kMapRemarkFont.size + 5.0) * static_cast<double>(remarks);
+  layout.cell = {layout.box.width + 58.0, layout.box.height + layout.head + kMapTickLength + kMapTickFont.size + 26.0};
   layout.values = value_range(plot);
   layout.value_ticks = make_ticks(layout.values, 5);
-  layout.left = kMargin + kLabelFont.size + 4.0;
+  layout.left = kMargin + kMapLabelFont.size + 4.0;
 
   const double grid_width = layout.cell.width * static_cast<double>(layout.columns);
   const double grid_height = layout.cell.height * static_cast<double>(layout.rows);
   double label_width = 0.0;
   for (const std::string& label : layout.value_ticks.labels)
-    label_width = std::max(label_width, canvas.text_width(label, kTickFont));
+    label_width = std::max(label_width, canvas.text_width(label, kMapTickFont));
   layout.bar_left = layout.left + grid_width + 14.0;
-  layout.figure.width = std::ceil(
-      layout.bar_left + kBarWidth + kTickLength + 6.0 +
-      std::max(label_width + 8.0 + kLabelFont.size, canvas.text_width(plot.rest_label, kTickFont) - kTickLength) +
-      kMargin);
+  layout.figure.width = std::ceil(layout.bar_left + kMapBarWidth + kMapTickLength + 6.0 +
+                                  std::max(label_width + 8.0 + kMapLabelFont.size,
+                                           canvas.text_width(plot.rest_label, kMapTickFont) - kMapTickLength) +
+                                  kMargin);
   layout.title = canvas.fitted(plot.title, kTitleFont, layout.figure.width - 2.0 * kMargin, 2, Ellipsis::end);
   layout.top = kMargin + 1.3 * kTitleFont.size * static_cast<double>(layout.title.size()) + 4.0;
   layout.bar_height = std::min(320.0, std::max(150.0, layout.box.height) - 34.0);
   layout.bar_top = layout.top + layout.head;
   const double bar_bottom = layout.bar_top + layout.bar_height + 34.0;
-  layout.figure.height = std::ceil(std::max(layout.top + grid_height + kLabelFont.size - 4.0, bar_bottom) + kMargin);
+  layout.figure.height = std::ceil(std::max(layout.top + grid_height + kMapLabelFont.size - 4.0, bar_bottom) + kMargin);
   return layout;
 }
 
@@ -168,7 +168,7 @@ struct Plan {
 };
 
 /// The plan of a panel, in the middle of its box and to scale.
-Plan plan_of(const MapPanel& panel, const Layout& layout, Point box_corner) {
+Plan plan_of(const MapPanel& panel, const MapLayout& layout, Point box_corner) {
   const Rectangle shown = shown_by(panel);
   const double scale = std::min(layout.box.width / shown.size().x(), layout.box.height / shown.size().y());
   const Size size{scale * shown.size().x(), scale * shown.size().y()};
@@ -217,7 +217,7 @@ void draw_regions(Canvas& canvas, const MapPanel& panel, const Plan& plan, const
       by_colour[static_cast<int>(std::lround(share * kColourSteps))].push_back(plan.at(region.outline, copy));
     }
   for (const auto& [step, paths] : by_colour)
-    canvas.fill(paths, colour_at(static_cast<double>(step) / kColourSteps), kSwell);
+    canvas.fill(paths, map_colour_at(static_cast<double>(step) / kColourSteps), kSwell);
 }
 
 void draw_lines(Canvas& canvas, const MapPanel& panel, const Plan& plan) {
@@ -276,18 +276,20 @@ void draw_axes(Canvas& canvas, const Plan& plan) {
   const Ticks xs = make_ticks(plan.x.values, most(plan.size().width, 48.0));
   for (std::size_t k = 0; k < xs.positions.size(); ++k) {
     const double x = plan.x.at(xs.positions[k]);
-    canvas.line({{x, bottom}, {x, bottom + kTickLength}}, axis);
-    canvas.text({x, bottom + kTickLength + 3.0 + kTickFont.size}, xs.labels[k], kTickFont, kText, Align::centre);
+    canvas.line({{x, bottom}, {x, bottom + kMapTickLength}}, axis);
+    canvas.text({x, bottom + kMapTickLength + 3.0 + kMapTickFont.size}, xs.labels[k], kMapTickFont, kText,
+                Align::centre);
   }
   const Ticks ys = make_ticks(plan.y.values, most(plan.size().height, 34.0));
   for (std::size_t k = 0; k < ys.positions.size(); ++k) {
     const double y = plan.y.at(ys.positions[k]);
-    canvas.line({{left - kTickLength, y}, {left, y}}, axis);
-    canvas.text({left - kTickLength - 3.0, y + 0.36 * kTickFont.size}, ys.labels[k], kTickFont, kText, Align::right);
+    canvas.line({{left - kMapTickLength, y}, {left, y}}, axis);
+    canvas.text({left - kMapTickLength - 3.0, y + 0.36 * kMapTickFont.size}, ys.labels[k], kMapTickFont, kText,
+                Align::right);
   }
 }
 
-void draw_panel(Canvas& canvas, const MapPanel& panel, const Layout& layout, Point cell_corner) {
+void draw_panel(Canvas& canvas, const MapPanel& panel, const MapLayout& layout, Point cell_corner) {
   const double middle = cell_corner.x + kPlanLeft + 0.5 * layout.box.width;
   const Plan plan = plan_of(panel, layout, {cell_corner.x + kPlanLeft, cell_corner.y + layout.head});
   double baseline = plan.corner().y - 9.0;
@@ -297,20 +299,20 @@ void draw_panel(Canvas& canvas, const MapPanel& panel, const Layout& layout, Poi
     baseline -= font.size + 5.0;
   };
   for (auto remark = panel.remarks.rbegin(); remark != panel.remarks.rend(); ++remark)
-    line_above(*remark, kRemarkFont, kFaint);
+    line_above(*remark, kMapRemarkFont, kFaint);
   line_above(panel.title, kPanelFont, kText);
   draw_plan(canvas, panel, plan, layout.values);
   draw_axes(canvas, plan);
 }
 
-void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const Layout& layout) {
-  const double right = layout.bar_left + kBarWidth;
+void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const MapLayout& layout) {
+  const double right = layout.bar_left + kMapBarWidth;
   const double bottom = layout.bar_top + layout.bar_height;
   const double step = layout.bar_height / kColourSteps;
   for (int k = 0; k < kColourSteps; ++k)  // each a little taller than its step, to leave no gap
     canvas.fill_rectangle({layout.bar_left, layout.bar_top + k * step},
-                          {kBarWidth, k + 1 < kColourSteps ? 1.5 * step : step},
-                          colour_at(1.0 - (k + 0.5) / kColourSteps));
+                          {kMapBarWidth, k + 1 < kColourSteps ? 1.5 * step : step},
+                          map_colour_at(1.0 - (k + 0.5) / kColourSteps));
   const AxisScale scale{layout.values, bottom, layout.bar_top};
   const auto frame = [&](double top, double height) {
     canvas.line({{layout.bar_left, top},
@@ -325,25 +327,26 @@ void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const Layout& layout) 
   for (std::size_t k = 0; k < layout.value_ticks.positions.size(); ++k) {
     const double y = scale.at(layout.value_ticks.positions[k]);
     const std::string& label = layout.value_ticks.labels[k];
-    canvas.line({{right, y}, {right + kTickLength, y}}, {kAxis, 0.9, {}});
-    canvas.text({right + kTickLength + 4.0, y + 0.36 * kTickFont.size}, label, kTickFont, kText, Align::left);
-    widest = std::max(widest, canvas.text_width(label, kTickFont));
+    canvas.line({{right, y}, {right + kMapTickLength, y}}, {kAxis, 0.9, {}});
+    canvas.text({right + kMapTickLength + 4.0, y + 0.36 * kMapTickFont.size}, label, kMapTickFont, kText, Align::left);
+    widest = std::max(widest, canvas.text_width(label, kMapTickFont));
   }
-  canvas.text({right + kTickLength + 4.0 + widest + 6.0 + kLabelFont.size, layout.bar_top + 0.5 * layout.bar_height},
-              plot.value_label, kLabelFont, kText, Align::centre, true);
+  canvas.text(
+      {right + kMapTickLength + 4.0 + widest + 6.0 + kMapLabelFont.size, layout.bar_top + 0.5 * layout.bar_height},
+      plot.value_label, kMapLabelFont, kText, Align::centre, true);
 
   const double top = bottom + 18.0;
   const std::vector<Point> swatch = {
-      {layout.bar_left, top}, {right, top}, {right, top + kBarWidth}, {layout.bar_left, top + kBarWidth}};
+      {layout.bar_left, top}, {right, top}, {right, top + kMapBarWidth}, {layout.bar_left, top + kMapBarWidth}};
   canvas.fill({swatch}, kRest);
   canvas.hatch(swatch, kHatchSpacing, {kHatch, 0.8, {}});
-  frame(top, kBarWidth);
-  canvas.text({right + 6.0, top + 0.5 * kBarWidth + 0.36 * kTickFont.size}, plot.rest_label, kTickFont, kText,
+  frame(top, kMapBarWidth);
+  canvas.text({right + 6.0, top + 0.5 * kMapBarWidth + 0.36 * kMapTickFont.size}, plot.rest_label, kMapTickFont, kText,
               Align::left);
 }
 
 std::string render(const MapPlot& plot, Canvas::Format format, double scale) {
-  const Layout layout = lay_out(plot, Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0));
+  const MapLayout layout = lay_out(plot, Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0));
   Canvas canvas(format, layout.figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, layout.figure, kWhite);
   double baseline = kMargin + kTitleFont.size;
@@ -358,10 +361,10 @@ std::string render(const MapPlot& plot, Canvas::Format format, double scale) {
   }
   const double grid_width = layout.cell.width * static_cast<double>(layout.columns);
   const double grid_height = layout.cell.height * static_cast<double>(layout.rows);
-  canvas.text({layout.left + 0.5 * (grid_width + 22.0), layout.top + grid_height + kLabelFont.size - 8.0},
-              fmt::format("x ({})", plot.axis_unit), kLabelFont, kText, Align::centre);
-  canvas.text({kMargin + kLabelFont.size - 4.0, layout.top + 0.5 * grid_height}, fmt::format("y ({})", plot.axis_unit),
-              kLabelFont, kText, Align::centre, true);
+  canvas.text({layout.left + 0.5 * (grid_width + 22.0), layout.top + grid_height + kMapLabelFont.size - 8.0},
+              fmt::format("x ({})", plot.axis_unit), kMapLabelFont, kText, Align::centre);
+  canvas.text({kMargin + kMapLabelFont.size - 4.0, layout.top + 0.5 * grid_height},
+              fmt::format("y ({})", plot.axis_unit), kMapLabelFont, kText, Align::centre, true);
   draw_colour_bar(canvas, plot, layout);
   return canvas.finish();
 }

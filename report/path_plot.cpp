@@ -13,16 +13,16 @@ namespace {
 using geometry::Vec2;
 
 constexpr Colour kMaterial{0.88, 0.88, 0.88};
-constexpr Colour kOutline{0.35, 0.35, 0.35};
+constexpr Colour kPathOutline{0.35, 0.35, 0.35};
 // Okabe and Ito (2008): blue, vermillion, bluish green, reddish purple, black.
 constexpr std::array<Colour, 5> kColours = {
     {{0.0, 0.447, 0.698}, {0.835, 0.369, 0.0}, {0.0, 0.620, 0.451}, {0.8, 0.475, 0.655}, {0.0, 0.0, 0.0}}};
-constexpr Font kRemarkFont{11.5, false};
-constexpr Font kLabelFont{13.0, false};
-constexpr Font kTickFont{11.0, false};
-constexpr double kPlanWidth = 560.0;
-constexpr double kLeft = 74.0;
-constexpr double kBelow = 52.0;
+constexpr Font kPathRemarkFont{11.5, false};
+constexpr Font kPathLabelFont{13.0, false};
+constexpr Font kPathTickFont{11.0, false};
+constexpr double kPathPlanWidth = 560.0;
+constexpr double kPathLeft = 74.0;
+constexpr double kPathBelow = 52.0;
 constexpr double kLegendLine = 20.0;
 
 struct Box {
@@ -52,12 +52,12 @@ Box box_of(const PathPlot& plot) {
 std::string draw(const PathPlot& plot, Canvas::Format format, double scale) {
   const Box box = box_of(plot);
   const Vec2 size = box.high - box.low;
-  const double height = kPlanWidth * std::clamp(size.y() / size.x(), 0.15, 1.4);
-  const double unit = std::min(kPlanWidth / size.x(), height / size.y());
+  const double height = kPathPlanWidth * std::clamp(size.y() / size.x(), 0.15, 1.4);
+  const double unit = std::min(kPathPlanWidth / size.x(), height / size.y());
   const double top =
-      kMargin + kTitleFont.size + 14.0 + (kRemarkFont.size + 5.0) * static_cast<double>(plot.remarks.size());
-  const double legend_top = top + height + kBelow + 8.0;
-  const Size figure{kLeft + kPlanWidth + kMargin,
+      kMargin + kTitleFont.size + 14.0 + (kPathRemarkFont.size + 5.0) * static_cast<double>(plot.remarks.size());
+  const double legend_top = top + height + kPathBelow + 8.0;
+  const Size figure{kPathLeft + kPathPlanWidth + kMargin,
                     legend_top + kLegendLine * static_cast<double>((plot.kinds.size() + 3) / 4) + kMargin};
   Canvas canvas(format, figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, figure, kWhite);
@@ -66,49 +66,51 @@ std::string draw(const PathPlot& plot, Canvas::Format format, double scale) {
   double y = kMargin + kTitleFont.size;
   for (const std::string& line : title) canvas.text({kMargin, y}, line, kTitleFont, kText, Align::left);
   for (const std::string& remark : plot.remarks) {
-    y += kRemarkFont.size + 5.0;
-    for (const std::string& line : canvas.fitted(remark, kRemarkFont, figure.width - 2.0 * kMargin, 1, Ellipsis::end))
-      canvas.text({kMargin, y}, line, kRemarkFont, kFaint, Align::left);
+    y += kPathRemarkFont.size + 5.0;
+    for (const std::string& line :
+         canvas.fitted(remark, kPathRemarkFont, figure.width - 2.0 * kMargin, 1, Ellipsis::end))
+      canvas.text({kMargin, y}, line, kPathRemarkFont, kFaint, Align::left);
   }
 
   const auto at = [&](const Vec2& p) {
-    return Point{kLeft + (p.x() - box.low.x()) * unit, top + height - (p.y() - box.low.y()) * unit};
+    return Point{kPathLeft + (p.x() - box.low.x()) * unit, top + height - (p.y() - box.low.y()) * unit};
   };
   std::vector<Point> material;
   for (const Vec2& p : plot.material) material.push_back(at(p));
   if (!material.empty()) {
     canvas.fill({material}, kMaterial);
-    canvas.line(material, {kOutline, 1.0, {}});
+    canvas.line(material, {kPathOutline, 1.0, {}});
   }
   for (std::size_t k = 0; k < plot.kinds.size(); ++k) {
     Stroke stroke{kColours[k % kColours.size()], 0.9, {}};
     if (plot.kinds[k].dashed) stroke.dashes = {4.0, 3.0};
     for (const auto& [from, to] : plot.kinds[k].moves) canvas.line({at(from), at(to)}, stroke);
-    const Point sample{kLeft + 140.0 * static_cast<double>(k % 4),
+    const Point sample{kPathLeft + 140.0 * static_cast<double>(k % 4),
                        legend_top + kLegendLine * static_cast<double>(k / 4)};
     stroke.width = 2.0;
     canvas.line({sample, {sample.x + 24.0, sample.y}}, stroke);
-    canvas.text({sample.x + 30.0, sample.y + 4.0}, plot.kinds[k].label, kTickFont, kText, Align::left);
+    canvas.text({sample.x + 30.0, sample.y + 4.0}, plot.kinds[k].label, kPathTickFont, kText, Align::left);
   }
 
-  const Range across{box.low.x(), box.low.x() + kPlanWidth / unit};
+  const Range across{box.low.x(), box.low.x() + kPathPlanWidth / unit};
   const Range up{box.low.y(), box.low.y() + height / unit};
-  const Stroke axis{kOutline, 1.0, {}};
-  canvas.line({{kLeft, top}, {kLeft, top + height}, {kLeft + kPlanWidth, top + height}}, axis);
+  const Stroke axis{kPathOutline, 1.0, {}};
+  canvas.line({{kPathLeft, top}, {kPathLeft, top + height}, {kPathLeft + kPathPlanWidth, top + height}}, axis);
   const Ticks below = make_ticks(across, 6);
   for (std::size_t k = 0; k < below.positions.size(); ++k) {
-    const double x = kLeft + (below.positions[k] - across.low) * unit;
+    const double x = kPathLeft + (below.positions[k] - across.low) * unit;
     canvas.line({{x, top + height}, {x, top + height + 4.0}}, axis);
-    canvas.text({x, top + height + 17.0}, below.labels[k], kTickFont, kText, Align::centre);
+    canvas.text({x, top + height + 17.0}, below.labels[k], kPathTickFont, kText, Align::centre);
   }
   const Ticks beside = make_ticks(up, 6);
   for (std::size_t k = 0; k < beside.positions.size(); ++k) {
     const double at_y = top + height - (beside.positions[k] - up.low) * unit;
-    canvas.line({{kLeft - 4.0, at_y}, {kLeft, at_y}}, axis);
-    canvas.text({kLeft - 7.0, at_y + 4.0}, beside.labels[k], kTickFont, kText, Align::right);
+    canvas.line({{kPathLeft - 4.0, at_y}, {kPathLeft, at_y}}, axis);
+    canvas.text({kPathLeft - 7.0, at_y + 4.0}, beside.labels[k], kPathTickFont, kText, Align::right);
   }
-  canvas.text({kLeft + 0.5 * kPlanWidth, top + height + 38.0}, plot.x_label, kLabelFont, kText, Align::centre);
-  canvas.text({18.0, top + 0.5 * height}, plot.y_label, kLabelFont, kText, Align::centre, true);
+  canvas.text({kPathLeft + 0.5 * kPathPlanWidth, top + height + 38.0}, plot.x_label, kPathLabelFont, kText,
+              Align::centre);
+  canvas.text({18.0, top + 0.5 * height}, plot.y_label, kPathLabelFont, kText, Align::centre, true);
   return canvas.finish();
 }
 

@@ -8,6 +8,22 @@
 #include "studies/design/design_json.h"
 
 namespace retrace::report {
+namespace {
+
+PolarMark::Kind mark_of(studies::Verdict verdict) {
+  switch (verdict) {
+    case studies::Verdict::pass:
+    case studies::Verdict::unconfirmed:
+      return PolarMark::Kind::holds;
+    case studies::Verdict::undetermined:
+      return PolarMark::Kind::open;
+    case studies::Verdict::fail:
+      return PolarMark::Kind::fails;
+  }
+  return PolarMark::Kind::open;
+}
+
+}  // namespace
 
 PolarPlot far_field_plot(const studies::PhotometryResult& result) {
   PolarPlot plot;
@@ -23,7 +39,7 @@ PolarPlot far_field_plot(const studies::PhotometryResult& result) {
       if (p.asked.v_deg == map.v_deg && p.asked.h_deg == map.h_deg)
         panel.marks.push_back({0.0, p.asked.observation_deg,
                                fmt::format("{} mcd/lx", fixed(p.r_i_mcd_per_lx, p.r_i_mcd_per_lx < 10.0 ? 1 : 0)),
-                               p.passes()});
+                               mark_of(p.verdict())});
     plot.panels.push_back(std::move(panel));
   }
   return plot;

@@ -18,34 +18,35 @@ namespace {
 
 constexpr Colour kRing{0.85, 0.85, 0.85};
 constexpr Colour kHolds{1.0, 1.0, 1.0};
-constexpr Colour kFails{0.902, 0.624, 0.0};  // Okabe and Ito's orange
-constexpr Colour kOutline{0.0, 0.0, 0.0};
+constexpr Colour kUndetermined{0.337, 0.706, 0.914};  // Okabe and Ito's sky blue
+constexpr Colour kFails{0.902, 0.624, 0.0};           // and their orange
+constexpr Colour kPolarOutline{0.0, 0.0, 0.0};
 // Viridis (Smith and van der Walt 2015), as the other pictures of grids.
-constexpr std::array<Colour, 9> kScale = {{{0.267, 0.005, 0.329},
-                                           {0.279, 0.175, 0.483},
-                                           {0.230, 0.322, 0.546},
-                                           {0.173, 0.449, 0.558},
-                                           {0.128, 0.567, 0.551},
-                                           {0.158, 0.684, 0.502},
-                                           {0.369, 0.789, 0.383},
-                                           {0.678, 0.864, 0.190},
-                                           {0.993, 0.906, 0.144}}};
-constexpr Font kLabelFont{12.0, false};
-constexpr Font kTickFont{10.0, false};
+constexpr std::array<Colour, 9> kPolarScale = {{{0.267, 0.005, 0.329},
+                                                {0.279, 0.175, 0.483},
+                                                {0.230, 0.322, 0.546},
+                                                {0.173, 0.449, 0.558},
+                                                {0.128, 0.567, 0.551},
+                                                {0.158, 0.684, 0.502},
+                                                {0.369, 0.789, 0.383},
+                                                {0.678, 0.864, 0.190},
+                                                {0.993, 0.906, 0.144}}};
+constexpr Font kPolarLabelFont{12.0, false};
+constexpr Font kPolarTickFont{10.0, false};
 constexpr double kDisc = 250.0;  ///< diameter
-constexpr Size kCell{290.0, 304.0};
+constexpr Size kPolarCell{290.0, 304.0};
 constexpr double kBarRoom = 96.0;
-constexpr double kBarWidth = 14.0;
+constexpr double kPolarBarWidth = 14.0;
 constexpr std::size_t kMostAbreast = 3;
 /// Decades below the largest value that colours tell apart.
-constexpr double kDecades = 4.0;
+constexpr double kPolarDecades = 4.0;
 
-Colour colour_at(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kScale.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(at), kScale.size() - 2);
+Colour polar_colour_at(double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kPolarScale.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(at), kPolarScale.size() - 2);
   const double t = at - static_cast<double>(k);
-  const Colour& a = kScale[k];
-  const Colour& b = kScale[k + 1];
+  const Colour& a = kPolarScale[k];
+  const Colour& b = kPolarScale[k + 1];
   return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
 }
 
@@ -65,9 +66,9 @@ Range decades_of(const PolarPlot& plot) {
   for (const PolarPanel& panel : plot.panels)
     for (const double v : panel.values)
       if (std::isfinite(v)) largest = std::max(largest, v);
-  if (!(largest > 0.0)) return {-kDecades, 0.0};
+  if (!(largest > 0.0)) return {-kPolarDecades, 0.0};
   const double top = std::log10(largest);
-  return {top - kDecades, top};
+  return {top - kPolarDecades, top};
 }
 
 void draw_disc(Canvas& canvas, const PolarPanel& panel, Point centre, Range decades) {
@@ -76,7 +77,7 @@ void draw_disc(Canvas& canvas, const PolarPanel& panel, Point centre, Range deca
   for (std::size_t row = panel.columns; row-- > 0;)
     for (std::size_t column = 0; column < panel.columns; ++column) {
       const double v = panel.values[row * panel.columns + column];
-      colours.push_back(colour_at(v > 0.0 ? (std::log10(v) - decades.low) / decades.span() : 0.0));
+      colours.push_back(polar_colour_at(v > 0.0 ? (std::log10(v) - decades.low) / decades.span() : 0.0));
     }
   if (colours.empty()) return;
   canvas.clip(circle(centre, radius));
@@ -91,21 +92,40 @@ void draw_rings(Canvas& canvas, const PolarPanel& panel, Point centre) {
     if (!(ticks.positions[k] > 0.0)) continue;
     canvas.line(circle(centre, scale * ticks.positions[k]), {kRing, 0.7, {3.0, 3.0}});
     canvas.text({centre.x + 0.7071 * scale * ticks.positions[k] - 2.0, centre.y + 0.7071 * scale * ticks.positions[k]},
-                ticks.labels[k] + "°", kTickFont, kRing, Align::right);
+                ticks.labels[k] + "°", kPolarTickFont, kRing, Align::right);
   }
   canvas.line({{centre.x - 5.0, centre.y}, {centre.x + 5.0, centre.y}}, {kRing, 0.8, {}});
   canvas.line({{centre.x, centre.y - 5.0}, {centre.x, centre.y + 5.0}}, {kRing, 0.8, {}});
   canvas.line(circle(centre, 0.5 * kDisc), {kText, 1.0, {}});
 }
 
+struct PolarMarkStyle {
+  Marker shape = Marker::circle;
+  double outline = 4.6;
+  double size = 3.4;
+  Colour colour = kHolds;
+};
+
+PolarMarkStyle style_of(PolarMark::Kind kind) {
+  switch (kind) {
+    case PolarMark::Kind::holds:
+      return {};
+    case PolarMark::Kind::open:
+      return {Marker::square, 5.2, 3.8, kUndetermined};
+    case PolarMark::Kind::fails:
+      return {Marker::triangle, 6.2, 4.6, kFails};
+  }
+  return {};
+}
+
 void draw_marks(Canvas& canvas, const PolarPanel& panel, Point centre) {
   const double scale = 0.5 * kDisc / panel.radius_deg;
   for (const PolarMark& mark : panel.marks) {
     const Point at{centre.x + scale * mark.right_deg, centre.y - scale * mark.up_deg};
-    const Marker shape = mark.holds ? Marker::circle : Marker::triangle;
-    canvas.marker(at, shape, mark.holds ? 4.6 : 6.2, kOutline);
-    canvas.marker(at, shape, mark.holds ? 3.4 : 4.6, mark.holds ? kHolds : kFails);
-    canvas.text({at.x + 8.0, at.y + 3.6}, mark.label, kTickFont, kWhite, Align::left);
+    const PolarMarkStyle style = style_of(mark.kind);
+    canvas.marker(at, style.shape, style.outline, kPolarOutline);
+    canvas.marker(at, style.shape, style.size, style.colour);
+    canvas.text({at.x + 8.0, at.y + 3.6}, mark.label, kPolarTickFont, kWhite, Align::left);
   }
 }
 
@@ -113,22 +133,23 @@ void draw_bar(Canvas& canvas, Point corner, Range decades, std::string_view labe
   constexpr std::size_t kSteps = 128;
   std::vector<Colour> colours;
   for (std::size_t i = 0; i < kSteps; ++i)
-    colours.push_back(colour_at(1.0 - static_cast<double>(i) / static_cast<double>(kSteps - 1)));
-  canvas.image(corner, {kBarWidth, kDisc}, 1, colours);
+    colours.push_back(polar_colour_at(1.0 - static_cast<double>(i) / static_cast<double>(kSteps - 1)));
+  canvas.image(corner, {kPolarBarWidth, kDisc}, 1, colours);
   const AxisScale scale{decades, corner.y + kDisc, corner.y};
   for (int e = static_cast<int>(std::ceil(decades.low)); e <= static_cast<int>(std::floor(decades.high)); ++e) {
-    canvas.line({{corner.x + kBarWidth, scale.at(e)}, {corner.x + kBarWidth + 4.0, scale.at(e)}}, {kText, 1.0, {}});
+    canvas.line({{corner.x + kPolarBarWidth, scale.at(e)}, {corner.x + kPolarBarWidth + 4.0, scale.at(e)}},
+                {kText, 1.0, {}});
     const std::string text = e >= -3 && e <= 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e);
-    canvas.text({corner.x + kBarWidth + 7.0, scale.at(e) + 3.6}, text, kTickFont, kText, Align::left);
+    canvas.text({corner.x + kPolarBarWidth + 7.0, scale.at(e) + 3.6}, text, kPolarTickFont, kText, Align::left);
   }
-  canvas.text({corner.x + kBarRoom - 24.0, corner.y + 0.5 * kDisc}, label, kLabelFont, kText, Align::centre, true);
+  canvas.text({corner.x + kBarRoom - 24.0, corner.y + 0.5 * kDisc}, label, kPolarLabelFont, kText, Align::centre, true);
 }
 
 std::string render(const PolarPlot& plot, Canvas::Format format, double scale) {
   const std::size_t abreast = std::clamp<std::size_t>(plot.panels.size(), 1, kMostAbreast);
   const std::size_t rows = std::max<std::size_t>(1, (plot.panels.size() + abreast - 1) / abreast);
-  const Size size{2.0 * kMargin + static_cast<double>(abreast) * kCell.width + kBarRoom,
-                  2.0 * kMargin + 24.0 + static_cast<double>(rows) * kCell.height};
+  const Size size{2.0 * kMargin + static_cast<double>(abreast) * kPolarCell.width + kBarRoom,
+                  2.0 * kMargin + 24.0 + static_cast<double>(rows) * kPolarCell.height};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
   const auto title = canvas.fitted(plot.title, kTitleFont, size.width - 2.0 * kMargin, 1, Ellipsis::middle);
@@ -137,15 +158,15 @@ std::string render(const PolarPlot& plot, Canvas::Format format, double scale) {
   const Range decades = decades_of(plot);
   for (std::size_t k = 0; k < plot.panels.size(); ++k) {
     const PolarPanel& panel = plot.panels[k];
-    const Point cell{kMargin + kCell.width * static_cast<double>(k % abreast),
-                     kMargin + 24.0 + kCell.height * static_cast<double>(k / abreast)};
-    const Point centre{cell.x + 0.5 * kCell.width, cell.y + 34.0 + 0.5 * kDisc};
+    const Point cell{kMargin + kPolarCell.width * static_cast<double>(k % abreast),
+                     kMargin + 24.0 + kPolarCell.height * static_cast<double>(k / abreast)};
+    const Point centre{cell.x + 0.5 * kPolarCell.width, cell.y + 34.0 + 0.5 * kDisc};
     canvas.text({centre.x, cell.y + 24.0}, panel.title, kPanelFont, kText, Align::centre);
     draw_disc(canvas, panel, centre, decades);
     draw_rings(canvas, panel, centre);
     draw_marks(canvas, panel, centre);
   }
-  draw_bar(canvas, {kMargin + static_cast<double>(abreast) * kCell.width + 10.0, kMargin + 58.0}, decades,
+  draw_bar(canvas, {kMargin + static_cast<double>(abreast) * kPolarCell.width + 10.0, kMargin + 58.0}, decades,
            plot.value_label);
   return canvas.finish();
 }

@@ -11,7 +11,8 @@ struct PolarMark {
   double right_deg = 0.0;
   double up_deg = 0.0;
   std::string label;
-  bool holds = true;  ///< a circle; else a warning triangle
+  enum class Kind { holds, open, fails };
+  Kind kind = Kind::holds;  ///< a circle, a square, or a warning triangle
 };
 
 /// Values around a direction, as colours in a disc whose radius is the angle from it, up being up.

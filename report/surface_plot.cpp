@@ -14,40 +14,40 @@
 namespace retrace::report {
 namespace {
 
-constexpr Colour kGrid{0.88, 0.88, 0.88};
+constexpr Colour kSurfaceGrid{0.88, 0.88, 0.88};
 constexpr Colour kMissingColour{0.75, 0.75, 0.75};
 // Okabe and Ito (2008), as the other plots.
 constexpr std::array<Colour, 3> kCurves = {{{0.0, 0.447, 0.698}, {0.835, 0.369, 0.0}, {0.0, 0.620, 0.451}}};
 // Viridis (Smith and van der Walt 2015): even in lightness, safe with any kind of colour vision.
-constexpr std::array<Colour, 9> kScale = {{{0.267, 0.005, 0.329},
-                                           {0.279, 0.175, 0.483},
-                                           {0.230, 0.322, 0.546},
-                                           {0.173, 0.449, 0.558},
-                                           {0.128, 0.567, 0.551},
-                                           {0.158, 0.684, 0.502},
-                                           {0.369, 0.789, 0.383},
-                                           {0.678, 0.864, 0.190},
-                                           {0.993, 0.906, 0.144}}};
+constexpr std::array<Colour, 9> kSurfaceScale = {{{0.267, 0.005, 0.329},
+                                                  {0.279, 0.175, 0.483},
+                                                  {0.230, 0.322, 0.546},
+                                                  {0.173, 0.449, 0.558},
+                                                  {0.128, 0.567, 0.551},
+                                                  {0.158, 0.684, 0.502},
+                                                  {0.369, 0.789, 0.383},
+                                                  {0.678, 0.864, 0.190},
+                                                  {0.993, 0.906, 0.144}}};
 
-constexpr Font kLabelFont{12.0, false};
-constexpr Font kTickFont{10.5, false};
+constexpr Font kSurfaceLabelFont{12.0, false};
+constexpr Font kSurfaceTickFont{10.5, false};
 
-constexpr Size kCell{430.0, 390.0};  ///< of one panel with its texts
+constexpr Size kSurfaceCell{430.0, 390.0};  ///< of one panel with its texts
 constexpr Size kPlotArea{290.0, 290.0};
-constexpr double kLeft = 62.0;  ///< of the plot area in its cell
+constexpr double kSurfaceLeft = 62.0;  ///< of the plot area in its cell
 constexpr double kTop = 34.0;
-constexpr double kBarGap = 12.0;
-constexpr double kBarWidth = 14.0;
+constexpr double kSurfaceBarGap = 12.0;
+constexpr double kSurfaceBarWidth = 14.0;
 constexpr std::size_t kMostPixels = 480;  ///< of a grid along an axis; finer ones are averaged
 /// Heights this many standard deviations off the mean have the colour of the end of the scale.
 constexpr double kColourReach = 3.0;
 
-Colour colour_at(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kScale.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(at), kScale.size() - 2);
+Colour surface_colour_at(double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kSurfaceScale.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(at), kSurfaceScale.size() - 2);
   const double t = at - static_cast<double>(k);
-  const Colour& a = kScale[k];
-  const Colour& b = kScale[k + 1];
+  const Colour& a = kSurfaceScale[k];
+  const Colour& b = kSurfaceScale[k + 1];
   return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
 }
 
@@ -114,41 +114,43 @@ void draw_frame(Canvas& canvas, const Area& area) {
 
 void draw_x_tick(Canvas& canvas, const Area& area, double x, std::string_view label) {
   canvas.line({{x, area.bottom()}, {x, area.bottom() + 4.0}}, {kAxis, 1.0, {}});
-  canvas.text({x, area.bottom() + 6.0 + kTickFont.size}, label, kTickFont, kText, Align::centre);
+  canvas.text({x, area.bottom() + 6.0 + kSurfaceTickFont.size}, label, kSurfaceTickFont, kText, Align::centre);
 }
 
 void draw_y_tick(Canvas& canvas, const Area& area, double y, std::string_view label) {
   canvas.line({{area.corner.x - 4.0, y}, {area.corner.x, y}}, {kAxis, 1.0, {}});
-  canvas.text({area.corner.x - 7.0, y + 0.36 * kTickFont.size}, label, kTickFont, kText, Align::right);
+  canvas.text({area.corner.x - 7.0, y + 0.36 * kSurfaceTickFont.size}, label, kSurfaceTickFont, kText, Align::right);
 }
 
 void draw_texts(Canvas& canvas, const Area& area, Point cell, std::string_view title, std::string_view x_label,
                 std::string_view y_label) {
   const double middle = area.corner.x + 0.5 * area.size.width;
-  canvas.text({cell.x + kLeft, cell.y + 22.0}, title, kPanelFont, kText, Align::left);
-  canvas.text({middle, area.bottom() + 38.0}, x_label, kLabelFont, kText, Align::centre);
-  canvas.text({cell.x + 14.0, area.corner.y + 0.5 * area.size.height}, y_label, kLabelFont, kText, Align::centre, true);
+  canvas.text({cell.x + kSurfaceLeft, cell.y + 22.0}, title, kPanelFont, kText, Align::left);
+  canvas.text({middle, area.bottom() + 38.0}, x_label, kSurfaceLabelFont, kText, Align::centre);
+  canvas.text({cell.x + 14.0, area.corner.y + 0.5 * area.size.height}, y_label, kSurfaceLabelFont, kText, Align::centre,
+              true);
 }
 
 void draw_bar(Canvas& canvas, const Area& area, Range range, std::string_view label) {
-  const double left = area.right() + kBarGap;
+  const double left = area.right() + kSurfaceBarGap;
   constexpr std::size_t kSteps = 128;
   std::vector<Colour> colours;
   for (std::size_t i = 0; i < kSteps; ++i)
-    colours.push_back(colour_at(1.0 - static_cast<double>(i) / static_cast<double>(kSteps - 1)));
-  canvas.image({left, area.corner.y}, {kBarWidth, area.size.height}, 1, colours);
-  draw_frame(canvas, {{left, area.corner.y}, {kBarWidth, area.size.height}});
+    colours.push_back(surface_colour_at(1.0 - static_cast<double>(i) / static_cast<double>(kSteps - 1)));
+  canvas.image({left, area.corner.y}, {kSurfaceBarWidth, area.size.height}, 1, colours);
+  draw_frame(canvas, {{left, area.corner.y}, {kSurfaceBarWidth, area.size.height}});
   const AxisScale scale{range, area.bottom(), area.corner.y};
   const Ticks ticks = make_ticks(range, 5);
   double widest = 0.0;
   for (std::size_t i = 0; i < ticks.positions.size(); ++i) {
     const double y = scale.at(ticks.positions[i]);
-    canvas.line({{left + kBarWidth, y}, {left + kBarWidth + 4.0, y}}, {kAxis, 1.0, {}});
-    canvas.text({left + kBarWidth + 7.0, y + 0.36 * kTickFont.size}, ticks.labels[i], kTickFont, kText, Align::left);
-    widest = std::max(widest, canvas.text_width(ticks.labels[i], kTickFont));
+    canvas.line({{left + kSurfaceBarWidth, y}, {left + kSurfaceBarWidth + 4.0, y}}, {kAxis, 1.0, {}});
+    canvas.text({left + kSurfaceBarWidth + 7.0, y + 0.36 * kSurfaceTickFont.size}, ticks.labels[i], kSurfaceTickFont,
+                kText, Align::left);
+    widest = std::max(widest, canvas.text_width(ticks.labels[i], kSurfaceTickFont));
   }
-  canvas.text({left + kBarWidth + widest + 22.0, area.corner.y + 0.5 * area.size.height}, label, kLabelFont, kText,
-              Align::centre, true);
+  canvas.text({left + kSurfaceBarWidth + widest + 22.0, area.corner.y + 0.5 * area.size.height}, label,
+              kSurfaceLabelFont, kText, Align::centre, true);
 }
 
 void draw_linear_axes(Canvas& canvas, const Area& area, Range x_range, Range y_range, bool y_down) {
@@ -164,7 +166,7 @@ void draw_linear_axes(Canvas& canvas, const Area& area, Range x_range, Range y_r
 
 /// A profile: heights over x.
 void draw_profile(Canvas& canvas, const GridPanel& panel, Point cell) {
-  const Area area{{cell.x + kLeft, cell.y + kTop}, kPlotArea};
+  const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, kPlotArea};
   const Range heights = drawable(extent_of(panel.values).value_or(Range{0.0, 1.0}));
   const AxisScale x{{0.0, panel.x_size_um}, area.corner.x, area.right()};
   const AxisScale y{heights, area.bottom(), area.corner.y};
@@ -194,12 +196,12 @@ void draw(Canvas& canvas, const GridPanel& panel, Point cell) {
   // To scale, within the plot area; a strip keeps a visible width.
   const double scale = std::min(kPlotArea.width / panel.x_size_um, kPlotArea.height / panel.y_size_um);
   const Size size{std::max(20.0, scale * panel.x_size_um), std::max(20.0, scale * panel.y_size_um)};
-  const Area area{{cell.x + kLeft, cell.y + kTop}, size};
+  const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, size};
   const GridPanel small = reduced(panel);
   const Range range = colour_range(small.values);
   std::vector<Colour> colours;
   for (const double v : small.values)
-    colours.push_back(std::isfinite(v) ? colour_at((v - range.low) / range.span()) : kMissingColour);
+    colours.push_back(std::isfinite(v) ? surface_colour_at((v - range.low) / range.span()) : kMissingColour);
   canvas.image(area.corner, area.size, small.columns, colours);
   draw_frame(canvas, area);
   draw_linear_axes(canvas, area, {0.0, panel.x_size_um}, {0.0, panel.y_size_um}, true);
@@ -230,17 +232,17 @@ std::string power_of_ten(int exponent) {
 
 void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
   constexpr double kMostDecades = 12.0;
-  const Area area{{cell.x + kLeft, cell.y + kTop}, {kPlotArea.width + 60.0, kPlotArea.height}};
+  const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, {kPlotArea.width + 60.0, kPlotArea.height}};
   const AxisScale x{decades(panel, true, kMostDecades), area.corner.x, area.right()};
   const AxisScale y{decades(panel, false, kMostDecades), area.bottom(), area.corner.y};
   for (int e = static_cast<int>(std::ceil(x.values.low)); e <= static_cast<int>(std::floor(x.values.high)); ++e) {
-    canvas.line({{x.at(e), area.corner.y}, {x.at(e), area.bottom()}}, {kGrid, 0.9, {}});
+    canvas.line({{x.at(e), area.corner.y}, {x.at(e), area.bottom()}}, {kSurfaceGrid, 0.9, {}});
     draw_x_tick(canvas, area, x.at(e), power_of_ten(e));
   }
   const int y_step = y.values.span() > 7.0 ? 2 : 1;
   for (int e = static_cast<int>(std::ceil(y.values.low)); e <= static_cast<int>(std::floor(y.values.high));
        e += y_step) {
-    canvas.line({{area.corner.x, y.at(e)}, {area.right(), y.at(e)}}, {kGrid, 0.9, {}});
+    canvas.line({{area.corner.x, y.at(e)}, {area.right(), y.at(e)}}, {kSurfaceGrid, 0.9, {}});
     draw_y_tick(canvas, area, y.at(e), power_of_ten(e));
   }
   canvas.clip(area.corner, area.size);
@@ -256,8 +258,8 @@ void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
   draw_frame(canvas, area);
   double right = area.right() - 10.0;
   for (std::size_t c = panel.curves.size(); c-- > 0;) {
-    canvas.text({right, area.corner.y + 18.0}, panel.curves[c].label, kLabelFont, kText, Align::right);
-    right -= canvas.text_width(panel.curves[c].label, kLabelFont) + 8.0;
+    canvas.text({right, area.corner.y + 18.0}, panel.curves[c].label, kSurfaceLabelFont, kText, Align::right);
+    right -= canvas.text_width(panel.curves[c].label, kSurfaceLabelFont) + 8.0;
     canvas.line({{right - 18.0, area.corner.y + 14.0}, {right, area.corner.y + 14.0}},
                 {kCurves[c % kCurves.size()], 2.0, {}});
     right -= 34.0;
@@ -267,15 +269,16 @@ void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
 
 std::string render(const SurfacePlot& plot, Canvas::Format format, double scale) {
   const std::size_t rows = (plot.panels.size() + 1) / 2;
-  const Size size{2.0 * kCell.width + 2.0 * kMargin, static_cast<double>(rows) * kCell.height + 2.0 * kMargin + 24.0};
+  const Size size{2.0 * kSurfaceCell.width + 2.0 * kMargin,
+                  static_cast<double>(rows) * kSurfaceCell.height + 2.0 * kMargin + 24.0};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
   const auto title = canvas.fitted(plot.title, kTitleFont, size.width - 2.0 * kMargin, 1, Ellipsis::middle);
   if (!title.empty())
     canvas.text({0.5 * size.width, kMargin + kTitleFont.size}, title.front(), kTitleFont, kText, Align::centre);
   for (std::size_t i = 0; i < plot.panels.size(); ++i) {
-    const Point cell{kMargin + kCell.width * static_cast<double>(i % 2),
-                     kMargin + 24.0 + kCell.height * static_cast<double>(i / 2)};
+    const Point cell{kMargin + kSurfaceCell.width * static_cast<double>(i % 2),
+                     kMargin + 24.0 + kSurfaceCell.height * static_cast<double>(i / 2)};
     std::visit([&](const auto& panel) { draw(canvas, panel, cell); }, plot.panels[i]);
   }
   return canvas.finish();

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kNmPerUm = 1e3;
+constexpr double kNmPerMicrometre = 1e3;
 constexpr double kLeastTurn = 0.5 * std::numbers::pi / 180.0;
 
 /// Measured points in um. Heights are mirrored for a valley, so that the edge is always convex.
@@ -111,7 +111,7 @@ Solution solve(const Points& points, Shape shape, VectorXd start) {
   VectorXd values(residuals.values());
   residuals(start, values);
   const auto freedom = static_cast<double>(std::max<Eigen::Index>(1, values.size() - start.size()));
-  return {start, std::sqrt(values.squaredNorm() / freedom) * kNmPerUm};
+  return {start, std::sqrt(values.squaredNorm() / freedom) * kNmPerMicrometre};
 }
 
 /// The better of the solutions from several first sizes: a search that starts far off may end in a local minimum.
@@ -150,7 +150,7 @@ Points measured(const std::vector<double>& heights_nm, double pixel_um) {
   for (std::size_t i = 0; i < heights_nm.size(); ++i) {
     if (!std::isfinite(heights_nm[i])) continue;
     points.x_um.push_back(static_cast<double>(i) * pixel_um);
-    points.z_um.push_back(heights_nm[i] / kNmPerUm);
+    points.z_um.push_back(heights_nm[i] / kNmPerMicrometre);
   }
   if (points.x_um.size() < kLeastEdgePoints)
     throw std::invalid_argument("an edge needs at least 16 measured points across it");
@@ -216,7 +216,7 @@ EdgeFit fit_edge(const std::vector<double>& heights_nm, double pixel_um) {
   for (std::size_t i = 0; i < heights_nm.size(); ++i) {
     const double x_um = static_cast<double>(i) * pixel_um;
     const double shape_um = is_flat ? chamfered_height(p, x_um) : rounded_height(p, x_um);
-    fit.residual_nm.push_back(heights_nm[i] - sign * shape_um * kNmPerUm);
+    fit.residual_nm.push_back(heights_nm[i] - sign * shape_um * kNmPerMicrometre);
   }
   return fit;
 }

@@ -60,4 +60,10 @@ Summary summarise(std::span<const double> values) {
   return s;
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace retrace::surface_models

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace retrace::surface_models {
 
@@ -16,6 +17,9 @@ struct HeightParameters {
 
 /// The parameters of the finite values of `heights_nm`. \pre there is one
 HeightParameters height_parameters(std::span<const double> heights_nm);
+
+/// The middle one of some values, of an even number the upper of two. \pre there is one
+double median(std::vector<double> values);
 
 /// Repeated measurements of one quantity.
 struct Summary {

@@ -1,4 +1,5 @@
 #include "surface_models/scratches.h"
+#include "surface_models/height_parameters.h"
 
 #include <algorithm>
 #include <array>
@@ -15,12 +16,6 @@ constexpr double kGaussianMad = 1.4826;
 constexpr std::size_t kLeastLines = 16;
 /// Lines to each side that a line is compared with, at least.
 constexpr double kLeastBeside = 4.0;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// One line of the map: its mean height and those of its stretches, NaN where nothing was measured.
 struct Line {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "surface_models/fft.h"
+#include "surface_models/height_parameters.h"
 
 namespace retrace::surface_models {
 namespace {
@@ -53,12 +54,6 @@ double put_windowed(std::span<double> field, const std::vector<double>& window, 
     field[i] = std::isfinite(z) ? window[i] * (z - sum / weight) : 0.0;
   }
   return squares;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The densities around a bin, its own lobe left out, about the line through the medians of both sides.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/atomic_file.h"
 #include "core/io/toml_node.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
@@ -278,8 +279,7 @@ void TomlTable::finish() const {
 
 TomlTable parse_toml(std::string_view text, const std::string& source_name) {
   const std::string file = printable(source_name, std::string::npos);
-  if (text.size() > kLongestTomlBytes)
-    throw InputError({file, 0, ""}, fmt::format("too long, at most {} bytes are allowed", kLongestTomlBytes));
+  require_short_text(text, file, kMostTextBytes);
   check_nesting(text, file);
   auto hidden = std::make_shared<TomlTable::Hidden>();
   try {

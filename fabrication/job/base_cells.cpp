@@ -25,7 +25,7 @@ using geometry::Vec2;
 using geometry::Vec3;
 
 /// Outlines that cross the border by less than this share of the part's size lie within it, as in a design.
-constexpr double kWholeTolerance = 1e-9;
+constexpr double kInsideTolerance = 1e-9;
 /// Directions that differ by less than this are one: far below what rotary words tell apart.
 constexpr double kSameDirection = 1e-13;
 
@@ -130,7 +130,7 @@ class Placer {
   }
 
   bool is_within(const Vec2& arc, bool turned) const {
-    const double tolerance_mm = kWholeTolerance * 2.0 * half_mm_.maxCoeff();
+    const double tolerance_mm = kInsideTolerance * 2.0 * half_mm_.maxCoeff();
     const double side = turned ? -1.0 : 1.0;  // prisms that are turned are square
     return std::all_of(rim_.begin(), rim_.end(), [&](const RimCorner& corner) {
       Vec2 plan = surface_.plan_of(arc + side * corner.at_mm);

@@ -12,7 +12,7 @@ namespace {
 using geometry::Vec2;
 
 /// Apertures that cross the border by less than this share of their size lie within it, as in a design.
-constexpr double kWholeTolerance = 1e-9;
+constexpr double kCubeTolerance = 1e-9;
 
 double aperture_mm(const geometry::Element& element) {
   if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&element)) return hexagonal->aperture_mm;
@@ -32,7 +32,7 @@ class Finder {
         box_(box_of(element)),
         half_period_mm_(0.25 * aperture_mm(element) * Vec2(3.0, std::numbers::sqrt3)) {
     half_block_mm_ = 0.5 * Vec2(array.x_length_mm, array.y_length_mm) - Vec2(array.x_offset_mm, array.y_offset_mm) +
-                     Vec2::Constant(kWholeTolerance * aperture_mm(element));
+                     Vec2::Constant(kCubeTolerance * aperture_mm(element));
   }
 
   std::vector<CubeCell> run() {

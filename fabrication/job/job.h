@@ -54,6 +54,9 @@ struct Tool {
 /// The wedge of a V-shaped tool with rake 22 and clearance 3 (thesis 1.4.2): they add up to 90.
 inline constexpr double kDmcWedgeDeg = 65.0;
 
+/// Programs say feeds in thousandths of a mm/min: less than half of one would be F0.000, a move that never ends.
+inline constexpr double kLeastFeedMmPerMin = 5e-4;
+
 /// How an element is cut: depths, feeds and the thesis's recommendations, which are off by default.
 struct Process {
   std::string name;

@@ -15,10 +15,6 @@ constexpr double kShare = 0.95;
 constexpr double kStepShare = 0.25;
 constexpr int kMostSteps = 4000;
 
-double millimetres(Nanometres nm) {
-  return static_cast<double>(nm) / kNanometresPerMm;
-}
-
 }  // namespace
 
 ClearWay::ClearWay(const Job& job, const Machine& machine)

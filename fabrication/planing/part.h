@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+
+#include "core/error.h"
 
 namespace retrace::fabrication {
 
@@ -31,12 +35,22 @@ struct PlaningMill {
   double clear_mm = 14.0;    ///< height above the blank of moves over it
 };
 
+/// Senses in which a spindle turns: M3 and M4 of ISO 6983-1, where clockwise drives a right-hand screw away from the
+/// headstock.
+enum class SpindleDirection { clockwise, counterclockwise };
+inline constexpr std::string_view kSpindleDirectionWords[] = {"clockwise", "counterclockwise"};
+
 /// A lathe: X is the radius, Z along the axis, both at a time. Words are those of the nose's lowest point.
 struct PlaningLathe {
   double feed_mm_per_min = 0.0;
   double depth_of_cut_mm = 1.0;  ///< of a pass
   double clear_mm = 2.0;
   double nose_radius_mm = 0.0;  ///< of the tool
+  std::int32_t spindle_rpm = 0;
+  SpindleDirection spindle_direction = SpindleDirection::clockwise;
+  std::string spindle_start;       ///< lines of a PMAC program; empty: not given
+  std::string spindle_stop;        ///< given if spindle_start is
+  InputLocation spindle_start_at;  ///< where it is given, or would be
 };
 
 /// A flat optical element that is to be planed or turned.

@@ -154,6 +154,11 @@ void add_pass(const PlanedPart& part, const PlaningPlan& plan, double raised_mm,
   planned.frames += 3;
 }
 
+Spindle spindle_of(const PlaningLathe& lathe) {
+  return {lathe.spindle_rpm, lathe.spindle_direction == SpindleDirection::clockwise, lathe.spindle_start,
+          lathe.spindle_stop};
+}
+
 PlaningPlan plan_lathe(const PlanedPart& part) {
   const ZoneProfile profile(part.lens);
   PlaningPlan plan;
@@ -166,6 +171,7 @@ PlaningPlan plan_lathe(const PlanedPart& part) {
   plan.passes = static_cast<std::int64_t>(std::ceil(profile.step_mm() / part.lathe->depth_of_cut_mm));
   PlannedProgram planned;
   planned.set = "passes";
+  planned.program.spindle = spindle_of(*part.lathe);
   planned.program.header = {"X is the radius"};
   if (part.lathe->nose_radius_mm > 0.0)
     planned.program.header.push_back(

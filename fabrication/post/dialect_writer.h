@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "fabrication/program/move_program.h"
 #include "fabrication/program/program.h"
 
 namespace retrace::fabrication {
@@ -55,6 +56,9 @@ class DialectWriter {
   /// Plane, mm, absolute, feed per minute, compensations and blending off, exact stop, first zero offset, spindle off.
   virtual void prepare(NcText& out) const = 0;
   virtual void mist(NcText& out, bool on) const = 0;
+  /// S in turns per minute with M3 or M4, and M5, unless the dialect says otherwise.
+  virtual void start_spindle(NcText& out, const Spindle& spindle) const;
+  virtual void stop_spindle(NcText& out, const Spindle& spindle) const;
   virtual void comment(NcText& out, std::string_view text) const = 0;
   virtual void message(NcText& out, std::string_view text) const = 0;
   virtual void optional_stop(NcText& out) const = 0;

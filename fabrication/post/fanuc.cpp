@@ -18,6 +18,10 @@ class Fanuc : public DialectWriter {
     out.line("M5");
   }
   void mist(NcText& out, bool on) const override { out.line(on ? "M7" : "M9"); }
+  void start_spindle(NcText& out, const Spindle& spindle) const override {
+    out.add("G97 ");  // S is no cutting speed
+    DialectWriter::start_spindle(out, spindle);
+  }
   void comment(NcText& out, std::string_view text) const override { out.add("(").add(text).line(")"); }
   void message(NcText& out, std::string_view text) const override { comment(out, text); }
   void optional_stop(NcText& out) const override { out.line("M1"); }

@@ -4,7 +4,9 @@ namespace retrace::fabrication {
 namespace {
 
 /// Power PMAC script (Power PMAC user's and software reference manuals): no G codes, an explicit prelude, dwells in ms.
-/// Coordinate system 1 is to have the axes X, Y, Z in mm and A, C in degrees.
+/// Coordinate system 1 is to have the axes X, Y, Z in mm and A, C in degrees. M codes are subprograms of the
+/// integrator's, and one that is missing is skipped without a word: what starts and stops a spindle is told from
+/// outside.
 class Pmac : public DialectWriter {
  public:
   bool subroutines_first() const override { return true; }
@@ -22,6 +24,9 @@ class Pmac : public DialectWriter {
     out.line("M5");
   }
   void mist(NcText& out, bool on) const override { out.line(on ? "M7" : "M9"); }
+  /// \pre the spindle has its texts
+  void start_spindle(NcText& out, const Spindle& spindle) const override { out.line(spindle.start_text); }
+  void stop_spindle(NcText& out, const Spindle& spindle) const override { out.line(spindle.stop_text); }
   void comment(NcText& out, std::string_view text) const override { out.add("// ").line(text); }
   void message(NcText& out, std::string_view text) const override { comment(out, text); }
   void optional_stop(NcText& out) const override { out.line("M1"); }

@@ -202,6 +202,14 @@ NcText& NcText::words(const Words& words) {
   return *this;
 }
 
+void DialectWriter::start_spindle(NcText& out, const Spindle& spindle) const {
+  out.add("S").number(spindle.rpm).line(spindle.is_clockwise ? " M3" : " M4");
+}
+
+void DialectWriter::stop_spindle(NcText& out, const Spindle&) const {
+  out.line("M5");
+}
+
 std::span<const Dialect> dialects() {
   static const std::array<Dialect, kEntries.size()> all = [] {
     std::array<Dialect, kEntries.size()> result;
@@ -254,7 +262,9 @@ std::string nc_text(const MoveProgram& program, std::string_view dialect) {
   writer->begin_main(out);
   for (const std::string& line : program.header) writer->comment(out, line);
   writer->prepare(out);
+  if (program.spindle) writer->start_spindle(out, *program.spindle);
   for (const auto& item : program.items) std::visit(MoveWriter{*writer, out}, item);
+  if (program.spindle) writer->stop_spindle(out, *program.spindle);
   writer->end_main(out);
   writer->end_file(out);
   return out.take();

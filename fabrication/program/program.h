@@ -16,6 +16,10 @@ using Nanometres = std::int64_t;
 using RotaryUnits = std::int64_t;
 
 inline constexpr double kNanometresPerMm = 1e6;
+
+inline double millimetres(Nanometres nm) {
+  return static_cast<double>(nm) / kNanometresPerMm;
+}
 inline constexpr double kRotaryUnitsPerDeg = 1e7;
 
 /// What a move of a subroutine is for.

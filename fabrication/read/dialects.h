@@ -23,7 +23,7 @@ NcProgram parse_fanuc(NcLines lines);
 
 /// Omron/Delta Tau Power PMAC: open prog ... close, rapid, linear, abs, inc, dwell in ms, call.
 /// (Power PMAC User's Manual; Software Reference)
-NcProgram parse_pmac(NcLines lines);
+NcProgram parse_pmac(NcLines lines, const NcSpindleTexts& spindle = {});
 
 /// What a text that stopped in the middle of its last line leaves: the error that this gave, as a remark.
 /// Runs `read`, and turns an InputError in an open last line into NcProgram::truncated.

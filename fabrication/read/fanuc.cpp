@@ -10,7 +10,7 @@ namespace {
 using Code = IsoBlock::Code;
 
 /// Groups of the operator's manual, G code system B of lathes and that of machining centres.
-IsoBlock::Meaning meaning_of(double g) {
+IsoBlock::Meaning fanuc_meaning_of(double g) {
   if (g == 0) return {Code::rapid, 1};
   if (g == 1) return {Code::linear, 1};
   if (g == 4) return {Code::dwell, 0};
@@ -28,6 +28,7 @@ IsoBlock::Meaning meaning_of(double g) {
   if (g == 91) return {Code::incremental, 3};
   if (g == 93) return {Code::inverse_time, 5};
   if (g == 94) return {Code::feed_per_minute, 5};
+  if (g == 97) return {Code::no_effect, 17};  // S counts turns per minute
   return {};
 }
 
@@ -54,9 +55,9 @@ struct Line {
   bool p_has_point = false;
 };
 
-class Reader {
+class FanucReader {
  public:
-  explicit Reader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
+  explicit FanucReader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
     program_.file = lines_.file();
     program_.dialect = NcDialect::fanuc;
   }
@@ -120,7 +121,7 @@ class Reader {
       case 'N':
         return;
       case 'G':
-        return iso.set_g(word, meaning_of(word.number.value));
+        return iso.set_g(word, fanuc_meaning_of(word.number.value));
       case 'M':
         return read_m(word, iso, line);
       case 'F':
@@ -131,7 +132,7 @@ class Reader {
         line.p_has_point = word.number.has_point;
         return;
       case 'S':
-        return;
+        return iso.set_spindle_speed(word);
       default:
         lines_.fail(fmt::format("a word {} is not understood", word.letter));
     }
@@ -190,7 +191,7 @@ class Reader {
 }  // namespace
 
 NcProgram parse_fanuc(NcLines lines) {
-  return Reader(std::move(lines)).run();
+  return FanucReader(std::move(lines)).run();
 }
 
 }  // namespace retrace::fabrication

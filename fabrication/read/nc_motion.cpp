@@ -22,6 +22,13 @@ class Runner {
   Runner(const NcProgram& program, NcSink& sink) : program_(program), sink_(sink) {}
 
   NcEnd run() {
+    NcEnd end = carry_out_all();
+    end.settings = settings_;
+    return end;
+  }
+
+ private:
+  NcEnd carry_out_all() {
     next_ = program_.main_first;
     while (next_ < program_.main_last || !calls_.empty()) {
       if (!calls_.empty() && next_ >= calls_.back().end) {
@@ -36,10 +43,9 @@ class Runner {
       if (block.returns && !calls_.empty()) go_back();
       if (block.ends) return end();
     }
-    return {false, program_.lines, program_.truncated.value_or("the program does not end")};
+    return {false, program_.lines, program_.truncated.value_or("the program does not end"), {}};
   }
 
- private:
   struct Call {
     std::size_t back = 0;  ///< block to go on with
     std::size_t end = 0;   ///< block behind the subroutine's last
@@ -52,12 +58,12 @@ class Runner {
 
   NcEnd end() const {
     if (!program_.truncated) return {};
-    return {false, program_.lines, *program_.truncated};
+    return {false, program_.lines, *program_.truncated, {}};
   }
 
   NcEnd missing_subroutine(const NcBlock& block) const {
     const std::string& name = program_.subroutines[static_cast<std::size_t>(block.call)].name;
-    return {false, block.line, fmt::format("the file does not hold the whole of subroutine {}", name)};
+    return {false, block.line, fmt::format("the file does not hold the whole of subroutine {}", name), {}};
   }
 
   bool call(const NcBlock& block) {
@@ -85,7 +91,8 @@ class Runner {
     take_over(settings_.exact_stop, block.exact_stop);
     take_over(settings_.workpiece_offset, block.workpiece_offset);
     take_over(settings_.compensation_off, block.compensation_off);
-    take_over(settings_.spindle_on, block.spindle_on);
+    take_over(settings_.spindle, block.spindle);
+    take_over(settings_.spindle_rpm, block.spindle_rpm);
     take_over(settings_.mist_on, block.mist_on);
     if (block.move) move_ = block.move;
     take_over(inverse_time_, block.inverse_time);

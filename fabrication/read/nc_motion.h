@@ -36,7 +36,8 @@ struct NcSettings {
   std::optional<bool> exact_stop;
   std::optional<bool> workpiece_offset;
   std::optional<bool> compensation_off;
-  std::optional<bool> spindle_on;
+  std::optional<NcSpindle> spindle;
+  std::optional<double> spindle_rpm;
   std::optional<bool> mist_on;
 };
 
@@ -53,6 +54,7 @@ struct NcEnd {
   bool is_complete = true;  ///< it reached its end, and nothing was missing
   std::int32_t line = 0;    ///< where it stopped if not
   std::string reason;
+  NcSettings settings;  ///< that the program leaves behind
 };
 
 /// Most levels of calls, which is above what controllers allow, and most blocks that are carried out.

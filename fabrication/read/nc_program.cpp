@@ -4,7 +4,7 @@
 
 namespace retrace::fabrication {
 
-NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect) {
+NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect, const NcSpindleTexts& spindle) {
   NcLines lines(text, file);
   switch (dialect) {
     case NcDialect::rs274ngc:
@@ -14,7 +14,7 @@ NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dia
     case NcDialect::fanuc:
       return parse_fanuc(std::move(lines));
     case NcDialect::pmac:
-      return parse_pmac(std::move(lines));
+      return parse_pmac(std::move(lines), spindle);
   }
   throw InputError({file, 0, ""}, "no such dialect");
 }

@@ -22,6 +22,15 @@ inline constexpr std::string_view kNcAxisLetters = "XYZACB";
 
 enum class NcMove : std::uint8_t { rapid, linear };
 
+/// What a program asks of the spindle: M5, M3, M4, or the lines of an NcSpindleTexts.
+enum class NcSpindle : std::uint8_t { stopped, clockwise, counterclockwise, started_by_text, stopped_by_text };
+
+/// Lines that start and stop the spindle of a control that has no words of its own for it. Empty: there is none.
+struct NcSpindleTexts {
+  std::string start;
+  std::string stop;
+};
+
 /// A setting that a block may make. Nothing: the block does not say.
 template <class Value>
 using Setting = std::optional<Value>;
@@ -42,7 +51,8 @@ struct NcBlock {
   Setting<bool> exact_stop;        ///< false: blocks are blended
   Setting<bool> workpiece_offset;  ///< G54 chosen
   Setting<bool> compensation_off;  ///< of the tool's radius or length
-  Setting<bool> spindle_on;
+  Setting<NcSpindle> spindle;
+  Setting<double> spindle_rpm;  ///< S
   Setting<bool> mist_on;
   Setting<double> dwell_s;
   std::int32_t call = -1;  ///< index of a subroutine
@@ -75,9 +85,10 @@ inline constexpr std::size_t kLongestNcLine = 1024;
 inline constexpr std::size_t kLongestNcBytes = std::size_t{1} << 30;
 
 /// Reads the text of a program. Whatever the dialect's rules do not cover here is refused, never skipped.
-/// \param file names it in messages
+/// \param file names it in messages \param spindle lines that a PMAC is to take as they are, letter by letter
 /// \throw InputError naming file and line: a word that is not understood, a line that is too long, text that is none
-NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect);
+NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect,
+                   const NcSpindleTexts& spindle = {});
 
 /// The dialect that a text is written in, from the words that only one of them has.
 /// \throw InputError if the text is empty, binary, or shows none

@@ -171,10 +171,12 @@ void IsoBlock::set_m(const NcWord& word) {
   if (code == 0.0 || code == 1.0) return;
   if (code == 2.0 || code == 30.0)
     block_.ends = true;
-  else if (code == 3.0 || code == 4.0)
-    block_.spindle_on = true;
+  else if (code == 3.0)
+    block_.spindle = NcSpindle::clockwise;
+  else if (code == 4.0)
+    block_.spindle = NcSpindle::counterclockwise;
   else if (code == 5.0)
-    block_.spindle_on = false;
+    block_.spindle = NcSpindle::stopped;
   else if (code == 7.0 || code == 8.0)
     block_.mist_on = true;
   else if (code == 9.0)
@@ -187,6 +189,12 @@ void IsoBlock::set_feed(const NcWord& word) {
   if (block_.feed) lines_.fail("has two feeds");
   if (word.number.value < 0.0) lines_.fail(fmt::format("F must be >= 0, got {}", word.number.value));
   block_.feed = word.number.value;
+}
+
+void IsoBlock::set_spindle_speed(const NcWord& word) {
+  if (block_.spindle_rpm) lines_.fail("has two words S");
+  if (word.number.value < 0.0) lines_.fail(fmt::format("S must be >= 0, got {}", word.number.value));
+  block_.spindle_rpm = word.number.value;
 }
 
 void IsoBlock::set_axis(std::size_t axis, double value) {

@@ -91,6 +91,7 @@ class IsoBlock {
   /// M codes that all dialects share: 0, 1, 3, 4, 5, 7, 8, 9 and, as ends of the program, 2 and 30.
   void set_m(const NcWord& word);
   void set_feed(const NcWord& word);
+  void set_spindle_speed(const NcWord& word);
   void set_axis(std::size_t axis, double value);
   void set_dwell(double seconds);
   bool wants_dwell() const { return wants_dwell_; }

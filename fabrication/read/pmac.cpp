@@ -16,9 +16,10 @@ std::string_view take_name(std::string_view& text) {
   return name;
 }
 
-class Reader {
+class PmacReader {
  public:
-  explicit Reader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
+  PmacReader(NcLines lines, const NcSpindleTexts& spindle)
+      : lines_(std::move(lines)), spindle_(spindle), table_(program_) {
     program_.file = lines_.file();
     program_.dialect = NcDialect::pmac;
   }
@@ -26,7 +27,8 @@ class Reader {
   NcProgram run() {
     std::string_view line;
     while (lines_.next(line))
-      read_line_that_may_be_cut(lines_, program_, [&] { read(line.substr(0, line.find("//"))); });
+      if (!read_spindle_text(trimmed(line)))
+        read_line_that_may_be_cut(lines_, program_, [&] { read(line.substr(0, line.find("//"))); });
     program_.lines = lines_.number();
     if (is_in_main_) end_main();
     if ((is_in_main_ || open_ >= 0 || !has_main_) && !program_.truncated) program_.truncated = "close is missing";
@@ -34,6 +36,15 @@ class Reader {
   }
 
  private:
+  bool read_spindle_text(std::string_view text) {
+    if (text.empty() || (text != spindle_.start && text != spindle_.stop)) return false;
+    if (!is_in_main_) lines_.fail("starts or stops the spindle outside of open prog ... close");
+    NcBlock& block = program_.blocks.emplace_back();
+    block.line = lines_.number();
+    block.spindle = text == spindle_.start ? NcSpindle::started_by_text : NcSpindle::stopped_by_text;
+    return true;
+  }
+
   void read(std::string_view line) {
     std::string capitals;
     for (const char c : trimmed(line)) capitals += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -187,6 +198,7 @@ class Reader {
   }
 
   NcLines lines_;
+  const NcSpindleTexts& spindle_;
   NcProgram program_;
   SubroutineTable table_;
   std::int32_t open_ = -1;
@@ -196,8 +208,8 @@ class Reader {
 
 }  // namespace
 
-NcProgram parse_pmac(NcLines lines) {
-  return Reader(std::move(lines)).run();
+NcProgram parse_pmac(NcLines lines, const NcSpindleTexts& spindle) {
+  return PmacReader(std::move(lines), spindle).run();
 }
 
 }  // namespace retrace::fabrication

@@ -10,7 +10,7 @@ namespace {
 using Code = IsoBlock::Code;
 
 /// Modal groups of NISTIR 6556, table 4.
-IsoBlock::Meaning meaning_of(double g) {
+IsoBlock::Meaning rs274ngc_meaning_of(double g) {
   if (g == 0) return {Code::rapid, 1};
   if (g == 1) return {Code::linear, 1};
   if (g == 4) return {Code::dwell, 9};
@@ -28,11 +28,12 @@ IsoBlock::Meaning meaning_of(double g) {
   if (g == 92.1) return {Code::no_effect, 0};  // shifts of G92 cancelled
   if (g == 93) return {Code::inverse_time, 5};
   if (g == 94) return {Code::feed_per_minute, 5};
+  if (g == 97) return {Code::no_effect, 14};  // S counts turns per minute
   return {};
 }
 
 /// The line without comments: ( ... ), which do not nest, and what follows a semicolon.
-std::string without_comments(std::string_view line, const NcLines& lines) {
+std::string without_rs274ngc_comments(std::string_view line, const NcLines& lines) {
   std::string result;
   while (!line.empty() && line.front() != ';') {
     if (line.front() == ')') lines.fail("has a ) without a (");
@@ -49,9 +50,9 @@ std::string without_comments(std::string_view line, const NcLines& lines) {
   return without_blanks(result);
 }
 
-class Reader {
+class Rs274Reader {
  public:
-  explicit Reader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
+  explicit Rs274Reader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
     program_.file = lines_.file();
     program_.dialect = NcDialect::rs274ngc;
   }
@@ -59,7 +60,7 @@ class Reader {
   NcProgram run() {
     std::string_view line;
     while (!is_over_ && lines_.next(line))
-      read_line_that_may_be_cut(lines_, program_, [&] { read(without_comments(line, lines_)); });
+      read_line_that_may_be_cut(lines_, program_, [&] { read(without_rs274ngc_comments(line, lines_)); });
     program_.lines = lines_.number();
     program_.main_last = program_.blocks.size();
     // Of a file that stops within a subroutine there is no main program to carry out.
@@ -146,7 +147,7 @@ class Reader {
     if (axis < kNcAxes) return iso.set_axis(axis, word.number.value);
     switch (word.letter) {
       case 'G':
-        return iso.set_g(word, meaning_of(word.number.value));
+        return iso.set_g(word, rs274ngc_meaning_of(word.number.value));
       case 'M':
         return iso.set_m(word);
       case 'F':
@@ -154,7 +155,7 @@ class Reader {
       case 'P':
         return iso.set_dwell(word.number.value);  // seconds
       case 'S':
-        return;
+        return iso.set_spindle_speed(word);
       default:
         lines_.fail(fmt::format("a word {} is not understood", word.letter));
     }
@@ -171,7 +172,7 @@ class Reader {
 }  // namespace
 
 NcProgram parse_rs274ngc(NcLines lines) {
-  return Reader(std::move(lines)).run();
+  return Rs274Reader(std::move(lines)).run();
 }
 
 }  // namespace retrace::fabrication

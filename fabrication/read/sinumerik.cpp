@@ -13,7 +13,7 @@ namespace {
 using Code = IsoBlock::Code;
 
 /// G groups of the Programming Manual Fundamentals, section Tables.
-IsoBlock::Meaning meaning_of(double g) {
+IsoBlock::Meaning sinumerik_meaning_of(double g) {
   if (g == 0) return {Code::rapid, 1};
   if (g == 1) return {Code::linear, 1};
   if (g == 4) return {Code::dwell, 2};
@@ -47,9 +47,9 @@ bool is_name(std::string_view text) {
   return text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::string_view::npos;
 }
 
-class Reader {
+class SinumerikReader {
  public:
-  explicit Reader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
+  explicit SinumerikReader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
     program_.file = lines_.file();
     program_.dialect = NcDialect::sinumerik;
   }
@@ -179,7 +179,7 @@ class Reader {
     if (axis < kNcAxes) return iso.set_axis(axis, word.number.value);
     switch (word.letter) {
       case 'G':
-        return iso.set_g(word, meaning_of(word.number.value));
+        return iso.set_g(word, sinumerik_meaning_of(word.number.value));
       case 'M':
         return iso.set_m(word);
       case 'D':
@@ -187,7 +187,7 @@ class Reader {
         block.compensation_off = true;
         return;
       case 'S':
-        return;
+        return iso.set_spindle_speed(word);
       default:
         lines_.fail(fmt::format("a word {} is not understood", word.letter));
     }
@@ -216,7 +216,7 @@ class Reader {
 }  // namespace
 
 NcProgram parse_sinumerik(NcLines lines) {
-  return Reader(std::move(lines)).run();
+  return SinumerikReader(std::move(lines)).run();
 }
 
 }  // namespace retrace::fabrication

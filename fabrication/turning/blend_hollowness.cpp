@@ -7,6 +7,7 @@
 
 #include "fabrication/turning/hollowness.h"
 #include "fabrication/turning/interval.h"
+#include "fabrication/turning/numbers.h"
 
 // Between its two boundaries a blend is a polynomial of the share v of the way. In Bernstein's form its values lie
 // between its coefficients and those of its derivatives between their differences (G. Farin, Curves and Surfaces for
@@ -15,7 +16,6 @@
 namespace retrace::fabrication::turning {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kMostDegree = 2 * kMostBlendOrder + 1;
 constexpr int kHalvings = 4;
 

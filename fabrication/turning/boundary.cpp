@@ -6,12 +6,12 @@
 #include <numbers>
 
 #include "core/number_format.h"
+#include "fabrication/turning/numbers.h"
 
 namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::Vec2;
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::string degrees(double angle_rad) {
   return fixed(std::remainder(angle_rad, kTurn) * 180.0 / std::numbers::pi, 2);

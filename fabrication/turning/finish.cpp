@@ -1,4 +1,5 @@
 #include "fabrication/turning/finish.h"
+#include "fabrication/turning/numbers.h"
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
@@ -8,7 +9,6 @@ namespace retrace::fabrication::turning {
 namespace {
 
 constexpr double kNmPerMm = 1e6;
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kSqrt3 = std::numbers::sqrt3;
 
 }  // namespace

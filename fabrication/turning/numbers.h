@@ -2,11 +2,16 @@
 
 // The numbers and formulas of core that surfaces of turning are made of.
 
+#include <numbers>
+
 #include "core/formula.h"
 #include "core/jets.h"
 #include "core/second_order.h"
 
 namespace retrace::fabrication::turning {
+
+inline constexpr double kTurn = 2.0 * std::numbers::pi;      ///< rad
+inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< rad
 
 using jets::constant_like;
 using jets::Dual;

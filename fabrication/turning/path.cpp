@@ -6,14 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "fabrication/turning/numbers.h"
 #include "fabrication/turning/polynomial_spiral.h"
 
 namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::Vec2;
-constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::size_t kMostPoints = std::size_t{1} << 26;
 
 /// Angles of the spindle at the points of a spiral, in turns.

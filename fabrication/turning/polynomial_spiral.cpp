@@ -1,4 +1,5 @@
 #include "fabrication/turning/polynomial_spiral.h"
+#include "fabrication/turning/numbers.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +8,6 @@
 
 namespace retrace::fabrication::turning {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// The surface along the radial line at one angle: coefficients by the distance from the centre, and the angle on the
 /// nose at which the turn before touched there, as sideways distance.

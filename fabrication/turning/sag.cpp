@@ -15,14 +15,14 @@ double factorial(int n) {
   return f;
 }
 
-double binomial(int n, int k) {
+double ring_binomial(int n, int k) {
   return factorial(n) / (factorial(k) * factorial(n - k));
 }
 
 /// Adds value * x^i y^j (x^2 + y^2)^power.
 void add_ring(XyPolynomial& p, int i, int j, int power, double value) {
   for (int k = 0; k <= power; ++k)
-    p.coefficients[p.index(i + 2 * (power - k), j + 2 * k)] += value * binomial(power, k);
+    p.coefficients[p.index(i + 2 * (power - k), j + 2 * k)] += value * ring_binomial(power, k);
 }
 
 /// Adds one term: its radial polynomial times the real or imaginary part of (x + i y)^|m|.
@@ -35,7 +35,7 @@ void add_term(XyPolynomial& p, const ZernikeTerm& term) {
     const int power = (term.n - m) / 2 - k;
     for (int j = term.m < 0 ? 1 : 0; j <= m; j += 2) {
       const double sign = (j / 2) % 2 == 0 ? 1.0 : -1.0;
-      add_ring(p, m - j, j, power, term.coefficient_mm * norm * radial * sign * binomial(m, j));
+      add_ring(p, m - j, j, power, term.coefficient_mm * norm * radial * sign * ring_binomial(m, j));
     }
   }
 }

@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "core/number_format.h"
+#include "fabrication/turning/numbers.h"
 
 namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::Vec3;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Vec3 normal_of(const SlopeSample& s) {
   return Vec3(-s.radial, -s.along, 1.0).normalized();

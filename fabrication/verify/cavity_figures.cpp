@@ -13,7 +13,6 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-constexpr double kNmPerMm = 1e6;
 /// Nearer to a dihedral edge than this a line runs into what the other facet keeps as soon as that is off: what is left
 /// counts for the edge, and so far from the facet.
 constexpr double kStripMm = 1e-3;

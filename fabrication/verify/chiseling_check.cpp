@@ -14,7 +14,7 @@ namespace {
 using geometry::Vec3;
 
 /// Tips of two cuts that are the same.
-constexpr double kSameTipMm = 5e-7;
+constexpr double kSameCavityTipMm = 5e-7;
 
 }  // namespace
 
@@ -69,7 +69,8 @@ void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
             fmt::format("the cut takes {} um at once, the process {} um: a layer before it is missing",
                         fixed(1e3 * chip_mm, 3), shortest(deepest_um)),
             1e3 * chip_mm, 1e3 * limit_mm);
-  if (std::abs(chip_mm) < kSameTipMm) report_("cut_twice", cut.place, number, "this cut has been made before", 0, 0);
+  if (std::abs(chip_mm) < kSameCavityTipMm)
+    report_("cut_twice", cut.place, number, "this cut has been made before", 0, 0);
   for (std::size_t g = 0; g < 3; ++g) {
     if (g == cut.facet) continue;
     const double short_mm = cut.tip_mm[g] - tip_mm;

@@ -22,7 +22,6 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-constexpr double kNmPerMm = 1e6;
 constexpr std::size_t kMostLines = 400;
 constexpr std::size_t kLeastLines = 4;
 /// Cavities of hexagonal cube corners reach twice the radius of their apertures.

@@ -10,7 +10,6 @@ namespace {
 
 using geometry::Vec3;
 
-constexpr double kNmPerMm = 1e6;
 /// Lines stay this far off the corners of the envelope, where they would run within a plane of the tool.
 constexpr double kOffCornerMm = 2e-7;
 /// Nearer to the root than this a line cannot tell the facets apart.
@@ -230,7 +229,8 @@ class Measurer {
     return height;
   }
 
-  /// \param predicted heights over the design's facet between which the surface must lie
+  /// \param predicted heights over the design's facet between which the surface must lie, but for the blank's face:
+  /// close to the rim a ploughed facet that rises along the edge leaves the blank, and nothing is left up there
   void take(FacetFigures& figures, const LineSurface& surface, double slant, const Interval& predicted) const {
     const double lowest_mm = std::min(surface.lowest, surface.top);
     if (slant <= strip_mm_) {
@@ -239,8 +239,10 @@ class Measurer {
       return;
     }
     const bool is_under_burr = slant < burr_end_mm_ && surface.top < burr_height_mm_;
-    const double above_nm = ((is_under_burr ? lowest_mm : surface.top) - predicted.high) * kNmPerMm;
-    const double below_nm = (lowest_mm - predicted.low) * kNmPerMm;
+    const double high_mm = std::min(predicted.high, surface.exit);
+    const double low_mm = std::min(predicted.low, surface.exit);
+    const double above_nm = ((is_under_burr ? lowest_mm : surface.top) - high_mm) * kNmPerMm;
+    const double below_nm = (lowest_mm - low_mm) * kNmPerMm;
     if (above_nm > figures.highest.nm) figures.highest = {above_nm, surface.top_line};
     if (below_nm < figures.deepest.nm) figures.deepest = {below_nm, surface.lowest_line};
   }

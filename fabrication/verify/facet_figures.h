@@ -11,6 +11,8 @@
 
 namespace retrace::fabrication {
 
+inline constexpr double kNmPerMm = 1e6;
+
 /// A place of a facet where what is left differs most from what should be.
 struct FacetDeviation {
   double nm = 0.0;        ///< along the design's normal, above what is predicted; negative: too much was removed

@@ -5,7 +5,6 @@ namespace retrace::fabrication {
 using geometry::Vec3;
 
 void PlaneFit::fit(FacetFigures& figures) const {
-  constexpr double kNmPerMm = 1e6;
   if (points_.empty()) return;
   Vec3 mean = Vec3::Zero();
   for (const Vec3& p : points_) mean += p;

@@ -13,7 +13,6 @@ namespace {
 
 using geometry::Vec3;
 
-constexpr double kNmPerMm = 1e6;
 constexpr std::uint8_t kLinearBits = 0b00111;
 
 /// Bits of the rotary axes that a machine has, and of the one that it has not.
@@ -173,7 +172,7 @@ void ProgramCheck::check_settings(const NcSettings& settings, const NcPlace& pla
   require(settings.feed_time_s.has_value(), "that feeds are per minute");
   require(settings.exact_stop.value_or(false), "that moves stop exactly: corners would be rounded");
   require(settings.compensation_off.value_or(false), "that compensations of the tool are off");
-  require(!settings.spindle_on.value_or(true), "that the spindle stands still");
+  require(settings.spindle == NcSpindle::stopped, "that the spindle stands still");
 }
 
 void ProgramCheck::check_limits(const NcMotion& motion) {

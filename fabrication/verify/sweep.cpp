@@ -121,7 +121,7 @@ std::optional<LineSpan> swept_span(const ToolWedge& wedge, const Sweep& sweep, c
 
 LineSurface surface_along(std::vector<LineSpan>& spans, double exit) {
   std::sort(spans.begin(), spans.end(), [](const LineSpan& a, const LineSpan& b) { return a.high > b.high; });
-  LineSurface surface{exit, 0, exit, 0};
+  LineSurface surface{exit, 0, exit, 0, exit};
   bool is_open = true;
   for (const LineSpan& span : spans) {
     if (span.low < surface.lowest) {

@@ -73,6 +73,7 @@ struct LineSurface {
   std::int32_t top_line = 0;  ///< NC line of the move that made the surface there; 0: the blank's face
   double lowest = 0.0;        ///< least s that was removed
   std::int32_t lowest_line = 0;
+  double exit = 0.0;  ///< where the line leaves the blank
 };
 
 /// The surface along a line that leaves the blank at s = exit. `spans` is used up as working space.

@@ -25,7 +25,6 @@ namespace {
 
 using geometry::Vec3;
 
-constexpr double kNmPerMm = 1e6;
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 
 bool has_poses_of(const Machine& machine, const Workpiece3d& workpiece, const std::vector<RotaryPose>& words) {

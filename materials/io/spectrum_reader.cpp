@@ -5,9 +5,7 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
-#include <system_error>
 #include <vector>
 
 #include "core/atomic_file.h"
@@ -118,18 +116,6 @@ class ColumnReader {
   int line_ = 0;
 };
 
-/// A file that may be anything: no more of it is read than shows that it is too long.
-std::string read_short_file(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored) || fs::is_directory(file, ignored)) return read_file(file);  // which says why not
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(kMostBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad() || (stream.fail() && !stream.eof())) throw InputError({file.string(), 0, ""}, "cannot be read");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
-}
-
 }  // namespace
 
 CieTable shipped_cie_table() {
@@ -146,8 +132,7 @@ CieTable read_cie_table(const fs::path& file) {
 namespace {
 
 SpectralCurve parse_curve(std::string_view text, const std::string& name, std::string_view quantity) {
-  if (text.size() > kMostBytes)
-    throw InputError({name, 0, ""}, fmt::format("must have at most {} bytes, got more", kMostBytes));
+  require_short_text(text, name, kMostBytes);
   auto columns = ColumnReader(name, {"wavelength_nm", quantity}).read(text);
   return {std::move(columns[0]), std::move(columns[1])};
 }
@@ -155,7 +140,7 @@ SpectralCurve parse_curve(std::string_view text, const std::string& name, std::s
 }  // namespace
 
 SpectralCurve read_spectral_power(const fs::path& file) {
-  return parse_spectral_power(read_short_file(file), file.string());
+  return parse_spectral_power(read_file(file, kMostBytes), file.string());
 }
 
 SpectralCurve parse_spectral_power(std::string_view text, const std::string& name) {
@@ -163,7 +148,7 @@ SpectralCurve parse_spectral_power(std::string_view text, const std::string& nam
 }
 
 SpectralCurve read_spectral_absorption(const fs::path& file) {
-  return parse_spectral_absorption(read_short_file(file), file.string());
+  return parse_spectral_absorption(read_file(file, kMostBytes), file.string());
 }
 
 SpectralCurve parse_spectral_absorption(std::string_view text, const std::string& name) {

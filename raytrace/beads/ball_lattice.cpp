@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRowOverPitch = 0.5 * std::numbers::sqrt3;
 // Steps of half a pitch after which a level ray between the balls is given up.
-constexpr int kMostSteps = 4096;
+constexpr int kMostCells = 4096;
 /// A ball and its neighbours.
 constexpr std::array<BallIndex, 7> kAround = {{{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}}};
 
@@ -73,7 +73,7 @@ BallLattice::Way BallLattice::follow(const Vec3& origin_mm, const Vec3& directio
   const double to_end = way.leaves ? (radius_mm_ - origin_mm.z()) / direction.z() : origin_mm.z() / -direction.z();
   const double step = 0.5 * *pitch_mm_ / std::max(level, 1e-12);
   double begin = 0.0;
-  for (int k = 0; k < kMostSteps; ++k, begin += step) {
+  for (int k = 0; k < kMostCells; ++k, begin += step) {
     const double end = std::min(begin + step, to_end);
     // Balls that reach the piece have their centres within a radius and a quarter of the pitch of its middle.
     const BallIndex middle = nearest((origin_mm + 0.5 * (begin + end) * direction).head<2>());

@@ -14,7 +14,6 @@ namespace retrace::raytrace {
 namespace {
 
 // Philox stream of choices on the way.
-constexpr std::uint32_t kChoiceStream = 2;
 
 /// Spreads rays over what the beam covers.
 class BallEntry {
@@ -75,10 +74,12 @@ MonteCarloResult BallTracer::trace(const Optics& optics, const Illumination& ill
     }
     return tally;
   };
-  return trace_in_rounds(sampling, cones_deg, score_size,
-                         [&](std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates) {
-                           return trace_replicates(from, until, replicates, task);
-                         });
+  Rounds rounds(sampling, cones_deg, score_size,
+                [&](std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates) {
+                  return trace_replicates(from, until, replicates, task);
+                });
+  while (!rounds.advance()) continue;
+  return rounds.result();
 }
 
 }  // namespace retrace::raytrace

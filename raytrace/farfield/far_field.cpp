@@ -61,7 +61,7 @@ Vec3 direction_to_source(const Illumination& illumination) {
   return Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
 }
 
-double angle_between(const Vec3& a, const Vec3& b) {
+double small_angle_between(const Vec3& a, const Vec3& b) {
   return 2.0 * std::asin(std::min(1.0, 0.5 * (a - b).norm()));
 }
 
@@ -112,6 +112,7 @@ double FarField::per_cosines(const Vec2& cosines) const {
   const double wave_number = 2.0 * pi / wavelength_mm_;
   double sum = 0.0;
   for (const CoherentGroup& group : groups_) {
+    if (is_cancelled(cancel_)) return 0.0;
     JonesMatrix field = JonesMatrix::Zero();
     for (const FieldPolygon& p : group.polygons)
       field += p.transform.at(wave_number * (cosines - p.cosines)) * p.amplitude;
@@ -126,7 +127,7 @@ double FarField::diffracted_per_sr(const Vec3& direction) const {
 
 double FarField::intensity_per_sr(const Vec3& direction, const ApertureKernel& kernel) const {
   double sum = 0.0;
-  for (const FarFieldRay& ray : rays_) sum += ray.power * kernel.per_sr(angle_between(ray.direction, direction));
+  for (const FarFieldRay& ray : rays_) sum += ray.power * kernel.per_sr(small_angle_between(ray.direction, direction));
   if (groups_.empty()) return sum;
   ReturnFrame frame;
   frame.to_source = direction;
@@ -155,7 +156,7 @@ std::vector<double> FarField::binned(const ReturnFrame& frame, const DirectionGr
 FarField::Split FarField::split(const ReturnFrame& frame, double half_angle_rad) const {
   Split split;
   for (const FarFieldRay& ray : rays_)
-    (angle_between(ray.direction, frame.to_source) <= half_angle_rad ? split.inside : split.outside) += ray.power;
+    (small_angle_between(ray.direction, frame.to_source) <= half_angle_rad ? split.inside : split.outside) += ray.power;
   if (groups_.empty()) return split;
   const double step = std::min(detail_rad() / kPointsToADetail, half_angle_rad / kPointsToARadius);
   const auto reach = static_cast<std::int64_t>(std::ceil(half_angle_rad / step));
@@ -186,7 +187,7 @@ double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
     const Vec2 at = middle + distance * Vec2(std::cos(2.0 * pi * v), std::sin(2.0 * pi * v));
     const double height2 = 1.0 - at.squaredNorm();
     const bool is_inside =
-        height2 > 0.0 && angle_between({at.x(), at.y(), std::sqrt(height2)}, frame.to_source) <= half_angle_rad;
+        height2 > 0.0 && small_angle_between({at.x(), at.y(), std::sqrt(height2)}, frame.to_source) <= half_angle_rad;
     if (!is_inside) sum += per_cosines(at) * distance * distance;
   }
   return 2.0 * pi * decades * sum / kTailPoints;
@@ -201,6 +202,7 @@ FarFieldCollector::FarFieldCollector(const geometry::Part& part, const Illuminat
       directions_(kOneDirection_rad) {
   field_.wavelength_mm_ = 1e-6 * policy.wavelength_nm;
   field_.coherency_ = coherency_of(illumination.stokes);
+  field_.cancel_ = policy.cancel;
 }
 
 void FarFieldCollector::add_ray(const Vec3& direction, double power) {
@@ -216,7 +218,8 @@ void FarFieldCollector::add_ray(const Vec3& direction, double power) {
 void FarFieldCollector::add(const ReturnedBeam& beam) {
   field_.total_power_ += beam.stokes.i;
   const bool is_diffracted = policy_.diffraction && beam.trail.first && beam.left_mm.size() >= 3 &&
-                             beam.stokes.i > kFaint && angle_between(beam.direction, to_source_) <= policy_.window_rad;
+                             beam.stokes.i > kFaint &&
+                             small_angle_between(beam.direction, to_source_) <= policy_.window_rad;
   if (!is_diffracted) return add_ray(beam.direction, beam.stokes.i);
   Place place{0, 0, 0, 0};
   if (beam.trail.is_mixed) {
@@ -342,7 +345,8 @@ CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2&
 std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
   std::vector<CoherentGroup> groups;
   std::map<Signature, std::size_t> known;
-  for (const auto& [place, pieces] : cells_)
+  for (const auto& [place, pieces] : cells_) {
+    if (is_cancelled(policy_.cancel)) break;
     for (CoherentGroup& group : groups_of(pieces)) {
       if (group.polygons.empty()) continue;
       const auto [it, is_new] = known.try_emplace(signature_of(group, size_mm_), groups.size());
@@ -351,6 +355,7 @@ std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
       else
         groups[it->second].copies += 1.0;
     }
+  }
   return groups;
 }
 
@@ -362,18 +367,24 @@ void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
                    [](const CoherentGroup& a, const CoherentGroup& b) { return a.power() > b.power(); });
   std::size_t polygons = 0;
   for (CoherentGroup& group : groups) {
-    const bool is_kept = left > least && polygons + group.polygons.size() <= policy_.most_polygons &&
-                         field_.wavelength_mm_ >= policy_.finest_detail_rad * group.extent_mm;
+    const bool is_to_be_diffracted =
+        left > least && field_.wavelength_mm_ >= policy_.finest_detail_rad * group.extent_mm;
+    const bool is_within_budget = polygons + group.polygons.size() <= policy_.most_polygons;
     left -= group.power();
-    if (is_kept) {
+    if (is_to_be_diffracted && is_within_budget) {
       polygons += group.polygons.size();
       field_.groups_.push_back(std::move(group));
       continue;
     }
-    for (const FieldPolygon& p : group.polygons) {
-      const double height = std::sqrt(std::max(0.0, 1.0 - p.cosines.squaredNorm()));
-      add_ray({p.cosines.x(), p.cosines.y(), height}, group.copies * p.power);
-    }
+    if (is_to_be_diffracted) field_.beyond_budget_power_ += group.power();
+    add_undiffracted(group);
+  }
+}
+
+void FarFieldCollector::add_undiffracted(const CoherentGroup& group) {
+  for (const FieldPolygon& p : group.polygons) {
+    const double height = std::sqrt(std::max(0.0, 1.0 - p.cosines.squaredNorm()));
+    add_ray({p.cosines.x(), p.cosines.y(), height}, group.copies * p.power);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/progress.h"
 #include "raytrace/beam_tracer.h"
 #include "raytrace/farfield/direction_score.h"
 #include "raytrace/farfield/polygon_transform.h"
@@ -26,6 +27,8 @@ struct FarFieldPolicy {
   std::size_t most_polygons = 20'000;  ///< that are diffracted; the faintest beyond are not
   /// Cells so large that their pattern is finer than this are not diffracted: the discs of source and receiver hide it.
   double finest_detail_rad = 0.0;
+  /// Asked between polygons; figures of a far field are of no use once it is set. Outlives the far field.
+  const Cancellation* cancel = nullptr;
 };
 
 /// A plane wave through a convex polygon of the entrance face: part of the field that a cell sends back.
@@ -77,6 +80,8 @@ class FarField {
 
   double total_power() const { return total_power_; }
   double diffracted_power() const;
+  /// What would have been diffracted, were there not more polygons than `most_polygons`.
+  double beyond_budget_power() const { return beyond_budget_power_; }
   /// Distance of the finest details of what is diffracted; infinite if nothing is.
   double detail_rad() const;
   const std::vector<CoherentGroup>& groups() const { return groups_; }
@@ -93,6 +98,8 @@ class FarField {
   std::vector<CoherentGroup> groups_;
   std::vector<FarFieldRay> rays_;
   double total_power_ = 0.0;
+  double beyond_budget_power_ = 0.0;
+  const Cancellation* cancel_ = nullptr;
 };
 
 /// Makes a far field of the returned beams of one direction, which BeamPolicy::by_cell keeps apart.
@@ -130,6 +137,7 @@ class FarFieldCollector {
   void join(std::vector<Piece>& pieces) const;
   std::vector<CoherentGroup> distinct_groups() const;
   void keep_strongest(std::vector<CoherentGroup> groups);
+  void add_undiffracted(const CoherentGroup& group);
 
   FarFieldPolicy policy_;
   bool is_infinite_ = false;

@@ -1,11 +1,11 @@
 #include "raytrace/front/height_field.h"
+#include "core/infinity.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace retrace::raytrace {
 namespace {
@@ -15,14 +15,13 @@ using geometry::FrontSurface;
 constexpr double kWithinX = geometry::kWithinFrontCell[0];
 constexpr double kWithinY = geometry::kWithinFrontCell[1];
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of what differences of slopes between the corners of a cell say: what they may have missed.
 constexpr double kBendMargin = 2.0;
 // Heights that differ by less, relative to the part, are the same: rounding of doubles.
 constexpr double kSameHeight = 4e-16;
 // Beyond the lowest and highest place, relative to the part.
 constexpr double kRoom = 1e-12;
-constexpr int kMostSteps = 200;
+constexpr int kMostIterations = 200;
 // Roundings within which a ray that goes away from the surface has only just left it.
 constexpr double kStillOn = 8.0;
 
@@ -138,7 +137,7 @@ struct HeightField::Search {
 
   /// Where a step went across the surface: between a place on this side and one on the other.
   FrontHit between(double clear, double beyond) const {
-    for (int k = 0; k < kMostSteps; ++k) {
+    for (int k = 0; k < kMostIterations; ++k) {
       const double middle = 0.5 * (clear + beyond);
       if (middle <= clear || middle >= beyond) break;
       (gap(middle).value > 0.0 ? clear : beyond) = middle;
@@ -172,12 +171,12 @@ std::optional<FrontHit> HeightField::Search::within(const Cell& cell, double fro
     g = gap(t);
     // A bend that the cell knows nothing of: halve the way until it is clear.
     double clear = t;
-    for (int k = 0; g.value <= 0.0 && k < kMostSteps; ++k) {
+    for (int k = 0; g.value <= 0.0 && k < kMostIterations; ++k) {
       clear = 0.5 * (from + clear);
       if (gap(clear).value > 0.0) return between(clear, t);
     }
   }
-  for (int k = 0; k < kMostSteps; ++k) {
+  for (int k = 0; k < kMostIterations; ++k) {
     if (!std::isfinite(g.value)) return std::nullopt;  // beyond the outline by rounding
     if (g.value <= same_mm) {
       if (g.value < -same_mm && last_clear >= 0.0) return between(last_clear, t);

@@ -3,16 +3,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "core/error.h"
+#include "core/infinity.h"
 #include "core/random.h"
 #include "raytrace/back_surface.h"
 #include "raytrace/entrance_sampler.h"
 #include "raytrace/exit_observer.h"
 #include "raytrace/farfield/aperture_kernel.h"
 #include "raytrace/flush_denormals.h"
+#include "raytrace/ledger.h"
 #include "raytrace/path_tracer.h"
 #include "raytrace/sobol.h"
 #include "raytrace/threads.h"
@@ -22,12 +23,9 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Power that may be missing before a pass counts as unsound.
-constexpr double kLostLimit = 1e-9;
 // Philox streams: of the scrambles of points, of the choices on the way, and of wavelengths and points of the pupil.
-constexpr std::uint32_t kScrambleStream = 11;
-constexpr std::uint32_t kChoiceStream = 12;
+constexpr std::uint32_t kCameraScrambleStream = 11;
+constexpr std::uint32_t kCameraChoiceStream = 12;
 constexpr std::uint32_t kLensStream = 13;
 
 struct WorldRay {
@@ -354,7 +352,7 @@ double CameraTracer::Hidden::follow(const WorldRay& ray, std::size_t wavelength,
     }
   }
   std::uint32_t choices = 0;
-  walker.resume(contact.local, start, {seed, kChoiceStream}, point, pixel, choices);
+  walker.resume(contact.local, start, {seed, kCameraChoiceStream}, point, pixel, choices);
   behind += tally.other[Account::transmitted] + tally.other[Account::side_exit] - elsewhere;
   return sight.luminance() + scene.surroundings.behind * behind;
 }
@@ -363,7 +361,7 @@ void CameraTracer::Hidden::add_pixel(std::uint32_t pixel, std::uint32_t pass, st
                                      Tally& tally, Sight& sight, double& luminance, double& on_part,
                                      double& coverage) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
-  const auto words = philox({seed, kScrambleStream}, pass, pixel);
+  const auto words = philox({seed, kCameraScrambleStream}, pass, pixel);
   const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
   for (std::uint32_t k = 0; k < kPointsPerPass; ++k) {
     const std::uint32_t point = pass * kPointsPerPass + k;

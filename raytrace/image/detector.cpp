@@ -9,7 +9,9 @@
 #include "raytrace/entrance_sampler.h"
 #include "raytrace/exit_observer.h"
 #include "raytrace/flush_denormals.h"
+#include "raytrace/ledger.h"
 #include "raytrace/path_tracer.h"
+#include "raytrace/replicates.h"
 #include "raytrace/sobol.h"
 #include "raytrace/threads.h"
 
@@ -20,11 +22,6 @@ using geometry::Polygon;
 
 constexpr std::uint32_t kReplicates = 32;
 constexpr std::uint32_t kRaysPerTask = 2048;
-// Power that may be missing before the run counts as unsound.
-constexpr double kLostLimit = 1e-9;
-// Philox streams: of the scrambles of entry points, and of choices on the way.
-constexpr std::uint32_t kScrambleStream = 1;
-constexpr std::uint32_t kChoiceStream = 2;
 
 Polygon moved(Polygon polygon, const Vec2& by) {
   for (Vec2& p : polygon) p += by;

@@ -27,17 +27,18 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
                    {"Class and colour", text(programme, "class") + " " + text(programme, "colour"), ""},
                    {"Area", measured(number(json, "area_cm2"), " cm2"), ""},
                    {"Verdict", verdict, verdict_style(verdict)}};
+  if (json.contains("reason")) section.facts.push_back({"Reason", text(json, "reason"), ""});
   section.paragraphs.push_back(
       "R_I at the test points of the standard. Limits that are recalled, not confirmed, make a verdict unconfirmed. It "
       "is no approval test.");
   PageTable table =
       table_of(list(json, "points"),
                {"observation_deg", "v_deg", "h_deg", "rotation_deg", "value_mcd_per_lx", "std_error_mcd_per_lx",
-                "limit_mcd_per_lx", "margin", "limit_status", "pass", "r_a_cd_per_lx_m2"},
+                "limit_mcd_per_lx", "margin", "limit_status", "verdict", "lower_bound", "r_a_cd_per_lx_m2"},
                "Test points", csv_name(document, "points"));
   for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (table.columns[c] == "pass")
-      for (auto& row : table.rows) row[c].style = row[c].text == "yes" ? "good" : "bad";
+    if (table.columns[c] == "verdict")
+      for (auto& row : table.rows) row[c].style = verdict_style(row[c].text);
   section.tables.push_back(std::move(table));
   return section;
 }

@@ -43,10 +43,7 @@ std::string kind_of(const nlohmann::ordered_json& json) {
 }
 
 void add_document(ResultFolder& result, const fs::path& file, const std::string& name) {
-  std::error_code ignored;
-  if (fs::file_size(file, ignored) > kLongestDocumentBytes)
-    throw InputError({file.string(), 0, ""}, fmt::format("must be at most {} MiB", kLongestDocumentBytes >> 20));
-  const std::string text = read_file(file);
+  const std::string text = read_file(file, kLongestDocumentBytes);
   ResultDocument document;
   try {
     document.json = nlohmann::ordered_json::parse(text);

@@ -36,7 +36,7 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
   run.job = read_job(request.job);
   run.machine = load_machine(run.job.machine, {request.job, 0, "machine"});
   for (const std::string& file : request.programs) {
-    const std::string text = read_file(file);
+    const std::string text = read_file(file, kMostDataBytes);
     run.dialects.push_back(dialect_of(request.dialect, text, file));
     run.programs.push_back(parse_nc(text, file, run.dialects.back()));
   }

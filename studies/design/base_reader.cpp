@@ -17,30 +17,26 @@ namespace {
 
 using geometry::Standing;
 
-enum class Kind { plane, cylinder, sphere, formula };
+enum class BaseKind { plane, cylinder, sphere, formula };
 
-constexpr std::array kKinds = {Choice<Kind>{"plane", Kind::plane}, Choice<Kind>{"cylinder", Kind::cylinder},
-                               Choice<Kind>{"sphere", Kind::sphere}, Choice<Kind>{"formula", Kind::formula}};
+constexpr std::array kBaseKinds = {
+    Choice<BaseKind>{"plane", BaseKind::plane}, Choice<BaseKind>{"cylinder", BaseKind::cylinder},
+    Choice<BaseKind>{"sphere", BaseKind::sphere}, Choice<BaseKind>{"formula", BaseKind::formula}};
 constexpr std::array kAxes = {Choice<bool>{"x", true}, Choice<bool>{"y", false}};
 constexpr std::array kStandings = {Choice<Standing>{"normal", Standing::normal},
                                    Choice<Standing>{"parallel", Standing::parallel}};
 constexpr Range kIncline{.low = 0.0, .high = 60.0};
-constexpr Range kAzimuth{.low = -360.0, .high = 360.0};
+constexpr Range kInclineAzimuth{.low = -360.0, .high = 360.0};
 constexpr Range kRadius{.low = -1e9, .high = 1e9};
 
-template <class Value, std::size_t size>
-std::span<const Choice<Value>> all(const std::array<Choice<Value>, size>& choices) {
-  return choices;
-}
-
-std::string_view shape_key(Kind kind) {
+std::string_view shape_key(BaseKind kind) {
   switch (kind) {
-    case Kind::plane:
+    case BaseKind::plane:
       return "incline_deg";
-    case Kind::cylinder:
-    case Kind::sphere:
+    case BaseKind::cylinder:
+    case BaseKind::sphere:
       return "radius_mm";
-    case Kind::formula:
+    case BaseKind::formula:
       break;
   }
   return "sag_mm";
@@ -62,21 +58,21 @@ geometry::FormulaBase read_formula(TableReader& base) {
   }
 }
 
-geometry::BaseShape read_shape(TableReader& base, Kind kind) {
-  if (kind != Kind::plane) base.refuse({"incline_deg", "azimuth_deg"}, "only allowed for kind = \"plane\"");
-  if (kind != Kind::cylinder) base.refuse({"axis"}, "only allowed for kind = \"cylinder\"");
-  if (kind != Kind::cylinder && kind != Kind::sphere)
+geometry::BaseShape read_shape(TableReader& base, BaseKind kind) {
+  if (kind != BaseKind::plane) base.refuse({"incline_deg", "azimuth_deg"}, "only allowed for kind = \"plane\"");
+  if (kind != BaseKind::cylinder) base.refuse({"axis"}, "only allowed for kind = \"cylinder\"");
+  if (kind != BaseKind::cylinder && kind != BaseKind::sphere)
     base.refuse({"radius_mm"}, "only allowed for kind = \"cylinder\" and \"sphere\"");
-  if (kind != Kind::formula) base.refuse({"sag_mm"}, "only allowed for kind = \"formula\"");
+  if (kind != BaseKind::formula) base.refuse({"sag_mm"}, "only allowed for kind = \"formula\"");
   switch (kind) {
-    case Kind::plane:
+    case BaseKind::plane:
       return geometry::PlaneBase{base.required_number("incline_deg", kIncline),
-                                 base.number("azimuth_deg", kAzimuth).value_or(0.0)};
-    case Kind::cylinder:
+                                 base.number("azimuth_deg", kInclineAzimuth).value_or(0.0)};
+    case BaseKind::cylinder:
       return geometry::CylinderBase{read_radius(base), base.choice("axis", all(kAxes)).value_or(false)};
-    case Kind::sphere:
+    case BaseKind::sphere:
       return geometry::SphereBase{read_radius(base)};
-    case Kind::formula:
+    case BaseKind::formula:
       break;
   }
   return read_formula(base);
@@ -104,7 +100,7 @@ void check_array_on_base(TableReader& base, const geometry::PartSpec& part) {
 InputLocation read_base(const DesignDocument& document, geometry::PartSpec& part) {
   if (document.root().get("base") == nullptr) return {};
   TableReader base(document, "base");
-  const Kind kind = base.required_choice("kind", all(kKinds));
+  const BaseKind kind = base.required_choice("kind", all(kBaseKinds));
   check_array_on_base(base, part);
   const geometry::BaseShape shape = read_shape(base, kind);
   part.base = geometry::Base{shape, read_standing(base, part)};

@@ -129,6 +129,8 @@ struct Design {
   std::vector<double> acceptance_half_angle_deg = {0.5};  ///< ascending, each in (0, 90]
   Idealisation idealisation;
   FacetTexture texture;
+  /// Every file that a key names, from the working directory: what is read beside the source.
+  std::vector<std::filesystem::path> files;
 
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }

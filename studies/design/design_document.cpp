@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/atomic_file.h"
 #include "core/message_text.h"
 
 namespace retrace::studies {
@@ -31,9 +32,7 @@ std::string toml_string(std::string_view text) {
 }
 
 toml::table parse_file(std::string_view text, const std::string& file) {
-  if (text.size() > DesignDocument::max_bytes)
-    throw InputError(InputLocation{file, 0, ""}, fmt::format("too long for a design file, at most {} bytes are allowed",
-                                                             DesignDocument::max_bytes));
+  require_short_text(text, file, DesignDocument::max_bytes);
   try {
     return toml::parse(text, std::string_view(file));
   } catch (const toml::parse_error& error) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -37,6 +38,11 @@ class DesignDocument {
   /// The folder from which paths in `node` are meant: the design file's; empty for overrides.
   std::filesystem::path folder(const toml::node& node) const;
 
+  /// Remembers a file that a key names: what readers take as the name of a file, they hand in here.
+  void add_file(std::filesystem::path file) const { files_.push_back(std::move(file)); }
+  /// Files that were named by the keys that have been read, from the working directory.
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+
   /// Orders nodes as they were written: the file from top to bottom, then the overrides.
   struct Position {
     std::size_t source = 0;
@@ -54,6 +60,7 @@ class DesignDocument {
   std::filesystem::path folder_;
   toml::table root_;
   std::vector<toml::source_path_ptr> sources_;  ///< the file, then one a `--set`
+  mutable std::vector<std::filesystem::path> files_;
 };
 
 }  // namespace retrace::studies

@@ -13,7 +13,8 @@ geometry::Part part_of(const Design& design) {
   if (design.mask) return geometry::build_part(design.part, elements_of_mask(design));
   if (!design.facet_planes) return geometry::build_part(design.part);
   const std::string file = design.facet_planes->file.string();
-  const geometry::FacetPlanes planes = parse_facet_planes(read_file(design.facet_planes->file), file, design.part);
+  const geometry::FacetPlanes planes =
+      parse_facet_planes(read_file(design.facet_planes->file, kMostFacetPlanesBytes), file, design.part);
   try {
     return geometry::build_part(design.part, planes);
   } catch (const InputError& error) {

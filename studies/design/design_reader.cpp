@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iostream>
-#include <system_error>
+#include <optional>
 #include <vector>
 
 #include "core/angle.h"
@@ -85,11 +83,6 @@ constexpr Range kAcceptance{.low = 0.0, .low_included = false, .high = 90.0};
 /// From one nanometre to one kilometre: beyond that, differences of coordinates have too few digits.
 constexpr Range kSaneSize{.low = 1e-6, .high = 1e6};
 constexpr Range kGap{.low = 0.0, .high = kSaneSize.high};
-
-template <class Value, std::size_t size>
-std::span<const Choice<Value>> all(const std::array<Choice<Value>, size>& choices) {
-  return choices;
-}
 
 /// A required length in mm.
 double read_size(TableReader& table, std::string_view key) {
@@ -467,15 +460,6 @@ void check_schema(TableReader& top) {
     top.fail("schema", fmt::format("must be {}, got {}", in_quotes(kSchema), in_quotes(*schema)));
 }
 
-/// Everything from a stream that may never end, but no more than shows that it is too long for a design.
-std::string read_stream(std::istream& stream, const std::string& name) {
-  std::string text(DesignDocument::max_bytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad()) throw InputError(InputLocation{name, 0, ""}, "cannot be read");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
-}
-
 /// The picture of the array; the keys of the array itself are read by read_array().
 std::optional<ArrayMask> read_mask(const DesignDocument& document, const PartSpec& part) {
   constexpr Range threshold{.low = 0.0, .low_included = false, .high = 1.0};
@@ -533,8 +517,10 @@ void Design::require_no_base(const std::string& what) const {
   if (part.base) throw InputError(base_location, what + " takes no [base], only elements on a plane");
 }
 
-Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
-  const DesignDocument document(text, source_name, overrides);
+namespace {
+
+/// All of a design but the files that it names.
+Design read_keys(const DesignDocument& document, const std::string& source_name) {
   TableReader top(document, "");
   check_schema(top);
   check_keys(document);
@@ -566,16 +552,28 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
   return design;
 }
 
+}  // namespace
+
+Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
+  const DesignDocument document(text, source_name, overrides);
+  Design design = read_keys(document, source_name);
+  design.files = document.files();
+  return design;
+}
+
+std::vector<fs::path> files_named(std::string_view text, const std::string& source_name,
+                                  std::span<const std::string> overrides) {
+  std::optional<DesignDocument> document;
+  try {
+    document.emplace(text, source_name, overrides);
+    read_keys(*document, source_name);
+  } catch (const Error&) {  // told by whoever reads it as a design
+  }
+  return document ? document->files() : std::vector<fs::path>();
+}
+
 std::string read_toml_text(const fs::path& file) {
-  if (file == "-") return read_stream(std::cin, "standard input");
-  std::error_code ignored;
-  const bool is_special =
-      fs::exists(file, ignored) && !fs::is_directory(file, ignored) &&
-      (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) > DesignDocument::max_bytes);
-  if (!is_special) return read_file(file);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(InputLocation{file.string(), 0, ""}, "cannot be read");
-  return read_stream(stream, file.string());
+  return file == "-" ? read_standard_input(DesignDocument::max_bytes) : read_file(file, DesignDocument::max_bytes);
 }
 
 Design read_design(const fs::path& file, std::span<const std::string> overrides) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "studies/design/design.h"
 
@@ -17,6 +18,10 @@ Design read_design(const std::filesystem::path& file, std::span<const std::strin
 
 /// The same for the text of a design file; `source_name` stands for the file in messages and in Design::source.
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides = {});
+
+/// The files that a design names, though it may be none: those that its keys name up to the first that is wrong.
+std::vector<std::filesystem::path> files_named(std::string_view text, const std::string& source_name,
+                                               std::span<const std::string> overrides = {});
 
 /// The text of a TOML file as read_design() reads it: "-" is standard input, and no more is read of it or of any other
 /// file without an end than shows that it is too long. \throw InputError

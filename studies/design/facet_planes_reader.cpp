@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/angle.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
@@ -24,15 +25,14 @@ using geometry::Vec2;
 
 constexpr std::string_view kHeader = "x_mm,y_mm,facet,height_mm,x_slope,y_slope";
 constexpr std::array<std::string_view, 6> kColumns = {"x_mm", "y_mm", "facet", "height_mm", "x_slope", "y_slope"};
-constexpr std::size_t kMostBytes = std::size_t{512} << 20;
-constexpr double kMost = 1e6;
+constexpr double kMostValue = 1e6;
 /// Flares are the facets behind the three of an element.
 constexpr std::size_t kFlares = 3;
 constexpr std::size_t kCaps = 6;
 constexpr double kMostTurnDeg = 5.0;
 constexpr double kMostHeightShare = 0.1;
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
@@ -57,12 +57,12 @@ class Reader {
   }
 
   geometry::FacetPlanes read(std::string_view text) {
-    if (text.size() > kMostBytes) fail(0, "", fmt::format("must have at most {} bytes", kMostBytes));
+    require_short_text(text, file_, kMostFacetPlanesBytes);
     int line = 0;
     bool has_header = false;
     for (std::size_t begin = 0; begin < text.size();) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
-      const std::string_view content = trimmed(text.substr(begin, end - begin));
+      const std::string_view content = without_blanks(text.substr(begin, end - begin));
       ++line;
       begin = end + 1;
       if (content.empty() || content.starts_with('#')) continue;
@@ -91,9 +91,9 @@ class Reader {
   double number(std::string_view text, std::size_t column, int line) const {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !(std::abs(value) <= kMost))
+    if (error != std::errc{} || end != text.data() + text.size() || !(std::abs(value) <= kMostValue))
       fail(line, kColumns[column],
-           fmt::format("must be a number from -{0} to {0}, got {1}", shortest(kMost), in_quotes(text)));
+           fmt::format("must be a number from -{0} to {0}, got {1}", shortest(kMostValue), in_quotes(text)));
     return value;
   }
 
@@ -102,7 +102,8 @@ class Reader {
     std::size_t column = 0;
     for (std::size_t begin = 0; begin <= content.size(); ++column) {
       const std::size_t comma = std::min(content.find(',', begin), content.size());
-      if (column < values.size()) values[column] = number(trimmed(content.substr(begin, comma - begin)), column, line);
+      if (column < values.size())
+        values[column] = number(without_blanks(content.substr(begin, comma - begin)), column, line);
       begin = comma + 1;
     }
     if (column != values.size())

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 #include "geometry/facet_planes.h"
 
 namespace retrace::studies {
+
+/// Longest table of planes that is read.
+inline constexpr std::size_t kMostFacetPlanesBytes = std::size_t{512} << 20;
 
 /// Facets of single elements as planes: CSV with `#` comments and the header
 /// `x_mm,y_mm,facet,height_mm,x_slope,y_slope`, a line for each facet of an element. Of prisms `facet` 1 looks towards

@@ -105,7 +105,7 @@ geometry::Front turned_front(const Design& design, const geometry::Part& part, c
 
 geometry::Front mesh_front(const FrontFile& file, const geometry::Part& part, const Vec3& origin_mm) {
   const std::string name = file.file.string();
-  const geometry::TriangleMesh mesh = geometry::parse_stl(read_file(file.file), name);
+  const geometry::TriangleMesh mesh = geometry::parse_stl(read_file(file.file, kMostDataBytes), name);
   try {
     return std::make_shared<const geometry::SurfacePatch>(geometry::front_of_mesh(
         mesh, file.mesh_bottom ? geometry::MeshSide::bottom : geometry::MeshSide::top, origin_mm, part.outline));

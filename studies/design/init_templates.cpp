@@ -10,7 +10,9 @@
 namespace retrace::studies {
 namespace {
 
-constexpr std::array<std::string_view, 3> kKinds = {"rtp", "hexagonal_icc", "triangular_icc"};
+constexpr std::array<std::string_view, 4> kTemplateKinds = {"rtp", "hexagonal_icc", "triangular_icc",
+                                                            "round_zone_lens"};
+constexpr std::size_t kDesignKinds = 3;
 
 constexpr std::string_view kRtpHead =
     R"(# A retroreflector of right triangular prisms. Lengths in mm, angles in degrees.
@@ -96,17 +98,45 @@ acceptance_half_angle_deg = 0.5   # in air; a list such as [0.2, 0.5, 1] gives R
 # entrance = "real"               # "lossless": the entrance face refracts with T = 1
 )";
 
+constexpr std::string_view kRoundZoneLens =
+    R"(# A round lens of zones for millimetre waves, turned on a lathe. Lengths in mm.
+# Lines that begin with "#" show defaults and alternatives.
+schema = "retrace.planed_part/1"
+title = "Round zone lens, 60 GHz"
+
+[element]
+kind = "round_zone_lens"
+focal_length_mm = 200             # from the middle of the stepped face
+wavelength_mm = 5                 # in air
+refractive_index = 1.52           # polyethylene
+width_mm = 180                    # diameter
+
+[tolerance]
+form_mm = 0.05                    # distance from what the tool's nose can leave of the profile
+
+[lathe]                           # X is the radius
+feed_mm_per_min = 200
+spindle_rpm = 800                 # whole, 1 to 99999
+spindle_direction = "clockwise"   # M3; or "counterclockwise", M4
+# depth_of_cut_mm = 1             # of a pass
+# clear_mm = 2                    # height over the blank of moves beside the cut
+# nose_radius_mm = 0              # of the tool
+# spindle_start = "M103"          # for --dialect pmac, which has no spindle words of its own: the line that starts the
+# spindle_stop = "M105"           # spindle at that speed, and the one that stops it, as your control wants them
+)";
+
 }  // namespace
 
 std::span<const std::string_view> design_kinds() {
-  return kKinds;
+  return std::span(kTemplateKinds).first(kDesignKinds);
 }
 
 std::string design_template(std::string_view kind) {
-  if (kind == kKinds[0]) return std::string(kRtpHead).append(kCommonTail);
-  if (kind == kKinds[1]) return std::string(kHexagonalHead).append(kCommonTail);
-  if (kind == kKinds[2]) return std::string(kTriangularHead).append(kCommonTail);
-  throw InputError(fmt::format("KIND must be one of {}, got {}", alternatives(kKinds), in_quotes(kind)));
+  if (kind == kTemplateKinds[0]) return std::string(kRtpHead).append(kCommonTail);
+  if (kind == kTemplateKinds[1]) return std::string(kHexagonalHead).append(kCommonTail);
+  if (kind == kTemplateKinds[2]) return std::string(kTriangularHead).append(kCommonTail);
+  if (kind == kTemplateKinds[3]) return std::string(kRoundZoneLens);
+  throw InputError(fmt::format("KIND must be one of {}, got {}", alternatives(kTemplateKinds), in_quotes(kind)));
 }
 
 }  // namespace retrace::studies

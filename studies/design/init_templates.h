@@ -6,11 +6,12 @@
 
 namespace retrace::studies {
 
-/// The kinds that design_template() knows, in the order to list them.
+/// The kinds of designs, in the order to list them.
 std::span<const std::string_view> design_kinds();
 
-/// A complete, commented design file to start from; parse_design() reads it as it is.
-/// \throw InputError if `kind` is none of design_kinds().
+/// A complete, commented file to start from: of design_kinds() a design, which parse_design() reads as it is, of
+/// "round_zone_lens" a part for `retrace plane`.
+/// \throw InputError if `kind` is none of these
 std::string design_template(std::string_view kind);
 
 }  // namespace retrace::studies

@@ -69,7 +69,7 @@ geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::str
     return geometry::box_mesh({(*plate)[0], (*plate)[1]}, design.part.thickness_mm);
   const std::string name = design.mesh->file.string();
   try {
-    geometry::TriangleMesh mesh = geometry::parse_stl(read_file(design.mesh->file), name);
+    geometry::TriangleMesh mesh = geometry::parse_stl(read_file(design.mesh->file, kMostDataBytes), name);
     try {
       return checked(design, std::move(mesh), warnings);
     } catch (const InputError& error) {

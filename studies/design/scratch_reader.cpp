@@ -18,8 +18,8 @@ using geometry::PartSpec;
 using geometry::RtpElement;
 using geometry::Scratch;
 
-constexpr std::string_view kKey = "scratches";
-constexpr std::size_t kMost = 200;
+constexpr std::string_view kScratches = "scratches";
+constexpr std::size_t kMostScratches = 200;
 constexpr Range kWidthUm{.low = 0.01, .high = 100.0};
 constexpr std::array kFacets = {Choice<std::size_t>{"-x", 0}, Choice<std::size_t>{"+x", 1}};
 
@@ -46,15 +46,17 @@ bool overlap(const Scratch& a, const Scratch& b) {
 }  // namespace
 
 void read_scratches(const DesignDocument& document, TableReader& surface, PartSpec& part) {
-  const toml::node* const node = surface.node(kKey);
+  const toml::node* const node = surface.node(kScratches);
   if (node == nullptr) return;
   const toml::array* const list = node->as_array();
   if (list == nullptr || !list->is_homogeneous<toml::table>())
-    surface.fail(kKey, "must be a list of tables with facet, position_um, width_um and depth_um, got " + shown(*node));
+    surface.fail(kScratches,
+                 "must be a list of tables with facet, position_um, width_um and depth_um, got " + shown(*node));
   const auto* const element = std::get_if<RtpElement>(&part.element);
-  if (element == nullptr) surface.fail(kKey, "only allowed for kind = \"rtp\"");
-  if (part.base) surface.fail(kKey, "not allowed with [base]");
-  if (list->size() > kMost) surface.fail(kKey, fmt::format("must be at most {}, got {}", kMost, list->size()));
+  if (element == nullptr) surface.fail(kScratches, "only allowed for kind = \"rtp\"");
+  if (part.base) surface.fail(kScratches, "not allowed with [base]");
+  if (list->size() > kMostScratches)
+    surface.fail(kScratches, fmt::format("must be at most {}, got {}", kMostScratches, list->size()));
   for (const toml::node& entry : *list) {
     const std::string name = fmt::format("surface.scratches[{}]", part.scratches.size() + 1);
     TableReader table(document, name, *entry.as_table());

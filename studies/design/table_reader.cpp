@@ -126,7 +126,8 @@ std::optional<std::filesystem::path> TableReader::file(std::string_view key) {
   // A byte 0 would end the name for the system alone.
   if (given->empty() || given->find('\0') != std::string::npos)
     fail(key, fmt::format("must name a file, got {}", in_quotes(*given)));
-  return document_.folder(*find(key)) / *given;
+  document_.add_file(document_.folder(*find(key)) / *given);
+  return document_.files().back();
 }
 
 std::optional<std::string> TableReader::text_or(std::string_view key, std::string_view or_else) {

@@ -29,6 +29,12 @@ struct Choice {
   Value value;
 };
 
+/// All choices of a list, for the functions below.
+template <class Value, std::size_t size>
+std::span<const Choice<Value>> all(const std::array<Choice<Value>, size>& choices) {
+  return choices;
+}
+
 /// Reads one table of a design, checks every value it hands out and remembers which keys were asked for.
 /// Every function throws InputError with file, line and key if what was given is not what is allowed.
 class TableReader {
@@ -56,8 +62,10 @@ class TableReader {
   bool is_text(std::string_view key) const;
   std::optional<std::string> text(std::string_view key);
   /// The name of a file. Relative ones are taken from the folder of the design, those of an override (and of a design
-  /// on standard input) from the working directory.
+  /// on standard input) from the working directory. The document remembers it (DesignDocument::files()).
   std::optional<std::filesystem::path> file(std::string_view key);
+  /// Adds to the files that the document names one that was not read by file().
+  void add_file(const std::filesystem::path& file) { document_.add_file(file); }
   /// The node of a key, which counts as asked for; null if it was not given.
   const toml::node* node(std::string_view key) { return take(key); }
   /// The value of a key that was given, as a message shows it.

@@ -24,7 +24,7 @@ constexpr double kLevelShare = 1e-6;
 // Of the size of an element: lengths below it are none, and lines that lie so near are one.
 constexpr double kSame = 1e-7;
 // Of a cosine: neighbours that look so nearly the same way are one face, such as triangles of a mesh.
-constexpr double kSameDirection = 1e-9;
+constexpr double kSameNormal = 1e-9;
 
 Rectangle box_of(const SurfacePatch& patch) {
   Rectangle box{Vec2::Constant(INFINITY), Vec2::Constant(-INFINITY)};
@@ -115,7 +115,7 @@ class CellDrawer {
         const auto beside = normals.find({b, a});
         if (beside == normals.end())
           lines.add(at(a), at(b), view.rims_mm);
-        else if (facet.normal.dot(beside->second) < 1.0 - kSameDirection)
+        else if (facet.normal.dot(beside->second) < 1.0 - kSameNormal)
           lines.add(at(a), at(b), view.roots_mm);
       }
     });

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "core/angle.h"
 #include "core/number_format.h"
@@ -20,37 +18,6 @@ namespace {
 
 // Boundaries of more elements than this are checked on a smaller part of the same kind: CGAL needs seconds beyond.
 constexpr double kElementsToCheck = 1000.0;
-
-/// Directions to the light inside that meets a facet squarely: its inward normal, and that of its mirror images, as
-/// light meets a facet after others as it would meet their image of it on its straight way.
-std::vector<geometry::Vec3> square_directions(const geometry::PartSpec& part) {
-  std::vector<geometry::Vec3> normals;
-  for (const geometry::CellFacet& facet : geometry::element_cell(part.element, part.angle_errors).facets)
-    normals.push_back(geometry::Vec3(facet.plane.slope.x(), facet.plane.slope.y(), -1.0).normalized());
-  std::vector<std::size_t> order(normals.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::vector<geometry::Vec3> directions;
-  do {
-    Eigen::Matrix3d image = Eigen::Matrix3d::Identity();
-    for (const std::size_t k : order) {
-      const geometry::Vec3 seen = image * normals[k];
-      directions.push_back(seen.z() < 0.0 ? geometry::Vec3(-seen) : seen);
-      image = image * (Eigen::Matrix3d::Identity() - 2.0 * normals[k] * normals[k].transpose());
-    }
-  } while (std::next_permutation(order.begin(), order.end()));
-  return directions;
-}
-
-/// Degrees from 0 to below 360, without the last digits that differ between equal facets.
-double azimuth_deg(const geometry::Vec3& direction) {
-  const double deg = Angle::from_rad(std::atan2(direction.y(), direction.x())).deg();
-  const double rounded = 1e-9 * std::round(1e9 * std::remainder(deg, 360.0));
-  return rounded < 0.0 ? rounded + 360.0 : std::abs(rounded);
-}
-
-double critical_rad(double index, double back_index) {
-  return std::asin(std::min(1.0, back_index / index));
-}
 
 /// A finite part of the same elements that CGAL checks quickly: the design itself if it is small.
 geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_mm, bool& is_whole) {
@@ -180,60 +147,6 @@ void add_warnings(Inspection& result, const geometry::Part& part) {
         fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
                     result.design.source_name(), part.elements_partial));
 }
-
-}  // namespace
-
-std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index, double back_index) {
-  double least = Angle::from_deg(90.0).rad();
-  for (const geometry::Vec3& direction : square_directions(part)) least = std::min(least, std::acos(direction.z()));
-  const double inside = least - critical_rad(index, back_index);
-  if (!(inside >= 0.0)) return std::nullopt;
-  const double sine = index * std::sin(inside);
-  return sine >= 1.0 ? 90.0 : Angle::from_rad(std::asin(sine)).deg();
-}
-
-double tir_limit_azimuth_deg(const geometry::PartSpec& part) {
-  constexpr double rounding = 1e-12;
-  double highest = -1.0;
-  double azimuth = 0.0;
-  for (const geometry::Vec3& direction : square_directions(part)) {
-    if (direction.z() < highest - rounding) continue;
-    const double here = azimuth_deg(direction);
-    if (direction.z() > highest + rounding || here < azimuth) azimuth = here;
-    highest = std::max(highest, direction.z());
-  }
-  return azimuth;
-}
-
-std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, double index, double back_index,
-                                                Angle azimuth) {
-  constexpr double rounding = 1e-12;
-  const double cos_critical = std::cos(critical_rad(index, back_index));
-  const geometry::Vec2 along(std::cos(azimuth.rad()), std::sin(azimuth.rad()));
-  const std::vector<geometry::Vec3> directions = square_directions(part);
-  // Each direction shuts out the angles inside that come close to it.
-  double inside = 0.0;
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const geometry::Vec3& direction : directions) {
-      const double in_plane = direction.head<2>().dot(along);
-      const double size = std::hypot(in_plane, direction.z());
-      if (size <= cos_critical) continue;
-      const double middle = std::atan2(in_plane, direction.z());
-      const double half_width = std::acos(cos_critical / size);
-      if (inside <= middle - half_width + rounding || inside >= middle + half_width - rounding) continue;
-      inside = middle + half_width;
-      moved = true;
-    }
-  }
-  const double sine = index * std::sin(inside);
-  const geometry::Vec3 light(std::sin(inside) * along.x(), std::sin(inside) * along.y(), std::cos(inside));
-  for (const geometry::Vec3& direction : directions)
-    if (direction.dot(light) <= 0.0) return std::nullopt;  // does not meet all facets
-  return sine < 1.0 ? std::optional(Angle::from_rad(std::asin(sine)).deg()) : std::nullopt;
-}
-
-namespace {
 
 Inspection inspect_balls(const Design& design, const materials::MaterialLibrary& library) {
   const raytrace::BallLayer& layer = *design.balls;

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "core/angle.h"
 #include "geometry/base_part.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
+#include "studies/design/total_reflection.h"
 #include "studies/inspect/front_report.h"
 
 namespace retrace::studies {
@@ -59,18 +59,6 @@ struct Inspection {
   std::string boundary;              ///< what the check of the boundary found
   std::vector<std::string> warnings;
 };
-
-/// Largest incidence of total reflection for a part's elements at this index, of what is behind them; closed form.
-/// \pre both >= 1
-std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index, double back_index);
-
-/// The azimuth of the light whose total reflection ends first; 0 to below 360, the least of equal ones.
-double tir_limit_azimuth_deg(const geometry::PartSpec& part);
-
-/// Least incidence at this azimuth at which every facet reflects the retroreflected light totally; none if there is
-/// none. \pre both >= 1
-std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, double index, double back_index,
-                                                Angle azimuth);
 
 /// \throw InputError as make_model()
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library);

@@ -80,9 +80,13 @@ Knob size_knob(const Design& design) {
   return knob;
 }
 
+/// The least of value over limit, where an undetermined point is no more than 1.
 double least_ratio(const std::vector<PhotometricPoint>& points) {
   double least = std::numeric_limits<double>::infinity();
-  for (const PhotometricPoint& point : points) least = std::min(least, 1.0 + point.margin());
+  for (const PhotometricPoint& point : points) {
+    const double most = point.verdict() == Verdict::undetermined ? 1.0 : least;
+    least = std::min({least, most, 1.0 + point.margin()});
+  }
   return least;
 }
 
@@ -97,6 +101,7 @@ class Search {
     double best_ratio = -1.0;
     for (const double value : knob_.tries) {
       const double ratio = ratio_at(value);
+      if (is_cancelled_) return std::nullopt;
       if (ratio > best_ratio) {
         best = value;
         best_ratio = ratio;
@@ -110,17 +115,19 @@ class Search {
   }
 
  private:
-  /// The least of value over limit; -1 if such a part cannot be made.
-  double ratio_at(double value) const {
+  /// The least of value over limit; -1 if such a part cannot be made, or the search was cancelled.
+  double ratio_at(double value) {
+    if (is_cancelled_) return -1.0;
     try {
       const auto points = table_(knob_.with(value), kSearchParts);
+      is_cancelled_ = !points;
       return points ? least_ratio(*points) : -1.0;
     } catch (const InputError&) {
       return -1.0;
     }
   }
 
-  double nearest_that_passes(double passing) const {
+  double nearest_that_passes(double passing) {
     double failing = knob_.from;
     for (int k = 0; k < kBisections; ++k) {
       const double middle = 0.5 * (failing + passing);
@@ -147,6 +154,7 @@ class Search {
   const Knob& knob_;
   const TestProgramme& programme_;
   const TableOfDesign& table_;
+  bool is_cancelled_ = false;
 };
 
 }  // namespace
@@ -157,7 +165,7 @@ std::vector<PhotometricChange> changes_that_pass(const Design& design, const Tes
   for (const Knob& knob : {angle_knob(design), size_knob(design)}) {
     const auto found = Search(knob, programme, table).run();
     if (!found) continue;
-    if (found->verdict != Verdict::fail) return {*found};
+    if (found->passes()) return {*found};
     tried.push_back(*found);
   }
   return tried;

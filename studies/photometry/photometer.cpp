@@ -23,8 +23,11 @@ using raytrace::PhotometricGeometry;
 constexpr double kCutoff = 1e-6;
 // Beams of a direction and wavelength beyond which the choice is Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
-// Patterns that are finer than this share of the discs of source and receiver are not computed.
-constexpr double kFinestShare = 1.0 / 64.0;
+// Cells this many times as wide as the wavelength over the diameter of the discs, or wider, need no diffraction: what
+// it carries past the edge of a disc is less than 1 % (docs/theory/photometry.md).
+constexpr double kWidthsWithoutDiffraction = 64.0;
+// Share of a direction's power by which the budget of polygons may fall short.
+constexpr double kMostBeyondBudget = 1e-4;
 // Lattice points of the window, beyond which its power is not integrated.
 constexpr double kMostLatticePoints = 300'000.0;
 
@@ -85,6 +88,16 @@ void check_balls(const Design& design, const PhotometryRequest& request) {
     throw InputError(design.balls_location, "photometry takes layers of balls: give array.arrangement = \"packed\"");
   if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
     throw InputError({"", 0, "--engine"}, "must be auto or montecarlo for balls");
+}
+
+/// Width of the cells whose edges diffract. 0: not known, as of meshes, and of fronts whose own cells divide the light.
+double cell_width_mm(const Design& design) {
+  if (design.balls) return design.balls->diameter_mm;
+  if (design.mesh || design.front) return 0.0;
+  if (const auto* prism = std::get_if<geometry::RtpElement>(&design.part.element))
+    return std::min(prism->base_mm, prism->width_mm);
+  if (const auto* cube = std::get_if<geometry::HexagonalCube>(&design.part.element)) return cube->aperture_mm;
+  return std::get<geometry::TriangularCube>(design.part.element).aperture_mm;
 }
 
 /// The design in the light of the photometer.
@@ -159,6 +172,7 @@ struct Photometer::Piece {
   double std_error = 0.0;
   double truncated = 0.0;
   std::optional<PhotometricDirection::Split> split;
+  double beyond_budget = 0.0;  ///< power that is not diffracted for want of time
   bool complete = false;
 };
 
@@ -178,6 +192,28 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
   }
   is_exact_ = !design_.balls && !design_.front && model_.optics.is_smooth() &&
               (request.engine == Engine::exact || request.engine == Engine::automatic);
+}
+
+std::optional<Photometer> Photometer::mean_field() const {
+  const bool is_asked = request_.engine == Engine::automatic && request_.diffraction;
+  if (!is_asked || is_exact_ || design_.balls || design_.front || model_.optics.is_smooth()) return std::nullopt;
+  Photometer bound = *this;
+  bound.is_exact_ = true;
+  return bound;
+}
+
+std::string Photometer::why_undiffracted() const {
+  if (!request_.diffraction) return "it was not asked for";
+  if (design_.balls) return "balls are traced by rays";
+  if (design_.front) return "curved fronts are traced by rays";
+  if (is_exact_) return "its cells differ too much to diffract the light of each";
+  if (!model_.optics.is_smooth()) return "facets that scatter are traced by rays";
+  return request_.engine == Engine::automatic ? "the exact engine would take too many beams"
+                                              : "the Monte-Carlo engine has none";
+}
+
+double Photometer::least_undiffracted_mm() const {
+  return kWidthsWithoutDiffraction * 1e-6 * model_.spectral.back().wavelength_nm / kernel_.reach_rad();
 }
 
 std::vector<double> Photometer::wavelengths_nm() const {
@@ -205,7 +241,8 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
   policy.diffraction = request_.diffraction;
   policy.wavelength_nm = light.wavelength_nm;
   policy.window_rad = deg(1.5 * request_.window_deg).rad();
-  policy.finest_detail_rad = kFinestShare * kernel_.reach_rad();
+  policy.finest_detail_rad = kernel_.reach_rad() / kWidthsWithoutDiffraction;
+  policy.cancel = cancel;
   raytrace::BeamPolicy beams;
   beams.cutoff = request_.cutoff.value_or(kCutoff) /
                  std::max(1.0, static_cast<double>(model_.part.period_mm ? 1 : model_.part.elements_full));
@@ -218,6 +255,7 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
   Piece piece;
   if (!traced.complete) return piece;
   const raytrace::FarField field = collector.finish();
+  piece.beyond_budget = field.beyond_budget_power();
   piece.rre = traced.ledgers.back()[raytrace::Account::retroreflected];
   piece.truncated = traced.ledgers.back()[raytrace::Account::truncated];
   for (const double observation_deg : setting.observation_deg)
@@ -236,7 +274,7 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
     const raytrace::FarField::Split parts = field.split(frame, window_rad);
     piece.split = {light.wavelength_nm, parts.inside, parts.outside, field.total_power()};
   }
-  piece.complete = true;
+  piece.complete = !is_cancelled(cancel);
   return piece;
 }
 
@@ -269,6 +307,9 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
   piece.truncated = traced.cones.back().ledger[raytrace::Account::truncated];
   piece.per_sr.assign(traced.score.begin(), traced.score.begin() + receivers);
   piece.error_per_sr.assign(traced.score_error.begin(), traced.score_error.begin() + receivers);
+  // Replicates that all saw nothing agree, but know no better than to the light of one ray.
+  const double one_ray_per_sr = kernel_.per_sr(0.0) / static_cast<double>(sampling.rays.value());
+  for (double& error : piece.error_per_sr) error = std::max(error, one_ray_per_sr);
   if (score.grid)
     for (std::size_t bin = 0; bin < score.grid->size(); ++bin)
       piece.map_per_sr.push_back(traced.score[score.receivers.size() + bin] / score.grid->solid_angle_sr(bin));
@@ -288,14 +329,18 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   at.azimuth_deg = source.azimuth.deg();
   std::vector<double> map(setting.map_columns * setting.map_columns, 0.0);
   double variance = 0.0;
+  double beyond_budget = 0.0;
   for (std::size_t w = 0; w < pieces.size(); ++w) {
     at.rre += weights_[w] * pieces[w].rre;
     at.truncated += weights_[w] * pieces[w].truncated;
     variance += std::pow(weights_[w] * pieces[w].std_error, 2.0);
+    beyond_budget += weights_[w] * pieces[w].beyond_budget;
     if (pieces[w].split) at.split = pieces[w].split;
     for (std::size_t k = 0; k < map.size(); ++k) map[k] += weights_[w] * pieces[w].map_per_sr[k];
   }
   at.std_error = std::sqrt(variance);
+  reading.lacks_diffraction =
+      has_diffraction() ? beyond_budget > kMostBeyondBudget : cell_width_mm(design_) < least_undiffracted_mm();
   const double cos_beta = std::cos(source.incidence.rad());
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
     double per_sr = 0.0;
@@ -335,7 +380,7 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vec
     if (!design_.balls)
       tracer.emplace(model_.part, raytrace::MonteCarlo::Engine::embree, model_.front ? &*model_.front : nullptr);
     for (std::size_t k = 0; k < settings.size() * wavelengths; ++k) {
-      if (cancel != nullptr && cancel->requested()) return std::nullopt;
+      if (is_cancelled(cancel)) return std::nullopt;
       pieces[k / wavelengths][k % wavelengths] =
           measure_by_rays(settings[k / wavelengths], k % wavelengths, tracer ? &*tracer : nullptr, cancel);
       if (progress != nullptr)

@@ -28,6 +28,7 @@ struct PhotometerReading {
   std::vector<double> r_a_error;
   PhotometricDirection direction;
   std::vector<double> map_r_a;
+  bool lacks_diffraction = false;  ///< although it would count
 };
 
 /// Measures the coefficients of retroreflection of a design, as a goniophotometer does: one direction of incidence at a
@@ -45,6 +46,14 @@ class Photometer {
   std::vector<double> wavelengths_nm() const;
   std::string engine_name() const { return design_.balls ? "balls" : is_exact_ ? "exact" : "embree"; }
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
+  /// Why readings lack diffraction, if they do.
+  std::string why_undiffracted() const;
+  /// Width from which on cells need none.
+  double least_undiffracted_mm() const;
+  /// Of a part whose facets scatter: the photometer of its mean field, with diffraction, which is nowhere brighter than
+  /// the part (docs/theory/photometry.md). Nothing for other parts, and where engine or far field were chosen
+  /// otherwise.
+  std::optional<Photometer> mean_field() const;
   /// From now on by Monte Carlo.
   void leave_exact() { is_exact_ = false; }
   bool is_exact() const { return is_exact_; }

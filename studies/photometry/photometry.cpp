@@ -22,6 +22,8 @@ constexpr double kLeastWindowDeg = 0.05;
 constexpr double kMostWindowDeg = 10.0;
 constexpr double kMostAreaCm2 = 1e6;
 constexpr double kMostApertureDeg = 5.0;
+// A value nearer to its limit than this many standard errors says nothing.
+constexpr double kErrorsOfAMargin = 2.0;
 // Wavelengths for figures, and for pictures.
 constexpr std::size_t kPictureParts = 1;
 constexpr std::size_t kMapColumns = 97;
@@ -100,6 +102,8 @@ std::vector<PhotometricPoint> points_of(const PhotometryRequest& request, const 
       least.std_error_mcd_per_lx =
           in_mcd_per_lx(reading.r_a_error[angle], PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
     }
+    for (const auto& [setting, angle] : plan.readings_of_point[k])
+      least.lacks_diffraction = least.lacks_diffraction || readings[setting].lacks_diffraction;
     least.asked = asked;
     least.r_i_mcd_per_lx = in_mcd_per_lx(least.r_a, PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
     least.limit_mcd_per_lx = in_mcd_per_lx(asked.minimum, asked.unit, request.area_cm2);
@@ -167,15 +171,28 @@ std::string_view verdict_name(Verdict verdict) {
       return "pass";
     case Verdict::unconfirmed:
       return "unconfirmed";
+    case Verdict::undetermined:
+      return "undetermined";
     case Verdict::fail:
       return "fail";
   }
   return {};
 }
 
+Verdict PhotometricPoint::verdict() const {
+  const bool reaches = r_i_mcd_per_lx >= limit_mcd_per_lx;
+  if (is_lower_bound) return reaches ? Verdict::pass : Verdict::undetermined;
+  const bool is_too_near = std::abs(r_i_mcd_per_lx - limit_mcd_per_lx) < kErrorsOfAMargin * std_error_mcd_per_lx;
+  if (lacks_diffraction || is_too_near) return Verdict::undetermined;
+  return reaches ? Verdict::pass : Verdict::fail;
+}
+
 Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme) {
-  if (!std::all_of(points.begin(), points.end(), [](const PhotometricPoint& p) { return p.passes(); }))
-    return Verdict::fail;
+  const auto any = [&](Verdict verdict) {
+    return std::any_of(points.begin(), points.end(), [&](const PhotometricPoint& p) { return p.verdict() == verdict; });
+  };
+  for (const Verdict verdict : {Verdict::fail, Verdict::undetermined})
+    if (any(verdict)) return verdict;
   const bool is_confirmed = std::none_of(
       points.begin(), points.end(), [](const PhotometricPoint& p) { return p.asked.status == LimitStatus::recalled; });
   return is_confirmed && programme.is_complete ? Verdict::pass : Verdict::unconfirmed;
@@ -202,6 +219,68 @@ PhotometryStudy::PhotometryStudy(Design design, PhotometryRequest request) : pre
 
 PhotometryStudy::~PhotometryStudy() = default;
 
+namespace {
+
+/// Of a part whose facets scatter, points without diffraction that the mean field alone lifts above their limits.
+/// False if it was cancelled.
+bool raise_to_mean_field(const Photometer& photometer, const PhotometryRequest& request, const Plan& plan,
+                         const Cancellation* cancel, std::vector<PhotometricPoint>& points) {
+  const auto lacks = [](const PhotometricPoint& p) { return p.lacks_diffraction; };
+  const std::optional<Photometer> mean_field = photometer.mean_field();
+  if (!mean_field || std::none_of(points.begin(), points.end(), lacks)) return true;
+  try {
+    const auto bounds = table_of(*mean_field, request, plan, cancel);
+    if (!bounds) return false;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      PhotometricPoint bound = (*bounds)[k];
+      if (!lacks(points[k]) || bound.verdict() != Verdict::pass) continue;
+      bound.is_lower_bound = true;
+      points[k] = bound;
+    }
+  } catch (const BudgetError&) {  // too many beams: no bound is known
+  }
+  return true;
+}
+
+/// Why points are undetermined; empty if none is.
+std::string reason_of(const std::vector<PhotometricPoint>& points, const Photometer& photometer) {
+  const auto is_open = [](const PhotometricPoint& p) { return p.verdict() == Verdict::undetermined; };
+  if (std::none_of(points.begin(), points.end(), is_open)) return {};
+  if (std::none_of(points.begin(), points.end(), [](const PhotometricPoint& p) { return p.lacks_diffraction; }))
+    return "a value is nearer to its limit than two standard errors: give more samples";
+  return fmt::format("diffraction is left out, as {}, and counts for cells narrower than {} mm",
+                     photometer.why_undiffracted(), fixed(photometer.least_undiffracted_mm(), 1));
+}
+
+/// By Monte Carlo where the exact engine may be left and takes too many beams.
+std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer, const PhotometryRequest& request,
+                                                          const Plan& plan, Progress* progress,
+                                                          const Cancellation* cancel) {
+  try {
+    return photometer.measure(plan.settings, progress, cancel);
+  } catch (const BudgetError&) {
+    if (request.engine == Engine::exact || !photometer.is_exact()) throw;
+    photometer.leave_exact();
+    return photometer.measure(plan.settings, nullptr, cancel);
+  }
+}
+
+/// What to change of a design that fails. False if it was cancelled.
+bool add_changes(const Photometer& photometer, const Plan& plan, const Cancellation* cancel, PhotometryResult& result) {
+  const Design& design = result.design;
+  const PhotometryRequest& request = result.request;
+  if (result.verdict != Verdict::fail || !request.advice || design.mesh || design.balls || design.front) return true;
+  const auto measure = [&](const Design& changed, std::size_t parts) {
+    Photometer other(changed, request, parts);
+    if (!photometer.is_exact()) other.leave_exact();
+    return table_of(other, request, plan, cancel);
+  };
+  result.changes = changes_that_pass(design, request.programme, measure);
+  return !is_cancelled(cancel);
+}
+
+}  // namespace
+
 PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* cancel) const {
   const auto start = std::chrono::steady_clock::now();
   const auto& [design, request, prepared_photometer, plan] = *prepared_;
@@ -211,37 +290,26 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   result.request = request;
   result.warnings = photometer.warnings();
   result.wavelengths_nm = photometer.wavelengths_nm();
-  std::optional<std::vector<PhotometerReading>> readings;
-  try {
-    readings = photometer.measure(plan.settings, progress, cancel);
-  } catch (const BudgetError&) {
-    if (request.engine == Engine::exact || !photometer.is_exact()) throw;
-    photometer.leave_exact();
-    readings = photometer.measure(plan.settings, nullptr, cancel);
-  }
+  const auto readings = readings_of(photometer, request, plan, progress, cancel);
   result.engine = photometer.engine_name();
   result.has_diffraction = photometer.has_diffraction();
   if (request.diffraction && !result.has_diffraction)
     result.warnings.push_back(
         fmt::format("{}: the Monte-Carlo engine has no diffraction, which spreads the light of "
-                    "cells under about 1 mm",
-                    design.source_name()));
+                    "cells under {} mm",
+                    design.source_name(), fixed(photometer.least_undiffracted_mm(), 1)));
   result.complete = readings.has_value();
   if (readings) {
-    result.points = points_of(request, plan, *readings);
     for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);
+    result.measured = points_of(request, plan, *readings);
+    result.points = result.measured;
+    result.complete = raise_to_mean_field(photometer, request, plan, cancel, result.points);
     result.verdict = verdict_of(result.points, request.programme);
-    if (request.pictures) result.complete = add_pictures(design, request, photometer.is_exact(), cancel, result);
-    if (result.verdict == Verdict::fail && request.advice && result.complete && !design.mesh && !design.balls &&
-        !design.front) {
-      const auto measure = [&](const Design& changed, std::size_t parts) {
-        Photometer other(changed, request, parts);
-        if (!photometer.is_exact()) other.leave_exact();
-        return table_of(other, request, plan, cancel);
-      };
-      result.changes = changes_that_pass(design, request.programme, measure);
-    }
+    result.reason = reason_of(result.points, photometer);
   }
+  if (result.complete && request.pictures)
+    result.complete = add_pictures(design, request, photometer.is_exact(), cancel, result);
+  if (result.complete) result.complete = add_changes(photometer, plan, cancel, result);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

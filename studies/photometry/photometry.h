@@ -35,6 +35,12 @@ struct PhotometryRequest {
   bool advice = true;     ///< what to change if it fails
 };
 
+enum class Verdict { pass, unconfirmed, undetermined, fail };
+std::string_view verdict_name(Verdict verdict);
+inline bool every_point_holds(Verdict verdict) {
+  return verdict == Verdict::pass || verdict == Verdict::unconfirmed;
+}
+
 /// A test point and what was found there.
 struct PhotometricPoint {
   TestPoint asked;
@@ -44,9 +50,12 @@ struct PhotometricPoint {
   double r_l = 0.0;  ///< cd/(lx m^2)
   double std_error_mcd_per_lx = 0.0;
   double limit_mcd_per_lx = 0.0;
+  bool lacks_diffraction = false;  ///< although it would count: the value says nothing against the limit
+  bool is_lower_bound = false;     ///< the part reaches the value at least
 
-  double margin() const { return r_i_mcd_per_lx / limit_mcd_per_lx - 1.0; }  ///< >= 0: it passes
-  bool passes() const { return r_i_mcd_per_lx >= limit_mcd_per_lx; }
+  double margin() const { return r_i_mcd_per_lx / limit_mcd_per_lx - 1.0; }
+  /// Pass, fail or undetermined: without diffraction that counts, and nearer to the limit than two standard errors.
+  Verdict verdict() const;
 };
 
 /// One direction of incidence.
@@ -86,9 +95,6 @@ struct ObservationCurve {
   std::vector<double> r_a;
 };
 
-enum class Verdict { pass, unconfirmed, fail };
-std::string_view verdict_name(Verdict verdict);
-
 /// A change of the design that passes, or comes nearest to it.
 struct PhotometricChange {
   std::string key;  ///< of the design file
@@ -96,6 +102,8 @@ struct PhotometricChange {
   double to = 0.0;
   std::vector<PhotometricPoint> points;  ///< the whole table again
   Verdict verdict = Verdict::fail;
+
+  bool passes() const { return every_point_holds(verdict); }
 };
 
 struct PhotometryResult {
@@ -105,17 +113,22 @@ struct PhotometryResult {
   std::vector<double> wavelengths_nm;
   bool has_diffraction = true;
   std::vector<PhotometricPoint> points;
+  std::vector<PhotometricPoint> measured;  ///< the same before lower bounds took the place of values
   std::vector<PhotometricDirection> directions;
   Verdict verdict = Verdict::fail;
+  std::string reason;                      ///< why points are undetermined; empty if none is
   std::vector<PhotometricChange> changes;  ///< if it fails: the one that passes, or what was tried
   std::vector<FarFieldMap> maps;
   std::vector<ObservationCurve> curves;
   double elapsed_s = 0.0;
   std::vector<std::string> warnings;
   bool complete = true;
+
+  bool passes() const { return every_point_holds(verdict); }
 };
 
-/// What points say together. Points of recalled limits, and programmes that are not complete, confirm nothing.
+/// What points say together: one that fails decides, then one that is undetermined. Points of recalled limits, and
+/// programmes that are not complete, confirm nothing.
 Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme);
 
 /// A checked request, ready to run.

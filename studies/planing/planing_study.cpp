@@ -7,12 +7,26 @@
 #include "fabrication/post/post.h"
 
 namespace retrace::studies {
+namespace {
+
+/// \throw InputError for a spindle that nobody could start in that dialect
+void check_spindle(const fabrication::PlanedPart& part, const std::string& dialect) {
+  if (!part.lathe || dialect != fabrication::kNcDialectWords[static_cast<std::size_t>(fabrication::NcDialect::pmac)])
+    return;
+  if (part.lathe->spindle_start.empty())
+    throw InputError(part.lathe->spindle_start_at,
+                     "missing, must be the line that starts the spindle: dialect pmac has no word for it that every "
+                     "control knows");
+}
+
+}  // namespace
 
 PlaningResult plane(const std::string& part_file, const std::string& dialect) {
   using namespace fabrication;
   PlaningResult result;
   const std::string ending(ending_of(dialect));  // says at once that there is no such dialect
   result.part = read_planed_part(part_file);
+  check_spindle(result.part, dialect);
   result.dialect = dialect;
   try {
     result.plan = plan_planing(result.part);

@@ -20,7 +20,7 @@ struct AnalysisSettings {
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
   Engine engine = Engine::automatic;
-  double target_error = 1e-4;  ///< standard error of RRE to reach
+  std::optional<double> target_error;  ///< as RreRequest::target_error
   std::optional<std::uint64_t> rays;
   std::optional<double> cutoff;
   std::uint32_t seed = 1;

@@ -1,13 +1,22 @@
 #include "studies/quantity/photometric.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
+
 namespace retrace::studies {
 namespace {
 
-using Points = std::vector<PhotometricPoint>;
+/// Without points if it was cancelled.
+struct Points {
+  std::vector<PhotometricPoint> judged;    ///< may be lower bounds
+  std::vector<PhotometricPoint> measured;  ///< may lack diffraction
+  std::string reason;                      ///< why points are undetermined; empty if none is
+};
 
 class PhotometricQuantity final : public Quantity {
  public:
@@ -16,14 +25,13 @@ class PhotometricQuantity final : public Quantity {
       : Quantity(std::move(name)), table_(std::move(table)), point_(point), figure_(figure) {}
 
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const override {
-    // A measurement that was cancelled is kept as one without points.
     const auto points = candidate.shared<Points>("photometry " + table_->key, [&] {
       return std::make_shared<const Points>(measured_points(candidate, cancel));
     });
-    if (points->empty()) return std::nullopt;
-    if (point_) return figure_of(points->at(*point_));
+    if (points->judged.empty()) return std::nullopt;
+    if (point_) return figure_of(*points, *point_);
     std::vector<Measured> all;
-    for (const PhotometricPoint& point : *points) all.push_back(figure_of(point));
+    for (std::size_t k = 0; k < points->judged.size(); ++k) all.push_back(figure_of(*points, k));
     return *std::min_element(all.begin(), all.end(),
                              [](const Measured& a, const Measured& b) { return *a.value < *b.value; });
   }
@@ -41,13 +49,21 @@ class PhotometricQuantity final : public Quantity {
       request.dye_absorption_per_mm = {};
     }
     const PhotometryResult result = PhotometryStudy(candidate.design(), std::move(request)).run(nullptr, cancel);
-    return result.complete ? result.points : Points{};
+    return result.complete ? Points{result.points, result.measured, result.reason} : Points{};
   }
 
-  Measured figure_of(const PhotometricPoint& point) const {
+  /// A margin without the diffraction that was asked for would be taken for a verdict.
+  Measured margin_of(const PhotometricPoint& point, const std::string& reason) const {
+    if (point.lacks_diffraction && table_->request.diffraction)
+      throw BudgetError(fmt::format("the margin of the photometry is undetermined: {}", reason));
+    return {point.margin(), point.std_error_mcd_per_lx / point.limit_mcd_per_lx};
+  }
+
+  Measured figure_of(const Points& points, std::size_t k) const {
+    const PhotometricPoint& point = points.measured.at(k);
     switch (figure_) {
       case PhotometricFigure::margin:
-        return {point.margin(), point.std_error_mcd_per_lx / point.limit_mcd_per_lx};
+        return margin_of(points.judged.at(k), points.reason);
       case PhotometricFigure::r_i_mcd_per_lx:
         return {point.r_i_mcd_per_lx, point.std_error_mcd_per_lx};
       case PhotometricFigure::r_a:

@@ -54,4 +54,16 @@ ParameterValue Parameter::value_of(double number) {
   return {shortest(number), number};
 }
 
+PointValues some_values(const Study& study) {
+  PointValues values;
+  for (const Parameter& parameter : study.parameters) {
+    if (!parameter.values.empty())
+      values.push_back(parameter.values.front());
+    else
+      values.push_back(
+          Parameter::value_of(parameter.interval ? parameter.interval->from : parameter.distribution->quantile(0.5)));
+  }
+  return values;
+}
+
 }  // namespace retrace::studies

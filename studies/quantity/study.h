@@ -61,6 +61,7 @@ struct Study {
   std::string text;                                 ///< of the study file
   std::string design_file;                          ///< of the base design; from the working directory
   std::map<std::string, std::string> design_texts;  ///< by file name, as read once
+  std::vector<std::string> files;                   ///< all that are read: its own, designs, what these name
   std::vector<std::string> overrides;               ///< --set
   std::uint32_t seed = 1;
   std::vector<Parameter> parameters;
@@ -71,5 +72,8 @@ struct Study {
 
 /// Values of the parameters of a study at one point, in their order.
 using PointValues = std::vector<ParameterValue>;
+
+/// Values that every parameter of a study may have.
+PointValues some_values(const Study& study);
 
 }  // namespace retrace::studies

@@ -52,7 +52,6 @@ RreRequest direction_of(const RoughnessRequest& asked) {
   RreRequest request;
   request.incidence_deg = {asked.incidence_deg};
   request.azimuth_deg = {asked.azimuth_deg};
-  request.target_error = asked.target_error;
   request.seed = asked.seed;
   return request;
 }
@@ -116,6 +115,7 @@ RoughnessStudy::RoughnessStudy(Design design, RoughnessRequest request) : prepar
   RreRequest asked = direction_of(request);
   p.smooth_study = std::make_unique<RreStudy>(std::vector{design}, asked);
   asked.engine = Engine::montecarlo;
+  asked.target_error = request.target_error;
   asked.rays = request.rays;
   if (!rough.empty()) p.rough_study = std::make_unique<RreStudy>(std::move(rough), asked);
   p.design = std::move(design);

@@ -11,7 +11,7 @@ namespace {
 
 using geometry::Vec3;
 
-bool is_before(const FarFieldSpot& a, const FarFieldSpot& b) {
+bool is_stronger(const FarFieldSpot& a, const FarFieldSpot& b) {
   if (a.stokes.i != b.stokes.i) return a.stokes.i > b.stokes.i;
   if (a.deviation.rad() != b.deviation.rad()) return a.deviation.rad() < b.deviation.rad();
   return a.orientation.rad() < b.orientation.rad();
@@ -60,7 +60,7 @@ FarField FarFieldBuilder::finish() const {
     else
       field.spots.push_back(seen_from_source(spot));
   }
-  std::sort(field.spots.begin(), field.spots.end(), is_before);
+  std::sort(field.spots.begin(), field.spots.end(), is_stronger);
   return field;
 }
 

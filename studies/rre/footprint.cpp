@@ -32,7 +32,7 @@ Polygon outline_of(const raytrace::FlatPolygon& polygon) {
   return outline;
 }
 
-bool is_before(const ActiveRegion& a, const ActiveRegion& b) {
+bool lies_before(const ActiveRegion& a, const ActiveRegion& b) {
   for (std::size_t k = 0; k < std::min(a.outline_mm.size(), b.outline_mm.size()); ++k) {
     const Vec2& p = a.outline_mm[k];
     const Vec2& q = b.outline_mm[k];
@@ -66,7 +66,7 @@ Footprint FootprintBuilder::finish() const {
     footprint.regions.push_back({outline_of(piece.polygon), piece.value});
     footprint.active_area_mm2 += raytrace::area(piece.polygon);
   }
-  std::sort(footprint.regions.begin(), footprint.regions.end(), is_before);
+  std::sort(footprint.regions.begin(), footprint.regions.end(), lies_before);
   return footprint;
 }
 

@@ -12,14 +12,16 @@
 #include "raytrace/monte_carlo.h"
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
+#include "studies/rre/adaptive_curve.h"
 #include "studies/rre/derivatives.h"
 #include "studies/rre/far_field.h"
 #include "studies/rre/footprint.h"
 
 namespace retrace::studies {
 
-/// Which tracer is asked for. `automatic` is exact where that takes few beams at every direction asked for, else Monte
-/// Carlo; `montecarlo` is `cell` where that serves, else `embree`.
+/// Which tracer is asked for. `automatic` is exact where beams are expected to reach the error that is asked for before
+/// rays do, else Monte Carlo, for each direction and wavelength; `montecarlo` is `cell` where that serves, else
+/// `embree`.
 enum class Engine { automatic, exact, montecarlo, cell, embree };
 
 /// \throw InputError listing the engines for a name that is none of them
@@ -28,16 +30,30 @@ Engine engine_from_name(std::string_view name);
 raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
+/// Of RRE as a fraction, where none is asked for.
+inline constexpr double kUsualTargetError = 1e-4;
+/// Of RRE as a fraction: how far straight lines between chosen incidences may miss it, if target_error is less.
+inline constexpr double kCurveTolerance = 1e-3;
+/// The engine of what several have found.
+inline constexpr std::string_view kMixedEngines = "mixed";
+
 /// What is asked: retroreflective efficiency over a grid of directions.
 struct RreRequest {
   std::vector<double> incidence_deg = {0.0};  ///< each in (-90, 90)
+  /// Pieces in (-90, 90) over which incidences are chosen besides, the same for all designs and azimuths, until
+  /// straight lines between the points are within target_error or kCurveTolerance; those asked for then come in
+  /// ascending order.
+  std::vector<CurveSpan> incidence_spans;
   std::vector<double> azimuth_deg = {0.0};
   Engine engine = Engine::automatic;
   std::optional<std::uint64_t> rays;  ///< per point; else until target_error is reached
-  double target_error = 1e-4;         ///< standard error of RRE as a fraction
+  /// Of RRE as a fraction: the standard error of Monte Carlo, and the power that the exact engine may leave in
+  /// `truncated`. By default kUsualTargetError; 1e-10 where the exact engine is asked for by name, or what only it can
+  /// tell.
+  std::optional<double> target_error;
   raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< plain: on Embree
-  /// Least power followed, as a share of the incident. By default 1e-10 (Monte Carlo), or as little as it takes to
-  /// leave less than 1e-10 in `truncated` (exact).
+  /// Least power followed, as a share of the incident. By default 1e-10 (Monte Carlo), or as little as target_error
+  /// takes (exact).
   std::optional<double> cutoff;
   std::uint32_t seed = 1;
   bool derivatives = false;  ///< exact engine: of RRE by the parameters of the design
@@ -51,6 +67,7 @@ struct SpectralRre {
   double weight = 0.0;  ///< share of the flux that it stands for
   double rre = 0.0;
   double std_error = 0.0;
+  std::string engine;  ///< that ran
 };
 
 struct RrePoint {
@@ -60,7 +77,8 @@ struct RrePoint {
   double wavelength_nm = 0.0;  ///< of a spectrum: its centroid
   double acceptance_half_angle_deg = 0.0;
   double rre = 0.0;
-  double std_error = 0.0;
+  double std_error = 0.0;  ///< of sampling alone: what `truncated` may add to `rre` is apart
+  std::string engine;  ///< exact, cell, embree or balls; of a spectrum kMixedEngines if wavelengths took different ones
   raytrace::Stokes stokes;  ///< of what is retroreflected, along raytrace::source_axis()
   raytrace::Ledger ledger;
   std::uint64_t beams = 0;                      ///< exact engine: followed for this point
@@ -79,7 +97,7 @@ struct ReturnedLight {
 struct RreResult {
   std::vector<Design> designs;
   std::vector<std::vector<SpectralOptics>> light;  ///< by design: the wavelengths that were traced
-  std::string engine = "embree";                   ///< that ran; montecarlo if designs took different ones
+  std::string engine = "none";                     ///< that ran; if several did: montecarlo, or mixed with exact
   std::string engine_requested;
   std::uint32_t seed = 1;
   std::vector<RrePoint> points;         ///< in the order design, wavelength, azimuth, incidence, acceptance

@@ -15,7 +15,8 @@ RrePoint spectral_mean(const RrePoint& at, const std::vector<SpectralPoint>& poi
     for (std::size_t k = 0; k < p.ledger.power.size(); ++k) mean.ledger.power[k] += weight * p.ledger.power[k];
     mean.beams += p.beams;
     mean.depth = std::max(mean.depth, p.depth);
-    mean.by_wavelength.push_back({p.wavelength_nm, weight, p.rre, p.std_error});
+    mean.by_wavelength.push_back({p.wavelength_nm, weight, p.rre, p.std_error, p.engine});
+    mean.engine = mean.engine.empty() || mean.engine == p.engine ? p.engine : kMixedEngines;
   }
   mean.std_error = std::sqrt(variance);
   return mean;

@@ -27,14 +27,16 @@ namespace retrace::studies {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Json = nlohmann::json;
+using MessageJson = nlohmann::json;
 
 /// A rank of which nothing is heard for so long is given up, unless the environment says otherwise.
 constexpr double kSilenceS = 15.0;
 constexpr const char* kSilenceVariable = "RETRACE_MPI_SILENCE_S";
 /// So long rank 0 waits for the others to leave, and everybody for MPI to end.
 constexpr std::chrono::seconds kPatience{10};
-constexpr std::chrono::milliseconds kWaitForOthers{50};
+// And for those that are interrupted, within the second that an interrupt may take.
+constexpr std::chrono::milliseconds kLastCall{500};
+constexpr std::chrono::milliseconds kWaitForRanks{50};
 constexpr std::chrono::milliseconds kLook{20};
 /// Batches that take less are asked for while the one before is computed.
 constexpr std::chrono::seconds kQuick{1};
@@ -61,24 +63,24 @@ std::chrono::duration<double> silence_limit() {
 }
 
 std::string to_message(const StoredPoint& point) {
-  Json outputs = Json::array();
+  MessageJson outputs = MessageJson::array();
   for (const StoredOutput& output : point.outputs)
-    outputs.push_back(output.value ? Json{*output.value, output.std_error} : Json());
-  return Json{{"point", point.point}, {"failed", point.failed},       {"reason", point.reason},
-              {"outputs", outputs},   {"elapsed_s", point.elapsed_s}, {"version", point.version}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+    outputs.push_back(output.value ? MessageJson{*output.value, output.std_error} : MessageJson());
+  return MessageJson{{"point", point.point}, {"failed", point.failed},       {"reason", point.reason},
+                     {"outputs", outputs},   {"elapsed_s", point.elapsed_s}, {"version", point.version}}
+      .dump(-1, ' ', false, MessageJson::error_handler_t::replace);
 }
 
 /// \param sweep tells the inputs, which need not travel
 StoredPoint from_message(const std::string& message, const Sweep& sweep) {
-  const Json json = Json::parse(message);
+  const MessageJson json = MessageJson::parse(message);
   StoredPoint point;
   point.point = json.at("point");
   point.failed = json.at("failed");
   point.reason = json.at("reason");
   point.elapsed_s = json.at("elapsed_s");
   point.version = json.at("version");
-  for (const Json& output : json.at("outputs")) {
+  for (const MessageJson& output : json.at("outputs")) {
     StoredOutput stored;
     if (!output.is_null()) stored.value = output.at(0).get<double>();
     if (!output.is_null() && output.at(1).is_number()) stored.std_error = output.at(1).get<double>();
@@ -86,10 +88,6 @@ StoredPoint from_message(const std::string& message, const Sweep& sweep) {
   }
   for (const ParameterValue& value : sweep.values(point.point)) point.inputs.push_back(value.shown);
   return point;
-}
-
-bool is_cancelled(const Cancellation* cancel) {
-  return cancel != nullptr && cancel->requested();
 }
 
 }  // namespace
@@ -257,7 +255,7 @@ class Dealer {
   bool finished() {
     const std::lock_guard lock(mutex_);
     if (!open_.empty() || !dealt_.empty()) return false;
-    if (store_.claimed_by_others() > 0) std::this_thread::sleep_for(kWaitForOthers);
+    if (store_.claimed_by_others() > 0) std::this_thread::sleep_for(kWaitForRanks);
     refill();
     return open_.empty();
   }
@@ -366,7 +364,7 @@ bool MpiSession::deal(const Sweep& sweep, ResultStore& store, std::size_t slots,
     }
   }
   // What the others have in work when everything is to stop may still come in.
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + kLastCall;
   const auto has_points = [&](int rank) { return dealer.has_points(rank); };
   while (is_cancelled(cancel) && std::any_of(state.at_work.begin(), state.at_work.end(), has_points) &&
          Clock::now() < deadline)

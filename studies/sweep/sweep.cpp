@@ -196,10 +196,6 @@ std::vector<std::uint64_t> unfinished(const Sweep& sweep, const ResultStore& sto
 
 namespace {
 
-bool is_cancelled(const Cancellation* cancel) {
-  return cancel != nullptr && cancel->requested();
-}
-
 /// Computes those of the points that nobody else has. \return how many
 std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& points, ResultStore& store,
                      SweepCount& count, const Cancellation* cancel) {

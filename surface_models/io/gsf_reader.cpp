@@ -11,8 +11,6 @@ namespace retrace::surface_models {
 namespace {
 
 constexpr std::string_view kMagic = "Gwyddion Simple Field 1.0";
-constexpr double kNmPerUm = 1e3;
-
 struct Value {
   std::string_view text;
   int line = 0;

@@ -12,8 +12,6 @@
 namespace retrace::surface_models {
 namespace {
 
-constexpr double kNmPerUm = 1e3;
-
 struct Object {
   std::string_view type;
   ByteReader components;

@@ -104,7 +104,7 @@ HeightMapFile finish(const Source& source, RawMap raw) {
 }  // namespace
 
 HeightMapFile read_height_map(const std::filesystem::path& file, const HeightMapOptions& options) {
-  return parse_height_map(read_file(file), file.string(), options);
+  return parse_height_map(read_file(file, kMostDataBytes), file.string(), options);
 }
 
 HeightMapFile parse_height_map(std::string_view content, const std::string& name, const HeightMapOptions& options) {

@@ -12,6 +12,8 @@
 
 namespace retrace::surface_models {
 
+inline constexpr double kNmPerUm = 1e3;
+
 /// A file that is read.
 struct Source {
   std::string_view content;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kUmPerM = 1e6;
 constexpr double kNmPerM = 1e9;
 
-struct Value {
+struct HeaderValue {
   std::string text;
   int line = 0;
 };
@@ -103,7 +103,7 @@ class SdfReader {
 
   const Source& source_;
   Lines lines_;
-  std::map<std::string, Value> header_;
+  std::map<std::string, HeaderValue> header_;
 };
 
 }  // namespace

@@ -13,8 +13,6 @@
 namespace retrace::surface_models {
 namespace {
 
-constexpr double kNmPerUm = 1e3;
-
 /// What the columns of the text are.
 enum class Columns { matrix, xyz, xz };
 

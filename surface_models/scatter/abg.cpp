@@ -10,7 +10,7 @@
 namespace retrace::surface_models {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kLargestShift = 2.0;
 // Smooth surfaces, (4 pi n s / w)^2 << 1 (Stover, Optical Scattering, 3rd ed., SPIE 2012): about the phase squared.
 constexpr double kMostScatterOfSmooth = 0.1;
@@ -22,7 +22,7 @@ Abg::Abg(double a, double b, double g) : a_(a), b_(b), g_(g) {
   if (!(b > 0.0)) throw InputError({"", 0, "b"}, "must be > 0, got " + shortest(b));
   if (!(g > 0.0)) throw InputError({"", 0, "g"}, "must be > 0, got " + shortest(g));
   shoulder_ = std::min(std::pow(b, 1.0 / g), kLargestShift);
-  const auto ring = [this](double r) { return 2.0 * kPi * r * bsdf_per_sr(r); };
+  const auto ring = [this](double r) { return 2.0 * pi * r * bsdf_per_sr(r); };
   // In the logarithm of r beyond the shoulder, which may be very small.
   boost::math::quadrature::tanh_sinh<double> quadrature;
   total_ = quadrature.integrate(ring, 0.0, shoulder_);
@@ -67,7 +67,7 @@ std::optional<Vec2> Abg::sample_scattered(const ScatterEvent& event, const Facet
   // The BSDF continued to shifts of 2 is drawn from; what it sends beyond the unit disc is the specular light's.
   if (!specular || random.next() >= total_) return std::nullopt;
   const double shift = sample_shift(random);
-  const double angle = 2.0 * kPi * random.next();
+  const double angle = 2.0 * pi * random.next();
   const Vec2 beta = specular->head<2>() + shift * Vec2(std::cos(angle), std::sin(angle));
   if (beta.squaredNorm() >= 1.0) return std::nullopt;
   return beta;

@@ -26,6 +26,8 @@ class Abg {
   Facet sample_facet(const ScatterEvent&, RandomStream&) const { return {}; }
   /// By quadrature: for tests and tables, not for every ray.
   double specular_share(const ScatterEvent& event, const Facet&, Lobe lobe) const;
+  /// Of all directions of incidence.
+  double least_specular_share() const { return 1.0 - total_; }
   /// Draws the direction of light that scatters; nothing for light that is specular.
   std::optional<Vec2> sample_scattered(const ScatterEvent& event, const Facet&, Lobe lobe, RandomStream& random) const;
   double scattered_density(const ScatterEvent& event, const Facet&, Lobe lobe, const Vec2& beta) const;

@@ -9,7 +9,7 @@
 namespace retrace::surface_models {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 void require(bool holds, const char* key, const char* allowed, double given) {
   if (!holds) throw InputError({"", 0, key}, std::string(allowed) + ", got " + shortest(given));
@@ -17,24 +17,24 @@ void require(bool holds, const char* key, const char* allowed, double given) {
 
 /// Gaussian waves of this correlation length have the slope of waves of period `length_um`.
 double equivalent_correlation_um(double length_um) {
-  return length_um / kPi;
+  return length_um / pi;
 }
 
 /// Share of the variance of heights in spatial frequencies below n / w.
 double share_that_scatters(double correlation_um, double index, double wavelength_nm) {
-  const double x = kPi * correlation_um * 1e3 * index / wavelength_nm;
+  const double x = pi * correlation_um * 1e3 * index / wavelength_nm;
   return -std::expm1(-x * x);
 }
 
 /// Variance along each axis of the shift of direction cosines that one spatial frequency of a Gaussian PSD makes.
 double shift_variance(double correlation_um, double index, double wavelength_nm) {
-  const double deviation = wavelength_nm / (std::sqrt(2.0) * kPi * index * correlation_um * 1e3);
+  const double deviation = wavelength_nm / (std::sqrt(2.0) * pi * index * correlation_um * 1e3);
   return deviation * deviation;
 }
 
 /// Areal, of Gaussian heights with a Gaussian autocorrelation: of their spatial frequencies below n / w.
 double roughness_rms_slope(const Roughness& r, double index, double wavelength_nm) {
-  const double x = kPi * r.correlation_length_um * 1e3 * index / wavelength_nm;
+  const double x = pi * r.correlation_length_um * 1e3 * index / wavelength_nm;
   const double share = -std::expm1(-x * x) - x * x * std::exp(-x * x);
   return 2e-3 * r.sq_nm / r.correlation_length_um * std::sqrt(std::max(0.0, share));
 }
@@ -116,7 +116,7 @@ std::optional<Vec2> HarveyShack::draw_scattered(const ScatterEvent& event, const
 /// Density of the sum of `order` shifts at the squared distance `shift2`.
 double HarveyShack::shift_density(const Band& band, int order, double shift2) {
   const auto gaussian = [shift2](double variance) {
-    return std::exp(-0.5 * shift2 / variance) / (2.0 * kPi * variance);
+    return std::exp(-0.5 * shift2 / variance) / (2.0 * pi * variance);
   };
   if (band.roughness_share == 1.0) return gaussian(order * band.roughness_variance);
   if (band.roughness_share == 0.0) return gaussian(order * band.waviness_variance);
@@ -168,7 +168,7 @@ std::vector<std::string> HarveyShack::warnings(double index, double wavelength_n
     if (slope > kLargestSlope)
       found.push_back("rms slope of the roughness " + fixed(slope, 3) + " is above " + shortest(kLargestSlope) +
                       ": multiple reflection is left out");
-    if (reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm) > 2.0 * kPi)
+    if (reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm) > 2.0 * pi)
       found.push_back("roughness " + shortest(std::round(100.0 * r.sq_nm) / 100.0) +
                       " nm is above half a wavelength in the material: microfacet is the model for it");
   }

@@ -15,7 +15,7 @@
 namespace retrace::surface_models {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::size_t kLeastPoints = 8;
 constexpr int kMaxTries = 10000;
 
@@ -32,7 +32,7 @@ struct Cumulative {
 };
 
 double hann(std::size_t k, std::size_t count) {
-  const double sine = std::sin(kPi * (static_cast<double>(k) + 0.5) / static_cast<double>(count));
+  const double sine = std::sin(pi * (static_cast<double>(k) + 0.5) / static_cast<double>(count));
   return sine * sine;
 }
 
@@ -194,7 +194,7 @@ struct HeightMapScatter::Band {
       const Eigen::Matrix2d wide = order * covariance;
       const double determinant = wide.determinant();
       if (determinant <= 0.0) return 0.0;
-      return std::exp(-0.5 * shift.dot(wide.inverse() * shift)) / (2.0 * kPi * std::sqrt(determinant));
+      return std::exp(-0.5 * shift.dot(wide.inverse() * shift)) / (2.0 * pi * std::sqrt(determinant));
     }
     const Vec2 frequency(shift.x() / wave_um, y_sign * shift.y() / wave_um);
     const Vec2 step = texture.frequency_step_per_um;

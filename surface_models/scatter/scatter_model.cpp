@@ -88,6 +88,12 @@ double specular_share(const ScatterModel& model, const ScatterEvent& event, cons
                     model);
 }
 
+double mean_field_share(const ScatterModel& model, const ScatterEvent& event, Lobe lobe) {
+  if (std::holds_alternative<Microfacet>(model)) return 0.0;
+  if (const auto* abg = std::get_if<Abg>(&model)) return abg->least_specular_share();
+  return specular_share(model, event, {}, lobe);
+}
+
 double evaluate(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
                 const Vec3& direction) {
   if (!is_on_side(direction, lobe)) return 0.0;

@@ -47,6 +47,11 @@ std::optional<ScatterSplit> sample_split(const ScatterModel& model, const Scatte
 /// Share of a lobe's power that leaves in the facet's specular direction, masking aside; 0 without such a direction.
 double specular_share(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe);
 
+/// Share of a lobe's power that the mean field over all textures of a model keeps: light that is specular to the
+/// mean surface. Facets that tilt (microfacet) keep less than 5e-5, and count as none; abg keeps at least what its
+/// BSDF leaves.
+double mean_field_share(const ScatterModel& model, const ScatterEvent& event, Lobe lobe);
+
 /// BSDF of the scattered light of a lobe given the facet, per sr, without Fresnel's factor and the specular light; its
 /// cosine is that to the facet's normal. By quadrature in some models: for tests and tables.
 double evaluate(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,

@@ -9,7 +9,7 @@
 namespace retrace::surface_models {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double tangent(const Vec3& direction) {
   return direction.head<2>().norm() / std::abs(direction.z());
@@ -18,7 +18,7 @@ double tangent(const Vec3& direction) {
 /// Slope towards the light of a visible facet of Gaussian slopes of standard deviation 1, with density proportional to
 /// N(p) max(0, cos + sin p): drawn from N(p) (cos + sin max(0, p)), which bounds it, and accepted by the ratio.
 double visible_gaussian_slope(double cos_light, double sin_light, RandomStream& random) {
-  const double rising = sin_light / std::sqrt(2.0 * kPi);  // mass of sin p N(p) over p > 0
+  const double rising = sin_light / std::sqrt(2.0 * pi);  // mass of sin p N(p) over p > 0
   for (;;) {
     const bool from_rising = random.next() * (cos_light + rising) >= cos_light;
     if (from_rising) return std::sqrt(-2.0 * std::log1p(-random.next()));
@@ -34,7 +34,7 @@ Vec3 visible_ggx_normal(const Vec3& towards_light, double width, RandomStream& r
   const Vec3 first = across > 0.0 ? Vec3(-stretched.y() / across, stretched.x() / across, 0.0) : Vec3(Vec3::UnitX());
   const Vec3 second = stretched.cross(first);
   const double radius = std::sqrt(random.next());
-  const double angle = 2.0 * kPi * random.next();
+  const double angle = 2.0 * pi * random.next();
   const double along_first = radius * std::cos(angle);
   const double share = 0.5 * (1.0 + stretched.z());
   const double along_second =
@@ -53,12 +53,12 @@ void require_modelled_slope(double rms_slope, const char* what) {
 }
 
 double waviness_rms_slope(double waviness_sq_nm, double waviness_length_um) {
-  return waviness_sq_nm > 0.0 ? 2.0 * kPi * 1e-3 * waviness_sq_nm / waviness_length_um : 0.0;
+  return waviness_sq_nm > 0.0 ? 2.0 * pi * 1e-3 * waviness_sq_nm / waviness_length_um : 0.0;
 }
 
 Vec2 normal_pair(RandomStream& random) {
   const double radius = std::sqrt(-2.0 * std::log1p(-random.next()));
-  const double angle = 2.0 * kPi * random.next();
+  const double angle = 2.0 * pi * random.next();
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
@@ -66,7 +66,7 @@ double SlopeDistribution::normal_density_per_sr(const Vec3& normal) const {
   if (normal.z() <= 0.0 || width_ <= 0.0) return 0.0;
   const double cos2 = normal.z() * normal.z();
   const double scaled2 = (1.0 - cos2) / (cos2 * width_ * width_);
-  const double peak = 1.0 / (kPi * width_ * width_ * cos2 * cos2);
+  const double peak = 1.0 / (pi * width_ * width_ * cos2 * cos2);
   if (shape_ == SlopeShape::beckmann) return peak * std::exp(-scaled2);
   return peak / ((1.0 + scaled2) * (1.0 + scaled2));
 }
@@ -76,7 +76,7 @@ double SlopeDistribution::visible_share(const Vec3& direction) const {
   if (tan * width_ == 0.0) return 1.0;
   const double a = 1.0 / (width_ * tan);
   if (shape_ == SlopeShape::beckmann)
-    return std::min(1.0, 2.0 / (1.0 + std::erf(a) + std::exp(-a * a) / (a * std::sqrt(kPi))));
+    return std::min(1.0, 2.0 / (1.0 + std::erf(a) + std::exp(-a * a) / (a * std::sqrt(pi))));
   return 2.0 / (1.0 + std::sqrt(1.0 + 1.0 / (a * a)));
 }
 

@@ -7,7 +7,7 @@
 
 // What is refused, and how: one line that says where, exit code 2, nothing written. And what cannot be written: 3.
 
-namespace retrace::test {
+namespace retrace::test::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,8 +121,9 @@ TEST(BadOutput, NoOutputReplacesTheFileOfASpectrum) {
   const std::string lamp = "wavelength_nm,power\n400,1\n700,1\n";
   folder.write("d.toml", design_with(12, "[light]\nspectrum = \"rre.csv\""));
   folder.write("rre.csv", lamp);
-  expect_one_line(retrace(folder, {"rre", "d.toml", "-o", "."}), 2, "--out: ./rre.csv is a design or a file");
-  expect_one_line(retrace(folder, {"inspect", "d.toml", "--json", "rre.csv"}), 2, "--json: rre.csv is a design or a");
+  expect_one_line(retrace(folder, {"rre", "d.toml", "-o", "."}), 2, "--out: ./rre.csv is a file that is read");
+  expect_one_line(retrace(folder, {"inspect", "d.toml", "--json", "rre.csv"}), 2,
+                  "--json: rre.csv is a file that is read");
   EXPECT_EQ(folder.read("rre.csv"), lamp);
 }
 
@@ -181,6 +182,17 @@ TEST(BadInput, WrongOptionsAreRefused) {
        "--sampling: plain needs --engine montecarlo or embree, got exact"},
       {{"--sampling", "plain", "--engine", "cell"}, "--sampling: plain needs --engine montecarlo or embree, got cell"},
       {{"--incidence=5:1:1"}, "--incidence: the range runs away"},
+      {{"--incidence=1:1:auto"}, "--incidence: a range start:stop:auto must have start < stop, got \"1:1:auto\""},
+      {{"--incidence=40:-40:auto"}, "--incidence: a range start:stop:auto must have start < stop, got \"40:-40:auto\""},
+      {{"--incidence=-95:0:auto"}, "--incidence: must lie between -90 and 90 degrees, got -95"},
+      {{"--incidence=0:90:auto"}, "--incidence: must lie between -90 and 90 degrees, got 90"},
+      {{"--incidence=0:nan:auto"},
+       "--incidence: must be numbers a,b,c or ranges start:stop:step or start:stop:auto, got "},
+      {{"--incidence=0:10:aut"},
+       "--incidence: must be numbers a,b,c or ranges start:stop:step or start:stop:auto, got "},
+      {{"--incidence=auto"}, "--incidence: must be numbers a,b,c or ranges start:stop:step or start:stop:auto, got "},
+      {{"--incidence=auto:10:1"}, "--incidence: must be numbers "},
+      {{"--azimuth=0:90:auto"}, "--azimuth: must be numbers a,b,c or ranges start:stop:step, got \"0:90:auto\""},
       {{"--incidence", ""}, "--incidence: the list is empty"},
       {{"--azimuth", ""}, "--azimuth: the list is empty"},
       {{"--incidence", "90"}, "--incidence: must lie between -90 and 90 degrees, got 90"},
@@ -282,9 +294,9 @@ TEST(BadOutput, NoOutputReplacesADesignOrAnotherOutput) {
   const Arguments before = folder.names();
   const Arguments run = {"rre", "d.toml", "rre.csv", "--samples=64", "--quiet"};
   const std::vector<BadArguments> cases = {
-      {{"--json", "d.toml"}, "--json: d.toml is a design"},
-      {{"--json", "./d.toml"}, "--json: ./d.toml is a design"},
-      {{"-o", "."}, "--out: ./rre.csv is a design"},
+      {{"--json", "d.toml"}, "--json: d.toml is a file that is read"},
+      {{"--json", "./d.toml"}, "--json: ./d.toml is a file that is read"},
+      {{"-o", "."}, "--out: ./rre.csv is a file that is read"},
       {{"-o", "out", "--json", "out/rre.csv"}, "--json: out/rre.csv is a file that --out writes"},
       {{"-o", "out", "--json", "./out/rre.png"}, "--json: ./out/rre.png is a file that --out writes"},
   };
@@ -296,7 +308,8 @@ TEST(BadOutput, NoOutputReplacesADesignOrAnotherOutput) {
     EXPECT_EQ(folder.read("d.toml"), design);
     EXPECT_EQ(folder.read("rre.csv"), design);
   }
-  expect_one_line(retrace(folder, {"inspect", "d.toml", "--json", "d.toml"}), 2, "--json: d.toml is a design");
+  expect_one_line(retrace(folder, {"inspect", "d.toml", "--json", "d.toml"}), 2,
+                  "--json: d.toml is a file that is read");
 }
 
 TEST(BadOutput, ResultFileBehindAFolderEndsWith3AndLeavesNoTemporaryFile) {
@@ -320,4 +333,4 @@ TEST(BadOutput, FullStandardOutputEndsWith3) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::bad_input_test

@@ -4,7 +4,7 @@
 
 #include "tests/app/program.h"
 
-namespace retrace::test {
+namespace retrace::test::balls_test {
 namespace {
 
 const std::string kBalls = example("beads_n193.toml");
@@ -52,4 +52,4 @@ TEST(Balls, OtherEnginesAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::balls_test

@@ -6,7 +6,7 @@
 
 // Elements on bases from a design to NC text and back, as users do it.
 
-namespace retrace::test {
+namespace retrace::test::base_job_test {
 namespace {
 
 const char* const kExample = "fabrication/prisms_on_cylinder.toml";
@@ -114,4 +114,4 @@ TEST_F(BaseJob, OfWhatCannotBeCutIsRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::base_job_test

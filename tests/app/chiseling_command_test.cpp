@@ -9,7 +9,7 @@
 
 // Cube corners from a design to NC text, and back to a part that is traced.
 
-namespace retrace::test {
+namespace retrace::test::chiseling_command_test {
 namespace {
 
 std::string design(bool is_hexagonal) {
@@ -172,4 +172,4 @@ TEST(ReachablePart, WhatIsWrongIsRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::chiseling_command_test

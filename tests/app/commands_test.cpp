@@ -9,7 +9,7 @@
 
 // inspect, init, list, help, and what an interrupt does.
 
-namespace retrace::test {
+namespace retrace::test::commands_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -228,6 +228,12 @@ TEST(Init, EveryKindCanBeInspectedAndTracedAsItIs) {
   }
 }
 
+TEST(Init, ThePartOfALatheCanBeMadeAsItIs) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(retrace(folder, {"init", "round_zone_lens", "-o", "lens.toml"}).code, 0);
+  EXPECT_EQ(retrace_json(folder, {"plane", "lens.toml"})["spindle_rpm"], 800);
+}
+
 TEST(Init, DoesNotOverwrite) {
   const TemporaryFolder folder;
   folder.write("mine.toml", "months of work");
@@ -278,7 +284,7 @@ TEST(Help, ShowsEveryOptionWithItsDefault) {
     EXPECT_EQ(rre.code, 0);
     if (run.front() != "rre") continue;
     for (const char* option : {"--incidence LIST=0", "--azimuth LIST=0", "--engine ENGINE=auto", "--samples N",
-                               "--target-error E=0.0001", "--cutoff W", "[1e-10;", "--threads N", "--seed S [1]"})
+                               "--target-error E", "[0.0001;", "--cutoff W", "[1e-10;", "--threads N", "--seed S [1]"})
       EXPECT_NE(rre.out.find(option), std::string::npos) << option;
   }
   for (const Arguments& run : {Arguments{"--version"}, Arguments{"rre", "--version"}}) {
@@ -345,4 +351,4 @@ TEST(Interrupt, WhileWaitingForStandardInputEndsAtOnce) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::commands_test

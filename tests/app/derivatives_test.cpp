@@ -5,7 +5,7 @@
 
 #include "tests/app/program.h"
 
-namespace retrace::test {
+namespace retrace::test::derivatives_test {
 namespace {
 
 const std::string kDesign = example("rtp_single_0p45mm.toml");
@@ -79,4 +79,4 @@ TEST(Derivatives, NeedTheExactEngine) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::derivatives_test

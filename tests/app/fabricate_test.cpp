@@ -9,7 +9,7 @@
 
 // retrace job and retrace fabricate: from a design to files of NC text, and what is refused on the way.
 
-namespace retrace::test {
+namespace retrace::test::fabricate_test {
 namespace {
 
 std::string design(const std::string& arrangement, double length_mm, const std::string& more = {}) {
@@ -301,4 +301,4 @@ TEST(List, NamesMachinesAndProcesses) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::fabricate_test

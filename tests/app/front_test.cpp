@@ -10,7 +10,7 @@
 
 #include "tests/app/program.h"
 
-namespace retrace::test {
+namespace retrace::test::front_test {
 namespace {
 
 const std::string kTool = "[tool]\nnose_radius_mm = 0.05\nclearance_deg = 40\n";
@@ -334,4 +334,4 @@ TEST_F(Front, KeysThatMakeNoSenseAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::front_test

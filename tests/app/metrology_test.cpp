@@ -7,7 +7,7 @@
 
 // retrace metrology: what it measures in the examples, its files, and what it refuses.
 
-namespace retrace::test {
+namespace retrace::test::metrology_test {
 namespace {
 
 const std::string kFacet = example("facet_height_map.txt");
@@ -137,4 +137,4 @@ TEST(Metrology, DoesNotReplaceWhatItReads) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::metrology_test

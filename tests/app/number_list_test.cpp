@@ -4,7 +4,7 @@
 
 // Lists of angles, as --incidence reads them.
 
-namespace retrace::test {
+namespace retrace::test::number_list_test {
 namespace {
 
 std::vector<double> angles(const std::string& list) {
@@ -96,4 +96,4 @@ TEST(NumberList, HugeListsAreRefusedAtOnce) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::number_list_test

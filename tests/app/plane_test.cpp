@@ -6,7 +6,7 @@
 
 #include "tests/app/program.h"
 
-namespace retrace::test {
+namespace retrace::test::plane_test {
 namespace {
 
 const std::string kLens = example("planing/zone_lens_60ghz.toml");
@@ -22,6 +22,16 @@ TEST(Plane, WritesProgramsDrawingsAndItsDocument) {
   for (const char* name : {"profile.svg", "zones.svg", "form_error.svg", "profile.csv", "odd_zones_1.nc"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   EXPECT_NE(outcome.out.find("odd_zones_1.nc"), std::string::npos);
+}
+
+TEST(Plane, ALatheOfAPmacNeedsTheLinesOfItsSpindle) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      retrace(folder, {"plane", example("planing/round_zone_lens.toml"), "--dialect=pmac", "-o", "out"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("lathe.spindle_start: missing"), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+  EXPECT_TRUE(folder.names().empty());
 }
 
 TEST(Plane, BadInputIsOneLineAndNothingIsWritten) {
@@ -40,4 +50,4 @@ TEST(Plane, BadInputIsOneLineAndNothingIsWritten) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::plane_test

@@ -2,12 +2,15 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -91,15 +94,27 @@ Child::~Child() {
   if (silent_pipe_ >= 0) ::close(silent_pipe_);
 }
 
-void Child::interrupt() const {
-  ::kill(process_, SIGINT);
+void Child::interrupt(int signal) const {
+  ::kill(process_, signal);
+}
+
+double Child::processor_time_s() const {
+  clockid_t clock = {};
+  timespec spent = {};
+  if (::clock_getcpuclockid(process_, &clock) != 0 || ::clock_gettime(clock, &spent) != 0) return 0.0;
+  return static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec);
 }
 
 Outcome Child::wait() {
   int status = 0;
-  ::waitpid(process_, &status, 0);
+  rusage spent = {};
+  ::wait4(process_, &status, 0, &spent);
   process_ = -1;
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(out_.get()), content(err_.get())};
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(out_.get()), content(err_.get()),
+          seconds(spent.ru_utime) + seconds(spent.ru_stime)};
 }
 
 bool Child::has_ended() const {

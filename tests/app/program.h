@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -20,6 +21,7 @@ struct Outcome {
   int code = 0;
   std::string out;
   std::string err;
+  double processor_time_s = 0.0;  ///< of all its threads
 };
 
 /// A folder of its own, removed with everything in it.
@@ -57,12 +59,14 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  void interrupt() const;
+  void interrupt(int signal = SIGINT) const;
   Outcome wait();
   /// The same for a child that must end in time: one that does not is a failure of the test, and is killed.
   Outcome wait(std::chrono::seconds limit);
   /// Whether it has ended; what it left behind is still told by wait().
   bool has_ended() const;
+  /// Time of the processor that its threads have spent so far. \pre wait() has not been called
+  double processor_time_s() const;
 
  private:
   using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;

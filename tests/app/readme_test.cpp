@@ -8,7 +8,7 @@
 // Every command that README.md and docs/*.md show is run as it stands there, in a folder that looks like the project's:
 // tools/run and retrace are the program, examples/ is the project's. Results such as build/... land in that folder.
 
-namespace retrace::test {
+namespace retrace::test::readme_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -101,4 +101,4 @@ TEST(Readme, CommandsAreFoundAndCommentsLeftOut) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::readme_test

@@ -7,7 +7,7 @@
 
 // rre --footprint and --far-field: what they write, what they need.
 
-namespace retrace::test {
+namespace retrace::test::returned_light_test {
 namespace {
 
 const std::string kDesign = example("rtp_brick_2mm.toml");
@@ -111,4 +111,4 @@ TEST(ReturnedLight, NeedsTheExactEngine) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::returned_light_test

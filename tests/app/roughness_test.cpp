@@ -7,7 +7,7 @@
 
 // retrace roughness: its files, the shipped facets, and what it refuses.
 
-namespace retrace::test {
+namespace retrace::test::roughness_test {
 namespace {
 
 const std::string kDesign =
@@ -106,4 +106,4 @@ TEST(Roughness, DoesNotReplaceWhatItReads) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::roughness_test

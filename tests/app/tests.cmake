@@ -1,5 +1,5 @@
 # The program as users meet it: run as a child process, judged by what it prints, writes and returns.
-retrace_test(app_test
+retrace_test(command_tests
   SOURCES
     app/bad_input_test.cpp
     app/balls_test.cpp
@@ -20,8 +20,6 @@ retrace_test(app_test
     app/texture_test.cpp
     app/verify_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
-add_dependencies(app_test retrace)
-retrace_test(front_command_test
-  SOURCES app/front_test.cpp app/program.cpp
+retrace_test(command_tests
+  SOURCES app/front_test.cpp app/inputs_test.cpp app/interrupt_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
-add_dependencies(front_command_test retrace)

@@ -8,7 +8,7 @@
 
 // Texture of facets on the command line: measured maps that are refused, and what models say outside of their range.
 
-namespace retrace::test {
+namespace retrace::test::texture_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -192,4 +192,4 @@ TEST(TextureOfADesign, OutsideOfEveryModelIsRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::texture_test

@@ -14,7 +14,7 @@
 
 // retrace verify and retrace forces: from a design to programs, back from their text, and to the part they leave.
 
-namespace retrace::test {
+namespace retrace::test::verify_test {
 namespace {
 
 const std::string kDesign =
@@ -355,4 +355,4 @@ TEST_F(VerifyCommand, ForcesOfAJob) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::verify_test

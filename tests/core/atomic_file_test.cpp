@@ -12,12 +12,12 @@
 
 // The tests may run as root, whom permissions do not bind: failures are made by other means.
 
-namespace retrace {
+namespace retrace::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class AtomicFile : public testing::Test {
+class AtomicFile : public ::testing::Test {
  protected:
   AtomicFile() {
     std::string name = (fs::temp_directory_path() / "retrace_core_XXXXXX").string();
@@ -128,5 +128,37 @@ TEST_F(AtomicFile, OnlyFilesAreRead) {
   EXPECT_EQ(read_file(folder_ / "empty"), "");
 }
 
+/// What a file is refused for.
+std::string complaint_of(const fs::path& file, std::size_t most_bytes) {
+  try {
+    read_file(file, most_bytes);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(AtomicFile, NoMoreIsReadThanAFileMayHave) {
+  const fs::path file = folder_ / "file";
+  for (const std::size_t most : {std::size_t{1}, std::size_t{1000}, (std::size_t{1} << 20) + 7}) {
+    write_file_atomically(file, std::string(most, 'x'));
+    EXPECT_EQ(read_file(file, most).size(), most);
+    write_file_atomically(file, std::string(most + 1, 'x'));
+    const std::string limit = ": must have at most " + std::to_string(most) + " bytes, got more";
+    EXPECT_EQ(complaint_of(file, most), file.string() + limit);
+    for (const std::string endless : {"/dev/zero", "/dev/urandom"})
+      EXPECT_EQ(complaint_of(endless, most), endless + limit);
+  }
+}
+
+TEST_F(AtomicFile, LibrariesAreGivenShortFilesOnly) {
+  write_file_atomically(folder_ / "file", "1234");
+  EXPECT_NO_THROW(require_short_file(folder_ / "file", 4));
+  EXPECT_NO_THROW(require_short_file(folder_ / "missing", 4));
+  EXPECT_THROW(require_short_file(folder_ / "file", 3), InputError);
+  EXPECT_THROW(require_short_file(folder_, 4), InputError);
+  EXPECT_THROW(require_short_file("/dev/zero", 4), InputError);
+}
+
 }  // namespace
-}  // namespace retrace
+}  // namespace retrace::atomic_file_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace retrace {
+namespace retrace::derivative_test {
 namespace {
 
 constexpr double kRounding = 1e-15;
@@ -157,4 +157,4 @@ TEST(Differentiate, NoiseThatHidesTheSlopeIsSaid) {
 }
 
 }  // namespace
-}  // namespace retrace
+}  // namespace retrace::derivative_test

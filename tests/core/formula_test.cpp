@@ -12,7 +12,7 @@
 
 // Formulas: their values, their exact derivatives, and what is none.
 
-namespace retrace {
+namespace retrace::formula_test {
 namespace {
 
 using jets::SecondPartials;
@@ -186,4 +186,4 @@ TEST(Formula, SaysWhatIsWrongAndWhere) {
 }
 
 }  // namespace
-}  // namespace retrace
+}  // namespace retrace::formula_test

@@ -8,7 +8,7 @@
 
 // Automatic differentiation against identities and against each other.
 
-namespace retrace::jets {
+namespace retrace::jets::jets_test {
 namespace {
 
 Series<double> line(double x, double slope, int order = kMostOrder) {
@@ -60,4 +60,4 @@ TEST(Jet, ShortSeriesAreTheStartOfLongOnes) {
 }
 
 }  // namespace
-}  // namespace retrace::jets
+}  // namespace retrace::jets::jets_test

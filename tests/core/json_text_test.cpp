@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace retrace {
+namespace retrace::json_text_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -52,4 +52,4 @@ TEST(JsonText, AnyTextIsEscapedToValidJson) {
 }
 
 }  // namespace
-}  // namespace retrace
+}  // namespace retrace::json_text_test

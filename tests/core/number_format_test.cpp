@@ -10,7 +10,7 @@
 #include <limits>
 #include <locale>
 
-namespace retrace {
+namespace retrace::number_format_test {
 namespace {
 
 using Limits = std::numeric_limits<double>;
@@ -100,4 +100,4 @@ TEST(NumberFormat, LocaleChangesNothing) {
 }
 
 }  // namespace
-}  // namespace retrace
+}  // namespace retrace::number_format_test

@@ -7,7 +7,7 @@
 
 // Tables of TOML files: what they hand out, and what they refuse with file, line and key.
 
-namespace retrace {
+namespace retrace::toml_file_test {
 namespace {
 
 std::string refusal(const std::string& text, const std::function<void(TomlTable&)>& read) {
@@ -72,4 +72,4 @@ TEST(TomlFile, TextsAreEscaped) {
 }
 
 }  // namespace
-}  // namespace retrace
+}  // namespace retrace::toml_file_test

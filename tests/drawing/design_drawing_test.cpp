@@ -13,7 +13,7 @@
 #include "studies/design/design_reader.h"
 #include "tests/drawing/svg_reader.h"
 
-namespace retrace::testing {
+namespace retrace::testing::design_drawing_test {
 namespace {
 
 using namespace geometry;
@@ -333,4 +333,4 @@ TEST(DesignSheets, TextsAreEscaped) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::design_drawing_test

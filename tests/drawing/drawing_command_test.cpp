@@ -3,7 +3,7 @@
 
 #include "tests/app/program.h"
 
-namespace retrace::test {
+namespace retrace::test::drawing_command_test {
 namespace {
 
 const std::string kDesign =
@@ -128,7 +128,7 @@ TEST(Masks, WrongOnesAreRefused) {
       {{"inspect", "e.toml", "--set", "surface.angle_error_sigma_arcmin=1", "-o", "out"},
        "e.toml:9: array.mask: not allowed together with surface.angle_error_sigma_arcmin"},
       {{"rre", "e.toml", "--engine", "exact", "--derivatives"}, "e.toml:9: array.mask: has no derivatives"},
-      {{"inspect", "e.toml", "--json", "all.pgm"}, "--json: all.pgm is a design"}};
+      {{"inspect", "e.toml", "--json", "all.pgm"}, "--json: all.pgm is a file that is read"}};
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = retrace(folder, arguments);
     EXPECT_EQ(outcome.code, 2) << message;
@@ -140,4 +140,4 @@ TEST(Masks, WrongOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::drawing_command_test

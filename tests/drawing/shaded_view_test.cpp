@@ -12,7 +12,7 @@
 #include "studies/design/design_reader.h"
 #include "tests/support/designs.h"
 
-namespace retrace::testing {
+namespace retrace::testing::shaded_view_test {
 namespace {
 
 using namespace geometry;
@@ -144,4 +144,4 @@ TEST(DesignPicture, IsAPicture) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::shaded_view_test

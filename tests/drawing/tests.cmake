@@ -1,10 +1,9 @@
 find_package(EXPAT 2.4 REQUIRED)
-retrace_test(drawing_test
+retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/design_drawing_test.cpp ${CMAKE_CURRENT_LIST_DIR}/shaded_view_test.cpp
   LIBRARIES retrace::report_drawing PkgConfig::CAIRO EXPAT::EXPAT)
 
 # The command, as users meet it.
-retrace_test(drawing_command_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/drawing_command_test.cpp app/program.cpp
+retrace_test(command_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/drawing_command_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
-add_dependencies(drawing_command_test retrace)

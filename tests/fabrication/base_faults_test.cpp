@@ -6,7 +6,7 @@
 
 #include "tests/fabrication/base_programs.h"
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::base_faults_test {
 namespace {
 
 /// Faults that are planted in the text of a program.
@@ -91,4 +91,4 @@ TEST_P(BaseFaults, ARapidMoveThroughTheBlank) {
 INSTANTIATE_TEST_SUITE_P(OfPrismsAndCubes, BaseFaults, ::testing::Values(false, true));
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::base_faults_test

@@ -31,7 +31,7 @@
 // Jobs of elements on inclined, curved and freeform bases: where they stand, against the part that light is traced in;
 // and their programs, read back and cut again.
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::base_jobs_test {
 namespace {
 
 using geometry::Arrangement;
@@ -477,4 +477,4 @@ TEST(OnBase, HoldersAreSeenToReachIntoHollowBlanks) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::base_jobs_test

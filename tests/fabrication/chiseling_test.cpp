@@ -33,7 +33,7 @@
 // Diamond micro chiseling: poses and paths against the geometry of cubes, programs cut again from their text, and
 // faults that are planted in them.
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::chiseling_test {
 namespace {
 
 using geometry::Vec3;
@@ -564,4 +564,4 @@ TEST(ChiselingJobs, NeedAHeadThatTilts) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::chiseling_test

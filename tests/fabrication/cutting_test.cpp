@@ -19,7 +19,7 @@
 
 // Cutting by planes against analytic shapes, against dexels that clip polyhedra, and against random faults.
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::cutting_test {
 namespace {
 
 using geometry::Arrangement;
@@ -367,4 +367,4 @@ INSTANTIATE_TEST_SUITE_P(
                       Mutated{Arrangement::aligned, Strategy::two_step, "ideal", NcDialect::pmac, 4}));
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::cutting_test

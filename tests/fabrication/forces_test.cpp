@@ -9,7 +9,7 @@
 #include "fabrication/forces/forces.h"
 #include "fabrication/forces/io/force_table.h"
 
-namespace retrace::fabrication {
+namespace retrace::fabrication::forces_test {
 namespace {
 
 std::vector<MeasuredForce> table() {
@@ -142,4 +142,4 @@ TEST(Forces, BadTablesAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication
+}  // namespace retrace::fabrication::forces_test

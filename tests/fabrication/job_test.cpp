@@ -13,7 +13,7 @@
 
 // Jobs: where the elements lie, files that are read and written without loss, and what is refused.
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::job_test {
 namespace {
 
 using geometry::Arrangement;
@@ -185,6 +185,12 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
       {"finishing_cuts = 2", "finishing_cuts = 1.5", "process.finishing_cuts: must be a whole number, got 1.5"},
       {"plough_length_mm = 0.1", "plough_length_mm = 0.001", "process.plough_length_mm: must be at least"},
       {"shortest_plough = false", "shortest_plough = 0", "process.shortest_plough: must be true or false, got 0"},
+      {"roughing_feed_mm_per_min = 50", "roughing_feed_mm_per_min = 4.9e-4",
+       "process.roughing_feed_mm_per_min: must be >= 5e-04 and <= 1e+05, got 0.00049"},
+      {"finishing_feed_mm_per_min = 20", "finishing_feed_mm_per_min = 4.9e-4",
+       "process.finishing_feed_mm_per_min: must be >= 5e-04 and <= 1e+05, got 0.00049"},
+      {"retract_feed_mm_per_min = 200", "retract_feed_mm_per_min = 0",
+       "process.retract_feed_mm_per_min: must be >= 5e-04 and <= 1e+05, got 0"},
       {"machine = \"ideal\"", "machine = \"\"", "machine: must name a machine"},
       {"base_mm = 0.451", "base_mm = nan", "element.base_mm: must be a finite number, got nan"},
   };
@@ -283,4 +289,4 @@ TEST(JobFile, DeepKeysAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::job_test

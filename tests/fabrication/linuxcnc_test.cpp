@@ -15,7 +15,7 @@
 // LinuxCNC's own interpreter reads our RS274/NGC text: its canonical moves are the planned ones. Golden programs pin
 // the text of every dialect.
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::linuxcnc_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -148,4 +148,4 @@ TEST(Dialects, WriteNumbersInFixedPoint) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::linuxcnc_test

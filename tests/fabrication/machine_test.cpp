@@ -11,7 +11,7 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/machine/machine.h"
 
-namespace retrace::fabrication {
+namespace retrace::fabrication::machine_test {
 namespace {
 
 using geometry::Vec3;
@@ -237,4 +237,4 @@ TEST(MachineFile, UnknownKeysAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication
+}  // namespace retrace::fabrication::machine_test

@@ -12,7 +12,7 @@
 #include "fabrication/read/nc_program.h"
 #include "tests/fabrication/nc_record.h"
 
-namespace retrace::fabrication {
+namespace retrace::fabrication::nc_reader_test {
 namespace {
 
 using test::Record;
@@ -91,7 +91,7 @@ TEST(NcReader, OneProgramInFourLanguages) {
     ASSERT_EQ(record.dwells.size(), 2U) << word_of(dialect);
     EXPECT_DOUBLE_EQ(record.dwells[1].seconds, 0.1) << word_of(dialect);
     EXPECT_EQ(record.settings.exact_stop, true) << word_of(dialect);
-    EXPECT_EQ(record.settings.spindle_on, false) << word_of(dialect);
+    EXPECT_EQ(record.settings.spindle, NcSpindle::stopped) << word_of(dialect);
     EXPECT_EQ(record.settings.mist_on, true) << word_of(dialect);
     EXPECT_EQ(recognise_dialect(sample(dialect), "p"), dialect);
   }
@@ -213,6 +213,42 @@ TEST(NcReader, WhatIsNotUnderstoodIsAnErrorWithItsLine) {
             "p:17: is not understood from \"SPLINE Z5.\"");
 }
 
+struct NoSink : NcSink {
+  void motion(const NcMotion&, const NcSettings&) override {}
+  void dwell(double, const NcPlace&, const AxisPositions&) override {}
+};
+
+NcSettings settings_after(const std::string& text, NcDialect dialect, const NcSpindleTexts& spindle = {}) {
+  NoSink sink;
+  return run_nc(parse_nc(text, "p", dialect, spindle), sink).settings;
+}
+
+TEST(NcReader, WhatTheSpindleDoes) {
+  for (const auto& [dialect, text] : {std::pair{NcDialect::rs274ngc, "%\nG97 S800 M3\nS900.5\nM2\n%\n"},
+                                      {NcDialect::sinumerik, "S800 M3\nS900.5\nM30\n"},
+                                      {NcDialect::fanuc, "%\nO1\nG97 S800 M3\nS900.5\nM30\n%\n"}}) {
+    EXPECT_EQ(settings_after(text, dialect).spindle, NcSpindle::clockwise) << word_of(dialect);
+    EXPECT_EQ(settings_after(text, dialect).spindle_rpm, 900.5) << word_of(dialect);
+    EXPECT_EQ(settings_after(replaced(text, "M3", "M4"), dialect).spindle, NcSpindle::counterclockwise);
+    EXPECT_EQ(settings_after(replaced(text, "S900.5", "M5"), dialect).spindle, NcSpindle::stopped);
+    EXPECT_NE(refusal(replaced(text, "S900.5", "S1 S2"), dialect).find(": has two words S"), std::string::npos);
+    EXPECT_NE(refusal(replaced(text, "S900.5", "S-1"), dialect).find(": S must be >= 0, got -1"), std::string::npos);
+  }
+}
+
+TEST(NcReader, APmacsSpindleIsTakenLetterByLetter) {
+  const NcSpindleTexts texts = {"send1\"go 800\"", "M105"};
+  const std::string text = "open prog 1\nM5\n  send1\"go 800\"\nclose\n";
+  EXPECT_EQ(settings_after(text, NcDialect::pmac, texts).spindle, NcSpindle::started_by_text);
+  EXPECT_EQ(settings_after(replaced(text, "close", "M105\nclose"), NcDialect::pmac, texts).spindle,
+            NcSpindle::stopped_by_text);
+  EXPECT_EQ(settings_after(replaced(text, "close", "M5\nclose"), NcDialect::pmac, texts).spindle, NcSpindle::stopped);
+  EXPECT_THROW(settings_after(text, NcDialect::pmac), InputError);
+  EXPECT_THROW(settings_after(replaced(text, "800", "801"), NcDialect::pmac, texts), InputError);
+  EXPECT_THROW(settings_after(replaced(text, "send1", "SEND1"), NcDialect::pmac, texts), InputError);
+  EXPECT_THROW(settings_after("M105\n" + text, NcDialect::pmac, texts), InputError) << "outside of the program";
+}
+
 TEST(NcReader, EndlessRecursionIsRefused) {
   EXPECT_EQ(refusal("o1 sub\no2 call\no1 endsub\no2 sub\no1 call\no2 endsub\no1 call\nM2\n", NcDialect::rs274ngc),
             "p:5: calls are nested more than 16 deep; subroutine 1 may call itself");
@@ -254,4 +290,4 @@ TEST(NcReader, AFileThatStopsInTheLineOfALabelLacksItsSubroutine) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication
+}  // namespace retrace::fabrication::nc_reader_test

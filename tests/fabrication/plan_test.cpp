@@ -19,7 +19,7 @@
 // Plans: cuts, poses, order, safety of moves and time, against the figures of the thesis and the machine's own forward
 // kinematics.
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::plan_test {
 namespace {
 
 using geometry::Arrangement;
@@ -489,4 +489,4 @@ TEST(Refused, OptionsWithoutMeaning) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::plan_test

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <variant>
@@ -19,7 +21,7 @@
 // What the less usual keys of a job ask for is cut as designed: programs are read back and cut virtually, on the
 // machines with measured axes.
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::planned_jobs_test {
 namespace {
 
 using geometry::Arrangement;
@@ -198,6 +200,51 @@ TEST(PlannedJobs, PassesAtAnotherHeightAreFound) {
   }
 }
 
+/// Prisms of 0.97 x 1.754 mm in brick rows on 2.231 x 2.231 mm, as `retrace job` makes them for a tool of 1.754 mm.
+Job wide_job() {
+  Job job = square_job(2, Arrangement::offset);
+  job.strategy = Strategy::unidirectional;
+  prism_of(job).base_mm = 0.97;
+  prism_of(job).width_mm = job.tool.width_mm = 1.754;
+  job.array.x_length_mm = job.array.y_length_mm = 2.231;
+  return job;
+}
+
+/// On machine `paper` the ploughed facet rises by 596.9 nm along the edge. The tip of one cut ends 0.894 um below the
+/// rim, and half-way from there to the rim the blank's face is only 446.8 nm over the facet: what is left ends there.
+TEST(PlannedJobs, APloughedFacetThatLeavesTheBlankBelowItsRimIsNoGouge) {
+  const Job job = wide_job();
+  const Machine paper = machine("paper");
+  const std::vector<Program> programs = make_plan(job, paper).programs;
+  const Verification v = verified(programs, job, paper);
+  EXPECT_TRUE(v.passes()) << listed(v);
+  EXPECT_EQ(v.elements_cut, 2);
+  EXPECT_LT(v.facet_distance_nm_max, 2.0);
+  // 15 nm along Z are 10.6 along the facet's normal: more than the tolerance, at the rim as elsewhere.
+  EXPECT_TRUE(has_kind(verified(raised(programs, 0, -15), job, paper), "gouge"));
+  EXPECT_TRUE(has_kind(verified(raised(programs, 0, 15), job, paper), "excess"));
+}
+
+/// Sizes that put the tips of cuts next to the rim, where a tilted facet leaves the blank, with any overhang of the
+/// array over whole elements.
+RC_GTEST_PROP(PlannedJobs, PloughedFacetsOfAnySizeAreCutAsDesigned, ()) {
+  Job job = square_job(2, Arrangement::offset);
+  job.strategy = Strategy::unidirectional;
+  job.process.roughing_depth_um = *rc::gen::element(10.0, 15.0, 25.0);
+  geometry::RtpElement& prism = prism_of(job);
+  const double facet_um = job.process.roughing_depth_um * *rc::gen::inRange(15, 30) + 0.05 * *rc::gen::inRange(1, 60);
+  prism.base_mm = 1e-3 * facet_um * std::numbers::sqrt2;
+  prism.width_mm = 1e-3 * *rc::gen::inRange(300, 2500);
+  // One pass, or several side by side.
+  job.tool.width_mm = std::clamp(prism.width_mm / *rc::gen::inRange(1, 4), 0.25, std::min(2.0, prism.width_mm));
+  job.array.x_length_mm = prism.base_mm * (1.0 + 0.01 * *rc::gen::inRange(0, 200));
+  job.array.y_length_mm = prism.width_mm * (1.0 + 0.01 * *rc::gen::inRange(0, 200));
+  const Verification v = verified(job, job, machine("paper"));
+  if (!v.passes()) RC_FAIL(listed(v));
+  RC_ASSERT(v.elements_cut == static_cast<std::int64_t>(cut_elements(job).size()));
+  RC_ASSERT(v.facet_distance_nm_max < 2.0);
+}
+
 /// What tilted edges must leave at the root is the same at every apex angle, w tan(delta) up the facet; 20 nm more are
 /// found.
 TEST(PlannedJobs, RootsAreAsPredictedAtEveryApex) {
@@ -216,4 +263,4 @@ TEST(PlannedJobs, RootsAreAsPredictedAtEveryApex) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::planned_jobs_test

@@ -15,7 +15,7 @@
 
 // The readers, which know nothing of planner and writers, read every dialect back to the planned axis positions.
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::read_back_test {
 namespace {
 
 using geometry::Arrangement;
@@ -67,8 +67,9 @@ ReadBack read_back(const Program& program, NcDialect dialect) {
   }
   for (const Record::Dwell& dwell : record.dwells) dwell_s -= dwell.seconds;
   require(std::abs(dwell_s) < 1e-6, "dwells differ");
-  require(record.settings.absolute && record.settings.exact_stop == true && record.settings.spindle_on == false,
-          "a setting is missing");
+  require(
+      record.settings.absolute && record.settings.exact_stop == true && record.settings.spindle == NcSpindle::stopped,
+      "a setting is missing");
   return result;
 }
 
@@ -95,6 +96,18 @@ RC_GTEST_PROP(ReadBack, EveryDialectToThePlannedPositions, ()) {
     }
 }
 
+/// The least feed that a job may have is the least that every dialect can say.
+TEST(ReadBack, TheLeastFeedIsNoneOfZero) {
+  Job job = square_job(1);
+  for (const auto& [feed, is_said] : {std::pair{kLeastFeedMmPerMin, true}, {0.999 * kLeastFeedMmPerMin, false}}) {
+    job.process.finishing_feed_mm_per_min = feed;
+    const Plan plan = make_plan(job, machine("ideal"));
+    for (const char* dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"})
+      EXPECT_EQ(nc_text(plan.programs.front(), dialect).find(" F0.000\n") == std::string::npos, is_said)
+          << dialect << ' ' << feed;
+  }
+}
+
 /// Whoever takes the last digit off every word is found out: the comparison can fail.
 TEST(ReadBack, ANanometreIsSeen) {
   const Plan plan = make_plan(square_job(1), machine("paper"));
@@ -112,4 +125,4 @@ TEST(ReadBack, ANanometreIsSeen) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::read_back_test

@@ -1,33 +1,33 @@
-retrace_test(fabrication_job_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/job_test.cpp
   LIBRARIES retrace::job rapidcheck)
-retrace_test(fabrication_machine_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/machine_test.cpp
   LIBRARIES retrace::machine rapidcheck)
-retrace_test(fabrication_plan_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plan_test.cpp
   LIBRARIES retrace::plan rapidcheck)
-retrace_test(fabrication_post_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/linuxcnc_test.cpp
   LIBRARIES retrace::plan retrace::post)
-retrace_test(fabrication_read_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/nc_reader_test.cpp
   LIBRARIES retrace::nc_read rapidcheck)
-retrace_test(fabrication_read_back_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/read_back_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::nc_read rapidcheck)
-retrace_test(fabrication_verify_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/cutting_test.cpp ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::verify rapidcheck)
-retrace_test(fabrication_planned_jobs_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp
-  LIBRARIES retrace::plan retrace::post retrace::nc_read retrace::verify)
-retrace_test(fabrication_forces_test
+  LIBRARIES retrace::plan retrace::post retrace::nc_read retrace::verify rapidcheck)
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/forces_test.cpp
   LIBRARIES retrace::forces)
-retrace_test(fabrication_chiseling_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/chiseling_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::verify)
-retrace_test(fabrication_base_test
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_faults_test.cpp ${CMAKE_CURRENT_LIST_DIR}/base_jobs_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::verify)

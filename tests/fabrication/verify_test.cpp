@@ -19,7 +19,7 @@
 
 // What planner and writers make is cut again from its text, by a verifier that knows nothing of either.
 
-namespace retrace::fabrication::test {
+namespace retrace::fabrication::test::verify_test {
 namespace {
 
 using geometry::Arrangement;
@@ -405,4 +405,4 @@ TEST_F(Faults, ProgramForAnotherMachineIsRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::test
+}  // namespace retrace::fabrication::test::verify_test

@@ -13,7 +13,7 @@
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 
-namespace retrace::testing {
+namespace retrace::testing::diffraction_test {
 namespace {
 
 using namespace geometry;
@@ -31,9 +31,9 @@ Polygon regular(std::size_t corners, double radius_mm, const Vec2& centre = Vec2
 }
 
 /// A plane wave through a polygon back to the source at normal incidence.
-FarField field_of(const Polygon& polygon, double wavelength_nm, const Vec3& direction = Vec3::UnitZ()) {
+FarField field_of(const Polygon& polygon, double wavelength_nm, const Vec3& direction = Vec3::UnitZ(),
+                  FarFieldPolicy policy = {}) {
   const Part part = build_part(single(HexagonalCube{1.0}, 1.0));
-  FarFieldPolicy policy;
   policy.wavelength_nm = wavelength_nm;
   policy.window_rad = 0.1;
   FarFieldCollector collector(part, {}, policy);
@@ -301,5 +301,30 @@ TEST(Diffraction, SixSectorsOfACubeCornerAgreeWithAPixelModel) {
   }
 }
 
+// Sums over many polygons take long: they end when they are asked to, before and after the field is made.
+TEST(FarField, IsNotSummedOnceItIsCancelled) {
+  Cancellation cancellation;
+  FarFieldPolicy policy;
+  policy.cancel = &cancellation;
+  const FarField field = field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy);
+  EXPECT_GT(field.diffracted_per_sr(Vec3::UnitZ()), 0.0);
+  cancellation.request();
+  EXPECT_EQ(field.diffracted_per_sr(Vec3::UnitZ()), 0.0);
+  EXPECT_TRUE(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).groups().empty());
+}
+
+// Polygons beyond the budget stay rays, and their power is told.
+TEST(FarField, TellsWhatTheBudgetOfPolygonsLeavesUndiffracted) {
+  FarFieldPolicy policy;
+  EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
+  policy.most_polygons = 0;
+  const FarField field = field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy);
+  EXPECT_TRUE(field.groups().empty());
+  EXPECT_NEAR(field.beyond_budget_power(), 1.0, 1e-12);
+  // What the discs hide is not missed.
+  policy.finest_detail_rad = 1.0;
+  EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
+}
+
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::diffraction_test

@@ -13,7 +13,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::geometric_far_field_test {
 namespace {
 
 using namespace geometry;
@@ -330,4 +330,4 @@ TEST(GeometricFarField, ScatteredLightSumsToTheLedger) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::geometric_far_field_test

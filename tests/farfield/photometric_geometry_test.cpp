@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "tests/support/closed_forms.h"
 
-namespace retrace::testing {
+namespace retrace::testing::photometric_geometry_test {
 namespace {
 
 using namespace raytrace;
@@ -111,4 +111,4 @@ TEST(PhotometricGeometry, ReturnFrameKeepsObservationAngles) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::photometric_geometry_test

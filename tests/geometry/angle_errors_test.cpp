@@ -15,7 +15,7 @@
 
 // Dihedral errors and facet tilts: the angles that are built, and that the part stays a solid with them.
 
-namespace retrace::geometry {
+namespace retrace::geometry::angle_errors_test {
 namespace {
 
 constexpr double kArcmin = std::numbers::pi / 180.0 / 60.0;
@@ -373,4 +373,4 @@ TEST(RandomTilts, LayerHoldsTheSurface) {
   EXPECT_THROW(build_part(thin), InputError);
 }
 
-}  // namespace retrace::geometry
+}  // namespace retrace::geometry::angle_errors_test

@@ -18,7 +18,7 @@
 
 // Elements on inclined, curved and freeform bases: where they stand, and that the part stays a solid.
 
-namespace retrace::geometry {
+namespace retrace::geometry::base_part_test {
 namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
@@ -375,4 +375,4 @@ TEST(BaseCheck, MeasuresASphere) {
 }
 
 }  // namespace
-}  // namespace retrace::geometry
+}  // namespace retrace::geometry::base_part_test

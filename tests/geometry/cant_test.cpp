@@ -14,7 +14,7 @@
 
 // Canted cube corners: which way they lean, and that the part stays a solid.
 
-namespace retrace::geometry {
+namespace retrace::geometry::cant_test {
 namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
@@ -157,4 +157,4 @@ TEST(Cant, TriangularArraysAreClosed) {
 }
 
 }  // namespace
-}  // namespace retrace::geometry
+}  // namespace retrace::geometry::cant_test

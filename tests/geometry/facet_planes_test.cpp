@@ -13,7 +13,7 @@
 
 // Prisms with planes of their own: nominal ones are the nominal part, turned ones meet where their planes do.
 
-namespace retrace::geometry {
+namespace retrace::geometry::facet_planes_test {
 namespace {
 
 constexpr double kArcmin = std::numbers::pi / 180.0 / 60.0;
@@ -225,4 +225,4 @@ TEST(FacetPlanes, PlanesOfNoElementAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::geometry
+}  // namespace retrace::geometry::facet_planes_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/geometry/part_checks.h"
 
-namespace retrace::geometry {
+namespace retrace::geometry::part_test {
 namespace {
 
 PartSpec rtp_array(double base, double width, double length, Arrangement arrangement) {
@@ -175,4 +175,4 @@ TEST(Part, TooSmallForOneElement) {
 }
 
 }  // namespace
-}  // namespace retrace::geometry
+}  // namespace retrace::geometry::part_test

@@ -1,8 +1,12 @@
-retrace_test(geometry_test
+retrace_test(raytrace_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/angle_errors_test.cpp ${CMAKE_CURRENT_LIST_DIR}/cant_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/facet_planes_test.cpp          ${CMAKE_CURRENT_LIST_DIR}/part_test.cpp
   LIBRARIES retrace::geometry retrace::geometry_check)
 
-retrace_test(base_test
+retrace_test(raytrace_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_part_test.cpp
   LIBRARIES retrace::geometry retrace::geometry_check)
+
+retrace_test(raytrace_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/front_mesh_test.cpp
+  LIBRARIES retrace::geometry)

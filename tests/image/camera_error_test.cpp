@@ -10,7 +10,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::camera_error_test {
 namespace {
 
 using namespace geometry;
@@ -109,4 +109,4 @@ TEST(CameraError, OfThePlainBackgroundIsNone) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::camera_error_test

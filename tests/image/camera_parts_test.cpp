@@ -10,7 +10,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::camera_parts_test {
 namespace {
 
 using namespace geometry;
@@ -128,4 +128,4 @@ TEST(MaskCamera, ShowsTheElementsThatAreThere) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::camera_parts_test

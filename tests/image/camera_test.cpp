@@ -17,7 +17,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::camera_test {
 namespace {
 
 using namespace geometry;
@@ -324,4 +324,4 @@ TEST(Camera, PictureAgreesWithItsReference) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::camera_test

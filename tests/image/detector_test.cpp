@@ -13,7 +13,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::detector_test {
 namespace {
 
 using namespace geometry;
@@ -168,4 +168,4 @@ TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::detector_test

@@ -6,7 +6,7 @@
 
 #include "tests/app/program.h"
 
-namespace retrace::test {
+namespace retrace::test::image_command_test {
 namespace {
 
 const std::string kBrick =
@@ -143,4 +143,4 @@ TEST_F(Image, WrongSheetsAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::image_command_test

@@ -10,7 +10,7 @@
 #include "report/colour_scale.h"
 #include "report/image_plot.h"
 
-namespace retrace::report {
+namespace retrace::report::picture_file_test {
 namespace {
 
 FloatPicture sample() {
@@ -97,4 +97,4 @@ TEST(ImagePlot, ScaleBarsAreRound) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::picture_file_test

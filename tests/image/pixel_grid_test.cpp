@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 
-namespace retrace::testing {
+namespace retrace::testing::pixel_grid_test {
 namespace {
 
 using geometry::Polygon;
@@ -82,4 +82,4 @@ TEST(PixelGrid, WhatLiesOutsideIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::pixel_grid_test

@@ -10,7 +10,7 @@
 #include "studies/photometry/photometer.h"
 #include "tests/support/designs.h"
 
-namespace retrace::testing {
+namespace retrace::testing::road_test {
 namespace {
 
 using namespace geometry;
@@ -175,4 +175,4 @@ TEST(Road, ReflectorsAreDrawnWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::road_test

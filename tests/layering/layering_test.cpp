@@ -10,15 +10,15 @@
 
 #include "tests/layering/layer_rules.h"
 
-namespace retrace::layering {
+namespace retrace::layering::layering_test {
 namespace fs = std::filesystem;
 namespace {
 
 /// A source tree made for one test and removed after it. It starts with a core/ that is in order.
-class SyntheticTree : public testing::Test {
+class SyntheticTree : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* const info = testing::UnitTest::GetInstance()->current_test_info();
+    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
     root_ = fs::temp_directory_path() / ("layering_" + std::string(info->name()) + "_" + std::to_string(::getpid()));
     fs::remove_all(root_);
     add("core/error.h", "#pragma once\n#include <string>\n");
@@ -144,4 +144,4 @@ TEST_F(SyntheticTree, EveryFolderAndEveryIncludeHasAPlace) {
 }
 
 }  // namespace
-}  // namespace retrace::layering
+}  // namespace retrace::layering::layering_test

@@ -11,7 +11,7 @@
 #include "materials/io/material_library.h"
 #include "materials/metal.h"
 
-namespace retrace::materials {
+namespace retrace::materials::materials_test {
 namespace {
 
 MaterialLibrary shipped() {
@@ -157,4 +157,4 @@ TEST(Fresnel, PhaseOfTotalReflection) {
 }
 
 }  // namespace
-}  // namespace retrace::materials
+}  // namespace retrace::materials::materials_test

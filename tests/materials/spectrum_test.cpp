@@ -14,7 +14,7 @@
 #include "materials/io/material_library.h"
 #include "materials/io/spectrum_reader.h"
 
-namespace retrace::materials {
+namespace retrace::materials::spectrum_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -258,4 +258,4 @@ TEST(SpectrumReader, FilesThatCannotBeReadAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::materials
+}  // namespace retrace::materials::spectrum_test

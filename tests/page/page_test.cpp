@@ -6,7 +6,7 @@
 
 #include "report/page/sections.h"
 
-namespace retrace::report {
+namespace retrace::report::page_test {
 namespace {
 
 const PageAssets kAssets = {"/* script */", "/* style */", "licence"};
@@ -206,4 +206,4 @@ TEST(StudyPage, ExtremeDirectionsComeFromTheCurve) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::page_test

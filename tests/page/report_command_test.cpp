@@ -10,7 +10,7 @@
 
 // `retrace report` as users meet it; what the page looks like is the browser test's.
 
-namespace retrace::test {
+namespace retrace::test::report_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -173,4 +173,4 @@ TEST(Report, SetIsRefusedAndOutputsAreKeptApart) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::report_command_test

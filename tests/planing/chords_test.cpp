@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "fabrication/planing/chords.h"
 
-namespace retrace::fabrication {
+namespace retrace::fabrication::chords_test {
 namespace {
 
 std::vector<ProfilePoint> circle(double radius_mm, double spacing_mm, double length_mm) {
@@ -132,4 +132,4 @@ TEST(Chords, LongestAreNotAlwaysTheFewest) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication
+}  // namespace retrace::fabrication::chords_test

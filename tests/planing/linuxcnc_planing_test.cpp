@@ -7,7 +7,7 @@
 
 // LinuxCNC's interpreter reads the programs of the worked examples: its moves are the planned ones.
 
-namespace retrace::fabrication {
+namespace retrace::fabrication::linuxcnc_planing_test {
 namespace {
 
 void expect_read(const std::string& part_file) {
@@ -18,6 +18,14 @@ void expect_read(const std::string& part_file) {
     const std::string printed = test::interpreted(nc_text(planned.program, "rs274ngc"));
     EXPECT_NE(printed.find("SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)"), std::string::npos);
     EXPECT_NE(printed.find("PROGRAM_END()"), std::string::npos);
+    if (planned.program.spindle) {
+      const std::size_t speed = printed.find("SET_SPINDLE_SPEED(0, 300");
+      const std::size_t start = printed.find("START_SPINDLE_CLOCKWISE(0");
+      ASSERT_NE(speed, std::string::npos) << printed.substr(0, 2000);
+      ASSERT_NE(start, std::string::npos) << printed.substr(0, 2000);
+      EXPECT_LT(start, printed.find("STRAIGHT_TRAVERSE("));
+      EXPECT_GT(printed.rfind("STOP_SPINDLE_TURNING(0"), printed.rfind("STRAIGHT_FEED("));
+    }
     const std::vector<test::CanonicalMove> moves = test::canonical_moves(printed);
     std::array<double, 3> at{};
     std::size_t next = 0;
@@ -48,4 +56,4 @@ TEST(LinuxCncPlaning, LatheMovesAsPlanned) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication
+}  // namespace retrace::fabrication::linuxcnc_planing_test

@@ -9,7 +9,7 @@
 #include "fabrication/planing/io/part_files.h"
 #include "fabrication/planing/nose_path.h"
 
-namespace retrace::fabrication {
+namespace retrace::fabrication::part_files_test {
 namespace {
 
 const std::string kMilled = R"(schema = "retrace.planed_part/1"
@@ -62,7 +62,10 @@ form_mm = 0.05
 [lathe]
 feed_mm_per_min = 200
 nose_radius_mm = 0.8
+spindle_rpm = 800
+spindle_direction = "counterclockwise"
 )";
+const std::string kTexts = "spindle_start = \"M103\"\nspindle_stop = \"M105\"\n";
 
 TEST(PlanedPart, NoseOfALathe) {
   EXPECT_EQ(parse_planed_part(kTurned, "p.toml").lathe->nose_radius_mm, 0.8);
@@ -72,6 +75,46 @@ TEST(PlanedPart, NoseOfALathe) {
   EXPECT_EQ(refusal("nose_radius_mm = 0.8", "nose_radius_mm = 40", kTurned),
             "p.toml:12: lathe.nose_radius_mm: must be <= " + most +
                 ", or the nose does not reach the bottom of every zone, got 40");
+}
+
+TEST(PlanedPart, SpindleOfALathe) {
+  const PlaningLathe lathe = *parse_planed_part(kTurned + kTexts, "p.toml").lathe;
+  EXPECT_EQ(lathe.spindle_rpm, 800);
+  EXPECT_EQ(lathe.spindle_direction, SpindleDirection::counterclockwise);
+  EXPECT_EQ(lathe.spindle_start, "M103");
+  EXPECT_EQ(lathe.spindle_stop, "M105");
+  EXPECT_EQ(lathe.spindle_start_at.line, 15);
+  EXPECT_EQ(parse_planed_part(kTurned, "p.toml").lathe->spindle_start, "");
+  const auto turned = [](const std::string& from, const std::string& to) {
+    return refusal(from, to, kTurned + kTexts);
+  };
+  EXPECT_EQ(turned("spindle_rpm = 800\n", ""), "p.toml:10: lathe.spindle_rpm: missing, must be >= 1 and <= 99999");
+  EXPECT_EQ(turned("spindle_rpm = 800", "spindle_rpm = 0"),
+            "p.toml:13: lathe.spindle_rpm: must be >= 1 and <= 99999, got 0");
+  EXPECT_EQ(turned("spindle_rpm = 800", "spindle_rpm = 100000"),
+            "p.toml:13: lathe.spindle_rpm: must be >= 1 and <= 99999, got 100000");
+  EXPECT_EQ(turned("spindle_rpm = 800", "spindle_rpm = 800.5"),
+            "p.toml:13: lathe.spindle_rpm: must be a whole number, got 800.5");
+  EXPECT_EQ(turned("spindle_direction = \"counterclockwise\"\n", ""),
+            "p.toml:10: lathe.spindle_direction: missing, must be \"clockwise\" or \"counterclockwise\"");
+  EXPECT_EQ(turned("\"counterclockwise\"", "\"left\""),
+            "p.toml:14: lathe.spindle_direction: must be \"clockwise\" or \"counterclockwise\", got \"left\"");
+  EXPECT_EQ(turned("spindle_start = \"M103\"\n", ""), "p.toml:10: lathe.spindle_start: missing, must be a string");
+  EXPECT_EQ(turned("spindle_stop = \"M105\"\n", ""), "p.toml:10: lathe.spindle_stop: missing, must be a string");
+  EXPECT_EQ(turned("M105", "M103"), "p.toml:16: lathe.spindle_stop: must not be spindle_start, got \"M103\"");
+  for (const char* bad : {"", " M103", "M103 ", "M103 // on", "M103\\nM7", "M\\u00fc"})
+    EXPECT_TRUE(turned("\"M103\"", "\"" + std::string(bad) + "\"")
+                    .starts_with("p.toml:15: lathe.spindle_start: must be one line of 1 to 200 printable ASCII "
+                                 "characters, without // and "
+                                 "without bla"))
+        << bad;
+}
+
+TEST(PlanedPart, FeedsThatNoProgramCanSayAreRefused) {
+  EXPECT_EQ(refusal("feed_mm_per_min = 200", "feed_mm_per_min = 4e-4", kTurned),
+            "p.toml:11: lathe.feed_mm_per_min: must be >= 1 and <= 1e+06, got 4e-04");
+  EXPECT_EQ(refusal("fast_feed_mm_per_min = 3000", "fast_feed_mm_per_min = 4e-4"),
+            "p.toml:12: mill.fast_feed_mm_per_min: must be >= 1 and <= 1e+06, got 4e-04");
 }
 
 TEST(PlanedPart, BadInputIsOneLineWithItsPlace) {
@@ -105,4 +148,4 @@ TEST(PlanedPart, ZonesThatDoNotFitAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication
+}  // namespace retrace::fabrication::part_files_test

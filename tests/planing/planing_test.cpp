@@ -14,11 +14,15 @@
 #include "fabrication/planing/plan.h"
 #include "fabrication/planing/verify/check.h"
 #include "fabrication/post/post.h"
+#include "studies/design/init_templates.h"
 #include "studies/planing/io/planing_files.h"
 #include "studies/planing/planing_study.h"
+#include "tests/planing/findings.h"
 
-namespace retrace::fabrication {
+namespace retrace::fabrication::planing_test {
 namespace {
+
+using test::finds;
 
 const std::string kExamples = std::string(RETRACE_SOURCE_DIR) + "/examples/planing/";
 
@@ -195,11 +199,6 @@ std::vector<PlaningText> with_fault(std::vector<PlaningText> texts, std::size_t 
   return texts;
 }
 
-bool finds(const PlaningCheck& check, const std::string& kind) {
-  return std::any_of(check.findings.begin(), check.findings.end(),
-                     [&](const PlaningFinding& f) { return f.kind == kind; });
-}
-
 TEST(Planing, EveryPlantedFaultIsFound) {
   const PlanedPart part = small_part();
   const PlaningPlan plan = plan_planing(part);
@@ -261,6 +260,40 @@ TEST(Planing, TheExampleIsMadeInTwoHalves) {
               3600.0 * json["hours"].get<double>(), 1e-6 * 3600.0 * json["hours"].get<double>());
 }
 
+TEST(Planing, APmacIsToldHowItsSpindleStarts) {
+  try {
+    studies::plane(kExamples + "round_zone_lens.toml", "pmac");
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_EQ(
+        text.substr(text.rfind('/') + 1),
+        "round_zone_lens.toml:15: lathe.spindle_start: missing, must be the line that starts the spindle: dialect "
+        "pmac has no word for it that every control knows");
+  }
+  EXPECT_TRUE(studies::plane(kExamples + "zone_lens_60ghz.toml", "pmac").check.passes()) << "a mill needs none";
+}
+
+TEST(Planing, TheTemplateOfALatheIsMadeInEveryDialect) {
+  const std::string text = studies::design_template("round_zone_lens");
+  const PlanedPart part = parse_planed_part(text, "t.toml");
+  EXPECT_EQ(part.lathe->spindle_rpm, 800);
+  // The lines that show a default or an alternative are valid when their "#" is taken away.
+  std::istringstream lines(text);
+  std::string all;
+  for (std::string line; std::getline(lines, line);)
+    all += (line.starts_with("# ") && line.find(" = ") != std::string::npos ? line.substr(2) : line) + "\n";
+  const PlanedPart whole = parse_planed_part(all, "t.toml");
+  EXPECT_EQ(whole.lathe->depth_of_cut_mm, part.lathe->depth_of_cut_mm);
+  EXPECT_EQ(whole.lathe->clear_mm, part.lathe->clear_mm);
+  EXPECT_EQ(whole.lathe->nose_radius_mm, part.lathe->nose_radius_mm);
+  const PlaningPlan plan = plan_planing(whole);
+  for (std::size_t k = 0; k < std::size(kNcDialectWords); ++k)
+    EXPECT_TRUE(
+        check_planing(whole, 0.0, texts_of(plan, std::string(kNcDialectWords[k])), static_cast<NcDialect>(k)).passes())
+        << kNcDialectWords[k];
+}
+
 TEST(Planing, TheRoundExampleStaysInItsTube) {
   const studies::PlaningResult result = studies::plane(kExamples + "round_zone_lens.toml", "rs274ngc");
   EXPECT_TRUE(result.check.passes());
@@ -277,4 +310,4 @@ TEST(Planing, TheRoundExampleStaysInItsTube) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication
+}  // namespace retrace::fabrication::planing_test

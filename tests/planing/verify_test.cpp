@@ -14,9 +14,12 @@
 #include "fabrication/planing/verify/phase_profile.h"
 #include "fabrication/planing/verify/swept_nose.h"
 #include "fabrication/post/post.h"
+#include "tests/planing/findings.h"
 
-namespace retrace::fabrication {
+namespace retrace::fabrication::verify_test {
 namespace {
+
+using test::finds;
 
 const ZoneLens kLenses[] = {{500.0, 5.0, 1.52, 250.0}, {200.0, 5.0, 1.52, 90.0}, {80.0, 2.0, 2.1, 70.0}};
 
@@ -29,6 +32,9 @@ PlanedPart turned_part(double nose_mm = 0.0) {
   part.lathe->feed_mm_per_min = 200.0;
   part.lathe->depth_of_cut_mm = 2.5;
   part.lathe->nose_radius_mm = nose_mm;
+  part.lathe->spindle_rpm = 800;
+  part.lathe->spindle_start = "M103";
+  part.lathe->spindle_stop = "M105";
   return part;
 }
 
@@ -38,11 +44,6 @@ PlaningCheck check_of(const PlanedPart& planned, const PlanedPart& wanted) {
   std::vector<PlaningText> texts;
   for (const PlannedProgram& p : plan.programs) texts.push_back({p.program.name, nc_text(p.program, "rs274ngc")});
   return check_planing(wanted, plan.flank_slope, texts, NcDialect::rs274ngc);
-}
-
-bool finds(const PlaningCheck& check, const std::string& kind) {
-  return std::any_of(check.findings.begin(), check.findings.end(),
-                     [&](const PlaningFinding& f) { return f.kind == kind; });
 }
 
 TEST(PhaseProfile, IsThePlannersProfile) {
@@ -94,22 +95,22 @@ TEST(SweptNose, LeavesCuspsBetweenPlacesAndLinesAlongPieces) {
   // Two places apart: circles; the cusp between them stands r - sqrt(r^2 - f^2 / 4) above the valleys.
   const double nose = 0.8;
   const double feed = 0.5;
-  const Section one = left_by_nose({{-feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
-  const Section two = left_by_nose({{feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
+  const SectionLine one = left_by_nose({{-feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
+  const SectionLine two = left_by_nose({{feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
   const double cusp = nose - std::sqrt(nose * nose - feed * feed / 4.0);
   EXPECT_NEAR(std::min(one[40].z_mm, two[40].z_mm), cusp, 1e-15);
   EXPECT_NEAR(one[15].z_mm, 0.0, 1e-15);
   // A sloping piece leaves the parallel line at the radius' distance.
-  const Section line = left_by_nose({{-2.0, -1.0}, {4.0, 2.0}}, nose, places(-0.5, 0.5, 10));
+  const SectionLine line = left_by_nose({{-2.0, -1.0}, {4.0, 2.0}}, nose, places(-0.5, 0.5, 10));
   for (const SectionPoint& p : line) EXPECT_NEAR(p.z_mm, 0.5 * p.x_mm - nose * std::sqrt(1.25), 1e-14);
 }
 
 TEST(SweptNose, ComesAsDeepAsACornerLetsIt) {
   // An upright wall on a level floor: the nose leaves a quarter of a circle.
   const double nose = 1.5;
-  const Section corner = {{-10.0, 0.0}, {0.0, 0.0}, {0.0, 6.0}, {10.0, 6.0}};
+  const SectionLine corner = {{-10.0, 0.0}, {0.0, 0.0}, {0.0, 6.0}, {10.0, 6.0}};
   const auto at = places(-10.0, 10.0, 2000);
-  const Section left = left_by_nose(lowest_centres(corner, nose, at), nose, at);
+  const SectionLine left = left_by_nose(lowest_centres(corner, nose, at), nose, at);
   for (const SectionPoint& p : left) {
     if (p.x_mm < -9.0 || p.x_mm > 9.0 || std::abs(p.x_mm) < 1e-8) continue;
     const double x = p.x_mm + nose;
@@ -120,7 +121,7 @@ TEST(SweptNose, ComesAsDeepAsACornerLetsIt) {
 }
 
 TEST(SweptNose, DistancesAreThoseOfPieces) {
-  const Section line = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 2.0}, {3.0, 2.0}};
+  const SectionLine line = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 2.0}, {3.0, 2.0}};
   EXPECT_NEAR(largest_distance({{0.5, 0.3}}, line, 2.0), 0.3, 1e-15);
   EXPECT_NEAR(largest_distance({{0.8, 1.0}}, line, 2.0), 0.2, 1e-15);
   EXPECT_NEAR(largest_distance({{0.8, 1.0}, {2.0, 3.5}}, line, 2.0), 1.5, 1e-15);
@@ -186,6 +187,75 @@ TEST(Lathe, ARoundNoseKeepsTheTubeAndLeavesFillets) {
   }
 }
 
+std::string turned_text(const PlanedPart& part, const std::string& dialect) {
+  return nc_text(plan_planing(part).programs.front().program, dialect);
+}
+
+PlaningCheck check_of(const PlanedPart& part, const std::string& text, NcDialect dialect) {
+  return check_planing(part, 0.0, {{"p", text}}, dialect);
+}
+
+/// \param at where the line is looked for: from the beginning, or from the end
+std::string with_line(std::string text, const std::string& line, const std::string& other, bool is_last = false) {
+  const std::size_t at = is_last ? text.rfind(line + "\n") : text.find(line + "\n");
+  EXPECT_NE(at, std::string::npos) << line;
+  return text.replace(at, line.size() + 1, other.empty() ? "" : other + "\n");
+}
+
+const std::string kStarts[] = {"G97 S800 M3", "S800 M3", "G97 S800 M3", "M103"};
+const std::string kStops[] = {"M5", "M5", "M5", "M105"};
+
+/// The only finding of the spindle, and nothing else.
+std::string spindle_finding(const PlaningCheck& check) {
+  std::string found;
+  for (const PlaningFinding& f : check.findings) found += f.kind + ": " + f.message + ";";
+  return found;
+}
+
+TEST(Lathe, TheSpindleTurnsFromBeforeTheFirstMoveToBehindTheLast) {
+  PlanedPart part = turned_part();
+  for (std::size_t d = 0; d < std::size(kNcDialectWords); ++d) {
+    const auto dialect = static_cast<NcDialect>(d);
+    const std::string text = turned_text(part, std::string(kNcDialectWords[d]));
+    const std::string move = dialect == NcDialect::pmac ? "\nrapid " : "\nG0 ";
+    EXPECT_LT(text.find("\n" + kStarts[d] + "\n"), text.find(move)) << text.substr(0, 400);
+    EXPECT_GT(text.rfind("\n" + kStops[d] + "\n"), text.rfind(move));
+    EXPECT_EQ(spindle_finding(check_of(part, text, dialect)), "");
+  }
+  part.lathe->spindle_direction = SpindleDirection::counterclockwise;
+  EXPECT_NE(turned_text(part, "sinumerik").find("\nS800 M4\n"), std::string::npos);
+  EXPECT_TRUE(check_of(part, turned_text(part, "sinumerik"), NcDialect::sinumerik).passes());
+}
+
+TEST(Lathe, EveryFaultOfTheSpindleIsFoundInEveryDialect) {
+  const PlanedPart part = turned_part();
+  const std::string still = "spindle: the tool feeds while the spindle stands still;";
+  for (std::size_t d = 0; d < std::size(kNcDialectWords); ++d) {
+    const auto dialect = static_cast<NcDialect>(d);
+    const std::string& start = kStarts[d];
+    const std::string& stop = kStops[d];
+    const std::string text = turned_text(part, std::string(kNcDialectWords[d]));
+    const auto found = [&](const std::string& faulty) { return spindle_finding(check_of(part, faulty, dialect)); };
+    EXPECT_EQ(found(with_line(text, start, "")), still) << d;
+    EXPECT_EQ(found(with_line(text, stop, "", true)), "spindle: the program ends without stopping the spindle;") << d;
+    // Stopped before the last cut: the line goes before the last feed.
+    const std::size_t last_cut = text.rfind(dialect == NcDialect::pmac ? "\nlinear " : "\nG1 ") + 1;
+    EXPECT_EQ(found(std::string(text).insert(last_cut, stop + "\n")), still) << d;
+    if (dialect == NcDialect::pmac) {
+      EXPECT_EQ(found(with_line(text, start, "M3")), "spindle: the spindle is not started by spindle_start;");
+      EXPECT_EQ(found(with_line(text, stop, "M5", true)), "spindle: the program ends without stopping the spindle;");
+      EXPECT_THROW(found(with_line(text, start, "M104")), InputError);
+      continue;
+    }
+    const std::string wrong = "spindle: the spindle turns the wrong way;";
+    EXPECT_EQ(found(with_line(text, start, start.substr(0, start.size() - 1) + "4")), wrong) << d;
+    const std::string speed = "spindle: the spindle turns at another speed;";
+    EXPECT_EQ(found(with_line(text, start, "S801 M3")), speed) << d;
+    EXPECT_EQ(found(with_line(text, start, "M3")), speed) << d;
+    EXPECT_EQ(found(std::string(text).insert(last_cut, "S80\n")), speed) << d;
+  }
+}
+
 TEST(Lathe, ANoseThatIsNotThePlannedOneIsFound) {
   EXPECT_TRUE(finds(check_of(turned_part(0.0), turned_part(0.8)), "path"));
   EXPECT_TRUE(finds(check_of(turned_part(0.8), turned_part(0.0)), "path"));
@@ -194,4 +264,4 @@ TEST(Lathe, ANoseThatIsNotThePlannedOneIsFound) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication
+}  // namespace retrace::fabrication::verify_test

@@ -14,7 +14,7 @@
 #include "tests/support/reference_tracer.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::angle_errors_test {
 namespace {
 
 using namespace geometry;
@@ -199,4 +199,4 @@ TEST(AngleErrors, ApexErrorSplitsTheReturnOfAPrism) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::angle_errors_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/designs.h"
 
-namespace retrace::testing {
+namespace retrace::testing::back_surface_test {
 namespace {
 
 using namespace geometry;
@@ -163,4 +163,4 @@ TEST(BackSurface, NoSelfHit) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::back_surface_test

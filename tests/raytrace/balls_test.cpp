@@ -10,7 +10,7 @@
 #include "raytrace/beads/ball_tracer.h"
 #include "raytrace/beads/ball_walker.h"
 
-namespace retrace::raytrace {
+namespace retrace::raytrace::balls_test {
 namespace {
 
 using std::numbers::pi;
@@ -306,4 +306,4 @@ TEST(Balls, SameSeedSameBytesAndAnotherSeedAnother) {
 }
 
 }  // namespace
-}  // namespace retrace::raytrace
+}  // namespace retrace::raytrace::balls_test

@@ -18,7 +18,7 @@
 #include "tests/support/reference_tracer.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::base_trace_test {
 namespace {
 
 using namespace geometry;
@@ -237,4 +237,4 @@ TEST(Placements, AtDifferentHeightsAreOneSurface) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::base_trace_test

@@ -14,7 +14,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::beam_tracer_test {
 namespace {
 
 using namespace geometry;
@@ -249,4 +249,4 @@ TEST(MeanTransmission, IsTheIntegral) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::beam_tracer_test

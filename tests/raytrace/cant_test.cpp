@@ -16,7 +16,7 @@
 #include "tests/support/reference_tracer.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::cant_test {
 namespace {
 
 using namespace geometry;
@@ -189,4 +189,4 @@ TEST(Cant, EffectiveApertureIsThatOfTheLeaningCube) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::cant_test

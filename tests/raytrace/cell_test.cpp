@@ -10,7 +10,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::cell_test {
 namespace {
 
 using namespace geometry;
@@ -276,4 +276,4 @@ TEST(CellKernel, ServesEqualElementsFarFromBorders) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::cell_test

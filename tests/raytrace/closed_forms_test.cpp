@@ -12,7 +12,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::closed_forms_test {
 namespace {
 
 using namespace geometry;
@@ -227,4 +227,4 @@ TEST(ClosedForms, RreAgainstAcceptance) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::closed_forms_test

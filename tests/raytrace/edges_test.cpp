@@ -11,7 +11,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
 
-namespace retrace::testing {
+namespace retrace::testing::edges_test {
 namespace {
 
 using namespace geometry;
@@ -178,4 +178,4 @@ TEST(Edges, PartsStayClosed) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::edges_test

@@ -17,7 +17,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/fronts.h"
 
-namespace retrace::testing {
+namespace retrace::testing::front_test {
 namespace {
 
 using namespace geometry;
@@ -424,12 +424,17 @@ TEST(Front, MeshesMustCoverTheOutlineOnce) {
   };
   EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::top), "");
   EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::bottom), "");
-  EXPECT_EQ(message(box_mesh({1.0, 0.5}, 0.5), MeshSide::top),
-            "the top of the mesh must cover the part once, it covers 50.00 % of it");
+  EXPECT_EQ(
+      message(box_mesh({1.0, 0.5}, 0.5), MeshSide::top),
+      "the top of the mesh must cover the part once, it covers 50.00 % of it; at x = 0.5000, y = 0.5000 mm of its "
+      "frame a triangle stands upright");
   TriangleMesh twice = box_mesh({1.0, 1.0}, 0.5);
   twice.triangles.push_back(twice.triangles[2]);
-  EXPECT_EQ(message(twice, MeshSide::top), "the top of the mesh must cover the part once, it covers 150.00 % of it");
+  EXPECT_EQ(
+      message(twice, MeshSide::top),
+      "the top of the mesh must cover the part once, it covers 150.00 % of it; at x = 0.5000, y = 0.5000 mm of its "
+      "frame triangles overlap");
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::front_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/designs.h"
 
-namespace retrace::testing {
+namespace retrace::testing::ledger_test {
 namespace {
 
 using namespace geometry;
@@ -99,4 +99,4 @@ TEST(Ledger, CutoffIsBookedAsTruncated) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::ledger_test

@@ -9,7 +9,7 @@
 
 #include "raytrace/point_lookup.h"
 
-namespace retrace::raytrace {
+namespace retrace::raytrace::overlay_test {
 namespace {
 
 using geometry::Vec2;
@@ -180,4 +180,4 @@ TEST(PointLookup, FindsWithinItsToleranceAndNotBeyond) {
 }
 
 }  // namespace
-}  // namespace retrace::raytrace
+}  // namespace retrace::raytrace::overlay_test

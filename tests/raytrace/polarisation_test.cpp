@@ -15,7 +15,7 @@
 #include "tests/support/reference_tracer.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::polarisation_test {
 namespace {
 
 using namespace geometry;
@@ -190,4 +190,4 @@ TEST(Polarisation, SixSubBeamsOfASolidCubeCorner) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::polarisation_test

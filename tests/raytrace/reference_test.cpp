@@ -10,7 +10,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::reference_test {
 namespace {
 
 using namespace geometry;
@@ -123,4 +123,4 @@ TEST(FacetCoating, AluminisedPrism) {
 INSTANTIATE_TEST_SUITE_P(Cases, AgainstReference, ::testing::Range(std::size_t{0}, cases().size()));
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::reference_test

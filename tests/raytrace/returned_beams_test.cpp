@@ -13,7 +13,7 @@
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 
-namespace retrace::testing {
+namespace retrace::testing::returned_beams_test {
 namespace {
 
 using namespace geometry;
@@ -149,4 +149,4 @@ TEST(Reciprocity, OfEveryEntranceToEntranceBeam) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::returned_beams_test

@@ -8,7 +8,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::robustness_test {
 namespace {
 
 using namespace geometry;
@@ -134,4 +134,4 @@ TEST(Robustness, CancellationEndsTheRun) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::robustness_test

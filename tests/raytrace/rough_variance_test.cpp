@@ -7,7 +7,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::rough_variance_test {
 namespace {
 
 using namespace geometry;
@@ -62,4 +62,4 @@ TEST(RoughVariance, SharesAreFollowedApart) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::rough_variance_test

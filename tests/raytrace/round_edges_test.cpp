@@ -12,7 +12,7 @@
 #include "raytrace/beam_tracer.h"
 #include "tests/support/designs.h"
 
-namespace retrace::testing {
+namespace retrace::testing::round_edges_test {
 namespace {
 
 using namespace geometry;
@@ -208,4 +208,4 @@ TEST(RoundEdges, ChordsConvergeToCircles) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::round_edges_test

@@ -10,7 +10,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::sampling_test {
 namespace {
 
 using namespace geometry;
@@ -117,4 +117,4 @@ TEST(StandardError, IsTrue) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::sampling_test

@@ -9,7 +9,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::scatter_test {
 namespace {
 
 using namespace geometry;
@@ -44,6 +44,48 @@ TEST(RoughFacets, SpecularSharesOfTwoFacetsMultiply) {
       EXPECT_NEAR(result.ledger.total(), 1.0, 1e-9);
       EXPECT_LT(result.ledger[Account::lost], 1e-12);
       EXPECT_GT(result.ledger[Account::scattered_out], 0.0);
+    }
+  }
+}
+
+// The exact engine follows what stays specular: the smooth share times those of the two facets, without noise.
+TEST(MeanField, OfAPrismIsTheSmoothReturnTimesTheSpecularShares) {
+  const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
+  const BeamTracer tracer(part);
+  Optics smooth = pmma();
+  smooth.lossless_entrance = true;
+  const double inside = std::asin(std::sin(4.0 * std::numbers::pi / 180.0) / kPmma);
+  const double all = tracer.trace(smooth, from(4.0), {0.001}, {}).ledgers[0][Account::retroreflected];
+  double phase2 = 0.0;
+  for (const double side : {-1.0, 1.0})
+    phase2 += std::pow(
+        4.0 * std::numbers::pi * kPmma * 20.0 * std::cos(0.25 * std::numbers::pi + side * inside) / 550.0, 2.0);
+  const Ledger ledger = tracer.trace(rough(smooth, 20.0), from(4.0), {0.001}, {}).ledgers[0];
+  EXPECT_NEAR(ledger[Account::retroreflected], all * std::exp(-phase2), 1e-8);
+  EXPECT_NEAR(ledger.total(), 1.0, 1e-9);
+}
+
+// Into a cone too narrow for what scatters rays bring the mean field, and in no model less.
+TEST(MeanField, IsNowhereMoreThanRaysBring) {
+  const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.5));
+  const surface_models::ScatterModel gaussian = HarveyShack({15.0, 20.0, 20.0, 300.0});
+  const std::vector<surface_models::ScatterModel> models = {
+      gaussian, surface_models::Abg(1e-4, 1e-4, 1.5),
+      surface_models::Microfacet::of_waviness(surface_models::SlopeShape::beckmann, 300.0, 80.0),
+      HarveyShack({10.0, 20.0, 400.0, 80.0})};
+  BeamPolicy policy;
+  policy.cutoff = 1e-8;
+  for (const auto& model : models) {
+    Optics optics = pmma();
+    optics.facet_scatter = model;
+    const Ledger ledger = BeamTracer(part).trace(optics, from(8.0, 20.0), {1e-4}, policy).ledgers[0];
+    const double mean = ledger[Account::retroreflected];
+    const ConeResult traced = MonteCarlo(part).trace(optics, from(8.0, 20.0), {1e-4}, rays(1U << 17), {}).cones[0];
+    const double bound = student_bound(4) * traced.std_error + 1e-4;
+    EXPECT_LE(mean, traced.rre + bound);
+    if (&model == &models.front()) {
+      EXPECT_NEAR(mean, traced.rre, bound);
+      EXPECT_GT(mean, 0.1);
     }
   }
 }
@@ -103,4 +145,4 @@ TEST(AbsorbingWalls, EnginesAgree) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::scatter_test

@@ -10,7 +10,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
 
-namespace retrace::testing {
+namespace retrace::testing::scratches_test {
 namespace {
 
 using namespace geometry;
@@ -111,4 +111,4 @@ TEST(Scratches, TurnWithThePrism) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::scratches_test

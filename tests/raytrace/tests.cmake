@@ -1,4 +1,4 @@
-retrace_test(raytrace_test
+retrace_test(raytrace_tests
   SOURCES
     ${CMAKE_CURRENT_LIST_DIR}/angle_errors_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/back_surface_test.cpp
@@ -22,9 +22,9 @@ retrace_test(raytrace_test
     ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
   LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers rapidcheck)
 
-retrace_test(raytrace_base_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_trace_test.cpp ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
+retrace_test(raytrace_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_trace_test.cpp
   LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers)
-retrace_test(raytrace_front_test
+retrace_test(raytrace_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/front_test.cpp
   LIBRARIES retrace::raytrace)

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace retrace::report {
+namespace retrace::report::axis_ticks_test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -133,4 +133,4 @@ TEST(AxisScale, MapsEndsToEnds) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::axis_ticks_test

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace retrace::report {
+namespace retrace::report::canvas_test {
 namespace {
 
 Canvas small_canvas() {
@@ -53,4 +53,4 @@ TEST(Fitted, KeepsTheEndsOfNames) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::canvas_test

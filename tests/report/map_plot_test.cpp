@@ -7,7 +7,7 @@
 
 #include "report/footprint_plot.h"
 
-namespace retrace::report {
+namespace retrace::report::map_plot_test {
 namespace {
 
 using geometry::Polygon;
@@ -114,4 +114,4 @@ TEST(FootprintPlot, NamesDesignsWhereThereAreSeveral) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::map_plot_test

@@ -9,7 +9,7 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "report/fabrication_plot.h"
 
-namespace retrace::report {
+namespace retrace::report::path_plot_test {
 namespace {
 
 using geometry::Vec2;
@@ -101,4 +101,4 @@ TEST(FabricationPlot, DrawsEveryElementOnce) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::path_plot_test

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace retrace::report {
+namespace retrace::report::plot_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -254,4 +254,4 @@ TEST(Render, SharesNeverLeaveWhatASharesCanBe) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::plot_test

@@ -4,15 +4,20 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "report/photometry_plot.h"
 
-namespace retrace::report {
+namespace retrace::report::polar_plot_test {
 namespace {
 
 PolarPlot sample() {
-  PolarPanel panel{"V 0°, H 0°", 2.0, 21, {}, {{0.0, 0.33, "300 mcd/lx", true}, {0.0, 1.5, "2 mcd/lx", false}}};
+  PolarPanel panel{"V 0°, H 0°",
+                   2.0,
+                   21,
+                   {},
+                   {{0.0, 0.33, "300 mcd/lx", PolarMark::Kind::holds}, {0.0, 1.5, "2 mcd/lx", PolarMark::Kind::fails}}};
   for (int k = 0; k < 441; ++k) panel.values.push_back(std::exp(-0.01 * k));
   return {"A far field", "R_A", {panel, panel, panel, panel}};
 }
@@ -24,6 +29,16 @@ TEST(PolarPlot, GivesTheSameBytesAgainInOneProcess) {
   const std::string png = render_png(sample());
   EXPECT_TRUE(png.starts_with("\x89PNG"));
   EXPECT_EQ(png, render_png(sample()));
+}
+
+TEST(PolarPlot, DrawsEachKindOfMarkOtherwise) {
+  std::set<std::string> drawings;
+  for (const auto kind : {PolarMark::Kind::holds, PolarMark::Kind::open, PolarMark::Kind::fails}) {
+    PolarPlot plot = sample();
+    plot.panels[0].marks[0].kind = kind;
+    drawings.insert(render_svg(plot));
+  }
+  EXPECT_EQ(drawings.size(), 3U);
 }
 
 TEST(PolarPlot, DrawsWhatHasNoValues) {
@@ -56,7 +71,10 @@ TEST(PhotometryPlot, MarksTheTestPointsOfEachDirection) {
   ASSERT_EQ(field.panels[1].marks.size(), 2U);
   EXPECT_EQ(field.panels[1].marks[0].label, "12 mcd/lx");
   EXPECT_EQ(field.panels[1].marks[0].up_deg, 0.33);
-  EXPECT_FALSE(field.panels[1].marks[0].holds);
+  EXPECT_EQ(field.panels[1].marks[0].kind, PolarMark::Kind::fails);
+  result.points[1].lacks_diffraction = true;
+  EXPECT_EQ(far_field_plot(result).panels[1].marks[0].kind, PolarMark::Kind::open);
+  EXPECT_EQ(far_field_plot(result).panels[1].marks[1].kind, PolarMark::Kind::fails);
   const LinePlot curves = observation_plot(result);
   ASSERT_EQ(curves.series.size(), 1U);
   EXPECT_EQ(curves.series[0].label, "entrance angle β = 20°");
@@ -65,4 +83,4 @@ TEST(PhotometryPlot, MarksTheTestPointsOfEachDirection) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::polar_plot_test

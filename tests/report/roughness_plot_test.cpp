@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace retrace::report {
+namespace retrace::report::roughness_plot_test {
 namespace {
 
 TEST(RoughnessPlot, HasACurveForEachLengthAndPointsForFacets) {
@@ -35,4 +35,4 @@ TEST(RoughnessPlot, HasACurveForEachLengthAndPointsForFacets) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::roughness_plot_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace retrace::report {
+namespace retrace::report::rre_plot_test {
 namespace {
 
 studies::RreResult result_of(const std::vector<std::string>& titles, const std::vector<double>& incidences_deg) {
@@ -43,4 +43,4 @@ TEST(RrePlot, CurvesRunFromLeftToRight) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::rre_plot_test

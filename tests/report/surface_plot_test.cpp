@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace retrace::report {
+namespace retrace::report::surface_plot_test {
 namespace {
 
 SurfacePlot sample() {
@@ -41,4 +41,4 @@ TEST(SurfacePlot, DrawsWhatHasNoValues) {
 }
 
 }  // namespace
-}  // namespace retrace::report
+}  // namespace retrace::report::surface_plot_test

@@ -7,7 +7,7 @@
 
 // `retrace export` as users meet it.
 
-namespace retrace::test {
+namespace retrace::test::export_command_test {
 namespace {
 
 const std::string kPrism = example("rtp_single_0p45mm.toml");
@@ -95,4 +95,4 @@ TEST(Export, AFileThatCannotBeWrittenIsAnOutputError) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::export_command_test

@@ -12,7 +12,7 @@
 #include "geometry/welded_part.h"
 #include "tests/solids/solid_specs.h"
 
-namespace retrace::geometry {
+namespace retrace::geometry::faceted_solid_test {
 namespace {
 
 using test::array_part;
@@ -132,4 +132,4 @@ TEST(WeldedPart, IsOnePatchAndHoldsWhatTheSharedOnesDo) {
 }
 
 }  // namespace
-}  // namespace retrace::geometry
+}  // namespace retrace::geometry::faceted_solid_test

@@ -6,7 +6,7 @@
 
 // An STL as the part to trace, as users meet it.
 
-namespace retrace::test {
+namespace retrace::test::mesh_command_test {
 namespace {
 
 const std::string kArray =
@@ -147,4 +147,4 @@ TEST(MeshPart, CommandsThatNeedElementsSaySo) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::mesh_command_test

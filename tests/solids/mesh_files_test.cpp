@@ -10,7 +10,7 @@
 #include "geometry/part.h"
 #include "tests/solids/solid_specs.h"
 
-namespace retrace::geometry {
+namespace retrace::geometry::mesh_files_test {
 namespace {
 
 BoundaryMesh prism() {
@@ -108,4 +108,4 @@ TEST(Obj, HoldsEveryVertexAndTriangleByRole) {
 }
 
 }  // namespace
-}  // namespace retrace::geometry
+}  // namespace retrace::geometry::mesh_files_test

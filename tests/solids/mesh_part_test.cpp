@@ -10,7 +10,7 @@
 #include "geometry/io/stl_file.h"
 #include "tests/solids/solid_specs.h"
 
-namespace retrace::geometry {
+namespace retrace::geometry::mesh_part_test {
 namespace {
 
 TriangleMesh mesh_of(const PartSpec& spec) {
@@ -101,4 +101,4 @@ TEST(MeshPart, TurnedOverTrianglesHaveTheOppositeVolume) {
 }
 
 }  // namespace
-}  // namespace retrace::geometry
+}  // namespace retrace::geometry::mesh_part_test

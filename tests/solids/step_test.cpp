@@ -13,7 +13,7 @@
 
 // What is written, OpenCASCADE reads back: one valid solid without free edges, of the volume that closed forms give.
 
-namespace retrace::geometry {
+namespace retrace::geometry::step_test {
 namespace {
 
 using test::array_part;
@@ -114,4 +114,4 @@ TEST(Step, EdgesThatItCannotHoldAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::geometry
+}  // namespace retrace::geometry::step_test

@@ -17,7 +17,7 @@
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 
-namespace retrace::studies {
+namespace retrace::studies::balls_test {
 namespace {
 
 using std::numbers::pi;
@@ -225,4 +225,4 @@ TEST(BallStudies, InspectionIsTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::balls_test

@@ -13,7 +13,7 @@
 
 // `[base]`: what it may say, and that what cannot carry the elements is refused at the key that says so.
 
-namespace retrace::studies {
+namespace retrace::studies::base_reader_test {
 namespace {
 
 std::string design(const std::string& element, const std::string& base) {
@@ -119,4 +119,4 @@ TEST(BaseReader, RefusesWhatABaseCannotHave) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::base_reader_test

@@ -12,7 +12,7 @@
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 
-namespace retrace::studies {
+namespace retrace::studies::derivatives_test {
 namespace {
 
 using namespace geometry;
@@ -312,4 +312,4 @@ TEST(RreDerivatives, CancelledRunsHoldNoPoint) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::derivatives_test

@@ -7,7 +7,7 @@
 
 #include "tests/studies/design_texts.h"
 
-namespace retrace::studies {
+namespace retrace::studies::design_array_test {
 namespace {
 
 using geometry::Arrangement;
@@ -110,4 +110,4 @@ TEST(DesignReader, ArrayHasAtMost1e8Elements) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::design_array_test

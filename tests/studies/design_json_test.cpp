@@ -9,7 +9,7 @@
 #include "studies/design/design_reader.h"
 #include "studies/design/init_templates.h"
 
-namespace retrace::studies {
+namespace retrace::studies::design_json_test {
 namespace {
 
 nlohmann::ordered_json quoted(const std::string& kind, const std::vector<std::string>& overrides) {
@@ -59,4 +59,4 @@ TEST(DesignJson, CantIsQuoted) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::design_json_test

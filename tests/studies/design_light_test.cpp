@@ -10,7 +10,7 @@
 
 #include "tests/studies/design_texts.h"
 
-namespace retrace::studies {
+namespace retrace::studies::design_light_test {
 namespace {
 
 TEST(DesignReader, PolarisationIsAWordOrStokesParameters) {
@@ -143,4 +143,4 @@ TEST(DesignReader, WhatIsNoSpectrumIsRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::design_light_test

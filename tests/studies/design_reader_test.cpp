@@ -14,7 +14,7 @@
 #include "studies/design/init_templates.h"
 #include "tests/studies/design_texts.h"
 
-namespace retrace::studies {
+namespace retrace::studies::design_reader_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -279,7 +279,7 @@ TEST(DesignReader, TextThatIsNotTomlIsRefusedWithItsLine) {
 }
 
 TEST(DesignReader, TextOfAbsurdLengthOrDepthIsRefused) {
-  EXPECT_EQ(complaint(std::string(70000, '\n')), "d.toml: too long for a design file, at most 16384 bytes are allowed");
+  EXPECT_EQ(complaint(std::string(70000, '\n')), "d.toml: must have at most 16384 bytes, got more");
   std::string deep;
   for (int i = 0; i < 8100; ++i) deep += "a.";
   EXPECT_EQ(complaint(deep + "a=1\n").substr(0, 24), "d.toml:1: a: unknown tab");
@@ -340,7 +340,7 @@ TEST(DesignReader, UnreadablePathsAreRefused) {
   };
   EXPECT_EQ(refused("no/such.toml"), "no/such.toml: cannot be read: No such file or directory");
   EXPECT_EQ(refused("/"), "/: cannot be read: it is a folder");
-  EXPECT_EQ(refused("/dev/zero"), "/dev/zero: too long for a design file, at most 16384 bytes are allowed");
+  EXPECT_EQ(refused("/dev/zero"), "/dev/zero: must have at most 16384 bytes, got more");
   EXPECT_EQ(refused("/dev/null").substr(0, 24), "/dev/null: element.kind:");
 }
 
@@ -418,4 +418,4 @@ TEST(DesignReader, DamagedDesignsNeverCrash) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::design_reader_test

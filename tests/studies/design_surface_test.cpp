@@ -11,7 +11,7 @@
 #include "geometry/lattice.h"
 #include "tests/studies/design_texts.h"
 
-namespace retrace::studies {
+namespace retrace::studies::design_surface_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -297,4 +297,4 @@ TEST(DesignReader, PlateMustBeThickerThanRimsStand) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::design_surface_test

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace retrace::studies {
+namespace retrace::studies::facet_planes_reader_test {
 namespace {
 
 geometry::PartSpec prisms(geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
@@ -124,4 +124,4 @@ TEST(FacetPlanesReader, CubeCornersMayHaveCaps) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::facet_planes_reader_test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/studies/design_texts.h"
 
-namespace retrace::studies {
+namespace retrace::studies::init_templates_test {
 namespace {
 
 using geometry::HexagonalCube;
@@ -53,9 +53,11 @@ TEST(InitTemplates, UnknownKindIsRefused) {
     design_template("cube");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "KIND must be one of \"rtp\", \"hexagonal_icc\" or \"triangular_icc\", got \"cube\"");
+    EXPECT_STREQ(error.what(),
+                 "KIND must be one of \"rtp\", \"hexagonal_icc\", \"triangular_icc\" or \"round_zone_lens\", got "
+                 "\"cube\"");
   }
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::init_templates_test

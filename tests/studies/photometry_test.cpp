@@ -5,71 +5,27 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "core/error.h"
 #include "materials/io/spectrum_reader.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/standards.h"
+#include "tests/studies/photometric_requests.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::studies {
+namespace retrace::studies::photometry_test {
 namespace {
 
 using namespace testing;
+using namespace photometric_requests;
 using geometry::Arrangement;
 using std::numbers::pi;
 
 constexpr const char* kHeader = "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n";
-
-LimitTable shipped() {
-  return read_limits(std::string(RETRACE_SOURCE_DIR) + "/data/photometry_limits.csv");
-}
-
-TestProgramme r150(const std::string& part_class, const std::string& colour) {
-  return programme_of(shipped(), "UN R3 / R150", part_class, colour);
-}
-
-Design design_of(const geometry::PartSpec& part, bool is_ideal = false) {
-  Design design;
-  design.part = part;
-  design.refractive_index = kPmma;
-  design.idealisation = {is_ideal, is_ideal};
-  return design;
-}
-
-geometry::PartSpec honeycomb(double error_arcmin = 0.0, double aperture_mm = 1.0) {
-  geometry::PartSpec spec = infinite(geometry::HexagonalCube{aperture_mm}, Arrangement::honeycomb, 1.0);
-  spec.angle_errors.dihedral_error_arcmin.fill(error_arcmin);
-  return spec;
-}
-
-/// One limit of R_A at each observation angle, at normal incidence.
-TestProgramme points_at(const std::vector<double>& observation_deg, double minimum_r_a) {
-  TestProgramme programme;
-  for (const double a : observation_deg)
-    programme.points.push_back(
-        {a, 0.0, 0.0, minimum_r_a, PhotometricUnit::cd_per_lx_per_m2, LimitStatus::confirmed, 2});
-  return programme;
-}
-
-/// Of the design's own light, without diffraction.
-PhotometryRequest request_of(TestProgramme programme) {
-  PhotometryRequest request;
-  request.programme = std::move(programme);
-  request.area_cm2 = 10.0;
-  request.apertures = default_apertures();
-  request.own_light = true;
-  request.diffraction = false;
-  request.advice = false;
-  return request;
-}
-
-PhotometryResult run(const Design& design, const PhotometryRequest& request) {
-  return PhotometryStudy(design, request).run();
-}
 
 std::string message_of(const std::string& table) {
   try {
@@ -291,7 +247,7 @@ TEST(Photometry, DiffractionReachesWhereRaysDoNot) {
 // Flawless cubes send nothing to a driver above the lamps; the program finds the error that does, and its table is that
 // of the changed design.
 TEST(Photometry, FindsTheAngleErrorThatPasses) {
-  const Design design = design_of(honeycomb(), true);
+  const Design design = design_of(honeycomb(0.0, 10.0), true);
   PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 300.0));
   request.rotation_deg = {0.0, 30.0};
   // Half a degree of receiver, so that one ring of six spots serves both turns.
@@ -313,8 +269,27 @@ TEST(Photometry, FindsTheAngleErrorThatPasses) {
   EXPECT_EQ(again.verdict, Verdict::pass);
 }
 
+/// Interrupts when all of the table has been measured.
+struct InterruptAfterTheTable : Progress {
+  Cancellation cancellation;
+  void at(double share) override {
+    if (share >= 1.0) cancellation.request();
+  }
+};
+
+TEST(Photometry, AnInterruptedSearchForWhatToChangeIsNotComplete) {
+  PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 1e8));
+  request.advice = true;
+  InterruptAfterTheTable interrupt;
+  const PhotometryResult result =
+      PhotometryStudy(design_of(honeycomb(0.0, 60.0), true), request).run(&interrupt, &interrupt.cancellation);
+  EXPECT_EQ(result.points.size(), 1U);
+  EXPECT_FALSE(result.complete);
+  EXPECT_TRUE(result.changes.empty());
+}
+
 TEST(Photometry, WhatCannotPassIsToldWithTheBestThatWasTried) {
-  const Design design = design_of(honeycomb(), true);
+  const Design design = design_of(honeycomb(0.0, 60.0), true);
   PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 1e8));
   request.advice = true;
   const PhotometryResult result = run(design, request);
@@ -345,4 +320,4 @@ TEST(Photometry, RefusesWhatItCannotMeasure) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::photometry_test

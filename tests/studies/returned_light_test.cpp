@@ -11,7 +11,7 @@
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 
-namespace retrace::studies {
+namespace retrace::studies::returned_light_test {
 namespace {
 
 using namespace testing;
@@ -291,4 +291,4 @@ TEST(ReturnedLight, IsNotGatheredUnasked) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::returned_light_test

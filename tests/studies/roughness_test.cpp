@@ -14,7 +14,7 @@
 #include "studies/rre/rre.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::studies {
+namespace retrace::studies::roughness_test {
 namespace {
 
 const std::string kSource = RETRACE_SOURCE_DIR;
@@ -188,4 +188,4 @@ TEST(RoughnessStudy, RefusesWhatItCannotVary) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::roughness_test

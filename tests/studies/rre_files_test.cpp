@@ -8,7 +8,7 @@
 
 #include "core/version.h"
 
-namespace retrace::studies {
+namespace retrace::studies::rre_files_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -35,7 +35,8 @@ RreResult some_result() {
   result.elapsed_s = 1.5;
   result.warnings = {"b.toml: a \"warning\""};
   for (std::size_t d = 0; d < 2; ++d) {
-    RrePoint point{d, -10.0, 0.1 + 0.2, 587.56, 0.5, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(), {}, {}};
+    RrePoint point{d,      -10.0, 0.1 + 0.2, 587.56, 0.5, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(),
+                   "cell", {},    {}};
     for (std::size_t k = 0; k < kAccountCount; ++k) point.ledger.power[k] = 1e-3 * static_cast<double>(k) + 1e-17;
     result.points.push_back(point);
   }
@@ -101,8 +102,9 @@ TEST(RreFiles, CsvHeaderIsTheKeysOfTheJson) {
   const Json point = Json::parse(rre_json(result))["points"][0];
   std::string header;
   for (const auto& [key, value] : point.items())
-    if (key != "ledger" && key != "stokes") header += (header.empty() ? "" : ",") + key;
+    if (key != "ledger" && key != "stokes" && key != "engine") header += (header.empty() ? "" : ",") + key;
   for (const auto& [key, value] : point["ledger"].items()) header += "," + key;
+  header += ",engine";
   const std::vector<std::string> lines = lines_of(rre_csv(result));
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0], header);
@@ -124,4 +126,4 @@ TEST(RreFiles, TableNamesDesignsAndConesOnlyWhereThereAreSeveral) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::rre_files_test

@@ -15,7 +15,7 @@
 #include "studies/rre/rre.h"
 #include "studies/rre/spectral_mean.h"
 
-namespace retrace::studies {
+namespace retrace::studies::spectrum_of_light_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -278,7 +278,7 @@ TEST(SpectrumOfLight, AColouredPlateKeepsTheMeanOfItsTransmittance) {
       EXPECT_NEAR(at.rre, std::exp(-path_mm * absorption_per_mm(at.wavelength_nm)), 1e-9) << at.wavelength_nm;
     std::vector<SpectralRre> table;
     for (const double w : cie.illuminant_a.wavelengths_nm)
-      table.push_back({w, 0.0, std::exp(-path_mm * absorption_per_mm(w)), 0.0});
+      table.push_back({w, 0.0, std::exp(-path_mm * absorption_per_mm(w)), 0.0, "exact"});
     const double expected = luminous_mean(is_a ? cie.illuminant_a : cie.illuminant_d65, cie.photopic_efficiency, table);
     EXPECT_NEAR(p.rre, expected, 1e-6);
     EXPECT_NEAR(p.ledger[Account::absorbed], 1.0 - expected, 1e-6);
@@ -412,4 +412,4 @@ TEST(InspectSpectrum, WarnsWherePartOfTheLightIsNotTotallyReflected) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::spectrum_of_light_test

@@ -1,17 +1,17 @@
-retrace_test(studies_design_test
+retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_reader_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_array_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_json_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/design_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_reader_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/design_surface_test.cpp ${CMAKE_CURRENT_LIST_DIR}/facet_planes_reader_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/init_templates_test.cpp
   LIBRARIES retrace::optical_model rapidcheck)
-retrace_test(studies_rre_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/derivatives_test.cpp ${CMAKE_CURRENT_LIST_DIR}/returned_light_test.cpp
+retrace_test(studies_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/adaptive_curve_test.cpp ${CMAKE_CURRENT_LIST_DIR}/derivatives_test.cpp ${CMAKE_CURRENT_LIST_DIR}/engine_choice_test.cpp ${CMAKE_CURRENT_LIST_DIR}/returned_light_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/rre_files_test.cpp ${CMAKE_CURRENT_LIST_DIR}/roughness_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/spectrum_of_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp
   LIBRARIES retrace::roughness retrace::rre retrace::inspect)
-retrace_test(studies_photometry_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/photometry_test.cpp
+retrace_test(studies_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/photometry_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometry_verdict_test.cpp
   LIBRARIES retrace::photometry)
-retrace_test(studies_balls_test
+retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/balls_test.cpp
   LIBRARIES retrace::inspect retrace::photometry retrace::rre nlohmann_json::nlohmann_json)

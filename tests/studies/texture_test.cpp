@@ -18,7 +18,7 @@
 #include "tests/support/statistics.h"
 #include "tests/support/synthetic_surface.h"
 
-namespace retrace::studies {
+namespace retrace::studies::texture_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -278,4 +278,4 @@ TEST(DesignTexture, WavyFacetsWithAChamferCloseTheLedger) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::texture_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/synthetic_surface.h"
 
-namespace retrace::surface_models {
+namespace retrace::surface_models::edge_fit_test {
 namespace {
 
 constexpr double kPixelUm = 0.25;
@@ -114,4 +114,4 @@ TEST(EdgeFit, RefusesWhatIsNoEdge) {
 }
 
 }  // namespace
-}  // namespace retrace::surface_models
+}  // namespace retrace::surface_models::edge_fit_test

@@ -6,7 +6,7 @@
 #include "surface_models/height_parameters.h"
 #include "tests/support/synthetic_surface.h"
 
-namespace retrace::surface_models {
+namespace retrace::surface_models::filter_test {
 namespace {
 
 /// Amplitude of the wave of frequency (fx, fy) over a map of whole periods: its Fourier coefficient.
@@ -120,4 +120,4 @@ TEST(GaussianFilter, OfACutoffBeyondTheMapGivesAMean) {
 }
 
 }  // namespace
-}  // namespace retrace::surface_models
+}  // namespace retrace::surface_models::filter_test

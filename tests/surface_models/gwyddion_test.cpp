@@ -18,7 +18,7 @@
 #include "surface_models/spectrum.h"
 #include "tests/support/synthetic_surface.h"
 
-namespace retrace::surface_models {
+namespace retrace::surface_models::gwyddion_test {
 namespace {
 
 struct Release {
@@ -167,4 +167,4 @@ TEST(Gwyddion, WritesFilesThatAreReadBack) {
 }
 
 }  // namespace
-}  // namespace retrace::surface_models
+}  // namespace retrace::surface_models::gwyddion_test

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 
-namespace retrace::surface_models {
+namespace retrace::surface_models::height_map_reader_test {
 namespace {
 
 constexpr double kNaN = kMissing;
@@ -226,4 +226,4 @@ TEST(BadHeightMap, OptionsAreCheckedToo) {
 }
 
 }  // namespace
-}  // namespace retrace::surface_models
+}  // namespace retrace::surface_models::height_map_reader_test

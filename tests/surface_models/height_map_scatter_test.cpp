@@ -7,8 +7,10 @@
 #include "tests/support/statistics.h"
 #include "tests/surface_models/scatter_checks.h"
 
-namespace retrace::testing {
+namespace retrace::testing::height_map_scatter_test {
 namespace {
+
+using namespace scatter_checks;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -288,4 +290,4 @@ TEST(HeightMapScatter, Warns) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::height_map_scatter_test

@@ -7,7 +7,7 @@
 #include "surface_models/form.h"
 #include "tests/support/synthetic_surface.h"
 
-namespace retrace::surface_models {
+namespace retrace::surface_models::height_parameters_test {
 namespace {
 
 TEST(HeightParameters, OfFewHeightsAreThoseByHand) {
@@ -98,4 +98,4 @@ TEST(Form, OfTooFewPointsIsTheSmallestThatFits) {
 }
 
 }  // namespace
-}  // namespace retrace::surface_models
+}  // namespace retrace::surface_models::height_parameters_test

@@ -15,7 +15,7 @@
 #include "surface_models/scatter/slope_distribution.h"
 #include "tests/support/statistics.h"
 
-namespace retrace::testing {
+namespace retrace::testing::scatter_checks {
 
 using namespace surface_models;
 
@@ -235,4 +235,4 @@ inline void expect_closed_form_share(const ScatterModel& model, double sq_nm, co
   EXPECT_NEAR(specular / kDraws, p, normal_bound(comparisons) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-9) << c.name;
 }
 
-}  // namespace retrace::testing
+}  // namespace retrace::testing::scatter_checks

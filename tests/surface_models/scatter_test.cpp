@@ -8,8 +8,10 @@
 #include "tests/support/statistics.h"
 #include "tests/surface_models/scatter_checks.h"
 
-namespace retrace::testing {
+namespace retrace::testing::scatter_test {
 namespace {
+
+using namespace scatter_checks;
 
 const std::vector<Roughness>& roughnesses() {
   static const std::vector<Roughness> all = {{20.0, 2.0, 0.0, 0.0},    // as a diamond cuts: narrow lobe
@@ -542,4 +544,4 @@ TEST(Scatter, RefusesValuesOutOfRange) {
 }
 
 }  // namespace
-}  // namespace retrace::testing
+}  // namespace retrace::testing::scatter_test

@@ -9,7 +9,7 @@
 #include "surface_models/scratches.h"
 #include "tests/support/synthetic_surface.h"
 
-namespace retrace::surface_models {
+namespace retrace::surface_models::spectrum_test {
 namespace {
 
 double line_power(const Spectrum& s) {
@@ -153,4 +153,4 @@ TEST(Scratches, AreNeitherPitsNorFeedMarksNorChance) {
 }
 
 }  // namespace
-}  // namespace retrace::surface_models
+}  // namespace retrace::surface_models::spectrum_test

@@ -1,4 +1,4 @@
-retrace_test(texture_test
+retrace_test(raytrace_tests
   SOURCES
     ${CMAKE_CURRENT_LIST_DIR}/edge_fit_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/filter_test.cpp
@@ -14,7 +14,7 @@ retrace_test(gwyddion_test
   LIBRARIES retrace::texture "${RETRACE_GWYPROCESS_LIBRARY}" "${RETRACE_GWYDDION_LIBRARY}" PkgConfig::GOBJECT)
 target_include_directories(gwyddion_test SYSTEM PRIVATE "${RETRACE_GWYDDION_INCLUDE_DIR}")
 
-retrace_test(scatter_test
+retrace_test(raytrace_tests
   SOURCES
     ${CMAKE_CURRENT_LIST_DIR}/height_map_scatter_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp

@@ -10,7 +10,7 @@
 
 // Surfaces made of known parts are measured back.
 
-namespace retrace::surface_models {
+namespace retrace::surface_models::texture_model_test {
 namespace {
 
 TextureModel model_of(const HeightMap& map, double cutoff_um = 80.0) {
@@ -114,4 +114,4 @@ TEST(TextureModel, OfAFlatSurfaceIsNothing) {
 }
 
 }  // namespace
-}  // namespace retrace::surface_models
+}  // namespace retrace::surface_models::texture_model_test

@@ -10,7 +10,7 @@
 #include "studies/sweep/io/sweep_reader.h"
 #include "studies/sweep/sweep.h"
 
-namespace retrace::studies {
+namespace retrace::studies::cells_test {
 namespace {
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
@@ -99,4 +99,4 @@ TEST(Cells, PrismsOverAllAzimuthsLiveByTheirEndWalls) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::cells_test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace retrace::studies {
+namespace retrace::studies::machining_test {
 namespace {
 
 /// A value of the table of measured machining times.
@@ -65,4 +65,4 @@ TEST(Machining, AWiderToolSavesPassesAndWidthAloneCostsNothing) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::machining_test

@@ -13,7 +13,7 @@
 #include "tests/app/program.h"
 #include "tests/sweep/stored_points.h"
 
-namespace retrace::test {
+namespace retrace::test::mpi_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,7 +33,7 @@ Arguments on_three_ranks(const std::string& arguments, const std::string& option
               arguments};
 }
 
-class SweepByMpi : public testing::Test {
+class SweepByMpi : public ::testing::Test {
  protected:
   /// No rank is left behind, whatever becomes of a test.
   ~SweepByMpi() override {
@@ -141,6 +141,15 @@ TEST_F(SweepByMpi, WithoutRankZeroTheOthersEnd) {
   EXPECT_EQ(folder_.read("out/sweep.csv"), alone());
 }
 
+TEST_F(SweepByMpi, NoIsTheAnswerIfEveryPointFailed) {
+  folder_.write("study.toml", "design = \"" + example("honeycomb_infinite.toml") +
+                                  "\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nvalues = [-1, -2, -3, -4]\n"
+                                  "[[quantity]]\nkind = \"rre\"\n");
+  const Outcome outcome = Child(folder_.path(), on_three_ranks("study.toml -o out --quiet")).wait(kLimit);
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("retrace: every point failed, the first of 4: "), std::string::npos) << outcome.err;
+}
+
 TEST_F(SweepByMpi, WhatIsWrongIsSaidOnce) {
   folder_.write("study.toml", "design = 3\n");
   const Outcome outcome = Child(folder_.path(), on_three_ranks("study.toml -o out")).wait(kLimit);
@@ -152,4 +161,4 @@ TEST_F(SweepByMpi, WhatIsWrongIsSaidOnce) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::mpi_command_test

@@ -12,7 +12,7 @@
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/quantity/io/study_reader.h"
 
-namespace retrace::studies {
+namespace retrace::studies::optimise_test {
 namespace {
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
@@ -238,4 +238,4 @@ TEST(Optimise, WhatIsWrongIsSaidWithItsLine) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::optimise_test

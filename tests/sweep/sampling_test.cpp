@@ -7,7 +7,7 @@
 
 #include "studies/quantity/study.h"
 
-namespace retrace::studies {
+namespace retrace::studies::sampling_test {
 namespace {
 
 using Kind = UnitSamples::Kind;
@@ -107,4 +107,4 @@ TEST(Interval, LogarithmicStepsAreEqualRatios) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::sampling_test

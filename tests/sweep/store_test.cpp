@@ -10,12 +10,12 @@
 
 #include "core/error.h"
 
-namespace retrace::studies {
+namespace retrace::studies::store_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Store : public testing::Test {
+class Store : public ::testing::Test {
  protected:
   Store() {
     std::string name = (fs::temp_directory_path() / "retrace_store_XXXXXX").string();
@@ -188,4 +188,4 @@ TEST_F(Store, InMemoryNothingIsWritten) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::store_test

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "studies/sweep/io/sweep_reader.h"
 
-namespace retrace::studies {
+namespace retrace::studies::study_reader_test {
 namespace {
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/";
@@ -244,4 +244,4 @@ TEST(StudyReader, ReadsEveryExample) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::study_reader_test

@@ -12,7 +12,7 @@
 #include "tests/app/program.h"
 #include "tests/sweep/stored_points.h"
 
-namespace retrace::test {
+namespace retrace::test::sweep_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -201,6 +201,55 @@ TEST(OptimizeCommand, ChoosesResumesAndSaysNo) {
             "0.25)\n");
 }
 
+TEST(SweepCommand, NoIsTheAnswerIfEveryPointFailed) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& values, const Arguments& more = {}) {
+    folder.write("study.toml", "design = \"" + example("honeycomb_infinite.toml") +
+                                   "\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nvalues = " + values +
+                                   "\n[[quantity]]\nkind = \"rre\"\n[analysis]\nengine = \"cell\"\nsamples = 1000\n");
+    Arguments arguments = {"sweep", "study.toml", "-o", "out", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return retrace(folder, arguments);
+  };
+  const std::string line =
+      "retrace: every point failed, the first of 2: --set body.thickness_mm=-1: body.thickness_mm: must be > 0, got "
+      "-1\n";
+  const Outcome all = run("[-1, -2]");
+  EXPECT_EQ(all.code, 1);
+  EXPECT_EQ(all.err, line);
+  EXPECT_EQ(folder.json("out/sweep.json")["failed"], 2) << "and the files say why";
+  const Outcome again = run("[-1, -2]", {"--resume"});
+  EXPECT_EQ(again.code, 1) << "they are not tried again";
+  EXPECT_EQ(again.err, line);
+  const Outcome one = run("[-1, 2]", {"--overwrite"});
+  EXPECT_EQ(one.code, 0);
+  EXPECT_EQ(one.err, "");
+}
+
+// What a study names is what it is: a file that has changed makes another study, be it named by a parameter.
+TEST(SweepCommand, FilesThatParametersNameBelongToTheStudy) {
+  const TemporaryFolder folder;
+  const std::string map = read_text(example("facet_height_map.txt"));
+  folder.write("a.txt", map);
+  folder.write("b.txt", map);
+  folder.write("design.toml",
+               "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 1\ny_length_mm = 1\n"
+               "[body]\nthickness_mm = 1\nrefractive_index = 1.49\n[surface]\nmodel = \"height_map\"\n");
+  folder.write(
+      "study.toml",
+      "design = \"design.toml\"\n[[parameter]]\nkey = \"surface.height_map\"\nvalues = [\"a.txt\", \"b.txt\"]\n"
+      "[[quantity]]\nkind = \"rre\"\n[analysis]\nsamples = 64\n");
+  const auto run = [&](const std::string& how) {
+    return retrace(folder, {"sweep", "study.toml", "-o", "out", "--quiet", how});
+  };
+  EXPECT_EQ(run("--resume").code, 0);
+  EXPECT_EQ(run("--resume").code, 0);
+  folder.write("b.txt", map + "\n");
+  const Outcome changed = run("--resume");
+  EXPECT_EQ(changed.code, 2);
+  EXPECT_TRUE(changed.err.starts_with("retrace: study.toml: a file of the design differs")) << changed.err;
+}
+
 TEST(SweepCommand, TheSameBytesAtAnyNumberOfThreads) {
   const TemporaryFolder folder;
   folder.write("study.toml", sweep_study(12, 5000));
@@ -211,4 +260,4 @@ TEST(SweepCommand, TheSameBytesAtAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::sweep_command_test

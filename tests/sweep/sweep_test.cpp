@@ -19,7 +19,7 @@
 #include "studies/sweep/io/sweep_files.h"
 #include "studies/sweep/io/sweep_reader.h"
 
-namespace retrace::studies {
+namespace retrace::studies::sweep_test {
 namespace {
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/";
@@ -140,7 +140,7 @@ const std::string kLimits =
     "S,,red,0.2,0,0,1000,mcd/lx,read\nS,,red,0.2,10,0,1000,mcd/lx,read\nS,,red,0.2,0,20,10,mcd/lx,read\n";
 
 /// A folder with those two files.
-class PhotometricStudy : public testing::Test {
+class PhotometricStudy : public ::testing::Test {
  protected:
   PhotometricStudy()
       : folder_(std::filesystem::temp_directory_path() / ("retrace_sweep_" + std::to_string(::getpid()))) {
@@ -205,6 +205,25 @@ TEST_F(PhotometricStudy, QuantitiesAreThoseOfTheTable) {
   // R_A times the area is R_I.
   EXPECT_NEAR(output(result, 0, "r_a") * 30e-4 * 1e3, output(result, 0, "second"), 1e-9 * output(result, 0, "second"));
   EXPECT_EQ(result.sweep.layout().outputs.size(), 6U);
+}
+
+// A margin of rays where diffraction counts would be taken for a verdict; R_A is a figure of its own.
+TEST_F(PhotometricStudy, AnUndeterminedMarginIsNone) {
+  const auto swept_with = [&](const std::string& quantity) {
+    std::string study = text(quantity) + "[analysis]\nengine = \"montecarlo\"\nsamples = 1024\n";
+    const std::string geometric = "far_field = \"geometric\"\n";
+    study.erase(study.find(geometric), geometric.size());
+    sweep_.emplace(read_sweep(parse_study(study, (folder_ / "study.toml").string())));
+    return swept(*sweep_);
+  };
+  const SweepResult margin = swept_with("name = \"m\"\n");
+  ASSERT_TRUE(margin.points.at(0).failed);
+  EXPECT_EQ(
+      margin.points[0].reason.find("the margin of the photometry is undetermined: diffraction is left out, as the "
+                                   "Monte-Carlo engine has none, and counts for cells narrower than "),
+      0U)
+      << margin.points[0].reason;
+  EXPECT_FALSE(swept_with("name = \"r_a\"\nfigure = \"r_a\"\n").points.at(0).failed);
 }
 
 /// The worst margin as an objective: of some angle errors the one whose worst point is best.
@@ -304,4 +323,4 @@ TEST(Sweep, ACancelledSweepKeepsWhatIsFinished) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::sweep_test

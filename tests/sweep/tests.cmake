@@ -1,4 +1,4 @@
-retrace_test(sweep_test
+retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/cells_test.cpp ${CMAKE_CURRENT_LIST_DIR}/machining_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sampling_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/store_test.cpp ${CMAKE_CURRENT_LIST_DIR}/study_reader_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/optimise_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sweep_test.cpp
@@ -10,10 +10,9 @@ if(RETRACE_WITH_MPI)
   list(APPEND sweep_app_sources mpi_command_test.cpp)
 endif()
 list(TRANSFORM sweep_app_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
-retrace_test(sweep_app_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/../app/program.cpp ${sweep_app_sources}
+retrace_test(command_tests
+  SOURCES ${sweep_app_sources}
   LIBRARIES retrace::core nlohmann_json::nlohmann_json SQLiteCpp SQLite::SQLite3)
-add_dependencies(sweep_app_test retrace)
 if(RETRACE_WITH_MPI)
-  target_compile_definitions(sweep_app_test PRIVATE RETRACE_MPIRUN="${MPIEXEC_EXECUTABLE}")
+  target_compile_definitions(command_tests PRIVATE RETRACE_MPIRUN="${MPIEXEC_EXECUTABLE}")
 endif()

@@ -9,7 +9,7 @@
 #include "tests/app/program.h"
 #include "tests/sweep/stored_points.h"
 
-namespace retrace::test {
+namespace retrace::test::tolerance_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,6 +45,17 @@ TEST(ToleranceCommand, WritesSpreadYieldAndContributors) {
   for (const char* file : {"tolerance.json", "parts.csv", "tolerance.svg", "tolerance.png", "tolerance.sqlite"})
     EXPECT_TRUE(fs::exists(folder.path() / "out" / file)) << file;
   EXPECT_EQ(lines_of(folder.read("out/parts.csv")).size(), 1U + 1U + 32U * 4U);
+}
+
+TEST(ToleranceCommand, NoIsTheAnswerIfEveryPartFailed) {
+  const TemporaryFolder folder;
+  std::string study = tolerance_study("[tolerance]\nsamples = 8\n");
+  study.replace(study.find("from = 1\nto = 3"), 15, "from = -3\nto = -1");
+  folder.write("study.toml", study);
+  const Outcome outcome = retrace(folder, {"tolerance", "study.toml", "-o", "out", "--quiet"});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("retrace: every point failed, the first of ")) << outcome.err;
+  EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
 }
 
 TEST(ToleranceCommand, ResumesWithoutComputingAnythingAgain) {
@@ -186,4 +197,4 @@ TEST(ProgressBar, TellsRateTimeLeftAndFailures) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::tolerance_command_test

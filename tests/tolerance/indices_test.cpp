@@ -11,7 +11,7 @@
 
 #include "studies/sweep/sampling.h"
 
-namespace retrace::studies {
+namespace retrace::studies::indices_test {
 namespace {
 
 using Function = std::function<double(const std::vector<double>&)>;
@@ -176,4 +176,4 @@ TEST(Percentile, LiesBetweenNeighbours) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::indices_test

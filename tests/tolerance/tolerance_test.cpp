@@ -16,7 +16,7 @@
 #include "studies/tolerance/io/tolerance_files.h"
 #include "studies/tolerance/io/tolerance_reader.h"
 
-namespace retrace::studies {
+namespace retrace::studies::tolerance_test {
 namespace {
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/";
@@ -286,4 +286,4 @@ TEST(Tolerance, WhatIsWrongIsSaidWithItsLine) {
 }
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::studies::tolerance_test

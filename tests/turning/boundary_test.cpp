@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace retrace::fabrication::turning {
+namespace retrace::fabrication::turning::boundary_test {
 namespace {
 
 using geometry::Vec2;
@@ -194,4 +194,4 @@ TEST(Boundary, RefusesARadiusThatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::fabrication::turning::boundary_test

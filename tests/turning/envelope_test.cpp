@@ -11,7 +11,7 @@
 
 // What the programs' text leaves, against closed forms of cusps and against the design.
 
-namespace retrace::fabrication::turning {
+namespace retrace::fabrication::turning::envelope_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -320,4 +320,4 @@ TEST(TurningEnvelope, IsThatOfEdgesLaidOutOneByOne) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::fabrication::turning::envelope_test

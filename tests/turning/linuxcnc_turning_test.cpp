@@ -10,7 +10,7 @@
 // LinuxCNC's interpreter reads programs of turning, whose moves have times instead of feeds: it makes the planned moves
 // in the planned times.
 
-namespace retrace::fabrication::turning {
+namespace retrace::fabrication::turning::linuxcnc_turning_test {
 namespace {
 
 const InputLocation kHere{"part.toml", 3, "path"};
@@ -97,4 +97,4 @@ TEST(LinuxCncTurning, RastersInTheirTimes) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::fabrication::turning::linuxcnc_turning_test

@@ -12,7 +12,7 @@
 
 // Paths against closed forms: compensation on spheres and planes, kinematics, and programs that read back the same.
 
-namespace retrace::fabrication::turning {
+namespace retrace::fabrication::turning::path_test {
 namespace {
 
 using geometry::Vec2;
@@ -302,4 +302,4 @@ TEST(TurningProgram, StopsAndMissingTimesAreFound) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::fabrication::turning::path_test

@@ -7,7 +7,7 @@
 
 // Sags against closed forms and difference quotients.
 
-namespace retrace::fabrication::turning {
+namespace retrace::fabrication::turning::sag_test {
 namespace {
 
 const InputLocation kHere{"part.toml", 7, "base.formula"};
@@ -96,4 +96,4 @@ TEST(Formula, UsesPolarVariablesOnlyWhereItSaysSo) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::fabrication::turning::sag_test

@@ -9,7 +9,7 @@
 
 // Extrapolation, blending and lenslets: orders of continuity, values, and closed forms.
 
-namespace retrace::fabrication::turning {
+namespace retrace::fabrication::turning::surface_test {
 namespace {
 
 using geometry::Vec2;
@@ -355,4 +355,4 @@ TEST(Surface, SaysWhereItHasNoHeightOrAVerticalSlope) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::fabrication::turning::surface_test

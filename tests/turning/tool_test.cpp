@@ -10,7 +10,7 @@
 
 // Clearance, skew and finish against closed forms (docs/theory/turning.md) and the figures of Sohn and Naples.
 
-namespace retrace::fabrication::turning {
+namespace retrace::fabrication::turning::tool_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -191,4 +191,4 @@ TEST(TurningFinish, FeedForAScallop) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::fabrication::turning::tool_test

@@ -11,7 +11,7 @@
 // What is proved of the surface's curvature against samples of it, and paths that rely on it against those that search
 // the whole arc at every point.
 
-namespace retrace::fabrication::turning {
+namespace retrace::fabrication::turning::touch_map_test {
 namespace {
 
 using geometry::Vec2;
@@ -232,4 +232,4 @@ TEST(TouchMap, KnowsNothingBeyondABoundaryAndOfToolsWithRake) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::fabrication::turning::touch_map_test

@@ -10,7 +10,7 @@
 
 #include "tests/app/program.h"
 
-namespace retrace::test {
+namespace retrace::test::turn_command_test {
 namespace {
 
 const std::string kHead = "schema = \"retrace.turned_part/1\"\n";
@@ -167,6 +167,9 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
            "[path]\nstrategy = \"raster\"\nsize_mm = [1, 1]\nfeed_um = 10\narc_um = "
            "10\ncutting_mm_per_min = 60\n[inspect]\nmesh_thickness_mm = 1\n",
        "inspect.mesh_thickness_mm: must not be given for a raster"},
+      {kHead + "[base]\nkind = \"plane\"\n" + kTool +
+           "[path]\nstrategy = \"raster\"\nsize_mm = [1, 1]\nfeed_um = 10\narc_um = 10\ncutting_mm_per_min = 4e-4\n",
+       "path.cutting_mm_per_min: must be >= 0.1 and <= 1e+05, got 4e-04"},
       {kHead + kBase + kTool + kPath + "[machine.x]\ntravel_mm = [3, 1]\n", "machine.x.travel_mm: must rise"},
       {kHead + kBase + kTool + "[path]\nradius_mm = 0.6\nfeed_um = 0.001\nspindle_rpm = 60\n",
        "path: must give at most"}};
@@ -186,4 +189,4 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
 }
 
 }  // namespace
-}  // namespace retrace::test
+}  // namespace retrace::test::turn_command_test

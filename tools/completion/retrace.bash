@@ -199,7 +199,7 @@ _retrace() {
       compopt -o filenames 2>/dev/null
       ;;
     metrology | verify) _retrace_files "$word" '' ;;
-    init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc' ;;
+    init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc round_zone_lens' ;;
     list) _retrace_words "$word" 'materials machines processes standards' ;;
   esac
 }

@@ -90,25 +90,26 @@ need_packages() {
   fi
 }
 
-# configure FOLDER CMAKE_ARGUMENTS... - unless that folder was configured the same way before; Ninja itself notices
-# changed CMakeLists. FOLDER is relative to the repository.
+# configure FOLDER PRESET... - with the first of these presets or of the others, if one is there already: the presets of
+# a folder differ only in what is built besides the program, so that changing over compiles nothing again. Ninja itself
+# notices changed CMakeLists.
 configure() {
-  local folder=$root/$1
+  local folder=$root/$1 preset presets known
   shift
-  local arguments=("$@")
-  ! command -v ccache >/dev/null ||
-    arguments+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  local presets wanted
   presets=$(cksum <"$root/CMakePresets.json")
-  wanted=$(printf '%s\n' "$root" "$presets" "${arguments[@]}")
-  [[ ! -f $folder/build.ninja || $(cat "$folder/.configured" 2>/dev/null) != "$wanted" ]] || return 0
-
+  known=$(cat "$folder/.configured" 2>/dev/null || true)
+  for preset in "$@"; do
+    [[ ! -f $folder/build.ninja || $known != "$root $presets $preset" ]] || return 0
+  done
+  preset=$1
+  [[ " $* " != *" ${known##* } "* || -z $known ]] || preset=${known##* }
   say "configuring $folder"
   rm -f "$folder/.configured"
-  # A cache from other arguments, or of a checkout that was moved, is of no use.
-  [[ ! -f $folder/CMakeCache.txt ]] || arguments+=(--fresh)
-  (cd "$root" && cmake "${arguments[@]}") >&2 || give_up "cmake could not configure $folder"
-  printf '%s\n' "$wanted" >"$folder/.configured"
+  # The cache of a checkout that was moved is of no use.
+  local fresh=()
+  [[ ! -f $folder/CMakeCache.txt || $known == "$root "* ]] || fresh=(--fresh)
+  (cd "$root" && cmake --preset "$preset" "${fresh[@]}") >&2 || give_up "cmake could not configure $folder"
+  printf '%s\n' "$root $presets $preset" >"$folder/.configured"
 }
 
 # build FOLDER [TARGET...] - with all cores. FOLDER is relative to the repository. Silent when there is nothing to do.

@@ -40,7 +40,7 @@ const ArrangementWords kTriangularArrangements = {{"single", "triangular"},
                                                   {Arrangement::single, Arrangement::triangular}};
 constexpr std::array<std::string_view, 2> kRowWords = {"even", "odd"};
 /// In the order of the alternatives of geometry::Element.
-constexpr std::array<std::string_view, 3> kKindWords = {"rtp", "hexagonal_icc", "triangular_icc"};
+constexpr std::array<std::string_view, 3> kElementWords = {"rtp", "hexagonal_icc", "triangular_icc"};
 
 /// From a tenth of a micrometre to ten metres, in which nanometres still are whole numbers of 64 bits.
 constexpr NumberRange kSize{.low = 1e-4, .high = 1e4};
@@ -56,7 +56,7 @@ constexpr NumberRange kToolClearance{.low = 2.0, .high = 15.0};
 constexpr NumberRange kEdgeRadius{.low = 0.0, .high = 50.0};
 constexpr NumberRange kSideClearance{.low = 0.0, .low_included = false, .high = 20.0};
 constexpr NumberRange kDepth{.low = 0.0, .low_included = false, .high = 1000.0};
-constexpr NumberRange kFeed{.low = 0.0, .low_included = false, .high = 1e5};
+constexpr NumberRange kFeed{.low = kLeastFeedMmPerMin, .high = 1e5};
 constexpr NumberRange kShortLength{.low = 0.0, .low_included = false, .high = 100.0};
 constexpr NumberRange kDwell{.low = 0.0, .high = 60.0};
 constexpr NumberRange kCuts{.low = 1.0, .high = 1000.0};
@@ -94,7 +94,7 @@ const ArrangementWords& arrangements_of(const geometry::Element& element) {
 }
 
 geometry::Element read_element(TomlTable table) {
-  const std::size_t kind = table.required_choice("kind", words(kKindWords));
+  const std::size_t kind = table.required_choice("kind", words(kElementWords));
   if (kind == 1) return geometry::HexagonalCube{table.required_number("aperture_mm", kSize), {}};
   if (kind == 2) return geometry::TriangularCube{table.required_number("aperture_mm", kSize), {}};
   geometry::RtpElement element;
@@ -294,7 +294,7 @@ void check_array(const Job& job, const Places& at) {
 /// Prisms are cut by a chisel, cube corners by a V.
 void check_strategy(const Job& job, const InputLocation& at_strategy, const InputLocation& at_workpiece) {
   const bool is_dmc = job.strategy == Strategy::dmc;
-  const std::string_view kind = kKindWords[job.element.index()];
+  const std::string_view kind = kElementWords[job.element.index()];
   if (is_dmc && is_prism(job))
     throw InputError(at_strategy,
                      R"(must be "unidirectional", "bidirectional" or "two-step" for element.kind = "rtp", got "dmc")");
@@ -339,7 +339,7 @@ class TextWriter {
 
 void write_element(TextWriter& out, const geometry::Element& element) {
   out.head("element");
-  out.text("kind", kKindWords[element.index()]);
+  out.text("kind", kElementWords[element.index()]);
   if (const auto* const prism = std::get_if<geometry::RtpElement>(&element)) {
     out.number("base_mm", prism->base_mm);
     out.number("width_mm", prism->width_mm);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "core/atomic_file.h"
 #include "core/message_text.h"
 #include "core/pictures.h"
 
@@ -32,11 +33,15 @@ std::vector<std::string> mask_pattern(const std::filesystem::path& file, double 
   };
   BytePicture picture;
   try {
+    require_short_file(file, kMostDataBytes);
     const PictureFiles::Size size = picture_files().size(file);
     if (size.columns != static_cast<std::size_t>(cells.columns) || size.rows != static_cast<std::size_t>(cells.rows))
-      throw InputError(where, fmt::format("{}: must have {} x {} pixels, one for each cell of the array, got {} x {}",
-                                          name, cells.columns, cells.rows, size.columns, size.rows));
+      throw InputError({name, 0, ""},
+                       fmt::format("must have {} x {} pixels, one for each cell of the array, got {} x {}",
+                                   cells.columns, cells.rows, size.columns, size.rows));
     picture = picture_files().read(file);
+  } catch (const InputError& error) {
+    throw InputError(where, error.what());
   } catch (const Error&) {
     throw;
   } catch (const std::runtime_error& error) {

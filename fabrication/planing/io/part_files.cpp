@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "core/atomic_file.h"
@@ -25,6 +26,9 @@ constexpr NumberRange kLeastMove{.low = 0.0, .high = 1e3};
 constexpr NumberRange kHours{.low = 0.01, .high = 1000.0};
 constexpr NumberRange kNose{.low = 0.0, .high = 100.0};
 constexpr NumberRange kDepthOfCut{.low = 0.01, .high = 100.0};
+/// A word S has up to five digits.
+constexpr NumberRange kSpindleSpeed{.low = 1.0, .high = 99999.0};
+constexpr std::size_t kLongestSpindleText = 200;
 /// Quanta are tried from the tolerance down, step by step of the grid, and places are counted in such steps.
 constexpr double kMostQuanta = 200.0;
 constexpr double kMostSteps = 1e6;
@@ -65,12 +69,38 @@ PlaningMill read_mill(TomlTable& table) {
   return mill;
 }
 
+/// One line of a PMAC program that is written as it is. Whatever follows two slashes would be a comment.
+std::string read_spindle_text(TomlTable& table, std::string_view key) {
+  std::string text = table.required_text(key);
+  const bool is_printable = std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  if (text.empty() || text.size() > kLongestSpindleText || !is_printable || text.front() == ' ' || text.back() == ' ' ||
+      text.find("//") != std::string::npos)
+    table.fail(key, fmt::format("must be one line of 1 to {} printable ASCII characters, without // and without blanks "
+                                "at its ends, got {}",
+                                kLongestSpindleText, in_quotes(text)));
+  return text;
+}
+
+void read_spindle(TomlTable& table, PlaningLathe& lathe) {
+  table.required_number("spindle_rpm", kSpindleSpeed);
+  lathe.spindle_rpm = static_cast<std::int32_t>(table.whole("spindle_rpm", kSpindleSpeed).value());
+  lathe.spindle_direction =
+      static_cast<SpindleDirection>(table.required_choice("spindle_direction", kSpindleDirectionWords));
+  lathe.spindle_start_at = table.where("spindle_start");
+  if (!table.has("spindle_start") && !table.has("spindle_stop")) return;
+  lathe.spindle_start = read_spindle_text(table, "spindle_start");
+  lathe.spindle_stop = read_spindle_text(table, "spindle_stop");
+  if (lathe.spindle_start == lathe.spindle_stop)
+    table.fail("spindle_stop", "must not be spindle_start, got " + in_quotes(lathe.spindle_stop));
+}
+
 PlaningLathe read_lathe(TomlTable& table) {
   PlaningLathe lathe;
   lathe.feed_mm_per_min = table.required_number("feed_mm_per_min", kFeed);
   lathe.depth_of_cut_mm = table.number("depth_of_cut_mm", kDepthOfCut).value_or(lathe.depth_of_cut_mm);
   lathe.clear_mm = table.number("clear_mm", kLength).value_or(lathe.clear_mm);
   lathe.nose_radius_mm = table.number("nose_radius_mm", kNose).value_or(lathe.nose_radius_mm);
+  read_spindle(table, lathe);
   table.finish();
   return lathe;
 }

@@ -20,8 +20,8 @@ std::vector<double> places_to(double end_mm, double spacing_mm) {
 }
 
 /// The part's section, walls with both ends.
-Section section_of(const PhaseProfile& profile, const std::vector<double>& places_mm) {
-  Section section;
+SectionLine section_of(const PhaseProfile& profile, const std::vector<double>& places_mm) {
+  SectionLine section;
   auto wall = profile.walls().begin();
   for (const double x : places_mm) {
     for (; wall != profile.walls().end() && wall->x_mm <= x; ++wall) {
@@ -34,8 +34,8 @@ Section section_of(const PhaseProfile& profile, const std::vector<double>& place
 }
 
 /// Places along a line, no farther apart.
-Section along(const Section& line, double spacing_mm) {
-  Section places;
+SectionLine along(const SectionLine& line, double spacing_mm) {
+  SectionLine places;
   for (std::size_t i = 1; i < line.size(); ++i) {
     const double dx = line[i].x_mm - line[i - 1].x_mm;
     const double dz = line[i].z_mm - line[i - 1].z_mm;
@@ -47,6 +47,10 @@ Section along(const Section& line, double spacing_mm) {
   return places;
 }
 
+double rpm_of(const NcSettings& settings) {
+  return settings.spindle_rpm.value_or(0.0);
+}
+
 bool goes_outwards(const std::vector<PathPlace>& path) {
   const auto falls = [](const PathPlace& a, const PathPlace& b) { return b.x_mm < a.x_mm; };
   return path.size() > 1 && std::adjacent_find(path.begin(), path.end(), falls) == path.end();
@@ -54,13 +58,44 @@ bool goes_outwards(const std::vector<PathPlace>& path) {
 
 }  // namespace
 
-void LatheCheck::motion(const NcMotion& motion, const NcSettings&) {
+void LatheCheck::find_spindle(std::int32_t line, const std::string& message, double rpm) {
+  if (has_spindle_fault_) return;
+  has_spindle_fault_ = true;
+  result_.findings.push_back({"spindle", program_, line, message, rpm, static_cast<double>(part_.lathe->spindle_rpm)});
+}
+
+/// A PMAC is told by lines of the part's file, which say nothing of sense and speed that could be read.
+void LatheCheck::check_spindle(const NcSettings& settings, const NcPlace& place) {
+  const bool is_told = dialect_ == NcDialect::pmac;
+  const bool is_clockwise = part_.lathe->spindle_direction == SpindleDirection::clockwise;
+  const NcSpindle wanted = is_told        ? NcSpindle::started_by_text
+                           : is_clockwise ? NcSpindle::clockwise
+                                          : NcSpindle::counterclockwise;
+  const NcSpindle is = settings.spindle.value_or(NcSpindle::stopped);
+  if (is == NcSpindle::stopped || is == NcSpindle::stopped_by_text)
+    find_spindle(place.line, "the tool feeds while the spindle stands still", 0.0);
+  else if (is != wanted)
+    find_spindle(place.line,
+                 is_told ? "the spindle is not started by spindle_start" : "the spindle turns the wrong way",
+                 rpm_of(settings));
+  else if (!is_told && rpm_of(settings) != static_cast<double>(part_.lathe->spindle_rpm))
+    find_spindle(place.line, "the spindle turns at another speed", rpm_of(settings));
+}
+
+void LatheCheck::end(const NcEnd& end) {
+  const NcSpindle wanted = dialect_ == NcDialect::pmac ? NcSpindle::stopped_by_text : NcSpindle::stopped;
+  if (end.settings.spindle != wanted)
+    find_spindle(end.line, "the program ends without stopping the spindle", rpm_of(end.settings));
+}
+
+void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   if (motion.move == NcMove::rapid) {
     if (feeding_) last_ = std::move(now_);
     now_.clear();
     feeding_ = false;
     return;
   }
+  check_spindle(settings, motion.place);
   if (now_.empty()) now_.push_back({motion.from.x_mm, motion.from.z_mm});
   now_.push_back({motion.to.x_mm, motion.to.z_mm});
   feeding_ = true;
@@ -80,9 +115,9 @@ void measure_turned(const PlanedPart& part, const std::vector<PathPlace>& path, 
   double spacing = std::max(0.37 * part.tolerance_mm, end / 1e5);
   if (nose > 0.0) spacing = std::max({std::min(0.2 * part.tolerance_mm, nose / 40.0), nose / 400.0, end / 2e5});
   const std::vector<double> places = places_to(end, spacing);
-  const Section design = section_of(PhaseProfile(part.lens), places);
-  Section reachable = design;
-  Section left;
+  const SectionLine design = section_of(PhaseProfile(part.lens), places);
+  SectionLine reachable = design;
+  SectionLine left;
   for (const PathPlace& p : path) left.push_back({p.x_mm, p.z_mm + nose});
   double limit = part.tolerance_mm * (1.0 + 1e-3);  // rounding of the words is far below
   if (nose > 0.0) {

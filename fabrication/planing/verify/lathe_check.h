@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "fabrication/planing/verify/check.h"
@@ -13,23 +15,31 @@ struct PathPlace {
   double z_mm = 0.0;
 };
 
-/// Follows a program of a lathe; keeps the feed moves since the last rapid move, which are those of the last pass at
-/// the end.
+/// Follows a program of a lathe: whether the spindle turns as the part's file says whenever the tool feeds, and stands
+/// still at the end. Keeps the feed moves since the last rapid move, which are those of the last pass at the end.
 class LatheCheck : public NcSink {
  public:
-  LatheCheck(const PlanedPart& part, PlaningCheck& result) : part_(part), result_(result) {}
+  LatheCheck(const PlanedPart& part, NcDialect dialect, std::string program, PlaningCheck& result)
+      : part_(part), dialect_(dialect), program_(std::move(program)), result_(result) {}
 
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace&, const AxisPositions&) override { result_.time_s.back() += seconds; }
+  void end(const NcEnd& end);
   /// Without the way down to the profile.
   std::vector<PathPlace> last_pass() const;
 
  private:
+  void check_spindle(const NcSettings& settings, const NcPlace& place);
+  void find_spindle(std::int32_t line, const std::string& message, double rpm);
+
   const PlanedPart& part_;
+  NcDialect dialect_;
+  std::string program_;
   PlaningCheck& result_;
   std::vector<PathPlace> now_;
   std::vector<PathPlace> last_;
   bool feeding_ = false;
+  bool has_spindle_fault_ = false;  ///< one finding says it for all moves that follow
 };
 
 /// Sweeps the nose along the last pass and compares what is left with the part, both ways.

@@ -13,7 +13,7 @@ constexpr double kSteep = 2.0;
 constexpr double kBeside = 1e-9;
 
 /// Where the nose ends beside a wall what it leaves changes at once, below it as a fillet: those places too.
-std::vector<double> with_fillets(std::vector<double> places, const Section& centres, double nose_mm) {
+std::vector<double> with_fillets(std::vector<double> places, const SectionLine& centres, double nose_mm) {
   constexpr int kFillet = 64;
   const double low = places.front();
   const double high = places.back();
@@ -36,7 +36,7 @@ std::vector<double> with_fillets(std::vector<double> places, const Section& cent
   return places;
 }
 
-Section negated(Section section) {
+SectionLine negated(SectionLine section) {
   for (SectionPoint& p : section) p.z_mm = -p.z_mm;
   return section;
 }
@@ -52,8 +52,8 @@ double distance_to_piece(const SectionPoint& p, const SectionPoint& a, const Sec
 
 }  // namespace
 
-Section left_by_nose(const Section& centres, double nose_mm, const std::vector<double>& places_mm) {
-  Section left;
+SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::vector<double>& places_mm) {
+  SectionLine left;
   for (const double x : with_fillets(places_mm, centres, nose_mm))
     left.push_back({x, std::numeric_limits<double>::infinity()});
   const auto lower = [&](double from, double to, const auto& height) {
@@ -78,12 +78,12 @@ Section left_by_nose(const Section& centres, double nose_mm, const std::vector<d
   return left;
 }
 
-Section lowest_centres(const Section& section, double nose_mm, const std::vector<double>& places_mm) {
+SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& places_mm) {
   // Where the nose may go is what a nose that is moved along the section from above leaves free.
   return negated(left_by_nose(negated(section), nose_mm, places_mm));
 }
 
-double largest_distance(const Section& places, const Section& line, double reach_mm) {
+double largest_distance(const SectionLine& places, const SectionLine& line, double reach_mm) {
   double largest = 0.0;
   for (const SectionPoint& p : places) {
     double best = std::numeric_limits<double>::max();

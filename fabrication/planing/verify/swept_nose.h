@@ -10,17 +10,17 @@ struct SectionPoint {
   double z_mm = 0.0;
 };
 /// A line of places whose x does not fall; upright pieces have both ends.
-using Section = std::vector<SectionPoint>;
+using SectionLine = std::vector<SectionPoint>;
 
 /// What a round nose leaves whose centre goes along a line. \param places where, rising; upright walls that the nose
 /// leaves are added \param centres x does not fall \pre nose > 0
-Section left_by_nose(const Section& centres, double nose_mm, const std::vector<double>& places_mm);
+SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::vector<double>& places_mm);
 
 /// The lowest places of the nose's centre over a section that it does not cut. \pre as above
-Section lowest_centres(const Section& section, double nose_mm, const std::vector<double>& places_mm);
+SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& places_mm);
 
 /// Largest distance of places from a line. Pieces farther than `reach` along x are not looked at: where none is near
 /// the distance is the largest number.
-double largest_distance(const Section& places, const Section& line, double reach_mm);
+double largest_distance(const SectionLine& places, const SectionLine& line, double reach_mm);
 
 }  // namespace retrace::fabrication

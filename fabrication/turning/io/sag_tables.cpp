@@ -14,7 +14,7 @@ using geometry::Vec2;
 constexpr NumberRange kCoefficient{.low = -1e9, .high = 1e9};
 constexpr NumberRange kRadius{.low = -1e9, .high = 1e9};
 constexpr std::size_t kMostTerms = 200;
-constexpr std::size_t kMostPoints = 4000;
+constexpr std::size_t kMostTablePoints = 4000;
 
 void read_conic(TomlTable& table, Sag& sag) {
   const double radius = table.required_number("radius_mm", kRadius);
@@ -114,7 +114,7 @@ Boundary read_boundary(TomlTable& table) {
   BoundaryOptions options;
   options.degree = static_cast<int>(table.whole("degree", {.low = 2, .high = kMostSplineDegree}).value_or(3));
   if (kind == rectangle || kind == formula)
-    options.samples = static_cast<int>(table.whole("samples", {.low = 16, .high = kMostPoints}).value_or(180));
+    options.samples = static_cast<int>(table.whole("samples", {.low = 16, .high = kMostTablePoints}).value_or(180));
   std::optional<Vec2> centre;
   if (const auto c = table.numbers("centre_mm", 2, kLengthMm)) centre = Vec2((*c)[0], (*c)[1]);
   const Vec2 middle = centre.value_or(Vec2::Zero());
@@ -129,8 +129,8 @@ Boundary read_boundary(TomlTable& table) {
     case points: {
       std::vector<Vec2> list;
       for (const auto& row : table.required_number_rows("points_mm", 2, kLengthMm)) list.emplace_back(row[0], row[1]);
-      if (list.size() > kMostPoints)
-        table.fail("points_mm", fmt::format("must have at most {} points, got {}", kMostPoints, list.size()));
+      if (list.size() > kMostTablePoints)
+        table.fail("points_mm", fmt::format("must have at most {} points, got {}", kMostTablePoints, list.size()));
       const bool scattered = table.flag("scattered").value_or(false);
       return boundary_from_points(std::move(list), centre, scattered, options.degree, table.where("points_mm"));
     }

@@ -15,8 +15,6 @@ using geometry::Vec2;
 constexpr double kNmPerMm = 1e6;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUncut = std::numeric_limits<double>::infinity();
-/// Turns or lines next to the rim and the centre that have no neighbours or turn on the spot.
-constexpr double kRimFeeds = 4.0;
 constexpr int kMostSamples = 12;
 /// Of a feed: pixels smaller than this show cusps one by one.
 constexpr double kResolved = 0.25;

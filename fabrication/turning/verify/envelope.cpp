@@ -8,12 +8,11 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "fabrication/turning/numbers.h"
 
 namespace retrace::fabrication::turning {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::uint8_t kAxisZ = 1U << 2U;
 
 }  // namespace

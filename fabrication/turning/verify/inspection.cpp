@@ -17,8 +17,6 @@ namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::Vec2;
-/// Turns or lines next to the rim that have no neighbours.
-constexpr double kRimFeeds = 4.0;
 constexpr int kGoldenSteps = 40;
 /// Nearer to the centre the cut turns so much from one end of a cusp to the other that closed forms do not hold.
 constexpr double kCentreFeeds = 20.0;

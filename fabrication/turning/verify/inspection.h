@@ -8,6 +8,10 @@
 
 namespace retrace::fabrication::turning {
 
+/// Turns or lines next to the rim and the centre that have no neighbours or turn on the spot: the surface is not judged
+/// there.
+inline constexpr double kRimFeeds = 4.0;
+
 /// The region that is inspected: a circle's or a rectangle's, without the rim that neighbouring cuts do not finish.
 struct InspectedRegion {
   bool is_round = true;

@@ -13,7 +13,6 @@ namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::Vec3;
-constexpr double kRimFeeds = 4.0;
 
 /// Rays: about as far apart at half the radius as circles are.
 std::uint32_t rays_of(int rings) {

@@ -62,7 +62,7 @@ class Reader {
   explicit Reader(const std::string& name) { table_.source = name; }
 
   LimitTable read(std::string_view content) {
-    if (content.size() > kMostBytes) fail({}, fmt::format("must have at most {} bytes", kMostBytes));
+    require_short_text(content, table_.source, kMostBytes);
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
     for (std::size_t begin = 0; begin < content.size();) {
@@ -215,7 +215,7 @@ LimitTable parse_limits(std::string_view content, const std::string& name) {
 }
 
 LimitTable read_limits(const std::filesystem::path& file) {
-  return parse_limits(read_file(file), file.string());
+  return parse_limits(read_file(file, kMostBytes), file.string());
 }
 
 }  // namespace retrace::studies

@@ -29,7 +29,9 @@ Json point_json(const PhotometricPoint& p) {
           {"unit", unit_name(p.asked.unit)},
           {"limit_status", status_name(p.asked.status)},
           {"limit_line", p.asked.line},
-          {"pass", p.passes()},
+          {"pass", p.verdict() == Verdict::pass},
+          {"verdict", verdict_name(p.verdict())},
+          {"lower_bound", p.is_lower_bound},
           {"r_a_cd_per_lx_m2", p.r_a},
           {"r_l_cd_per_lx_m2", p.r_l}};
 }
@@ -74,22 +76,27 @@ Json programme_json(const PhotometryResult& result) {
           {"limits_complete", asked.programme.is_complete}};
 }
 
+std::string point_text(const PhotometricPoint& p) {
+  std::string text = p.verdict() == Verdict::fail ? "FAIL" : std::string(verdict_name(p.verdict()));
+  if (p.is_lower_bound) text += " (at least)";
+  if (p.asked.status == LimitStatus::recalled) text += " (limit unconfirmed)";
+  return text;
+}
+
 /// Rows of a table for the terminal.
 std::string rows_of(const std::vector<PhotometricPoint>& points) {
   std::string table = fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n", "alpha", "V", "H",
                                   "rotation", "mcd/lx", "limit", "margin_%", "R_A", "verdict");
-  for (const PhotometricPoint& p : points) {
-    std::string verdict = p.passes() ? "pass" : "FAIL";
-    if (p.asked.status == LimitStatus::recalled) verdict += " (limit unconfirmed)";
+  for (const PhotometricPoint& p : points)
     table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n", fixed(p.asked.observation_deg, 2),
                          shortest(p.asked.v_deg), shortest(p.asked.h_deg), shortest(p.rotation_deg),
                          fixed(p.r_i_mcd_per_lx, 2), fixed(p.limit_mcd_per_lx, 2), fixed(100.0 * p.margin(), 1),
-                         fixed(p.r_a, 1), verdict);
-  }
+                         fixed(p.r_a, 1), point_text(p));
   return table;
 }
 
-std::string verdict_text(Verdict verdict, const TestProgramme& programme) {
+/// \param reason of a verdict that is undetermined
+std::string verdict_text(Verdict verdict, const TestProgramme& programme, const std::string& reason = {}) {
   switch (verdict) {
     case Verdict::pass:
       return "verdict: pass\n";
@@ -97,6 +104,8 @@ std::string verdict_text(Verdict verdict, const TestProgramme& programme) {
       return programme.is_complete
                  ? "verdict: unconfirmed - every point holds, but not every limit is confirmed\n"
                  : "verdict: unconfirmed - every point holds, but the table is not all that the standard asks\n";
+    case Verdict::undetermined:
+      return reason.empty() ? "verdict: undetermined\n" : fmt::format("verdict: undetermined - {}\n", reason);
     case Verdict::fail:
       return "verdict: FAIL\n";
   }
@@ -104,10 +113,10 @@ std::string verdict_text(Verdict verdict, const TestProgramme& programme) {
 }
 
 std::string change_text(const PhotometricChange& change, const TestProgramme& programme) {
-  std::string text = fmt::format(
-      "\n{} {} = {} (now {}):\n",
-      change.verdict == Verdict::fail ? "the best of what was tried, but not enough:" : "what to change:", change.key,
-      shortest(change.to), shortest(change.from));
+  std::string text =
+      fmt::format("\n{} {} = {} (now {}):\n",
+                  change.passes() ? "what to change:" : "the best of what was tried, but not enough:", change.key,
+                  shortest(change.to), shortest(change.from));
   return text + rows_of(change.points) + verdict_text(change.verdict, programme);
 }
 
@@ -132,6 +141,7 @@ std::string photometry_json(const PhotometryResult& result) {
                {"seed", asked.seed}};
   json["points"] = points_json(result.points);
   if (result.complete || !result.points.empty()) json["verdict"] = verdict_name(result.verdict);
+  if (!result.reason.empty()) json["reason"] = result.reason;
   json["directions"] = Json::array();
   for (const PhotometricDirection& d : result.directions) json["directions"].push_back(direction_json(d));
   json["changes"] = Json::array();
@@ -146,12 +156,13 @@ std::string photometry_json(const PhotometryResult& result) {
 std::string photometry_csv(const PhotometryResult& result) {
   std::string csv =
       "observation_deg,v_deg,h_deg,rotation_deg,value_mcd_per_lx,std_error_mcd_per_lx,limit_mcd_per_lx,margin,"
-      "limit_status,pass,r_a_cd_per_lx_m2,r_l_cd_per_lx_m2\n";
+      "limit_status,pass,r_a_cd_per_lx_m2,r_l_cd_per_lx_m2,verdict,lower_bound\n";
   for (const PhotometricPoint& p : result.points) {
     for (const double value : {p.asked.observation_deg, p.asked.v_deg, p.asked.h_deg, p.rotation_deg, p.r_i_mcd_per_lx,
                                p.std_error_mcd_per_lx, p.limit_mcd_per_lx, p.margin()})
       csv += shortest(value) + ',';
-    csv += fmt::format("{},{},{},{}\n", status_name(p.asked.status), p.passes(), shortest(p.r_a), shortest(p.r_l));
+    csv += fmt::format("{},{},{},{},{},{}\n", status_name(p.asked.status), p.verdict() == Verdict::pass,
+                       shortest(p.r_a), shortest(p.r_l), verdict_name(p.verdict()), p.is_lower_bound);
   }
   return csv;
 }
@@ -177,7 +188,7 @@ std::string photometry_table(const PhotometryResult& result) {
                        result.request.own_light ? "the design's light" : "CIE A",
                        result.request.dye.empty() ? "" : ", dye " + printable(result.request.dye));
   table += rows_of(result.points);
-  if (!result.points.empty()) table += verdict_text(result.verdict, programme);
+  if (!result.points.empty()) table += verdict_text(result.verdict, programme, result.reason);
   for (const PhotometricChange& change : result.changes) table += change_text(change, programme);
   return table;
 }

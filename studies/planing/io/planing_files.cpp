@@ -108,6 +108,8 @@ void add_machine(const PlaningResult& result, Json& json) {
     return;
   }
   json["feed_mm_per_min"] = result.part.lathe->feed_mm_per_min;
+  json["spindle_rpm"] = result.part.lathe->spindle_rpm;
+  json["spindle_direction"] = kSpindleDirectionWords[static_cast<std::size_t>(result.part.lathe->spindle_direction)];
   json["passes"] = result.plan.passes;
   json["chords"] = result.plan.chords.size() - 1;
   json["longest_chords"] = result.plan.longest.size() - 1;

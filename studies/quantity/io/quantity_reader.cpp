@@ -61,11 +61,6 @@ constexpr Range kAnyAngle{};
 constexpr Range kHalfAngle{.low = 0.0, .low_included = false, .high = 90.0};
 constexpr double kMostDirections = 10000.0;
 
-template <class Value, std::size_t size>
-std::span<const Choice<Value>> all(const std::array<Choice<Value>, size>& choices) {
-  return choices;
-}
-
 /// The middles of `count` equal parts of a range: their mean is that over the range to second order.
 std::vector<double> middles(const DesignDocument& document, const std::string& name, const toml::table& table,
                             const Range& allowed) {
@@ -153,7 +148,10 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(TableReader& quan
   request.diffraction = quantity.choice("far_field", all(kFarFields)).value_or(true);
   request.advice = false;
   const std::optional<std::string> dye = quantity.text("dye");
-  set_dye(request, dye, with_keys(quantity, [&] { return dye_file_of(dye, false, request.programme.colour); }));
+  const std::filesystem::path dye_file =
+      with_keys(quantity, [&] { return dye_file_of(dye, false, request.programme.colour); });
+  if (dye && dye_file == *dye) quantity.add_file(dye_file);  // not a shipped one
+  set_dye(request, dye, dye_file);
   table.dye_unless_coloured = !dye;
   table.key = fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", choice.standard, choice.part_class.value_or(""),
                           request.programme.colour, request.area_cm2, fmt::join(request.rotation_deg, " "),

@@ -15,6 +15,7 @@
 #include "studies/design/design_keys.h"
 #include "studies/design/design_reader.h"
 #include "studies/design/table_reader.h"
+#include "studies/quantity/io/point_texts.h"
 #include "studies/quantity/io/quantity_reader.h"
 
 namespace retrace::studies {
@@ -28,7 +29,6 @@ constexpr std::array<std::string_view, 11> kTopLevel = {"schema",   "title",    
 /// Parts of a study that decide what its points are.
 constexpr std::array<std::string_view, 8> kParts = {"parameter", "quantity",  "analysis",   "machining",
                                                     "sweep",     "tolerance", "constraint", "optimize"};
-constexpr std::array<std::string_view, 2> kSettingTables = {"analysis", "machining"};
 constexpr std::array<std::string_view, 6> kAnalysisKeys = {"incidence_deg", "azimuth_deg", "engine",
                                                            "target_error",  "samples",     "cutoff"};
 constexpr std::array<std::string_view, 13> kMachiningKeys = {"tool_width_mm",
@@ -55,17 +55,12 @@ constexpr std::array kScales = {Choice<bool>{"linear", false}, Choice<bool>{"log
 constexpr std::array kDistributions = {Choice<Distribution::Kind>{"normal", Distribution::Kind::normal},
                                        Choice<Distribution::Kind>{"uniform", Distribution::Kind::uniform},
                                        Choice<Distribution::Kind>{"triangular", Distribution::Kind::triangular}};
-constexpr Range kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
+constexpr Range kStudyIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
 constexpr Range kShare{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false};
 constexpr Range kCutoff{.low = 0.0, .high = 1.0, .high_included = false};
 constexpr Range kSane{.low = 1e-6, .high = 1e6};
 constexpr Range kSaneOrNone{.low = 0.0, .high = 1e6};
 constexpr double kMostValues = 100'000.0;
-
-template <class Value, std::size_t size>
-std::span<const Choice<Value>> all(const std::array<Choice<Value>, size>& choices) {
-  return choices;
-}
 
 double whole(TableReader& table, std::string_view key, const Range& range, double otherwise) {
   const double value = table.number(key, range).value_or(otherwise);
@@ -76,10 +71,10 @@ double whole(TableReader& table, std::string_view key, const Range& range, doubl
 AnalysisSettings read_analysis(const DesignDocument& document, std::uint32_t seed) {
   TableReader table(document, "analysis");
   AnalysisSettings analysis;
-  analysis.incidence_deg = table.number("incidence_deg", kIncidence).value_or(0.0);
+  analysis.incidence_deg = table.number("incidence_deg", kStudyIncidence).value_or(0.0);
   analysis.azimuth_deg = table.number("azimuth_deg", Range{}).value_or(0.0);
   analysis.engine = table.choice("engine", all(kEngines)).value_or(Engine::automatic);
-  analysis.target_error = table.number("target_error", kShare).value_or(analysis.target_error);
+  analysis.target_error = table.number("target_error", kShare);
   if (table.has("samples"))
     analysis.rays = static_cast<std::uint64_t>(whole(table, "samples", {.low = 1.0, .high = 0x1p36}, 1.0));
   analysis.cutoff = table.number("cutoff", kCutoff);
@@ -115,13 +110,6 @@ MachiningProcess read_machining(const DesignDocument& document) {
   return process;
 }
 
-/// Whether an override or a parameter is one of how designs are analysed or made.
-bool is_setting(std::string_view key) {
-  return std::any_of(kSettingTables.begin(), kSettingTables.end(), [&](std::string_view table) {
-    return key.starts_with(table) && key.substr(table.size()).starts_with('.');
-  });
-}
-
 /// What is wrong with a key that a parameter names; empty if nothing is.
 std::string complaint_about_parameter(const std::string& key) {
   if (key == "design") return {};
@@ -133,20 +121,6 @@ std::string complaint_about_parameter(const std::string& key) {
   if (std::find(known.begin(), known.end(), name) != known.end()) return {};
   return fmt::format("{} is no key of [{}], which has {}", in_quotes(key), analysis ? "analysis" : "machining",
                      fmt::join(known, ", "));
-}
-
-std::string key_of(const std::string& override_text) {
-  std::string key = override_text.substr(0, override_text.find('='));
-  std::erase_if(key, [](char c) { return c == ' ' || c == '\t'; });
-  return key;
-}
-
-/// The --set texts that concern the design, or those that concern the study.
-std::vector<std::string> overrides_for(std::span<const std::string> overrides, bool study) {
-  std::vector<std::string> chosen;
-  for (const std::string& text : overrides)
-    if (is_setting(key_of(text)) == study) chosen.push_back(text);
-  return chosen;
 }
 
 /// Tables of a list of tables, such as [[parameter]].
@@ -360,22 +334,21 @@ std::string fingerprint(const std::string& text) {
   return fmt::format("{} bytes, {:016x}", text.size(), hash);
 }
 
-/// Files that a design names, by what is in them. Designs that are none without their parameters name none.
-std::string files_of(const std::string& text, const std::string& source, std::span<const std::string> overrides) {
+/// What is in files, which need not be there: a point that wants them fails.
+std::string fingerprints(const std::vector<fs::path>& files) {
   std::string parts;
-  try {
-    const Design design = parse_design(text, source, overrides);
-    for (const fs::path& file :
-         {design.texture.height_map_file, design.spectrum ? design.spectrum->file : fs::path(),
-          design.facet_planes ? design.facet_planes->file : fs::path(), design.mask ? design.mask->file : fs::path()})
-      if (!file.empty()) parts += file.filename().string() + ": " + fingerprint(read_file(file)) + "\n";
-  } catch (const Error&) {
-    return parts;
+  for (const fs::path& file : files) {
+    try {
+      parts += file.filename().string() + ": " + fingerprint(read_file(file, kMostDataBytes)) + "\n";
+    } catch (const InputError&) {
+      parts += file.filename().string() + ": cannot be read\n";
+    }
   }
   return parts;
 }
 
-std::vector<std::pair<std::string, std::string>> parts_of(const DesignDocument& document, const Study& study) {
+std::vector<std::pair<std::string, std::string>> parts_of(const DesignDocument& document, const Study& study,
+                                                          const std::vector<fs::path>& named) {
   std::vector<std::pair<std::string, std::string>> parts;
   for (const std::string_view key : kParts) {
     const toml::node* const node = document.root().get(key);
@@ -383,15 +356,11 @@ std::vector<std::pair<std::string, std::string>> parts_of(const DesignDocument& 
     if (node != nullptr) node->visit([&](const auto& value) { holder.insert("value", value); });
     parts.emplace_back(key, node == nullptr ? std::string() : as_json(holder));
   }
-  const std::vector<std::string> overrides = overrides_for(study.overrides, false);
   std::string designs;
-  std::string files;
-  for (const auto& [file, text] : study.design_texts) {
+  for (const auto& [file, text] : study.design_texts)
     designs += fs::path(file).filename().string() + " " + as_json(DesignDocument(text, file, {}).root()) + "\n";
-    files += files_of(text, file, overrides);
-  }
   parts.emplace_back("the design", designs);
-  parts.emplace_back("a file of the design", files);
+  parts.emplace_back("a file of the design", fingerprints(named));
   parts.emplace_back("--set", fmt::format("{}", fmt::join(study.overrides, "\n")));
   parts.emplace_back("--seed", fmt::format("{}", study.seed));
   return parts;
@@ -443,8 +412,14 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
   check_keys_once(study);
   read_analysis(document, seed);
   read_machining(document);
+  const std::vector<fs::path> of_quantities = document.files();
   read_designs(document, study);
-  study.parts = parts_of(document, study);
+  std::vector<fs::path> named = files_of_designs(study);
+  named.insert(named.end(), of_quantities.begin(), of_quantities.end());
+  study.files = {source_name};
+  for (const auto& [file, design] : study.design_texts) study.files.push_back(file);
+  for (const fs::path& file : named) study.files.push_back(file.string());
+  study.parts = parts_of(document, study, named);
   return study;
 }
 
@@ -453,22 +428,13 @@ Study read_study(const fs::path& file, std::span<const std::string> overrides, s
 }
 
 Candidate make_candidate(const Study& study, std::span<const ParameterValue> values) {
-  std::vector<std::string> for_design = overrides_for(study.overrides, false);
-  std::vector<std::string> for_study = overrides_for(study.overrides, true);
-  std::string design = study.design_file;
-  for (std::size_t k = 0; k < study.parameters.size(); ++k)
-    for (const std::string& key : study.parameters[k].keys) {
-      if (key == "design")
-        design = values[k].toml;
-      else
-        (is_setting(key) ? for_study : for_design).push_back(fmt::format("{}={}", key, values[k].toml));
-    }
-  const DesignDocument document(study.text, study.source, for_study);
+  PointTexts texts = texts_at(study, values);
+  const DesignDocument document(study.text, study.source, texts.for_study);
   const MachiningProcess machining = read_machining(document);
   // What the study says of the surface counts more than what cutting leaves.
   const std::vector<std::string> as_cut = surface_overrides(machining);
-  for_design.insert(for_design.begin(), as_cut.begin(), as_cut.end());
-  const Design varied = parse_design(study.design_texts.at(design), design, for_design);
+  texts.for_design.insert(texts.for_design.begin(), as_cut.begin(), as_cut.end());
+  const Design varied = parse_design(study.design_texts.at(texts.design), texts.design, texts.for_design);
   varied.require_elements("a study");
   varied.require_plane_front("a study");
   return {varied, read_analysis(document, study.seed), machining};

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostFacets = 10000;
 constexpr std::size_t kMostBytes = std::size_t{1} << 20;
-constexpr double kMostSaNm = 1e5;
+constexpr double kMostTableSaNm = 1e5;
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
@@ -49,7 +49,7 @@ class Reader {
   explicit Reader(const std::string& name) : name_(name) {}
 
   std::vector<FacetGroup> read(std::string_view content) {
-    if (content.size() > kMostBytes) fail("", fmt::format("must have at most {} bytes", kMostBytes));
+    require_short_text(content, name_, kMostBytes);
     for (std::size_t begin = 0; begin < content.size();) {
       const std::size_t end = std::min(content.find('\n', begin), content.size());
       ++line_;
@@ -133,8 +133,8 @@ class Reader {
   double number(const std::string& column, std::string_view text) const {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0.0 && value <= kMostSaNm))
-      fail(column, fmt::format("must be a number from 0 to {}, got {}", shortest(kMostSaNm), in_quotes(text)));
+    if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0.0 && value <= kMostTableSaNm))
+      fail(column, fmt::format("must be a number from 0 to {}, got {}", shortest(kMostTableSaNm), in_quotes(text)));
     return value;
   }
 
@@ -152,7 +152,7 @@ std::vector<FacetGroup> parse_facet_table(std::string_view content, const std::s
 }
 
 std::vector<FacetGroup> read_facet_table(const std::filesystem::path& file) {
-  return parse_facet_table(read_file(file), file.string());
+  return parse_facet_table(read_file(file, kMostBytes), file.string());
 }
 
 }  // namespace retrace::studies

@@ -20,7 +20,7 @@ Json ring_of(const geometry::Polygon& outline) {
   return ring;
 }
 
-Json direction_of(const RrePoint& at) {
+Json direction_and_cone_of(const RrePoint& at) {
   return {{"design", at.design},
           {"incidence_deg", at.incidence_deg},
           {"azimuth_deg", at.azimuth_deg},
@@ -31,13 +31,13 @@ Json direction_of(const RrePoint& at) {
 Json feature_of(const RrePoint& at, const ActiveRegion& region) {
   Json feature = {{"type", "Feature"}};
   feature["geometry"] = {{"type", "Polygon"}, {"coordinates", Json::array({ring_of(region.outline_mm)})}};
-  feature["properties"] = direction_of(at);
+  feature["properties"] = direction_and_cone_of(at);
   feature["properties"]["efficiency"] = region.efficiency;
   return feature;
 }
 
 Json summary_of(const RrePoint& at, const Footprint& footprint) {
-  Json summary = direction_of(at);
+  Json summary = direction_and_cone_of(at);
   summary["entrance_area_mm2"] = footprint.entrance_area_mm2;
   summary["active_area_mm2"] = footprint.active_area_mm2;
   summary["active_share"] = footprint.active_share();

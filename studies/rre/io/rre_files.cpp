@@ -28,8 +28,11 @@ Json ledger_json(const raytrace::Ledger& ledger) {
 Json by_wavelength_json(const std::vector<SpectralRre>& points) {
   Json json = Json::array();
   for (const SpectralRre& p : points)
-    json.push_back(
-        {{"wavelength_nm", p.wavelength_nm}, {"weight", p.weight}, {"rre", p.rre}, {"std_error", p.std_error}});
+    json.push_back({{"wavelength_nm", p.wavelength_nm},
+                    {"weight", p.weight},
+                    {"rre", p.rre},
+                    {"std_error", p.std_error},
+                    {"engine", p.engine}});
   return json;
 }
 
@@ -68,9 +71,10 @@ std::string rre_json(const RreResult& result) {
                               {"rre", p.rre},
                               {"std_error", p.std_error},
                               {"stokes", p.stokes.values()},
-                              {"ledger", ledger_json(p.ledger)}});
+                              {"ledger", ledger_json(p.ledger)},
+                              {"engine", p.engine}});
     if (!p.by_wavelength.empty()) json["points"].back()["by_wavelength"] = by_wavelength_json(p.by_wavelength);
-    if (result.engine != "exact") continue;
+    if (p.engine != "exact") continue;
     json["points"].back()["beams"] = p.beams;
     json["points"].back()["depth"] = p.depth;
     if (!p.derivatives.empty()) json["points"].back()["derivatives"] = derivatives_json(p.derivatives);
@@ -86,14 +90,14 @@ std::string rre_json(const RreResult& result) {
 std::string rre_csv(const RreResult& result) {
   std::string csv = "design,incidence_deg,azimuth_deg,wavelength_nm,acceptance_half_angle_deg,rre,std_error";
   for (const auto name : kAccountNames) csv += fmt::format(",{}", name);
-  csv += '\n';
+  csv += ",engine\n";
   for (const RrePoint& p : result.points) {
     csv += std::to_string(p.design);
     for (const double value :
          {p.incidence_deg, p.azimuth_deg, p.wavelength_nm, p.acceptance_half_angle_deg, p.rre, p.std_error})
       csv += ',' + csv_number(value);
     for (const double power : p.ledger.power) csv += ',' + csv_number(power);
-    csv += '\n';
+    csv += ',' + p.engine + '\n';
   }
   return csv;
 }
@@ -108,12 +112,13 @@ std::string rre_table(const RreResult& result) {
   if (several_designs) table += "design  ";
   table += "incidence_deg  azimuth_deg  ";
   if (several_cones) table += "acceptance_deg  ";
-  table += "    RRE_%  +-_%\n";
+  table += "    RRE_%    +-_%   cut_%  engine\n";
   for (const RrePoint& p : result.points) {
     if (several_designs) table += fmt::format("{:>6}  ", p.design);
     table += fmt::format("{:>13}  {:>11}  ", shortest(p.incidence_deg), shortest(p.azimuth_deg));
     if (several_cones) table += fmt::format("{:>14}  ", shortest(p.acceptance_half_angle_deg));
-    table += fmt::format("{:>9}  {}\n", fixed(100.0 * p.rre, 4), fixed(100.0 * p.std_error, 4));
+    table += fmt::format("{:>9}  {}  {}  {}\n", fixed(100.0 * p.rre, 4), fixed(100.0 * p.std_error, 4),
+                         fixed(100.0 * p.ledger[raytrace::Account::truncated], 4), p.engine);
   }
   return table;
 }

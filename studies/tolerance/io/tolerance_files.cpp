@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kPercent = 100.0;
+constexpr double kPercentPerShare = 100.0;
 
 Json estimate_json(const Estimate& estimate) {
   return {{"value", estimate.value}, {"low", estimate.low}, {"high", estimate.high}};
@@ -36,7 +36,7 @@ Json quantity_json(const Study& study, const QuantityTolerance& quantity) {
   }
   json["percentiles"] = Json::array();
   for (const auto& [share, value] : quantity.percentiles)
-    json["percentiles"].push_back({{"percent", kPercent * share}, {"value", value}});
+    json["percentiles"].push_back({{"percent", kPercentPerShare * share}, {"value", value}});
   if (quantity.noise) json["noise"] = *quantity.noise;
   json["index_rows"] = quantity.rows;
   json["indices"] = Json::array();
@@ -60,8 +60,8 @@ const char* sampling_name(UnitSamples::Kind kind) {
 }
 
 std::string percent_text(const Estimate& share, double confidence) {
-  return fmt::format("{:.2f} % ({:g} % confidence: {:.2f} to {:.2f} %)", kPercent * share.value, kPercent * confidence,
-                     kPercent * share.low, kPercent * share.high);
+  return fmt::format("{:.2f} % ({:g} % confidence: {:.2f} to {:.2f} %)", kPercentPerShare * share.value,
+                     kPercentPerShare * confidence, kPercentPerShare * share.low, kPercentPerShare * share.high);
 }
 
 /// Parameters by their total index, the largest first.
@@ -83,7 +83,7 @@ std::string quantity_text(const Study& study, const QuantityTolerance& quantity)
   if (!quantity.percentiles.empty()) {
     text += " ";
     for (const auto& [share, value] : quantity.percentiles)
-      text += fmt::format("  {:g} %: {:.6g}", kPercent * share, value);
+      text += fmt::format("  {:g} %: {:.6g}", kPercentPerShare * share, value);
     text += "\n";
   }
   for (const std::size_t k : by_contribution(quantity.indices)) {

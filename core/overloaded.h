@@ -1,0 +1,14 @@
+#pragma once
+
+// One function object of several, for std::visit.
+
+namespace retrace {
+
+template <class... Handlers>
+struct Overloaded : Handlers... {
+  using Handlers::operator()...;
+};
+template <class... Handlers>
+Overloaded(Handlers...) -> Overloaded<Handlers...>;
+
+}  // namespace retrace

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/angle.h"
+#include "geometry/part.h"
+
+namespace retrace::studies {
+
+/// Largest incidence of total reflection for a part's elements at this index, of what is behind them; closed form.
+/// \pre both >= 1
+std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index, double back_index);
+
+/// The azimuth of the light whose total reflection ends first; 0 to below 360, the least of equal ones.
+double tir_limit_azimuth_deg(const geometry::PartSpec& part);
+
+/// Least incidence at this azimuth at which every facet reflects the retroreflected light totally; none if there is
+/// none. \pre both >= 1
+std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, double index, double back_index,
+                                                Angle azimuth);
+
+/// All angles of incidence between -90 and 90 degrees at this azimuth at which the total reflection of retroreflected
+/// light begins or ends at a facet, be it met first or after others; ascending. RRE has kinks there. \pre both >= 1
+std::vector<double> total_reflection_edges_deg(const geometry::PartSpec& part, double index, double back_index,
+                                               Angle azimuth);
+
+}  // namespace retrace::studies

@@ -1,0 +1,74 @@
+#include "studies/quantity/io/point_texts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+#include "studies/design/design_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr std::array<std::string_view, 2> kSettingTables = {"analysis", "machining"};
+
+/// Points where each text that a parameter may have occurs: a design and what it names may depend on it.
+std::vector<PointValues> points_of_texts(const Study& study) {
+  std::vector<PointValues> points = {some_values(study)};
+  for (std::size_t k = 0; k < study.parameters.size(); ++k)
+    for (const ParameterValue& value : study.parameters[k].values)
+      if (std::holds_alternative<std::string>(value.shown)) {
+        points.push_back(points.front());
+        points.back()[k] = value;
+      }
+  return points;
+}
+
+}  // namespace
+
+bool is_setting(std::string_view key) {
+  return std::any_of(kSettingTables.begin(), kSettingTables.end(), [&](std::string_view table) {
+    return key.starts_with(table) && key.substr(table.size()).starts_with('.');
+  });
+}
+
+std::string key_of(const std::string& override_text) {
+  std::string key = override_text.substr(0, override_text.find('='));
+  std::erase_if(key, [](char c) { return c == ' ' || c == '\t'; });
+  return key;
+}
+
+std::vector<std::string> overrides_for(std::span<const std::string> overrides, bool study) {
+  std::vector<std::string> chosen;
+  for (const std::string& text : overrides)
+    if (is_setting(key_of(text)) == study) chosen.push_back(text);
+  return chosen;
+}
+
+PointTexts texts_at(const Study& study, std::span<const ParameterValue> values) {
+  PointTexts texts{study.design_file, overrides_for(study.overrides, false), overrides_for(study.overrides, true)};
+  for (std::size_t k = 0; k < study.parameters.size(); ++k)
+    for (const std::string& key : study.parameters[k].keys) {
+      if (key == "design")
+        texts.design = values[k].toml;
+      else
+        (is_setting(key) ? texts.for_study : texts.for_design).push_back(fmt::format("{}={}", key, values[k].toml));
+    }
+  return texts;
+}
+
+std::vector<std::filesystem::path> files_of_designs(const Study& study) {
+  std::vector<std::filesystem::path> files;
+  std::set<std::filesystem::path> known;
+  for (const PointValues& values : points_of_texts(study)) {
+    const PointTexts texts = texts_at(study, values);
+    for (const std::filesystem::path& file :
+         files_named(study.design_texts.at(texts.design), texts.design, texts.for_design))
+      if (known.insert(file).second) files.push_back(file);
+  }
+  return files;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/quantity/study.h"
+
+namespace retrace::studies {
+
+/// Whether an override or a parameter is one of how designs are analysed or made.
+bool is_setting(std::string_view key);
+
+/// The key of an override.
+std::string key_of(const std::string& override_text);
+
+/// Those of the overrides that are meant for the study file, or for designs.
+std::vector<std::string> overrides_for(std::span<const std::string> overrides, bool study);
+
+/// A point of a study as the files that are read for it.
+struct PointTexts {
+  std::string design;                   ///< file
+  std::vector<std::string> for_design;  ///< overrides
+  std::vector<std::string> for_study;   ///< likewise
+};
+
+/// \param values one for each parameter
+PointTexts texts_at(const Study& study, std::span<const ParameterValue> values);
+
+/// Files that the designs of a study name, each once, with those that texts of its parameters name.
+std::vector<std::filesystem::path> files_of_designs(const Study& study);
+
+}  // namespace retrace::studies

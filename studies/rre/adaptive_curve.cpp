@@ -1,0 +1,128 @@
+#include "studies/rre/adaptive_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <utility>
+
+namespace retrace::studies {
+namespace {
+
+/// More kinks than these, such as those of every wavelength at many azimuths, are left to be found.
+constexpr std::size_t kMostKinks = 64;
+
+double rounded(double value, double scale) {
+  return std::round(value * scale) / scale + 0.0;  // -0 is 0
+}
+
+/// A number of few decimals within a twentieth of the gap from its middle.
+double middle_of(double low, double high) {
+  const double middle = 0.5 * (low + high);
+  for (double scale = 1.0; scale < 1e9; scale *= 10.0)
+    if (std::abs(rounded(middle, scale) - middle) <= 0.05 * (high - low)) return rounded(middle, scale);
+  return middle;
+}
+
+std::vector<CurveSpan> merged(std::vector<CurveSpan> spans) {
+  std::sort(spans.begin(), spans.end(), [](const CurveSpan& a, const CurveSpan& b) { return a.low < b.low; });
+  std::vector<CurveSpan> apart;
+  for (const CurveSpan& span : spans)
+    if (!apart.empty() && span.low <= apart.back().high)
+      apart.back().high = std::max(apart.back().high, span.high);
+    else
+      apart.push_back(span);
+  return apart;
+}
+
+/// Adds places until none are too far apart.
+void fill(double low, double high, std::set<double>& places) {
+  if (high - low <= AdaptiveCurve::kWidestGapDeg) return;
+  const double middle = middle_of(low, high);
+  places.insert(middle);
+  fill(low, middle, places);
+  fill(middle, high, places);
+}
+
+/// To a millionth of a degree, each once.
+std::vector<double> without_repeats(const std::vector<double>& kinks) {
+  std::set<double> places;
+  for (const double place : kinks) places.insert(rounded(place, 1e6));
+  if (places.size() > kMostKinks) return {};
+  return {places.begin(), places.end()};
+}
+
+}  // namespace
+
+AdaptiveCurve::AdaptiveCurve(std::vector<CurveSpan> spans, const std::vector<double>& kinks,
+                             const std::vector<double>& fixed, double tolerance)
+    : tolerance_(tolerance) {
+  for (const double place : fixed) values_[place];
+  spans = merged(std::move(spans));
+  most_places_ = fixed.size() + spans.size() * kMostPlaces;
+  for (const CurveSpan& span : spans) begin(span, without_repeats(kinks));
+  look_at(std::exchange(gaps_, {}));
+}
+
+void AdaptiveCurve::begin(const CurveSpan& span, const std::vector<double>& kinks) {
+  std::set<double> places = {span.low, span.high};
+  const auto add_if_inside = [&](double place) {
+    if (place > span.low && place < span.high) places.insert(place);
+  };
+  add_if_inside(0.0);
+  for (const double place : kinks) add_if_inside(place);
+  for (const auto& [place, values] : values_) add_if_inside(place);
+  const std::vector<double> apart(places.begin(), places.end());
+  for (std::size_t i = 1; i < apart.size(); ++i) fill(apart[i - 1], apart[i], places);
+  for (auto place = places.begin(); place != places.end(); ++place) {
+    values_[*place];
+    if (place != places.begin()) gaps_.push_back({*std::prev(place), *place});
+  }
+}
+
+double AdaptiveCurve::miss_of(const Gap& gap) const {
+  const double middle = middle_of(gap.low, gap.high);
+  const double share = (middle - gap.low) / (gap.high - gap.low);
+  const auto& low = values_.at(gap.low);
+  const auto& high = values_.at(gap.high);
+  const auto& found = values_.at(middle);
+  double most = 0.0;
+  for (std::size_t curve = 0; curve < found.size(); ++curve) {
+    const double line = (1.0 - share) * low[curve].value + share * high[curve].value;
+    const double std_error =
+        std::hypot(found[curve].std_error, (1.0 - share) * low[curve].std_error, share * high[curve].std_error);
+    most = std::max(most, std::abs(found[curve].value - line) - 2.0 * std_error);
+  }
+  return most;
+}
+
+void AdaptiveCurve::look_at(std::vector<Gap> gaps) {
+  std::erase_if(gaps, [](const Gap& gap) { return gap.high - gap.low < kNarrowestGapDeg; });
+  std::stable_sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.miss > b.miss; });
+  const std::size_t room = most_places_ - std::min(most_places_, values_.size());
+  if (gaps.size() > room) {
+    worst_left_ = std::max(worst_left_, gaps[room].miss);
+    gaps.resize(room);
+  }
+  for (const Gap& gap : gaps) values_[middle_of(gap.low, gap.high)];
+  gaps_ = std::move(gaps);
+}
+
+std::vector<double> AdaptiveCurve::next() {
+  if (has_begun_) {
+    std::vector<Gap> halves;
+    for (const Gap& gap : gaps_) {
+      const double miss = miss_of(gap);
+      const double middle = middle_of(gap.low, gap.high);
+      if (miss > 0.5 * tolerance_) halves.insert(halves.end(), {{gap.low, middle, miss}, {middle, gap.high, miss}});
+    }
+    look_at(std::move(halves));
+  }
+  has_begun_ = true;
+  std::vector<double> places;
+  for (const auto& [place, values] : values_)
+    if (values.empty()) places.push_back(place);
+  return places;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,165 @@
+#include "studies/rre/request_tracing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+#include "studies/design/total_reflection.h"
+#include "studies/rre/adaptive_curve.h"
+#include "studies/rre/spectral_mean.h"
+
+namespace retrace::studies {
+namespace {
+
+std::vector<Direction> directions_of(const std::vector<OpticalModel>& models, const RreRequest& request,
+                                     const std::vector<double>& incidence_deg) {
+  std::vector<Direction> directions;
+  for (std::size_t d = 0; d < models.size(); ++d)
+    for (const double azimuth : request.azimuth_deg)
+      for (const double incidence : incidence_deg) {
+        RrePoint at;
+        at.design = d;
+        at.incidence_deg = incidence;
+        at.azimuth_deg = azimuth;
+        at.wavelength_nm = models[d].wavelength_nm;
+        Direction direction;
+        direction.at = at;
+        const std::size_t wavelengths = models[d].spectral.size();
+        direction.spectral.resize(wavelengths);
+        direction.rays.resize(wavelengths);
+        direction.missed_target.resize(wavelengths);
+        directions.push_back(std::move(direction));
+      }
+  return directions;
+}
+
+/// Makes points of a direction whose wavelengths are all traced.
+void finish(Direction& direction, const Design& design, const OpticalModel& model) {
+  const auto& spectral = direction.spectral;
+  if (std::any_of(spectral.begin(), spectral.end(), [](const auto& cones) { return cones.empty(); })) return;
+  if (!design.spectrum) {
+    direction.points = spectral.front();
+    return;
+  }
+  for (std::size_t cone = 0; cone < spectral.front().size(); ++cone) {
+    RrePoint at = direction.at;
+    at.acceptance_half_angle_deg = spectral.front()[cone].acceptance_half_angle_deg;
+    std::vector<SpectralPoint> points;
+    for (std::size_t w = 0; w < spectral.size(); ++w) points.push_back({model.spectral[w].weight, spectral[w][cone]});
+    direction.points.push_back(spectral_mean(at, points));
+    direction.points.back().derivatives = spectral.front()[cone].derivatives;
+  }
+}
+
+/// Where the total reflection of elements on a plane begins and ends, at all azimuths and wavelengths that are asked
+/// for, and where what the entrance face reflects, which turns twice as fast as the part, leaves an acceptance cone.
+std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+                             const RreRequest& request) {
+  std::vector<double> kinks;
+  for (std::size_t d = 0; d < designs.size(); ++d) {
+    const Design& design = designs[d];
+    if (design.balls || design.front) continue;
+    for (const double cone_deg : design.acceptance_half_angle_deg)
+      kinks.insert(kinks.end(), {-0.5 * cone_deg, 0.5 * cone_deg});
+    if (design.mesh || design.part.base || !design.needs_total_reflection()) continue;
+    for (const double azimuth : request.azimuth_deg)
+      for (const SpectralOptics& light : models[d].spectral) {
+        const std::vector<double> edges = total_reflection_edges_deg(design.part, light.optics.index,
+                                                                     light.optics.back_index, Angle::from_deg(azimuth));
+        kinks.insert(kinks.end(), edges.begin(), edges.end());
+      }
+  }
+  return kinks;
+}
+
+/// Tells another how far rounds of unknown number have come: each takes half of what is left.
+class RoundProgress : public Progress {
+ public:
+  explicit RoundProgress(Progress* whole) : whole_(whole) {}
+  void finish_round() { begin_ = 0.5 * (begin_ + 1.0); }
+  void at(double share) override {
+    if (whole_ != nullptr) whole_->at(begin_ + 0.5 * (1.0 - begin_) * share);
+  }
+
+ private:
+  Progress* whole_;
+  double begin_ = 0.0;
+};
+
+/// Traces and makes points.
+void trace_points(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+                  DirectionTracing& tracing, std::vector<Direction>& directions, Progress* progress) {
+  tracing.trace(directions, progress);
+  for (Direction& direction : directions) finish(direction, designs[direction.at.design], models[direction.at.design]);
+}
+
+bool all_are_traced(const std::vector<Direction>& directions) {
+  return std::none_of(directions.begin(), directions.end(), [](const Direction& at) { return at.points.empty(); });
+}
+
+void add_values(const std::vector<Direction>& directions, AdaptiveCurve& curve) {
+  for (const Direction& direction : directions)
+    for (const RrePoint& point : direction.points) curve.add(point.incidence_deg, {point.rre, point.std_error});
+}
+
+/// By design, azimuth as listed, and ascending incidence.
+void put_in_order(std::vector<Direction>& directions, const std::vector<double>& azimuth_deg) {
+  const auto place = [&](const Direction& direction) {
+    const RrePoint& at = direction.at;
+    const auto azimuth = std::find(azimuth_deg.begin(), azimuth_deg.end(), at.azimuth_deg);
+    return std::tuple(at.design, azimuth - azimuth_deg.begin(), at.incidence_deg);
+  };
+  std::sort(directions.begin(), directions.end(),
+            [&](const Direction& a, const Direction& b) { return place(a) < place(b); });
+}
+
+std::string told(const AdaptiveCurve& curve) {
+  if (curve.worst_left() == 0.0) return {};
+  return fmt::format(
+      "--incidence: {} points chosen in each range are not enough: straight lines between them may miss RRE by {:.2g}",
+      AdaptiveCurve::kMostPlaces, curve.worst_left());
+}
+
+TracedRequest trace_chosen(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+                           const RreRequest& request, Progress* progress, const Cancellation* cancel) {
+  TracedRequest traced;
+  DirectionTracing tracing(designs, models, request, cancel);
+  RoundProgress part(progress);
+  AdaptiveCurve curve(request.incidence_spans, kinks_of(designs, models, request), request.incidence_deg,
+                      std::max(kCurveTolerance, request.target_error.value_or(kUsualTargetError)));
+  auto places = curve.next();
+  while (traced.complete && !places.empty()) {
+    std::vector<Direction> round = directions_of(models, request, places);
+    trace_points(designs, models, tracing, round, &part);
+    part.finish_round();
+    traced.complete = all_are_traced(round);
+    if (traced.complete) {
+      add_values(round, curve);
+      places = curve.next();
+      traced.complete = places.empty() || !is_cancelled(cancel);
+    }
+    std::move(round.begin(), round.end(), std::back_inserter(traced.directions));
+  }
+  put_in_order(traced.directions, request.azimuth_deg);
+  traced.warning = told(curve);
+  return traced;
+}
+
+}  // namespace
+
+TracedRequest trace_request(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+                            const RreRequest& request, Progress* progress, const Cancellation* cancel) {
+  if (!request.incidence_spans.empty()) return trace_chosen(designs, models, request, progress, cancel);
+  TracedRequest traced;
+  DirectionTracing tracing(designs, models, request, cancel);
+  traced.directions = directions_of(models, request, request.incidence_deg);
+  trace_points(designs, models, tracing, traced.directions, progress);
+  traced.complete = all_are_traced(traced.directions);
+  return traced;
+}
+
+}  // namespace retrace::studies

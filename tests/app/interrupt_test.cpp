@@ -1,0 +1,104 @@
+// What an interrupt does to work that takes long, command by command.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+#include <vector>
+
+#include "tests/app/program.h"
+
+namespace retrace::test::interrupt_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Time of the processor, which other work on the machine does not lengthen, that a run may spend once it is
+// interrupted: a second, and what the results that are left take to write.
+constexpr double kAfter_s = 2.0;
+constexpr auto kFarTooLong = 300s;
+
+struct LongRun {
+  std::string name;
+  Arguments arguments;
+  int signal = SIGINT;
+  double before_s = 1.0;              ///< of the processor, before it is interrupted
+  std::vector<Arguments> first = {};  ///< runs that make its inputs
+};
+
+void PrintTo(const LongRun& run, std::ostream* stream) {
+  *stream << run.name;
+}
+
+class LongWork : public testing::TestWithParam<LongRun> {};
+
+TEST_P(LongWork, EndsWithinASecondOfAnInterrupt) {
+  const TemporaryFolder folder;
+  folder.write(
+      "finite.toml",
+      "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 0.5\n[array]\nextent = \"finite\"\nx_length_mm = 12\n"
+      "y_length_mm = 12\n[body]\nthickness_mm = 1.5\nmaterial = \"PMMA\"\n"
+      "[surface]\nangle_error_sigma_arcmin = 1\nangle_error_seed = 3\n");
+  folder.write("wide.toml",
+               "[element]\nkind = \"rtp\"\nbase_mm = 0.2\nwidth_mm = 0.2\n[array]\narrangement = \"offset\"\n"
+               "overlap_percent = 50\nextent = \"finite\"\nx_length_mm = 80\ny_length_mm = 80\n[body]\n"
+               "thickness_mm = 1.5\nmaterial = \"PMMA\"\n");
+  for (const Arguments& first : GetParam().first) {
+    const Outcome made = retrace(folder, first);
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+  Arguments arguments = GetParam().arguments;
+  arguments.insert(arguments.begin(), RETRACE_PROGRAM);
+  Child child(folder.path(), arguments);
+  while (!child.has_ended() && child.processor_time_s() < GetParam().before_s) std::this_thread::sleep_for(5ms);
+  ASSERT_FALSE(child.has_ended()) << "too short to be interrupted: " << child.wait().err;
+  const double before_s = child.processor_time_s();
+  child.interrupt(GetParam().signal);
+  const Outcome outcome = child.wait(kFarTooLong);
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_LT(outcome.processor_time_s - before_s, kAfter_s);
+}
+
+const Arguments kJob = {"job",     "wide.toml", "--machine=ideal", "--strategy=two-step", "--tool-width-mm=0.2",
+                        "--quiet", "-o",        "job.toml"};
+const Arguments kFabricate = {"fabricate", "job.toml", "--dialect=rs274ngc", "--quiet", "-o", "f"};
+const std::string kReflector = example("reflex_reflector.toml");
+
+INSTANTIATE_TEST_SUITE_P(
+    Commands, LongWork,
+    testing::Values(
+        LongRun{"rre", {"rre", example("tail_lamp_100cm2.toml"), "--threads=1", "--samples=4294967296"}},
+        LongRun{"rre_exact",
+                {"rre", kReflector, "--threads=1", "--engine=exact", "--cutoff=1e-12", "--incidence=5:60:1",
+                 "--footprint", "-o", "r"}},
+        LongRun{"photometry_of_a_finite_part",
+                {"photometry", "finite.toml", "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
+                 "--area-cm2=1.44", "--engine=exact", "--light=design", "-o", "p"},
+                SIGINT,
+                3.0},  // by then the beams have been followed, and their polygons are summed for minutes
+        LongRun{"photometry_by_rays",
+                {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
+                 "--area-cm2=30", "--engine=montecarlo", "--samples=4294967296"},
+                SIGTERM},
+        LongRun{"photometry_seeks_advice",
+                {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
+                 "--area-cm2=1e-3", "--quiet"}},
+        LongRun{
+            "image_detector",
+            {"image", example("rtp_brick_2mm.toml"), "--detector", "--threads=1", "--samples=1000000000", "-o", "i"}},
+        LongRun{"image_camera", {"image", example("rtp_brick_2mm.toml"), "--camera", "--threads=1", "-o", "i"}},
+        LongRun{"image_road", {"image", "finite.toml", "--road", "--threads=1", "--dye=red", "-o", "i"}, SIGTERM},
+        LongRun{"sweep", {"sweep", example("studies/incline_photometry.toml"), "--threads=1", "-o", "s"}},
+        LongRun{
+            "tolerance", {"tolerance", example("studies/tolerance_reflector.toml"), "--threads=1", "-o", "t"}, SIGTERM},
+        LongRun{"optimize", {"optimize", example("studies/element_base.toml"), "--threads=1", "-o", "o"}},
+        LongRun{"inspect", {"inspect", "wide.toml", "--set=array.x_length_mm=320", "-o", "i"}},
+        LongRun{"export", {"export", "wide.toml", "e.stl"}, SIGTERM},
+        LongRun{"turn", {"turn", example("turning/lenslet_array.toml"), "-o", "t"}},
+        LongRun{"fabricate", kFabricate, SIGTERM, 1.0, {kJob}},
+        LongRun{"verify", {"verify", "job.toml", "f/program.ngc", "--threads=1"}, SIGINT, 1.0, {kJob, kFabricate}},
+        LongRun{"roughness", {"roughness", example("facet_quality.toml"), "--threads=1", "--target-error=1e-6"}}),
+    [](const auto& run) { return run.param.name; });
+
+}  // namespace
+}  // namespace retrace::test::interrupt_test

@@ -1,0 +1,221 @@
+// Curves whose angles of incidence are chosen: straight lines between the points follow them, with few points.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/threads.h"
+#include "studies/design/design_reader.h"
+#include "studies/design/total_reflection.h"
+#include "studies/rre/adaptive_curve.h"
+#include "studies/rre/io/rre_files.h"
+#include "studies/rre/rre.h"
+#include "tests/support/closed_forms.h"
+
+namespace retrace::studies::adaptive_curve_test {
+namespace {
+
+constexpr double kIndex = 1.4917;
+const std::vector<std::string> kNoOverrides;
+
+std::string text(const std::string& element, const std::string& array) {
+  return "[element]\n" + element + "\n[array]\n" + array + "\n[body]\nthickness_mm = 0.5\nrefractive_index = 1.4917\n";
+}
+
+Design design(const std::string& element, const std::string& array) {
+  return parse_design(text(element, array), "d.toml", kNoOverrides);
+}
+
+Design prisms() {
+  return design("kind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5", "extent = \"infinite\"");
+}
+
+Design single_prism() {
+  return design("kind = \"rtp\"\nbase_mm = 0.45\nwidth_mm = 0.45", "arrangement = \"single\"");
+}
+
+Design honeycomb() {
+  return design("kind = \"hexagonal_icc\"\naperture_mm = 0.5", "arrangement = \"honeycomb\"\nextent = \"infinite\"");
+}
+
+RreRequest chosen(double low, double high, Engine engine) {
+  RreRequest request;
+  request.incidence_deg.clear();
+  request.incidence_spans = {{low, high}};
+  request.engine = engine;
+  if (engine == Engine::exact) request.target_error = 1e-5;
+  return request;
+}
+
+/// The same at these incidences alone.
+RreRequest fixed(RreRequest request, std::vector<double> incidence_deg) {
+  request.incidence_spans.clear();
+  request.incidence_deg = std::move(incidence_deg);
+  return request;
+}
+
+std::vector<double> grid(double low, double high, double step) {
+  std::vector<double> places;
+  for (double place = low; place <= high + 1e-9; place += step) places.push_back(place);
+  return places;
+}
+
+/// On the straight line between the neighbours. \pre one design, azimuth and cone
+double line_at(const std::vector<RrePoint>& points, double incidence_deg) {
+  const auto right =
+      std::find_if(points.begin(), points.end(), [&](const RrePoint& p) { return p.incidence_deg >= incidence_deg; });
+  if (right == points.begin()) return right->rre;
+  const auto left = std::prev(right);
+  const double share = (incidence_deg - left->incidence_deg) / (right->incidence_deg - left->incidence_deg);
+  return (1.0 - share) * left->rre + share * right->rre;
+}
+
+/// Straight lines follow the curve. \return how many points
+std::size_t expect_followed(const Design& given, RreRequest request, double step_deg) {
+  const CurveSpan span = request.incidence_spans.front();
+  const RreResult curve = RreStudy({given}, request).run();
+  const RreResult dense = RreStudy({given}, fixed(request, grid(span.low, span.high, step_deg))).run();
+  EXPECT_TRUE(curve.complete);
+  EXPECT_TRUE(std::is_sorted(curve.points.begin(), curve.points.end(),
+                             [](const RrePoint& a, const RrePoint& b) { return a.incidence_deg < b.incidence_deg; }));
+  EXPECT_EQ(curve.points.front().incidence_deg, span.low);
+  EXPECT_EQ(curve.points.back().incidence_deg, span.high);
+  for (const RrePoint& p : dense.points)
+    EXPECT_NEAR(line_at(curve.points, p.incidence_deg), p.rre, 1.2e-3 + 3.0 * p.std_error) << p.incidence_deg;
+  return curve.points.size();
+}
+
+TEST(AdaptiveCurve, FollowsPrismsAtAnObliqueAzimuth) {
+  RreRequest request = chosen(-40, 40, Engine::exact);
+  request.azimuth_deg = {25.0};
+  expect_followed(prisms(), request, 0.1);
+}
+
+TEST(AdaptiveCurve, FollowsASinglePrism) {
+  expect_followed(single_prism(), chosen(-40, 40, Engine::exact), 0.1);
+}
+
+TEST(AdaptiveCurve, FollowsAHoneycomb) {
+  RreRequest request = chosen(-26, -18, Engine::montecarlo);
+  request.target_error = 5e-4;
+  expect_followed(honeycomb(), request, 0.25);
+}
+
+/// Closed form: light meets the facet that it falls on most squarely at 45 degrees less its angle inside.
+TEST(AdaptiveCurve, KneeOfPrismsIsWhereTotalReflectionEnds) {
+  const double limit_deg =
+      std::asin(kIndex * std::sin(std::numbers::pi / 4.0 - std::asin(1.0 / kIndex))) / testing::kDeg;
+  const RreResult curve = RreStudy({prisms()}, chosen(0, 20, Engine::exact)).run();
+  // The steepest fall begins at the knee.
+  double steepest = 0.0;
+  double knee_deg = 0.0;
+  for (std::size_t i = 1; i < curve.points.size(); ++i) {
+    const RrePoint& left = curve.points[i - 1];
+    const RrePoint& right = curve.points[i];
+    const double slope = (left.rre - right.rre) / (right.incidence_deg - left.incidence_deg);
+    if (slope > steepest) knee_deg = left.incidence_deg;
+    steepest = std::max(steepest, slope);
+  }
+  EXPECT_NEAR(knee_deg, limit_deg, 0.01);
+  EXPECT_GT(steepest, 1.0) << "per degree";
+}
+
+TEST(AdaptiveCurve, KinksOfPrismsComeInPairsAboutTheNormal) {
+  const double limit_deg =
+      std::asin(kIndex * std::sin(std::numbers::pi / 4.0 - std::asin(1.0 / kIndex))) / testing::kDeg;
+  const auto edges = total_reflection_edges_deg(prisms().part, kIndex, 1.0, Angle{});
+  ASSERT_FALSE(edges.empty());
+  for (const double edge : edges) EXPECT_NEAR(std::abs(edge), limit_deg, 1e-9);
+  EXPECT_NEAR(edges.front(), -edges.back(), 1e-12);
+}
+
+/// Several designs and azimuths share the incidences; the numbers are those of a list, at any number of threads.
+TEST(AdaptiveCurve, ValuesAreThoseOfAList) {
+  RreRequest request = chosen(-10, 10, Engine::montecarlo);
+  request.azimuth_deg = {30.0, 0.0};
+  request.rays = 4096;
+  request.incidence_deg = {15.0, 3.3};
+  const std::vector<Design> designs = {single_prism(), prisms()};
+  RreResult curve = RreStudy(designs, request).run();
+  std::vector<double> places;
+  for (const RrePoint& p : curve.points)
+    if (p.design == 0 && p.azimuth_deg == 30.0) places.push_back(p.incidence_deg);
+  EXPECT_EQ(std::count(places.begin(), places.end(), 3.3), 1);
+  EXPECT_EQ(places.back(), 15.0);
+  RreResult list = RreStudy(designs, fixed(request, places)).run();
+  RreResult alone;
+  raytrace::run_with_threads(1, [&] { alone = RreStudy(designs, request).run(); });
+  curve.elapsed_s = list.elapsed_s = alone.elapsed_s = 0.0;
+  EXPECT_EQ(rre_json(curve), rre_json(list));
+  EXPECT_EQ(rre_json(curve), rre_json(alone));
+}
+
+class Watch : public Progress {
+ public:
+  void at(double share) override {
+    EXPECT_GE(share, last);
+    last = share;
+    if (share > 0.9 && cancel != nullptr) cancel->request();
+  }
+  double last = 0.0;
+  Cancellation* cancel = nullptr;
+};
+
+TEST(AdaptiveCurve, InterruptedRunKeepsWhatIsFinishedInOrder) {
+  Cancellation cancel;
+  Watch watch;
+  watch.cancel = &cancel;
+  const RreResult result = RreStudy({prisms()}, chosen(-40, 40, Engine::exact)).run(&watch, &cancel);
+  EXPECT_FALSE(result.complete);
+  EXPECT_GT(result.points.size(), 30U);
+  EXPECT_LT(watch.last, 1.0);
+}
+
+TEST(AdaptiveCurve, FootprintsAndFarFieldsFollowThePoints) {
+  RreRequest request = chosen(-6, -3, Engine::exact);
+  request.footprint = request.far_field = request.derivatives = true;
+  const RreResult result = RreStudy({prisms()}, request).run();
+  ASSERT_EQ(result.returned.size(), result.points.size());
+  for (std::size_t i = 0; i < result.points.size(); ++i)
+    EXPECT_EQ(result.returned[i].at.incidence_deg, result.points[i].incidence_deg);
+}
+
+/// Curves that are known, without a tracer.
+template <typename Function>
+std::vector<double> places_for(AdaptiveCurve& curve, const Function& f) {
+  std::vector<double> all;
+  for (auto places = curve.next(); !places.empty(); places = curve.next())
+    for (const double place : places) {
+      all.push_back(place);
+      curve.add(place, f(place));
+    }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+TEST(AdaptiveCurve, NoPlaceIsLookedAtTwice) {
+  AdaptiveCurve curve({{-10, 5}, {0, 20}, {30, 31}}, {1.0, 1.0 + 1e-9}, {3, 40, 0}, 1e-3);
+  const auto places = places_for(curve, [](double x) { return CurveValue{std::sqrt(std::abs(x - 1.0)), 0.0}; });
+  EXPECT_EQ(std::adjacent_find(places.begin(), places.end()), places.end());
+  for (const double place : {-10.0, 0.0, 1.0, 3.0, 20.0, 30.0, 31.0, 40.0})
+    EXPECT_TRUE(std::binary_search(places.begin(), places.end(), place)) << place;
+  EXPECT_EQ(std::count_if(places.begin(), places.end(), [](double x) { return x > 20.0 && x < 30.0; }), 0);
+  EXPECT_EQ(curve.worst_left(), 0.0);
+}
+
+/// 100 steps ask for more places than there may be: the search ends and says so.
+TEST(AdaptiveCurve, EndsAtTheMostPlacesAndSaysWhatIsLeft) {
+  AdaptiveCurve curve({{0, 100}}, {}, {}, 1e-3);
+  const auto places = places_for(curve, [](double x) { return CurveValue{std::floor(x + 0.05) / 100.0, 0.0}; });
+  EXPECT_EQ(places.size(), AdaptiveCurve::kMostPlaces);
+  EXPECT_GE(curve.worst_left(), 5e-4);
+}
+
+TEST(AdaptiveCurve, NoiseIsNotFollowed) {
+  AdaptiveCurve curve({{0, 20}}, {}, {}, 1e-3);
+  const auto places = places_for(curve, [](double x) { return CurveValue{0.01 * std::sin(1e4 * x), 0.01}; });
+  EXPECT_EQ(places.size(), 17U);
+}
+
+}  // namespace
+}  // namespace retrace::studies::adaptive_curve_test

@@ -1,0 +1,134 @@
+// Which engine `auto` takes, and what exact values are worth that leave some power behind.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "raytrace/threads.h"
+#include "studies/design/design_reader.h"
+#include "studies/rre/io/rre_files.h"
+#include "studies/rre/rre.h"
+
+namespace retrace::testing::engine_choice_test {
+namespace {
+
+using namespace retrace::studies;
+using raytrace::Account;
+
+constexpr const char* kHoneycomb = R"(
+[element]
+kind = "hexagonal_icc"
+aperture_mm = 2.5
+[array]
+extent = "infinite"
+[body]
+thickness_mm = 2
+refractive_index = 1.49
+)";
+
+constexpr const char* kBricks = R"(
+[element]
+kind = "rtp"
+base_mm = 0.45
+width_mm = 0.45
+[array]
+arrangement = "offset"
+extent = "infinite"
+[body]
+thickness_mm = 2
+refractive_index = 1.4917
+)";
+
+RreResult run(const std::string& text, const std::vector<std::string>& overrides, RreRequest request,
+              unsigned threads = 0) {
+  RreResult result;
+  const RreStudy study({parse_design(text, "design", overrides)}, std::move(request));
+  raytrace::run_with_threads(threads, [&] { result = study.run(); });
+  return result;
+}
+
+RreRequest at(std::vector<double> incidence_deg, Engine engine, std::optional<double> target_error) {
+  RreRequest request;
+  request.incidence_deg = std::move(incidence_deg);
+  request.azimuth_deg = {17.0};
+  request.engine = engine;
+  request.target_error = target_error;
+  return request;
+}
+
+TEST(EngineChoice, WhatIsTruncatedBoundsTheExactValue) {
+  for (const char* text : {kHoneycomb, kBricks})
+    for (const double goal : {1e-2, 1e-3, 1e-4}) {
+      const RreResult rough = run(text, {}, at({0.0, 12.0}, Engine::exact, goal));
+      const RreResult fine = run(text, {}, at({0.0, 12.0}, Engine::exact, 1e-7));
+      for (std::size_t k = 0; k < rough.points.size(); ++k) {
+        const RrePoint& p = rough.points[k];
+        EXPECT_LE(p.ledger[Account::truncated], goal);
+        EXPECT_LE(p.rre, fine.points[k].rre + 1e-7);
+        EXPECT_GE(p.rre + p.ledger[Account::truncated], fine.points[k].rre - 1e-7);
+        EXPECT_NEAR(p.ledger.total(), 1.0, 1e-9);
+        EXPECT_EQ(p.std_error, 0.0);
+      }
+    }
+}
+
+TEST(EngineChoice, ExactByNameLeavesNothingThatShows) {
+  for (const RrePoint& p : run(kBricks, {}, at({0.0, 5.0}, Engine::exact, std::nullopt)).points)
+    EXPECT_LE(p.ledger[Account::truncated], 1e-10);
+}
+
+TEST(EngineChoice, OneHardDirectionLeavesTheOthersExact) {
+  const RreResult found = run(kHoneycomb, {}, at({0.0, 20.0}, Engine::automatic, 1e-4));
+  EXPECT_EQ(found.points[0].engine, "exact");
+  EXPECT_EQ(found.points[1].engine, "cell");
+  EXPECT_EQ(found.engine, kMixedEngines);
+  EXPECT_EQ(found.points[0].std_error, 0.0);
+  EXPECT_LE(found.points[1].std_error, 1e-4);
+}
+
+TEST(EngineChoice, AgreesWithTheExactEngineWithinWhatItSays) {
+  for (const char* text : {kHoneycomb, kBricks}) {
+    const RreResult chosen = run(text, {}, at({3.0, 12.0, 30.0}, Engine::automatic, 1e-3));
+    const RreResult fine = run(text, {}, at({3.0, 12.0, 30.0}, Engine::exact, 1e-6));
+    for (std::size_t k = 0; k < chosen.points.size(); ++k) {
+      const RrePoint& p = chosen.points[k];
+      EXPECT_GE(fine.points[k].rre, p.rre - 4.0 * p.std_error - 1e-6) << p.incidence_deg << p.engine;
+      EXPECT_LE(fine.points[k].rre, p.rre + p.ledger[Account::truncated] + 4.0 * p.std_error + 1e-6)
+          << p.incidence_deg << p.engine;
+    }
+  }
+}
+
+TEST(EngineChoice, IsTheSameAtAnyNumberOfThreads) {
+  const std::vector<std::string> white = {"light.spectrum=A"};
+  const auto text = [&](unsigned threads) {
+    RreResult found = run(kHoneycomb, white, at({0.0, 10.0, 25.0}, Engine::automatic, 1e-3), threads);
+    found.elapsed_s = 0.0;
+    return rre_json(found);
+  };
+  const std::string alone = text(1);
+  EXPECT_EQ(text(2), alone);
+  EXPECT_EQ(text(5), alone);
+}
+
+// Light that is trapped runs nearly level, and was looked for as far as it may go: thousands of kilometres.
+TEST(EngineChoice, AWetBackAtNormalIncidenceEnds) {
+  for (const char* index : {"body.back_index=1.2", "body.back_index=1.333", "body.back_index=1.45"}) {
+    RreRequest beams = at({0.0}, Engine::exact, std::nullopt);
+    beams.azimuth_deg = {0.0};
+    beams.cutoff = 3e-5;
+    const RrePoint exact = run(kBricks, {index}, beams).points.front();
+    RreRequest rays = beams;
+    rays.engine = Engine::montecarlo;
+    rays.cutoff = std::nullopt;
+    rays.target_error = 1e-4;
+    const RrePoint sampled = run(kBricks, {index}, rays).points.front();
+    EXPECT_NEAR(exact.ledger.total(), 1.0, 1e-9) << index;
+    EXPECT_LT(exact.ledger[Account::truncated], 0.05) << index;
+    EXPECT_LE(exact.rre, sampled.rre + 4.0 * sampled.std_error) << index;
+    EXPECT_GE(exact.rre + exact.ledger[Account::truncated], sampled.rre - 4.0 * sampled.std_error) << index;
+  }
+}
+
+}  // namespace
+}  // namespace retrace::testing::engine_choice_test

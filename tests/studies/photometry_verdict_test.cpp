@@ -1,0 +1,167 @@
+// Verdicts of photometry where diffraction is left out, errors are large, or facets are rough.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <tuple>
+
+#include "studies/photometry/io/photometry_files.h"
+#include "tests/studies/photometric_requests.h"
+
+namespace retrace::studies::photometry_verdict_test {
+namespace {
+
+using namespace photometric_requests;
+using retrace::testing::kPmma;
+using std::numbers::pi;
+
+PhotometricPoint point_of(double value, double std_error) {
+  PhotometricPoint point;
+  point.r_i_mcd_per_lx = value;
+  point.std_error_mcd_per_lx = std_error;
+  point.limit_mcd_per_lx = 10.0;
+  return point;
+}
+
+TEST(PhotometryVerdict, PointsNearerToTheirLimitThanTwoErrorsAreUndetermined) {
+  EXPECT_EQ(point_of(10.0, 0.0).verdict(), Verdict::pass);
+  EXPECT_EQ(point_of(12.0, 1.0).verdict(), Verdict::pass);
+  EXPECT_EQ(point_of(11.99, 1.0).verdict(), Verdict::undetermined);
+  EXPECT_EQ(point_of(8.01, 1.0).verdict(), Verdict::undetermined);
+  EXPECT_EQ(point_of(8.0, 1.0).verdict(), Verdict::fail);
+}
+
+TEST(PhotometryVerdict, WhatLacksDiffractionNeitherPassesNorFailsAndALowerBoundNeverFails) {
+  for (const double value : {1.0, 100.0}) {
+    PhotometricPoint point = point_of(value, 0.0);
+    point.lacks_diffraction = true;
+    EXPECT_EQ(point.verdict(), Verdict::undetermined);
+    point.lacks_diffraction = false;
+    point.is_lower_bound = true;
+    EXPECT_EQ(point.verdict(), value > 10.0 ? Verdict::pass : Verdict::undetermined);
+  }
+}
+
+TEST(PhotometryVerdict, AFailDecidesThenAnUndeterminedPoint) {
+  TestProgramme programme;
+  const PhotometricPoint pass = point_of(20.0, 1.0);
+  const PhotometricPoint open = point_of(11.0, 1.0);
+  const PhotometricPoint fail = point_of(5.0, 1.0);
+  EXPECT_EQ(verdict_of({pass, open}, programme), Verdict::undetermined);
+  EXPECT_EQ(verdict_of({open, fail, pass}, programme), Verdict::fail);
+  PhotometricPoint recalled = pass;
+  recalled.asked.status = LimitStatus::recalled;
+  EXPECT_EQ(verdict_of({recalled, open}, programme), Verdict::undetermined);
+}
+
+Design rough(Design design, double sq_nm) {
+  design.texture.model = FacetTexture::Model::harvey_shack;
+  design.texture.roughness_sq_nm = sq_nm;
+  design.texture.correlation_length_um = 20.0;
+  return design;
+}
+
+/// Two points of the lamp's light, with diffraction; limits that smooth cubes of 0.75 arcmin hold.
+PhotometryRequest diffracted_request(double share_of_limits) {
+  PhotometryRequest request = request_of(r150("IA", "red"));
+  request.programme.points.resize(2);
+  for (TestPoint& point : request.programme.points) point.minimum *= share_of_limits;
+  request.area_cm2 = 30.0;
+  request.diffraction = true;
+  request.advice = true;
+  request.rays = 1U << 14;
+  return request;
+}
+
+// A tenth of a nanometre of roughness changes nothing that a laboratory could see.
+TEST(PhotometryVerdict, IsContinuousInTheRoughness) {
+  const Design smooth = design_of(honeycomb(0.75, 0.5));
+  const PhotometryRequest request = diffracted_request(0.5);
+  const PhotometryResult before = run(smooth, request);
+  const PhotometryResult after = run(rough(smooth, 0.1), request);
+  EXPECT_EQ(before.verdict, Verdict::pass);
+  EXPECT_EQ(after.verdict, Verdict::pass);
+  EXPECT_EQ(after.reason, "");
+  ASSERT_EQ(after.points.size(), before.points.size());
+  for (std::size_t k = 0; k < after.points.size(); ++k) {
+    EXPECT_TRUE(after.points[k].is_lower_bound);
+    EXPECT_LE(after.points[k].r_a, before.points[k].r_a);
+    EXPECT_NEAR(after.points[k].r_a, before.points[k].r_a, 1e-4 * before.points[k].r_a);
+  }
+}
+
+// In a flawless cube corner of mirrors at normal incidence every way meets three facets at 54.74 degrees: the mean
+// field is the smooth one times the specular shares, whatever the direction.
+TEST(PhotometryVerdict, MeanFieldIsTheSmoothPatternTimesTheSpecularShares) {
+  const Design smooth = design_of(honeycomb(0.0, 0.5), true);
+  PhotometryRequest request = request_of(points_at({0.1, 1.0 / 3.0}, 1e-3));
+  request.diffraction = true;
+  request.rays = 1U << 12;
+  const PhotometryResult before = run(smooth, request);
+  const double sq_nm = 15.0;
+  const PhotometryResult after = run(rough(smooth, sq_nm), request);
+  const double phase = 4.0 * pi * kPmma * sq_nm * std::sqrt(1.0 / 3.0) / smooth.wavelength_nm;
+  for (std::size_t k = 0; k < 2; ++k) {
+    ASSERT_TRUE(after.points[k].is_lower_bound);
+    EXPECT_NEAR(after.points[k].r_a / before.points[k].r_a, std::exp(-3.0 * phase * phase), 1e-6);
+  }
+}
+
+TEST(PhotometryVerdict, RoughPartsThatTheBoundDoesNotLiftAreUndeterminedAndNothingIsAdvised) {
+  const PhotometryResult result = run(rough(design_of(honeycomb(0.75, 0.5)), 40.0), diffracted_request(1e3));
+  EXPECT_EQ(result.verdict, Verdict::undetermined);
+  EXPECT_EQ(
+      result.reason,
+      "diffraction is left out, as facets that scatter are traced by rays, and counts for cells narrower than 12.9 "
+      "mm");
+  EXPECT_TRUE(result.changes.empty());
+  EXPECT_NE(photometry_table(result).find("verdict: undetermined - diffraction is left out"), std::string::npos);
+  const std::string json = photometry_json(result);
+  EXPECT_NE(json.find("\"verdict\": \"undetermined\""), std::string::npos);
+  EXPECT_NE(json.find("\"reason\": \"diffraction is left out"), std::string::npos);
+}
+
+TEST(PhotometryVerdict, DiffractionThatIsLeftOutIsNamedWhyEver) {
+  const Design smooth = design_of(honeycomb(0.0, 0.5));
+  PhotometryRequest request = diffracted_request(1e-6);
+  const auto reason = [&](const Design& design) {
+    const PhotometryResult result = run(design, request);
+    EXPECT_EQ(result.verdict, Verdict::undetermined);
+    return result.reason;
+  };
+  request.engine = Engine::montecarlo;
+  EXPECT_NE(reason(smooth).find("as the Monte-Carlo engine has none"), std::string::npos);
+  EXPECT_NE(reason(rough(smooth, 0.1)).find("as facets that scatter are traced by rays"), std::string::npos);
+  request.engine = Engine::automatic;
+  request.diffraction = false;
+  EXPECT_NE(reason(smooth).find("as it was not asked for"), std::string::npos);
+}
+
+// Discs of 10' hide what diffraction does to cells of 64 wavelengths over them, 12.9 mm; 13 mm cubes fail and pass by
+// rays.
+TEST(PhotometryVerdict, WideCellsNeedNoDiffraction) {
+  for (const auto& [aperture_mm, limit, verdict] :
+       {std::tuple{13.0, 1e9, Verdict::fail}, {13.0, 1.0, Verdict::pass}, {12.8, 1e9, Verdict::undetermined}}) {
+    PhotometryRequest request = request_of(points_at({0.05}, limit));
+    request.engine = Engine::montecarlo;
+    request.rays = 1U << 14;
+    EXPECT_EQ(run(design_of(honeycomb(0.0, aperture_mm)), request).verdict, verdict) << aperture_mm << " " << limit;
+  }
+}
+
+// Few rays see nothing between the spots, which does not say that nothing is there.
+TEST(PhotometryVerdict, AReceiverThatNoRayMetHasTheErrorOfOne) {
+  PhotometryRequest request = request_of(points_at({1.0}, 100.0));
+  request.engine = Engine::montecarlo;
+  request.rays = 1U << 10;
+  const PhotometryResult result = run(design_of(honeycomb(0.0, 20.0)), request);
+  EXPECT_EQ(result.points[0].r_a, 0.0);
+  EXPECT_EQ(result.verdict, Verdict::undetermined);
+  EXPECT_NE(result.reason.find("two standard errors"), std::string::npos);
+  request.rays = 1U << 13;
+  EXPECT_EQ(run(design_of(honeycomb(0.0, 20.0)), request).verdict, Verdict::fail);
+}
+
+}  // namespace
+}  // namespace retrace::studies::photometry_verdict_test
