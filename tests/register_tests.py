@@ -1,6 +1,9 @@
-"""Writes what ctest runs of one test program: every test by itself, as FOLDER/SUITE.TEST after its source's folder.
+"""Writes what ctest runs of one test program: each suite, as FOLDER/SUITE after its source's folder.
 
     python3 register_tests.py PROGRAM LIST.cmake
+
+Starting a program that links hundreds of libraries takes longer than most tests do, so that the tests of a suite share
+a start. Long suites are cut in parts, FOLDER/SUITE:2 and so on, which run beside each other.
 """
 
 import json
@@ -9,29 +12,35 @@ import subprocess
 import sys
 import tempfile
 
+MOST_TESTS = 12
 # A fixed seed: property tests draw the same cases in every run. RC_PARAMS set by hand tries others.
 PROPERTIES = 'TIMEOUT 1200 ENVIRONMENT "RC_PARAMS=seed=1"'
 
 
-def tests_of(program):
-    """Folder and name of every test."""
+def suites_of(program):
+    """Folder and name of every suite, and the names of its tests."""
     with tempfile.TemporaryDirectory() as folder:
         listed = pathlib.Path(folder, "tests.json")
         subprocess.run([program, "--gtest_list_tests", f"--gtest_output=json:{listed}"], check=True, timeout=60,
                        stdout=subprocess.DEVNULL)
         suites = json.loads(listed.read_text())["testsuites"]
-    return [(pathlib.Path(test["file"]).parent.name, f"{suite['name']}.{test['name']}")
-            for suite in suites for test in suite["testsuite"]]
+    return [(pathlib.Path(suite["testsuite"][0]["file"]).parent.name, suite["name"],
+             [test["name"] for test in suite["testsuite"]]) for suite in suites]
 
 
-def entry(program, folder, test):
-    return (f'add_test([==[{folder}/{test}]==] [==[{program}]==] [==[--gtest_filter={test}]==])\n'
-            f'set_tests_properties([==[{folder}/{test}]==] PROPERTIES {PROPERTIES} WORKING_DIRECTORY [==[{pathlib.Path.cwd()}]==])\n')
+def entries(program, folder, suite, tests):
+    for part in range(0, len(tests), MOST_TESTS):
+        name = f"{folder}/{suite}" + (f":{part // MOST_TESTS + 1}" if part else "")
+        wanted = ":".join(f"{suite}.{test}" for test in tests[part:part + MOST_TESTS])
+        yield (f'add_test([==[{name}]==] [==[{program}]==] [==[--gtest_filter={wanted}]==])\n'
+               f'set_tests_properties([==[{name}]==] PROPERTIES {PROPERTIES} '
+               f'WORKING_DIRECTORY [==[{pathlib.Path.cwd()}]==])\n')
 
 
 def main():
     program, out = sys.argv[1:]
-    pathlib.Path(out).write_text("".join(entry(program, *test) for test in sorted(tests_of(program))))
+    pathlib.Path(out).write_text("".join(text for suite in sorted(suites_of(program))
+                                         for text in entries(program, *suite)))
 
 
 main()

@@ -114,7 +114,9 @@ std::vector<double> AdaptiveCurve::next() {
     for (const Gap& gap : gaps_) {
       const double miss = miss_of(gap);
       const double middle = middle_of(gap.low, gap.high);
-      if (miss > 0.5 * tolerance_) halves.insert(halves.end(), {{gap.low, middle, miss}, {middle, gap.high, miss}});
+      const bool is_straight = miss <= 0.5 * tolerance_;
+      if (is_straight && gap.is_half_of_straight) continue;
+      halves.insert(halves.end(), {{gap.low, middle, miss, is_straight}, {middle, gap.high, miss, is_straight}});
     }
     look_at(std::move(halves));
   }

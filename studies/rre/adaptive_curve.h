@@ -23,9 +23,9 @@ struct CurveSpan {
 /// It begins with the ends of the spans, 0, known kinks, and so many between that none are wider apart than
 /// kWidestGapDeg. Then the middle between neighbours is looked at. One kink between them lies at most twice as far from
 /// the straight line as the middle does, so that half the tolerance is allowed there, and twice the standard error of
-/// the difference besides. Where it is farther off both halves are looked at in the same way. Gaps below
-/// kNarrowestGapDeg are not halved: slopes are infinite where total reflection ends. Places are numbers of few
-/// decimals.
+/// the difference besides. Where it is farther off both halves are looked at in the same way, and once more where it is
+/// not: a middle may lie on the line by chance. Gaps below kNarrowestGapDeg are not halved: slopes are infinite where
+/// total reflection ends. Places are numbers of few decimals.
 class AdaptiveCurve {
  public:
   static constexpr double kWidestGapDeg = 2.5;
@@ -51,7 +51,8 @@ class AdaptiveCurve {
   struct Gap {
     double low = 0.0;
     double high = 0.0;
-    double miss = 0.0;  ///< of the middle of the gap that it was cut from
+    double miss = 0.0;                 ///< of the middle of the gap that it was cut from
+    bool is_half_of_straight = false;  ///< that middle lay on the line
   };
 
   void begin(const CurveSpan& span, const std::vector<double>& kinks);

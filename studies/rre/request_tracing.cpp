@@ -130,7 +130,7 @@ TracedRequest trace_chosen(const std::vector<Design>& designs, const std::vector
   DirectionTracing tracing(designs, models, request, cancel);
   RoundProgress part(progress);
   AdaptiveCurve curve(request.incidence_spans, kinks_of(designs, models, request), request.incidence_deg,
-                      std::max(kCurveTolerance, request.target_error.value_or(kUsualTargetError)));
+                      std::max(kCurveTolerance, target_error_of(request)));
   auto places = curve.next();
   while (traced.complete && !places.empty()) {
     std::vector<Direction> round = directions_of(models, request, places);

@@ -68,10 +68,14 @@ void check_light(const Design& design, const OpticalModel& model, const RreReque
 std::string missed_target(const Design& design, const RrePoint& at, const RreRequest& request) {
   return fmt::format("{}: the standard error at incidence {}, azimuth {} is above the target of {}",
                      design.source_name(), shortest(at.incidence_deg), shortest(at.azimuth_deg),
-                     shortest(request.target_error.value_or(kUsualTargetError)));
+                     shortest(target_error_of(request)));
 }
 
 }  // namespace
+
+double target_error_of(const RreRequest& request) {
+  return request.target_error.value_or(request.incidence_spans.empty() ? kUsualTargetError : 0.5 * kCurveTolerance);
+}
 
 Engine engine_from_name(std::string_view name) {
   for (const auto& [known, engine] : kEngines)
@@ -162,7 +166,7 @@ namespace {
 /// Says so if a cut-off took more than the error that was asked for, or than shows in a table where none was.
 void warn_of_truncation(const RreRequest& request, RreResult& result) {
   constexpr double kShows = 1e-6;
-  const double allowed = request.cutoff ? kShows : std::max(kShows, request.target_error.value_or(kUsualTargetError));
+  const double allowed = request.cutoff ? kShows : std::max(kShows, target_error_of(request));
   const auto truncated = [](const RrePoint& p) { return p.ledger[raytrace::Account::truncated]; };
   const auto worst =
       std::max_element(result.points.begin(), result.points.end(),

@@ -48,8 +48,8 @@ struct RreRequest {
   Engine engine = Engine::automatic;
   std::optional<std::uint64_t> rays;  ///< per point; else until target_error is reached
   /// Of RRE as a fraction: the standard error of Monte Carlo, and the power that the exact engine may leave in
-  /// `truncated`. By default kUsualTargetError; 1e-10 where the exact engine is asked for by name, or what only it can
-  /// tell.
+  /// `truncated`. By default kUsualTargetError, or half of kCurveTolerance where incidences are chosen; 1e-10 where the
+  /// exact engine is asked for by name, or what only it can tell.
   std::optional<double> target_error;
   raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< plain: on Embree
   /// Least power followed, as a share of the incident. By default 1e-10 (Monte Carlo), or as little as target_error
@@ -60,6 +60,9 @@ struct RreRequest {
   bool footprint = false;    ///< exact engine: which regions of the entrance face send light back
   bool far_field = false;    ///< exact engine: the directions in which light leaves the entrance face
 };
+
+/// The target error, or what stands in its place where none is given.
+double target_error_of(const RreRequest& request);
 
 /// RRE at one of the wavelengths of a spectrum.
 struct SpectralRre {

@@ -46,7 +46,7 @@ raytrace::Sampling sampling_of(const RreRequest& request, double weight, std::si
   raytrace::Sampling sampling;
   sampling.kind = request.sampling;
   sampling.seed = request.seed + kGolden * static_cast<std::uint32_t>(wavelength);
-  sampling.target_error = request.target_error.value_or(kUsualTargetError) / std::sqrt(weight);
+  sampling.target_error = target_error_of(request) / std::sqrt(weight);
   if (request.rays)
     sampling.rays = std::max<std::uint64_t>(
         1, static_cast<std::uint64_t>(std::llround(weight * static_cast<double>(*request.rays))));
@@ -101,7 +101,7 @@ raytrace::BeamPolicy beam_policy(const RreRequest& request) {
   raytrace::BeamPolicy policy;
   policy.cutoff = request.cutoff;
   const bool is_free = request.engine == Engine::automatic && !asks_for_more(request);
-  if (request.target_error || is_free) policy.truncated_goal = request.target_error.value_or(kUsualTargetError);
+  if (request.target_error || is_free) policy.truncated_goal = target_error_of(request);
   if (is_free) policy.spare_work = kSpareWork;
   return policy;
 }

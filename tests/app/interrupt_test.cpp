@@ -83,9 +83,9 @@ INSTANTIATE_TEST_SUITE_P(
         LongRun{"photometry_seeks_advice",
                 {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=1e-3", "--quiet"}},
-        LongRun{
-            "image_detector",
-            {"image", example("rtp_brick_2mm.toml"), "--detector", "--threads=1", "--samples=1000000000", "-o", "i"}},
+        LongRun{"image_detector",
+                {"image", example("rtp_brick_2mm.toml"), "--detector", "--threads=1", "--engine=montecarlo",
+                 "--samples=1000000000", "-o", "i"}},
         LongRun{"image_camera", {"image", example("rtp_brick_2mm.toml"), "--camera", "--threads=1", "-o", "i"}},
         LongRun{"image_road", {"image", "finite.toml", "--road", "--threads=1", "--dye=red", "-o", "i"}, SIGTERM},
         LongRun{"sweep", {"sweep", example("studies/incline_photometry.toml"), "--threads=1", "-o", "s"}},

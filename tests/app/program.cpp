@@ -28,6 +28,20 @@ std::string content(std::FILE* file) {
   return text;
 }
 
+/// For tools/same_bytes: in the folder that RETRACE_KEEP_RUNS names, if it does, what a run was given, said and left.
+void keep(const TemporaryFolder& folder, const Arguments& arguments, const Outcome& outcome) {
+  const char* kept = std::getenv("RETRACE_KEEP_RUNS");
+  if (kept == nullptr) return;
+  static int runs = 0;
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const fs::path place = fs::path(kept) / test->test_suite_name() / test->name() / std::to_string(++runs);
+  fs::create_directories(place);
+  fs::copy(folder.path(), place / "files", fs::copy_options::recursive | fs::copy_options::copy_symlinks);
+  std::ofstream said(place / "said", std::ios::binary);
+  for (std::size_t k = 1; k < arguments.size(); ++k) said << arguments[k] << '\n';
+  said << "code " << outcome.code << '\n' << outcome.out << '\n' << outcome.err;
+}
+
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
@@ -138,7 +152,9 @@ Outcome Child::wait(std::chrono::seconds limit) {
 
 Outcome retrace(const TemporaryFolder& folder, Arguments arguments, const std::string& input, const std::string& out) {
   arguments.insert(arguments.begin(), RETRACE_PROGRAM);
-  return Child(folder.path(), arguments, input, Input::text, out).wait();
+  Outcome outcome = Child(folder.path(), arguments, input, Input::text, out).wait();
+  keep(folder, arguments, outcome);
+  return outcome;
 }
 
 Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std::string& input) {

@@ -29,14 +29,15 @@ RreResult some_result() {
   result.designs[0].source = "a.toml";
   result.designs[1].source = "b.toml";
   result.designs[1].title = "B, \"the\" \x1b[1m\nsecond";
+  result.engine = "embree";
   result.engine_requested = "auto";
   result.seed = 4294967295;
   result.rays = std::uint64_t{1} << 60;
   result.elapsed_s = 1.5;
   result.warnings = {"b.toml: a \"warning\""};
   for (std::size_t d = 0; d < 2; ++d) {
-    RrePoint point{d,      -10.0, 0.1 + 0.2, 587.56, 0.5, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(),
-                   "cell", {},    {}};
+    RrePoint point{d,        -10.0, 0.1 + 0.2, 587.56, 0.5, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(),
+                   "embree", {},    {}};
     for (std::size_t k = 0; k < kAccountCount; ++k) point.ledger.power[k] = 1e-3 * static_cast<double>(k) + 1e-17;
     result.points.push_back(point);
   }
