@@ -26,6 +26,18 @@ thickness_mm = 2
 refractive_index = 1.49
 )";
 
+constexpr const char* kSingle = R"(
+[element]
+kind = "rtp"
+base_mm = 0.45
+width_mm = 0.45
+[array]
+arrangement = "single"
+[body]
+thickness_mm = 2
+refractive_index = 1.4917
+)";
+
 constexpr const char* kBricks = R"(
 [element]
 kind = "rtp"
@@ -57,43 +69,45 @@ RreRequest at(std::vector<double> incidence_deg, Engine engine, std::optional<do
 }
 
 TEST(EngineChoice, WhatIsTruncatedBoundsTheExactValue) {
-  for (const char* text : {kHoneycomb, kBricks})
+  constexpr double left = 1e-5;
+  for (const char* text : {kHoneycomb, kBricks}) {
+    const RreResult fine = run(text, {}, at({0.0, 12.0}, Engine::exact, left));
     for (const double goal : {1e-2, 1e-3, 1e-4}) {
       const RreResult rough = run(text, {}, at({0.0, 12.0}, Engine::exact, goal));
-      const RreResult fine = run(text, {}, at({0.0, 12.0}, Engine::exact, 1e-7));
       for (std::size_t k = 0; k < rough.points.size(); ++k) {
         const RrePoint& p = rough.points[k];
         EXPECT_LE(p.ledger[Account::truncated], goal);
-        EXPECT_LE(p.rre, fine.points[k].rre + 1e-7);
-        EXPECT_GE(p.rre + p.ledger[Account::truncated], fine.points[k].rre - 1e-7);
+        EXPECT_LE(p.rre, fine.points[k].rre + left);
+        EXPECT_GE(p.rre + p.ledger[Account::truncated], fine.points[k].rre - 1e-9);
         EXPECT_NEAR(p.ledger.total(), 1.0, 1e-9);
         EXPECT_EQ(p.std_error, 0.0);
       }
     }
+  }
 }
 
 TEST(EngineChoice, ExactByNameLeavesNothingThatShows) {
-  for (const RrePoint& p : run(kBricks, {}, at({0.0, 5.0}, Engine::exact, std::nullopt)).points)
+  for (const RrePoint& p : run(kSingle, {}, at({0.0, 5.0}, Engine::exact, std::nullopt)).points)
     EXPECT_LE(p.ledger[Account::truncated], 1e-10);
 }
 
 TEST(EngineChoice, OneHardDirectionLeavesTheOthersExact) {
-  const RreResult found = run(kHoneycomb, {}, at({0.0, 20.0}, Engine::automatic, 1e-4));
+  const RreResult found = run(kHoneycomb, {}, at({0.0, 20.0}, Engine::automatic, 1e-3));
   EXPECT_EQ(found.points[0].engine, "exact");
   EXPECT_EQ(found.points[1].engine, "cell");
   EXPECT_EQ(found.engine, kMixedEngines);
   EXPECT_EQ(found.points[0].std_error, 0.0);
-  EXPECT_LE(found.points[1].std_error, 1e-4);
+  EXPECT_LE(found.points[1].std_error, 1e-3);
 }
 
 TEST(EngineChoice, AgreesWithTheExactEngineWithinWhatItSays) {
   for (const char* text : {kHoneycomb, kBricks}) {
     const RreResult chosen = run(text, {}, at({3.0, 12.0, 30.0}, Engine::automatic, 1e-3));
-    const RreResult fine = run(text, {}, at({3.0, 12.0, 30.0}, Engine::exact, 1e-6));
+    const RreResult fine = run(text, {}, at({3.0, 12.0, 30.0}, Engine::exact, 1e-5));
     for (std::size_t k = 0; k < chosen.points.size(); ++k) {
       const RrePoint& p = chosen.points[k];
-      EXPECT_GE(fine.points[k].rre, p.rre - 4.0 * p.std_error - 1e-6) << p.incidence_deg << p.engine;
-      EXPECT_LE(fine.points[k].rre, p.rre + p.ledger[Account::truncated] + 4.0 * p.std_error + 1e-6)
+      EXPECT_GE(fine.points[k].rre, p.rre - 4.0 * p.std_error - 1e-5) << p.incidence_deg << p.engine;
+      EXPECT_LE(fine.points[k].rre, p.rre + p.ledger[Account::truncated] + 4.0 * p.std_error)
           << p.incidence_deg << p.engine;
     }
   }

@@ -11,7 +11,7 @@
 namespace retrace::test {
 
 /// A study whose points take a few milliseconds each.
-inline std::string sweep_study(int points, int samples = 20000) {
+inline std::string sweep_study(int points, int samples = 8000) {
   return "schema = \"retrace.study/1\"\ndesign = \"" + example("honeycomb_infinite.toml") +
          "\"\n[[parameter]]\nkey = \"analysis.incidence_deg\"\nfrom = 0\nto = 40\ncount = " + std::to_string(points) +
          "\n[[quantity]]\nkind = \"rre\"\n[analysis]\nengine = \"cell\"\nsamples = " + std::to_string(samples) + "\n";
