@@ -192,8 +192,8 @@ TEST(BeamTracer, AgreesWithMonteCarlo) {
   for (std::size_t k = 0; k < kCases; ++k) {
     const RandomCase& c = cases[k];
     const Part part = build_part(c.spec);
-    // 1e-4 is below the Monte Carlo's own error in nearly all of them.
-    const Ledger exact = beams(part, c.optics, c.illumination, 2.0, 2e-4);
+    // What is cut off is below the Monte Carlo's own error in nearly all of them.
+    const Ledger exact = beams(part, c.optics, c.illumination, 2.0, 5e-4);
     EXPECT_NEAR(exact.total(), 1.0, 1e-9) << k;
     EXPECT_GT(exact[Account::truncated], -1e-9) << k;
     const auto agrees = [&](MonteCarlo::Engine engine, std::uint64_t count) {
