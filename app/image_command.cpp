@@ -112,7 +112,8 @@ ExitCode exit_code_of(bool complete) {
   return ExitCode::interrupted;
 }
 
-/// Before any work is done for pictures that could not be written.
+/// Before any work is done for pictures that could not be written; after what is cheaper to check, as what writes them
+/// takes half a second to load.
 void check_can_write(const CommandLine& line) {
   if (!line.common.out.empty() && !report::can_write_pictures())
     throw InputError("this program was built without OpenImageIO, which writes pictures");
@@ -121,6 +122,7 @@ void check_can_write(const CommandLine& line) {
 ExitCode run_detector(const CommandLine& line, studies::Design design) {
   const std::vector<std::string> inputs = files_read({design});
   const studies::DetectorStudy study(std::move(design), detector_request(line));
+  check_can_write(line);
   const OrderlyInterrupt interrupt;
   prepare_outputs(line.common,
                   {inputs, "image.json", {"irradiance.exr", "irradiance.png", "angular.exr", "angular.png"}});
@@ -167,6 +169,7 @@ class Preview {
 ExitCode run_camera(const CommandLine& line, studies::Design design) {
   const std::vector<std::string> inputs = files_read({design});
   const studies::CameraStudy study(std::move(design), camera_request(line));
+  check_can_write(line);
   const OrderlyInterrupt interrupt;
   std::vector<std::string> names = {"camera.exr", "camera.png"};
   if (line.image.false_colour) names.emplace_back("false_colour.png");
@@ -215,6 +218,7 @@ ExitCode run_road(const CommandLine& line, studies::Design design) {
     inputs.push_back(dye.string());
   }
   const studies::RoadStudy study(std::move(design), std::move(request), line.common.seed);
+  check_can_write(line);
   const OrderlyInterrupt interrupt;
   prepare_outputs(line.common, {inputs, "image.json", {"road.png", "road.exr"}});
   studies::RoadResult result;
@@ -240,7 +244,6 @@ ExitCode run_image_command(const CommandLine& line) {
   const ImageOptions& asked = line.image;
   if (static_cast<int>(asked.detector) + static_cast<int>(asked.camera) + static_cast<int>(asked.road) != 1)
     throw InputError("image: one of --detector, --camera and --road is required; see retrace image --help");
-  check_can_write(line);
   studies::Design design = studies::read_design(line.image.design, line.common.overrides);
   if (asked.road) return run_road(line, std::move(design));
   return asked.detector ? run_detector(line, std::move(design)) : run_camera(line, std::move(design));

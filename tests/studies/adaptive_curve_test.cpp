@@ -85,9 +85,10 @@ std::size_t expect_followed(const Design& given, RreRequest request, double step
   return curve.points.size();
 }
 
-/// Farther from their knee endless prisms have features narrower than 0.6 degrees.
+/// Farther from their knee endless prisms have features narrower than 0.6 degrees. An even grid as good at the knee
+/// would have 1300 points.
 TEST(AdaptiveCurve, FollowsPrismsPastTheirKnee) {
-  EXPECT_LT(expect_followed(prisms(), chosen(-2, 11, Engine::exact), 0.05), 250U);
+  EXPECT_LT(expect_followed(prisms(), chosen(-2, 11, Engine::exact), 0.05), 350U);
 }
 
 TEST(AdaptiveCurve, FollowsPrismsAtAnObliqueAzimuth) {
