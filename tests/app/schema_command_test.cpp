@@ -17,7 +17,7 @@ TEST(SchemaCommand, ListsTheFormats) {
             "name       schema               title\n"
             "machine    retrace.machine/1    Machine with five axes\n"
             "process    retrace.process/1    Process of a fabrication job\n");
-  const Json json = retrace_json(folder, {"schema", "--json", "-"});
+  const Json json = retrace_json(folder, {"schema"});
   EXPECT_EQ(json["schema"], "retrace.formats/1");
   EXPECT_EQ(json["formats"][0],
             (Json{{"name", "machine"}, {"schema", "retrace.machine/1"}, {"title", "Machine with five axes"}}));
@@ -25,11 +25,12 @@ TEST(SchemaCommand, ListsTheFormats) {
 
 TEST(SchemaCommand, PrintsJsonSchema) {
   const TemporaryFolder folder;
-  const Outcome outcome = retrace(folder, {"schema", "process", "-o", "out"});
+  const Outcome outcome = retrace(folder, {"schema", "process"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json json = Json::parse(outcome.out);
   EXPECT_EQ(json["title"], "Process of a fabrication job");
   EXPECT_EQ(json["properties"]["dwell_s"]["default"], 0.1);
+  EXPECT_EQ(retrace(folder, {"schema", "process", "-o", "out", "--quiet"}).out, "");
   EXPECT_EQ(folder.read("out/process.schema.json"), outcome.out);
 }
 
