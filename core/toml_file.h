@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,20 +10,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/number_range.h"
 
 namespace retrace {
-
-/// What a number of a file may be. Infinite bounds are not named in messages.
-struct NumberRange {
-  double low = -std::numeric_limits<double>::infinity();
-  bool low_included = true;
-  double high = std::numeric_limits<double>::infinity();
-  bool high_included = true;
-
-  bool contains(double value) const;
-  /// "> 0", ">= 60 and <= 120"; "any number" without bounds
-  std::string text() const;
-};
 
 /// One table of a TOML file. It checks every value it hands out and remembers which keys were asked for. A table that
 /// is not there reads as empty. Cheap to copy; copies share that memory. Every function throws InputError with file,
@@ -33,6 +21,8 @@ class TomlTable {
  public:
   bool exists() const;
   bool has(std::string_view key) const;
+  /// Where the table begins; of one that is not there, where it would be missed.
+  InputLocation where() const;
   InputLocation where(std::string_view key) const;
   [[noreturn]] void fail(std::string_view key, std::string_view text) const;
 
@@ -42,6 +32,8 @@ class TomlTable {
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const NumberRange& range = {});
   std::vector<double> required_numbers(std::string_view key, std::size_t count, const NumberRange& range = {});
   /// A list of lists of exactly `columns` numbers.
+  std::optional<std::vector<std::vector<double>>> number_rows(std::string_view key, std::size_t columns,
+                                                              const NumberRange& range = {});
   std::vector<std::vector<double>> required_number_rows(std::string_view key, std::size_t columns,
                                                         const NumberRange& range = {});
   /// A number without fraction. \pre the range's ends are whole and within 2^53

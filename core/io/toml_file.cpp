@@ -44,18 +44,6 @@ std::string shown(const toml::node& node) {
   return node.is_table() ? "a table" : "a date or time";
 }
 
-bool NumberRange::contains(double value) const {
-  return (low_included ? value >= low : value > low) && (high_included ? value <= high : value < high);
-}
-
-std::string NumberRange::text() const {
-  std::string result;
-  if (std::isfinite(low)) result += (low_included ? ">= " : "> ") + shortest(low);
-  if (std::isfinite(low) && std::isfinite(high)) result += " and ";
-  if (std::isfinite(high)) result += (high_included ? "<= " : "< ") + shortest(high);
-  return result.empty() ? "any number" : result;
-}
-
 /// A table that knows its file and its name. The root keeps the tree alive.
 struct TomlTable::Hidden {
   std::shared_ptr<const toml::table> tree;
@@ -112,6 +100,10 @@ bool TomlTable::has(std::string_view key) const {
   return hidden_->find(key) != nullptr;
 }
 
+InputLocation TomlTable::where() const {
+  return {hidden_->file, hidden_->line, hidden_->name};
+}
+
 InputLocation TomlTable::where(std::string_view key) const {
   const toml::node* const node = hidden_->find(key);
   return node != nullptr ? hidden_->location(*node, key)
@@ -152,11 +144,11 @@ std::vector<double> TomlTable::required_numbers(std::string_view key, std::size_
   return *std::move(values);
 }
 
-std::vector<std::vector<double>> TomlTable::required_number_rows(std::string_view key, std::size_t columns,
-                                                                 const NumberRange& range) {
+std::optional<std::vector<std::vector<double>>> TomlTable::number_rows(std::string_view key, std::size_t columns,
+                                                                       const NumberRange& range) {
   const toml::node* const node = hidden_->take(key);
+  if (node == nullptr) return std::nullopt;
   const std::string allowed = fmt::format("must be a list of lists of {} numbers", columns);
-  if (node == nullptr) fail(key, "missing, " + allowed);
   const toml::array* const list = node->as_array();
   if (list == nullptr) fail(key, allowed + ", got " + shown(*node));
   std::vector<std::vector<double>> rows;
@@ -169,6 +161,13 @@ std::vector<std::vector<double>> TomlTable::required_number_rows(std::string_vie
     for (const toml::node& value : *row) rows.back().push_back(hidden_->checked(key, value, range));
   }
   return rows;
+}
+
+std::vector<std::vector<double>> TomlTable::required_number_rows(std::string_view key, std::size_t columns,
+                                                                 const NumberRange& range) {
+  auto rows = number_rows(key, columns, range);
+  if (!rows) fail(key, fmt::format("missing, must be a list of lists of {} numbers", columns));
+  return *std::move(rows);
 }
 
 std::optional<long long> TomlTable::whole(std::string_view key, const NumberRange& range) {

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <type_traits>
+
+#include "core/schema/schema.h"
+
+// Makes the functions of rows and tables from members and from functions of an object's own type.
+
+namespace retrace::schema {
+
+template <class>
+struct MemberTypes;
+template <class Object_, class Type_>
+struct MemberTypes<Type_ Object_::*> {
+  using Object = Object_;
+  using Type = Type_;
+};
+template <class>
+struct FirstOf;
+template <class Result, class First, class... Rest>
+struct FirstOf<Result (*)(First, Rest...)> {
+  using Type = std::remove_cvref_t<First>;
+};
+
+template <auto member>
+Value get_member(const void* object) {
+  using Types = MemberTypes<decltype(member)>;
+  const auto& value = static_cast<const typename Types::Object*>(object)->*member;
+  if constexpr (std::is_enum_v<typename Types::Type> || std::is_same_v<typename Types::Type, int>)
+    return static_cast<double>(value);
+  else
+    return value;
+}
+
+template <auto member>
+void set_member(void* object, const Value& value) {
+  using Types = MemberTypes<decltype(member)>;
+  auto& target = static_cast<typename Types::Object*>(object)->*member;
+  if constexpr (std::is_same_v<typename Types::Type, int>)
+    target = static_cast<int>(std::get<double>(value));
+  else if constexpr (std::is_enum_v<typename Types::Type>)
+    target = static_cast<typename Types::Type>(static_cast<int>(std::get<double>(value)));
+  else
+    target = std::get<typename Types::Type>(value);
+}
+
+/// A data member: a number, a flag, a text, a list of them, or an enumerator whose number is that of its word.
+template <auto member>
+inline constexpr Access access = {get_member<member>, set_member<member>};
+
+template <auto get>
+Value get_by(const void* object) {
+  return get(*static_cast<const typename FirstOf<decltype(get)>::Type*>(object));
+}
+template <auto set>
+void set_by(void* object, const Value& value) {
+  set(*static_cast<typename FirstOf<decltype(set)>::Type*>(object), value);
+}
+/// `Value get(const Object&)` and `void set(Object&, const Value&)`.
+template <auto get, auto set>
+inline constexpr Access access_by = {get_by<get>, set_by<set>};
+
+/// `std::string function(const Object&)` as the complaint of a rule.
+template <auto function>
+std::string complaint_by(const void* object) {
+  return function(*static_cast<const typename FirstOf<decltype(function)>::Type*>(object));
+}
+
+template <auto member>
+const void* child_at(const void* parent, std::size_t) {
+  return &(static_cast<const typename MemberTypes<decltype(member)>::Object*>(parent)->*member);
+}
+template <auto member>
+void* child_of(void* parent) {
+  return &(static_cast<typename MemberTypes<decltype(member)>::Object*>(parent)->*member);
+}
+/// A member that is always there.
+template <auto member>
+inline constexpr Child child = {[](const void*) -> std::size_t { return 1; }, child_at<member>, child_of<member>};
+
+/// The same, of a member that is written under another name.
+template <auto member>
+inline constexpr Child child_only_read = {[](const void*) -> std::size_t { return 0; }, child_at<member>,
+                                          child_of<member>};
+
+/// A member that is a vector of objects.
+template <auto member>
+inline constexpr Child children = {
+    [](const void* parent) {
+      return (static_cast<const typename MemberTypes<decltype(member)>::Object*>(parent)->*member).size();
+    },
+    [](const void* parent, std::size_t index) -> const void* {
+      return &(static_cast<const typename MemberTypes<decltype(member)>::Object*>(parent)->*member)[index];
+    },
+    [](void* parent) -> void* {
+      return &(static_cast<typename MemberTypes<decltype(member)>::Object*>(parent)->*member).emplace_back();
+    }};
+
+}  // namespace retrace::schema

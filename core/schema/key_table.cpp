@@ -1,0 +1,153 @@
+#include "core/schema/key_table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/number_format.h"
+#include "core/overloaded.h"
+
+namespace retrace::schema {
+namespace {
+
+std::string codes(std::span<const std::string_view> words, std::string_view separator) {
+  std::vector<std::string> texts;
+  for (const std::string_view word : words) texts.push_back(fmt::format("`\"{}\"`", word));
+  return fmt::format("{}", fmt::join(texts, separator));
+}
+
+/// "above 0, to 100", "0 to 60", "at least 1"; empty without bounds.
+std::string range_text(const NumberRange& range) {
+  const std::string low = std::isfinite(range.low) ? shortest(range.low) : "";
+  const std::string high = std::isfinite(range.high) ? shortest(range.high) : "";
+  const std::string_view up_to = range.high_included ? "to " : "to below ";
+  if (low.empty() && high.empty()) return "";
+  if (low.empty()) return (range.high_included ? "at most " : "below ") + high;
+  if (high.empty()) return (range.low_included ? "at least " : "above ") + low;
+  return fmt::format("{}{}{}{}", range.low_included ? "" : "above ", low, range.low_included ? " " : ", ",
+                     fmt::format("{}{}", up_to, high));
+}
+
+/// A number's range behind what it is one of.
+std::string with_range(std::string text, const NumberRange& range) {
+  const std::string limits = range_text(range);
+  return limits.empty() ? text : text + ", " + limits;
+}
+
+std::string allowed_words(const Kind& kind) {
+  return std::visit(
+      Overloaded{
+          [](const Number& number) {
+            const std::string limits = range_text(number.range);
+            return limits.empty() ? std::string("a number") : limits;
+          },
+          [](const Whole& whole) { return with_range("a whole number", whole.range); },
+          [](const Flag&) { return std::string("true or false"); },
+          [](const Word& word) { return codes(word.words, ", "); }, [](const Text&) { return std::string("a text"); },
+          [](const Numbers& list) { return with_range(fmt::format("{} numbers", list.count), list.range); },
+          [](const NumberRows& rows) {
+            return with_range(fmt::format("{} to {} {} of {} numbers", rows.least, rows.most, rows.what, rows.columns),
+                              rows.range);
+          },
+          [](const Texts&) { return std::string("a list of texts"); }},
+      kind);
+}
+
+std::string default_words(const Default& otherwise) {
+  return std::visit(Overloaded{[](const Required&) { return std::string("required"); },
+                               [](const None&) { return std::string("none"); },
+                               [](const Computed& computed) { return std::string(computed.sentence); },
+                               [](bool flag) { return std::string(flag ? "true" : "false"); },
+                               [](double number) { return shortest(number); },
+                               [](std::string_view text) { return fmt::format("`\"{}\"`", text); },
+                               [](std::span<const double> numbers) {
+                                 std::vector<std::string> texts;
+                                 for (const double number : numbers) texts.push_back(shortest(number));
+                                 return fmt::format("{}", fmt::join(texts, ", "));
+                               }},
+                    otherwise);
+}
+
+/// "required", or of which keys of the table one must be given.
+std::string presence_words(const Table& inner, const Table& table) {
+  for (const Rule& rule : table.rules) {
+    const auto* const one_of = std::get_if<OneOf>(&rule);
+    if (one_of == nullptr || std::count(one_of->keys.begin(), one_of->keys.end(), inner.name) == 0) continue;
+    return "one of these";
+  }
+  return inner.presence == Presence::always ? "required" : std::string(inner.otherwise);
+}
+
+std::string condition_words(const When& when) {
+  return when.key.empty() ? "" : fmt::format(" Only for `{}` {}.", when.key, codes(when.words, " or "));
+}
+
+std::string line(std::string_view key, std::string_view otherwise, std::string_view text) {
+  return fmt::format("| `{}` | {} | {} |\n", key, otherwise, text);
+}
+
+/// What must hold of values whose keys the rule names.
+std::string rule_words(const Table& table) {
+  std::string text;
+  for (const Rule& rule : table.rules)
+    if (const Check* const check = std::get_if<Check>(&rule); check != nullptr && !check->keys.empty())
+      text += fmt::format(" {}", check->meaning);
+  return text;
+}
+
+std::string rows_text(const Table& table) {
+  std::string text;
+  for (const Row& row : table.rows)
+    text += line(row.key, default_words(row.otherwise),
+                 fmt::format("{}. {}{}", allowed_words(row.kind), row.meaning, condition_words(row.when)));
+  for (const Table& inner : table.tables)
+    if (inner.layout == Layout::in_line)
+      text += line(inner.name, presence_words(inner, table),
+                   fmt::format("{}. {}{}{}", allowed_words(inner.rows.front().kind), inner.meaning, rule_words(inner),
+                               condition_words(inner.when)));
+  const std::string rules = rule_words(table);
+  return rules.empty() ? text : fmt::format("{}\n{}\n", text, rules.substr(1));
+}
+
+bool have_same_keys(const Table& a, const Table& b) {
+  return a.rows.data() == b.rows.data() && a.tables.data() == b.tables.data();
+}
+
+std::string head(std::string_view names) {
+  return fmt::format("| {} | default | allowed |\n|---|---|---|\n", names);
+}
+
+std::string path_of(const Table& table, const std::string& around) {
+  return around.empty() ? std::string(table.name) : fmt::format("{}.{}", around, table.name);
+}
+
+std::string head_of(const Table& table, const std::string& path) {
+  return table.presence == Presence::list ? fmt::format("`[[{}]]`", path) : fmt::format("`[{}]`", path);
+}
+
+std::string tables_text(const Table& table, const std::string& path) {
+  std::string text;
+  const auto& all = table.tables;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].layout == Layout::in_line) continue;
+    const std::size_t first = i;
+    std::vector<std::string> heads;
+    for (; i < all.size() && have_same_keys(all[first], all[i]); ++i)
+      heads.push_back(head_of(all[i], path_of(all[i], path)));
+    --i;
+    text += "\n" + head(fmt::format("{}", fmt::join(heads, ", "))) + rows_text(all[i]) +
+            tables_text(all[i], path_of(all[i], path));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string key_tables(const Format& format) {
+  return head("key") + line("schema", "required", fmt::format("`\"{}\"`", format.id)) + rows_text(format.root) +
+         tables_text(format.root, "");
+}
+
+}  // namespace retrace::schema

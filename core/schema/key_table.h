@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "core/schema/schema.h"
+
+namespace retrace::schema {
+
+/// The keys of a format as tables in Markdown, one for the root and one for each table with a head; tables in a row
+/// that have the same keys share one.
+std::string key_tables(const Format& format);
+
+}  // namespace retrace::schema
