@@ -10,7 +10,7 @@
 #include "core/json_text.h"
 #include "core/number_format.h"
 #include "core/version.h"
-#include "fabrication/job/io/job_files.h"
+#include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "materials/io/material_library.h"
 #include "studies/photometry/io/limits_reader.h"

@@ -1,5 +1,6 @@
 #include "core/data_directory.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <system_error>
 
@@ -20,6 +21,17 @@ fs::path data_directory() {
     throw InputError("the data folder " + folder.string() +
                      " is missing; set RETRACE_DATA_DIR to retrace's data folder");
   return folder;
+}
+
+std::vector<fs::path> shipped_files(std::string_view folder) {
+  const fs::path place = data_directory() / folder;
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(place, error))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  if (error) throw InputError(place.string() + ": cannot be read");
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace retrace

@@ -1,11 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
+#include <vector>
 
 namespace retrace {
 
 /// The folder of shipped data (materials): $RETRACE_DATA_DIR if set, else share/retrace beside the program's own bin/
 /// folder, which holds for the build tree and for an installation. \throw InputError if there is no such folder.
 std::filesystem::path data_directory();
+
+/// The TOML files of one of its folders, by name. \throw InputError if it cannot be read
+std::vector<std::filesystem::path> shipped_files(std::string_view folder);
 
 }  // namespace retrace

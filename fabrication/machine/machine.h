@@ -43,9 +43,12 @@ struct LinearAxis {
 
 /// A rotary axis: a line in space at A = C = 0.
 struct RotaryAxis {
-  Sourced<geometry::Vec3> point_mm;   ///< on the axis, in the frame of the workpiece
+  /// On the axis, in the frame of the workpiece.
+  Sourced<geometry::Vec3> point_mm = {geometry::Vec3::Zero(), Basis::assumed,
+                                      "the origin of the workpiece, as for every machine that names none"};
   Sourced<geometry::Vec3> direction;  ///< of length 1
-  Sourced<double> sign;               ///< 1: positive words turn the workpiece by the right hand about `direction`; -1
+  /// 1: positive words turn the workpiece by the right hand about `direction`; or -1.
+  Sourced<double> sign = {1.0, Basis::assumed, "positive words turn the workpiece by the right hand"};
   Sourced<Interval> limits_deg;
   Sourced<double> speed_deg_per_s;
   Sourced<double> acceleration_deg_per_s2;

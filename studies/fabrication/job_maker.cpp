@@ -10,6 +10,7 @@
 #include "core/number_format.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/mask_image.h"
+#include "fabrication/job/io/process_files.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "geometry/part.h"

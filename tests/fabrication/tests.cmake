@@ -5,6 +5,9 @@ retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/machine_test.cpp
   LIBRARIES retrace::machine rapidcheck)
 retrace_test(fabrication_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/formats_test.cpp
+  LIBRARIES retrace::job retrace::machine rapidcheck)
+retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plan_test.cpp
   LIBRARIES retrace::plan rapidcheck)
 retrace_test(fabrication_tests

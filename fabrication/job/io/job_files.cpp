@@ -9,12 +9,14 @@
 
 #include "core/angle.h"
 #include "core/atomic_file.h"
-#include "core/data_directory.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/schema/reader.h"
+#include "core/schema/writer.h"
 #include "core/toml_file.h"
 #include "fabrication/job/cube_cells.h"
 #include "fabrication/job/io/base_keys.h"
+#include "fabrication/job/io/process_files.h"
 #include "fabrication/job/v_tool.h"
 
 namespace retrace::fabrication {
@@ -25,7 +27,6 @@ using geometry::Arrangement;
 using geometry::RowParity;
 
 constexpr std::string_view kSchema = "retrace.job/1";
-constexpr std::string_view kProcessSchema = "retrace.process/1";
 /// Arrangements of an element in the order of their words.
 struct ArrangementWords {
   std::vector<std::string_view> words;
@@ -55,13 +56,6 @@ constexpr NumberRange kWedge{.low = 10.0, .high = 80.0};
 constexpr NumberRange kToolClearance{.low = 2.0, .high = 15.0};
 constexpr NumberRange kEdgeRadius{.low = 0.0, .high = 50.0};
 constexpr NumberRange kSideClearance{.low = 0.0, .low_included = false, .high = 20.0};
-constexpr NumberRange kDepth{.low = 0.0, .low_included = false, .high = 1000.0};
-constexpr NumberRange kFeed{.low = kLeastFeedMmPerMin, .high = 1e5};
-constexpr NumberRange kShortLength{.low = 0.0, .low_included = false, .high = 100.0};
-constexpr NumberRange kDwell{.low = 0.0, .high = 60.0};
-constexpr NumberRange kCuts{.low = 1.0, .high = 1000.0};
-constexpr NumberRange kRoughness{.low = 0.0, .high = 1e4};
-constexpr NumberRange kMicrometres{.low = 0.0, .high = 1000.0};
 /// Keeps the memory of a plan within reason: about 1 KiB an element.
 constexpr double kMostElements = 2e6;
 /// A tool this much wider than the element fits it all the same.
@@ -158,33 +152,6 @@ Tool read_tool(TomlTable table, Strategy strategy) {
     tool.edge_chips = read_edge_chips(table, tool.width_mm);
   }
   return tool;
-}
-
-Process read_process(TomlTable table) {
-  Process p;
-  p.name = table.required_text("name");
-  p.source = table.required_text("source");
-  p.clearance_mm = table.required_number("clearance_mm", kShortLength);
-  p.roughing_depth_um = table.required_number("roughing_depth_um", kDepth);
-  p.finishing_depth_um = table.required_number("finishing_depth_um", kDepth);
-  p.finishing_cuts = static_cast<int>(table.whole("finishing_cuts", kCuts).value_or(p.finishing_cuts));
-  p.plough_length_mm = table.required_number("plough_length_mm", kShortLength);
-  p.dwell_s = table.number("dwell_s", kDwell).value_or(p.dwell_s);
-  p.roughing_feed_mm_per_min = table.required_number("roughing_feed_mm_per_min", kFeed);
-  p.finishing_feed_mm_per_min = table.required_number("finishing_feed_mm_per_min", kFeed);
-  p.retract_feed_mm_per_min = table.required_number("retract_feed_mm_per_min", kFeed);
-  p.shortest_plough = table.flag("shortest_plough").value_or(false);
-  p.plough_lift_um = table.number("plough_lift_um", kMicrometres).value_or(0.0);
-  p.slow_retract_um = table.number("slow_retract_um", kMicrometres).value_or(0.0);
-  p.rotary_clearance_mm = table.number("rotary_clearance_mm", kShortLength).value_or(p.rotary_clearance_mm);
-  p.plough_sa_nm = table.number("plough_sa_nm", kRoughness).value_or(p.plough_sa_nm);
-  p.roughing_plunge_sa_nm = table.number("roughing_plunge_sa_nm", kRoughness).value_or(p.roughing_plunge_sa_nm);
-  p.finishing_plunge_sa_nm = table.number("finishing_plunge_sa_nm", kRoughness).value_or(p.finishing_plunge_sa_nm);
-  // A plough shorter than the chip leaves it hanging.
-  if (!p.shortest_plough && p.plough_length_mm < 1e-3 * p.roughing_depth_um)
-    table.fail("plough_length_mm", fmt::format("must be at least roughing_depth_um ({} um) to free the chip, got {}",
-                                               shortest(p.roughing_depth_um), shortest(p.plough_length_mm)));
-  return p;
 }
 
 /// Where the values that belong together were given.
@@ -329,7 +296,6 @@ class TextWriter {
   void head(std::string_view name) { text_ += fmt::format("\n[{}]\n", name); }
   void number(std::string_view key, double value) { text_ += fmt::format("{} = {}\n", key, shortest(value)); }
   void text(std::string_view key, std::string_view value) { text_ += fmt::format("{} = {}\n", key, toml_text(value)); }
-  void flag(std::string_view key, bool value) { text_ += fmt::format("{} = {}\n", key, value); }
   void raw(std::string_view line) { text_ += line; }
   std::string take() { return std::move(text_); }
 
@@ -375,28 +341,6 @@ void write_array(TextWriter& out, const Array& array, const geometry::Element& e
   if (!array.pattern.empty()) out.raw(rows_text(array.pattern));
 }
 
-void write_process(TextWriter& out, const Process& p) {
-  out.head("process");
-  out.text("name", p.name);
-  out.text("source", p.source);
-  out.number("clearance_mm", p.clearance_mm);
-  out.number("roughing_depth_um", p.roughing_depth_um);
-  out.number("finishing_depth_um", p.finishing_depth_um);
-  out.number("finishing_cuts", p.finishing_cuts);
-  out.number("plough_length_mm", p.plough_length_mm);
-  out.number("dwell_s", p.dwell_s);
-  out.number("roughing_feed_mm_per_min", p.roughing_feed_mm_per_min);
-  out.number("finishing_feed_mm_per_min", p.finishing_feed_mm_per_min);
-  out.number("retract_feed_mm_per_min", p.retract_feed_mm_per_min);
-  out.flag("shortest_plough", p.shortest_plough);
-  out.number("plough_lift_um", p.plough_lift_um);
-  out.number("slow_retract_um", p.slow_retract_um);
-  out.number("rotary_clearance_mm", p.rotary_clearance_mm);
-  out.number("plough_sa_nm", p.plough_sa_nm);
-  out.number("roughing_plunge_sa_nm", p.roughing_plunge_sa_nm);
-  out.number("finishing_plunge_sa_nm", p.finishing_plunge_sa_nm);
-}
-
 }  // namespace
 
 void check_job(const Job& job, const InputLocation& where) {
@@ -431,7 +375,7 @@ Job parse_job(std::string_view text, const std::string& source_name) {
   InputLocation base_at;
   if (root.has("base")) job.base = read_base(root.required_table("base"), base_at);
   job.tool = read_tool(tool, job.strategy);
-  job.process = read_process(process);
+  schema::read_table(process_format().root, process, &job.process);
   root.finish();
   check_together(job, {root.where("strategy"), workpiece.where("kind"), element.where("width_mm"),
                        tool.where("width_mm"), tool.where("wedge_deg"), tool.where("side_clearance_deg"),
@@ -485,42 +429,8 @@ std::string job_text(const Job& job) {
     out.number("width_um", chip.width_um);
     out.number("depth_um", chip.depth_um);
   }
-  write_process(out, job.process);
+  out.raw(schema::table_text(process_table("process"), &job.process));
   return out.take();
-}
-
-Process parse_process(std::string_view text, const std::string& source_name) {
-  TomlTable root = parse_toml(text, source_name);
-  const std::string schema = root.required_text("schema");
-  if (schema != kProcessSchema)
-    root.fail("schema", fmt::format("must be {}, got {}", in_quotes(kProcessSchema), in_quotes(schema)));
-  Process process = read_process(root);
-  root.finish();
-  return process;
-}
-
-std::vector<Process> shipped_processes() {
-  std::vector<fs::path> files;
-  const fs::path folder = data_directory() / "processes";
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  if (error) throw InputError(folder.string() + ": cannot be read");
-  std::sort(files.begin(), files.end());
-  std::vector<Process> processes;
-  for (const fs::path& file : files) processes.push_back(parse_process(read_file(file), file.string()));
-  return processes;
-}
-
-Process load_process(const std::string& name_or_file, const InputLocation& where) {
-  if (fs::path(name_or_file).has_extension()) return parse_process(read_file(name_or_file), name_or_file);
-  std::vector<std::string> names;
-  for (const Process& process : shipped_processes()) {
-    if (process.name == name_or_file) return process;
-    names.push_back(process.name);
-  }
-  throw InputError(where,
-                   fmt::format("must be a file or one of {}, got {}", fmt::join(names, ", "), in_quotes(name_or_file)));
 }
 
 }  // namespace retrace::fabrication

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/error.h"
 #include "fabrication/job/job.h"
@@ -25,14 +24,5 @@ std::string job_text(const Job& job);
 /// \param where the file, for messages
 /// \throw InputError
 void check_job(const Job& job, const InputLocation& where);
-
-/// The shipped processes (data/processes/*.toml), by name.
-std::vector<Process> shipped_processes();
-
-/// The shipped process of that name, or the process of a file. \throw InputError at `where` if there is neither
-Process load_process(const std::string& name_or_file, const InputLocation& where);
-
-/// A process from the text of its file. \throw InputError
-Process parse_process(std::string_view text, const std::string& source_name);
 
 }  // namespace retrace::fabrication

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -13,12 +14,14 @@
 #include "core/data_directory.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/toml_file.h"
+#include "core/schema/access.h"
+#include "core/schema/reader.h"
 
 namespace retrace::fabrication {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace schema;
 using geometry::Vec3;
 
 constexpr NumberRange kPositive{.low = 0.0, .low_included = false, .high = 1e6};
@@ -28,163 +31,284 @@ constexpr NumberRange kDegrees{.low = -3600.0, .high = 3600.0};
 /// Directions that are nearer to each other than this do not span what the axes must span (about 30 degrees).
 constexpr double kLeastDeterminant = 0.5;
 
-/// An inline table { value = ..., measured = "by whom" } or { value = ..., assumed = "why" }.
-template <class Value, class Read>
-Sourced<Value> sourced(TomlTable& axis, std::string_view key, Read read) {
-  if (!axis.has(key)) axis.fail(key, "missing, must be { value = ..., measured = \"source\" } or with assumed");
-  TomlTable entry = axis.table(key);
-  Sourced<Value> result;
-  result.value = read(entry);
-  const auto measured = entry.text("measured");
-  const auto assumed = entry.text("assumed");
-  if (measured.has_value() == assumed.has_value())
-    axis.fail(key, "must say either measured = \"source\" or assumed = \"why\"");
-  result.basis = measured ? Basis::measured : Basis::assumed;
-  result.source = measured ? *measured : *assumed;
-  if (result.source.empty()) axis.fail(key, "must name its source, got \"\"");
-  return result;
-}
+/// Directions shorter than this are none.
+constexpr double kLeastLength = 1e-6;
+/// Lengths that differ less from 1 are 1: a direction that was scaled is read back as it is.
+constexpr double kUnitTolerance = 1e-15;
+constexpr double kLeastVolumeMm3 = 1e-6;
 
-Sourced<double> positive(TomlTable& axis, std::string_view key) {
-  return sourced<double>(axis, key, [](TomlTable& entry) { return entry.required_number("value", kPositive); });
-}
+// Values as files have them.
 
 Vec3 vector_of(const std::vector<double>& values) {
   return {values[0], values[1], values[2]};
 }
-
-Sourced<Vec3> direction(TomlTable& axis) {
-  return sourced<Vec3>(axis, "direction", [](TomlTable& entry) {
-    const std::vector<double> given = entry.required_numbers("value", 3, kComponent);
-    const double length = vector_of(given).norm();
-    if (!(length > 1e-6))
-      entry.fail("value", fmt::format("must be a vector of a length above 0, got [{}, {}, {}]", shortest(given[0]),
-                                      shortest(given[1]), shortest(given[2])));
-    return Vec3(vector_of(given) / length);
-  });
+std::vector<double> numbers_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
 }
 
-Sourced<Interval> limits(TomlTable& axis, std::string_view key, const NumberRange& range) {
-  return sourced<Interval>(axis, key, [&](TomlTable& entry) {
-    const std::vector<double> ends = entry.required_numbers("value", 2, range);
-    if (!(ends[0] < ends[1]))
-      entry.fail("value", fmt::format("must rise, got [{}, {}]", shortest(ends[0]), shortest(ends[1])));
-    return Interval{ends[0], ends[1]};
-  });
+Value get_point(const Sourced<Vec3>& item) {
+  return numbers_of(item.value);
+}
+void set_point(Sourced<Vec3>& item, const Value& value) {
+  item.value = vector_of(std::get<std::vector<double>>(value));
+}
+void set_direction(Sourced<Vec3>& item, const Value& value) {
+  set_point(item, value);
+  const double length = item.value.norm();
+  if (length > kLeastLength && std::abs(length - 1.0) > kUnitTolerance) item.value /= length;
 }
 
-LinearAxis linear_axis(TomlTable table) {
-  LinearAxis axis;
-  axis.direction = direction(table);
-  axis.limits_mm = limits(table, "limits_mm", kLength);
-  axis.max_feed_mm_per_min = positive(table, "max_feed_mm_per_min");
-  axis.rapid_mm_per_min = positive(table, "rapid_mm_per_min");
-  axis.acceleration_mm_per_s2 = positive(table, "acceleration_mm_per_s2");
-  return axis;
+Value get_interval(const Sourced<Interval>& item) {
+  return std::vector<double>{item.value.low, item.value.high};
+}
+void set_interval(Sourced<Interval>& item, const Value& value) {
+  const auto& ends = std::get<std::vector<double>>(value);
+  item.value = {ends[0], ends[1]};
 }
 
-RotaryAxis rotary_axis(TomlTable table) {
-  RotaryAxis axis;
-  axis.direction = direction(table);
-  axis.point_mm = {Vec3::Zero(), Basis::assumed, "the origin of the workpiece, as for every machine that names none"};
-  if (table.has("point_mm"))
-    axis.point_mm = sourced<Vec3>(
-        table, "point_mm", [](TomlTable& entry) { return vector_of(entry.required_numbers("value", 3, kLength)); });
-  axis.sign = {1.0, Basis::assumed, "positive words turn the workpiece by the right hand"};
-  if (table.has("sign"))
-    axis.sign = sourced<double>(table, "sign", [](TomlTable& entry) {
-      const double sign = entry.required_number("value");
-      if (std::abs(sign) != 1.0) entry.fail("value", "must be 1 or -1, got " + shortest(sign));
-      return sign;
-    });
-  axis.limits_deg = limits(table, "limits_deg", kDegrees);
-  axis.speed_deg_per_s = positive(table, "speed_deg_per_s");
-  axis.acceleration_deg_per_s2 = positive(table, "acceleration_deg_per_s2");
-  return axis;
-}
+using Points = std::vector<Vec3>;
 
+Value get_points(const Sourced<Points>& item) {
+  std::vector<std::vector<double>> rows;
+  for (const Vec3& point : item.value) rows.push_back(numbers_of(point));
+  return rows;
+}
+void set_points(Sourced<Points>& item, const Value& value) {
+  item.value.clear();
+  for (const auto& row : std::get<std::vector<std::vector<double>>>(value)) item.value.push_back(vector_of(row));
+}
 /// The corners of a box from [x_min, y_min, z_min, x_max, y_max, z_max].
-std::vector<Vec3> box_corners(TomlTable& entry) {
-  const std::vector<double> ends = entry.required_numbers("value", 6, kLength);
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!(ends[i] < ends[i + 3]))
-      entry.fail("value", "must be [x_min, y_min, z_min, x_max, y_max, z_max], each rising");
-  std::vector<Vec3> corners;
+void set_box(Sourced<Points>& item, const Value& value) {
+  const auto& ends = std::get<std::vector<double>>(value);
+  item.value.clear();
   for (std::size_t i = 0; i < 8; ++i)
-    corners.emplace_back(ends[(i & 1U) != 0 ? 3 : 0], ends[(i & 2U) != 0 ? 4 : 1], ends[(i & 4U) != 0 ? 5 : 2]);
-  return corners;
+    item.value.emplace_back(ends[(i & 1U) != 0 ? 3 : 0], ends[(i & 2U) != 0 ? 4 : 1], ends[(i & 4U) != 0 ? 5 : 2]);
+}
+/// Bodies are written as their points.
+Value get_no_box(const Sourced<Points>&) {
+  return {};
 }
 
-/// Points that span a body: at least four, not in one plane.
-std::vector<Vec3> hull_points(TomlTable& entry) {
-  constexpr std::size_t kMost = 1000;
-  constexpr double kLeastVolumeMm3 = 1e-6;
-  std::vector<Vec3> points;
-  for (const std::vector<double>& row : entry.required_number_rows("value", 3, kLength))
-    points.push_back(vector_of(row));
-  if (points.size() < 4 || points.size() > kMost)
-    entry.fail("value", fmt::format("must be 4 to {} points, got {}", kMost, points.size()));
+template <class Type, Basis basis>
+Value get_source(const Sourced<Type>& item) {
+  return item.basis == basis ? Value(item.source) : Value();
+}
+template <class Type, Basis basis>
+void set_source(Sourced<Type>& item, const Value& value) {
+  item.basis = basis;
+  item.source = std::get<std::string>(value);
+}
+
+// What values must be; empty texts if they are.
+
+template <class Type>
+std::string nameless_source(const Sourced<Type>& item) {
+  return item.source.empty() ? "must name its source, got \"\"" : "";
+}
+std::string no_direction(const Sourced<Vec3>& item) {
+  if (item.value.norm() > kLeastLength) return {};
+  return fmt::format("must be a vector of a length above 0, got [{}, {}, {}]", shortest(item.value.x()),
+                     shortest(item.value.y()), shortest(item.value.z()));
+}
+std::string falling(const Sourced<Interval>& item) {
+  if (item.value.low < item.value.high) return {};
+  return fmt::format("must rise, got [{}, {}]", shortest(item.value.low), shortest(item.value.high));
+}
+std::string no_sign(const Sourced<double>& item) {
+  return std::abs(item.value) == 1.0 ? "" : "must be 1 or -1, got " + shortest(item.value);
+}
+std::string falling_box(const Sourced<Points>& item) {
+  if ((item.value.front().array() < item.value.back().array()).all()) return {};
+  return "must be [x_min, y_min, z_min, x_max, y_max, z_max], each rising";
+}
+std::string flat_hull(const Sourced<Points>& item) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Vec3& p : points) spread += (p - points.front()) * (p - points.front()).transpose();
-  if (!(std::sqrt(std::max(spread.determinant(), 0.0)) > kLeastVolumeMm3))
-    entry.fail("value", "must be points that do not lie in one plane");
-  return points;
+  for (const Vec3& p : item.value) spread += (p - item.value.front()) * (p - item.value.front()).transpose();
+  if (std::sqrt(std::max(spread.determinant(), 0.0)) > kLeastVolumeMm3) return {};
+  return "must be points that do not lie in one plane";
+}
+std::string skew_linear_axes(const Machine& m) {
+  const double volume = m.x.direction.value.cross(m.y.direction.value).dot(m.z.direction.value);
+  return volume > kLeastDeterminant ? "" : "X, Y and Z must be right-handed and near to square to each other";
+}
+std::string aligned_rotary_axes(const Machine& m) {
+  const double across = m.a.direction.value.cross(m.c.direction.value).norm();
+  return across > kLeastDeterminant ? "" : std::string("C must lie across ") + m.tilt_letter();
 }
 
-MachineBody body(TomlTable table) {
-  static constexpr std::string_view kCarriers[] = {"workpiece", "cradle", "tool"};
-  MachineBody result;
-  result.name = table.required_text("name");
-  result.carrier = static_cast<Carrier>(table.required_choice("moves_with", kCarriers));
-  if (table.has("points_mm") && table.has("box_mm")) table.fail("points_mm", "must not be given together with box_mm");
-  result.points_mm = table.has("points_mm") ? sourced<std::vector<Vec3>>(table, "points_mm", hull_points)
-                                            : sourced<std::vector<Vec3>>(table, "box_mm", box_corners);
-  return result;
+// Tables { value = ..., measured = "by whom" } or { value = ..., assumed = "why" }.
+
+constexpr std::string_view kSourceKeys[] = {"measured", "assumed"};
+constexpr std::string_view kValueKeys[] = {"value"};
+constexpr std::string_view kSourcedShape = "{ value = ..., measured = \"source\" } or with assumed";
+
+template <class Type>
+constexpr std::array<Row, 3> sourced(Kind kind, Access value) {
+  return {{{"value", kind, kRequired, "The value.", value},
+           {"measured", Text{}, kNone, "By whom the value was measured.",
+            access_by<get_source<Type, Basis::measured>, set_source<Type, Basis::measured>>},
+           {"assumed", Text{}, kNone, "Why the value is assumed.",
+            access_by<get_source<Type, Basis::assumed>, set_source<Type, Basis::assumed>>}}};
 }
 
-void check_axes(const Machine& machine, const TomlTable& root) {
-  Eigen::Matrix3d linear;
-  linear << machine.x.direction.value, machine.y.direction.value, machine.z.direction.value;
-  const double volume = linear.col(0).cross(linear.col(1)).dot(linear.col(2));
-  if (!(volume > kLeastDeterminant)) root.fail("z", "X, Y and Z must be right-handed and near to square to each other");
-  const double across = machine.a.direction.value.cross(machine.c.direction.value).norm();
-  if (!(across > kLeastDeterminant)) root.fail("c", std::string("C must lie across ") + machine.tilt_letter());
+template <class Type, class... More>
+constexpr std::array<Rule, 2 + sizeof...(More)> source_rules(More... more) {
+  return {{more..., OneOf{kSourceKeys, "must say either measured = \"source\" or assumed = \"why\""},
+           Check{{}, "The source is named.", complaint_by<nameless_source<Type>>}}};
 }
+
+template <auto complaint>
+constexpr Check value_check(std::string_view meaning) {
+  return {kValueKeys, meaning, complaint_by<complaint>};
+}
+
+/// Rows and rules of the tables of one type of value.
+struct ValueTable {
+  std::span<const Row> rows;
+  std::span<const Rule> rules;
+};
+
+constexpr auto kPositiveRows = sourced<double>(Number{kPositive}, access<&Sourced<double>::value>);
+constexpr auto kPositiveRules = source_rules<double>();
+constexpr ValueTable kPositiveValue = {kPositiveRows, kPositiveRules};
+
+constexpr auto kSignRows = sourced<double>(Number{}, access<&Sourced<double>::value>);
+constexpr auto kSignRules = source_rules<double>(value_check<no_sign>("It is 1 or -1."));
+constexpr ValueTable kSign = {kSignRows, kSignRules};
+
+constexpr auto kDirectionRows = sourced<Vec3>(Numbers{3, kComponent}, access_by<get_point, set_direction>);
+constexpr auto kDirectionRules = source_rules<Vec3>(value_check<no_direction>("It has a length above 0."));
+constexpr ValueTable kDirection = {kDirectionRows, kDirectionRules};
+
+constexpr auto kPointRows = sourced<Vec3>(Numbers{3, kLength}, access_by<get_point, set_point>);
+constexpr auto kPointRules = source_rules<Vec3>();
+constexpr ValueTable kPoint = {kPointRows, kPointRules};
+
+constexpr auto kLimitsMmRows = sourced<Interval>(Numbers{2, kLength}, access_by<get_interval, set_interval>);
+constexpr auto kLimitsDegRows = sourced<Interval>(Numbers{2, kDegrees}, access_by<get_interval, set_interval>);
+constexpr auto kLimitsRules = source_rules<Interval>(value_check<falling>("The first is less than the second."));
+constexpr ValueTable kLimitsMm = {kLimitsMmRows, kLimitsRules};
+constexpr ValueTable kLimitsDeg = {kLimitsDegRows, kLimitsRules};
+
+constexpr auto kBoxRows = sourced<Points>(Numbers{6, kLength}, access_by<get_no_box, set_box>);
+constexpr auto kBoxRules = source_rules<Points>(value_check<falling_box>("Each coordinate rises."));
+constexpr ValueTable kBox = {kBoxRows, kBoxRules};
+
+constexpr auto kHullRows =
+    sourced<Points>(NumberRows{3, kLength, 4, 1000, "points"}, access_by<get_points, set_points>);
+constexpr auto kHullRules = source_rules<Points>(value_check<flat_hull>("They do not lie in one plane."));
+constexpr ValueTable kHull = {kHullRows, kHullRules};
+
+constexpr Table value(std::string_view name, const ValueTable& type, Child child, std::string_view meaning,
+                      std::string_view otherwise = {}) {
+  return {.name = name,
+          .meaning = meaning,
+          .rows = type.rows,
+          .rules = type.rules,
+          .child = child,
+          .presence = otherwise.empty() ? Presence::always : Presence::optional,
+          .layout = Layout::in_line,
+          .shape = kSourcedShape,
+          .otherwise = otherwise};
+}
+
+constexpr Table kLinearTables[] = {
+    value("direction", kDirection, child<&LinearAxis::direction>,
+          "Where positive words move the tool, as seen from the workpiece; it is scaled to length 1."),
+    value("limits_mm", kLimitsMm, child<&LinearAxis::limits_mm>, "The least and the greatest word."),
+    value("max_feed_mm_per_min", kPositiveValue, child<&LinearAxis::max_feed_mm_per_min>, "The greatest feed."),
+    value("rapid_mm_per_min", kPositiveValue, child<&LinearAxis::rapid_mm_per_min>, "The speed of rapid moves."),
+    value("acceleration_mm_per_s2", kPositiveValue, child<&LinearAxis::acceleration_mm_per_s2>, "The acceleration.")};
+
+constexpr Table kRotaryTables[] = {
+    value("direction", kDirection, child<&RotaryAxis::direction>,
+          "The direction of the axis, which is scaled to length 1."),
+    value("point_mm", kPoint, child<&RotaryAxis::point_mm>,
+          "A point on the axis; of B from the tool reference point, where that is at B = 0.", "the origin"),
+    value("sign", kSign, child<&RotaryAxis::sign>,
+          "Positive words turn the workpiece, of B the tool, by the right hand; with -1 by the left.", "1"),
+    value("limits_deg", kLimitsDeg, child<&RotaryAxis::limits_deg>, "The least and the greatest word."),
+    value("speed_deg_per_s", kPositiveValue, child<&RotaryAxis::speed_deg_per_s>, "The speed of rapid moves."),
+    value("acceleration_deg_per_s2", kPositiveValue, child<&RotaryAxis::acceleration_deg_per_s2>, "The acceleration.")};
+
+constexpr std::string_view kCarrierWords[] = {"workpiece", "cradle", "tool"};
+constexpr Row kBodyRows[] = {
+    {"name", Text{}, kRequired, "What the body is called.", access<&MachineBody::name>},
+    {"moves_with", Word{kCarrierWords}, kRequired,
+     "Workpiece: what A and C turn, such as table and clamps; cradle: what C does not turn; tool: what holds the "
+     "diamond, relative to the tool reference point.",
+     access<&MachineBody::carrier>}};
+constexpr Table kBodyTables[] = {value("box_mm", kBox, child_only_read<&MachineBody::points_mm>,
+                                       "The box [x_min, y_min, z_min, x_max, y_max, z_max].", "none"),
+                                 value("points_mm", kHull, child<&MachineBody::points_mm>,
+                                       "Points [[x, y, z], ...]: the body is their convex hull.", "none")};
+constexpr std::string_view kBodyShapes[] = {"box_mm", "points_mm"};
+constexpr Rule kBodyRules[] = {OneOf{kBodyShapes, "must have either box_mm or points_mm"}};
+
+/// The axis that tilts is [a] of a table, [b] of a head.
+template <Tilt tilt>
+constexpr Child kTilting = {
+    [](const void* machine) -> std::size_t { return static_cast<const Machine*>(machine)->tilt == tilt ? 1 : 0; },
+    [](const void* machine, std::size_t) -> const void* { return &static_cast<const Machine*>(machine)->a; },
+    [](void* machine) -> void* {
+      static_cast<Machine*>(machine)->tilt = tilt;
+      return &static_cast<Machine*>(machine)->a;
+    }};
+
+constexpr Table linear(std::string_view name, std::string_view meaning, Child child) {
+  return {.name = name, .meaning = meaning, .tables = kLinearTables, .child = child};
+}
+constexpr Table rotary(std::string_view name, std::string_view meaning, Child child, Presence presence) {
+  return {.name = name, .meaning = meaning, .tables = kRotaryTables, .child = child, .presence = presence};
+}
+
+constexpr Row kRows[] = {{"name", Text{}, kRequired, "What the machine is called.", access<&Machine::name>},
+                         {"title", Text{}, kNone, "What it is, for people.", access<&Machine::title>}};
+constexpr Table kTables[] = {
+    linear("x", "The linear axis X.", child<&Machine::x>),
+    linear("y", "The linear axis Y.", child<&Machine::y>),
+    linear("z", "The linear axis Z.", child<&Machine::z>),
+    rotary("a", "The axis A about which the table tilts.", kTilting<Tilt::table>, Presence::optional),
+    rotary("b", "The axis B about which the head tilts.", kTilting<Tilt::head>, Presence::optional),
+    rotary("c", "The axis C of the table.", child<&Machine::c>, Presence::always),
+    {.name = "body",
+     .meaning = "A convex body that might collide.",
+     .rows = kBodyRows,
+     .tables = kBodyTables,
+     .rules = kBodyRules,
+     .child = children<&Machine::bodies>,
+     .presence = Presence::list}};
+constexpr std::string_view kTiltingKeys[] = {"a", "b"};
+constexpr std::string_view kZKeys[] = {"z"};
+constexpr std::string_view kCKeys[] = {"c"};
+constexpr Rule kRules[] = {
+    OneOf{kTiltingKeys, "must have either [a], if the table tilts, or [b], if the head does"},
+    Check{kZKeys, "X, Y and Z are right-handed and near to square to each other.", complaint_by<skew_linear_axes>},
+    Check{kCKeys, "C lies across A or B.", complaint_by<aligned_rotary_axes>}};
+
+constexpr schema::Format kFormat = {
+    "machine",
+    "retrace.machine/1",
+    "Machine with five axes",
+    {"", "The axes of a machine, in the frame of the workpiece at A = C = 0, and the bodies that might collide.", kRows,
+     kTables, kRules}};
 
 }  // namespace
 
+const schema::Format& machine_format() {
+  return kFormat;
+}
+
 Machine parse_machine(std::string_view text, const std::string& source_name) {
-  static constexpr std::string_view kSchemas[] = {"retrace.machine/1"};
-  TomlTable root = parse_toml(text, source_name);
-  root.required_choice("schema", kSchemas);
   Machine machine;
-  machine.name = root.required_text("name");
-  machine.title = root.text("title").value_or("");
-  machine.x = linear_axis(root.required_table("x"));
-  machine.y = linear_axis(root.required_table("y"));
-  machine.z = linear_axis(root.required_table("z"));
-  if (root.has("b")) {
-    if (root.has("a")) root.fail("b", "not allowed together with [a]: either the table tilts or the head");
-    machine.tilt = Tilt::head;
-  }
-  machine.a = rotary_axis(root.required_table(machine.tilt == Tilt::table ? "a" : "b"));
-  machine.c = rotary_axis(root.required_table("c"));
-  for (const TomlTable& table : root.tables("body")) machine.bodies.push_back(body(table));
-  root.finish();
-  check_axes(machine, root);
+  schema::read_document(kFormat, text, source_name, &machine);
   return machine;
 }
 
 std::vector<Machine> shipped_machines() {
-  const fs::path folder = data_directory() / "machines";
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  if (error) throw InputError(folder.string() + ": cannot be read");
-  std::sort(files.begin(), files.end());
   std::vector<Machine> machines;
-  for (const fs::path& file : files) machines.push_back(parse_machine(read_file(file), file.string()));
+  for (const fs::path& file : shipped_files("machines"))
+    machines.push_back(parse_machine(read_file(file), file.string()));
   return machines;
 }
 

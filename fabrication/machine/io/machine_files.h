@@ -5,9 +5,13 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/schema/schema.h"
 #include "fabrication/machine/machine.h"
 
 namespace retrace::fabrication {
+
+/// The format of machine files (retrace.machine/1), whose object is a Machine.
+const schema::Format& machine_format();
 
 /// The machine of a text (schema retrace.machine/1). Directions are normalised. `source_name` stands for the file.
 /// \throw InputError naming file, line, key, what was given and what is allowed, on one line

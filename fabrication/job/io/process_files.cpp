@@ -1,0 +1,126 @@
+#include "fabrication/job/io/process_files.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "core/atomic_file.h"
+#include "core/data_directory.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "core/schema/access.h"
+#include "core/schema/reader.h"
+
+namespace retrace::fabrication {
+namespace fs = std::filesystem;
+namespace {
+
+using schema::access;
+using schema::kRequired;
+using schema::Number;
+
+constexpr NumberRange kDepth{.low = 0.0, .low_included = false, .high = 1000.0};
+constexpr NumberRange kFeed{.low = kLeastFeedMmPerMin, .high = 1e5};
+constexpr NumberRange kShortLength{.low = 0.0, .low_included = false, .high = 100.0};
+constexpr NumberRange kDwell{.low = 0.0, .high = 60.0};
+constexpr NumberRange kCuts{.low = 1.0, .high = 1000.0};
+constexpr NumberRange kRoughness{.low = 0.0, .high = 1e4};
+constexpr NumberRange kMicrometres{.low = 0.0, .high = 1000.0};
+
+constexpr schema::Row kRows[] = {
+    {"name", schema::Text{}, kRequired, "What the process is called.", access<&Process::name>},
+    {"source", schema::Text{}, kRequired, "Where its values come from.", access<&Process::source>},
+    {"clearance_mm", Number{kShortLength}, kRequired, "Distance of the tool above the blank's face, normal to it.",
+     access<&Process::clearance_mm>},
+    {"roughing_depth_um", Number{kDepth}, kRequired, "Depth of cut of roughing, and of bidirectional layers.",
+     access<&Process::roughing_depth_um>},
+    {"finishing_depth_um", Number{kDepth}, kRequired, "Depth of cut of finishing.",
+     access<&Process::finishing_depth_um>},
+    {"finishing_cuts", schema::Whole{kCuts}, 2.0, "Finishing cuts on either facet, of strategy `two-step`.",
+     access<&Process::finishing_cuts>},
+    {"plough_length_mm", Number{kShortLength}, kRequired, "Length of a plough along facet 2, from the root.",
+     access<&Process::plough_length_mm>},
+    {"dwell_s", Number{kDwell}, 0.1, "Time that the tool rests at every root.", access<&Process::dwell_s>},
+    {"roughing_feed_mm_per_min", Number{kFeed}, kRequired,
+     "Feed of plunging and ploughing in roughing; less would be written as `F0.000`.",
+     access<&Process::roughing_feed_mm_per_min>},
+    {"finishing_feed_mm_per_min", Number{kFeed}, kRequired, "Feed of finishing.",
+     access<&Process::finishing_feed_mm_per_min>},
+    {"retract_feed_mm_per_min", Number{kFeed}, kRequired, "Feed of retracts and of moves to the element's next cut.",
+     access<&Process::retract_feed_mm_per_min>},
+    {"shortest_plough", schema::Flag{}, false, "Whether ploughs end as soon as the chip is free.",
+     access<&Process::shortest_plough>},
+    {"plough_lift_um", Number{kMicrometres}, 0.0, "By how much the tool leaves the facet once the chip is free.",
+     access<&Process::plough_lift_um>},
+    {"slow_retract_um", Number{kMicrometres}, 0.0,
+     "How far bidirectional cuts go straight up at cutting feed before the retract.",
+     access<&Process::slow_retract_um>},
+    {"rotary_clearance_mm", Number{kShortLength}, 5.0,
+     "Distance above all that the turning blank can reach, before a rotary move.",
+     access<&Process::rotary_clearance_mm>},
+    {"plough_sa_nm", Number{kRoughness}, 468.0,
+     "Areal roughness Sa that ploughing leaves, as measured by the thesis and the journal paper.",
+     access<&Process::plough_sa_nm>},
+    {"roughing_plunge_sa_nm", Number{kRoughness}, 115.0,
+     "Areal roughness Sa that plunging leaves in roughing, likewise measured.",
+     access<&Process::roughing_plunge_sa_nm>},
+    {"finishing_plunge_sa_nm", Number{kRoughness}, 48.9,
+     "Areal roughness Sa that plunging leaves in finishing, likewise measured.",
+     access<&Process::finishing_plunge_sa_nm>}};
+
+/// A plough shorter than the chip leaves it hanging.
+std::string hanging_chip(const Process& p) {
+  if (p.shortest_plough || p.plough_length_mm >= 1e-3 * p.roughing_depth_um) return {};
+  return fmt::format("must be at least roughing_depth_um ({} um) to free the chip, got {}",
+                     shortest(p.roughing_depth_um), shortest(p.plough_length_mm));
+}
+
+constexpr std::string_view kPloughKeys[] = {"plough_length_mm"};
+constexpr schema::Rule kRules[] = {
+    schema::Check{kPloughKeys, "A plough is at least as long as the depth of roughing, unless shortest_plough is true.",
+                  schema::complaint_by<hanging_chip>}};
+
+constexpr schema::Format kFormat = {
+    "process",
+    "retrace.process/1",
+    "Process of a fabrication job",
+    {"", "How elements are cut: depths, feeds, and the roughness that is left.", kRows, {}, kRules}};
+
+}  // namespace
+
+const schema::Format& process_format() {
+  return kFormat;
+}
+
+schema::Table process_table(std::string_view name) {
+  schema::Table table = kFormat.root;
+  table.name = name;
+  return table;
+}
+
+Process parse_process(std::string_view text, const std::string& source_name) {
+  Process process;
+  schema::read_document(kFormat, text, source_name, &process);
+  return process;
+}
+
+std::vector<Process> shipped_processes() {
+  std::vector<Process> processes;
+  for (const fs::path& file : shipped_files("processes"))
+    processes.push_back(parse_process(read_file(file), file.string()));
+  return processes;
+}
+
+Process load_process(const std::string& name_or_file, const InputLocation& where) {
+  if (fs::path(name_or_file).has_extension()) return parse_process(read_file(name_or_file), name_or_file);
+  std::vector<std::string> names;
+  for (const Process& process : shipped_processes()) {
+    if (process.name == name_or_file) return process;
+    names.push_back(process.name);
+  }
+  throw InputError(where,
+                   fmt::format("must be a file or one of {}, got {}", fmt::join(names, ", "), in_quotes(name_or_file)));
+}
+
+}  // namespace retrace::fabrication

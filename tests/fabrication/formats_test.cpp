@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <string>
+
+#include "core/atomic_file.h"
+#include "core/schema/key_table.h"
+#include "core/schema/writer.h"
+#include "fabrication/job/io/process_files.h"
+#include "fabrication/machine/io/machine_files.h"
+
+// Process and machine files: what is written reads back the same, and the documentation says what the rows say.
+
+namespace retrace::fabrication::formats_test {
+namespace {
+
+using geometry::Vec3;
+
+double real(double low, double high) {
+  return low + (high - low) * *rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30);
+}
+std::string some_text() {
+  return *rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::inRange<char>(1, 127)));
+}
+
+template <class Value>
+Sourced<Value> sourced(Value value) {
+  return {std::move(value), *rc::gen::element(Basis::measured, Basis::assumed), some_text()};
+}
+template <class Value>
+bool same(const Sourced<Value>& a, const Sourced<Value>& b) {
+  return a.value == b.value && a.basis == b.basis && a.source == b.source;
+}
+bool same(const Sourced<Interval>& a, const Sourced<Interval>& b) {
+  return a.value.low == b.value.low && a.value.high == b.value.high && a.basis == b.basis && a.source == b.source;
+}
+
+LinearAxis linear_axis(const Vec3& near) {
+  return {sourced<Vec3>((near + 0.1 * Vec3(real(-1, 1), real(-1, 1), real(-1, 1))).normalized()),
+          sourced(Interval{real(-1e4, 0), real(1, 1e4)}), sourced(real(1e-3, 1e6)), sourced(real(1e-3, 1e6)),
+          sourced(real(1e-3, 1e6))};
+}
+RotaryAxis rotary_axis(const Vec3& near) {
+  return {sourced<Vec3>(Vec3(real(-1e4, 1e4), real(-1, 1), 0)),
+          sourced<Vec3>((near + 0.1 * Vec3(real(-1, 1), real(-1, 1), real(-1, 1))).normalized()),
+          sourced(*rc::gen::element(1.0, -1.0)),
+          sourced(Interval{real(-3600, 0), real(1, 3600)}),
+          sourced(real(1e-3, 1e6)),
+          sourced(real(1e-3, 1e6))};
+}
+MachineBody body() {
+  MachineBody result = {some_text(), *rc::gen::element(Carrier::workpiece, Carrier::cradle, Carrier::tool), {}};
+  result.points_mm = sourced<std::vector<Vec3>>(
+      {Vec3(real(-1e3, 0), 0, 0), Vec3(1, real(-1, 1), 0), Vec3(0, 1, 0), Vec3(0, 0, real(1, 1e4))});
+  return result;
+}
+Machine machine() {
+  Machine m;
+  m.name = some_text();
+  m.title = *rc::gen::arbitrary<bool>() ? some_text() : "";
+  m.x = linear_axis({1, 0, 0});
+  m.y = linear_axis({0, 1, 0});
+  m.z = linear_axis({0, 0, 1});
+  m.tilt = *rc::gen::element(Tilt::table, Tilt::head);
+  m.a = rotary_axis(m.tilt == Tilt::table ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
+  m.c = rotary_axis({0, 0, 1});
+  for (int k = *rc::gen::inRange(0, 3); k > 0; --k) m.bodies.push_back(body());
+  return m;
+}
+
+bool same(const LinearAxis& a, const LinearAxis& b) {
+  return same(a.direction, b.direction) && same(a.limits_mm, b.limits_mm) &&
+         same(a.max_feed_mm_per_min, b.max_feed_mm_per_min) && same(a.rapid_mm_per_min, b.rapid_mm_per_min) &&
+         same(a.acceleration_mm_per_s2, b.acceleration_mm_per_s2);
+}
+bool same(const RotaryAxis& a, const RotaryAxis& b) {
+  return same(a.point_mm, b.point_mm) && same(a.direction, b.direction) && same(a.sign, b.sign) &&
+         same(a.limits_deg, b.limits_deg) && same(a.speed_deg_per_s, b.speed_deg_per_s) &&
+         same(a.acceleration_deg_per_s2, b.acceleration_deg_per_s2);
+}
+bool same(const Machine& a, const Machine& b) {
+  bool is_same = a.name == b.name && a.title == b.title && a.tilt == b.tilt && same(a.x, b.x) && same(a.y, b.y) &&
+                 same(a.z, b.z) && same(a.a, b.a) && same(a.c, b.c) && a.bodies.size() == b.bodies.size();
+  for (std::size_t i = 0; is_same && i < a.bodies.size(); ++i)
+    is_same = a.bodies[i].name == b.bodies[i].name && a.bodies[i].carrier == b.bodies[i].carrier &&
+              same(a.bodies[i].points_mm, b.bodies[i].points_mm);
+  return is_same;
+}
+
+RC_GTEST_PROP(MachineFile, ReadsBackToTheSameMachine, ()) {
+  const Machine m = machine();
+  RC_ASSERT(same(parse_machine(schema::document_text(machine_format(), &m), "m.toml"), m));
+}
+
+TEST(MachineFile, ShippedMachinesReadBackTheSame) {
+  for (const char* const name : {"ideal", "ideal-dmc", "paper", "thesis"}) {
+    const std::string file = std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml";
+    const Machine m = parse_machine(read_file(file), file);
+    EXPECT_TRUE(same(parse_machine(schema::document_text(machine_format(), &m), "m.toml"), m)) << name;
+  }
+}
+
+bool same(const Process& a, const Process& b) {
+  return schema::document_text(process_format(), &a) == schema::document_text(process_format(), &b) &&
+         a.name == b.name && a.clearance_mm == b.clearance_mm && a.finishing_cuts == b.finishing_cuts &&
+         a.shortest_plough == b.shortest_plough && a.finishing_plunge_sa_nm == b.finishing_plunge_sa_nm;
+}
+
+RC_GTEST_PROP(ProcessFile, ReadsBackToTheSameProcess, ()) {
+  Process p;
+  p.name = some_text();
+  p.source = some_text();
+  p.clearance_mm = real(1e-6, 100.0);
+  p.roughing_depth_um = real(1e-3, 1000.0);
+  p.finishing_depth_um = real(1e-3, 1000.0);
+  p.finishing_cuts = *rc::gen::inRange(1, 1001);
+  p.plough_length_mm = real(1.0, 100.0);
+  p.dwell_s = real(0.0, 60.0);
+  p.roughing_feed_mm_per_min = real(kLeastFeedMmPerMin, 1e5);
+  p.finishing_feed_mm_per_min = real(kLeastFeedMmPerMin, 1e5);
+  p.retract_feed_mm_per_min = real(kLeastFeedMmPerMin, 1e5);
+  p.shortest_plough = *rc::gen::arbitrary<bool>();
+  p.plough_lift_um = real(0.0, 1000.0);
+  p.slow_retract_um = real(0.0, 1000.0);
+  p.rotary_clearance_mm = real(1e-6, 100.0);
+  p.plough_sa_nm = real(0.0, 1e4);
+  p.roughing_plunge_sa_nm = real(0.0, 1e4);
+  p.finishing_plunge_sa_nm = real(0.0, 1e4);
+  RC_ASSERT(same(parse_process(schema::document_text(process_format(), &p), "p.toml"), p));
+}
+
+TEST(ProcessFile, DefaultsAreThoseOfAProcess) {
+  const Process p = parse_process(
+      "schema = \"retrace.process/1\"\nname = \"\"\nsource = \"\"\nclearance_mm = 0.2\nroughing_depth_um = 15\n"
+      "finishing_depth_um = 5\nplough_length_mm = 0.1\nroughing_feed_mm_per_min = 50\nfinishing_feed_mm_per_min = 20\n"
+      "retract_feed_mm_per_min = 200\n",
+      "p.toml");
+  EXPECT_TRUE(same(p, Process{}));
+}
+
+/// The message for a process file that is right but for one line, which is its last.
+std::string refusal(const std::string& line) {
+  try {
+    parse_process(
+        "schema = \"retrace.process/1\"\nname = \"p\"\nsource = \"s\"\nclearance_mm = 0.2\nroughing_depth_um = 15\n"
+        "finishing_depth_um = 5\nroughing_feed_mm_per_min = 50\nfinishing_feed_mm_per_min = 20\n"
+        "retract_feed_mm_per_min = 200\n" +
+            line,
+        "p.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ProcessFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
+  EXPECT_EQ(refusal("plough_length_mm = 0.1\n"), "accepted");
+  EXPECT_EQ(refusal(""), "p.toml: plough_length_mm: missing, must be > 0 and <= 100");
+  EXPECT_EQ(refusal("plough_length_mm = 0.014\n"),
+            "p.toml:10: plough_length_mm: must be at least roughing_depth_um (15 um) to free the chip, got 0.014");
+  EXPECT_EQ(refusal("plough_length_mm = 0.014\nshortest_plough = true\n"), "accepted");
+  EXPECT_EQ(refusal("plough_length_mm = 0.1\nfinishing_cuts = 1001\n"),
+            "p.toml:11: finishing_cuts: must be >= 1 and <= 1000, got 1001");
+  EXPECT_EQ(refusal("plough_length_mm = 0.1\ndwel_s = 1\n"),
+            "p.toml:11: dwel_s: unknown key, did you mean \"dwell_s\"?");
+}
+
+/// What stands in a page of docs/ between the marks of a format.
+std::string documented(const std::string& page, const schema::Format& format) {
+  const std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/docs/" + page);
+  const std::string mark = "<!-- keys of " + std::string(format.name) + " -->\n";
+  const std::size_t at = text.find(mark);
+  if (at == std::string::npos) return "no mark in " + page;
+  const std::size_t first = at + mark.size();
+  return text.substr(first, text.find("<!-- end of keys -->", first) - first);
+}
+
+TEST(FormatsInTheDocumentation, AreWhatTheRowsSay) {
+  EXPECT_EQ(documented("machine_file.md", machine_format()), schema::key_tables(machine_format()));
+  EXPECT_EQ(documented("job_file.md", process_format()), schema::key_tables(process_format()));
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::formats_test
