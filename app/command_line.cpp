@@ -390,7 +390,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::string commands =
       "rre, inspect, photometry, roughness, metrology, sweep, optimize, tolerance, job, fabricate, verify, forces, "
       "turn, plane, "
-      "image, export, report, init and list";
+      "image, export, report, init, list and schema";
   return unknown.empty() ? "a command is required: there are " + commands
                          : fmt::format("unknown command {}: there are {}", unknown.front(), commands);
 }
@@ -440,6 +440,9 @@ std::optional<CommandLine> read_command_line(int argc, const char* const* argv) 
   app.add_subcommand("list", "what is shipped")
       ->add_option("WHAT", line.what, "materials, machines, processes or standards")
       ->required();
+  app.add_subcommand("schema", "JSON Schema of a file format, for editors and validators")
+      ->add_option("FORMAT", line.what, "machine or process [the list of formats]")
+      ->check(not_empty());
   for (CLI::App* command : app.get_subcommands({})) {
     command->fallthrough();
     command->footer(

@@ -151,7 +151,7 @@ struct CommandLine {
   ReportOptions report;
   std::string design;  ///< inspect
   std::string kind;    ///< init
-  std::string what;    ///< list
+  std::string what;    ///< list, schema; empty: the formats
 };
 
 /// Reads the command line. Nothing is returned if help or the version was asked for: that is printed.

@@ -26,5 +26,6 @@ ExitCode run_export_command(const CommandLine& line);
 ExitCode run_report_command(const CommandLine& line);
 ExitCode run_init_command(const CommandLine& line);
 ExitCode run_list_command(const CommandLine& line);
+ExitCode run_schema_command(const CommandLine& line);
 
 }  // namespace retrace::app

@@ -37,6 +37,7 @@ ExitCode run(int argc, const char* const* argv) {
   if (line->command == "export") return app::run_export_command(*line);
   if (line->command == "report") return app::run_report_command(*line);
   if (line->command == "init") return app::run_init_command(*line);
+  if (line->command == "schema") return app::run_schema_command(*line);
   return app::run_list_command(*line);
 }
 

@@ -17,6 +17,7 @@ retrace_test(command_tests
     app/returned_light_test.cpp
     app/roughness_test.cpp
     app/rre_test.cpp
+    app/schema_command_test.cpp
     app/texture_test.cpp
     app/verify_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)

@@ -17,7 +17,7 @@ _retrace_words() {
 }
 
 _retrace() {
-  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces turn plane image export report init list'
+  local commands='rre inspect photometry roughness metrology sweep optimize tolerance job fabricate verify forces turn plane image export report init list schema'
   local common='--json --out --threads --seed --set --quiet --version --help -o -h'
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command='' i
   COMPREPLY=()
@@ -201,6 +201,7 @@ _retrace() {
     metrology | verify) _retrace_files "$word" '' ;;
     init) _retrace_words "$word" 'rtp hexagonal_icc triangular_icc round_zone_lens' ;;
     list) _retrace_words "$word" 'materials machines processes standards' ;;
+    schema) _retrace_words "$word" 'machine process' ;;
   esac
 }
 

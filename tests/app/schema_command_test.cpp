@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include "tests/app/program.h"
+
+// `retrace schema`: the formats, and JSON Schema that a validator of its own accepts our files by.
+
+namespace retrace::test::schema_command_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(SchemaCommand, ListsTheFormats) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"schema"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out,
+            "name       schema               title\n"
+            "machine    retrace.machine/1    Machine with five axes\n"
+            "process    retrace.process/1    Process of a fabrication job\n");
+  const Json json = retrace_json(folder, {"schema"});
+  EXPECT_EQ(json["schema"], "retrace.formats/1");
+  EXPECT_EQ(json["formats"][0],
+            (Json{{"name", "machine"}, {"schema", "retrace.machine/1"}, {"title", "Machine with five axes"}}));
+}
+
+TEST(SchemaCommand, PrintsJsonSchema) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"schema", "process"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json["title"], "Process of a fabrication job");
+  EXPECT_EQ(json["properties"]["dwell_s"]["default"], 0.1);
+  EXPECT_EQ(retrace(folder, {"schema", "process", "-o", "out", "--quiet"}).out, "");
+  EXPECT_EQ(folder.read("out/process.schema.json"), outcome.out);
+}
+
+TEST(SchemaCommand, RefusesAnUnknownFormat) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"schema", "procces"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "retrace: schema: must be machine or process, got procces\n");
+}
+
+/// One line for each TOML file: its name, and whether the schema accepts it.
+const char* const kValidate = R"(
+import json, pathlib, sys, tomllib
+import jsonschema
+schema = json.loads(pathlib.Path(sys.argv[1]).read_text())
+jsonschema.Draft7Validator.check_schema(schema)
+validator = jsonschema.Draft7Validator(schema)
+for name in sys.argv[2:]:
+    is_valid = validator.is_valid(tomllib.loads(pathlib.Path(name).read_text()))
+    print(pathlib.Path(name).name, "accepted" if is_valid else "refused")
+)";
+
+/// What the validator says of files by the schema of a format.
+std::vector<std::string> judged(const TemporaryFolder& folder, const std::string& format,
+                                const std::vector<std::string>& files) {
+  folder.write("validate.py", kValidate);
+  folder.write("schema.json", retrace(folder, {"schema", format}).out);
+  Arguments arguments = {RETRACE_PYTHON, "-B", "validate.py", "schema.json"};
+  arguments.insert(arguments.end(), files.begin(), files.end());
+  Child child(folder.path(), arguments);
+  const Outcome outcome = child.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return lines_of(outcome.out);
+}
+
+std::vector<std::string> shipped(const std::string& data_folder) {
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "data" / data_folder))
+    files.push_back(entry.path().string());
+  return files;
+}
+
+TEST(SchemaCommand, AValidatorAcceptsWhatIsShipped) {
+  const TemporaryFolder folder;
+  for (const auto& [format, data_folder] : {std::pair{"machine", "machines"}, std::pair{"process", "processes"}}) {
+    const std::vector<std::string> lines = judged(folder, format, shipped(data_folder));
+    EXPECT_GE(lines.size(), 4U);
+    for (const std::string& line : lines) EXPECT_TRUE(line.ends_with(" accepted")) << line;
+  }
+}
+
+/// A shipped file in which a text is replaced by another one.
+struct Wrong {
+  std::string from;
+  std::string to;
+};
+
+/// retrace and the validator both refuse each of these.
+void expect_refused(const std::string& format, const std::string& file, const std::vector<Wrong>& cases) {
+  const TemporaryFolder folder;
+  const std::string good = read_text(fs::path(RETRACE_SOURCE_DIR) / "data" / file);
+  std::vector<std::string> names;
+  for (const Wrong& wrong : cases) {
+    std::string text = good;
+    const std::size_t at = text.find(wrong.from);
+    ASSERT_NE(at, std::string::npos) << wrong.from;
+    names.push_back(std::to_string(names.size()) + ".toml");
+    folder.write(names.back(), text.replace(at, wrong.from.size(), wrong.to));
+  }
+  const std::vector<std::string> lines = judged(folder, format, names);
+  ASSERT_EQ(lines.size(), cases.size());
+  for (std::size_t i = 0; i < cases.size(); ++i) EXPECT_TRUE(lines[i].ends_with(" refused")) << cases[i].to;
+}
+
+TEST(SchemaCommand, AValidatorRefusesWrongMachines) {
+  expect_refused("machine", "machines/paper.toml",
+                 {{"[0.999995, -0.0014502, 0.00268292]", "[0, 1]"},
+                  {"value = 10,", "value = 0,"},
+                  {", assumed = \"square guideways\"", ""},
+                  {"assumed = \"square guideways\"", "assumed = \"a\", measured = \"b\""},
+                  {"[z]", "[w]"},
+                  {"[a]", "[b]\n[a]"},
+                  {"moves_with = \"tool\"", "moves_with = \"spindle\""},
+                  {"box_mm = { value = [-60, -60, -40, 60, 60, -15]", "points_mm = { value = [[0, 0, 0]]"},
+                  {"retrace.machine/1", "retrace.machine/2"},
+                  {"title", "titel"}});
+}
+
+TEST(SchemaCommand, AValidatorRefusesWrongProcesses) {
+  expect_refused("process", "processes/paper-pmma.toml",
+                 {{"clearance_mm = 0.2\n", ""},
+                  {"clearance_mm = 0.2", "clearance_mm = 0"},
+                  {"clearance_mm = 0.2", "clearance_mm = \"0.2\""},
+                  {"finishing_cuts = 2", "finishing_cuts = 1.5"},
+                  {"finishing_cuts = 2", "finishing_cut = 2"},
+                  {"dwell_s = 0.1", "dwell_s = 61"},
+                  {"dwell_s = 0.1", "shortest_plough = 1"}});
+}
+
+}  // namespace
+}  // namespace retrace::test::schema_command_test
