@@ -30,7 +30,7 @@ constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
 /// What beams may take below the error that was asked for: some 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
 /// Share of what rays are expected to take that beams may take, however long they are expected to.
-constexpr double kHedge = 0.35;
+constexpr double kHedge = 0.2;
 /// Work after which the engines are compared for the first time: a millisecond.
 constexpr double kFirstLook = 30'000.0;
 
