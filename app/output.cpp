@@ -58,7 +58,7 @@ std::vector<std::string> files_read(const std::vector<studies::Design>& designs)
   std::vector<std::string> files;
   for (const studies::Design& design : designs) {
     files.push_back(design.source);
-    for (const fs::path& file : design.files) files.push_back(file.string());
+    for (const fs::path& file : design.files()) files.push_back(file.string());
   }
   return files;
 }

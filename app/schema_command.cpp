@@ -12,13 +12,16 @@
 #include "core/version.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
+#include "materials/io/material_library.h"
+#include "studies/design/design_format.h"
 
 namespace retrace::app {
 namespace {
 
 /// The formats of files that have a schema, by name.
 std::vector<const schema::Format*> formats() {
-  return {&fabrication::machine_format(), &fabrication::process_format()};
+  return {&studies::design_format(), &fabrication::machine_format(), &materials::materials_format(),
+          &fabrication::process_format()};
 }
 
 ExitCode write_schema(const CommandLine& line, const nlohmann::ordered_json& json, const std::string& text,
@@ -52,7 +55,7 @@ ExitCode run_schema_command(const CommandLine& line) {
     const nlohmann::ordered_json json = schema::json_schema(*format);
     return write_schema(line, json, to_text(json), line.what + ".schema.json");
   }
-  throw InputError(fmt::format("schema: must be {}, got {}", fmt::join(names, " or "), printable(line.what)));
+  throw InputError(fmt::format("schema: must be {}, got {}", fmt::join(names, ", "), printable(line.what)));
 }
 
 }  // namespace retrace::app

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <compare>
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,10 +12,27 @@
 #include <string_view>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/number_range.h"
 
 namespace retrace {
+
+/// A word that a key may have, and what it stands for.
+template <class Type>
+struct TomlChoice {
+  std::string_view word;
+  Type value;
+};
+
+/// An entry of a list, whatever it is.
+struct TomlItem {
+  std::optional<double> number;
+  std::optional<std::string> text;
+  bool is_list = false;
+  std::string toml;   ///< as a file would have it, on one line
+  std::string shown;  ///< as a message shows it
+};
 
 /// One table of a TOML file. It checks every value it hands out and remembers which keys were asked for. A table that
 /// is not there reads as empty. Cheap to copy; copies share that memory. Every function throws InputError with file,
@@ -28,8 +48,14 @@ class TomlTable {
 
   std::optional<double> number(std::string_view key, const NumberRange& range = {});
   double required_number(std::string_view key, const NumberRange& range = {});
-  /// A list of exactly `count` numbers.
-  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const NumberRange& range = {});
+  /// A number or a list of one or more numbers.
+  std::optional<std::vector<double>> number_or_numbers(std::string_view key, const NumberRange& range = {});
+  /// A list of one or more pairs of numbers. \param shape of a pair, for messages: "[wavelength_nm, power]"
+  std::optional<std::vector<std::vector<double>>> pairs(std::string_view key, std::string_view shape,
+                                                        const NumberRange& first, const NumberRange& second);
+  /// A list of exactly `count` numbers. \param what they are, for messages
+  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const NumberRange& range = {},
+                                             std::string_view what = "numbers");
   std::vector<double> required_numbers(std::string_view key, std::size_t count, const NumberRange& range = {});
   /// A list of lists of exactly `columns` numbers.
   std::optional<std::vector<std::vector<double>>> number_rows(std::string_view key, std::size_t columns,
@@ -43,15 +69,57 @@ class TomlTable {
   std::string required_text(std::string_view key);
   /// A list of one or more texts.
   std::optional<std::vector<std::string>> texts(std::string_view key);
-  /// The index of the word in `words`.
-  std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words);
+  /// The index of the word in `words`. \param or_else what the key may have instead, for messages
+  std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words,
+                                    std::string_view or_else = {});
   std::size_t required_choice(std::string_view key, std::span<const std::string_view> words);
+
+  /// The index of the value whose word was given.
+  template <class Type>
+  std::optional<Type> choice(std::string_view key, std::span<const TomlChoice<Type>> choices) {
+    std::vector<std::string_view> words;
+    for (const TomlChoice<Type>& each : choices) words.push_back(each.word);
+    const auto index = choice(key, words);
+    return index ? std::optional<Type>(choices[*index].value) : std::nullopt;
+  }
+  /// The name of a file: relative ones are taken from the folder of the file that names it, those of an override from
+  /// the working directory.
+  std::optional<std::filesystem::path> file(std::string_view key);
+  /// Throws for each of `keys` that was given: it has no meaning here. `why` says where it has.
+  void refuse(std::initializer_list<std::string_view> keys, std::string_view why);
+  /// The entries of a list of anything; nothing if the key was not given or has no list.
+  std::optional<std::vector<TomlItem>> items(std::string_view key);
+  /// The value of a key, with `{"value": ...}` around it, as JSON; empty if it was not given.
+  std::string as_json(std::string_view key) const;
+  /// The whole table as JSON.
+  std::string as_json() const;
 
   /// The table of that name in this one, empty if there is none.
   TomlTable table(std::string_view key);
   TomlTable required_table(std::string_view key);
-  /// The tables `[[key]]`, in the order of the file; none if there are none.
-  std::vector<TomlTable> tables(std::string_view key);
+  /// The tables `[[key]]`, in the order of the file; none if there are none. \param shape what they must be, for
+  /// messages \param are_numbered messages tell them apart: "key[1]"
+  std::vector<TomlTable> tables(std::string_view key, std::string_view shape = "tables", bool are_numbered = false);
+
+  enum class Shape { nothing, text, number, list, table, other };
+  /// What a key was given; nothing if it was not.
+  Shape shape_of(std::string_view key) const;
+  /// The value of a key that was given, as a message shows it: -3, "text", a table, a list.
+  std::string shown(std::string_view key) const;
+  /// Whether a key was given by an override.
+  bool is_overridden(std::string_view key) const;
+  /// What is in the table, in the order of the file, and then of the overrides.
+  std::vector<std::string> names() const;
+  /// The same, by name.
+  std::vector<std::string> sorted_names() const;
+  /// Orders values of a document as they were written.
+  struct Position {
+    std::size_t source = 0;  ///< 0: the file; then the overrides
+    std::size_t line = 0;
+    std::size_t column = 0;
+    friend auto operator<=>(const Position&, const Position&) = default;
+  };
+  Position position(std::string_view key) const;
 
   /// Throws for the first key, in file order, that nobody has asked for; likewise in the tables that were handed out.
   void finish() const;
@@ -63,9 +131,22 @@ class TomlTable {
   std::shared_ptr<Hidden> hidden_;
 };
 
-/// The text of a TOML file; `source_name` stands for the file in messages.
-/// \throw InputError for text that is not TOML, that is longer than kMostTextBytes, or whose keys nest too deeply
-TomlTable parse_toml(std::string_view text, const std::string& source_name);
+/// toml++ recurses once per level when it destroys a tree, and two bytes of `a.a.a...` make a level: 64 KiB of it run
+/// out of an 8 MiB stack. Longer texts may have few dots a line; files that people write have about one KiB.
+inline constexpr std::size_t kShortTomlBytes = 16384;
+
+/// All choices of a list.
+template <class Type, std::size_t size>
+std::span<const TomlChoice<Type>> all(const std::array<TomlChoice<Type>, size>& choices) {
+  return choices;
+}
+
+/// The text of a TOML file; `source_name` stands for the file in messages. Overrides are of the form KEY=VALUE and add
+/// or replace values; their text stands for the file in messages about them.
+/// \throw InputError for text that is not TOML, that is longer than `most_bytes`, or whose keys nest too deeply, and
+/// for an override that is not KEY=VALUE
+TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes = kMostTextBytes,
+                     std::span<const std::string> overrides = {});
 
 /// `text` between double quotes, with what TOML wants escaped.
 std::string toml_text(std::string_view text);

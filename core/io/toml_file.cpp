@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "core/atomic_file.h"
-#include "core/io/toml_node.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
 
@@ -18,6 +18,8 @@ namespace {
 /// toml++ recurses once per level of a tree when it destroys it: dotted keys could make more of them than the stack
 /// holds. No line needs as many dots.
 constexpr std::size_t kMostDotsInALine = 64;
+constexpr std::size_t kLongestOverride = 4096;
+constexpr std::string_view kBareKeyCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
 
 void check_nesting(std::string_view text, const std::string& file) {
   int line = 1;
@@ -32,9 +34,66 @@ void check_nesting(std::string_view text, const std::string& file) {
   }
 }
 
-}  // namespace
+std::string json_text(const toml::table& table) {
+  std::ostringstream text;
+  text << toml::json_formatter{table};
+  return text.str();
+}
 
-std::string shown(const toml::node& node) {
+toml::table parse_file(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text, std::string_view(file));
+  } catch (const toml::parse_error& error) {
+    throw InputError({file, static_cast<int>(error.source().begin.line), ""},
+                     "not valid TOML: " + printable(error.description(), 300));
+  }
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// `key = value` as TOML; where that fails, with the value as a bare string.
+toml::table parse_override(const std::string& text, const std::string& label) {
+  const auto refuse = [&](std::string_view why) { return InputError(InputLocation{label, 0, ""}, why); };
+  const auto is_control = [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f; };
+  if (text.size() > kLongestOverride) throw refuse(fmt::format("at most {} characters are allowed", kLongestOverride));
+  // One line only: a second one would be a second assignment that nobody sees.
+  if (std::any_of(text.begin(), text.end(), is_control)) throw refuse("must be one line of the form KEY=VALUE");
+  try {
+    toml::table table = toml::parse(text, std::string_view(label));
+    if (table.size() == 1 && trimmed(text).front() != '[') return table;
+  } catch (const toml::parse_error&) {
+    // The value is taken as a bare string below.
+  }
+  const std::size_t equals = text.find('=');
+  const std::string_view key = trimmed(std::string_view(text).substr(0, equals));
+  if (equals == std::string::npos || key.empty() || key.find_first_not_of(kBareKeyCharacters) != std::string_view::npos)
+    throw refuse("must be of the form KEY=VALUE, such as element.base_mm=0.5");
+  const std::string_view value = trimmed(std::string_view(text).substr(equals + 1));
+  try {
+    return toml::parse(fmt::format("{} = {}", key, toml_text(value)), std::string_view(label));
+  } catch (const toml::parse_error& error) {
+    throw refuse("not valid TOML: " + printable(error.description(), 300));
+  }
+}
+
+/// Moves everything of `from` into `into`; tables are merged, anything else is replaced.
+void merge(toml::table& into, toml::table& from) {
+  for (auto&& [key, node] : from) {
+    toml::table* const source = node.as_table();
+    toml::table* const target = source != nullptr ? into.get_as<toml::table>(key.str()) : nullptr;
+    if (target != nullptr)
+      merge(*target, *source);
+    else
+      node.visit([&, &name = key](auto& value) { into.insert_or_assign(name.str(), std::move(value)); });
+  }
+}
+
+/// A value as a message shows it: -3, "text", a table, a list.
+std::string shown_node(const toml::node& node) {
   if (const auto* text = node.as_string()) return in_quotes(text->get());
   if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
   if (const auto* number = node.as_floating_point())
@@ -44,13 +103,35 @@ std::string shown(const toml::node& node) {
   return node.is_table() ? "a table" : "a date or time";
 }
 
-/// A table that knows its file and its name. The root keeps the tree alive.
-struct TomlTable::Hidden {
-  std::shared_ptr<const toml::table> tree;
-  const toml::table* table = nullptr;  ///< null: there is no such table
+}  // namespace
+
+/// A document: keeps the tree alive.
+struct TomlSource {
   std::string file;
-  std::string name;  ///< empty at top level
-  int line = 0;      ///< of the table's head; 0: not known
+  std::filesystem::path folder;
+  toml::table root;
+  std::vector<toml::source_path_ptr> paths;  ///< of the file, then of the overrides
+
+  /// 0: the file; then the overrides.
+  std::size_t index_of(const toml::node& node) const {
+    const auto found = std::find(paths.begin(), paths.end(), node.source().path);
+    return found == paths.end() ? 0 : static_cast<std::size_t>(found - paths.begin());
+  }
+  TomlTable::Position position(const toml::node& node) const {
+    return {index_of(node), node.source().begin.line, node.source().begin.column};
+  }
+  /// 0: not known.
+  int line(const toml::node& node) const {
+    return index_of(node) == 0 ? static_cast<int>(node.source().begin.line) : 0;
+  }
+};
+
+/// A table that knows its document and its name.
+struct TomlTable::Hidden {
+  std::shared_ptr<const TomlSource> source;
+  const toml::table* table = nullptr;  ///< null: there is no such table
+  std::string name;                    ///< empty at top level
+  int line = 0;                        ///< of the table's head; 0: not known
   std::set<std::string, std::less<>> taken;
   std::vector<TomlTable> handed_out;
 
@@ -63,12 +144,13 @@ struct TomlTable::Hidden {
     return name.empty() ? printable(key) : name + "." + printable(key);
   }
   InputLocation location(const toml::node& node, std::string_view key) const {
-    return {file, static_cast<int>(node.source().begin.line), full_name(key)};
+    const std::size_t index = source->index_of(node);
+    return {index == 0 ? source->file : *source->paths[index], source->line(node), full_name(key)};
   }
 
   double checked(std::string_view key, const toml::node& node, const NumberRange& range) const {
     const auto refuse = [&](const std::string& allowed) -> InputError {
-      return {location(node, key), fmt::format("must be {}, got {}", allowed, shown(node))};
+      return {location(node, key), fmt::format("must be {}, got {}", allowed, shown_node(node))};
     };
     if (!node.is_number()) throw refuse("a number");
     const auto* integer = node.as_integer();
@@ -80,9 +162,8 @@ struct TomlTable::Hidden {
 
   TomlTable child(const toml::table* inner, std::string inner_name, int inner_line) {
     auto hidden = std::make_shared<Hidden>();
-    hidden->tree = tree;
+    hidden->source = source;
     hidden->table = inner;
-    hidden->file = file;
     hidden->name = std::move(inner_name);
     hidden->line = inner_line;
     handed_out.emplace_back(std::move(hidden));
@@ -101,13 +182,13 @@ bool TomlTable::has(std::string_view key) const {
 }
 
 InputLocation TomlTable::where() const {
-  return {hidden_->file, hidden_->line, hidden_->name};
+  return {hidden_->source->file, hidden_->line, hidden_->name};
 }
 
 InputLocation TomlTable::where(std::string_view key) const {
   const toml::node* const node = hidden_->find(key);
   return node != nullptr ? hidden_->location(*node, key)
-                         : InputLocation{hidden_->file, hidden_->line, hidden_->full_name(key)};
+                         : InputLocation{hidden_->source->file, hidden_->line, hidden_->full_name(key)};
 }
 
 void TomlTable::fail(std::string_view key, std::string_view text) const {
@@ -125,14 +206,46 @@ double TomlTable::required_number(std::string_view key, const NumberRange& range
   return *value;
 }
 
-std::optional<std::vector<double>> TomlTable::numbers(std::string_view key, std::size_t count,
-                                                      const NumberRange& range) {
+std::optional<std::vector<double>> TomlTable::number_or_numbers(std::string_view key, const NumberRange& range) {
+  const toml::node* const node = hidden_->take(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* const list = node->as_array();
+  if (list == nullptr && !node->is_number())
+    fail(key, "must be a number or a list of numbers, got " + shown_node(*node));
+  if (list == nullptr) return std::vector<double>{hidden_->checked(key, *node, range)};
+  if (list->empty()) fail(key, "must be a number or a list of at least one number, got an empty list");
+  std::vector<double> values;
+  for (const toml::node& item : *list) values.push_back(hidden_->checked(key, item, range));
+  return values;
+}
+
+std::optional<std::vector<std::vector<double>>> TomlTable::pairs(std::string_view key, std::string_view shape,
+                                                                 const NumberRange& first, const NumberRange& second) {
+  const toml::node* const given = hidden_->take(key);
+  if (given == nullptr) return std::nullopt;
+  const auto refuse = [&](const toml::node& node, const std::string& what) -> InputError {
+    return {hidden_->location(node, key), fmt::format("must be a list of {}, got {}", shape, what)};
+  };
+  const toml::array* const list = given->as_array();
+  if (list == nullptr || list->empty()) throw refuse(*given, shown_node(*given));
+  std::vector<std::vector<double>> pairs;
+  for (const toml::node& node : *list) {
+    const toml::array* const pair = node.as_array();
+    if (pair == nullptr) throw refuse(node, shown_node(node) + " in it");
+    if (pair->size() != 2) throw refuse(node, fmt::format("a list of {} in it", pair->size()));
+    pairs.push_back({hidden_->checked(key, *pair->get(0), first), hidden_->checked(key, *pair->get(1), second)});
+  }
+  return pairs;
+}
+
+std::optional<std::vector<double>> TomlTable::numbers(std::string_view key, std::size_t count, const NumberRange& range,
+                                                      std::string_view what) {
   const toml::node* const node = hidden_->take(key);
   if (node == nullptr) return std::nullopt;
   const toml::array* const list = node->as_array();
   if (list == nullptr || list->size() != count)
-    fail(key, fmt::format("must be a list of {} numbers, got {}", count,
-                          list != nullptr ? fmt::format("{} of them", list->size()) : shown(*node)));
+    fail(key, fmt::format("must be a list of {} {}, got {}", count, what,
+                          list != nullptr ? fmt::format("{} of them", list->size()) : shown_node(*node)));
   std::vector<double> values;
   for (const toml::node& item : *list) values.push_back(hidden_->checked(key, item, range));
   return values;
@@ -150,13 +263,13 @@ std::optional<std::vector<std::vector<double>>> TomlTable::number_rows(std::stri
   if (node == nullptr) return std::nullopt;
   const std::string allowed = fmt::format("must be a list of lists of {} numbers", columns);
   const toml::array* const list = node->as_array();
-  if (list == nullptr) fail(key, allowed + ", got " + shown(*node));
+  if (list == nullptr) fail(key, allowed + ", got " + shown_node(*node));
   std::vector<std::vector<double>> rows;
   for (const toml::node& item : *list) {
     const toml::array* const row = item.as_array();
     if (row == nullptr || row->size() != columns)
-      fail(key,
-           fmt::format("{}, got {}", allowed, row != nullptr ? fmt::format("one of {}", row->size()) : shown(item)));
+      fail(key, fmt::format("{}, got {}", allowed,
+                            row != nullptr ? fmt::format("one of {}", row->size()) : shown_node(item)));
     rows.emplace_back();
     for (const toml::node& value : *row) rows.back().push_back(hidden_->checked(key, value, range));
   }
@@ -180,14 +293,14 @@ std::optional<long long> TomlTable::whole(std::string_view key, const NumberRang
 std::optional<bool> TomlTable::flag(std::string_view key) {
   const toml::node* const node = hidden_->take(key);
   if (node == nullptr) return std::nullopt;
-  if (!node->is_boolean()) fail(key, "must be true or false, got " + shown(*node));
+  if (!node->is_boolean()) fail(key, "must be true or false, got " + shown_node(*node));
   return node->as_boolean()->get();
 }
 
 std::optional<std::string> TomlTable::text(std::string_view key) {
   const toml::node* const node = hidden_->take(key);
   if (node == nullptr) return std::nullopt;
-  if (!node->is_string()) fail(key, "must be a string, got " + shown(*node));
+  if (!node->is_string()) fail(key, "must be a string, got " + shown_node(*node));
   return node->as_string()->get();
 }
 
@@ -201,22 +314,25 @@ std::optional<std::vector<std::string>> TomlTable::texts(std::string_view key) {
   const toml::node* const node = hidden_->take(key);
   if (node == nullptr) return std::nullopt;
   const toml::array* const list = node->as_array();
-  if (list == nullptr || list->empty()) fail(key, "must be a list of one or more strings, got " + shown(*node));
+  if (list == nullptr || list->empty()) fail(key, "must be a list of one or more strings, got " + shown_node(*node));
   std::vector<std::string> values;
   for (const toml::node& item : *list) {
     if (!item.is_string())
-      throw InputError(hidden_->location(item, key), "must be a list of strings, got " + shown(item) + " in it");
+      throw InputError(hidden_->location(item, key), "must be a list of strings, got " + shown_node(item) + " in it");
     values.push_back(item.as_string()->get());
   }
   return values;
 }
 
-std::optional<std::size_t> TomlTable::choice(std::string_view key, std::span<const std::string_view> words) {
-  const std::optional<std::string> given = text(key);
-  if (!given) return std::nullopt;
+std::optional<std::size_t> TomlTable::choice(std::string_view key, std::span<const std::string_view> words,
+                                             std::string_view or_else) {
+  const toml::node* const node = hidden_->take(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_string()) fail(key, fmt::format("must be a string{}, got {}", or_else, shown_node(*node)));
+  const std::optional<std::string> given = node->as_string()->get();
   const auto found = std::find(words.begin(), words.end(), *given);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
-  std::string message = fmt::format("must be {}, got {}", alternatives(words), in_quotes(*given));
+  std::string message = fmt::format("must be {}{}, got {}", alternatives(words), or_else, in_quotes(*given));
   const std::string_view meant = closest(*given, words);
   if (!meant.empty() && words.size() > 1) message += fmt::format("; did you mean {}?", in_quotes(meant));
   fail(key, message);
@@ -231,8 +347,8 @@ std::size_t TomlTable::required_choice(std::string_view key, std::span<const std
 TomlTable TomlTable::table(std::string_view key) {
   const toml::node* const node = hidden_->take(key);
   if (node == nullptr) return hidden_->child(nullptr, hidden_->full_name(key), hidden_->line);
-  if (!node->is_table()) fail(key, "must be a table, got " + shown(*node));
-  return hidden_->child(node->as_table(), hidden_->full_name(key), static_cast<int>(node->source().begin.line));
+  if (!node->is_table()) fail(key, "must be a table, got " + shown_node(*node));
+  return hidden_->child(node->as_table(), hidden_->full_name(key), hidden_->source->line(*node));
 }
 
 TomlTable TomlTable::required_table(std::string_view key) {
@@ -240,55 +356,132 @@ TomlTable TomlTable::required_table(std::string_view key) {
   return table(key);
 }
 
-std::vector<TomlTable> TomlTable::tables(std::string_view key) {
+std::vector<TomlTable> TomlTable::tables(std::string_view key, std::string_view shape, bool are_numbered) {
   const toml::node* const node = hidden_->take(key);
   if (node == nullptr) return {};
   const toml::array* const list = node->as_array();
-  if (list == nullptr) fail(key, "must be tables, got " + shown(*node));
+  if (list == nullptr) fail(key, fmt::format("must be {}, got {}", shape, shown_node(*node)));
   std::vector<TomlTable> result;
   for (const toml::node& item : *list) {
     if (!item.is_table())
-      throw InputError(hidden_->location(item, key), "must be tables, got " + shown(item) + " in it");
-    result.push_back(
-        hidden_->child(item.as_table(), hidden_->full_name(key), static_cast<int>(item.source().begin.line)));
+      throw InputError(hidden_->location(item, key), fmt::format("must be {}, got {} in it", shape, shown_node(item)));
+    std::string name = hidden_->full_name(key);
+    if (are_numbered) name += fmt::format("[{}]", result.size() + 1);
+    result.push_back(hidden_->child(item.as_table(), std::move(name), hidden_->source->line(item)));
   }
   return result;
 }
 
+TomlTable::Shape TomlTable::shape_of(std::string_view key) const {
+  const toml::node* const node = hidden_->find(key);
+  if (node == nullptr) return Shape::nothing;
+  if (node->is_string()) return Shape::text;
+  if (node->is_number()) return Shape::number;
+  if (node->is_array()) return Shape::list;
+  return node->is_table() ? Shape::table : Shape::other;
+}
+
+std::string TomlTable::shown(std::string_view key) const {
+  return shown_node(*hidden_->find(key));
+}
+
+std::optional<std::filesystem::path> TomlTable::file(std::string_view key) {
+  const std::optional<std::string> given = text(key);
+  if (!given) return std::nullopt;
+  // A byte 0 would end the name for the system alone.
+  if (given->empty() || given->find('\0') != std::string::npos)
+    fail(key, fmt::format("must name a file, got {}", in_quotes(*given)));
+  return is_overridden(key) ? std::filesystem::path(*given) : hidden_->source->folder / *given;
+}
+
+void TomlTable::refuse(std::initializer_list<std::string_view> keys, std::string_view why) {
+  for (const std::string_view key : keys)
+    if (const toml::node* const node = hidden_->take(key)) fail(key, fmt::format("{}, got {}", why, shown_node(*node)));
+}
+
+std::optional<std::vector<TomlItem>> TomlTable::items(std::string_view key) {
+  const toml::node* const node = hidden_->take(key);
+  const toml::array* const list = node != nullptr ? node->as_array() : nullptr;
+  if (list == nullptr) return std::nullopt;
+  std::vector<TomlItem> items;
+  for (const toml::node& entry : *list) {
+    TomlItem item;
+    if (entry.is_number()) item.number = entry.value<double>();
+    if (entry.is_string()) item.text = entry.as_string()->get();
+    item.is_list = entry.is_array();
+    std::ostringstream text;
+    entry.visit([&](const auto& value) { text << value; });
+    item.toml = text.str();
+    std::replace(item.toml.begin(), item.toml.end(), '\n', ' ');
+    item.shown = shown_node(entry);
+    items.push_back(std::move(item));
+  }
+  return items;
+}
+
+std::string TomlTable::as_json(std::string_view key) const {
+  const toml::node* const node = hidden_->find(key);
+  if (node == nullptr) return {};
+  toml::table holder;
+  node->visit([&](const auto& value) { holder.insert("value", value); });
+  return json_text(holder);
+}
+
+std::string TomlTable::as_json() const {
+  return json_text(*hidden_->table);
+}
+
+bool TomlTable::is_overridden(std::string_view key) const {
+  return position(key).source > 0;
+}
+
+TomlTable::Position TomlTable::position(std::string_view key) const {
+  const toml::node* const node = hidden_->find(key);
+  return node != nullptr ? hidden_->source->position(*node) : Position{};
+}
+
+std::vector<std::string> TomlTable::sorted_names() const {
+  std::vector<std::string> names;
+  if (hidden_->table != nullptr)
+    for (auto&& [key, node] : *hidden_->table) names.emplace_back(key.str());
+  return names;
+}
+
+std::vector<std::string> TomlTable::names() const {
+  std::vector<std::string> names = sorted_names();
+  std::ranges::sort(names, {}, [&](const std::string& name) { return position(name); });
+  return names;
+}
+
 void TomlTable::finish() const {
-  if (hidden_->table != nullptr) {
-    const toml::node* first = nullptr;
-    std::string_view first_key;
-    for (auto&& [key, node] : *hidden_->table) {
-      if (hidden_->taken.contains(key.str())) continue;
-      if (first != nullptr && first->source().begin.line <= node.source().begin.line) continue;
-      first = &node;
-      first_key = key.str();
-    }
-    if (first != nullptr) {
-      const std::vector<std::string_view> known(hidden_->taken.begin(), hidden_->taken.end());
-      const std::string_view meant = closest(first_key, known);
-      fail(first_key, fmt::format("unknown {}{}", first->is_table() ? "table" : "key",
-                                  meant.empty() ? " (known: " + fmt::format("{}", fmt::join(known, ", ")) + ")"
-                                                : ", did you mean " + in_quotes(meant) + "?"));
-    }
+  for (const std::string& name : names()) {
+    if (hidden_->taken.contains(name)) continue;
+    const std::vector<std::string_view> known(hidden_->taken.begin(), hidden_->taken.end());
+    const std::string_view meant = closest(name, known);
+    fail(name, fmt::format("unknown {}{}", shape_of(name) == Shape::table ? "table" : "key",
+                           meant.empty() ? " (known: " + fmt::format("{}", fmt::join(known, ", ")) + ")"
+                                         : ", did you mean " + in_quotes(meant) + "?"));
   }
   for (const TomlTable& table : hidden_->handed_out) table.finish();
 }
 
-TomlTable parse_toml(std::string_view text, const std::string& source_name) {
-  const std::string file = printable(source_name, std::string::npos);
-  require_short_text(text, file, kMostTextBytes);
-  check_nesting(text, file);
-  auto hidden = std::make_shared<TomlTable::Hidden>();
-  try {
-    hidden->tree = std::make_shared<const toml::table>(toml::parse(text, std::string_view(file)));
-  } catch (const toml::parse_error& error) {
-    throw InputError({file, static_cast<int>(error.source().begin.line), ""},
-                     "not valid TOML: " + printable(error.description(), 300));
+TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes,
+                     std::span<const std::string> overrides) {
+  auto source = std::make_shared<TomlSource>();
+  source->file = printable(source_name, std::string::npos);
+  source->folder = std::filesystem::path(source_name).parent_path();
+  require_short_text(text, source->file, most_bytes);
+  if (most_bytes > kShortTomlBytes) check_nesting(text, source->file);
+  source->root = parse_file(text, source->file);
+  source->paths.push_back(source->root.source().path);
+  for (const std::string& each : overrides) {
+    toml::table table = parse_override(each, "--set " + printable(each, 200));
+    source->paths.push_back(table.source().path);
+    merge(source->root, table);
   }
-  hidden->table = hidden->tree.get();
-  hidden->file = file;
+  auto hidden = std::make_shared<TomlTable::Hidden>();
+  hidden->table = &source->root;
+  hidden->source = std::move(source);
   return TomlTable(std::move(hidden));
 }
 

@@ -27,7 +27,11 @@ Json list_json(Json items, std::size_t least, std::size_t most) {
 
 Json kind_json(const Kind& kind) {
   return std::visit(
-      Overloaded{[](const Number& number) { return number_json(number.range); },
+      Overloaded{[](const Number& number) {
+                   Json json = number_json(number.sane);
+                   const Json range = number_json(number.range);
+                   return json.size() > 1 ? json : range;
+                 },
                  [](const Whole& whole) { return number_json(whole.range, "integer"); },
                  [](const Flag&) {
                    return Json{{"type", "boolean"}};
@@ -38,7 +42,27 @@ Json kind_json(const Kind& kind) {
                  [](const Text&) {
                    return Json{{"type", "string"}};
                  },
+                 [](const File& file) {
+                   return Json{{"type", "string"}, {"minLength", 1}, {"title", file.what}};
+                 },
+                 [](const WordOrFile& either) {
+                   return Json{{"anyOf", {{{"enum", either.words}}, {{"type", "string"}, {"pattern", either.ending}}}}};
+                 },
+                 [](const NumberOrNumbers& list) {
+                   Json items = {{"type", "array"}, {"items", number_json(list.range)}, {"minItems", 1}};
+                   return Json{{"anyOf", {number_json(list.range), std::move(items)}}};
+                 },
+                 [](const Pairs& pairs) {
+                   Json pair = {{"type", "array"},
+                                {"items", {number_json(pairs.first), number_json(pairs.second)}},
+                                {"minItems", 2},
+                                {"maxItems", 2}};
+                   return Json{{"type", "array"}, {"items", std::move(pair)}, {"minItems", 1}};
+                 },
                  [](const Numbers& list) { return list_json(number_json(list.range), list.count, list.count); },
+                 [](const Terms& terms) {
+                   return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", terms.count}};
+                 },
                  [](const NumberRows& rows) {
                    return list_json(list_json(number_json(rows.range), rows.columns, rows.columns), rows.least,
                                     rows.most);
@@ -79,33 +103,61 @@ struct Place {
   Json conditions = Json::array();
 };
 
-const Row* word_row(const Table& table, std::string_view key) {
-  for (const Row& row : table.rows)
-    if (row.key == key && std::holds_alternative<Word>(row.kind)) return &row;
-  return nullptr;
+/// Whether a condition may hold where its key is not given. Rows of a key may have different defaults: what one of them
+/// rules out is then left to the reader.
+bool holds_by_default(const Condition& condition, const Table& table, std::string_view key) {
+  using Is = Condition::Is;
+  if (condition.is == Is::given || condition.is == Is::absent) return condition.is == Is::absent;
+  const auto is_one = [&](const Row& row) {
+    const auto* const word = std::get_if<std::string_view>(&row.otherwise);
+    return row.key == key && word != nullptr && std::ranges::count(condition.words, *word) > 0;
+  };
+  const auto is_other = [&](const Row& row) { return row.key == key && !is_one(row); };
+  return condition.is == Is::one_of ? std::ranges::none_of(table.rows, is_other)
+                                    : std::ranges::any_of(table.rows, is_other);
 }
 
-/// What a table must be for its key (or that of a table in it) to be one of the words; null if there is no such key.
-Json met_json(const Table& table, const When& when, std::string_view key) {
+/// What the value of a condition's key must be.
+Json met_value(const Condition& condition) {
+  using Is = Condition::Is;
+  if (condition.is == Is::given) return Json::object();
+  if (condition.is == Is::absent) return false;
+  Json words = {{"enum", condition.words}};
+  return condition.is == Is::one_of ? words : Json{{"not", std::move(words)}};
+}
+
+/// What a table must be for a condition on its key (or that of a table in it) to hold; null if there is no such key.
+Json met_json(const Table& table, const Condition& condition, std::string_view key) {
   const std::string_view first = key.substr(0, key.find('.'));
-  if (const Row* const row = word_row(table, key)) {
-    Json json = {{"properties", {{key, {{"enum", when.words}}}}}};
-    const auto* const word = std::get_if<std::string_view>(&row->otherwise);
-    if (word == nullptr || std::find(when.words.begin(), when.words.end(), *word) == when.words.end())
-      json["required"] = {key};
-    return json;
+  const auto inner = std::ranges::find(table.tables, first, &Table::name);
+  Json value;
+  bool by_default = true;
+  if (first == key && (std::ranges::count(table.rows, key, &Row::key) > 0 || inner != table.tables.end())) {
+    value = met_value(condition);
+    by_default = holds_by_default(condition, table, key);
+  } else if (first != key && inner != table.tables.end()) {
+    value = met_json(*inner, condition, key.substr(first.size() + 1));
+    by_default = value.is_null() || !value.contains("required");
   }
-  for (const Table& inner : table.tables)
-    if (first != key && inner.name == first)
-      return {{"properties", {{first, met_json(inner, when, key.substr(first.size() + 1))}}}, {"required", {first}}};
-  return nullptr;
+  if (value.is_null()) return nullptr;
+  Json json = {{"properties", {{first, std::move(value)}}}};
+  if (!by_default) json["required"] = {first};
+  return json;
 }
 
-/// The nearest table that decides a condition. \throw std::logic_error if there is none
-Place& decider(const When& when, Place& from) {
+/// The nearest table that decides all conditions. \throw std::logic_error if there is none
+Place& decider(When when, Place& from) {
   for (Place* place = &from; place != nullptr; place = place->around)
-    if (!met_json(place->table, when, when.key).is_null()) return *place;
-  throw std::logic_error("a condition names no word: " + std::string(when.key));
+    if (std::ranges::none_of(when, [&](const Condition& c) { return met_json(place->table, c, c.key).is_null(); }))
+      return *place;
+  throw std::logic_error("no table decides the conditions on " + std::string(when.front().key));
+}
+
+/// What that table must be for all of them to hold.
+Json all_met(const Table& table, When when) {
+  Json all = Json::array();
+  for (const Condition& condition : when) all.push_back(met_json(table, condition, condition.key));
+  return all.size() == 1 ? Json(std::move(all.front())) : Json{{"allOf", std::move(all)}};
 }
 
 /// What is said of the table of `inner`, said of that of `outer`.
@@ -123,40 +175,54 @@ struct Property {
   Json json;
   bool is_required;
   When when;
+  bool zero_is_none;
 };
 
 Json table_json(const Table& table, Place* around);
 
+/// The rows of a key that differ in the form of the value alone are one property.
 std::vector<Property> properties_of(Place& place) {
   std::vector<Property> properties;
-  for (const Row& row : place.table.rows)
-    properties.push_back({row.key, row_json(row), std::holds_alternative<Required>(row.otherwise), row.when});
+  const Row* last = nullptr;
+  for (const Row& row : place.table.rows) {
+    if (last != nullptr && last->key == row.key && last->when.data() == row.when.data()) {
+      Json forms = Json::array({kind_json(last->kind), kind_json(row.kind)});
+      properties.back().json = {{"description", properties.back().json["description"]}, {"anyOf", std::move(forms)}};
+    } else {
+      properties.push_back(
+          {row.key, row_json(row), std::holds_alternative<Required>(row.otherwise), row.when, row.zero_is_none});
+    }
+    last = &row;
+  }
   for (const Table& inner : place.table.tables)
-    properties.push_back({inner.name, table_json(inner, &place), inner.presence == Presence::always, inner.when});
+    properties.push_back(
+        {inner.name, table_json(inner, &place), inner.presence == Presence::always, inner.when, false});
   return properties;
 }
 
-/// Puts what holds under a condition where the condition is decided. A key is refused where none of its rows holds.
+/// Puts what holds under conditions where these are decided. A key is refused where none of its rows serves.
 void add_conditions(const std::vector<Property>& all, std::string_view name, Place& place) {
   Json any = Json::array();
   Place* outer = nullptr;
+  Json refusal = false;
   for (const Property& property : all) {
     if (property.name != name) continue;
     outer = &decider(property.when, place);
-    any.push_back(met_json(outer->table, property.when, property.when.key));
+    any.push_back(all_met(outer->table, property.when));
+    if (property.zero_is_none) refusal = {{"const", 0}};
     Json then = {{"properties", {{name, property.json}}}};
     if (property.is_required) then["required"] = {name};
     outer->conditions.push_back({{"if", any.back()}, {"then", as_seen_from(*outer, place, std::move(then))}});
   }
-  outer->conditions.push_back(
-      {{"if", {{"anyOf", std::move(any)}}}, {"else", as_seen_from(*outer, place, {{"properties", {{name, false}}}})}});
+  outer->conditions.push_back({{"if", {{"anyOf", std::move(any)}}},
+                               {"else", as_seen_from(*outer, place, {{"properties", {{name, refusal}}}})}});
 }
 
 void add_properties(Json& json, Place& place) {
   const std::vector<Property> properties = properties_of(place);
   for (const Property& property : properties) {
     if (json["properties"].contains(property.name)) continue;
-    if (property.when.key.empty()) {
+    if (property.when.empty()) {
       json["properties"][property.name] = property.json;
       if (property.is_required) json["required"].push_back(property.name);
     } else {
@@ -198,7 +264,7 @@ Json json_schema(const Format& format) {
   Json properties = id;
   properties.update(json["properties"]);
   json["properties"] = std::move(properties);
-  json["required"].insert(json["required"].begin(), "schema");
+  if (!format.id_is_optional) json["required"].insert(json["required"].begin(), "schema");
   return json;
 }
 

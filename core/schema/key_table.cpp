@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/number_format.h"
 #include "core/overloaded.h"
@@ -18,10 +19,19 @@ std::string codes(std::span<const std::string_view> words, std::string_view sepa
   return fmt::format("{}", fmt::join(texts, separator));
 }
 
+/// 1e6 as people write it.
+std::string bound(double value) {
+  if (!std::isfinite(value)) return {};
+  std::string text = shortest(value);
+  for (const auto& [from, to] : {std::pair{"e+0", "e"}, std::pair{"e-0", "e-"}})
+    if (const std::size_t at = text.find(from); at != std::string::npos) text.replace(at, 3, to);
+  return text;
+}
+
 /// "above 0, to 100", "0 to 60", "at least 1"; empty without bounds.
 std::string range_text(const NumberRange& range) {
-  const std::string low = std::isfinite(range.low) ? shortest(range.low) : "";
-  const std::string high = std::isfinite(range.high) ? shortest(range.high) : "";
+  const std::string low = bound(range.low);
+  const std::string high = bound(range.high);
   const std::string_view up_to = range.high_included ? "to " : "to below ";
   if (low.empty() && high.empty()) return "";
   if (low.empty()) return (range.high_included ? "at most " : "below ") + high;
@@ -40,13 +50,21 @@ std::string allowed_words(const Kind& kind) {
   return std::visit(
       Overloaded{
           [](const Number& number) {
-            const std::string limits = range_text(number.range);
+            const std::string sane = range_text(number.sane);
+            const std::string limits = sane.empty() ? range_text(number.range) : sane;
             return limits.empty() ? std::string("a number") : limits;
           },
           [](const Whole& whole) { return with_range("a whole number", whole.range); },
           [](const Flag&) { return std::string("true or false"); },
           [](const Word& word) { return codes(word.words, ", "); }, [](const Text&) { return std::string("a text"); },
+          [](const File& file) { return "the name of " + std::string(file.what); },
+          [](const WordOrFile& either) {
+            return fmt::format("{}, or a file that ends in {}", codes(either.words, ", "), either.ending);
+          },
+          [](const NumberOrNumbers& list) { return with_range("a number or a list of numbers", list.range); },
+          [](const Pairs& pairs) { return fmt::format("a list of pairs `{}`", pairs.shape); },
           [](const Numbers& list) { return with_range(fmt::format("{} numbers", list.count), list.range); },
+          [](const Terms& terms) { return fmt::format("a list of numbers, {} for each term", terms.count); },
           [](const NumberRows& rows) {
             return with_range(fmt::format("{} to {} {} of {} numbers", rows.least, rows.most, rows.what, rows.columns),
                               rows.range);
@@ -80,8 +98,15 @@ std::string presence_words(const Table& inner, const Table& table) {
   return inner.presence == Presence::always ? "required" : std::string(inner.otherwise);
 }
 
-std::string condition_words(const When& when) {
-  return when.key.empty() ? "" : fmt::format(" Only for `{}` {}.", when.key, codes(when.words, " or "));
+/// What a key belongs to; what it does not go with is left to the messages.
+std::string conditions_words(When when) {
+  std::vector<std::string> texts;
+  for (const Condition& condition : when) {
+    if (condition.is == Condition::Is::one_of)
+      texts.push_back(fmt::format("for `{}` {}", condition.key, codes(condition.words, " or ")));
+    if (condition.is == Condition::Is::given) texts.push_back(fmt::format("with `{}`", condition.key));
+  }
+  return texts.empty() ? "" : fmt::format(" Only {}.", fmt::join(texts, ", "));
 }
 
 std::string line(std::string_view key, std::string_view otherwise, std::string_view text) {
@@ -97,16 +122,27 @@ std::string rule_words(const Table& table) {
   return text;
 }
 
+/// Of a table that stands in one line: what its first key may be; of a list of them: all of its keys.
+std::string in_line_words(const Table& table) {
+  if (table.presence != Presence::list) return allowed_words(table.rows.front().kind);
+  std::string text = "a list of tables";
+  for (const Row& row : table.rows)
+    text += fmt::format("{} `{}` ({}; {})", row.key == table.rows.front().key ? " of" : ",", row.key,
+                        allowed_words(row.kind), row.meaning.substr(0, row.meaning.size() - 1));
+  return text;
+}
+
 std::string rows_text(const Table& table) {
   std::string text;
   for (const Row& row : table.rows)
-    text += line(row.key, default_words(row.otherwise),
-                 fmt::format("{}. {}{}", allowed_words(row.kind), row.meaning, condition_words(row.when)));
+    if (row.form != Form::list)
+      text += line(row.key, default_words(row.otherwise),
+                   fmt::format("{}. {}{}", allowed_words(row.kind), row.meaning, conditions_words(row.when)));
   for (const Table& inner : table.tables)
     if (inner.layout == Layout::in_line)
       text += line(inner.name, presence_words(inner, table),
-                   fmt::format("{}. {}{}{}", allowed_words(inner.rows.front().kind), inner.meaning, rule_words(inner),
-                               condition_words(inner.when)));
+                   fmt::format("{}. {}{}{}", in_line_words(inner), inner.meaning, rule_words(inner),
+                               conditions_words(inner.when)));
   const std::string rules = rule_words(table);
   return rules.empty() ? text : fmt::format("{}\n{}\n", text, rules.substr(1));
 }
@@ -145,9 +181,13 @@ std::string tables_text(const Table& table, const std::string& path) {
 
 }  // namespace
 
+std::string key_table(const Table& table) {
+  return head("key") + rows_text(table);
+}
+
 std::string key_tables(const Format& format) {
-  return head("key") + line("schema", "required", fmt::format("`\"{}\"`", format.id)) + rows_text(format.root) +
-         tables_text(format.root, "");
+  return head("key") + line("schema", format.id_is_optional ? "none" : "required", fmt::format("`\"{}\"`", format.id)) +
+         rows_text(format.root) + tables_text(format.root, "");
 }
 
 }  // namespace retrace::schema

@@ -10,4 +10,7 @@ namespace retrace::schema {
 /// that have the same keys share one.
 std::string key_tables(const Format& format);
 
+/// The same of the keys of one table alone, without what is in tables below it.
+std::string key_table(const Table& table);
+
 }  // namespace retrace::schema

@@ -1,14 +1,102 @@
 #include "core/schema/reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
+#include "core/message_text.h"
+#include "core/number_format.h"
 #include "core/overloaded.h"
 
 namespace retrace::schema {
 namespace {
+
+using Shape = TomlTable::Shape;
+
+// Names: what is there, and whether the format has it.
+
+std::vector<std::string_view> names_in(const Table& table, bool with_keys) {
+  std::vector<std::string_view> names;
+  for (const Row& row : table.rows)
+    if (with_keys && (names.empty() || names.back() != row.key)) names.push_back(row.key);
+  for (const Table& inner : table.tables) names.push_back(inner.name);
+  return names;
+}
+
+constexpr std::string_view kId = "schema";
+
+/// What to say of a name that the table does not have: a close one if there is one, and what is allowed.
+std::string unknown_name(const Table& table, std::string_view name, bool is_table, bool is_root) {
+  if (is_root && !is_table)
+    for (const Table& inner : table.tables)
+      if (std::ranges::count(inner.rows, name, &Row::key) > 0)
+        return fmt::format("unknown key at the top level, it belongs in [{}]", inner.name);
+  std::vector<std::string_view> names = names_in(table, !is_table || table.tables.empty());
+  if (is_root && !is_table) names.insert(names.begin(), kId);
+  const std::string_view meant = closest(name, names);
+  return fmt::format("unknown {}{} (allowed: {})", is_table ? "table" : "key",
+                     meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)), fmt::join(names, ", "));
+}
+
+/// What a table must be, for messages.
+std::string_view shape_of(const Table& table) {
+  if (!table.shape.empty()) return table.shape;
+  return table.presence == Presence::list ? "tables" : "a table";
+}
+
+std::vector<TomlTable> entries(const Table& table, TomlTable& around) {
+  return around.tables(table.name, shape_of(table), true);
+}
+
+/// Takes in the names of a table and of those in it.
+class Names {
+ public:
+  /// \param has_id the document's root has the key that names its format
+  Names(Document& document, bool has_id) : document_(document), has_id_(has_id) {}
+
+  void take(const Table& table, TomlTable source, const std::string& path) {
+    for (const std::string& name : source.names()) {
+      if (has_id_ && path.empty() && name == kId) continue;
+      const auto inner = std::ranges::find(table.tables, name, &Table::name);
+      if (inner != table.tables.end()) {
+        take_table(*inner, source, path_in(path, name));
+      } else if (std::ranges::count(table.rows, name, &Row::key) > 0) {
+        Value word;
+        if (source.shape_of(name) == Shape::text) word = *source.text(name);
+        document_.set(path_in(path, name), std::move(word), source.where(name), source.is_overridden(name));
+      } else {
+        source.fail(name, unknown_name(table, name, source.shape_of(name) == Shape::table, has_id_ && path.empty()));
+      }
+    }
+  }
+
+ private:
+  void take_table(const Table& table, TomlTable& around, const std::string& path) {
+    const std::string name(table.name);
+    document_.set(path, {}, around.where(name), around.is_overridden(name));
+    if (table.presence != Presence::list) {
+      if (around.shape_of(name) != Shape::table)
+        around.fail(name, fmt::format("must be {}, got {}", shape_of(table), around.shown(name)));
+      take(table, around.table(name), path);
+      return;
+    }
+    std::size_t index = 0;
+    for (const TomlTable& entry : entries(table, around)) {
+      const std::string entry_path = path_of_entry(path, index++);
+      document_.set(entry_path, {}, entry.where(), around.is_overridden(name));
+      take(table, entry, entry_path);
+    }
+  }
+
+  Document& document_;
+  bool has_id_;
+};
+
+// Values.
 
 template <class Type>
 Value value_of(std::optional<Type> given) {
@@ -16,6 +104,45 @@ Value value_of(std::optional<Type> given) {
 }
 Value number_of(std::optional<double> given) {
   return value_of(given);
+}
+
+Value word_of(const Word& kind, std::string_view key, TomlTable& source) {
+  const auto index = source.choice(key, kind.words, kind.or_else);
+  return index ? Value(std::string(kind.words[*index])) : Value();
+}
+
+Value number_or_numbers(const NumberOrNumbers& kind, std::string_view key, TomlTable& source) {
+  std::vector<double> numbers = *source.number_or_numbers(key, kind.range);
+  return source.shape_of(key) == Shape::list ? Value(std::move(numbers)) : Value(numbers.front());
+}
+
+Value terms_of(const Terms& kind, std::string_view key, TomlTable& source) {
+  std::optional<std::vector<double>> numbers;
+  if (source.shape_of(key) == Shape::list) numbers = source.number_or_numbers(key);
+  if (!numbers || numbers->size() % kind.count != 0)
+    source.fail(key, fmt::format("must be {}, got {}", allowed(kind),
+                                 numbers ? fmt::format("{} of them", numbers->size()) : source.shown(key)));
+  return *std::move(numbers);
+}
+
+/// A byte 0 would end the name for the system alone.
+bool is_file_name(const std::string& name) {
+  return !name.empty() && name.find('\0') == std::string::npos;
+}
+
+Value file_of(std::string_view key, TomlTable& source) {
+  std::optional<std::string> name = source.text(key);
+  if (name && !is_file_name(*name)) source.fail(key, "must name a file, got " + in_quotes(*name));
+  return value_of(std::move(name));
+}
+
+Value word_or_file_of(const WordOrFile& kind, std::string_view key, TomlTable& source) {
+  if (source.shape_of(key) == Shape::text) {
+    const std::string name = *source.text(key);
+    if (std::ranges::count(kind.words, std::string_view(name)) > 0) return name;
+    if (name.ends_with(kind.ending) && is_file_name(name)) return name;
+  }
+  source.fail(key, fmt::format("must be {}, got {}", kind.allowed, source.shown(key)));
 }
 
 std::optional<std::vector<std::vector<double>>> number_rows(const NumberRows& kind, std::string_view key,
@@ -26,94 +153,224 @@ std::optional<std::vector<std::vector<double>>> number_rows(const NumberRows& ki
   return rows;
 }
 
-/// What was given for a key, checked; nothing if it was not given.
+/// What was given for a key, checked.
 Value given(const Kind& kind, std::string_view key, TomlTable& source) {
   return std::visit(
-      Overloaded{[&](const Number& number) { return value_of(source.number(key, number.range)); },
-                 [&](const Whole& whole) { return number_of(source.whole(key, whole.range)); },
-                 [&](const Flag&) { return value_of(source.flag(key)); },
-                 [&](const Word& word) { return number_of(source.choice(key, word.words)); },
-                 [&](const Text&) { return value_of(source.text(key)); },
-                 [&](const Numbers& numbers) { return value_of(source.numbers(key, numbers.count, numbers.range)); },
-                 [&](const NumberRows& rows) { return value_of(number_rows(rows, key, source)); },
-                 [&](const Texts&) { return value_of(source.texts(key)); }},
+      Overloaded{
+          [&](const Number& number) {
+            source.number(key, number.range);
+            return value_of(source.number(key, number.sane));
+          },
+          [&](const Whole& whole) { return number_of(source.whole(key, whole.range)); },
+          [&](const Flag&) { return value_of(source.flag(key)); },
+          [&](const Word& word) { return word_of(word, key, source); },
+          [&](const Text&) { return value_of(source.text(key)); }, [&](const File&) { return file_of(key, source); },
+          [&](const WordOrFile& either) { return word_or_file_of(either, key, source); },
+          [&](const NumberOrNumbers& list) { return number_or_numbers(list, key, source); },
+          [&](const Numbers& numbers) {
+            return value_of(source.numbers(key, numbers.count, numbers.range, numbers.what));
+          },
+          [&](const Terms& terms) { return terms_of(terms, key, source); },
+          [&](const NumberRows& rows) { return value_of(number_rows(rows, key, source)); },
+          [&](const Pairs& pairs) { return value_of(source.pairs(key, pairs.shape, pairs.first, pairs.second)); },
+          [&](const Texts&) { return value_of(source.texts(key)); }},
       kind);
 }
 
-void read_row(const Row& row, TomlTable& source, void* object) {
-  Value value = given(row.kind, row.key, source);
-  if (value.index() == 0 && std::holds_alternative<Required>(row.otherwise))
-    source.fail(row.key, "missing, must be " + allowed(row.kind));
-  if (value.index() == 0) value = default_value(row);
-  if (value.index() != 0) row.access.set(object, value);
-}
-
-void check_rule(const OneOf& rule, const TomlTable& source) {
-  std::string_view last;
+void check_rule(const OneOf& rule, const Document& document, const std::string& path) {
+  std::string last;
   std::size_t count = 0;
   for (const std::string_view key : rule.keys) {
-    if (!source.has(key)) continue;
-    last = key;
+    if (!document.has(path_in(path, key))) continue;
+    last = path_in(path, key);
     ++count;
   }
-  if (count != 1) throw InputError(count == 0 ? source.where() : source.where(last), rule.complaint);
+  if (count != 1) throw InputError(document.where(count == 0 ? path : last), rule.complaint);
 }
 
-void check_rule(const Check& rule, const TomlTable& source, const void* object) {
+/// What is said of a key that was given though the condition does not hold.
+std::string refusal(const Condition& condition) {
+  using Is = Condition::Is;
+  if (!condition.refusal.empty()) return std::string(condition.refusal);
+  const std::string_view key = condition.key.substr(condition.key.rfind('.') + 1);
+  switch (condition.is) {
+    case Is::one_of:
+      return fmt::format("only allowed for {} = {}", key, alternatives(condition.words));
+    case Is::none_of:
+      return fmt::format("not allowed for {} = {}", key, alternatives(condition.words));
+    case Is::given:
+      return fmt::format("only allowed with {}", key);
+    case Is::absent:
+      break;
+  }
+  return fmt::format("not allowed together with {}", key);
+}
+
+/// Reads the values of a document whose names are there.
+class Values {
+ public:
+  explicit Values(Document& document) : document_(document) {}
+
+  void read(const Table& table, TomlTable source, const std::string& path) {
+    for (const Rule& rule : table.rules)
+      if (const OneOf* const one_of = std::get_if<OneOf>(&rule)) check_rule(*one_of, document_, path);
+    for (std::size_t i = 0; i < table.rows.size(); ++i)
+      if (i == 0 || table.rows[i].key != table.rows[i - 1].key) read_key(table, table.rows[i].key, source, path);
+    for (const Table& inner : table.tables) read_inner(inner, source, path);
+  }
+
+ private:
+  void read_inner(const Table& table, TomlTable& around, const std::string& around_path) {
+    const std::string path = path_in(around_path, table.name);
+    const Condition* const refused = document_.refused_by(table.when, around_path);
+    if (!document_.has(path)) {
+      if (table.presence == Presence::always && refused == nullptr)
+        around.fail(table.name, fmt::format("missing, must be {}", shape_of(table)));
+      if (table.presence == Presence::implied && refused == nullptr) read(table, around.table(table.name), path);
+      return;
+    }
+    if (refused != nullptr) throw InputError(document_.where(path), refusal(*refused));
+    if (table.presence != Presence::list) return read(table, around.table(table.name), path);
+    std::size_t index = 0;
+    for (const TomlTable& entry : around.tables(table.name, table.shape, true))
+      read(table, entry, path_of_entry(path, index++));
+  }
+
+  /// Of the rows of a key, the one that serves. They stand one after another.
+  void read_key(const Table& table, std::string_view key, TomlTable& source, const std::string& around) {
+    const std::string path = path_in(around, key);
+    const Form given_form = source.shape_of(key) == Shape::list ? Form::list : Form::single;
+    const Row* served = nullptr;
+    const Row* refused = nullptr;
+    for (const Row& row : table.rows) {
+      if (row.key != key) continue;
+      const bool holds = document_.holds(row.when, around);
+      if (!holds && refused == nullptr) refused = &row;
+      if (holds && (row.form == Form::any || row.form == given_form)) served = &row;
+    }
+    if (served == nullptr) {
+      if (document_.has(path)) refuse(path, *refused, source);
+    } else if (document_.has(path)) {
+      check_word(table, *served, path, source);
+      document_.set(path, given(served->kind, key, source), document_.where(path), source.is_overridden(key));
+    } else if (std::holds_alternative<Required>(served->otherwise)) {
+      document_.fail(path, "missing, must be " + allowed(served->kind));
+    }
+  }
+
+  void refuse(const std::string& path, const Row& row, TomlTable& source) {
+    if (row.zero_is_none && source.number(row.key) == 0.0) return document_.drop(path);
+    document_.fail(path,
+                   fmt::format("{}, got {}", refusal(*document_.refused_by(row.when, path)), source.shown(row.key)));
+  }
+
+  /// A word that the key has in another case is told so.
+  void check_word(const Table& table, const Row& served, const std::string& path, const TomlTable& source) {
+    const Word* const word = std::get_if<Word>(&served.kind);
+    if (word == nullptr || served.when.empty() || source.shape_of(served.key) != Shape::text) return;
+    const std::string given = document_.text(path);
+    if (std::ranges::count(word->words, std::string_view(given)) > 0) return;
+    for (const Row& other : table.rows) {
+      const Word* const others = other.key == served.key ? std::get_if<Word>(&other.kind) : nullptr;
+      if (others == nullptr || std::ranges::count(others->words, std::string_view(given)) == 0) continue;
+      const std::string_view key = served.when.front().key;
+      document_.fail(
+          path, fmt::format("must be {} for {} = {}, got {}", alternatives(word->words), key.substr(key.rfind('.') + 1),
+                            in_quotes(document_.text(document_.path_of(key, path))), in_quotes(given)));
+    }
+  }
+
+  Document& document_;
+};
+
+Document read_values(const Table& table, const TomlTable& source, bool has_id, std::filesystem::path folder = {}) {
+  Document document(table, source.where(), std::move(folder));
+  Names(document, has_id).take(table, source, "");
+  Values(document).read(table, source, "");
+  return document;
+}
+
+// Objects.
+
+void check_rule(const Check& rule, const Document& document, const std::string& path, const void* object) {
   const std::string complaint = rule.complaint(object);
   if (complaint.empty()) return;
   for (const std::string_view key : rule.keys)
-    if (source.has(key)) source.fail(key, complaint);
-  throw InputError(rule.keys.empty() ? source.where() : source.where(rule.keys.front()), complaint);
+    if (document.has(path_in(path, key))) document.fail(path_in(path, key), complaint);
+  document.fail(rule.keys.empty() ? path : path_in(path, rule.keys.front()), complaint);
 }
 
-void read_level(const Table& table, TomlTable source, void* object, const Level* around);
+/// A word as objects take it.
+Value as_index(const Kind& kind, Value value) {
+  const Word* const word = std::get_if<Word>(&kind);
+  const std::string* const text = std::get_if<std::string>(&value);
+  if (word == nullptr || text == nullptr) return value;
+  return static_cast<double>(std::ranges::find(word->words, *text) - word->words.begin());
+}
 
-void read_child(const Table& table, TomlTable& source, void* parent, const Level& around) {
-  if (table.presence == Presence::list) {
-    for (const TomlTable& each : source.tables(table.name)) read_level(table, each, table.child.add(parent), &around);
-    return;
+void fill(const Document& document, const Table& table, const std::string& path, void* object) {
+  for (const Row& row : table.rows) {
+    const std::string key = path_in(path, row.key);
+    if (document.row(key) != &row) continue;
+    Value value = document.value(key);
+    if (value.index() != 0) row.access.set(object, as_index(row.kind, std::move(value)));
   }
-  const TomlTable inner = source.table(table.name);
-  if (inner.exists())
-    read_level(table, inner, table.child.add(parent), &around);
-  else if (table.presence == Presence::always)
-    source.fail(table.name, fmt::format("missing, must be {}", table.shape));
-}
-
-void read_keys(const Table& table, TomlTable& source, void* object, const Level* around) {
-  const Level level = {table, object, around};
+  for (const Table& inner : table.tables) {
+    const std::string inner_path = path_in(path, inner.name);
+    for (std::size_t i = 0; i < document.count(inner_path); ++i)
+      fill(document, inner, inner.presence == Presence::list ? path_of_entry(inner_path, i) : inner_path,
+           inner.child.add(object));
+  }
   for (const Rule& rule : table.rules)
-    if (const OneOf* const one_of = std::get_if<OneOf>(&rule)) check_rule(*one_of, source);
-  for (const Row& row : table.rows)
-    if (holds(row.when, level)) read_row(row, source, object);
-  for (const Table& inner : table.tables)
-    if (holds(inner.when, level)) read_child(inner, source, object, level);
+    if (const Check* const check = std::get_if<Check>(&rule)) check_rule(*check, document, path, object);
 }
 
-void check_values(const Table& table, const TomlTable& source, const void* object) {
-  for (const Rule& rule : table.rules)
-    if (const Check* const check = std::get_if<Check>(&rule)) check_rule(*check, source, object);
+void add_keys(const Table& table, const std::string& path, std::vector<std::string>& keys) {
+  for (const Row& row : table.rows) keys.push_back(path_in(path, row.key));
+  for (const Table& inner : table.tables) add_keys(inner, path_in(path, inner.name), keys);
 }
 
-void read_level(const Table& table, TomlTable source, void* object, const Level* around) {
-  read_keys(table, source, object, around);
-  check_values(table, source, object);
+/// The root without the key that names the format.
+TomlTable checked_root(const Format& format, TomlTable root) {
+  const std::string_view ids[] = {format.id};
+  if (!root.choice(kId, ids) && !format.id_is_optional) root.required_choice(kId, ids);
+  return root;
 }
 
 }  // namespace
 
-void read_table(const Table& table, const TomlTable& source, void* object) {
-  read_level(table, source, object, nullptr);
+Document read_document(const Format& format, std::string_view text, const std::string& source_name,
+                       std::size_t most_bytes, std::span<const std::string> overrides) {
+  const TomlTable root = checked_root(format, parse_toml(text, source_name, most_bytes, overrides));
+  return read_values(format.root, root, true, std::filesystem::path(source_name).parent_path());
 }
 
-void read_document(const Format& format, std::string_view text, const std::string& source_name, void* object) {
-  TomlTable root = parse_toml(text, source_name);
-  const std::string_view ids[] = {format.id};
-  root.required_choice("schema", ids);
-  read_keys(format.root, root, object, nullptr);
-  root.finish();
-  check_values(format.root, root, object);
+std::vector<std::filesystem::path> files_named(const Format& format, std::string_view text,
+                                               const std::string& source_name, std::size_t most_bytes,
+                                               std::span<const std::string> overrides) {
+  Document document(format.root, {source_name, 0, ""}, std::filesystem::path(source_name).parent_path());
+  try {
+    Names(document, true).take(format.root, parse_toml(text, source_name, most_bytes, overrides), "");
+  } catch (const Error&) {  // told by whoever reads it as a document
+  }
+  return document.files();
+}
+
+void read_object(const Format& format, std::string_view text, const std::string& source_name, void* object) {
+  fill(read_document(format, text, source_name), format.root, "", object);
+}
+
+void read_table(const Table& table, const TomlTable& source, void* object) {
+  fill(read_values(table, source, false), table, "", object);
+}
+
+std::string complaint_about_key(const Format& format, std::string_view path) {
+  std::vector<std::string> keys;
+  add_keys(format.root, "", keys);
+  if (std::ranges::count(keys, path) > 0) return {};
+  const std::string_view meant = closest(path, std::vector<std::string_view>(keys.begin(), keys.end()));
+  return fmt::format("{} is no key of a {}{}", in_quotes(path), format.name,
+                     meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)));
 }
 
 }  // namespace retrace::schema

@@ -1,20 +1,39 @@
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "core/schema/schema.h"
+#include "core/schema/document.h"
 #include "core/toml_file.h"
 
 namespace retrace::schema {
 
-/// Reads what the rows of `table` say into its object, checks it by itself and by the table's rules. Keys that no row
-/// has are left for TomlTable::finish().
-/// \param object of the type that the rows are of, just made \throw InputError
+/// Reads a document of the format: every key known, of its kind, and meaning something beside the others.
+/// \param source_name stands for the file in messages; names of files are meant from its folder
+/// \param overrides each KEY=VALUE
+/// \throw InputError with file, line and key for the first value that is not what the format allows, and for text that
+/// is no TOML or longer than `most_bytes`
+Document read_document(const Format& format, std::string_view text, const std::string& source_name,
+                       std::size_t most_bytes = kMostTextBytes, std::span<const std::string> overrides = {});
+
+/// The files that a document names, though it may be no document of the format: those that come before what is wrong.
+std::vector<std::filesystem::path> files_named(const Format& format, std::string_view text,
+                                               const std::string& source_name, std::size_t most_bytes,
+                                               std::span<const std::string> overrides);
+
+/// Reads a document into an object, which is that of the format's root.
+/// \throw InputError likewise, and where values that are allowed each by itself do not fit together
+void read_object(const Format& format, std::string_view text, const std::string& source_name, void* object);
+
+/// The same of a table of a larger document.
 void read_table(const Table& table, const TomlTable& source, void* object);
 
-/// Reads a whole file of the format; `source_name` stands for it in messages.
-/// \param object of the type that the root's rows are of, just made \throw InputError, for keys it does not have too
-void read_document(const Format& format, std::string_view text, const std::string& source_name, void* object);
+/// What is wrong with `path` as the path of a key of the format, such as "element.base_mm", with a "did you mean" where
+/// a known name is close; empty if a document may have it.
+std::string complaint_about_key(const Format& format, std::string_view path);
 
 }  // namespace retrace::schema

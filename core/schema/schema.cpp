@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "core/message_text.h"
@@ -28,23 +25,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kUnits =
                                                                                    {"_percent", "percent"},
                                                                                    {"_s", "s"}}};
 
-std::size_t index_of(std::span<const std::string_view> words, std::string_view word) {
-  return static_cast<std::size_t>(std::find(words.begin(), words.end(), word) - words.begin());
-}
-
-/// The word that `key` of the table itself has, or of a table in it; nothing if there is no such key.
-std::optional<std::string_view> word_in(const Level& level, std::string_view key) {
-  const std::size_t dot = key.find('.');
-  for (const Row& row : level.table.rows)
-    if (const Word* const word = std::get_if<Word>(&row.kind); word && row.key == key && holds(row.when, level))
-      return word->words[static_cast<std::size_t>(std::get<double>(row.access.get(level.object)))];
-  if (dot == std::string_view::npos) return std::nullopt;
-  for (const Table& table : level.table.tables)
-    if (table.name == key.substr(0, dot) && table.child.count(level.object) > 0)
-      return word_in({table, table.child.at(level.object, 0), &level}, key.substr(dot + 1));
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::string_view unit_of(std::string_view name) {
@@ -58,10 +38,15 @@ std::string allowed(const Kind& kind) {
       Overloaded{[](const Number& number) { return number.range.text(); },
                  [](const Whole& whole) { return "a whole number " + whole.range.text(); },
                  [](const Flag&) { return std::string("true or false"); },
-                 [](const Word& word) { return alternatives(word.words); },
-                 [](const Text&) { return std::string("a string"); },
-                 [](const Numbers& numbers) { return fmt::format("a list of {} numbers", numbers.count); },
+                 [](const Word& word) { return alternatives(word.words) + std::string(word.or_else); },
+                 [](const Text& text) { return std::string(text.what); },
+                 [](const File& file) { return fmt::format("the name of {}", file.what); },
+                 [](const WordOrFile& either) { return std::string(either.allowed); },
+                 [](const NumberOrNumbers&) { return std::string("a number or a list of numbers"); },
+                 [](const Numbers& numbers) { return fmt::format("a list of {} {}", numbers.count, numbers.what); },
+                 [](const Terms& terms) { return fmt::format("a list of numbers, {} for each term", terms.count); },
                  [](const NumberRows& rows) { return fmt::format("a list of lists of {} numbers", rows.columns); },
+                 [](const Pairs& pairs) { return fmt::format("a list of {}", pairs.shape); },
                  [](const Texts&) { return std::string("a list of one or more strings"); }},
       kind);
 }
@@ -71,20 +56,17 @@ Value default_value(const Row& row) {
       Overloaded{
           [](const Required&) { return Value(); }, [](const None&) { return Value(); },
           [](const Computed&) { return Value(); }, [](bool flag) { return Value(flag); },
-          [](double number) { return Value(number); },
-          [&](std::string_view text) {
-            const Word* const word = std::get_if<Word>(&row.kind);
-            return word ? Value(static_cast<double>(index_of(word->words, text))) : Value(std::string(text));
-          },
+          [](double number) { return Value(number); }, [](std::string_view text) { return Value(std::string(text)); },
           [](std::span<const double> numbers) { return Value(std::vector<double>(numbers.begin(), numbers.end())); }},
       row.otherwise);
 }
 
-bool holds(const When& when, const Level& level) {
-  if (when.key.empty()) return true;
-  for (const Level* place = &level; place != nullptr; place = place->around)
-    if (const auto word = word_in(*place, when.key)) return index_of(when.words, *word) < when.words.size();
-  throw std::logic_error("a condition names no word: " + std::string(when.key));
+std::string path_in(std::string_view around, std::string_view name) {
+  return around.empty() ? std::string(name) : fmt::format("{}.{}", around, name);
+}
+
+std::string path_of_entry(std::string_view list, std::size_t index) {
+  return fmt::format("{}[{}]", list, index);
 }
 
 }  // namespace retrace::schema

@@ -14,22 +14,23 @@
 
 namespace retrace::schema {
 
-/// A value on its way between a file and an object. A word is its index among the words of its key, a whole number a
-/// double, nothing a key that is not given.
+/// A value of a file. A word is its text, a whole number a double, nothing a key that is not given.
 using Value = std::variant<std::monostate, bool, double, std::string, std::vector<double>,
                            std::vector<std::vector<double>>, std::vector<std::string>>;
 
-/// How a value comes from an object and goes into it (core/schema/access.h makes both). A value that an object does not
-/// have, or that another key says, is got as nothing.
+/// How a value comes from an object and goes into it (core/schema/access.h makes both), where a word is its index among
+/// the words of its key. A value that an object does not have, or that another key says, is got as nothing. Formats
+/// that are read as documents alone have none.
 struct Access {
-  Value (*get)(const void* object);
-  void (*set)(void* object, const Value& value);  ///< \pre the value is of the key's kind
+  Value (*get)(const void* object) = nullptr;
+  void (*set)(void* object, const Value& value) = nullptr;  ///< \pre the value is of the key's kind
 };
 
 // What a key may be. Numbers are finite; their unit is the suffix of the key, or of the table around it.
 
 struct Number {
   NumberRange range;
+  NumberRange sane = {};  ///< the same to be told only where it is missed: beyond it numbers have too few digits
 };
 /// \pre the range's ends are whole and within 2^53
 struct Whole {
@@ -38,12 +39,34 @@ struct Whole {
 struct Flag {};
 struct Word {
   std::span<const std::string_view> words;
+  std::string_view or_else = {};  ///< what else the key may have, for messages: " or a list of four numbers"
 };
-struct Text {};
+struct Text {
+  std::string_view what = "a string";  ///< that it must be, for messages
+};
+/// The name of a file: relative ones are taken from the folder of the file that names it.
+struct File {
+  std::string_view what;  ///< that it is, such as "an STL file"
+};
+/// A word, or the name of a file with that ending.
+struct WordOrFile {
+  std::span<const std::string_view> words;
+  std::string_view ending;
+  std::string_view allowed;  ///< what a message says that the key must be
+};
+/// A number, or a list of one or more numbers.
+struct NumberOrNumbers {
+  NumberRange range;
+};
 /// A list of exactly so many numbers.
 struct Numbers {
   std::size_t count;
   NumberRange range;
+  std::string_view what = "numbers";  ///< that they are, for messages
+};
+/// A list of one or more numbers, so many for each of its terms.
+struct Terms {
+  std::size_t count;
 };
 /// A list of lists of exactly `columns` numbers.
 struct NumberRows {
@@ -53,9 +76,16 @@ struct NumberRows {
   std::size_t most;
   std::string_view what;  ///< that the rows are, such as "points"
 };
+/// A list of one or more pairs of numbers.
+struct Pairs {
+  NumberRange first;
+  NumberRange second;
+  std::string_view shape;  ///< of a pair, such as "[wavelength_nm, power]"
+};
 /// A list of one or more texts.
 struct Texts {};
-using Kind = std::variant<Number, Whole, Flag, Word, Text, Numbers, NumberRows, Texts>;
+using Kind = std::variant<Number, Whole, Flag, Word, Text, File, WordOrFile, NumberOrNumbers, Numbers, Terms,
+                          NumberRows, Pairs, Texts>;
 
 /// The key must be given.
 struct Required {};
@@ -70,21 +100,33 @@ using Default = std::variant<Required, None, Computed, bool, double, std::string
 inline constexpr Required kRequired;
 inline constexpr None kNone;
 
-/// A condition on another key, which has one of `words`. That key is looked for in the same table and then in those
+/// What another key must be for a key to mean something. That key is looked for in the same table and then in those
 /// around it; "element.kind" is the key of a table there.
-struct When {
-  std::string_view key;  ///< empty: always
-  std::span<const std::string_view> words;
+struct Condition {
+  enum class Is { one_of, none_of, given, absent };
+  std::string_view key;
+  Is is = Is::one_of;
+  std::span<const std::string_view> words = {};  ///< of one_of and none_of
+  std::string_view refusal =
+      {};  ///< what is said of a key that was given all the same, if it needs more than the condition
 };
+/// All of them must hold.
+using When = std::span<const Condition>;
 
-/// A key of a table. There may be several rows of one key, if at most one of their conditions holds.
+/// The form of a value, where rows of one key differ in it.
+enum class Form { any, list, single };
+
+/// A key of a table. There may be several rows of one key, of which at most one serves a file by its conditions and the
+/// form of what was given.
 struct Row {
   std::string_view key;
   Kind kind;
   Default otherwise;
   std::string_view meaning;  ///< one sentence
-  Access access;
+  Access access = {};
   When when = {};
+  Form form = Form::any;
+  bool zero_is_none = false;  ///< 0 is let pass where the conditions do not hold
 };
 
 /// Exactly one of `keys` must be given.
@@ -103,7 +145,8 @@ using Rule = std::variant<OneOf, Check>;
 enum class Presence {
   always,
   optional,
-  list  ///< any number of tables of that name, none included
+  implied,  ///< one that is not given is an empty one
+  list      ///< any number of tables of that name, none included
 };
 
 /// How a table is written.
@@ -129,7 +172,7 @@ struct Table {
   Child child = {};
   Presence presence = Presence::always;
   Layout layout = Layout::headed;
-  std::string_view shape = "a table";   ///< what it must be, for messages
+  std::string_view shape = {};          ///< what it must be, for messages, if not a table or tables
   std::string_view otherwise = "none";  ///< what holds without an optional table
   When when = {};
 };
@@ -139,6 +182,7 @@ struct Format {
   std::string_view id;    ///< "retrace.process/1": what the key `schema` says
   std::string_view title;
   Table root;
+  bool id_is_optional = false;
 };
 
 /// The unit that the suffix of a name stands for, such as "mm/min" of `feed_mm_per_min`; empty without one.
@@ -150,14 +194,9 @@ std::string allowed(const Kind& kind);
 /// The value that a key has by default; nothing if it has none.
 Value default_value(const Row& row);
 
-/// A table and its object within the tables around it.
-struct Level {
-  const Table& table;
-  const void* object;
-  const Level* around = nullptr;
-};
-
-/// Whether the condition holds. \throw std::logic_error if it names no word of these tables
-bool holds(const When& when, const Level& level);
+/// The path of a key or table within the one that `around` is the path of.
+std::string path_in(std::string_view around, std::string_view name);
+/// The path of an entry of a list of tables, from 0: "hole[1]".
+std::string path_of_entry(std::string_view list, std::size_t index);
 
 }  // namespace retrace::schema

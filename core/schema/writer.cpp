@@ -30,20 +30,66 @@ std::string lines_text(const std::vector<std::string>& texts) {
   return result + "]";
 }
 
-std::string value_text(const Value& value, const Kind& kind) {
-  const Word* const word = std::get_if<Word>(&kind);
+std::string value_text(const Value& value) {
   return std::visit(
-      Overloaded{[](std::monostate) { return std::string(); },
-                 [](bool flag) { return std::string(flag ? "true" : "false"); },
-                 [&](double number) {
-                   return word ? toml_text(word->words[static_cast<std::size_t>(number)]) : shortest(number);
-                 },
-                 [](const std::string& text) { return toml_text(text); },
-                 [](const std::vector<double>& numbers) { return numbers_text(numbers); },
-                 [](const std::vector<std::vector<double>>& rows) { return list_text(rows, numbers_text); },
-                 [](const std::vector<std::string>& texts) { return lines_text(texts); }},
+      Overloaded{
+          [](std::monostate) { return std::string(); }, [](bool flag) { return std::string(flag ? "true" : "false"); },
+          [](double number) { return shortest(number); }, [](const std::string& text) { return toml_text(text); },
+          [](const std::vector<double>& numbers) { return numbers_text(numbers); },
+          [](const std::vector<std::vector<double>>& rows) { return list_text(rows, numbers_text); },
+          [](const std::vector<std::string>& texts) { return lines_text(texts); }},
       value);
 }
+
+/// Writes a table and those in it.
+class Writer {
+ public:
+  explicit Writer(const Document& document) : document_(document) {}
+
+  std::string table(const Table& table, const std::string& path) const {
+    std::string text;
+    for (const std::string& key : keys(table, path)) text += key + "\n";
+    for (const Table& inner : table.tables)
+      if (inner.layout == Layout::headed) text += inner_tables(inner, path_in(path, inner.name));
+    return text;
+  }
+
+ private:
+  /// Each `key = value`.
+  std::vector<std::string> keys(const Table& table, const std::string& path) const {
+    std::vector<std::string> texts;
+    for (const Row& row : table.rows)
+      if (const std::string key = path_in(path, row.key); document_.has(key) && document_.row(key) == &row)
+        texts.push_back(fmt::format("{} = {}", row.key, value_text(document_.value(key))));
+    for (const Table& inner : table.tables)
+      if (const std::string name = path_in(path, inner.name); inner.layout == Layout::in_line && document_.has(name))
+        texts.push_back(fmt::format("{} = {}", inner.name, in_line(inner, name)));
+    return texts;
+  }
+
+  std::string in_line(const Table& table, const std::string& path) const {
+    const auto braces = [&](const std::string& at) {
+      return fmt::format("{{ {} }}", fmt::join(keys(table, at), ", "));
+    };
+    if (table.presence != Presence::list) return braces(path);
+    std::string text = "[\n";
+    for (std::size_t i = 0; i < document_.count(path); ++i)
+      text += fmt::format("  {},\n", braces(path_of_entry(path, i)));
+    return text + "]";
+  }
+
+  std::string inner_tables(const Table& inner, const std::string& path) const {
+    const bool is_list = inner.presence == Presence::list;
+    std::string text;
+    for (std::size_t i = 0; i < document_.count(path); ++i) {
+      text += is_list ? fmt::format("\n[[{}]]\n", path) : fmt::format("\n[{}]\n", path);
+      text += table(inner, is_list ? path_of_entry(path, i) : path);
+    }
+    return text;
+  }
+
+  const Document& document_;
+};
 
 /// An empty text or list stands for a key that is not given, if that means nothing else.
 bool is_left_out(const Row& row, const Value& value) {
@@ -54,51 +100,51 @@ bool is_left_out(const Row& row, const Value& value) {
   return (text != nullptr && text->empty()) || (texts != nullptr && texts->empty());
 }
 
-/// The keys of a table, each `key = value`.
-std::vector<std::string> key_texts(const Level& level) {
-  std::vector<std::string> texts;
-  for (const Row& row : level.table.rows) {
-    if (!holds(row.when, level)) continue;
-    const Value value = row.access.get(level.object);
-    if (!is_left_out(row, value)) texts.push_back(fmt::format("{} = {}", row.key, value_text(value, row.kind)));
-  }
-  for (const Table& inner : level.table.tables)
-    if (inner.layout == Layout::in_line && holds(inner.when, level) && inner.child.count(level.object) > 0)
-      texts.push_back(fmt::format("{} = {{ {} }}", inner.name,
-                                  fmt::join(key_texts({inner, inner.child.at(level.object, 0), &level}), ", ")));
-  return texts;
+Value as_word(const Kind& kind, Value value) {
+  const Word* const word = std::get_if<Word>(&kind);
+  return word != nullptr ? Value(std::string(word->words[static_cast<std::size_t>(std::get<double>(value))])) : value;
 }
 
-std::string level_text(const Level& level, const std::string& path);
-
-std::string children_text(const Table& table, const Level& around, const std::string& path) {
-  const std::string name = path.empty() ? std::string(table.name) : fmt::format("{}.{}", path, table.name);
-  const bool is_list = table.presence == Presence::list;
-  std::string text;
-  for (std::size_t i = 0; i < table.child.count(around.object); ++i) {
-    text += is_list ? fmt::format("\n[[{}]]\n", name) : fmt::format("\n[{}]\n", name);
-    text += level_text({table, table.child.at(around.object, i), &around}, name);
+void add_values(Document& document, const Table& table, const std::string& path, const void* object) {
+  for (const Row& row : table.rows) {
+    if (!document.holds(row.when, path)) continue;
+    Value value = row.access.get(object);
+    if (!is_left_out(row, value)) document.set(path_in(path, row.key), as_word(row.kind, std::move(value)));
   }
-  return text;
+  for (const Table& inner : table.tables) {
+    const std::string inner_path = path_in(path, inner.name);
+    const std::size_t count = document.holds(inner.when, path) ? inner.child.count(object) : 0;
+    if (count > 0) document.set(inner_path, {});
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string at = inner.presence == Presence::list ? path_of_entry(inner_path, i) : inner_path;
+      document.set(at, {});
+      add_values(document, inner, at, inner.child.at(object, i));
+    }
+  }
 }
 
-std::string level_text(const Level& level, const std::string& path) {
-  std::string text;
-  for (const std::string& key : key_texts(level)) text += key + "\n";
-  for (const Table& inner : level.table.tables)
-    if (inner.layout == Layout::headed && holds(inner.when, level)) text += children_text(inner, level, path);
-  return text;
+Document document_of(const Table& table, const void* object) {
+  Document document(table);
+  add_values(document, table, "", object);
+  return document;
 }
 
 }  // namespace
 
-std::string table_text(const Table& table, const void* object) {
-  const std::string head = table.name.empty() ? "" : fmt::format("\n[{}]\n", table.name);
-  return head + level_text({table, object}, std::string(table.name));
+std::string document_text(const Format& format, const Document& document) {
+  return fmt::format("schema = {}\n", toml_text(format.id)) + Writer(document).table(format.root, "");
 }
 
-std::string document_text(const Format& format, const void* object) {
-  return fmt::format("schema = {}\n", toml_text(format.id)) + table_text(format.root, object);
+Document document_of(const Format& format, const void* object) {
+  return document_of(format.root, object);
+}
+
+std::string object_text(const Format& format, const void* object) {
+  return document_text(format, document_of(format, object));
+}
+
+std::string table_text(const Table& table, const void* object) {
+  return fmt::format("\n[{}]\n", table.name) + Writer(document_of(table, object)).table(table, "");
 }
 
 }  // namespace retrace::schema

@@ -1,16 +1,22 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "core/schema/schema.h"
+#include "core/schema/document.h"
 
 namespace retrace::schema {
 
-/// The keys of a table as TOML, in the order of its rows, under its head `[name]`; those of a root without one.
-/// read_table() reads the same values from them. \param object of the type that the rows are of
-std::string table_text(const Table& table, const void* object);
+/// A document as its file: what was given alone. Read again it is the same.
+std::string document_text(const Format& format, const Document& document);
 
-/// The text of a whole file, which read_document() reads.
-std::string document_text(const Format& format, const void* object);
+/// An object of the format's root as a document of its file. \pre the format's rows have access
+Document document_of(const Format& format, const void* object);
+
+/// The text of an object's file, which reads back to the same object.
+std::string object_text(const Format& format, const void* object);
+
+/// The same of a table of a larger document, with its head.
+std::string table_text(const Table& table, const void* object);
 
 }  // namespace retrace::schema

@@ -2,114 +2,95 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <toml++/toml.h>
 
 #include "core/atomic_file.h"
 #include "core/data_directory.h"
+#include "core/schema/reader.h"
 
 namespace retrace::materials {
 namespace {
 
-/// One [[material]] or [[metal]] table; every read names file, line and key when it fails.
-class Entry {
- public:
-  Entry(const std::string& file, std::string_view kind, const toml::table& table)
-      : file_(file), kind_(kind), table_(table) {}
+using namespace schema;
 
-  [[noreturn]] void fail(std::string_view key, std::string_view text) const {
-    const toml::node* node = table_.get(key);
-    const auto& source = node != nullptr ? node->source() : table_.source();
-    throw InputError({file_, static_cast<int>(source.begin.line), fmt::format("{}.{}", kind_, key)}, text);
-  }
+constexpr std::string_view kFormulas[] = {"constant", "power series", "sellmeier", "gas"};
+constexpr std::string_view kConstant[] = {"constant"};
+constexpr Condition kIsConstant[] = {{"formula", Condition::Is::one_of, kConstant}};
+constexpr Condition kIsCurve[] = {{"formula", Condition::Is::none_of, kConstant}};
 
-  std::string text(std::string_view key) const {
-    const auto value = table_[key].value<std::string>();
-    if (!value) fail(key, "must be a text");
-    return *value;
-  }
+constexpr Row kMaterialRows[] = {
+    {"name", Text{}, kRequired, "What designs call it."},
+    {"description", Text{}, kRequired, "For people."},
+    {"formula", Word{kFormulas}, kRequired, "Of the refractive index over the vacuum wavelength in um."},
+    {"coefficients", Terms{1}, kRequired, "The index.", {}, kIsConstant},
+    {"coefficients",
+     Terms{2},
+     kRequired,
+     "Of the formula's terms, as the head of the shipped file tells.",
+     {},
+     kIsCurve},
+    {"relative_to_vacuum", Flag{}, false, "Whether indices are relative to vacuum; otherwise to air."},
+    {"valid_nm", Numbers{2, {}}, kRequired, "Wavelengths from which and to which the formula holds."},
+    {"absorption_per_mm", Number{{.low = 0.0}}, 0.0, "Napierian, for power."},
+    {"source", Text{}, kRequired, "Where its values come from."}};
+constexpr Row kMetalRows[] = {
+    {"name", Text{}, kRequired, "What designs call it."},
+    {"description", Text{}, kRequired, "For people."},
+    {"plasma_ev", Terms{1}, kRequired, "Photon energy at the plasma frequency, in eV."},
+    {"terms", Terms{3}, kRequired, "Strength, damping in eV and resonance in eV of each Lorentz-Drude term."},
+    {"valid_nm", Numbers{2, {}}, kRequired, "Wavelengths from which and to which the model holds."},
+    {"source", Text{}, kRequired, "Where its values come from."}};
+constexpr Table kTables[] = {
+    {.name = "material", .meaning = "A material.", .rows = kMaterialRows, .presence = Presence::list},
+    {.name = "metal", .meaning = "A metal.", .rows = kMetalRows, .presence = Presence::list}};
+constexpr Format kFormat = {"materials",
+                            "retrace.materials/1",
+                            "Materials and metals",
+                            {.name = "", .meaning = "Materials and metals.", .tables = kTables},
+                            true};
 
-  bool flag(std::string_view key) const { return table_[key].value_or(false); }
-  double number_or(std::string_view key, double otherwise) const { return table_[key].value_or(otherwise); }
+template <class Model>
+Model pairs(const std::vector<double>& values) {
+  Model model;
+  for (std::size_t i = 0; i < values.size(); i += 2) model.terms.push_back({values[i], values[i + 1]});
+  return model;
+}
 
-  std::vector<double> numbers(std::string_view key, std::size_t multiple_of) const {
-    std::vector<double> values;
-    if (const toml::array* array = table_[key].as_array())
-      for (const toml::node& node : *array) {
-        const auto value = node.value<double>();
-        if (!value) fail(key, "must be a list of numbers");
-        values.push_back(*value);
-      }
-    if (values.empty() || values.size() % multiple_of != 0)
-      fail(key, fmt::format("must be a list of numbers, {} for each term", multiple_of));
-    return values;
-  }
+Dispersion dispersion_of(const std::string& formula, const std::vector<double>& values) {
+  if (formula == "constant") return ConstantIndex{values.front()};
+  if (formula == "sellmeier") return pairs<Sellmeier>(values);
+  if (formula == "gas") return pairs<GasRefractivity>(values);
+  PowerSeries series;
+  for (std::size_t i = 0; i < values.size(); i += 2)
+    series.terms.push_back({values[i], static_cast<int>(values[i + 1])});
+  return series;
+}
 
-  template <class Model>
-  Model pairs() const {
-    Model model;
-    const std::vector<double> values = numbers("coefficients", 2);
-    for (std::size_t i = 0; i < values.size(); i += 2) model.terms.push_back({values[i], values[i + 1]});
-    return model;
-  }
+/// What a material and a metal have in common.
+template <class Item>
+Item described(const Document& file, const std::string& entry) {
+  Item item;
+  item.name = file.text(entry + ".name");
+  item.description = file.text(entry + ".description");
+  item.source = file.text(entry + ".source");
+  item.valid_from_nm = file.numbers(entry + ".valid_nm")[0];
+  item.valid_to_nm = file.numbers(entry + ".valid_nm")[1];
+  return item;
+}
 
-  Dispersion dispersion() const {
-    const std::string formula = text("formula");
-    if (formula == "constant") return ConstantIndex{numbers("coefficients", 1).front()};
-    if (formula == "sellmeier") return pairs<Sellmeier>();
-    if (formula == "gas") return pairs<GasRefractivity>();
-    if (formula != "power series") fail("formula", "must be constant, power series, sellmeier or gas, got " + formula);
-    PowerSeries series;
-    const std::vector<double> values = numbers("coefficients", 2);
-    for (std::size_t i = 0; i < values.size(); i += 2)
-      series.terms.push_back({values[i], static_cast<int>(values[i + 1])});
-    return series;
-  }
-
- private:
-  const std::string& file_;
-  std::string_view kind_;
-  const toml::table& table_;
-};
-
-Material read_material(const std::string& file, const toml::table& table) {
-  const Entry entry(file, "material", table);
-  Material m;
-  m.name = entry.text("name");
-  m.description = entry.text("description");
-  m.dispersion = entry.dispersion();
-  m.relative_to_vacuum = entry.flag("relative_to_vacuum");
-  const std::vector<double> range = entry.numbers("valid_nm", 2);
-  m.valid_from_nm = range[0];
-  m.valid_to_nm = range[1];
-  m.absorption_per_mm = entry.number_or("absorption_per_mm", 0.0);
-  m.source = entry.text("source");
+Material material_of(const Document& file, const std::string& entry) {
+  Material m = described<Material>(file, entry);
+  m.dispersion = dispersion_of(file.text(entry + ".formula"), file.numbers(entry + ".coefficients"));
+  m.relative_to_vacuum = file.flag(entry + ".relative_to_vacuum");
+  m.absorption_per_mm = file.number(entry + ".absorption_per_mm");
   return m;
 }
 
-Metal read_metal(const std::string& file, const toml::table& table) {
-  const Entry entry(file, "metal", table);
-  Metal m;
-  m.name = entry.text("name");
-  m.description = entry.text("description");
-  m.model.plasma_ev = entry.numbers("plasma_ev", 1).front();
-  const std::vector<double> values = entry.numbers("terms", 3);
+Metal metal_of(const Document& file, const std::string& entry) {
+  Metal m = described<Metal>(file, entry);
+  m.model.plasma_ev = file.numbers(entry + ".plasma_ev").front();
+  const std::vector<double> values = file.numbers(entry + ".terms");
   for (std::size_t i = 0; i < values.size(); i += 3) m.model.terms.push_back({values[i], values[i + 1], values[i + 2]});
-  const std::vector<double> range = entry.numbers("valid_nm", 2);
-  m.valid_from_nm = range[0];
-  m.valid_to_nm = range[1];
-  m.source = entry.text("source");
   return m;
-}
-
-template <class Read>
-void for_each_table(const toml::table& root, const std::string& file, const std::string& kind, Read read) {
-  const toml::array* entries = root[kind].as_array();
-  const std::string must = fmt::format("the file must hold [[{}]] tables", kind);
-  if (entries == nullptr) throw InputError({file, 0, kind}, must);
-  for (const toml::node& node : *entries) {
-    if (!node.is_table()) throw InputError({file, 0, kind}, must);
-    read(*node.as_table());
-  }
 }
 
 /// \throw InputError at `where` if no item has the name
@@ -127,20 +108,18 @@ const Item& find_by_name(const std::vector<Item>& items, std::string_view kind, 
 
 }  // namespace
 
+const schema::Format& materials_format() {
+  return kFormat;
+}
+
 MaterialLibrary MaterialLibrary::read(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  const std::string content = read_file(file);
+  const Document document = read_document(kFormat, read_file(file), file.string());
+  if (!document.has("material")) document.fail("material", "the file must hold [[material]] tables");
   MaterialLibrary library;
-  try {
-    const toml::table root = toml::parse(content, name);
-    for_each_table(root, name, "material",
-                   [&](const toml::table& table) { library.materials_.push_back(read_material(name, table)); });
-    if (root.contains("metal"))
-      for_each_table(root, name, "metal",
-                     [&](const toml::table& table) { library.metals_.push_back(read_metal(name, table)); });
-  } catch (const toml::parse_error& error) {
-    throw InputError({name, static_cast<int>(error.source().begin.line), ""}, error.description());
-  }
+  for (std::size_t i = 0; i < document.count("material"); ++i)
+    library.materials_.push_back(material_of(document, path_of_entry("material", i)));
+  for (std::size_t i = 0; i < document.count("metal"); ++i)
+    library.metals_.push_back(metal_of(document, path_of_entry("metal", i)));
   return library;
 }
 

@@ -5,10 +5,14 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/schema/schema.h"
 #include "materials/dispersion.h"
 #include "materials/metal.h"
 
 namespace retrace::materials {
+
+/// The keys of materials files.
+const schema::Format& materials_format();
 
 /// The shipped materials and metals, each in the order of the file.
 class MaterialLibrary {

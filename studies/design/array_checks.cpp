@@ -42,41 +42,43 @@ struct FootprintOf {
   }
 };
 
-void check_room(const TableReader& array, std::string_view key, double length_mm, double margin_mm, double element_mm) {
+void check_room(const schema::Document& document, std::string_view key, double length_mm, double margin_mm,
+                double element_mm) {
   const double free_mm = length_mm - 2.0 * margin_mm;
   if (free_mm >= element_mm * (1.0 - kRelativeTolerance)) return;
   const std::string margins = margin_mm > 0.0 ? fmt::format(" and two margins of {} mm", shortest(margin_mm)) : "";
-  array.fail(key,
-             fmt::format("must be >= {} to hold one element of {} mm{}, got {}", shortest(element_mm + 2.0 * margin_mm),
-                         shortest(element_mm), margins, shortest(length_mm)));
+  document.fail(
+      key, fmt::format("must be >= {} to hold one element of {} mm{}, got {}", shortest(element_mm + 2.0 * margin_mm),
+                       shortest(element_mm), margins, shortest(length_mm)));
 }
 
-void check_count(const PartSpec& part, const TableReader& array, double cell_area_mm2) {
+void check_count(const PartSpec& part, const schema::Document& document, double cell_area_mm2) {
   const double x_free_mm = part.x_length_mm - 2.0 * part.x_offset_mm + part.x_gap_mm;
   const double y_free_mm = part.y_length_mm - 2.0 * part.y_offset_mm + part.y_gap_mm;
   const double count = x_free_mm * y_free_mm / cell_area_mm2;
   if (!(count <= kMostElements * (1.0 + kRelativeTolerance)))
-    array.fail("x_length_mm", fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed; make it "
-                                          "smaller or its elements larger",
-                                          count, kMostElements));
+    document.fail("array.x_length_mm",
+                  fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed; make it "
+                              "smaller or its elements larger",
+                              count, kMostElements));
 }
 
-void check_square(const PartSpec& part, const TableReader& element) {
+void check_square(const PartSpec& part, const schema::Document& document) {
   const auto& rtp = std::get<geometry::RtpElement>(part.element);
   if (std::abs(rtp.base_mm - rtp.width_mm) <= kRelativeTolerance * rtp.base_mm) return;
-  element.fail("width_mm", fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
-                                       shortest(rtp.base_mm), shortest(rtp.width_mm)));
+  document.fail("element.width_mm", fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
+                                                shortest(rtp.base_mm), shortest(rtp.width_mm)));
 }
 
 }  // namespace
 
-void check_array(const PartSpec& part, const TableReader& array, const TableReader& element) {
-  if (part.arrangement == Arrangement::checker) check_square(part, element);
+void check_array(const PartSpec& part, const schema::Document& document) {
+  if (part.arrangement == Arrangement::checker) check_square(part, document);
   if (part.extent == Extent::infinite || part.arrangement == Arrangement::single) return;
   const Footprint footprint = std::visit(FootprintOf{part}, part.element);
-  check_room(array, "x_length_mm", part.x_length_mm, part.x_offset_mm, footprint.x_mm);
-  check_room(array, "y_length_mm", part.y_length_mm, part.y_offset_mm, footprint.y_mm);
-  check_count(part, array, footprint.cell_area_mm2);
+  check_room(document, "array.x_length_mm", part.x_length_mm, part.x_offset_mm, footprint.x_mm);
+  check_room(document, "array.y_length_mm", part.y_length_mm, part.y_offset_mm, footprint.y_mm);
+  check_count(part, document, footprint.cell_area_mm2);
 }
 
 }  // namespace retrace::studies

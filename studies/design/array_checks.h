@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/schema/document.h"
 #include "geometry/part_spec.h"
-#include "studies/design/table_reader.h"
 
 namespace retrace::studies {
 
@@ -9,8 +9,8 @@ namespace retrace::studies {
 inline constexpr double kMostElements = 1e8;
 
 /// Checks what only element and array together can tell: room for one element between the margins, not more than
-/// kMostElements, and square cells where a checker turns them. `array` and `element` say where the values were given.
+/// kMostElements, and square cells where a checker turns them.
 /// \throw InputError
-void check_array(const geometry::PartSpec& part, const TableReader& array, const TableReader& element);
+void check_array(const geometry::PartSpec& part, const schema::Document& document);
 
 }  // namespace retrace::studies

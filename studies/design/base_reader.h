@@ -1,17 +1,20 @@
 #pragma once
 
-#include "core/error.h"
-#include "studies/design/design.h"
-#include "studies/design/design_document.h"
+#include <string_view>
+
+#include "core/schema/document.h"
+#include "geometry/part_spec.h"
 
 namespace retrace::studies {
 
-/// Reads `[base]` into part.base, which stays empty without such a table, and says where its shape was given.
+/// Reads `[base]` into part.base, which stays empty without such a table.
 /// \throw InputError for values that mean nothing, and for arrays that stand on no base
-InputLocation read_base(const DesignDocument& document, geometry::PartSpec& part);
+void read_base(const schema::Document& document, geometry::PartSpec& part);
 
-/// Checks that the base can carry the elements, errors of angle included.
-/// \throw InputError at the key that gives its shape
-void check_base_of(const Design& design);
+/// The key that gives the base its shape, to be blamed for it.
+std::string_view base_shape_key(const geometry::Base& base);
+
+/// Checks that the base can carry the elements, errors of angle included. \throw InputError at base_shape_key()
+void check_base(const schema::Document& document, const geometry::PartSpec& part);
 
 }  // namespace retrace::studies

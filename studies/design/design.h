@@ -2,11 +2,14 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
+#include "core/schema/document.h"
 #include "geometry/part_spec.h"
 #include "raytrace/beads/ball_layer.h"
 #include "raytrace/stokes.h"
@@ -41,7 +44,6 @@ struct FacetTexture {
   HeightMapAxis height_map_level_axis = HeightMapAxis::x;
   int height_map_form_degree = 1;  ///< of the polynomial that is removed from the map, 1..8
   bool absorbing_walls = false;    ///< of elements and of the border
-  InputLocation location;          ///< where it was given, for whoever cannot trace it
 };
 
 struct SpectralAbsorption {
@@ -61,7 +63,6 @@ struct LightSpectrum {
   std::filesystem::path file;  ///< the same, from the working directory; empty if there is none
   std::vector<Line> lines;     ///< ascending
   bool photopic = true;        ///< shares are of the luminous flux; else of the power
-  InputLocation location;      ///< where it was given, for whoever cannot read the file or finds no index there
 };
 
 /// A picture whose dark pixels say which elements are there.
@@ -69,14 +70,12 @@ struct ArrayMask {
   std::string name;            ///< of the file, as given
   std::filesystem::path file;  ///< the same, from the working directory
   double threshold = 0.7;      ///< pixels with grey < threshold * 255 are cut
-  InputLocation location;      ///< where it was given, for whoever cannot use it
 };
 
 /// A table of planes that single facets lie in, in place of the element's.
 struct FacetPlanesFile {
   std::string name;            ///< as given
   std::filesystem::path file;  ///< the same, from the working directory; checked only when it is read, by part_of()
-  InputLocation location;      ///< where it was given, for whoever cannot use it
 };
 
 /// A mesh in place of element and array, or a plate.
@@ -84,9 +83,10 @@ struct PartMesh {
   std::string name;            ///< of the STL file, as given
   std::filesystem::path file;  ///< the same, from the working directory; read by part_of_design()
   bool allow_open = false;     ///< trace it although it is not closed: openings are closed by flat pieces
-  InputLocation location;      ///< where it was given, for whoever cannot use it
   /// A plate of these lengths in x and y, whose flat back is its retro facet, in place of a file.
   std::optional<std::array<double, 2>> plate_mm;
+
+  std::string_view key() const { return plate_mm ? "part.plate_mm" : "part.mesh"; }
 };
 
 /// A face through which light enters, in place of the plane one.
@@ -97,40 +97,44 @@ struct FrontFile {
   bool mesh_bottom = false;    ///< the mesh is the counterpart: its triangles that look down are the front
   /// Where in the part's plane the origin of the file's frame lies; the part's middle if it was not given.
   std::optional<std::array<double, 2>> centre_mm;
-  InputLocation location;  ///< where the file was given, for whoever cannot use it
 };
 
 /// Everything a design file says, checked and with its defaults filled in.
 struct Design {
   std::string source;              ///< file name as given, "-" for standard input
   std::string title;               ///< empty if none was given
-  InputLocation base_location;     ///< what of [base] decides its shape, for whoever cannot stand on it
   geometry::PartSpec part;         ///< means little where there is a mesh: thickness_mm is then 0 or what was given
   std::optional<PartMesh> mesh;    ///< in place of element and array
   std::optional<FrontFile> front;  ///< none: the plane z = thickness_mm
   std::optional<raytrace::BallLayer> balls;  ///< kind = "ball": `part` then means nothing
-  InputLocation balls_location;              ///< where the kind was given, for whoever cannot trace balls
   std::optional<ArrayMask> mask;
   std::optional<FacetPlanesFile> facet_planes;  ///< finite parts only
   std::string material = "PMMA";
-  InputLocation material_location;          ///< where the material was named, for whoever finds that it is not shipped
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
   std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
   /// The same by wavelength: linear between two or more pairs that ascend; empty if it was not given so.
   std::vector<SpectralAbsorption> absorption_by_wavelength;
-  InputLocation absorption_location;  ///< where it was given, for whoever finds none at a wavelength
-  double back_index = 1.0;            ///< of what lies behind the facets, relative to air; 1..3
-  bool aluminised_facets = false;     ///< an opaque film behind the retro facets
-  double wavelength_nm = 587.56;      ///< means nothing where there is a spectrum
-  InputLocation wavelength_location;  ///< where it was given, for whoever finds no index there
+  double back_index = 1.0;         ///< of what lies behind the facets, relative to air; 1..3
+  bool aluminised_facets = false;  ///< an opaque film behind the retro facets
+  double wavelength_nm = 587.56;   ///< means nothing where there is a spectrum
   std::optional<LightSpectrum> spectrum;
   /// Of the incident light, along the axes of raytrace::source_axis(); i = 1.
   raytrace::Stokes polarisation = raytrace::kUnpolarised;
   std::vector<double> acceptance_half_angle_deg = {0.5};  ///< ascending, each in (0, 90]
   Idealisation idealisation;
   FacetTexture texture;
+  /// What the file says; none of a design that is not from a file.
+  std::shared_ptr<const schema::Document> document;
+
   /// Every file that a key names, from the working directory: what is read beside the source.
-  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> files() const;
+  /// Where a key was given, or would be missed.
+  InputLocation where(std::string_view key) const;
+  /// The same of what decides the texture of the facets.
+  InputLocation where_texture() const;
+  std::string_view front_key() const;
+  /// The key is now what `place` says, for messages.
+  void set_where(const std::string& key, InputLocation place);
 
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }

@@ -9,7 +9,7 @@ namespace retrace::studies {
 geometry::Part part_of(const Design& design) {
   design.require_no_balls();
   if (design.mask && design.facet_planes)
-    throw InputError(design.mask->location, "not allowed together with facets in [part]");
+    throw InputError(design.where("array.mask"), "not allowed together with facets in [part]");
   if (design.mask) return geometry::build_part(design.part, elements_of_mask(design));
   if (!design.facet_planes) return geometry::build_part(design.part);
   const std::string file = design.facet_planes->file.string();

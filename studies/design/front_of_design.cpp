@@ -148,7 +148,7 @@ geometry::Front front_of_design(const Design& design, const geometry::Part& part
     check_room(front, part, file.file.string());
     return front;
   } catch (const InputError& error) {
-    throw InputError(file.location, error.what());  // which does not know who named the file
+    throw InputError(design.where(design.front_key()), error.what());  // which does not know who named the file
   }
 }
 

@@ -21,8 +21,8 @@ namespace {
 constexpr double kMissingShareToTell = 0.05;
 
 /// Where the design says what wavelengths its light has.
-const InputLocation& light_location(const Design& design) {
-  return design.spectrum ? design.spectrum->location : design.wavelength_location;
+InputLocation light_location(const Design& design) {
+  return design.where(design.spectrum ? "light.spectrum" : "light.wavelength_nm");
 }
 
 double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air,
@@ -63,7 +63,7 @@ std::optional<surface_models::HeightMap> facet_map(const Design& design, std::ve
   try {
     return levelled_map(design.texture, design.source_name(), warnings);
   } catch (const InputError& error) {
-    throw InputError(design.texture.location, error.what());  // which does not know who named the file
+    throw InputError(design.where_texture(), error.what());  // which does not know who named the file
   }
 }
 
@@ -77,9 +77,10 @@ surface_models::ScatterModel height_map_model(const FacetTexture& t, const surfa
 }
 
 /// \param map that of facet_map()
-surface_models::ScatterModel scatter_model(const FacetTexture& t, const std::optional<surface_models::HeightMap>& map,
+surface_models::ScatterModel scatter_model(const Design& design, const std::optional<surface_models::HeightMap>& map,
                                            double wavelength_nm) {
   using Model = FacetTexture::Model;
+  const FacetTexture& t = design.texture;
   const auto shape = t.ggx ? surface_models::SlopeShape::ggx : surface_models::SlopeShape::beckmann;
   try {
     switch (t.model) {
@@ -97,7 +98,7 @@ surface_models::ScatterModel scatter_model(const FacetTexture& t, const std::opt
     }
     return surface_models::Smooth();
   } catch (const InputError& error) {
-    throw InputError(t.location, error.what());  // which knows the values but not where they were given
+    throw InputError(design.where_texture(), error.what());  // which knows the values but not where they were given
   }
 }
 
@@ -110,7 +111,7 @@ double absorption_at(const Design& design, const materials::Material& material, 
   }
   if (wavelength_nm < curve.wavelengths_nm.front() || wavelength_nm > curve.wavelengths_nm.back())
     throw InputError(
-        design.absorption_location,
+        design.where("body.absorption_per_mm"),
         fmt::format("must reach all wavelengths of the light, such as {} nm, got {} to {} nm", shortest(wavelength_nm),
                     shortest(curve.wavelengths_nm.front()), shortest(curve.wavelengths_nm.back())));
   return curve.at(wavelength_nm);
@@ -119,10 +120,10 @@ double absorption_at(const Design& design, const materials::Material& material, 
 /// \param map that of facet_map()
 raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrary& library,
                            const std::optional<surface_models::HeightMap>& map, double wavelength_nm) {
-  const materials::Material& material = library.find(design.material, design.material_location);
+  const materials::Material& material = library.find(design.material, design.where("body.material"));
   raytrace::Optics optics;
   optics.mirror_facets = design.idealisation.mirror_facets;
-  optics.facet_scatter = scatter_model(design.texture, map, wavelength_nm);
+  optics.facet_scatter = scatter_model(design, map, wavelength_nm);
   optics.back_index = design.back_index;
   if (design.aluminised_facets)
     optics.coating_index = materials::complex_index(library.find_metal("aluminium").model, wavelength_nm) /
@@ -137,8 +138,8 @@ raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrar
   }
   optics.index = index_at_wavelength(design, material, library.air(), wavelength_nm);
   if (!(optics.index >= 1.0))
-    throw InputError(design.material_location, fmt::format("the index of {} at {} nm must be >= 1, got {}",
-                                                           material.name, wavelength_nm, optics.index));
+    throw InputError(design.where("body.material"), fmt::format("the index of {} at {} nm must be >= 1, got {}",
+                                                                material.name, wavelength_nm, optics.index));
   return optics;
 }
 
@@ -171,7 +172,8 @@ materials::Spectrum wavelengths_to_trace(const Design& design) {
     const materials::Spectrum flux = flux_of(design);
     return light.kind == LightSpectrum::Kind::lines ? flux : materials::traced_spectrum(flux);
   } catch (const InputError& error) {
-    throw InputError(light.location, error.what());  // which may know file and line, but not who named it
+    throw InputError(design.where("light.spectrum"),
+                     error.what());  // which may know file and line, but not who named it
   }
 }
 
@@ -208,7 +210,7 @@ void add_texture_warnings(const Design& design, OpticalModel& model) {
     try {
       surface_models::require_in_range(at.optics.facet_scatter, index, at.wavelength_nm);
     } catch (const InputError& error) {
-      throw InputError(design.texture.location, error.what());
+      throw InputError(design.where_texture(), error.what());
     }
     if (is_told) continue;
     for (const std::string& warning : surface_models::warnings(at.optics.facet_scatter, index, at.wavelength_nm)) {
@@ -230,7 +232,8 @@ const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double w
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Fronts fronts) {
   design.require_no_balls();
   if (fronts == Fronts::plane && design.front)
-    throw InputError(design.front->location, "a [front] is taken by retrace rre, photometry and inspect alone");
+    throw InputError(design.where(design.front_key()),
+                     "a [front] is taken by retrace rre, photometry and inspect alone");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.front) model.front = front_of_design(design, model.part, &model.warnings);
@@ -239,7 +242,7 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
 
 OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library) {
   OpticalModel model;
-  const materials::Material& material = library.find(design.material, design.material_location);
+  const materials::Material& material = library.find(design.material, design.where("body.material"));
   const materials::Spectrum light = wavelengths_to_trace(design);
   const std::optional<surface_models::HeightMap> map = facet_map(design, model.warnings);
   for (std::size_t k = 0; k < light.size(); ++k)

@@ -76,7 +76,7 @@ geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::str
       throw InputError({name, 0, ""}, error.what());
     }
   } catch (const InputError& error) {
-    throw InputError(design.mesh->location, error.what());  // which does not know who named the file
+    throw InputError(design.where(design.mesh->key()), error.what());  // which does not know who named the file
   }
 }
 
@@ -90,7 +90,7 @@ geometry::Part part_of_design(const Design& design, std::vector<std::string>* wa
     check_thickness(design, part);
     return part;
   } catch (const InputError& error) {
-    throw InputError(design.mesh->location, fmt::format("{}: {}", design.mesh->file.string(), error.what()));
+    throw InputError(design.where(design.mesh->key()), fmt::format("{}: {}", design.mesh->file.string(), error.what()));
   }
 }
 

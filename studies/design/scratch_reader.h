@@ -1,13 +1,13 @@
 #pragma once
 
+#include "core/schema/document.h"
 #include "geometry/part_spec.h"
-#include "studies/design/table_reader.h"
 
 namespace retrace::studies {
 
 /// Reads `[[surface.scratches]]` of prisms into `part`.
 /// \throw InputError for scratches of other elements, or that leave the facet, overlap, or are deeper than half their
 ///        width
-void read_scratches(const DesignDocument& document, TableReader& surface, geometry::PartSpec& part);
+void read_scratches(const schema::Document& document, geometry::PartSpec& part);
 
 }  // namespace retrace::studies

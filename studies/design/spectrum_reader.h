@@ -2,12 +2,12 @@
 
 #include <optional>
 
+#include "core/schema/document.h"
 #include "studies/design/design.h"
-#include "studies/design/table_reader.h"
 
 namespace retrace::studies {
 
 /// The keys of [light] that describe a spectrum; nothing if there is none. Files are named, not read. \throw InputError
-std::optional<LightSpectrum> read_spectrum(TableReader& light);
+std::optional<LightSpectrum> read_spectrum(const schema::Document& document);
 
 }  // namespace retrace::studies

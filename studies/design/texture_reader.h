@@ -1,11 +1,11 @@
 #pragma once
 
+#include "core/schema/document.h"
 #include "studies/design/design.h"
-#include "studies/design/table_reader.h"
 
 namespace retrace::studies {
 
-/// The keys of [surface] that say how facets scatter light, and whether walls absorb it. \throw InputError
-FacetTexture read_texture(TableReader& surface);
+/// What `[surface]` says of the texture of the retro facets. Files are named, not read. \throw InputError
+FacetTexture read_texture(const schema::Document& document);
 
 }  // namespace retrace::studies

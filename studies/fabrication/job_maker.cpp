@@ -197,7 +197,7 @@ void check_base(const Design& design, const JobRequest& request) {
 MadeJob make_job(const Design& design, const JobRequest& request) {
   check_base(design, request);
   if (design.facet_planes)
-    throw InputError(design.facet_planes->location, "planes of single facets are traced, not cut, in this version");
+    throw InputError(design.where("part.facets"), "planes of single facets are traced, not cut, in this version");
   MadeJob made;
   Job& job = made.job;
   job.title = design.title;
@@ -216,7 +216,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   if (design.mask)
     job.array.pattern = fabrication::mask_pattern(design.mask->file, design.mask->threshold,
                                                   fabrication::cell_counts(job.array, fabrication::prism_of(job)),
-                                                  design.mask->location);
+                                                  design.where("array.mask"));
   fabrication::check_job(job, {design.source_name(), 0, ""});
   made.elements = static_cast<std::int64_t>(fabrication::cut_elements(job).size());
   add_warnings(design, made);

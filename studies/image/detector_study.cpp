@@ -97,7 +97,7 @@ DetectorStudy::DetectorStudy(Design design, DetectorRequest request)
   check(request_);
   model_ = make_model(design_, materials::MaterialLibrary::shipped());
   if (request_.engine == Engine::exact && !model_.optics.is_smooth())
-    throw InputError(design_.texture.location, "rough facets cannot be traced exactly: use --engine montecarlo");
+    throw InputError(design_.where_texture(), "rough facets cannot be traced exactly: use --engine montecarlo");
 }
 
 raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const raytrace::DetectorSetting& setting,

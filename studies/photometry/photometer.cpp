@@ -85,7 +85,7 @@ OpticalModel model_of(const Design& design, const materials::MaterialLibrary& li
 /// R_A is of an area, which a single ball has none of, and rays are followed in one way alone.
 void check_balls(const Design& design, const PhotometryRequest& request) {
   if (!design.balls->pitch_mm)
-    throw InputError(design.balls_location, "photometry takes layers of balls: give array.arrangement = \"packed\"");
+    throw InputError(design.where("element.kind"), "photometry takes layers of balls: give array.arrangement = \"packed\"");
   if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
     throw InputError({"", 0, "--engine"}, "must be auto or montecarlo for balls");
 }
@@ -107,7 +107,7 @@ Design lit(Design design, const PhotometryRequest& request, const WeighedLight& 
   spectrum.photopic = false;
   for (const double w : light.wavelengths_nm) spectrum.lines.push_back({w, 1.0});
   design.spectrum = spectrum;
-  design.absorption_location = {request.dye, 0, "absorption_per_mm"};
+  design.set_where("body.absorption_per_mm", {request.dye, 0, "absorption_per_mm"});
   return design;
 }
 

@@ -28,7 +28,7 @@ void check(const Design& design) {
   design.require_no_balls();
   design.require_plane_front("retrace roughness");
   if (design.texture.model != FacetTexture::Model::smooth)
-    throw InputError(design.texture.location, "must be left out here: the roughness is what is varied");
+    throw InputError(design.where_texture(), "must be left out here: the roughness is what is varied");
   if (design.acceptance_half_angle_deg.size() != 1)
     throw InputError({design.source_name(), 0, "detector.acceptance_half_angle_deg"},
                      fmt::format("must be one angle here, got {}", design.acceptance_half_angle_deg.size()));
@@ -44,7 +44,7 @@ Design textured(const Design& design, const RoughnessPoint& point, double wavine
   texture.correlation_length_um = point.correlation_length_um;
   texture.waviness_sq_nm = gaussian_sq_nm(point.waviness_sa_nm);
   texture.waviness_length_um = waviness_length_um;
-  texture.location = where;
+  rough.set_where("surface.model", where);
   return rough;
 }
 

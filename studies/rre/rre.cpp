@@ -47,9 +47,9 @@ void check(const RreRequest& request) {
 /// A slope asks for the part at neighbouring sizes, which planes of single facets do not say.
 void check_planes(const Design& design, const RreRequest& request) {
   if (request.derivatives && design.facet_planes)
-    throw InputError(design.facet_planes->location, "has no derivatives: leave out --derivatives");
+    throw InputError(design.where("part.facets"), "has no derivatives: leave out --derivatives");
   if (request.derivatives && design.mask)
-    throw InputError(design.mask->location, "has no derivatives: leave out --derivatives");
+    throw InputError(design.where("array.mask"), "has no derivatives: leave out --derivatives");
 }
 
 /// A slope, a footprint or a far field is that of one wavelength: a mean of them over others would show none of them.
@@ -59,7 +59,7 @@ void check_light(const Design& design, const OpticalModel& model, const RreReque
                                       {request.far_field, "--far-field"},
                                       {request.derivatives, "--derivatives"}})
     if (asked)
-      throw InputError(design.spectrum->location,
+      throw InputError(design.where("light.spectrum"),
                        fmt::format("{} takes one wavelength and this light has {}: give light.wavelength_nm instead, "
                                    "or --set light.spectrum=[[{:.0f},1]]",
                                    option, model.spectral.size(), model.wavelength_nm));
@@ -124,7 +124,7 @@ OpticalModel model_of(const Design& design, const materials::MaterialLibrary& li
   for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
                                       {request.far_field, "--far-field"},
                                       {request.derivatives, "--derivatives"}})
-    if (asked) throw InputError(design.balls_location, fmt::format("balls have no {}", option));
+    if (asked) throw InputError(design.where("element.kind"), fmt::format("balls have no {}", option));
   return make_light_model(design, library);
 }
 
@@ -146,7 +146,7 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     if (design.balls) continue;
     if (request.derivatives) design.require_elements("--derivatives");
     if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
-      throw InputError(design.texture.location,
+      throw InputError(design.where_texture(),
                        "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "
                        "--far-field and --derivatives");
     if (request.engine == Engine::cell && !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part))

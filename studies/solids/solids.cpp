@@ -74,10 +74,10 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
   if (what == SolidKind::element && !design.facet_planes) return geometry::build_welded_part(spec);
   if (!design.facet_planes && !design.mask) return geometry::build_welded_part(spec);
   if (what == SolidKind::element)
-    throw InputError(design.facet_planes->location, "--what element has no planes of single facets; export the array");
+    throw InputError(design.where("part.facets"), "--what element has no planes of single facets; export the array");
   geometry::Part part = part_of(design);
   if (part.placements.size() != 1)
-    throw InputError(design.mask ? design.mask->location : design.facet_planes->location,
+    throw InputError(design.where(design.mask ? "array.mask" : "part.facets"),
                      "arrays of more than some 2000 such elements are not exported");
   return part;
 }
@@ -85,7 +85,7 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
 /// What was read, mended where it had to be.
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
-    throw InputError(solid.design.mesh->location,
+    throw InputError(solid.design.where(solid.design.mesh->key()),
                      fmt::format("--what {} takes no mesh, only [element] and [array]", name_of(solid.what)));
   solid.mesh = geometry::boundary_of(mesh_of_design(solid.design, &solid.warnings));
   measure(solid);

@@ -313,7 +313,7 @@ TEST_F(Front, KeysThatMakeNoSenseAreRefused) {
   EXPECT_EQ(refusal(plate_body + kFront + "mesh_side = \"top\"\n"),
             "design.toml:8: front.mesh_side: only allowed with mesh, got \"top\"");
   EXPECT_EQ(refusal(plate_body + "[front]\nmesh = \"a.stl\"\nmesh_side = \"left\"\n"),
-            "design.toml:8: front.mesh_side: must be one of \"top\" or \"bottom\", got \"left\"");
+            "design.toml:8: front.mesh_side: must be \"top\" or \"bottom\", got \"left\"");
   EXPECT_EQ(refusal(plate_body + kFront + "centre_mm = [1]\n"),
             "design.toml:8: front.centre_mm: must be a list of two, x and y, got a list of 1");
   EXPECT_EQ(refusal("[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n" + kFront +

@@ -15,11 +15,13 @@ TEST(SchemaCommand, ListsTheFormats) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out,
             "name       schema               title\n"
+            "design     retrace.design/1     Design of a retroreflector array\n"
             "machine    retrace.machine/1    Machine with five axes\n"
+            "materials  retrace.materials/1  Materials and metals\n"
             "process    retrace.process/1    Process of a fabrication job\n");
   const Json json = retrace_json(folder, {"schema"});
   EXPECT_EQ(json["schema"], "retrace.formats/1");
-  EXPECT_EQ(json["formats"][0],
+  EXPECT_EQ(json["formats"][1],
             (Json{{"name", "machine"}, {"schema", "retrace.machine/1"}, {"title", "Machine with five axes"}}));
 }
 
@@ -38,7 +40,7 @@ TEST(SchemaCommand, RefusesAnUnknownFormat) {
   const TemporaryFolder folder;
   const Outcome outcome = retrace(folder, {"schema", "procces"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, "retrace: schema: must be machine or process, got procces\n");
+  EXPECT_EQ(outcome.err, "retrace: schema: must be design, machine, materials, process, got procces\n");
 }
 
 /// One line for each TOML file: its name, and whether the schema accepts it.
@@ -66,20 +68,66 @@ std::vector<std::string> judged(const TemporaryFolder& folder, const std::string
   return lines_of(outcome.out);
 }
 
-std::vector<std::string> shipped(const std::string& data_folder) {
+/// The files of a folder of the repository whose names end in .toml.
+std::vector<std::string> files_in(const std::string& name) {
   std::vector<std::string> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "data" / data_folder))
-    files.push_back(entry.path().string());
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / name))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
   return files;
 }
 
 TEST(SchemaCommand, AValidatorAcceptsWhatIsShipped) {
   const TemporaryFolder folder;
-  for (const auto& [format, data_folder] : {std::pair{"machine", "machines"}, std::pair{"process", "processes"}}) {
-    const std::vector<std::string> lines = judged(folder, format, shipped(data_folder));
-    EXPECT_GE(lines.size(), 4U);
-    for (const std::string& line : lines) EXPECT_TRUE(line.ends_with(" accepted")) << line;
+  for (const auto& [format, name, least] :
+       {std::tuple{"machine", "data/machines", 4U}, std::tuple{"process", "data/processes", 4U},
+        std::tuple{"materials", "data", 1U}, std::tuple{"design", "examples", 15U},
+        std::tuple{"design", "examples/fronts", 1U}, std::tuple{"design", "examples/luminance_fixture", 1U}}) {
+    const std::vector<std::string> lines = judged(folder, format, files_in(name));
+    EXPECT_GE(lines.size(), least) << name;
+    for (const std::string& line : lines) EXPECT_TRUE(line.ends_with(" accepted")) << format << ": " << line;
   }
+}
+
+/// Each alone is wrong in a design of prisms; a validator says so as our reader does.
+TEST(SchemaCommand, AValidatorRefusesWrongDesigns) {
+  const TemporaryFolder folder;
+  const std::string good = "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n";
+  const std::string rest = "[body]\nthickness_mm = 2\n";
+  const std::vector<std::string> wrong = {"x_length_mm = 3\n",
+                                          "arrangement = \"honeycomb\"\n",
+                                          "overlap_percent = 50\n",
+                                          "x_gap_mm = -1\n",
+                                          "gap_mm = 1\n",
+                                          "mask = \"m.png\"\n",
+                                          "mask_threshold = 0.5\n",
+                                          "arangement = \"offset\"\n",
+                                          "[light]\nwavelength_nm = 0\n",
+                                          "[light]\nweighting = \"radiant\"\n",
+                                          "[light]\nspectrum = \"A\"\nwavelength_nm = 500\n",
+                                          "[light]\npolarisation = [1, 0]\n",
+                                          "[light]\npolarisation_angle_deg = 1\n",
+                                          "[surface]\nabg_a = 1\n",
+                                          "[surface]\nmodel = \"abg\"\n",
+                                          "[surface]\nslope_distribution = \"ggx\"\n",
+                                          "[surface]\nscratches = 3\n",
+                                          "[base]\nkind = \"plane\"\n",
+                                          "[base]\nkind = \"sphere\"\nradius_mm = 9\naxis = \"x\"\n",
+                                          "[front]\nturned = \"a\"\nmesh = \"b\"\n",
+                                          "[part]\nmesh = \"p.stl\"\n",
+                                          "[bodies]\n",
+                                          "[detector]\nacceptance_half_angle_deg = [1, 91]\n",
+                                          "[idealisation]\nfacets = \"real mirror\"\n"};
+  std::vector<std::string> files = {"good.toml"};
+  folder.write("good.toml", good + rest);
+  for (std::size_t i = 0; i < wrong.size(); ++i) {
+    files.push_back("wrong" + std::to_string(i) + ".toml");
+    folder.write(files.back(), good + wrong[i] + rest);
+    EXPECT_EQ(retrace(folder, {"inspect", files.back()}).code, 2) << wrong[i];
+  }
+  const std::vector<std::string> lines = judged(folder, "design", files);
+  ASSERT_EQ(lines.size(), files.size());
+  EXPECT_EQ(lines[0], "good.toml accepted");
+  for (std::size_t i = 0; i < wrong.size(); ++i) EXPECT_TRUE(lines[i + 1].ends_with(" refused")) << wrong[i];
 }
 
 /// A shipped file in which a text is replaced by another one.

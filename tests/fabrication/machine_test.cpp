@@ -203,18 +203,19 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
             "m.toml:8: x.direction: must name its source, got \"\"");
   EXPECT_EQ(refusal(", assumed = \"square guideways\"", ""),
             "m.toml:8: x.direction: must say either measured = \"source\" or assumed = \"why\"");
-  EXPECT_EQ(refusal("[z]", "[w]"), "m.toml: z: missing, must be a table");
+  EXPECT_EQ(refusal("[z]", "[w]"),
+            "m.toml:21: w: unknown table, did you mean \"x\"? (allowed: x, y, z, a, b, c, body)");
   EXPECT_EQ(refusal("moves_with = \"tool\"", "moves_with = \"spindle\""),
-            "m.toml:51: body.moves_with: must be \"workpiece\", \"cradle\" or \"tool\", got \"spindle\"");
+            "m.toml:51: body[2].moves_with: must be \"workpiece\", \"cradle\" or \"tool\", got \"spindle\"");
   const std::string box = "box_mm = { value = [-60, -60, -40, 60, 60, -15]";
   EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]"),
-            "m.toml:47: body.points_mm.value: must be 4 to 1000 points, got 3");
+            "m.toml:47: body[1].points_mm.value: must be 4 to 1000 points, got 3");
   EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]"),
-            "m.toml:47: body.points_mm.value: must be points that do not lie in one plane");
+            "m.toml:47: body[1].points_mm.value: must be points that do not lie in one plane");
   EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0], [1, 0], [0, 1], [1, 1]]"),
-            "m.toml:47: body.points_mm.value: must be a list of lists of 3 numbers, got one of 2");
+            "m.toml:47: body[1].points_mm.value: must be a list of lists of 3 numbers, got one of 2");
   EXPECT_EQ(refusal(box, "points_mm = { value = 5"),
-            "m.toml:47: body.points_mm.value: must be a list of lists of 3 numbers, got 5");
+            "m.toml:47: body[1].points_mm.value: must be a list of lists of 3 numbers, got 5");
   EXPECT_EQ(refusal("retrace.machine/1", "retrace.machine/2"),
             "m.toml:3: schema: must be \"retrace.machine/1\", got \"retrace.machine/2\"");
 }

@@ -103,10 +103,10 @@ TEST(MaterialLibrary, BadFilesAreRefusedWithTheirLine) {
     std::filesystem::remove(path);
     return message;
   };
-  EXPECT_NE(read("[[material]]\nname = 3\n").find(":2: material.name: must be a text"), std::string::npos);
-  EXPECT_NE(read("[[material]]\nname = \"x\"\ndescription = \"y\"\nformula = \"z\"\n").find(":4: material.formula"),
+  EXPECT_NE(read("[[material]]\nname = 3\n").find(":2: material[1].name: must be a string, got 3"), std::string::npos);
+  EXPECT_NE(read("[[material]]\nname = \"x\"\ndescription = \"y\"\nformula = \"z\"\n").find(":4: material[1].formula"),
             std::string::npos);
-  EXPECT_NE(read("material = 1\n").find("must hold [[material]]"), std::string::npos);
+  EXPECT_NE(read("material = 1\n").find("material: must be tables, got 1"), std::string::npos);
   EXPECT_NE(read("[\n").find(":1: "), std::string::npos);
 }
 

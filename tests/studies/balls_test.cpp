@@ -81,14 +81,15 @@ TEST(BallDesign, WhatMeansNothingForBallsIsRefused) {
   EXPECT_EQ(refusal({"array.x_length_mm=1"}),
             "--set array.x_length_mm=1: array.x_length_mm: not allowed for kind = \"ball\", whose layers are endless, "
             "with gap_mm between the balls, got 1");
-  EXPECT_EQ(refusal({"array.arrangement=honeycomb"}),
-            "--set array.arrangement=honeycomb: array.arrangement: must be one of \"packed\" or \"single\", got "
-            "\"honeycomb\"");
+  EXPECT_EQ(
+      refusal({"array.arrangement=honeycomb"}),
+      "--set array.arrangement=honeycomb: array.arrangement: must be \"packed\" or \"single\" for kind = \"ball\", got "
+      "\"honeycomb\"");
   EXPECT_EQ(
       refusal({"array.extent=finite"}),
       "--set array.extent=finite: array.extent: must be \"infinite\" for arrangement = \"packed\", got \"finite\"");
   EXPECT_EQ(refusal({"array.arrangement=single", "array.gap_mm=1"}),
-            "--set array.gap_mm=1: array.gap_mm: not allowed for arrangement = \"single\"");
+            "--set array.gap_mm=1: array.gap_mm: not allowed for arrangement = \"single\", got 1");
   EXPECT_EQ(refusal({"array.gap_mm=-1"}), "--set array.gap_mm=-1: array.gap_mm: must be >= 0 and <= 1e+06, got -1");
   EXPECT_EQ(refusal({"body.thickness_mm=1"}),
             "--set body.thickness_mm=1: body.thickness_mm: not allowed for kind = \"ball\", which has no plate, got 1");

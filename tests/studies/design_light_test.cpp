@@ -42,12 +42,12 @@ TEST(DesignReader, WhatIsNoPolarisationIsRefused) {
   };
   const std::string where = "d.toml:12: light.polarisation: ";
   const std::string words =
-      "must be one of \"unpolarised\", \"linear\", \"right_circular\" or \"left_circular\" or a list of four Stokes "
+      "must be \"unpolarised\", \"linear\", \"right_circular\" or \"left_circular\" or a list of four Stokes "
       "parameters, got ";
   EXPECT_EQ(refused("\"liner\""), where + words + "\"liner\"; did you mean \"linear\"?");
   EXPECT_EQ(refused("1"), where + "must be a string or a list of four Stokes parameters, got 1");
-  EXPECT_EQ(refused("[1, 0, 0]"), where + "must be a list of four Stokes parameters, got a list of 3");
-  EXPECT_EQ(refused("[]"), where + "must be a list of four Stokes parameters, got a list of 0");
+  EXPECT_EQ(refused("[1, 0, 0]"), where + "must be a list of 4 Stokes parameters, got 3 of them");
+  EXPECT_EQ(refused("[]"), where + "must be a list of 4 Stokes parameters, got 0 of them");
   EXPECT_EQ(refused("[1, 0, 0, \"x\"]"), where + "must be a number, got \"x\"");
   EXPECT_EQ(refused("[1, 0, 0, inf]"), where + "must be a finite number, got inf");
   const std::string stokes = where + "must be [i, q, u, v] with i > 0 and q^2 + u^2 + v^2 <= i^2, got ";
@@ -85,7 +85,8 @@ TEST(DesignReader, SpectrumIsANameAFileOrLines) {
   EXPECT_EQ(lines.lines[0].wavelength_nm, 589.0) << "ascending";
   EXPECT_EQ(lines.lines[0].power, 2.0);
   EXPECT_EQ(lines.lines[1].wavelength_nm, 589.6);
-  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"A\"\n", "d.toml", {}).spectrum->location.line, 12);
+  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"A\"\n", "d.toml", {}).where("light.spectrum").line,
+            12);
 }
 
 TEST(DesignReader, AbsorptionIsANumberOrPairsOverTheWavelength) {
@@ -137,7 +138,7 @@ TEST(DesignReader, WhatIsNoSpectrumIsRefused) {
       "d.toml:13: light.wavelength_nm: not allowed together with spectrum: one of the two says what the light is, "
       "got 555");
   EXPECT_EQ(refused("\"A\"\nweighting = \"eye\""),
-            "d.toml:13: light.weighting: must be one of \"photopic\" or \"radiant\", got \"eye\"");
+            "d.toml:13: light.weighting: must be \"photopic\" or \"radiant\", got \"eye\"");
   EXPECT_EQ(set_complaint({"light.weighting=photopic"}),
             "--set light.weighting=photopic: light.weighting: only allowed together with spectrum, got \"photopic\"");
 }

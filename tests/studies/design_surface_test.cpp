@@ -37,7 +37,7 @@ TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
 TEST(DesignReader, HeightMapKeysAreChecked) {
   const auto said = [](const std::string& lines) { return complaint(with_line(11, "[surface]\n" + lines)); };
   EXPECT_EQ(said("model = \"height_map\""),
-            "d.toml:11: surface.height_map: missing, must name the file of a measured map");
+            "d.toml:11: surface.height_map: missing, must be the name of the file of a measured map");
   EXPECT_EQ(said("height_map = \"\""), "d.toml:12: surface.height_map: must name a file, got \"\"");
   EXPECT_EQ(said("height_map = 3"), "d.toml:12: surface.height_map: must be a string, got 3");
   EXPECT_EQ(said("model = \"smooth\"\nheight_map = \"m.txt\""),
@@ -47,9 +47,9 @@ TEST(DesignReader, HeightMapKeysAreChecked) {
   EXPECT_EQ(said("model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9"),
             "d.toml:14: surface.waviness_sq_nm: must be 0 for model = \"height_map\", whose map holds both, got 5");
   EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_level_axis = \"z\"")
-                  .starts_with("d.toml:13: surface.height_map_level_axis: must be one of \"x\" or \"y\", got \"z\""));
+                  .starts_with("d.toml:13: surface.height_map_level_axis: must be \"x\" or \"y\", got \"z\""));
   EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_form = \"none\"")
-                  .starts_with("d.toml:13: surface.height_map_form: must be one of \"plane\""));
+                  .starts_with("d.toml:13: surface.height_map_form: must be \"plane\""));
 }
 
 TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
@@ -134,8 +134,7 @@ TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
   EXPECT_EQ(design.part.random_tilts.seed, 7U);
   EXPECT_EQ(set_complaint({key + "=-1"}), "--set " + key + "=-1: " + key + ": must be >= 0 and <= 60, got -1");
   EXPECT_EQ(set_complaint({"surface.angle_error_seed=1.5"}),
-            "--set surface.angle_error_seed=1.5: surface.angle_error_seed: must be a whole number >= 0 and <= "
-            "4294967295, got 1.5");
+            "--set surface.angle_error_seed=1.5: surface.angle_error_seed: must be a whole number, got 1.5");
   EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"") + "[surface]\nangle_error_sigma_arcmin = 1"),
             "d.toml:10: " + key +
                 ": must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
@@ -169,7 +168,7 @@ TEST(DesignReader, TexturesThatSayTooLittleOrTooMuchAreRefused) {
             "d.toml: surface.waviness_length_um: must be > 0 where waviness_sq_nm is given, got 0");
   EXPECT_NE(refused({"surface.roughness_sq_nm=-1"}).find("must be >= 0 and <= 1e+05, got -1"), std::string::npos);
   EXPECT_NE(refused({"surface.roughness_sq_nm=rough"}).find("must be a number, got \"rough\""), std::string::npos);
-  EXPECT_NE(refused({"surface.model=matt"}).find("surface.model: must be one of \"smooth\""), std::string::npos);
+  EXPECT_NE(refused({"surface.model=matt"}).find("surface.model: must be \"smooth\""), std::string::npos);
   EXPECT_NE(refused({"surface.model=abg"}).find("surface.abg_a: missing"), std::string::npos);
   EXPECT_NE(refused({"surface.abg_a=1"}).find("only allowed for model = \"abg\""), std::string::npos);
   EXPECT_NE(refused({"surface.slope_distribution=ggx"}).find("only allowed for model = \"microfacet\""),
@@ -177,7 +176,7 @@ TEST(DesignReader, TexturesThatSayTooLittleOrTooMuchAreRefused) {
   EXPECT_NE(refused({"surface.model=smooth", "surface.roughness_sq_nm=5", "surface.correlation_length_um=2"})
                 .find("surface.roughness_sq_nm: must be 0 for this model"),
             std::string::npos);
-  EXPECT_NE(refused({"surface.walls=rough"}).find("surface.walls: must be one of \"smooth\" or \"absorbing\""),
+  EXPECT_NE(refused({"surface.walls=rough"}).find("surface.walls: must be \"smooth\" or \"absorbing\""),
             std::string::npos);
 }
 
@@ -216,13 +215,13 @@ TEST(DesignReader, ScratchesAreThoseOfPrisms) {
     std::string entry = good;
     return complaint(with(kRtp, "[{ " + entry.replace(entry.find(from), from.size(), to) + " }]"));
   };
-  EXPECT_NE(refused("-x", "y").find("surface.scratches[1].facet: must be one of \"-x\" or \"+x\""), std::string::npos);
+  EXPECT_NE(refused("-x", "y").find("surface.scratches[1].facet: must be \"-x\" or \"+x\""), std::string::npos);
   EXPECT_NE(refused("40", "600").find("surface.scratches[1].position_um: must be >= "), std::string::npos);
   EXPECT_NE(refused("3,", "0,").find("surface.scratches[1].width_um: must be >= 0.01 and <= 100, got 0"),
             std::string::npos);
   EXPECT_NE(refused("0.5", "1.6").find("surface.scratches[1].depth_um: must be >= -1.5 and <= 1.5, got 1.6"),
             std::string::npos);
-  EXPECT_NE(refused("depth_um = 0.5", "depth = 0.5").find("surface.scratches[1].depth_um: missing"), std::string::npos);
+  EXPECT_NE(refused(", depth_um = 0.5", "").find("surface.scratches[1].depth_um: missing"), std::string::npos);
   EXPECT_NE(complaint(with(kRtp, "[{ " + good + " }, { " + good + " }]"))
                 .find("surface.scratches[2].position_um: must keep clear of the other scratches of its facet"),
             std::string::npos);

@@ -101,7 +101,7 @@ schema::Table process_table(std::string_view name) {
 
 Process parse_process(std::string_view text, const std::string& source_name) {
   Process process;
-  schema::read_document(kFormat, text, source_name, &process);
+  schema::read_object(kFormat, text, source_name, &process);
   return process;
 }
 

@@ -301,7 +301,7 @@ const schema::Format& machine_format() {
 
 Machine parse_machine(std::string_view text, const std::string& source_name) {
   Machine machine;
-  schema::read_document(kFormat, text, source_name, &machine);
+  schema::read_object(kFormat, text, source_name, &machine);
   return machine;
 }
 

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <string_view>
 
-#include "core/io/toml_node.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/design_keys.h"
-#include "studies/design/table_reader.h"
+#include "core/toml_file.h"
 
 namespace retrace::studies {
 namespace {
@@ -32,24 +30,15 @@ std::string checked_quantity(const Study& study, const std::string& name, const 
 }
 
 std::vector<Constraint> read_constraints(const Study& study) {
-  const DesignDocument document(study.text, study.source, {});
+  TomlTable document = parse_toml(study.text, study.source, kShortTomlBytes);
   std::vector<Constraint> constraints;
-  const toml::node* const node = document.root().get("constraint");
-  if (node == nullptr) return constraints;
-  const toml::array* const list = node->as_array();
-  const auto refuse = [&](const toml::node& where) -> InputError {
-    return {document.location(where, "constraint"), "must be one or more tables [[constraint]], got " + shown(where)};
-  };
-  if (list == nullptr) throw refuse(*node);
-  for (const toml::node& entry : *list) {
-    if (!entry.is_table()) throw refuse(entry);
-    TableReader table(document, "constraint", *entry.as_table());
+  for (TomlTable& table : document.tables("constraint", "one or more tables [[constraint]]")) {
     Constraint constraint;
     const std::optional<std::string> name = table.text("quantity");
     if (!name) table.fail("quantity", "missing, must be a quantity of the study");
     constraint.quantity = checked_quantity(study, *name, table.where("quantity"));
-    constraint.least = table.number("min", Range{});
-    constraint.most = table.number("max", Range{});
+    constraint.least = table.number("min");
+    constraint.most = table.number("max");
     if (!constraint.least && !constraint.most) table.fail("max", "missing: a constraint has min, max or both");
     if (constraint.least && constraint.most && *constraint.least > *constraint.most)
       table.fail("max",

@@ -28,43 +28,41 @@ constexpr KindOf plain(PlainQuantity which) {
 }
 
 constexpr std::array kKinds = {
-    Choice<KindOf>{"rre", {Kind::share, PlainQuantity::elements_full, false, false}},
-    Choice<KindOf>{"ledger", {Kind::share, PlainQuantity::elements_full, false, true}},
-    Choice<KindOf>{"far_field", {Kind::share, PlainQuantity::elements_full, true, false}},
-    Choice<KindOf>{"photometry", {Kind::photometry, PlainQuantity::elements_full, false, false}},
-    Choice<KindOf>{"elements_full", plain(PlainQuantity::elements_full)},
-    Choice<KindOf>{"elements_partial", plain(PlainQuantity::elements_partial)},
-    Choice<KindOf>{"element_depth_mm", plain(PlainQuantity::element_depth_mm)},
-    Choice<KindOf>{"lens_thickness_mm", plain(PlainQuantity::lens_thickness_mm)},
-    Choice<KindOf>{"facet_area_mm2", plain(PlainQuantity::facet_area_mm2)},
-    Choice<KindOf>{"effective_area_mm2", plain(PlainQuantity::effective_area_mm2)},
-    Choice<KindOf>{"entrance_area_mm2", plain(PlainQuantity::entrance_area_mm2)},
-    Choice<KindOf>{"full_element_share", plain(PlainQuantity::full_element_share)},
-    Choice<KindOf>{"tir_limit_deg", plain(PlainQuantity::tir_limit_deg)},
-    Choice<KindOf>{"tool_fit_mm", plain(PlainQuantity::tool_fit_mm)},
-    Choice<KindOf>{"machining_time_h", plain(PlainQuantity::machining_time_h)},
-    Choice<KindOf>{"machining_time_per_element_s", plain(PlainQuantity::machining_time_per_element_s)},
-    Choice<KindOf>{"area_rate_mm2_per_h", plain(PlainQuantity::area_rate_mm2_per_h)},
-    Choice<KindOf>{"process_sa_nm", plain(PlainQuantity::process_sa_nm)},
-    Choice<KindOf>{"root_radius_um", plain(PlainQuantity::root_radius_um)}};
-constexpr std::array kReductions = {Choice<Reduction>{"mean", Reduction::mean},
-                                    Choice<Reduction>{"least", Reduction::least}};
-constexpr std::array kWeightings = {Choice<bool>{"uniform", false}, Choice<bool>{"solid_angle", true}};
-constexpr std::array kFigures = {Choice<PhotometricFigure>{"margin", PhotometricFigure::margin},
-                                 Choice<PhotometricFigure>{"r_i_mcd_per_lx", PhotometricFigure::r_i_mcd_per_lx},
-                                 Choice<PhotometricFigure>{"r_a", PhotometricFigure::r_a}};
-constexpr std::array kPoints = {Choice<bool>{"worst", false}, Choice<bool>{"each", true}};
-constexpr std::array kLights = {Choice<bool>{"a", false}, Choice<bool>{"design", true}};
-constexpr std::array kFarFields = {Choice<bool>{"geometric", false}, Choice<bool>{"diffracted", true}};
-constexpr Range kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
-constexpr Range kAnyAngle{};
-constexpr Range kHalfAngle{.low = 0.0, .low_included = false, .high = 90.0};
+    TomlChoice<KindOf>{"rre", {Kind::share, PlainQuantity::elements_full, false, false}},
+    TomlChoice<KindOf>{"ledger", {Kind::share, PlainQuantity::elements_full, false, true}},
+    TomlChoice<KindOf>{"far_field", {Kind::share, PlainQuantity::elements_full, true, false}},
+    TomlChoice<KindOf>{"photometry", {Kind::photometry, PlainQuantity::elements_full, false, false}},
+    TomlChoice<KindOf>{"elements_full", plain(PlainQuantity::elements_full)},
+    TomlChoice<KindOf>{"elements_partial", plain(PlainQuantity::elements_partial)},
+    TomlChoice<KindOf>{"element_depth_mm", plain(PlainQuantity::element_depth_mm)},
+    TomlChoice<KindOf>{"lens_thickness_mm", plain(PlainQuantity::lens_thickness_mm)},
+    TomlChoice<KindOf>{"facet_area_mm2", plain(PlainQuantity::facet_area_mm2)},
+    TomlChoice<KindOf>{"effective_area_mm2", plain(PlainQuantity::effective_area_mm2)},
+    TomlChoice<KindOf>{"entrance_area_mm2", plain(PlainQuantity::entrance_area_mm2)},
+    TomlChoice<KindOf>{"full_element_share", plain(PlainQuantity::full_element_share)},
+    TomlChoice<KindOf>{"tir_limit_deg", plain(PlainQuantity::tir_limit_deg)},
+    TomlChoice<KindOf>{"tool_fit_mm", plain(PlainQuantity::tool_fit_mm)},
+    TomlChoice<KindOf>{"machining_time_h", plain(PlainQuantity::machining_time_h)},
+    TomlChoice<KindOf>{"machining_time_per_element_s", plain(PlainQuantity::machining_time_per_element_s)},
+    TomlChoice<KindOf>{"area_rate_mm2_per_h", plain(PlainQuantity::area_rate_mm2_per_h)},
+    TomlChoice<KindOf>{"process_sa_nm", plain(PlainQuantity::process_sa_nm)},
+    TomlChoice<KindOf>{"root_radius_um", plain(PlainQuantity::root_radius_um)}};
+constexpr std::array kReductions = {TomlChoice<Reduction>{"mean", Reduction::mean},
+                                    TomlChoice<Reduction>{"least", Reduction::least}};
+constexpr std::array kWeightings = {TomlChoice<bool>{"uniform", false}, TomlChoice<bool>{"solid_angle", true}};
+constexpr std::array kFigures = {TomlChoice<PhotometricFigure>{"margin", PhotometricFigure::margin},
+                                 TomlChoice<PhotometricFigure>{"r_i_mcd_per_lx", PhotometricFigure::r_i_mcd_per_lx},
+                                 TomlChoice<PhotometricFigure>{"r_a", PhotometricFigure::r_a}};
+constexpr std::array kPoints = {TomlChoice<bool>{"worst", false}, TomlChoice<bool>{"each", true}};
+constexpr std::array kLights = {TomlChoice<bool>{"a", false}, TomlChoice<bool>{"design", true}};
+constexpr std::array kFarFields = {TomlChoice<bool>{"geometric", false}, TomlChoice<bool>{"diffracted", true}};
+constexpr NumberRange kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
+constexpr NumberRange kAnyAngle{};
+constexpr NumberRange kHalfAngle{.low = 0.0, .low_included = false, .high = 90.0};
 constexpr double kMostDirections = 10000.0;
 
 /// The middles of `count` equal parts of a range: their mean is that over the range to second order.
-std::vector<double> middles(const DesignDocument& document, const std::string& name, const toml::table& table,
-                            const Range& allowed) {
-  TableReader window(document, name, table);
+std::vector<double> middles(TomlTable window, const NumberRange& allowed) {
   const double from = window.required_number("from", allowed);
   const double to = window.required_number("to", allowed);
   if (!(to > from)) window.fail("to", fmt::format("must be > from ({}), got {}", shortest(from), shortest(to)));
@@ -76,24 +74,19 @@ std::vector<double> middles(const DesignDocument& document, const std::string& n
   return values;
 }
 
-std::optional<std::vector<double>> read_angles(const DesignDocument& document, TableReader& quantity,
-                                               std::string_view key, const Range& allowed) {
-  const toml::node* const node = quantity.node(key);
-  if (node != nullptr && node->is_table())
-    return middles(document, fmt::format("quantity.{}", key), *node->as_table(), allowed);
-  return quantity.numbers(key, allowed);
+std::optional<std::vector<double>> read_angles(TomlTable& quantity, std::string_view key, const NumberRange& allowed) {
+  if (quantity.shape_of(key) == TomlTable::Shape::table) return middles(quantity.table(key), allowed);
+  return quantity.number_or_numbers(key, allowed);
 }
 
-std::size_t read_account(TableReader& quantity) {
-  std::array<Choice<std::size_t>, raytrace::kAccountCount> choices{};
-  for (std::size_t k = 0; k < choices.size(); ++k) choices[k] = {raytrace::kAccountNames[k], k};
-  return quantity.required_choice("account", std::span<const Choice<std::size_t>>(choices));
+std::size_t read_account(TomlTable& quantity) {
+  return quantity.required_choice("account", raytrace::kAccountNames);
 }
 
-ShareSpec read_share(const DesignDocument& document, TableReader& quantity, const KindOf& kind) {
+ShareSpec read_share(TomlTable& quantity, const KindOf& kind) {
   ShareSpec spec;
-  spec.window.incidence_deg = read_angles(document, quantity, "incidence_deg", kIncidence);
-  spec.window.azimuth_deg = read_angles(document, quantity, "azimuth_deg", kAnyAngle);
+  spec.window.incidence_deg = read_angles(quantity, "incidence_deg", kIncidence);
+  spec.window.azimuth_deg = read_angles(quantity, "azimuth_deg", kAnyAngle);
   spec.window.by_solid_angle = quantity.choice("weighting", all(kWeightings)).value_or(false);
   spec.reduction = quantity.choice("over_directions", all(kReductions)).value_or(Reduction::mean);
   if (spec.window.by_solid_angle && spec.reduction == Reduction::least)
@@ -113,7 +106,7 @@ ShareSpec read_share(const DesignDocument& document, TableReader& quantity, cons
 
 /// \throw InputError that says `--class` as the key `class` of the quantity
 template <class Work>
-auto with_keys(const TableReader& quantity, Work work) {
+auto with_keys(const TomlTable& quantity, Work work) {
   try {
     return work();
   } catch (const InputError& error) {
@@ -126,19 +119,24 @@ auto with_keys(const TableReader& quantity, Work work) {
   }
 }
 
-std::shared_ptr<const PhotometricTable> read_photometric_table(TableReader& quantity) {
+std::shared_ptr<const PhotometricTable> read_photometric_table(TomlTable& quantity,
+                                                               std::vector<std::filesystem::path>& files) {
   PhotometricTable table;
   StandardChoice choice;
   // A word is a shipped standard; anything else a file.
   const std::optional<std::string> standard = quantity.text("standard");
   if (!standard) quantity.fail("standard", "missing, must be r150, j594, bicycle or the name of a limits file");
-  choice.standard = find_standard(*standard) != nullptr ? *standard : quantity.file("standard")->string();
+  choice.standard = *standard;
+  if (find_standard(*standard) == nullptr) {
+    files.push_back(*quantity.file("standard"));
+    choice.standard = files.back().string();
+  }
   choice.part_class = quantity.text("class");
   choice.colour = quantity.text("colour");
   table.request = with_keys(quantity, [&] { return photometry_request(choice); });
   PhotometryRequest& request = table.request;
   request.area_cm2 = quantity.required_number("area_cm2", {.low = 0.0, .low_included = false, .high = 1e6});
-  if (const auto turns = quantity.numbers("rotation_deg", Range{})) request.rotation_deg = *turns;
+  if (const auto turns = quantity.number_or_numbers("rotation_deg")) request.rotation_deg = *turns;
   request.window_deg = quantity.number("window_deg", {.low = 0.05, .high = 10.0}).value_or(request.window_deg);
   for (const TestPoint& point : request.programme.points)
     if (point.observation_deg > request.window_deg)
@@ -150,7 +148,7 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(TableReader& quan
   const std::optional<std::string> dye = quantity.text("dye");
   const std::filesystem::path dye_file =
       with_keys(quantity, [&] { return dye_file_of(dye, false, request.programme.colour); });
-  if (dye && dye_file == *dye) quantity.add_file(dye_file);  // not a shipped one
+  if (dye && dye_file == *dye) files.push_back(dye_file);  // not a shipped one
   set_dye(request, dye, dye_file);
   table.dye_unless_coloured = !dye;
   table.key = fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", choice.standard, choice.part_class.value_or(""),
@@ -159,13 +157,13 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(TableReader& quan
   return std::make_shared<const PhotometricTable>(std::move(table));
 }
 
-Quantities read_photometric(TableReader& quantity, const std::string& name) {
+Quantities read_photometric(TomlTable& quantity, const std::string& name, std::vector<std::filesystem::path>& files) {
   const PhotometricFigure figure = quantity.choice("figure", all(kFigures)).value_or(PhotometricFigure::margin);
-  const auto table = read_photometric_table(quantity);
+  const auto table = read_photometric_table(quantity, files);
   const std::size_t points = table->request.programme.points.size();
   Quantities result;
-  if (quantity.is_text("points")) {
-    if (!quantity.required_choice("points", all(kPoints))) return {make_photometric(name, table, {}, figure)};
+  if (quantity.shape_of("points") == TomlTable::Shape::text) {
+    if (!*quantity.choice("points", all(kPoints))) return {make_photometric(name, table, {}, figure)};
     for (std::size_t k = 0; k < points; ++k)
       result.push_back(make_photometric(fmt::format("{}.{}", name, k + 1), table, k, figure));
     return result;
@@ -175,6 +173,14 @@ Quantities read_photometric(TableReader& quantity, const std::string& name) {
     quantity.fail("points", fmt::format("must be a whole number, got {}", shortest(*point)));
   return {make_photometric(name, table, point ? std::optional(static_cast<std::size_t>(*point) - 1) : std::nullopt,
                            figure)};
+}
+
+KindOf required_kind(TomlTable& quantity) {
+  const auto kind = quantity.choice("kind", all(kKinds));
+  if (kind) return *kind;
+  std::vector<std::string_view> words;
+  for (const TomlChoice<KindOf>& each : kKinds) words.push_back(each.word);
+  quantity.fail("kind", "missing, must be " + alternatives(words));
 }
 
 bool is_name(const std::string& text) {
@@ -188,9 +194,8 @@ bool is_name(const std::string& text) {
 
 }  // namespace
 
-Quantities read_quantity(const DesignDocument& document, const toml::table& table) {
-  TableReader quantity(document, "quantity", table);
-  const KindOf kind = quantity.required_choice("kind", all(kKinds));
+Quantities read_quantity(TomlTable quantity, std::vector<std::filesystem::path>& files) {
+  const KindOf kind = required_kind(quantity);
   const std::string name = quantity.text("name").value_or(quantity.text("kind").value_or(""));
   if (!is_name(name))
     quantity.fail("name",
@@ -198,13 +203,13 @@ Quantities read_quantity(const DesignDocument& document, const toml::table& tabl
   Quantities result;
   switch (kind.kind) {
     case Kind::share:
-      result.push_back(make_share(name, read_share(document, quantity, kind)));
+      result.push_back(make_share(name, read_share(quantity, kind)));
       break;
     case Kind::plain:
       result.push_back(make_plain(name, kind.plain));
       break;
     case Kind::photometry:
-      result = read_photometric(quantity, name);
+      result = read_photometric(quantity, name, files);
       break;
   }
   quantity.finish();

@@ -1,11 +1,15 @@
 #pragma once
 
-#include "studies/design/table_reader.h"
+#include <filesystem>
+#include <vector>
+
+#include "core/toml_file.h"
 #include "studies/quantity/quantity.h"
 
 namespace retrace::studies {
 
-/// One [[quantity]] of a study, which may stand for several, such as every point of a standard. \throw InputError
-Quantities read_quantity(const DesignDocument& document, const toml::table& table);
+/// One [[quantity]] of a study, which may stand for several, such as every point of a standard.
+/// \param files the files that it names are added \throw InputError
+Quantities read_quantity(TomlTable quantity, std::vector<std::filesystem::path>& files);
 
 }  // namespace retrace::studies

@@ -6,15 +6,14 @@
 #include <array>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "core/atomic_file.h"
-#include "core/io/toml_node.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/design_keys.h"
+#include "core/schema/reader.h"
+#include "core/toml_file.h"
+#include "studies/design/design_format.h"
 #include "studies/design/design_reader.h"
-#include "studies/design/table_reader.h"
 #include "studies/quantity/io/point_texts.h"
 #include "studies/quantity/io/quantity_reader.h"
 
@@ -44,56 +43,57 @@ constexpr std::array<std::string_view, 13> kMachiningKeys = {"tool_width_mm",
                                                              "strategy",
                                                              "edge_radius_um",
                                                              "surface"};
-constexpr std::array kEngines = {Choice<Engine>{"auto", Engine::automatic}, Choice<Engine>{"exact", Engine::exact},
-                                 Choice<Engine>{"montecarlo", Engine::montecarlo}, Choice<Engine>{"cell", Engine::cell},
-                                 Choice<Engine>{"embree", Engine::embree}};
+constexpr std::array kEngines = {
+    TomlChoice<Engine>{"auto", Engine::automatic}, TomlChoice<Engine>{"exact", Engine::exact},
+    TomlChoice<Engine>{"montecarlo", Engine::montecarlo}, TomlChoice<Engine>{"cell", Engine::cell},
+    TomlChoice<Engine>{"embree", Engine::embree}};
 constexpr std::array kStrategies = {
-    Choice<fabrication::Strategy>{"two-step", fabrication::Strategy::two_step},
-    Choice<fabrication::Strategy>{"unidirectional", fabrication::Strategy::unidirectional}};
-constexpr std::array kSurfaces = {Choice<bool>{"as_designed", false}, Choice<bool>{"as_cut", true}};
-constexpr std::array kScales = {Choice<bool>{"linear", false}, Choice<bool>{"log", true}};
-constexpr std::array kDistributions = {Choice<Distribution::Kind>{"normal", Distribution::Kind::normal},
-                                       Choice<Distribution::Kind>{"uniform", Distribution::Kind::uniform},
-                                       Choice<Distribution::Kind>{"triangular", Distribution::Kind::triangular}};
-constexpr Range kStudyIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
-constexpr Range kShare{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false};
-constexpr Range kCutoff{.low = 0.0, .high = 1.0, .high_included = false};
-constexpr Range kSane{.low = 1e-6, .high = 1e6};
-constexpr Range kSaneOrNone{.low = 0.0, .high = 1e6};
+    TomlChoice<fabrication::Strategy>{"two-step", fabrication::Strategy::two_step},
+    TomlChoice<fabrication::Strategy>{"unidirectional", fabrication::Strategy::unidirectional}};
+constexpr std::array kSurfaces = {TomlChoice<bool>{"as_designed", false}, TomlChoice<bool>{"as_cut", true}};
+constexpr std::array kScales = {TomlChoice<bool>{"linear", false}, TomlChoice<bool>{"log", true}};
+constexpr std::array kDistributions = {TomlChoice<Distribution::Kind>{"normal", Distribution::Kind::normal},
+                                       TomlChoice<Distribution::Kind>{"uniform", Distribution::Kind::uniform},
+                                       TomlChoice<Distribution::Kind>{"triangular", Distribution::Kind::triangular}};
+constexpr NumberRange kStudyIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
+constexpr NumberRange kShare{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false};
+constexpr NumberRange kCutoff{.low = 0.0, .high = 1.0, .high_included = false};
+constexpr NumberRange kSane{.low = 1e-6, .high = 1e6};
+constexpr NumberRange kSaneOrNone{.low = 0.0, .high = 1e6};
 constexpr double kMostValues = 100'000.0;
 
-double whole(TableReader& table, std::string_view key, const Range& range, double otherwise) {
+double whole_number(TomlTable& table, std::string_view key, const NumberRange& range, double otherwise) {
   const double value = table.number(key, range).value_or(otherwise);
   if (value != std::floor(value)) table.fail(key, fmt::format("must be a whole number, got {}", shortest(value)));
   return value;
 }
 
-AnalysisSettings read_analysis(const DesignDocument& document, std::uint32_t seed) {
-  TableReader table(document, "analysis");
+AnalysisSettings read_analysis(TomlTable document, std::uint32_t seed) {
+  TomlTable table = document.table("analysis");
   AnalysisSettings analysis;
   analysis.incidence_deg = table.number("incidence_deg", kStudyIncidence).value_or(0.0);
-  analysis.azimuth_deg = table.number("azimuth_deg", Range{}).value_or(0.0);
+  analysis.azimuth_deg = table.number("azimuth_deg", NumberRange{}).value_or(0.0);
   analysis.engine = table.choice("engine", all(kEngines)).value_or(Engine::automatic);
   analysis.target_error = table.number("target_error", kShare);
   if (table.has("samples"))
-    analysis.rays = static_cast<std::uint64_t>(whole(table, "samples", {.low = 1.0, .high = 0x1p36}, 1.0));
+    analysis.rays = static_cast<std::uint64_t>(whole_number(table, "samples", {.low = 1.0, .high = 0x1p36}, 1.0));
   analysis.cutoff = table.number("cutoff", kCutoff);
   analysis.seed = seed;
   table.finish();
   return analysis;
 }
 
-MachiningProcess read_machining(const DesignDocument& document) {
-  TableReader table(document, "machining");
+MachiningProcess read_machining(TomlTable document) {
+  TomlTable table = document.table("machining");
   MachiningProcess process;
-  const auto read = [&](std::string_view key, const Range& range, double& value) {
+  const auto read = [&](std::string_view key, const NumberRange& range, double& value) {
     value = table.number(key, range).value_or(value);
   };
   process.tool_width_mm = table.number("tool_width_mm", kSane);
   read("clearance_um", kSaneOrNone, process.clearance_um);
   read("roughing_depth_um", kSane, process.roughing_depth_um);
   read("finishing_depth_um", kSaneOrNone, process.finishing_depth_um);
-  process.finishing_cuts = static_cast<int>(whole(table, "finishing_cuts", {.low = 0.0, .high = 1000.0}, 2.0));
+  process.finishing_cuts = static_cast<int>(whole_number(table, "finishing_cuts", {.low = 0.0, .high = 1000.0}, 2.0));
   read("plough_length_um", kSaneOrNone, process.plough_length_um);
   read("roughing_feed_mm_per_min", kSane, process.roughing_feed_mm_per_min);
   read("finishing_feed_mm_per_min", kSane, process.finishing_feed_mm_per_min);
@@ -113,7 +113,7 @@ MachiningProcess read_machining(const DesignDocument& document) {
 /// What is wrong with a key that a parameter names; empty if nothing is.
 std::string complaint_about_parameter(const std::string& key) {
   if (key == "design") return {};
-  if (!is_setting(key)) return complaint_about_key(key);
+  if (!is_setting(key)) return schema::complaint_about_key(design_format(), key);
   const bool analysis = key.starts_with("analysis.");
   const std::string name = key.substr(key.find('.') + 1);
   const std::span<const std::string_view> known =
@@ -123,74 +123,42 @@ std::string complaint_about_parameter(const std::string& key) {
                      fmt::join(known, ", "));
 }
 
-/// Tables of a list of tables, such as [[parameter]].
-std::vector<const toml::table*> tables_of(const DesignDocument& document, std::string_view name) {
-  std::vector<const toml::table*> tables;
-  const toml::node* const node = document.root().get(name);
-  if (node == nullptr) return tables;
-  const toml::array* const list = node->as_array();
-  const auto fail = [&](const toml::node& where) {
-    throw InputError(document.location(where, name),
-                     fmt::format("must be one or more tables [[{}]], got {}", name, shown(where)));
-  };
-  if (list == nullptr) fail(*node);
-  for (const toml::node& entry : *list) {
-    if (!entry.is_table()) fail(entry);
-    tables.push_back(entry.as_table());
+void check_top_level(const TomlTable& document) {
+  for (const std::string& name : document.names()) {
+    if (std::find(kTopLevel.begin(), kTopLevel.end(), name) != kTopLevel.end()) continue;
+    const std::string_view meant = closest(name, kTopLevel);
+    document.fail(name, fmt::format("unknown key{} (allowed: {})",
+                                    meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)),
+                                    fmt::join(kTopLevel, ", ")));
   }
-  return tables;
 }
 
-void check_top_level(const DesignDocument& document) {
-  const toml::node* first = nullptr;
-  std::string name;
-  for (auto&& [key, node] : document.root()) {
-    if (std::find(kTopLevel.begin(), kTopLevel.end(), key.str()) != kTopLevel.end()) continue;
-    if (first != nullptr && document.position(*first) <= document.position(node)) continue;
-    first = &node;
-    name = key.str();
-  }
-  if (first == nullptr) return;
-  const std::string_view meant = closest(name, kTopLevel);
-  throw InputError(document.location(*first, printable(name)),
-                   fmt::format("unknown key{} (allowed: {})",
-                               meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)),
-                               fmt::join(kTopLevel, ", ")));
+/// The tables `[[name]]`, of which there may be none.
+std::vector<TomlTable> tables_of(TomlTable document, std::string_view name) {
+  return document.tables(name, fmt::format("one or more tables [[{}]]", name));
 }
 
-ParameterValue value_of(const DesignDocument& document, const toml::node& node) {
-  const auto refuse = [&]() -> InputError {
-    return {document.location(node, "parameter.values"),
-            fmt::format("must be a list of finite numbers, strings or lists, got {} in it", shown(node))};
-  };
-  if (node.is_number()) {
-    const double number = *node.value<double>();
-    if (!std::isfinite(number)) throw refuse();
-    return Parameter::value_of(number);
-  }
-  if (!node.is_string() && !node.is_array()) throw refuse();
-  std::ostringstream text;
-  node.visit([&](const auto& value) { text << value; });
-  std::string toml = text.str();
-  std::replace(toml.begin(), toml.end(), '\n', ' ');
-  return {toml, node.is_string() ? node.as_string()->get() : toml};
+ParameterValue value_of(const TomlTable& table, const TomlItem& item) {
+  if (item.number && std::isfinite(*item.number)) return Parameter::value_of(*item.number);
+  if (!item.text && !item.is_list)
+    table.fail("values", fmt::format("must be a list of finite numbers, strings or lists, got {} in it", item.shown));
+  return {item.toml, item.text.value_or(item.toml)};
 }
 
-std::vector<ParameterValue> read_values(const DesignDocument& document, TableReader& table) {
-  const toml::node* const node = table.node("values");
-  const toml::array* const list = node->as_array();
-  if (list == nullptr || list->empty())
-    table.fail("values", fmt::format("must be a list of at least one value, got {}", shown(*node)));
+std::vector<ParameterValue> read_values(TomlTable& table) {
+  const auto items = table.items("values");
+  if (!items || items->empty())
+    table.fail("values", fmt::format("must be a list of at least one value, got {}", table.shown("values")));
   std::vector<ParameterValue> values;
-  for (const toml::node& entry : *list) values.push_back(value_of(document, entry));
+  for (const TomlItem& item : *items) values.push_back(value_of(table, item));
   return values;
 }
 
 /// The ends of a range, where `from` and `to` were given.
-Interval read_interval(TableReader& table) {
+Interval read_interval(TomlTable& table) {
   Interval interval;
   interval.logarithmic = table.choice("scale", all(kScales)).value_or(false);
-  const Range allowed = interval.logarithmic ? kPositive : Range{};
+  const NumberRange allowed = interval.logarithmic ? NumberRange{.low = 0.0, .low_included = false} : NumberRange{};
   interval.from = table.required_number("from", allowed);
   interval.to = table.required_number("to", allowed);
   if (!(interval.to > interval.from))
@@ -199,31 +167,31 @@ Interval read_interval(TableReader& table) {
 }
 
 /// The values of a range with a step or a count: those of a LIST, or equal parts.
-std::vector<ParameterValue> range_values(TableReader& table, const Interval& interval) {
+std::vector<ParameterValue> range_values(TomlTable& table, const Interval& interval) {
   std::vector<ParameterValue> values;
   if (table.has("step")) {
     table.refuse({"count"}, "either step or count");
     if (interval.logarithmic) table.fail("step", "a logarithmic range takes count");
-    const double step = table.required_number("step", kPositive);
+    const double step = table.required_number("step", NumberRange{.low = 0.0, .low_included = false});
     const double steps = std::floor((interval.to - interval.from) / step + 1e-9);
     if (!(steps < kMostValues))
       table.fail("step", fmt::format("makes more than {} values, got {}", kMostValues, shortest(step)));
     for (double k = 0.0; k <= steps; ++k) values.push_back(Parameter::value_of(interval.from + k * step));
     return values;
   }
-  const double count = whole(table, "count", {.low = 2.0, .high = kMostValues}, 2.0);
+  const double count = whole_number(table, "count", {.low = 2.0, .high = kMostValues}, 2.0);
   for (double k = 0.0; k < count; ++k) values.push_back(Parameter::value_of(interval.at(k / (count - 1.0))));
   return values;
 }
 
-Distribution read_distribution(TableReader& table) {
+Distribution read_distribution(TomlTable& table) {
   Distribution distribution;
   distribution.kind = *table.choice("distribution", all(kDistributions));
   table.refuse({"values", "step", "count", "scale"}, "not allowed beside distribution");
   const bool normal = distribution.kind == Distribution::Kind::normal;
   if (normal) {
-    distribution.mean = table.required_number("mean", Range{});
-    distribution.sigma = table.required_number("sigma", kPositive);
+    distribution.mean = table.required_number("mean", NumberRange{});
+    distribution.sigma = table.required_number("sigma", NumberRange{.low = 0.0, .low_included = false});
   }
   if (!normal || table.has("from") || table.has("to")) distribution.range = read_interval(table);
   if (distribution.kind == Distribution::Kind::triangular)
@@ -236,42 +204,40 @@ Distribution read_distribution(TableReader& table) {
   return distribution;
 }
 
-std::vector<std::string> read_keys(const DesignDocument& document, TableReader& table) {
-  const toml::node* const node = table.node("key");
+std::vector<std::string> read_keys(TomlTable& table) {
+  constexpr std::string_view key = "key";
   std::vector<std::string> keys;
-  if (node != nullptr && node->is_string()) keys.push_back(node->as_string()->get());
-  if (node != nullptr && node->is_array())
-    for (const toml::node& entry : *node->as_array()) keys.push_back(entry.value<std::string>().value_or(""));
+  if (table.shape_of(key) == TomlTable::Shape::text) keys.push_back(table.required_text(key));
+  for (const TomlItem& item : table.items(key).value_or(std::vector<TomlItem>()))
+    keys.push_back(item.text.value_or(""));
   if (keys.empty())
-    table.fail("key", fmt::format("{}, must be a key of a design such as \"element.base_mm\", or a list of keys",
-                                  node == nullptr ? "missing" : "got " + shown(*node)));
-  for (const std::string& key : keys)
-    if (const std::string text = complaint_about_parameter(key); !text.empty())
-      throw InputError(document.location(*node, "parameter.key"), text);
+    table.fail(key, fmt::format("{}, must be a key of a design such as \"element.base_mm\", or a list of keys",
+                                table.has(key) ? "got " + table.shown(key) : "missing"));
+  for (const std::string& each : keys)
+    if (const std::string text = complaint_about_parameter(each); !text.empty()) table.fail(key, text);
   return keys;
 }
 
 /// Paths of designs are meant from the folder of the study.
-void resolve_designs(const TableReader& table, const DesignDocument& document, const toml::node& where,
-                     Parameter& parameter) {
+void resolve_designs(const TomlTable& table, const fs::path& folder, Parameter& parameter) {
   for (ParameterValue& value : parameter.values) {
     const std::string* const name = std::get_if<std::string>(&value.shown);
     if (name == nullptr || name->empty()) table.fail("values", "must be names of design files");
-    value.toml = (document.folder(where) / *name).string();
+    value.toml = (folder / *name).string();
   }
 }
 
-Parameter read_parameter(const DesignDocument& document, const toml::table& entry) {
-  TableReader table(document, "parameter", entry);
+/// \param folder that designs are meant from
+Parameter read_parameter(TomlTable table, const fs::path& folder) {
   Parameter parameter;
-  parameter.location = document.location(entry, "parameter");
-  parameter.keys = read_keys(document, table);
+  parameter.location = table.where();
+  parameter.keys = read_keys(table);
   parameter.name = table.text("name").value_or(parameter.keys.front());
   if (table.has("distribution")) {
     parameter.distribution = read_distribution(table);
   } else if (table.has("values")) {
     table.refuse({"from", "to", "step", "count", "scale"}, "not allowed beside values");
-    parameter.values = read_values(document, table);
+    parameter.values = read_values(table);
   } else if (table.has("from") || table.has("to")) {
     const Interval interval = read_interval(table);
     if (table.has("step") || table.has("count"))
@@ -284,7 +250,7 @@ Parameter read_parameter(const DesignDocument& document, const toml::table& entr
   const bool is_design = parameter.keys.front() == "design";
   if (is_design && (parameter.keys.size() > 1 || parameter.values.empty()))
     table.fail("key", "\"design\" stands alone and takes values, names of design files");
-  if (is_design) resolve_designs(table, document, entry, parameter);
+  if (is_design) resolve_designs(table, folder, parameter);
   table.finish();
   return parameter;
 }
@@ -321,12 +287,6 @@ void check_keys_once(const Study& study) {
       throw InputError({"--set " + printable(text), 0, ""}, "the study varies this key");
 }
 
-std::string as_json(const toml::table& table) {
-  std::ostringstream text;
-  text << toml::json_formatter{table};
-  return text.str();
-}
-
 /// FNV-1a: tells whether a file was changed, not by whom.
 std::string fingerprint(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325U;
@@ -347,18 +307,13 @@ std::string fingerprints(const std::vector<fs::path>& files) {
   return parts;
 }
 
-std::vector<std::pair<std::string, std::string>> parts_of(const DesignDocument& document, const Study& study,
+std::vector<std::pair<std::string, std::string>> parts_of(const TomlTable& document, const Study& study,
                                                           const std::vector<fs::path>& named) {
   std::vector<std::pair<std::string, std::string>> parts;
-  for (const std::string_view key : kParts) {
-    const toml::node* const node = document.root().get(key);
-    toml::table holder;
-    if (node != nullptr) node->visit([&](const auto& value) { holder.insert("value", value); });
-    parts.emplace_back(key, node == nullptr ? std::string() : as_json(holder));
-  }
+  for (const std::string_view key : kParts) parts.emplace_back(key, document.as_json(key));
   std::string designs;
   for (const auto& [file, text] : study.design_texts)
-    designs += fs::path(file).filename().string() + " " + as_json(DesignDocument(text, file, {}).root()) + "\n";
+    designs += fs::path(file).filename().string() + " " + parse_toml(text, file, kShortTomlBytes).as_json() + "\n";
   parts.emplace_back("the design", designs);
   parts.emplace_back("a file of the design", fingerprints(named));
   parts.emplace_back("--set", fmt::format("{}", fmt::join(study.overrides, "\n")));
@@ -366,10 +321,9 @@ std::vector<std::pair<std::string, std::string>> parts_of(const DesignDocument& 
   return parts;
 }
 
-void read_designs(const DesignDocument& document, Study& study) {
+void read_designs(TomlTable top, Study& study) {
   const auto varied = std::find_if(study.parameters.begin(), study.parameters.end(),
                                    [](const Parameter& p) { return p.keys.front() == "design"; });
-  TableReader top(document, "");
   const std::optional<fs::path> file = top.file("design");
   if (varied != study.parameters.end()) {
     if (file) top.fail("design", "a parameter names the designs");
@@ -386,40 +340,39 @@ void read_designs(const DesignDocument& document, Study& study) {
 
 Study parse_study(const std::string& text, const std::string& source_name, std::span<const std::string> overrides,
                   std::uint32_t seed) {
-  const DesignDocument document(text, source_name, overrides_for(overrides, true));
+  TomlTable top = parse_toml(text, source_name, kShortTomlBytes, overrides_for(overrides, true));
+  const fs::path folder = fs::path(source_name).parent_path();
   Study study;
   study.source = source_name;
   study.text = text;
   study.overrides.assign(overrides.begin(), overrides.end());
   study.seed = seed;
-  TableReader top(document, "");
   const std::optional<std::string> schema = top.text("schema");
   if (schema && *schema != kSchema)
     top.fail("schema", fmt::format("must be {}, got {}", in_quotes(kSchema), in_quotes(*schema)));
-  check_top_level(document);
+  check_top_level(top);
   study.title = top.text("title").value_or("");
-  for (const toml::table* table : tables_of(document, "parameter"))
-    study.parameters.push_back(read_parameter(document, *table));
+  for (const TomlTable& table : tables_of(top, "parameter")) study.parameters.push_back(read_parameter(table, folder));
   std::vector<InputLocation> quantity_locations;
-  for (const toml::table* table : tables_of(document, "quantity"))
-    for (auto& quantity : read_quantity(document, *table)) {
+  std::vector<fs::path> of_quantities;
+  for (const TomlTable& table : tables_of(top, "quantity"))
+    for (auto& quantity : read_quantity(table, of_quantities)) {
       study.quantities.push_back(std::move(quantity));
-      quantity_locations.push_back(document.location(*table, "quantity.name"));
+      quantity_locations.push_back(table.where("name"));
     }
   if (study.parameters.empty()) top.fail("parameter", "missing, must be one or more tables [[parameter]]");
   if (study.quantities.empty()) top.fail("quantity", "missing, must be one or more tables [[quantity]]");
   check_columns(study, quantity_locations);
   check_keys_once(study);
-  read_analysis(document, seed);
-  read_machining(document);
-  const std::vector<fs::path> of_quantities = document.files();
-  read_designs(document, study);
+  read_analysis(top, seed);
+  read_machining(top);
+  read_designs(top, study);
   std::vector<fs::path> named = files_of_designs(study);
   named.insert(named.end(), of_quantities.begin(), of_quantities.end());
   study.files = {source_name};
   for (const auto& [file, design] : study.design_texts) study.files.push_back(file);
   for (const fs::path& file : named) study.files.push_back(file.string());
-  study.parts = parts_of(document, study, named);
+  study.parts = parts_of(top, study, named);
   return study;
 }
 
@@ -429,7 +382,7 @@ Study read_study(const fs::path& file, std::span<const std::string> overrides, s
 
 Candidate make_candidate(const Study& study, std::span<const ParameterValue> values) {
   PointTexts texts = texts_at(study, values);
-  const DesignDocument document(study.text, study.source, texts.for_study);
+  const TomlTable document = parse_toml(study.text, study.source, kShortTomlBytes, texts.for_study);
   const MachiningProcess machining = read_machining(document);
   // What the study says of the surface counts more than what cutting leaves.
   const std::vector<std::string> as_cut = surface_overrides(machining);

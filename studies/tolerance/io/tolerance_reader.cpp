@@ -6,9 +6,8 @@
 #include <cmath>
 #include <span>
 
-#include "core/io/toml_node.h"
 #include "core/number_format.h"
-#include "studies/design/table_reader.h"
+#include "core/toml_file.h"
 #include "studies/quantity/io/constraint_reader.h"
 
 namespace retrace::studies {
@@ -16,13 +15,13 @@ namespace {
 
 using Kind = UnitSamples::Kind;
 
-constexpr std::array kSampling = {Choice<Kind>{"sobol", Kind::sobol},
-                                  Choice<Kind>{"latin_hypercube", Kind::latin_hypercube},
-                                  Choice<Kind>{"monte_carlo", Kind::monte_carlo}};
-constexpr std::array kYesNo = {Choice<bool>{"none", false}, Choice<bool>{"sobol", true}};
-constexpr Range kSamples{.low = 2.0, .high = 1'000'000.0};
-constexpr Range kConfidence{.low = 50.0, .high = 99.99};
-constexpr Range kPercent{.low = 0.0, .high = 100.0};
+constexpr std::array kSampling = {TomlChoice<Kind>{"sobol", Kind::sobol},
+                                  TomlChoice<Kind>{"latin_hypercube", Kind::latin_hypercube},
+                                  TomlChoice<Kind>{"monte_carlo", Kind::monte_carlo}};
+constexpr std::array kYesNo = {TomlChoice<bool>{"none", false}, TomlChoice<bool>{"sobol", true}};
+constexpr NumberRange kSamples{.low = 2.0, .high = 1'000'000.0};
+constexpr NumberRange kConfidence{.low = 50.0, .high = 99.99};
+constexpr NumberRange kPercent{.low = 0.0, .high = 100.0};
 constexpr double kOfPercent = 0.01;
 
 void check_parameters(const Study& study) {
@@ -33,7 +32,7 @@ void check_parameters(const Study& study) {
 }
 
 /// Samples are told by numbers of 32 bits, points by numbers that SQLite can count.
-void check_size(const Study& study, const ToleranceRequest& request, TableReader& table) {
+void check_size(const Study& study, const ToleranceRequest& request, TomlTable& table) {
   const std::size_t parameters = study.parameters.size();
   const std::size_t dimensions = (request.indices ? 2 : 1) * parameters;
   if (dimensions > UnitSamples::most_dimensions)
@@ -48,18 +47,15 @@ void check_size(const Study& study, const ToleranceRequest& request, TableReader
 }  // namespace
 
 ToleranceRequest read_tolerance(const Study& study) {
-  const DesignDocument document(study.text, study.source, {});
-  if (const toml::node* const node = document.root().get("tolerance"); node != nullptr && !node->is_table())
-    throw InputError(document.location(*node, "tolerance"), "must be a table, got " + shown(*node));
+  TomlTable table = parse_toml(study.text, study.source, kShortTomlBytes).table("tolerance");
   check_parameters(study);
-  TableReader table(document, "tolerance");
   ToleranceRequest request;
   const double samples = table.number("samples", kSamples).value_or(static_cast<double>(request.samples));
   if (samples != std::floor(samples))
     table.fail("samples", fmt::format("must be a whole number, got {}", shortest(samples)));
   request.samples = static_cast<std::uint64_t>(samples);
-  request.sampling = table.choice("sampling", std::span<const Choice<Kind>>(kSampling)).value_or(request.sampling);
-  request.indices = table.choice("indices", std::span<const Choice<bool>>(kYesNo)).value_or(true);
+  request.sampling = table.choice("sampling", all(kSampling)).value_or(request.sampling);
+  request.indices = table.choice("indices", all(kYesNo)).value_or(true);
   request.confidence =
       kOfPercent * table.number("confidence_percent", kConfidence).value_or(request.confidence / kOfPercent);
   request.constraints = read_constraints(study);

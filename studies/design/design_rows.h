@@ -1,0 +1,59 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/schema/schema.h"
+
+// Internal to studies/design: the rows of the tables of design files, and what they share.
+
+namespace retrace::studies {
+
+std::span<const schema::Row> element_rows();
+std::span<const schema::Row> array_rows();
+std::span<const schema::Row> base_rows();
+std::span<const schema::Row> part_rows();
+std::span<const schema::Row> front_rows();
+std::span<const schema::Row> body_rows();
+std::span<const schema::Row> light_rows();
+std::span<const schema::Row> detector_rows();
+std::span<const schema::Row> surface_rows();
+std::span<const schema::Row> scratch_rows();
+std::span<const schema::Row> idealisation_rows();
+
+using Words = std::string_view[];
+inline constexpr Words kRtp = {"rtp"};
+inline constexpr Words kBall = {"ball"};
+inline constexpr Words kAxes = {"x", "y"};
+inline constexpr Words kCubes = {"hexagonal_icc", "triangular_icc"};
+
+inline constexpr NumberRange kAboveZero{.low = 0.0, .low_included = false};
+/// From one nanometre to one kilometre: beyond that, differences of coordinates have too few digits.
+inline constexpr NumberRange kSaneSize{.low = 1e-6, .high = 1e6};
+inline constexpr NumberRange kAzimuth{.low = -360.0, .high = 360.0};
+inline constexpr schema::Kind kSize = schema::Number{kAboveZero, kSaneSize};
+
+inline constexpr std::string_view kKind = "element.kind";
+inline constexpr std::string_view kArrangement = "array.arrangement";
+inline constexpr std::string_view kExtent = "array.extent";
+
+inline constexpr std::string_view kOfAMesh = "not allowed with [part], whose mesh has the angles and edges that it has";
+
+// Conditions; the refusal says more than the condition does, if there is one.
+
+constexpr schema::Condition is(std::string_view key, std::span<const std::string_view> words,
+                               std::string_view refusal = {}) {
+  return {key, schema::Condition::Is::one_of, words, refusal};
+}
+constexpr schema::Condition is_not(std::string_view key, std::span<const std::string_view> words,
+                                   std::string_view refusal = {}) {
+  return {key, schema::Condition::Is::none_of, words, refusal};
+}
+constexpr schema::Condition with(std::string_view key, std::string_view refusal = {}) {
+  return {key, schema::Condition::Is::given, {}, refusal};
+}
+constexpr schema::Condition without(std::string_view key, std::string_view refusal = {}) {
+  return {key, schema::Condition::Is::absent, {}, refusal};
+}
+
+}  // namespace retrace::studies
