@@ -220,6 +220,9 @@ TEST(DesignTexture, VanishingRoughnessGivesTheExactAnswer) {
   }
 }
 
+/// The narrowest step in the two tests below is some ten of its standard errors, and more rays would show none better.
+const Question kSteps{0.0, Engine::montecarlo, 1U << 14};
+
 // Steps wide enough that sampling cannot hide one.
 TEST(DesignTexture, RreFallsMonotonicallyWithSa) {
   for (const std::string& design : {kArray, kCubes, kTriangles}) {
@@ -227,7 +230,7 @@ TEST(DesignTexture, RreFallsMonotonicallyWithSa) {
     for (const double sa_nm : {3.0, 6.0, 12.0, 25.0, 50.0, 100.0}) {
       const double sq_nm = sa_nm * std::sqrt(0.5 * kPi);
       const RrePoint point =
-          rre_of(design, {"surface.roughness_sq_nm=" + shortest(sq_nm), "surface.correlation_length_um=5"}, {});
+          rre_of(design, {"surface.roughness_sq_nm=" + shortest(sq_nm), "surface.correlation_length_um=5"}, kSteps);
       EXPECT_LT(point.rre + 4.0 * point.std_error, before) << sa_nm;
       before = point.rre - 4.0 * point.std_error;
     }
@@ -241,11 +244,10 @@ TEST(DesignTexture, RreFallsMonotonicallyWithTheRadiusOfEdges) {
                                                                                     {kCubes, "rim_radius_um"},
                                                                                     {kTriangles, "root_radius_um"},
                                                                                     {kTriangles, "rim_radius_um"}}) {
-    const double sharp = rre_of(design, {}, {0.0, Engine::montecarlo, 1U << 18}).rre;
+    const double sharp = rre_of(design, {}, kSteps).rre;
     double before = sharp;
     for (const double radius_um : {5.0, 10.0, 20.0, 40.0}) {
-      const RrePoint point =
-          rre_of(design, {"surface." + key + "=" + shortest(radius_um)}, {0.0, Engine::montecarlo, 1U << 18});
+      const RrePoint point = rre_of(design, {"surface." + key + "=" + shortest(radius_um)}, kSteps);
       EXPECT_LT(point.rre + 4.0 * point.std_error, before) << key << " " << radius_um;
       before = point.rre - 4.0 * point.std_error;
     }
