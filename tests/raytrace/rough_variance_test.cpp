@@ -31,7 +31,7 @@ MonteCarloResult trace(const Part& part, std::uint64_t count, std::uint32_t seed
 TEST(RoughVariance, ErrorsAreTrue) {
   constexpr std::uint32_t kSeeds = 60;
   const Part part = build_part(kCubes);
-  const ConeResult truth = trace(part, 1U << 20, 1000, {}).cones[0];
+  const ConeResult truth = trace(part, 1U << 18, 1000, {}).cones[0];
   const double t95 = student_bound_of(0.05, MonteCarlo::kReplicates);
   int within = 0;
   for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
