@@ -93,7 +93,7 @@ TEST(Cant, AgreesWithTheReference) {
   for (const std::size_t k : {std::size_t{3}, std::size_t{5}}) {
     const Part part = build_part(all[k].spec);
     const ReferenceResult reference = reference_trace(part, pmma(), from(20.0, 70.0), cone_deg, 8000, 7);
-    const MonteCarloResult traced = MonteCarlo(part).trace(pmma(), from(20.0, 70.0), {cone_deg}, rays(1U << 19), {});
+    const MonteCarloResult traced = MonteCarlo(part).trace(pmma(), from(20.0, 70.0), {cone_deg}, rays(1U << 17), {});
     const double z = student_bound(2 * kAccountCount);
     const double slack = reference.mean[Account::truncated] + 1e-3;
     for (std::size_t a = 0; a < kAccountCount; ++a) {

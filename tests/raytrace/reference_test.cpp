@@ -72,7 +72,7 @@ TEST_P(AgainstReference, EveryAccountAgrees) {
   const ReferenceResult reference =
       reference_trace(part, optics, from(c.incidence_deg, c.azimuth_deg), cone_deg, 40000, 7);
   const MonteCarloResult traced =
-      MonteCarlo(part).trace(optics, from(c.incidence_deg, c.azimuth_deg), {cone_deg}, rays(1U << 20), {});
+      MonteCarlo(part).trace(optics, from(c.incidence_deg, c.azimuth_deg), {cone_deg}, rays(1U << 17), {});
   const Ledger& ledger = traced.cones[0].ledger;
   // The program's own error is far below the reference's.
   ASSERT_LT(traced.cones[0].std_error, 5e-4);

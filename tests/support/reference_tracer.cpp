@@ -98,10 +98,11 @@ class Reference {
       if (det == 0.0) continue;
       const Vec3 s = ray.origin - tri.a;
       const double u = s.dot(p) / det;
+      if (u < 0.0 || u > 1.0) continue;
       const Vec3 q = s.cross(tri.ab);
       const double v = ray.direction.dot(q) / det;
       const double t = tri.ac.dot(q) / det;
-      if (u < 0.0 || v < 0.0 || u + v > 1.0 || t < kLeastDistance || t >= t_hit) continue;
+      if (v < 0.0 || u + v > 1.0 || t < kLeastDistance || t >= t_hit) continue;
       t_hit = t;
       hit = &tri;
     }
