@@ -169,8 +169,10 @@ rc::Gen<RandomCase> random_case() {
     } else if (*chance(0.5)) {
       c.spec.extent = Extent::infinite;
     } else {
-      c.spec.x_length_mm = *between(3.3, 4.3);
-      c.spec.y_length_mm = *between(3.5, 4.5);
+      // Few elements, to be quick; in one array of eight so many that the cell engine has an inner piece.
+      const Vec2 size = bounding_box(element_cell(c.spec.element).outline).size();
+      c.spec.x_length_mm = *between(2.9, 4.9) * (size.x() + c.spec.x_gap_mm);
+      c.spec.y_length_mm = *between(3.1, 5.1) * size.y();
       if (*chance(0.3)) c.spec.partial_elements = PartialElements::omit;
     }
     c.optics.index = *between(1.3, 1.9);
