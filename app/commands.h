@@ -1,31 +1,37 @@
 #pragma once
 
-#include "app/command_line.h"
-#include "core/error.h"
+#include <span>
+
+#include "app/command.h"
 
 namespace retrace::app {
 
-// One function a command. Each returns the exit code or throws retrace::Error.
+/// Every command, in the order of help.
+std::span<const Command> commands();
 
-ExitCode run_rre_command(const CommandLine& line);
-ExitCode run_photometry_command(const CommandLine& line);
-ExitCode run_roughness_command(const CommandLine& line);
-ExitCode run_inspect_command(const CommandLine& line);
-ExitCode run_metrology_command(const CommandLine& line);
-ExitCode run_sweep_command(const CommandLine& line);
-ExitCode run_job_command(const CommandLine& line);
-ExitCode run_fabricate_command(const CommandLine& line);
-ExitCode run_optimize_command(const CommandLine& line);
-ExitCode run_tolerance_command(const CommandLine& line);
-ExitCode run_verify_command(const CommandLine& line);
-ExitCode run_plane_command(const CommandLine& line);
-ExitCode run_forces_command(const CommandLine& line);
-ExitCode run_turn_command(const CommandLine& line);
-ExitCode run_image_command(const CommandLine& line);
-ExitCode run_export_command(const CommandLine& line);
-ExitCode run_report_command(const CommandLine& line);
-ExitCode run_init_command(const CommandLine& line);
-ExitCode run_list_command(const CommandLine& line);
-ExitCode run_schema_command(const CommandLine& line);
+// One function a command, each in a file of its own.
+
+Command completion_command();
+Command export_command();
+Command fabricate_command();
+Command forces_command();
+Command image_command();
+Command init_command();
+Command inspect_command();
+Command job_command();
+Command list_command();
+Command manual_command();
+Command metrology_command();
+Command optimize_command();
+Command photometry_command();
+Command plane_command();
+Command report_command();
+Command roughness_command();
+Command rre_command();
+Command schema_command();
+Command sweep_command();
+Command tolerance_command();
+Command turn_command();
+Command verify_command();
 
 }  // namespace retrace::app

@@ -2,6 +2,7 @@
 
 #include "app/commands.h"
 #include "app/output.h"
+#include "app/shared_arguments.h"
 #include "fabrication/post/post.h"
 #include "report/fabrication_plot.h"
 #include "studies/fabrication/fabricate.h"
@@ -10,9 +11,27 @@
 namespace retrace::app {
 namespace {
 
-void add_picture(std::vector<OutputFile>& files, const std::string& name, const auto& plot) {
-  files.push_back({name + ".svg", report::render_svg(plot)});
-  files.push_back({name + ".png", report::render_png(plot)});
+struct FabricateOptions {
+  std::string job;
+  std::string dialect = "rs274ngc";
+  std::string phase = "all";
+  std::optional<std::uint64_t> from_element;
+  std::optional<std::uint64_t> stop_every;
+  std::optional<double> split_hours;
+};
+
+std::vector<Argument> arguments(FabricateOptions& options) {
+  constexpr std::uint64_t most = std::numeric_limits<std::int32_t>::max();
+  const Words phases = {"all", "roughing", "finishing"};
+  return {
+      job_argument(options.job, "job file, as retrace job writes it"),
+      dialect_argument(options.dialect),
+      {"--phase PHASE",
+       "roughing, finishing, one stage such as finishing-1-facet-2, or that stage and all after it with a +",
+       &options.phase, one_of(phases)},
+      {"--from-element N", "start at that element's first visit [the first]", &options.from_element, whole(0, most)},
+      {"--stop-every N", "optional stop after every N visits [none]", &options.stop_every, whole(1, most)},
+      {"--split-hours H", "programs of at most so many hours [one program]", &options.split_hours}};
 }
 
 bool has_stage(const studies::FabricationResult& result, bool roughing) {
@@ -21,39 +40,46 @@ bool has_stage(const studies::FabricationResult& result, bool roughing) {
   return false;
 }
 
-}  // namespace
-
-ExitCode run_fabricate_command(const CommandLine& line) {
-  if (!line.common.overrides.empty())
-    throw InputError({"", 0, "--set"}, "fabricate reads no design; change the job file, or make it anew");
+ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
   studies::FabricationRequest request;
-  request.job_file = line.fabricate.job;
-  request.dialect = line.fabricate.dialect;
-  request.options.phase = line.fabricate.phase;
-  request.options.from_element = line.fabricate.from_element;
-  request.options.stop_every = line.fabricate.stop_every;
-  request.options.split_hours = line.fabricate.split_hours;
+  request.job_file = options.job;
+  request.dialect = options.dialect;
+  request.options.phase = options.phase;
+  request.options.from_element = options.from_element;
+  request.options.stop_every = options.stop_every;
+  request.options.split_hours = options.split_hours;
   const studies::FabricationResult result = studies::fabricate(request);
 
-  std::vector<OutputFile> files;
-  const std::string json = studies::fabrication_json(result);
-  if (!line.common.out.empty()) {
-    files = {{"fabrication.json", json}, {"stages.csv", studies::stages_csv(result)}};
-    for (const bool roughing : {true, false})
-      if (has_stage(result, roughing))
-        add_picture(files, roughing ? "roughing" : "finishing", report::tool_path_plot(result, roughing));
-    add_picture(files, "arrangement", report::arrangement_plot(result));
-    for (std::size_t k = 0; k < result.plan.programs.size(); ++k)
-      files.push_back({result.program_file(k), fabrication::nc_text(result.plan.programs[k], result.dialect)});
-  }
-  FileNames names{{line.fabricate.job}, "fabrication.json", {}};
-  if (std::filesystem::path(result.job.machine).has_extension()) names.inputs.push_back(result.job.machine);
-  for (const OutputFile& file : files)
-    if (file.name != "fabrication.json") names.others.push_back(file.name);
-  prepare_outputs(line.common, names);
-  write_outputs(line.common, json, files, studies::fabrication_table(result));
-  print_warnings(line.common, result.warnings);
+  std::vector<std::string> inputs = {options.job};
+  if (std::filesystem::path(result.job.machine).has_extension()) inputs.push_back(result.job.machine);
+  ResultFiles files(common, inputs, "fabrication.json");
+  files.add("stages.csv", [&] { return studies::stages_csv(result); });
+  for (const bool roughing : {true, false})
+    if (has_stage(result, roughing))
+      files.add_drawing(roughing ? "roughing" : "finishing",
+                        [&result, roughing] { return report::tool_path_plot(result, roughing); });
+  files.add_drawing("arrangement", [&] { return report::arrangement_plot(result); });
+  for (std::size_t k = 0; k < result.plan.programs.size(); ++k)
+    files.add(result.program_file(k),
+              [&result, k] { return fabrication::nc_text(result.plan.programs[k], result.dialect); });
+  files.prepare();
+  files.write(studies::fabrication_json(result), studies::fabrication_table(result));
+  print_warnings(common, result.warnings);
   return ExitCode::done;
+}
+
+}  // namespace
+
+Command fabricate_command() {
+  return {.name = "fabricate",
+          .summary = "NC programs, tool path and time of a fabrication job",
+          .manual =
+              "Plans a job and writes it as NC programs, with drawings of the tool path and the time it takes. "
+              "Long jobs can be split, and begun again at an element or a stage.",
+          .reads = {"retrace.job/1", "retrace.machine/1"},
+          .writes = {"retrace.fabrication/1"},
+          .refuses_set = "fabricate reads no design; change the job file, or make it anew",
+          .begin = begins<FabricateOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -7,10 +7,12 @@
 #include <filesystem>
 
 #include "app/commands.h"
+#include "app/image_options.h"
 #include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
+#include "app/shared_arguments.h"
 #include "core/atomic_file.h"
 #include "core/data_directory.h"
 #include "core/message_text.h"
@@ -25,6 +27,8 @@ namespace {
 
 // Between two previews of a camera picture that takes long.
 constexpr std::chrono::seconds kPreview{10};
+// Written by previews too.
+constexpr const char* kCameraPng = "camera.png";
 
 /// Numbers with `separator` between. \throw InputError naming the option if there are not `count` of them
 template <class Number>
@@ -57,8 +61,7 @@ std::array<double, 3> place_of(const std::string& text, const std::string& optio
   return {n[0], n[1], n[2]};
 }
 
-studies::DetectorRequest detector_request(const CommandLine& line) {
-  const ImageOptions& options = line.image;
+studies::DetectorRequest detector_request(const ImageOptions& options, const CommonOptions& common) {
   studies::DetectorRequest request;
   request.incidence_deg = options.incidence_deg;
   request.azimuth_deg = options.azimuth_deg;
@@ -72,12 +75,11 @@ studies::DetectorRequest detector_request(const CommandLine& line) {
   request.cutoff = options.cutoff;
   if (options.samples < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
   request.rays = options.samples;
-  request.seed = line.common.seed;
+  request.seed = common.seed;
   return request;
 }
 
-studies::CameraRequest camera_request(const CommandLine& line) {
-  const ImageOptions& options = line.image;
+studies::CameraRequest camera_request(const ImageOptions& options, const CommonOptions& common) {
   studies::CameraRequest request;
   request.distance_m = options.distance_m;
   request.observation_deg = options.observation_deg;
@@ -102,7 +104,7 @@ studies::CameraRequest camera_request(const CommandLine& line) {
   request.cylinder_mm = options.cylinder_mm;
   request.noise = options.noise;
   request.passes = options.passes;
-  request.seed = line.common.seed;
+  request.seed = common.seed;
   return request;
 }
 
@@ -114,34 +116,31 @@ ExitCode exit_code_of(bool complete) {
 
 /// Before any work is done for pictures that could not be written; after what is cheaper to check, as what writes them
 /// takes half a second to load.
-void check_can_write(const CommandLine& line) {
-  if (!line.common.out.empty() && !report::can_write_pictures())
+void check_can_draw(const CommonOptions& common) {
+  if (!common.out.empty() && !report::can_write_pictures())
     throw InputError("this program was built without OpenImageIO, which writes pictures");
 }
 
-ExitCode run_detector(const CommandLine& line, studies::Design design) {
-  const std::vector<std::string> inputs = files_read({design});
-  const studies::DetectorStudy study(std::move(design), detector_request(line));
-  check_can_write(line);
-  const OrderlyInterrupt interrupt;
-  prepare_outputs(line.common,
-                  {inputs, "image.json", {"irradiance.exr", "irradiance.png", "angular.exr", "angular.png"}});
+ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
   studies::DetectorResult result;
+  ResultFiles files(common, files_read({design}), "image.json");
+  const auto add = [&](const std::string& name, auto content) {
+    files.add(name, [&result, content] { return result.complete ? content(result) : ""; });
+  };
+  add("irradiance.exr", [](const auto& r) { return report::exr_file(report::irradiance_picture(r)); });
+  add("irradiance.png", [](const auto& r) { return report::render_png(report::irradiance_plot(r)); });
+  add("angular.exr", [](const auto& r) { return report::exr_file(report::angular_picture(r)); });
+  add("angular.png", [](const auto& r) { return report::render_png(report::angular_plot(r)); });
+  const studies::DetectorStudy study(std::move(design), detector_request(options, common));
+  check_can_draw(common);
+  const OrderlyInterrupt interrupt;
+  files.prepare();
   {
-    ProgressBar bar("tracing", !line.common.quiet);
-    interrupt.run(line.common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
+    ProgressBar bar("tracing", !common.quiet);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
   }
-  const std::string json = studies::detector_json(result);
-  std::vector<OutputFile> files;
-  if (!line.common.out.empty()) files.push_back({"image.json", json});
-  if (!line.common.out.empty() && result.complete) {
-    files.push_back({"irradiance.exr", report::exr_file(report::irradiance_picture(result))});
-    files.push_back({"irradiance.png", report::render_png(report::irradiance_plot(result))});
-    files.push_back({"angular.exr", report::exr_file(report::angular_picture(result))});
-    files.push_back({"angular.png", report::render_png(report::angular_plot(result))});
-  }
-  write_outputs(line.common, json, files, studies::detector_table(result));
-  print_warnings(line.common, result.warnings);
+  files.write(studies::detector_json(result), studies::detector_table(result));
+  print_warnings(common, result.warnings);
   return exit_code_of(result.complete);
 }
 
@@ -152,13 +151,13 @@ std::string camera_png(const raytrace::CameraImage& image) {
 /// Writes the picture as it is, now and then.
 class Preview {
  public:
-  explicit Preview(const CommandLine& line) : out_(line.common.out) {}
+  explicit Preview(const CommonOptions& common) : out_(common.out) {}
 
   void operator()(const raytrace::CameraImage& image) {
     const auto now = std::chrono::steady_clock::now();
     if (out_.empty() || now - last_ < kPreview) return;
     last_ = now;
-    write_file_atomically(std::filesystem::path(out_) / "camera.png", camera_png(image));
+    write_file_atomically(std::filesystem::path(out_) / kCameraPng, camera_png(image));
   }
 
  private:
@@ -166,33 +165,29 @@ class Preview {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-ExitCode run_camera(const CommandLine& line, studies::Design design) {
-  const std::vector<std::string> inputs = files_read({design});
-  const studies::CameraStudy study(std::move(design), camera_request(line));
-  check_can_write(line);
-  const OrderlyInterrupt interrupt;
-  std::vector<std::string> names = {"camera.exr", "camera.png"};
-  if (line.image.false_colour) names.emplace_back("false_colour.png");
-  prepare_outputs(line.common, {inputs, "image.json", names});
+ExitCode run_camera(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
   studies::CameraResult result;
+  ResultFiles files(common, files_read({design}), "image.json");
+  const auto add = [&](const std::string& name, auto content) {
+    files.add(name, [&result, content] { return result.image.passes > 0 ? content(result) : ""; });
+  };
+  add("camera.exr", [](const auto& r) { return report::exr_file(report::luminance_picture(r)); });
+  add(kCameraPng, [](const auto& r) { return camera_png(r.image); });
+  if (options.false_colour)
+    add("false_colour.png", [](const auto& r) { return report::render_png(report::false_colour_plot(r)); });
+  const studies::CameraStudy study(std::move(design), camera_request(options, common));
+  check_can_draw(common);
+  const OrderlyInterrupt interrupt;
+  files.prepare();
   {
-    ProgressBar bar("rendering", !line.common.quiet);
-    Preview preview(line);
-    interrupt.run(line.common.threads, [&](const Cancellation* cancel) {
+    ProgressBar bar("rendering", !common.quiet);
+    Preview preview(common);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) {
       result = study.run(&bar, cancel, [&](const raytrace::CameraImage& image) { preview(image); });
     });
   }
-  const std::string json = studies::camera_json(result);
-  std::vector<OutputFile> files;
-  if (!line.common.out.empty()) files.push_back({"image.json", json});
-  if (!line.common.out.empty() && result.image.passes > 0) {
-    files.push_back({"camera.exr", report::exr_file(report::luminance_picture(result))});
-    files.push_back({"camera.png", camera_png(result.image)});
-    if (line.image.false_colour)
-      files.push_back({"false_colour.png", report::render_png(report::false_colour_plot(result))});
-  }
-  write_outputs(line.common, json, files, studies::camera_table(result));
-  print_warnings(line.common, result.warnings);
+  files.write(studies::camera_json(result), studies::camera_table(result));
+  print_warnings(common, result.warnings);
   return exit_code_of(result.complete);
 }
 
@@ -206,47 +201,58 @@ std::filesystem::path dye_file(const std::string& name) {
   return name;
 }
 
-ExitCode run_road(const CommandLine& line, studies::Design design) {
+ExitCode run_road(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
   std::vector<std::string> inputs = files_read({design});
   studies::RoadRequest request;
-  request.distance_m = read_number_list(line.image.road_distance_m, "--road-distance-m");
-  request.lamp_cd = line.image.lamp_cd;
-  const std::filesystem::path dye = dye_file(line.image.dye);
+  request.distance_m = read_number_list(options.road_distance_m, "--road-distance-m");
+  request.lamp_cd = options.lamp_cd;
+  const std::filesystem::path dye = dye_file(options.dye);
   if (!dye.empty()) {
-    request.dye = line.image.dye;
+    request.dye = options.dye;
     request.dye_absorption_per_mm = materials::read_spectral_absorption(dye);
     inputs.push_back(dye.string());
   }
-  const studies::RoadStudy study(std::move(design), std::move(request), line.common.seed);
-  check_can_write(line);
+  const studies::RoadStudy study(std::move(design), std::move(request), common.seed);
+  check_can_draw(common);
   const OrderlyInterrupt interrupt;
-  prepare_outputs(line.common, {inputs, "image.json", {"road.png", "road.exr"}});
   studies::RoadResult result;
+  ResultFiles files(common, inputs, "image.json");
+  const auto add = [&](const std::string& name, auto content) {
+    files.add(name, [&result, content] { return result.views.empty() ? "" : content(result); });
+  };
+  add("road.png", [](const auto& r) { return report::road_png(r); });
+  add("road.exr", [](const auto& r) { return report::exr_file(report::road_picture(r)); });
+  files.prepare();
   {
-    ProgressBar bar("tracing", !line.common.quiet);
-    interrupt.run(line.common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
+    ProgressBar bar("tracing", !common.quiet);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
   }
-  const std::string json = studies::road_json(result);
-  std::vector<OutputFile> files;
-  if (!line.common.out.empty()) files.push_back({"image.json", json});
-  if (!line.common.out.empty() && !result.views.empty()) {
-    files.push_back({"road.png", report::road_png(result)});
-    files.push_back({"road.exr", report::exr_file(report::road_picture(result))});
-  }
-  write_outputs(line.common, json, files, studies::road_table(result));
-  print_warnings(line.common, result.warnings);
+  files.write(studies::road_json(result), studies::road_table(result));
+  print_warnings(common, result.warnings);
   return exit_code_of(result.complete);
+}
+
+ExitCode run(const ImageOptions& options, const CommonOptions& common) {
+  if (static_cast<int>(options.detector) + static_cast<int>(options.camera) + static_cast<int>(options.road) != 1)
+    throw InputError("image: one of --detector, --camera and --road is required; see retrace image --help");
+  studies::Design design = studies::read_design(options.design, common.overrides);
+  if (options.road) return run_road(options, common, std::move(design));
+  return options.detector ? run_detector(options, common, std::move(design))
+                          : run_camera(options, common, std::move(design));
 }
 
 }  // namespace
 
-ExitCode run_image_command(const CommandLine& line) {
-  const ImageOptions& asked = line.image;
-  if (static_cast<int>(asked.detector) + static_cast<int>(asked.camera) + static_cast<int>(asked.road) != 1)
-    throw InputError("image: one of --detector, --camera and --road is required; see retrace image --help");
-  studies::Design design = studies::read_design(line.image.design, line.common.overrides);
-  if (asked.road) return run_road(line, std::move(design));
-  return asked.detector ? run_detector(line, std::move(design)) : run_camera(line, std::move(design));
+Command image_command() {
+  return {.name = "image",
+          .summary = "pictures: what a detector or a camera sees",
+          .manual =
+              "Pictures: maps of a detector on the entrance face, the part as a camera sees it in the light of a "
+              "lamp, or two such reflectors on a car ahead at night; one of `--detector`, `--camera` and `--road` "
+              "says which. Pictures need `--out`; OpenEXR files have the numbers.",
+          .reads = {"retrace.design/1", "absorption of a dye (CSV)"},
+          .writes = {"retrace.image/1"},
+          .begin = begins<ImageOptions>(image_arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -3,10 +3,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
-namespace CLI {
-class App;
-}
+#include "app/command.h"
 
 namespace retrace::app {
 
@@ -54,7 +53,6 @@ struct ImageOptions {
   std::optional<std::string> pixels;
 };
 
-/// Adds the command to the program's.
-void add_image(CLI::App& app, ImageOptions& image);
+std::vector<Argument> image_arguments(ImageOptions& options);
 
 }  // namespace retrace::app

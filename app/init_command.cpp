@@ -1,39 +1,46 @@
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/output.h"
-#include "core/atomic_file.h"
-#include "core/json_text.h"
-#include "core/version.h"
+#include "app/text_result.h"
 #include "studies/design/init_templates.h"
 
 namespace retrace::app {
-namespace fs = std::filesystem;
+namespace {
 
-ExitCode run_init_command(const CommandLine& line) {
-  const std::string text = studies::design_template(line.kind);
-  if (!line.common.overrides.empty())
-    throw InputError({"", 0, "--set"}, "init writes its template as it is; edit the file");
-  const nlohmann::ordered_json json = {{"schema", "retrace.template/1"},
-                                       {"kind", line.kind},
-                                       {"text", text},
-                                       {"version", kVersion},
-                                       {"warnings", nlohmann::ordered_json::array()},
-                                       {"complete", true}};
-  // With init, --out names the design file, not a folder.
-  const std::string out = line.common.out;
-  CommonOptions outputs = line.common;
-  outputs.out.clear();
+struct InitOptions {
+  std::string kind;
+};
+
+std::vector<Argument> arguments(InitOptions& options) {
+  const auto kinds = [] {
+    Words words = words_of(studies::design_kinds())();
+    words.emplace_back("round_zone_lens");
+    return words;
+  };
+  return {{"KIND", "rtp, hexagonal_icc, triangular_icc or round_zone_lens", &options.kind, one_of(kinds)}};
+}
+
+ExitCode run(const InitOptions& options, const CommonOptions& common) {
+  const std::string text = studies::design_template(options.kind);
   // Somebody's design may be there: starting afresh is not worth losing it.
-  if (!out.empty() && fs::symlink_status(out).type() != fs::file_type::not_found)
-    throw OutputError(out + ": is there already; not overwritten");
-  prepare_outputs(outputs, {});
-  if (!out.empty()) write_file_atomically(out, text);
-  // Without --out the template is the result itself, which --quiet does not take away.
-  outputs.quiet = line.common.quiet && !out.empty();
-  write_outputs(outputs, to_text(json), {}, out.empty() ? text : "wrote " + out + "\n");
-  return ExitCode::done;
+  if (!common.out.empty() &&
+      std::filesystem::symlink_status(common.out).type() != std::filesystem::file_type::not_found)
+    throw OutputError(common.out + ": is there already; not overwritten");
+  return write_text(common, {{"schema", "retrace.template/1"}, {"kind", options.kind}}, text);
+}
+
+}  // namespace
+
+Command init_command() {
+  return {.name = "init",
+          .summary = "a commented design or part file to start from",
+          .manual =
+              "Prints a commented design that works as it is, or of kind `round_zone_lens` a part for `plane`. "
+              "With `--out FILE` it goes to that file, which must not exist yet.",
+          .writes = {"retrace.template/1"},
+          .refuses_set = "init writes its template as it is; edit the file",
+          .begin = begins<InitOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

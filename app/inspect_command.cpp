@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/output.h"
+#include "app/shared_arguments.h"
 #include "report/drawing/design_picture.h"
 #include "report/drawing/design_sheets.h"
 #include "report/plot.h"
@@ -12,6 +13,14 @@
 namespace retrace::app {
 namespace {
 
+struct InspectOptions {
+  std::string design;
+};
+
+std::vector<Argument> arguments(InspectOptions& options) {
+  return {design_argument(options.design)};
+}
+
 /// The front along two lines through the middle.
 std::string profile_svg(const studies::Design& design, const studies::FrontReport& front) {
   report::LinePlot plot;
@@ -23,36 +32,56 @@ std::string profile_svg(const studies::Design& design, const studies::FrontRepor
   return report::render_svg(plot);
 }
 
+/// Contents of the drawings; those that a design has not are empty.
+struct Drawings {
+  std::string plan = {};
+  std::string section = {};
+  std::string view = {};
+  std::string front = {};
+};
+
 /// Plan, section and view of the design; of a curved front its profile in place of section and view, which know plane
 /// entrance faces alone; none of balls; of elements on a base the view alone, as their lengths lie in
 /// no plane.
-std::vector<OutputFile> drawings_of(const studies::Design& design, studies::Inspection& inspection) {
+Drawings drawings_of(const studies::Design& design, studies::Inspection& inspection) {
   if (design.balls) return {};  // no part of planes to draw
-  if (inspection.front) return {{"front.svg", profile_svg(design, *inspection.front)}};
-  if (design.part.base) return {{"view.png", report::view_png(studies::view_of(design))}};
+  if (inspection.front) return {.front = profile_svg(design, *inspection.front)};
+  if (design.part.base) return {.view = report::view_png(studies::view_of(design))};
   const studies::DesignDrawing drawing = studies::draw_design(design, studies::part_of_design(design, nullptr));
-  std::vector<OutputFile> files = {{"plan.svg", report::plan_svg(drawing)}};
-  if (drawing.section) files.push_back({"section.svg", report::section_svg(drawing)});
-  files.push_back({"view.png", report::view_png(studies::view_of(design))});
   std::vector<std::string>& warnings = inspection.warnings;
   warnings.insert(warnings.end(), drawing.warnings.begin(), drawing.warnings.end());
-  return files;
+  return {.plan = report::plan_svg(drawing),
+          .section = drawing.section ? report::section_svg(drawing) : "",
+          .view = report::view_png(studies::view_of(design))};
+}
+
+ExitCode run(const InspectOptions& options, const CommonOptions& common) {
+  const studies::Design design = studies::read_design(options.design, common.overrides);
+  studies::Inspection inspection = studies::inspect(design, materials::MaterialLibrary::shipped());
+  Drawings drawings;
+  ResultFiles files(common, files_read({design}), "inspect.json");
+  files.add("plan.svg", [&] { return drawings.plan; });
+  files.add("section.svg", [&] { return drawings.section; });
+  files.add("view.png", [&] { return drawings.view; });
+  files.add("front.svg", [&] { return drawings.front; });
+  files.prepare();
+  if (!common.out.empty()) drawings = drawings_of(design, inspection);
+  files.write(studies::inspect_json(inspection), studies::inspect_text(inspection));
+  print_warnings(common, inspection.warnings);
+  return ExitCode::done;
 }
 
 }  // namespace
 
-ExitCode run_inspect_command(const CommandLine& line) {
-  const studies::Design design = studies::read_design(line.design, line.common.overrides);
-  studies::Inspection inspection = studies::inspect(design, materials::MaterialLibrary::shipped());
-  prepare_outputs(line.common,
-                  {files_read({design}), "inspect.json", {"plan.svg", "section.svg", "view.png", "front.svg"}});
-  std::vector<OutputFile> files;
-  if (!line.common.out.empty()) files = drawings_of(design, inspection);
-  const std::string json = studies::inspect_json(inspection);
-  files.push_back({"inspect.json", json});
-  write_outputs(line.common, json, files, studies::inspect_text(inspection));
-  print_warnings(line.common, inspection.warnings);
-  return ExitCode::done;
+Command inspect_command() {
+  return {.name = "inspect",
+          .summary = "what a design is: counts, areas, limits of total reflection; its drawings",
+          .manual =
+              "What a design is, before any light is traced: counts, areas, depth, limits of total reflection, "
+              "and whether its boundary is closed; drawings of its plan, its section and in three dimensions.",
+          .reads = {"retrace.design/1"},
+          .writes = {"retrace.inspect/1"},
+          .begin = begins<InspectOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

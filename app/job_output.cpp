@@ -1,11 +1,42 @@
 #include "app/job_output.h"
 
 #include "fabrication/job/io/job_files.h"
+#include "fabrication/job/io/process_files.h"
+#include "fabrication/machine/io/machine_files.h"
 
 namespace retrace::app {
 namespace fs = std::filesystem;
+namespace {
 
-studies::JobRequest job_request(const JobOptions& options, double tool_width_mm) {
+Words names_of(const auto& shipped) {
+  Words names;
+  for (const auto& one : shipped) names.push_back(one.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<Argument> making_arguments(MakingOptions& options, const std::string& needs) {
+  const auto machines = [] { return names_of(fabrication::shipped_machines()); };
+  const auto processes = [] { return names_of(fabrication::shipped_processes()); };
+  std::vector<Argument> all = {
+      {"--machine MACHINE", "ideal, paper, thesis, ideal-dmc or a file", &options.machine, one_of(machines, ".toml")},
+      {"--tool-width-mm W",
+       "width of the tool's edge, 0.1 to 2; of dmc 0.01 to 10",
+       &options.tool_width_mm,
+       {.required = needs.empty()}},
+      {"--strategy STRATEGY", "unidirectional, bidirectional or two-step; dmc for cube corners", &options.strategy,
+       one_of(words_of(fabrication::kStrategyWords))},
+      {"--process PROCESS", "depths, feeds and dwells: a shipped process or a file", &options.process,
+       one_of(processes, ".toml")},
+      {"--workpiece KIND", "mould, or direct: the optic itself is cut", &options.workpiece,
+       one_of(words_of(fabrication::kWorkpieceWords))},
+      {"--shrinkage-percent S", "by which the mould is larger than the part", &options.shrinkage_percent}};
+  for (Argument& argument : all) argument.traits.needs = needs;
+  return all;
+}
+
+studies::JobRequest job_request(const MakingOptions& options, double tool_width_mm) {
   studies::JobRequest request;
   request.machine = options.machine;
   request.tool_width_mm = tool_width_mm;
@@ -16,7 +47,7 @@ studies::JobRequest job_request(const JobOptions& options, double tool_width_mm)
   return request;
 }
 
-std::vector<std::string> files_of_making(const JobOptions& options) {
+std::vector<std::string> files_of_making(const MakingOptions& options) {
   std::vector<std::string> files;
   for (const std::string& name : {options.machine, options.process})
     if (fs::path(name).has_extension()) files.push_back(name);

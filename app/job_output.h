@@ -1,19 +1,33 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "app/command_line.h"
+#include "app/command.h"
 #include "studies/fabrication/job_maker.h"
 
 namespace retrace::app {
 
-/// What the options say of how a job is made. \pre there is a width of the tool
-studies::JobRequest job_request(const JobOptions& options, double tool_width_mm);
+/// How a job is made, for every command that makes one.
+struct MakingOptions {
+  std::string machine = "ideal";
+  std::optional<double> tool_width_mm;
+  std::string strategy = "two-step";
+  std::string process = "thesis-acrylic";
+  std::string workpiece = "mould";
+  double shrinkage_percent = 0.0;
+};
+
+/// \param needs the option that they cannot go without; empty: none, and the width of the tool is required
+std::vector<Argument> making_arguments(MakingOptions& options, const std::string& needs);
+
+/// What the options say of how a job is made.
+studies::JobRequest job_request(const MakingOptions& options, double tool_width_mm);
 
 /// Files that making a job reads beside the design. Names without an ending are shipped ones, not files.
-std::vector<std::string> files_of_making(const JobOptions& options);
+std::vector<std::string> files_of_making(const MakingOptions& options);
 
 /// The text of a job that is to lie at a place: its machine's file is named as seen from there. \param file empty: the
 /// working directory

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -25,13 +26,13 @@ constexpr double kShownWavelengthNm = 587.56;
 using Json = nlohmann::ordered_json;
 
 /// Ends a list: what every document carries, and where it goes.
-ExitCode write_list(const CommandLine& line, Json json, const std::string& text) {
-  const std::string file = line.what + ".json";
+ExitCode write_list(const CommonOptions& common, const std::string& what, Json json, const std::string& text) {
   json["version"] = kVersion;
   json["warnings"] = Json::array();
   json["complete"] = true;
-  prepare_outputs(line.common, {{}, file, {}});
-  write_outputs(line.common, to_text(json), {{file, to_text(json)}}, text);
+  const ResultFiles files(common, {}, what + ".json");
+  files.prepare();
+  files.write(to_text(json), text);
   return ExitCode::done;
 }
 
@@ -46,7 +47,7 @@ Json direction_json(const fabrication::Sourced<geometry::Vec3>& item) {
   return sourced(item, Json{item.value.x(), item.value.y(), item.value.z()});
 }
 
-ExitCode list_machines(const CommandLine& line) {
+ExitCode list_machines(const CommonOptions& common) {
   std::string text = fmt::format("{:<10} {:<10} {:<10} {}\n", "name", "A or B", "C axis", "title");
   Json json = {{"schema", "retrace.machines/1"}, {"machines", Json::array()}};
   for (const fabrication::Machine& m : fabrication::shipped_machines()) {
@@ -59,10 +60,10 @@ ExitCode list_machines(const CommandLine& line) {
                                 {m.tilt_letter() == 'A' ? "a_direction" : "b_direction", direction_json(m.a.direction)},
                                 {"c_direction", direction_json(m.c.direction)}});
   }
-  return write_list(line, std::move(json), text);
+  return write_list(common, "machines", std::move(json), text);
 }
 
-ExitCode list_processes(const CommandLine& line) {
+ExitCode list_processes(const CommonOptions& common) {
   std::string text = fmt::format("{:<16} {:<13} {:<16} {}\n", "name", "roughing (um)", "finishing (um)", "source");
   Json json = {{"schema", "retrace.processes/1"}, {"processes", Json::array()}};
   for (const fabrication::Process& p : fabrication::shipped_processes()) {
@@ -80,10 +81,10 @@ ExitCode list_processes(const CommandLine& line) {
                                  {"finishing_feed_mm_per_min", p.finishing_feed_mm_per_min},
                                  {"retract_feed_mm_per_min", p.retract_feed_mm_per_min}});
   }
-  return write_list(line, std::move(json), text);
+  return write_list(common, "processes", std::move(json), text);
 }
 
-ExitCode list_materials(const CommandLine& line) {
+ExitCode list_materials(const CommonOptions& common) {
   const auto library = materials::MaterialLibrary::shipped();
   std::string text = fmt::format("{:<16} {:<10} {:<12} {}\n", "name", "n 588 nm", "data (nm)", "description");
   Json json = {{"schema", "retrace.materials/1"}, {"materials", Json::array()}};
@@ -117,7 +118,7 @@ ExitCode list_materials(const CommandLine& line) {
                               {"valid_to_nm", m.valid_to_nm},
                               {"source", m.source}});
   }
-  return write_list(line, std::move(json), text);
+  return write_list(common, "materials", std::move(json), text);
 }
 
 /// What the shipped table holds of a standard: its classes and colours.
@@ -147,7 +148,7 @@ Json standard_json(const studies::ShippedStandard& standard, const studies::Limi
           {"conditions", standard.conditions}};
 }
 
-ExitCode list_standards(const CommandLine& line) {
+ExitCode list_standards(const CommonOptions& common) {
   const studies::LimitTable table = studies::read_limits(data_directory() / "photometry_limits.csv");
   std::string text = fmt::format("{:<9} {:<22} {:<17} {}\n", "name", "classes", "colours", "description");
   Json json = {{"schema", "retrace.standards/1"}, {"standards", Json::array()}};
@@ -160,17 +161,43 @@ ExitCode list_standards(const CommandLine& line) {
                         fmt::format("{}", fmt::join(colours, " ")), standard.description,
                         one["limits_complete"].get<bool>() ? "" : " (limits incomplete)");
   }
-  return write_list(line, std::move(json), text);
+  return write_list(common, "standards", std::move(json), text);
+}
+
+/// What there is to list, and what lists it.
+constexpr std::array<std::pair<std::string_view, ExitCode (*)(const CommonOptions&)>, 4> kLists = {
+    {{"materials", list_materials},
+     {"machines", list_machines},
+     {"processes", list_processes},
+     {"standards", list_standards}}};
+
+struct ListOptions {
+  std::string what;
+};
+
+std::vector<Argument> arguments(ListOptions& options) {
+  const auto words = [] {
+    Words names;
+    for (const auto& [name, list] : kLists) names.emplace_back(name);
+    return names;
+  };
+  return {{"WHAT", "materials, machines, processes or standards", &options.what, one_of(words)}};
+}
+
+ExitCode run(const ListOptions& options, const CommonOptions& common) {
+  for (const auto& [name, list] : kLists)
+    if (name == options.what) return list(common);
+  throw InputError(fmt::format("list: must be materials, machines, processes or standards, got {}", options.what));
 }
 
 }  // namespace
 
-ExitCode run_list_command(const CommandLine& line) {
-  if (line.what == "materials") return list_materials(line);
-  if (line.what == "machines") return list_machines(line);
-  if (line.what == "processes") return list_processes(line);
-  if (line.what == "standards") return list_standards(line);
-  throw InputError(fmt::format("list: must be materials, machines, processes or standards, got {}", line.what));
+Command list_command() {
+  return {.name = "list",
+          .summary = "what is shipped",
+          .manual = "Names what is shipped, with its sources; `--json` says more of it.",
+          .writes = {"retrace.materials/1", "retrace.machines/1", "retrace.processes/1", "retrace.standards/1"},
+          .begin = begins<ListOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "app/command_line.h"
-#include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/output.h"
 
@@ -17,28 +16,8 @@ namespace {
 using namespace retrace;
 
 ExitCode run(int argc, const char* const* argv) {
-  const auto line = app::read_command_line(argc, argv);
-  if (!line) return ExitCode::done;
-  if (line->command == "rre") return app::run_rre_command(*line);
-  if (line->command == "photometry") return app::run_photometry_command(*line);
-  if (line->command == "roughness") return app::run_roughness_command(*line);
-  if (line->command == "inspect") return app::run_inspect_command(*line);
-  if (line->command == "metrology") return app::run_metrology_command(*line);
-  if (line->command == "sweep") return app::run_sweep_command(*line);
-  if (line->command == "job") return app::run_job_command(*line);
-  if (line->command == "fabricate") return app::run_fabricate_command(*line);
-  if (line->command == "optimize") return app::run_optimize_command(*line);
-  if (line->command == "tolerance") return app::run_tolerance_command(*line);
-  if (line->command == "verify") return app::run_verify_command(*line);
-  if (line->command == "turn") return app::run_turn_command(*line);
-  if (line->command == "plane") return app::run_plane_command(*line);
-  if (line->command == "forces") return app::run_forces_command(*line);
-  if (line->command == "image") return app::run_image_command(*line);
-  if (line->command == "export") return app::run_export_command(*line);
-  if (line->command == "report") return app::run_report_command(*line);
-  if (line->command == "init") return app::run_init_command(*line);
-  if (line->command == "schema") return app::run_schema_command(*line);
-  return app::run_list_command(*line);
+  const auto command = app::read_command_line(argc, argv);
+  return command ? command() : ExitCode::done;
 }
 
 int fail(ExitCode code, const std::string& text) {

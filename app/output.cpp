@@ -34,17 +34,20 @@ void refuse_input(const std::string& option, const fs::path& output, const std::
       throw InputError({"", 0, option}, output.string() + " is a file that is read; it would be overwritten");
 }
 
-void refuse_overlaps(const CommonOptions& options, const FileNames& names) {
-  const bool has_json = !options.json.empty() && options.json != "-";
-  if (has_json) refuse_input("--json", options.json, names.inputs);
-  if (options.out.empty()) return;
-  for (const std::string& name : names.others) {
-    const fs::path output = fs::path(options.out) / name;
-    refuse_input("--out", output, names.inputs);
-    if (has_json && is_same_file(options.json, output))
-      throw InputError({"", 0, "--json"}, options.json + " is a file that --out writes; give another name");
-  }
-  if (!names.document.empty()) refuse_input("--out", fs::path(options.out) / names.document, names.inputs);
+/// Refuses a document that is an output of another option.
+void refuse_second(const std::string& json, const std::string& option, const fs::path& output) {
+  if (!json.empty() && is_same_file(json, output))
+    throw InputError({"", 0, "--json"}, json + " is a file that " + option + " writes; give another name");
+}
+
+/// Refuses a document that cannot be written, unless it goes to the folder that is to be made.
+void check_can_write(const std::string& json, const std::string& out) {
+  const fs::path folder = fs::absolute(json).parent_path();
+  if (fs::is_directory(json)) throw OutputError(json + ": cannot be written: it is a folder");
+  const auto parent = [](const std::string& path) { return fs::absolute(path).lexically_normal().parent_path(); };
+  if (!out.empty() && parent(json) == parent(out + "/")) return;
+  if (!fs::is_directory(folder)) throw OutputError(json + ": cannot be written: there is no such folder");
+  if (::access(folder.c_str(), W_OK) != 0) throw OutputError(json + ": cannot be written: no permission");
 }
 
 }  // namespace
@@ -63,43 +66,62 @@ std::vector<std::string> files_read(const std::vector<studies::Design>& designs)
   return files;
 }
 
-void check_output_file(const CommonOptions& options, const std::string& option, const fs::path& file,
-                       const std::vector<std::string>& inputs) {
-  refuse_input(option, file, inputs);
-  if (!options.json.empty() && options.json != "-" && is_same_file(options.json, file))
-    throw InputError({"", 0, "--json"}, options.json + " is the file that " + option + " writes; give another name");
+CommonOptions without_folder(CommonOptions options) {
+  options.out.clear();
+  return options;
 }
 
-void prepare_outputs(const CommonOptions& options, const FileNames& names) {
-  refuse_overlaps(options, names);
-  if (!options.json.empty() && options.json != "-") {
-    const fs::path folder = fs::absolute(options.json).parent_path();
-    if (fs::is_directory(options.json)) throw OutputError(options.json + ": cannot be written: it is a folder");
-    const auto parent = [](const std::string& path) { return fs::absolute(path).lexically_normal().parent_path(); };
-    const bool to_be_made = !options.out.empty() && parent(options.json) == parent(options.out + "/");
-    if (!fs::is_directory(folder) && !to_be_made)
-      throw OutputError(options.json + ": cannot be written: there is no such folder");
-    if (!to_be_made && ::access(folder.c_str(), W_OK) != 0)
-      throw OutputError(options.json + ": cannot be written: no permission");
+ResultFiles::ResultFiles(CommonOptions options, std::vector<std::string> inputs, const std::string& document)
+    : options_(std::move(options)), inputs_(std::move(inputs)) {
+  if (!document.empty() && !options_.out.empty()) document_ = fs::path(options_.out) / document;
+}
+
+void ResultFiles::add(const std::string& name, Content content) {
+  if (!options_.out.empty()) add_named("--out", fs::path(options_.out) / name, std::move(content));
+}
+
+fs::path ResultFiles::reserve(const std::string& name) {
+  add(name, {});
+  return options_.out.empty() ? fs::path() : files_.back().path;
+}
+
+void ResultFiles::add_named(const std::string& option, const fs::path& file, Content content) {
+  if (!file.empty()) files_.push_back({option, file, std::move(content)});
+}
+
+void ResultFiles::check() const {
+  const std::string json = options_.json == "-" ? "" : options_.json;
+  if (!json.empty()) refuse_input("--json", json, inputs_);
+  for (const File& file : files_) {
+    refuse_input(file.option, file.path, inputs_);
+    refuse_second(json, file.option, file.path);
   }
-  if (!options.out.empty()) make_output_folder(options.out);
+  if (!document_.empty()) refuse_input("--out", document_, inputs_);
 }
 
-void write_outputs(const CommonOptions& options, std::string_view json, const std::vector<OutputFile>& files,
-                   std::string_view text) {
+void ResultFiles::prepare() const {
+  check();
+  if (!options_.json.empty() && options_.json != "-") check_can_write(options_.json, options_.out);
+  if (!options_.out.empty()) make_output_folder(options_.out);
+}
+
+void ResultFiles::write(std::string_view json, std::string_view text) const {
+  std::vector<std::pair<fs::path, std::string>> contents;
+  if (!document_.empty()) contents.emplace_back(document_, json);
+  for (const File& file : files_)
+    if (file.content) contents.emplace_back(file.path, file.content());
   std::string remarks;
-  if (!options.out.empty())
-    for (const OutputFile& file : files) {
-      const fs::path path = fs::path(options.out) / file.name;
-      write_file_atomically(path, file.content);
-      remarks += fmt::format("wrote {}\n", path.string());
-    }
-  if (options.json == "-") {
+  for (const auto& [path, content] : contents) {
+    if (content.empty()) continue;
+    write_file_atomically(path, content);
+    remarks += fmt::format("wrote {}\n", path.string());
+  }
+  if (options_.json == "-") {
     print(json);
     return;
   }
-  if (!options.json.empty()) write_file_atomically(options.json, json);
-  if (!options.quiet) print(std::string(text) + remarks);
+  if (!options_.json.empty()) write_file_atomically(options_.json, json);
+  if (!options_.quiet) print(std::string(text) + remarks);
 }
 
 void say(std::string_view text) {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "app/command_line.h"
+#include "app/command.h"
 #include "studies/design/design.h"
 
 namespace retrace::app {
@@ -13,35 +15,63 @@ namespace retrace::app {
 /// Writes to standard output. \throw OutputError if that fails
 void print(std::string_view text);
 
-/// A file of a result, ready to be written.
-struct OutputFile {
-  std::string name;
-  std::string content;
-};
-
-/// What a command reads and writes, to be kept apart.
-struct FileNames {
-  std::vector<std::string> inputs;  ///< every file that it reads
-  std::string document;             ///< file in the output folder that holds the same as --json
-  std::vector<std::string> others;  ///< further files in the output folder
-};
-
 /// The files that designs come from, with those that they name.
 std::vector<std::string> files_read(const std::vector<studies::Design>& designs);
 
-/// Refuses, before anything is written, a file that an option names if it is one that is read, by whatever path or
-/// link, or the one of --json. \throw InputError
-void check_output_file(const CommonOptions& options, const std::string& option, const std::filesystem::path& file,
-                       const std::vector<std::string>& inputs);
+/// The same options of a command whose --out is no folder.
+CommonOptions without_folder(CommonOptions options);
 
-/// Refuses, before any work is done, outputs that would replace a file that is read or each other and outputs that
-/// cannot be written; makes the output folder. \throw InputError, OutputError
-void prepare_outputs(const CommonOptions& options, const FileNames& names);
+/// The files of a result, each named once: before the work they are checked, after it they are made and written.
+class ResultFiles {
+ public:
+  using Content = std::function<std::string()>;
 
-/// Writes the JSON document and the files where the options want them, and the text to standard output if neither
-/// `--quiet` nor `--json -` forbids it. \throw OutputError
-void write_outputs(const CommonOptions& options, std::string_view json, const std::vector<OutputFile>& files,
-                   std::string_view text);
+  /// \param inputs every file that the command reads
+  /// \param document file in the output folder that holds the same as --json; empty: none
+  ResultFiles(CommonOptions options, std::vector<std::string> inputs, const std::string& document = {});
+
+  /// A file in the output folder. What makes its content is called by write(); an empty content leaves the file out.
+  void add(const std::string& name, Content content);
+  /// The drawing of a plot in the output folder, as NAME.svg and NAME.png. \param plot makes the plot
+  template <class Plot>
+  void add_drawing(const std::string& name, Plot plot);
+  /// A file in the output folder that something else writes. \return its path; empty without such a folder
+  std::filesystem::path reserve(const std::string& name);
+  /// A file that an option names; none if that is empty.
+  void add_named(const std::string& option, const std::filesystem::path& file, Content content);
+
+  /// Refuses outputs that would replace a file that is read, by whatever path or link, or each other. \throw InputError
+  void check() const;
+  /// The same, and refuses outputs that cannot be written; makes the output folder. To be called before anything is
+  /// written. \throw InputError, OutputError
+  void prepare() const;
+  /// Writes the JSON document and the files where the options want them, and the text, with what was written, to
+  /// standard output if neither `--quiet` nor `--json -` forbids it. \throw OutputError
+  void write(std::string_view json, std::string_view text) const;
+
+ private:
+  struct File {
+    std::string option;
+    std::filesystem::path path;
+    Content content;  ///< none: written by something else, or the document
+  };
+
+  CommonOptions options_;
+  std::vector<std::string> inputs_;
+  std::filesystem::path document_;  ///< empty: none
+  std::vector<File> files_;
+};
+
+template <class Plot>
+void ResultFiles::add_drawing(const std::string& name, Plot plot) {
+  const auto made = std::make_shared<std::optional<decltype(plot())>>();
+  const auto once = [ made, plot ]() -> const auto& {
+    if (!*made) *made = plot();
+    return **made;
+  };
+  add(name + ".svg", [once] { return render_svg(once()); });
+  add(name + ".png", [once] { return render_png(once()); });
+}
 
 /// One line on standard error, free of control characters. That nobody can read it is no reason to stop.
 void say(std::string_view text);

@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/output.h"
+#include "app/shared_arguments.h"
 #include "report/planing_plot.h"
 #include "studies/planing/io/planing_files.h"
 #include "studies/planing/planing_study.h"
@@ -7,38 +8,44 @@
 namespace retrace::app {
 namespace {
 
-void add_plot(std::vector<OutputFile>& files, const std::string& name, const report::LinePlot& plot) {
-  files.push_back({name + ".svg", report::render_svg(plot)});
-  files.push_back({name + ".png", report::render_png(plot)});
+struct PlaneOptions {
+  std::string part;
+  std::string dialect = "rs274ngc";
+};
+
+std::vector<Argument> arguments(PlaneOptions& options) {
+  return {part_argument(options.part), dialect_argument(options.dialect)};
 }
 
-std::vector<OutputFile> files_of(const studies::PlaningResult& result, const std::string& json) {
-  std::vector<OutputFile> files = {{"planing.json", json}};
-  add_plot(files, "profile", report::planing_profile_plot(result));
-  add_plot(files, "zones", report::planing_zones_plot(result));
+ExitCode run(const PlaneOptions& options, const CommonOptions& common) {
+  const studies::PlaningResult result = studies::plane(options.part, options.dialect);
+  ResultFiles files(common, {options.part}, "planing.json");
+  files.add_drawing("profile", [&] { return report::planing_profile_plot(result); });
+  files.add_drawing("zones", [&] { return report::planing_zones_plot(result); });
   if (result.part.mill) {
-    files.push_back({"profile.csv", studies::planing_csv(result)});
-    add_plot(files, "form_error", report::planing_error_plot(result));
+    files.add("profile.csv", [&] { return studies::planing_csv(result); });
+    files.add_drawing("form_error", [&] { return report::planing_error_plot(result); });
   }
-  for (const fabrication::PlaningText& program : result.programs) files.push_back({program.name, program.text});
-  return files;
+  for (const fabrication::PlaningText& program : result.programs) files.add(program.name, [&] { return program.text; });
+  files.prepare();
+  files.write(studies::planing_json(result), studies::planing_table(result));
+  print_warnings(common, result.warnings);
+  return result.check.passes() ? ExitCode::done : ExitCode::answer_is_no;
 }
 
 }  // namespace
 
-ExitCode run_plane_command(const CommandLine& line) {
-  if (!line.common.overrides.empty()) throw InputError({"", 0, "--set"}, "plane reads no design: change the part file");
-  const studies::PlaningResult result = studies::plane(line.fabricate.job, line.fabricate.dialect);
-  const std::string json = studies::planing_json(result);
-  std::vector<OutputFile> files;
-  if (!line.common.out.empty()) files = files_of(result, json);
-  FileNames names{{line.fabricate.job}, "planing.json", {}};
-  for (const OutputFile& file : files)
-    if (file.name != "planing.json") names.others.push_back(file.name);
-  prepare_outputs(line.common, names);
-  write_outputs(line.common, json, files, studies::planing_table(result));
-  print_warnings(line.common, result.warnings);
-  return result.check.passes() ? ExitCode::done : ExitCode::answer_is_no;
+Command plane_command() {
+  return {.name = "plane",
+          .summary = "NC programs of a flat lens of zones, planed or turned",
+          .manual =
+              "NC programs of a flat lens of zones, planed on a mill that moves one axis at a time or turned on a "
+              "lathe, with frames and hours, checked from their text against the profile and, on a lathe, for "
+              "the spindle that the part's file asks for. Exits with 1 if anything was found.",
+          .reads = {"retrace.planed_part/1"},
+          .writes = {"retrace.planing/1"},
+          .refuses_set = "plane reads no design: change the part file",
+          .begin = begins<PlaneOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -12,7 +12,6 @@
 
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
-#include "app/study_options.h"
 #include "studies/sweep/mpi_session.h"
 
 namespace retrace::app {
@@ -40,17 +39,17 @@ class PointsBar : public studies::SweepObserver {
 };
 
 /// Points that a process has in work at a time.
-std::size_t slots(const CommandLine& line) {
-  return line.common.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
+std::size_t slots(const CommonOptions& common) {
+  return common.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
 }
 
 /// Another rank than 0: computes what it is dealt and says nothing. What is wrong is told by rank 0, which goes on
 /// without this one; another exit code than 0 would have mpirun end the job.
-ExitCode serve(const CommandLine& line, const PointsCommand& command, studies::MpiSession& session) {
+ExitCode serve(const CommonOptions& common, const PointsCommand& command, studies::MpiSession& session) {
   try {
     const studies::Sweep sweep = command.read();
     const OrderlyInterrupt interrupt;
-    interrupt.run(line.common.threads, [&](const Cancellation* cancel) { session.serve(sweep, slots(line), cancel); });
+    interrupt.run(common.threads, [&](const Cancellation* cancel) { session.serve(sweep, slots(common), cancel); });
   } catch (const Error& error) {
     session.leave(error.what());
   }
@@ -66,42 +65,44 @@ ExitCode exit_code_of(const std::vector<studies::StoredPoint>& points, ExitCode 
 }
 
 /// \param session null without MPI
-ExitCode compute(const CommandLine& line, const PointsCommand& command, studies::MpiSession* session) {
+ExitCode compute(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command,
+                 studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Sweep sweep = command.read();
   const OrderlyInterrupt interrupt;
-  std::vector<std::string> others = command.others;
-  others.push_back(command.store);
-  prepare_outputs(line.common, {sweep.study().files, command.document, others});
-  const std::filesystem::path file =
-      line.common.out.empty() ? std::filesystem::path() : std::filesystem::path(line.common.out) / command.store;
-  studies::ResultStore store(file, sweep.layout(), if_exists_of(line.study));
+  ResultFiles files(common, sweep.study().files, command.document);
+  std::optional<studies::SweepResult> result;
+  command.add_files(files, result);
+  const std::filesystem::path file = files.reserve(command.store);
+  files.prepare();
+  studies::ResultStore store(file, sweep.layout(), if_exists_of(options));
   bool complete = false;
   {
-    PointsBar bar(command.doing, !line.common.quiet);
-    interrupt.run(line.common.threads, [&](const Cancellation* cancel) {
-      complete = session != nullptr ? session->deal(sweep, store, slots(line), &bar, cancel)
+    PointsBar bar(command.doing, !common.quiet);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) {
+      complete = session != nullptr ? session->deal(sweep, store, slots(common), &bar, cancel)
                                     : studies::run_sweep(sweep, store, &bar, cancel);
     });
   }
-  studies::SweepResult result = studies::collect(sweep, store, complete);
+  result.emplace(studies::collect(sweep, store, complete));
   if (session != nullptr)
-    for (const std::string& remark : session->remarks()) result.warnings.push_back(remark);
-  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const ExitCode code = command.write(result);
-  print_warnings(line.common, result.warnings);
-  if (complete) return exit_code_of(result.points, code);
-  say(fmt::format("retrace: interrupted; finished points: {} of {}", result.points.size(), sweep.size()));
+    for (const std::string& remark : session->remarks()) result->warnings.push_back(remark);
+  result->elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const ExitCode code = command.write(*result, files);
+  print_warnings(common, result->warnings);
+  if (complete) return exit_code_of(result->points, code);
+  say(fmt::format("retrace: interrupted; finished points: {} of {}", result->points.size(), sweep.size()));
   return ExitCode::interrupted;
 }
 
 }  // namespace
 
-ExitCode run_points(const CommandLine& line, const PointsCommand& command) {
-  check_study_options(line);
-  if (!studies::MpiSession::is_launched()) return compute(line, command, nullptr);
+ExitCode run_points(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command) {
+  check_study_options(options, common);
+  if (!studies::MpiSession::is_launched()) return compute(options, common, command, nullptr);
   studies::MpiSession session;
-  const ExitCode code = session.rank() == 0 ? compute(line, command, &session) : serve(line, command, session);
+  const ExitCode code =
+      session.rank() == 0 ? compute(options, common, command, &session) : serve(common, command, session);
   if (session.end()) return code;
   // Ranks are gone, and MPI may wait for them for ever: what is left of it is not tidied up.
   std::fflush(nullptr);

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
-#include "app/command_line.h"
 #include "app/output.h"
+#include "app/study_options.h"
 #include "core/error.h"
 #include "studies/sweep/sweep.h"
 
@@ -13,17 +14,18 @@ namespace retrace::app {
 /// A command whose points are known beforehand and kept in a store.
 struct PointsCommand {
   std::string doing;  ///< what the progress bar says
-  std::string store;  ///< file in the output folder
+  std::string store;  ///< its file in the output folder
   /// Reads the study and checks all of it; also on ranks that only compute.
   std::function<studies::Sweep()> read;
-  std::string document;             ///< JSON in the output folder
-  std::vector<std::string> others;  ///< further files there, beside the store
+  std::string document;  ///< JSON in the output folder
+  /// Names further files there, beside the store. \param result is there when they are made
+  std::function<void(ResultFiles& files, const std::optional<studies::SweepResult>& result)> add_files;
   /// Writes what came out, which may be incomplete, and adds its warnings. \return the exit code of a complete run
-  std::function<ExitCode(studies::SweepResult& result)> write;
+  std::function<ExitCode(studies::SweepResult& result, const ResultFiles& files)> write;
 };
 
 /// Computes what the store lacks - by itself, or as one rank of a job under MPI, with a progress bar - and has it
 /// written. \throw Error
-ExitCode run_points(const CommandLine& line, const PointsCommand& command);
+ExitCode run_points(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command);
 
 }  // namespace retrace::app

@@ -16,16 +16,26 @@ namespace retrace::app {
 namespace fs = std::filesystem;
 namespace {
 
+struct ReportOptions {
+  std::string folder;
+  std::string title;  ///< empty: that of the design
+};
+
+std::vector<Argument> arguments(ReportOptions& options) {
+  return {{"DIR", "folder that other commands wrote with --out", &options.folder, files("/")},
+          {"--title TEXT", "of the page [that of the design]", &options.title}};
+}
+
 constexpr const char* kPageName = "report.html";
 
 /// report.html in the folder of results or in the folder of --out; or the file of --out.
-fs::path page_file(const CommandLine& line) {
-  if (line.common.out.empty()) return fs::path(line.report.folder) / kPageName;
-  const fs::path out = line.common.out;
+fs::path page_file(const ReportOptions& options, const CommonOptions& common) {
+  if (common.out.empty()) return fs::path(options.folder) / kPageName;
+  const fs::path out = common.out;
   return out.extension() == ".html" || out.extension() == ".htm" ? out : out / kPageName;
 }
 
-std::vector<std::string> files_read(const report::ResultFolder& folder) {
+std::vector<std::string> results_read(const report::ResultFolder& folder) {
   std::vector<std::string> files;
   for (const auto& document : folder.documents) files.push_back((fs::path(folder.path) / document.name).string());
   for (const auto& picture : folder.pictures) files.push_back((fs::path(folder.path) / picture.name).string());
@@ -75,28 +85,36 @@ std::string report_json(const report::Page& page, const report::ResultFolder& fo
                   {"complete", true}});
 }
 
-}  // namespace
-
-ExitCode run_report_command(const CommandLine& line) {
-  if (!line.common.overrides.empty()) throw InputError({"", 0, "--set"}, "report reads results, not designs");
-  const report::ResultFolder folder = report::read_result_folder(line.report.folder);
-  report::Page page = report::study_page(folder, line.report.title);
+ExitCode run(const ReportOptions& options, const CommonOptions& common) {
+  const report::ResultFolder folder = report::read_result_folder(options.folder);
+  report::Page page = report::study_page(folder, options.title);
   std::vector<std::string> warnings;
   add_scene(page, folder, warnings);
   const std::string html = report::page_html(page, report::shipped_page_assets());
-  const fs::path file = page_file(line);
-  CommonOptions outputs = line.common;
-  outputs.out.clear();
-  prepare_outputs(outputs, {files_read(folder), "", {}});
-  if (!outputs.json.empty() && fs::absolute(outputs.json).lexically_normal() == fs::absolute(file).lexically_normal())
-    throw InputError({"", 0, "--json"}, outputs.json + " is the page itself; give another name");
-  if (!line.common.out.empty() && file != fs::path(line.common.out)) make_output_folder(line.common.out);
-  write_file_atomically(file, html);
-  write_outputs(outputs, report_json(page, folder, file, html.size(), warnings), {},
-                fmt::format("{}: {} documents, {} sections, {} KiB\nwrote {}\n", page.title, folder.documents.size(),
-                            page.sections.size(), html.size() / 1024, file.string()));
-  print_warnings(line.common, warnings);
+  const fs::path file = page_file(options, common);
+  ResultFiles files(without_folder(common), results_read(folder));
+  files.add_named("report", file, [&] { return html; });
+  files.prepare();
+  if (!common.out.empty() && file != fs::path(common.out)) make_output_folder(common.out);
+  files.write(report_json(page, folder, file, html.size(), warnings),
+              fmt::format("{}: {} documents, {} sections, {} KiB\n", page.title, folder.documents.size(),
+                          page.sections.size(), html.size() / 1024));
+  print_warnings(common, warnings);
   return ExitCode::done;
+}
+
+}  // namespace
+
+Command report_command() {
+  return {.name = "report",
+          .summary = "one self-contained HTML page of a folder of results",
+          .manual =
+              "Makes one self-contained HTML page, `report.html` in that folder, of the results that other "
+              "commands wrote there.",
+          .reads = {"documents and drawings of other commands"},
+          .writes = {"retrace.report/1", "HTML"},
+          .refuses_set = "report reads results, not designs",
+          .begin = begins<ReportOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

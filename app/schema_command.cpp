@@ -24,14 +24,28 @@ std::vector<const schema::Format*> formats() {
           &fabrication::process_format()};
 }
 
-ExitCode write_schema(const CommandLine& line, const nlohmann::ordered_json& json, const std::string& text,
+struct SchemaOptions {
+  std::optional<std::string> format;
+};
+
+std::vector<Argument> arguments(SchemaOptions& options) {
+  const auto names = [] {
+    Words words;
+    for (const schema::Format* const format : formats()) words.emplace_back(format->name);
+    return words;
+  };
+  return {{"FORMAT", "name of a format [the list of formats]", &options.format, one_of(names)}};
+}
+
+ExitCode write_schema(const CommonOptions& common, const nlohmann::ordered_json& json, const std::string& text,
                       const std::string& file) {
-  prepare_outputs(line.common, {{}, file, {}});
-  write_outputs(line.common, to_text(json), {{file, to_text(json)}}, text);
+  const ResultFiles files(common, {}, file);
+  files.prepare();
+  files.write(to_text(json), text);
   return ExitCode::done;
 }
 
-ExitCode list_formats(const CommandLine& line) {
+ExitCode list_formats(const CommonOptions& common) {
   std::string text = fmt::format("{:<10} {:<20} {}\n", "name", "schema", "title");
   nlohmann::ordered_json json = {{"schema", "retrace.formats/1"}, {"formats", nlohmann::ordered_json::array()}};
   for (const schema::Format* const format : formats()) {
@@ -41,21 +55,31 @@ ExitCode list_formats(const CommandLine& line) {
   json["version"] = kVersion;
   json["warnings"] = nlohmann::ordered_json::array();
   json["complete"] = true;
-  return write_schema(line, json, text, "formats.json");
+  return write_schema(common, json, text, "formats.json");
+}
+
+ExitCode run(const SchemaOptions& options, const CommonOptions& common) {
+  if (!options.format) return list_formats(common);
+  std::vector<std::string_view> names;
+  for (const schema::Format* const format : formats()) {
+    names.push_back(format->name);
+    if (format->name != *options.format) continue;
+    const nlohmann::ordered_json json = schema::json_schema(*format);
+    return write_schema(common, json, to_text(json), *options.format + ".schema.json");
+  }
+  throw InputError(fmt::format("schema: must be {}, got {}", fmt::join(names, ", "), printable(*options.format)));
 }
 
 }  // namespace
 
-ExitCode run_schema_command(const CommandLine& line) {
-  if (line.what.empty()) return list_formats(line);
-  std::vector<std::string_view> names;
-  for (const schema::Format* const format : formats()) {
-    names.push_back(format->name);
-    if (format->name != line.what) continue;
-    const nlohmann::ordered_json json = schema::json_schema(*format);
-    return write_schema(line, json, to_text(json), line.what + ".schema.json");
-  }
-  throw InputError(fmt::format("schema: must be {}, got {}", fmt::join(names, ", "), printable(line.what)));
+Command schema_command() {
+  return {.name = "schema",
+          .summary = "JSON Schema of a file format, for editors and validators",
+          .manual =
+              "Prints the JSON Schema (draft-07) of a file format, for editors and validators; without FORMAT the "
+              "list of formats that have one.",
+          .writes = {"JSON Schema", "retrace.formats/1"},
+          .begin = begins<SchemaOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

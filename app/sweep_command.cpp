@@ -5,23 +5,42 @@
 #include "studies/sweep/io/sweep_reader.h"
 
 namespace retrace::app {
+namespace {
 
-ExitCode run_sweep_command(const CommandLine& line) {
+struct SweepOptions : StudyOptions {};
+
+std::vector<Argument> arguments(SweepOptions& options) {
+  return study_arguments(options);
+}
+
+ExitCode run(const SweepOptions& options, const CommonOptions& common) {
   PointsCommand command;
   command.doing = "sweeping";
   command.store = "sweep.sqlite";
   command.document = "sweep.json";
-  command.others = {"sweep.csv"};
-  command.read = [&] {
-    return studies::read_sweep(studies::read_study(line.study.study, line.common.overrides, line.common.seed));
+  command.add_files = [](ResultFiles& files, const auto& result) {
+    files.add("sweep.csv", [&] { return studies::sweep_csv(*result); });
   };
-  command.write = [&](studies::SweepResult& result) {
-    const std::string json = studies::sweep_json(result);
-    write_outputs(line.common, json, {{"sweep.json", json}, {"sweep.csv", studies::sweep_csv(result)}},
-                  studies::sweep_table(result));
+  command.read = [&] { return studies::read_sweep(studies::read_study(options.study, common.overrides, common.seed)); };
+  command.write = [](const studies::SweepResult& result, const ResultFiles& files) {
+    files.write(studies::sweep_json(result), studies::sweep_table(result));
     return ExitCode::done;
   };
-  return run_points(line, command);
+  return run_points(options, common, command);
+}
+
+}  // namespace
+
+Command sweep_command() {
+  return {.name = "sweep",
+          .summary = "designs and directions over ranges, as a study file says",
+          .manual =
+              "Computes every point of a study file: keys of a design over lists, ranges and samples. Finished "
+              "points are kept in `sweep.sqlite` in the output folder, so that work can go on after an end. "
+              "Exits with 1 if every point failed.",
+          .reads = {"retrace.study/1", "retrace.design/1"},
+          .writes = {"retrace.sweep/1"},
+          .begin = begins<SweepOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

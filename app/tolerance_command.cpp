@@ -7,34 +7,52 @@
 #include "studies/tolerance/io/tolerance_reader.h"
 
 namespace retrace::app {
+namespace {
 
-ExitCode run_tolerance_command(const CommandLine& line) {
+struct ToleranceOptions : StudyOptions {};
+
+std::vector<Argument> arguments(ToleranceOptions& options) {
+  return study_arguments(options);
+}
+
+ExitCode run(const ToleranceOptions& options, const CommonOptions& common) {
   PointsCommand command;
   command.doing = "making parts";
   command.store = "tolerance.sqlite";
   command.document = "tolerance.json";
-  command.others = {"parts.csv", "tolerance.svg", "tolerance.png"};
   studies::ToleranceRequest request;
+  studies::ToleranceResult found;
+  command.add_files = [&](ResultFiles& files, const auto& result) {
+    files.add("parts.csv", [&] { return studies::sweep_csv(*result); });
+    files.add_drawing("tolerance", [&] { return report::tolerance_plot(result->sweep.study(), request, found); });
+  };
   command.read = [&] {
-    studies::Study study = studies::read_study(line.study.study, line.common.overrides, line.common.seed);
+    studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
     request = studies::read_tolerance(study);
     return studies::tolerance_sweep(std::move(study), request);
   };
-  command.write = [&](studies::SweepResult& result) {
-    const studies::ToleranceResult found = studies::analyse(result.sweep, request, result.points);
+  command.write = [&](studies::SweepResult& result, const ResultFiles& files) {
+    found = studies::analyse(result.sweep, request, result.points);
     result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
-    const std::string json = studies::tolerance_json(result, request, found);
-    const report::LinePlot plot = report::tolerance_plot(result.sweep.study(), request, found);
-    std::vector<OutputFile> files;
-    if (!line.common.out.empty())
-      files = {{"tolerance.json", json},
-               {"parts.csv", studies::sweep_csv(result)},
-               {"tolerance.svg", report::render_svg(plot)},
-               {"tolerance.png", report::render_png(plot)}};
-    write_outputs(line.common, json, files, studies::tolerance_text(result.sweep.study(), request, found));
+    files.write(studies::tolerance_json(result, request, found),
+                studies::tolerance_text(result.sweep.study(), request, found));
     return found.is_enough ? ExitCode::done : ExitCode::answer_is_no;
   };
-  return run_points(line, command);
+  return run_points(options, common, command);
+}
+
+}  // namespace
+
+Command tolerance_command() {
+  return {.name = "tolerance",
+          .summary = "what becomes of a design in manufacture, as a study file says",
+          .manual =
+              "Makes parts with the errors of manufacture that a study gives its parameters: how quantities are "
+              "spread, the yield, and the main contributors. Points are kept in `tolerance.sqlite` in the output "
+              "folder. Exits with 1 if the yield is below what the study asks for or every point failed.",
+          .reads = {"retrace.study/1", "retrace.design/1"},
+          .writes = {"retrace.tolerance/1"},
+          .begin = begins<ToleranceOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -105,7 +105,7 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--camera", "--field-mm=0"}, "--field-mm: must be > 0, got 0"},
       {{"--camera", "--noise=0"}, "--noise: must lie between 0 and 1, got 0"},
       {{"--camera", "--passes=1"}, "--passes: must be 2 to 65536, got 1"},
-      {{"--camera", "--passes=some"}, "--passes: must be a whole number, got some"},
+      {{"--camera", "--passes=some"}, "--passes: must be a whole number from 0 to 4294967295, got some"},
       {{"--camera", "--cylinder-mm=50"}, "--cylinder-mm: needs a design with extent = \"infinite\""},
       {{"--camera", "--set", "light.polarisation=linear"}, "light.polarisation: "},
   };

@@ -168,7 +168,7 @@ TEST(Report, SetIsRefusedAndOutputsAreKeptApart) {
   make_results(folder);
   expect_refused(retrace(folder, {"report", "results", "--set", "a.b=1"}), "--set: report reads results");
   expect_refused(retrace(folder, {"report", "results", "--json", "results/report.html"}),
-                 "--json: results/report.html is the page itself");
+                 "--json: results/report.html is a file that report writes");
   EXPECT_EQ(retrace(folder, {"report", "results", "-o", "results/rre.csv/x.html"}).code, 3);
 }
 

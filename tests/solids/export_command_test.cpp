@@ -77,7 +77,7 @@ TEST(Export, WhatCannotBeIsRefusedAndNothingWritten) {
                  "--block-mm: must be > 0 and <= 1e6, got 0");
   expect_refused(retrace(folder, {"export", example("honeycomb_infinite.toml"), "a.stl"}),
                  example("honeycomb_infinite.toml") + ": array.extent: must be \"finite\" for --what array");
-  expect_refused(retrace(folder, {"export", kPrism, "a.stl", "--json", "a.stl"}), "--json: a.stl is the file that");
+  expect_refused(retrace(folder, {"export", kPrism, "a.stl", "--json", "a.stl"}), "--json: a.stl is a file that");
   expect_refused(retrace(folder, {"export", "none.toml", "a.stl"}), "none.toml: ");
   EXPECT_TRUE(folder.names().empty());
 }

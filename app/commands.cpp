@@ -1,0 +1,100 @@
+#include "app/commands.h"
+
+#include <fmt/format.h>
+
+namespace retrace::app {
+
+std::span<const Command> commands() {
+  static const std::vector<Command> all = {
+      rre_command(),    inspect_command(),   photometry_command(), roughness_command(), metrology_command(),
+      sweep_command(),  job_command(),       fabricate_command(),  optimize_command(),  tolerance_command(),
+      verify_command(), forces_command(),    turn_command(),       plane_command(),     image_command(),
+      export_command(), report_command(),    init_command(),       list_command(),      schema_command(),
+      manual_command(), completion_command()};
+  return all;
+}
+
+Traits one_of(std::function<Words()> words, std::optional<std::string> files) {
+  return {.words = std::move(words), .files = std::move(files)};
+}
+
+Traits one_of(Words words, std::optional<std::string> files) {
+  return one_of([words = std::move(words)] { return words; }, std::move(files));
+}
+
+Traits files(const std::string& ending) {
+  return {.files = ending};
+}
+
+Traits whole(std::uint64_t least, std::uint64_t most) {
+  return {.least = least, .most = most};
+}
+
+Traits not_with(const std::string& option) {
+  return {.excludes = option};
+}
+
+Words option_names(const Argument& argument) {
+  Words names;
+  if (!argument.name.starts_with('-')) return names;
+  const std::string all = argument.name.substr(0, argument.name.find(' '));
+  for (std::size_t at = 0; at <= all.size(); at = all.find(',', at) + 1) {
+    names.push_back(all.substr(at, all.find(',', at) - at));
+    if (all.find(',', at) == std::string::npos) break;
+  }
+  return names;
+}
+
+std::string value_word(const Argument& argument) {
+  if (!argument.name.starts_with('-')) return argument.name;
+  const std::size_t space = argument.name.find(' ');
+  return space == std::string::npos ? "" : argument.name.substr(space + 1);
+}
+
+std::string default_of(const Argument& argument) {
+  const auto text = [](auto target) -> std::string {
+    using Target = decltype(target);
+    if constexpr (std::is_same_v<Target, std::string*>) return *target;
+    if constexpr (std::is_same_v<Target, double*> || std::is_same_v<Target, std::uint32_t*> ||
+                  std::is_same_v<Target, std::uint64_t*>)
+      return fmt::format("{}", *target);
+    return "";
+  };
+  return argument.traits.required ? "" : std::visit(text, argument.target);
+}
+
+bool may_be_repeated(const Argument& argument) {
+  return std::holds_alternative<Words*>(argument.target);
+}
+
+bool may_be_missing(const Argument& argument) {
+  return std::holds_alternative<std::optional<std::string>*>(argument.target);
+}
+
+std::string synopsis(const Command& command) {
+  std::string text = "retrace " + command.name;
+  for (const Argument& argument : command.begin().arguments)
+    if (!argument.name.starts_with('-'))
+      text += fmt::format(fmt::runtime(may_be_missing(argument)    ? " [{}]"
+                                       : may_be_repeated(argument) ? " {}..."
+                                                                   : " {}"),
+                          argument.name);
+  return text + " [options]";
+}
+
+std::vector<Argument> common_arguments(CommonOptions& common) {
+  const Words tables = {"element.", "array.", "body.",  "light.", "detector.",
+                        "surface.", "base.",  "front.", "part.",  "idealisation."};
+  return {{"--json FILE", "write the result as JSON to FILE; - is standard output", &common.json, files(".json")},
+          {"-o,--out DIR", "write the result's files to folder DIR (init, job, export: to file FILE)", &common.out,
+           files("/")},
+          {"--threads N", "threads to use [all cores the process may use]", &common.threads, whole(1, 4096)},
+          {"--seed S", "seed of the random numbers", &common.seed, whole(0, std::numeric_limits<std::uint32_t>::max())},
+          {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4", &common.overrides,
+           one_of(tables)},
+          {"--quiet", "no progress bar, no table, no remarks", &common.quiet},
+          {"--version", "show the version and leave", {}},
+          {"-h,--help", "show this help and leave", {}}};
+}
+
+}  // namespace retrace::app

@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/output.h"
+#include "app/text_result.h"
+#include "core/version.h"
+
+namespace retrace::app {
+namespace {
+
+/// Text as roff has it; what stands in backticks is bold. An empty line begins a paragraph.
+std::string roff(const std::string& text) {
+  std::string all;
+  bool is_bold = false;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    if (text[k] == '`') {
+      is_bold = !is_bold;
+      all += is_bold ? "\\fB" : "\\fR";
+    } else if (text.compare(k, 2, "\n\n") == 0) {
+      all += "\n.PP";
+    } else if ((text[k] == '.' || text[k] == '\'') && (k == 0 || text[k - 1] == '\n')) {
+      all += std::string("\\&") + text[k];
+    } else {
+      all += text[k] == '-' ? "\\-" : text[k] == '\\' ? "\\e" : std::string(1, text[k]);
+    }
+  }
+  return all;
+}
+
+/// An argument with its help, its default and the words it may be.
+std::string item(const Argument& argument) {
+  Words names = option_names(argument);
+  for (std::string& name : names) name = "\\fB" + roff(name) + "\\fR";
+  std::string head = fmt::format("{}", fmt::join(names, ", "));
+  if (!value_word(argument).empty())
+    head += (head.empty() ? "" : " ") + fmt::format("\\fI{}\\fR", roff(value_word(argument)));
+  std::string text = argument.help;
+  if (const std::string value = default_of(argument); !value.empty()) text += "; `" + value + "` by default";
+  const Words words = argument.traits.words ? argument.traits.words() : Words{};
+  if (!words.empty() && !words.front().ends_with('.'))
+    text += fmt::format(". {}: {}", argument.traits.files ? "Known names" : "Words", fmt::join(words, ", "));
+  return fmt::format(".TP\n{}\n{}.\n", head, roff(text));
+}
+
+std::string items(const std::vector<Argument>& arguments) {
+  std::string text;
+  for (const Argument& argument : arguments) text += item(argument);
+  return text;
+}
+
+std::string section(const Command& command) {
+  std::string text = fmt::format(".SS \"{}\"\n{}\n", roff(synopsis(command)), roff(command.manual));
+  if (!command.reads.empty())
+    text += fmt::format(".PP\nReads: {}.\n", roff(fmt::format("{}", fmt::join(command.reads, ", "))));
+  if (!command.writes.empty())
+    text += fmt::format(".PP\nWrites: {}.\n", roff(fmt::format("{}", fmt::join(command.writes, ", "))));
+  return text + items(command.begin().arguments);
+}
+
+constexpr const char* kHead = R"(.TH RETRACE 1 "" "retrace {version}" "User Commands"
+.SH NAME
+retrace \- what a retroreflector array sends back, from its design file
+.SH SYNOPSIS
+.B retrace
+.I COMMAND
+.RI [ argument " ...]"
+.RI [ options ]
+.SH DESCRIPTION
+.B retrace
+traces light through arrays of right triangular prisms and cube corners and
+says how much of it returns to the source; it plans how they are made, and
+verifies what was made.
+A DESIGN is a TOML file, or \- for standard input.
+Lengths are in mm, angles in degrees.
+Without
+.B \-\-out
+and
+.B \-\-json
+a table goes to standard output, and nothing is written.
+.SH OPTIONS OF EVERY COMMAND
+They may stand before or after the command word.
+)";
+
+constexpr const char* kTail = R"(.SH ENVIRONMENT
+.TP
+.B RETRACE_DATA_DIR
+The folder of shipped data, in place of
+.I share/retrace
+beside the program's
+.I bin
+folder.
+.TP
+.B RETRACE_MPI_SILENCE_S
+Seconds of silence after which a rank of a sweep under MPI is given up; 15 without it.
+.SH EXIT STATUS
+.TP
+.B 0
+Done.
+.TP
+.B 1
+The answer to what was asked is no, a verdict is undetermined, or every point of a sweep failed.
+.TP
+.B 2
+Usage, or an input that cannot be opened, read or understood; nothing was written.
+.TP
+.B 3
+An output that cannot be written, memory, or a budget that ran out.
+.TP
+.B 130
+Interrupted; what is written is valid and says "complete": false.
+Work that does not stop within a second is given up.
+.SH EXAMPLES
+A design, what it is, and its curve:
+.PP
+.nf
+    retrace init rtp \-o prism.toml
+    retrace inspect prism.toml
+    retrace rre prism.toml \-\-incidence=\-40:40:auto \-o result
+.fi
+.PP
+The same prism in polycarbonate, as JSON on standard output:
+.PP
+.nf
+    retrace rre prism.toml \-\-set body.material=PC \-\-json \-
+.fi
+.SH SEE ALSO
+The documents installed with retrace:
+.IR commands.md ,
+.I design_file.md
+and
+.IR CONVENTIONS.md .
+)";
+
+std::string manual_page() {
+  CommonOptions common;
+  std::string text =
+      fmt::format(kHead, fmt::arg("version", kVersion)) + items(common_arguments(common)) + ".SH COMMANDS\n";
+  for (const Command& command : commands()) text += section(command);
+  return text + kTail;
+}
+
+nlohmann::ordered_json json_of(const Argument& argument) {
+  nlohmann::ordered_json json = {
+      {"names", option_names(argument)}, {"value", value_word(argument)}, {"help", argument.help}};
+  if (const std::string value = default_of(argument); !value.empty()) json["default"] = value;
+  if (argument.traits.words) json["words"] = argument.traits.words();
+  if (argument.traits.files) json["files"] = *argument.traits.files;
+  return json;
+}
+
+nlohmann::ordered_json json_of(const std::vector<Argument>& arguments) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Argument& argument : arguments) all.push_back(json_of(argument));
+  return all;
+}
+
+nlohmann::ordered_json json_of_commands() {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Command& command : commands())
+    all.push_back({{"name", command.name},
+                   {"summary", command.summary},
+                   {"synopsis", synopsis(command)},
+                   {"reads", command.reads},
+                   {"writes", command.writes},
+                   {"arguments", json_of(command.begin().arguments)}});
+  return all;
+}
+
+struct ManualOptions {};
+
+std::vector<Argument> arguments(ManualOptions&) {
+  return {};
+}
+
+ExitCode run(const ManualOptions&, const CommonOptions& common) {
+  CommonOptions every;
+  return write_text(common,
+                    {{"schema", "retrace.manual/1"},
+                     {"arguments", json_of(common_arguments(every))},
+                     {"commands", json_of_commands()}},
+                    manual_page());
+}
+
+}  // namespace
+
+Command manual_command() {
+  return {.name = "manual",
+          .summary = "the manual page, and all commands and options as data",
+          .manual =
+              "Prints this page, for `man -l`. `--json` has every command with its arguments, the words they may "
+              "be, and the formats it reads and writes.",
+          .writes = {"retrace.manual/1"},
+          .refuses_set = "manual reads no design",
+          .begin = begins<ManualOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app
