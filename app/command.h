@@ -25,6 +25,7 @@ struct CommonOptions {
   bool quiet = false;
 };
 
+/// Words, in the order to list them.
 using Words = std::vector<std::string>;
 
 /// What an argument is beside its name, its help and its place.
@@ -68,6 +69,7 @@ Words option_names(const Argument& argument);
 std::string value_word(const Argument& argument);
 /// The value that is there before the command line is read, as text; empty: none that is to be shown.
 std::string default_of(const Argument& argument);
+/// Whether it may be given more than once.
 bool may_be_repeated(const Argument& argument);
 /// Of what has a place: whether it can be left out.
 bool may_be_missing(const Argument& argument);

@@ -235,10 +235,12 @@ std::string fish_argument(const std::string& condition, const Argument& argument
   for (const std::string& name : option_names(argument))
     line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
   const auto& ending = argument.traits.files;
-  const Words words = known_words(argument);
-  std::string values = fmt::format("{}", fmt::join(words, " "));
-  if (ending && *ending == "/") values += " (__fish_complete_directories)";
-  if (ending && !ending->empty() && *ending != "/") values += fmt::format(" (__fish_complete_suffix {})", *ending);
+  Words words = known_words(argument);
+  if (ending && *ending == "/")
+    words.emplace_back("(__fish_complete_directories)");
+  else if (ending && !ending->empty())
+    words.push_back(fmt::format("(__fish_complete_suffix {})", *ending));
+  const std::string values = fmt::format("{}", fmt::join(words, " "));
   const bool is_option = !option_names(argument).empty();
   if (ending && ending->empty())
     line += is_option ? " -r -F" : " -F";

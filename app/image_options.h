@@ -53,6 +53,7 @@ struct ImageOptions {
   std::optional<std::string> pixels;
 };
 
+/// Those of all kinds of pictures.
 std::vector<Argument> image_arguments(ImageOptions& options);
 
 }  // namespace retrace::app

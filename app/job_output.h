@@ -20,7 +20,8 @@ struct MakingOptions {
   double shrinkage_percent = 0.0;
 };
 
-/// \param needs the option that they cannot go without; empty: none, and the width of the tool is required
+/// Their declaration. \param needs the option that they cannot go without; empty: none, and the width of the tool is
+/// required
 std::vector<Argument> making_arguments(MakingOptions& options, const std::string& needs);
 
 /// What the options say of how a job is made.

@@ -6,11 +6,27 @@ file(CREATE_LINK "${PROJECT_SOURCE_DIR}/data" "${PROJECT_BINARY_DIR}/share/retra
 install(TARGETS retrace RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 # Not CMAKE_INSTALL_DATADIR, which may be moved: the program looks for this folder relative to itself.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/" DESTINATION share/retrace)
-install(FILES "${PROJECT_SOURCE_DIR}/docs/man/retrace.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
-install(FILES "${PROJECT_SOURCE_DIR}/tools/completion/retrace.bash" DESTINATION share/bash-completion/completions
-        RENAME retrace)
+
+# The manual page and completion for shells are what the program prints of itself.
+set(printed "${PROJECT_BINARY_DIR}/printed")
+file(MAKE_DIRECTORY "${printed}")
+file(GLOB named CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/data/machines/*" "${PROJECT_SOURCE_DIR}/data/processes/*")
+add_custom_command(
+  OUTPUT "${printed}/retrace.1" "${printed}/retrace" "${printed}/_retrace" "${printed}/retrace.fish"
+  COMMAND retrace manual --quiet --out "${printed}/retrace.1"
+  COMMAND retrace completion bash --quiet --out "${printed}/retrace"
+  COMMAND retrace completion zsh --quiet --out "${printed}/_retrace"
+  COMMAND retrace completion fish --quiet --out "${printed}/retrace.fish"
+  DEPENDS retrace ${named} "${PROJECT_SOURCE_DIR}/data/photometry_limits.csv"
+  COMMENT "Printing the manual page and completion" VERBATIM)
+add_custom_target(retrace_printed ALL DEPENDS "${printed}/retrace.1")
+install(FILES "${printed}/retrace.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+install(FILES "${printed}/retrace" DESTINATION share/bash-completion/completions)
+install(FILES "${printed}/_retrace" DESTINATION share/zsh/site-functions)
+install(FILES "${printed}/retrace.fish" DESTINATION share/fish/vendor_completions.d)
+
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CHANGELOG.md"
               "${PROJECT_SOURCE_DIR}/CONVENTIONS.md" "${PROJECT_SOURCE_DIR}/THIRD-PARTY-NOTICES.md"
         DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DOCDIR}" PATTERN man EXCLUDE)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -14,6 +14,7 @@ retrace_test(command_tests
     app/plane_test.cpp
     app/program.cpp
     app/readme_test.cpp
+    app/registry_test.cpp
     app/returned_light_test.cpp
     app/roughness_test.cpp
     app/rre_test.cpp
