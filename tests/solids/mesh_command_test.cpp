@@ -124,7 +124,7 @@ TEST(MeshPart, WrongFilesAndKeysAreRefused) {
   refused("[part]\nmesh = \"none.stl\"\n[body]\n", "d.toml:2: part.mesh: none.stl: cannot be read");
   folder.write("text.stl", "hello");
   refused("[part]\nmesh = \"text.stl\"\n[body]\n", "d.toml:2: part.mesh: text.stl:1: not an STL file");
-  refused("[part]\n[body]\n", "d.toml:1: part.mesh: missing, must name an STL file");
+  refused("[part]\n[body]\n", "d.toml: element.kind: missing, must be");
   refused("[part]\nmesh = 3\n", "d.toml:2: part.mesh: ");
   refused("[part]\nmesh = \"part.stl\"\nallow_open = 1\n", "d.toml:3: part.allow_open: must be true or false, got 1");
   refused("[part]\nmesh = \"part.stl\"\nscale = 1\n", "d.toml:3: part.scale: unknown key");

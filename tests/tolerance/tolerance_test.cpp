@@ -277,7 +277,8 @@ TEST(Tolerance, WhatIsWrongIsSaidWithItsLine) {
             "study.toml:21: tolerance.confidence_percent: must be >= 50 and <= 99.99, got 100");
   EXPECT_EQ(keys("[tolerance]\nleast_yield_percent = 90\n"),
             "study.toml:21: tolerance.least_yield_percent: needs one or more tables [[constraint]]");
-  EXPECT_EQ(keys("[tolerance]\nsample = 3\n"), "study.toml:21: tolerance.sample: has no meaning in this design");
+  EXPECT_EQ(keys("[tolerance]\nsample = 3\n"),
+            "study.toml:21: tolerance.sample: unknown key, did you mean \"samples\"?");
   EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"none\"\n"), "");
   EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"sobol\"\n"), "");
   EXPECT_EQ(
