@@ -44,9 +44,9 @@ struct Drawings {
 /// entrance faces alone; none of balls; of elements on a base the view alone, as their lengths lie in
 /// no plane.
 Drawings drawings_of(const studies::Design& design, studies::Inspection& inspection) {
-  if (design.balls) return {};  // no part of planes to draw
+  if (design.balls()) return {};  // no part of planes to draw
   if (inspection.front) return {.front = profile_svg(design, *inspection.front)};
-  if (design.part.base) return {.view = report::view_png(studies::view_of(design))};
+  if (design.elements() && design.part().base) return {.view = report::view_png(studies::view_of(design))};
   const studies::DesignDrawing drawing = studies::draw_design(design, studies::part_of_design(design, nullptr));
   std::vector<std::string>& warnings = inspection.warnings;
   warnings.insert(warnings.end(), drawing.warnings.begin(), drawing.warnings.end());

@@ -57,7 +57,7 @@ std::string body_of(const VerificationRun& run, std::vector<std::string>& warnin
   std::error_code error;
   if (!run.job.design.empty() && fs::is_regular_file(file, error)) {
     const Design design = read_design(file);
-    std::string body = fmt::format("thickness_mm = {}\n", shortest(design.part.thickness_mm));
+    std::string body = fmt::format("thickness_mm = {}\n", shortest(design.thickness_mm()));
     if (design.refractive_index)
       body += fmt::format("refractive_index = {}\n", shortest(*design.refractive_index));
     else

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/error.h"
@@ -78,16 +79,29 @@ struct FacetPlanesFile {
   std::filesystem::path file;  ///< the same, from the working directory; checked only when it is read, by part_of()
 };
 
-/// A mesh in place of element and array, or a plate.
-struct PartMesh {
-  std::string name;            ///< of the STL file, as given
-  std::filesystem::path file;  ///< the same, from the working directory; read by part_of_design()
-  bool allow_open = false;     ///< trace it although it is not closed: openings are closed by flat pieces
-  /// A plate of these lengths in x and y, whose flat back is its retro facet, in place of a file.
-  std::optional<std::array<double, 2>> plate_mm;
-
-  std::string_view key() const { return plate_mm ? "part.plate_mm" : "part.mesh"; }
+/// Elements side by side, the plate in front of them, and what single elements differ in.
+struct ElementArray {
+  geometry::PartSpec part;
+  std::optional<ArrayMask> mask;
+  std::optional<FacetPlanesFile> facet_planes;  ///< finite parts only; not together with a mask
 };
+
+/// A mesh that is the whole part.
+struct PartMesh {
+  std::string name;                    ///< of the STL file, as given
+  std::filesystem::path file;          ///< the same, from the working directory; read by part_of_design()
+  bool allow_open = false;             ///< trace it although it is not closed: openings are closed by flat pieces
+  std::optional<double> thickness_mm;  ///< as the mesh must have it
+};
+
+/// A plate whose flat back on z = 0 is its retro facet.
+struct Plate {
+  std::array<double, 2> size_mm = {};  ///< in x and y
+  double thickness_mm = 0.0;
+};
+
+/// What a design is the design of.
+using Shape = std::variant<ElementArray, PartMesh, Plate, raytrace::BallLayer>;
 
 /// A face through which light enters, in place of the plane one.
 struct FrontFile {
@@ -101,14 +115,10 @@ struct FrontFile {
 
 /// Everything a design file says, checked and with its defaults filled in.
 struct Design {
-  std::string source;              ///< file name as given, "-" for standard input
-  std::string title;               ///< empty if none was given
-  geometry::PartSpec part;         ///< means little where there is a mesh: thickness_mm is then 0 or what was given
-  std::optional<PartMesh> mesh;    ///< in place of element and array
-  std::optional<FrontFile> front;  ///< none: the plane z = thickness_mm
-  std::optional<raytrace::BallLayer> balls;  ///< kind = "ball": `part` then means nothing
-  std::optional<ArrayMask> mask;
-  std::optional<FacetPlanesFile> facet_planes;  ///< finite parts only
+  std::string source;  ///< file name as given, "-" for standard input
+  std::string title;   ///< empty if none was given
+  Shape shape;
+  std::optional<FrontFile> front;  ///< none: the plane z = thickness_mm; balls and endless arrays have none
   std::string material = "PMMA";
   std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
   std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
@@ -136,9 +146,24 @@ struct Design {
   /// The key is now what `place` says, for messages.
   void set_where(const std::string& key, InputLocation place);
 
+  // The shape, if it is of that kind; otherwise null.
+  const ElementArray* elements() const { return std::get_if<ElementArray>(&shape); }
+  const raytrace::BallLayer* balls() const { return std::get_if<raytrace::BallLayer>(&shape); }
+  const PartMesh* mesh() const { return std::get_if<PartMesh>(&shape); }
+  /// What single elements differ in; null without it.
+  const ArrayMask* mask() const;
+  const FacetPlanesFile* facet_planes() const;
+  /// \pre elements()
+  const geometry::PartSpec& part() const { return std::get<ElementArray>(shape).part; }
+  geometry::PartSpec& part() { return std::get<ElementArray>(shape).part; }
+  /// Whether it goes on for ever. Balls are asked by their pitch.
+  bool is_endless() const { return elements() != nullptr && part().extent == geometry::Extent::infinite; }
+  /// Of its plate, as the design gives it; 0 if it does not.
+  double thickness_mm() const;
+
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }
-  /// \throw InputError if the shape is a mesh. \param what does not take it, such as "retrace job"
+  /// \throw InputError if the shape is no array of elements. \param what does not take it, such as "retrace job"
   void require_elements(const std::string& what) const;
   /// \throw InputError if the elements are balls, which have no planes that could be traced, cut or written
   void require_no_balls() const;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_format.h"
+#include "core/overloaded.h"
 #include "geometry/formula.h"
 
 namespace retrace::studies {
@@ -32,6 +33,10 @@ const char* name_of(Arrangement arrangement) {
   return "";
 }
 
+const char* arrangement_name(const PartSpec& part) {
+  return part.is_pin_bundle ? "pins" : name_of(part.arrangement);
+}
+
 struct ElementJson {
   Json operator()(const RtpElement& e) const {
     return {{"kind", "rtp"}, {"base_mm", e.base_mm}, {"width_mm", e.width_mm}, {"apex_angle_deg", e.apex_angle_deg}};
@@ -46,9 +51,9 @@ struct ElementJson {
   }
 };
 
-Json array_json(const Design& design) {
-  const PartSpec& part = design.part;
-  Json array = {{"arrangement", part.is_pin_bundle ? "pins" : name_of(part.arrangement)}};
+Json array_json(const ElementArray& elements) {
+  const PartSpec& part = elements.part;
+  Json array = {{"arrangement", arrangement_name(part)}};
   if (part.arrangement == Arrangement::single) return array;
   array["extent"] = part.extent == Extent::infinite ? "infinite" : "finite";
   if (part.extent == Extent::finite) {
@@ -66,7 +71,7 @@ Json array_json(const Design& design) {
     array["overlap_percent"] = part.overlap_percent;
     array["shifted_rows"] = part.shifted_rows == RowParity::even ? "even" : "odd";
   }
-  if (design.mask) array.update({{"mask", design.mask->name}, {"mask_threshold", design.mask->threshold}});
+  if (elements.mask) array.update({{"mask", elements.mask->name}, {"mask_threshold", elements.mask->threshold}});
   return array;
 }
 
@@ -149,7 +154,7 @@ Json texture_json(const FacetTexture& texture) {
 }
 
 Json surface_json(const Design& design) {
-  const PartSpec& part = design.part;
+  const PartSpec& part = design.part();
   const auto& [dihedral, tilt] = part.angle_errors;
   Json json = {{"dihedral_error_arcmin", dihedral}, {"facet_tilt_arcmin", tilt}};
   if (std::holds_alternative<RtpElement>(part.element))
@@ -217,9 +222,25 @@ struct ElementName {
 
 namespace {
 
-Json part_json(const PartMesh& mesh) {
-  if (mesh.plate_mm) return {{"plate_mm", *mesh.plate_mm}};
-  return {{"mesh", mesh.name}, {"allow_open", mesh.allow_open}};
+/// The tables that say what is designed.
+void add_shape(Json& json, const Design& design) {
+  std::visit(Overloaded{[&](const ElementArray& array) {
+                          json["element"] = std::visit(ElementJson{}, array.part.element);
+                          json["array"] = array_json(array);
+                          if (array.part.base) json["base"] = base_json(*array.part.base);
+                          if (array.facet_planes) json["part"] = {{"facets", array.facet_planes->name}};
+                        },
+                        [&](const PartMesh& mesh) {
+                          json["part"] = {{"mesh", mesh.name}, {"allow_open", mesh.allow_open}};
+                        },
+                        [&](const Plate& plate) {
+                          json["part"] = {{"plate_mm", plate.size_mm}};
+                        },
+                        [&](const raytrace::BallLayer& balls) {
+                          json["element"] = ball_json(balls);
+                          json["array"] = ball_array_json(balls);
+                        }},
+             design.shape);
 }
 
 Json front_json(const FrontFile& front) {
@@ -233,7 +254,7 @@ Json front_json(const FrontFile& front) {
 
 nlohmann::ordered_json to_json(const Design& design) {
   Json body = Json::object();
-  if (design.part.thickness_mm > 0.0) body["thickness_mm"] = design.part.thickness_mm;
+  if (design.thickness_mm() > 0.0) body["thickness_mm"] = design.thickness_mm();
   body["material"] = design.material;
   if (design.refractive_index) body["refractive_index"] = *design.refractive_index;
   if (design.absorption_per_mm) body["absorption_per_mm"] = *design.absorption_per_mm;
@@ -243,22 +264,12 @@ nlohmann::ordered_json to_json(const Design& design) {
   if (design.back_index != 1.0) body["back_index"] = design.back_index;
   Json json = {{"source", design.source}};
   if (!design.title.empty()) json["title"] = design.title;
-  if (design.mesh) {
-    json["part"] = part_json(*design.mesh);
-  } else if (design.balls) {
-    json["element"] = ball_json(*design.balls);
-    json["array"] = ball_array_json(*design.balls);
-  } else {
-    json["element"] = std::visit(ElementJson{}, design.part.element);
-    json["array"] = array_json(design);
-    if (design.part.base) json["base"] = base_json(*design.part.base);
-  }
-  if (design.facet_planes) json["part"] = {{"facets", design.facet_planes->name}};
+  add_shape(json, design);
   if (design.front) json["front"] = front_json(*design.front);
   json["body"] = body;
   json["light"] = light_json(design);
   json["detector"] = {{"acceptance_half_angle_deg", design.acceptance_half_angle_deg}};
-  if (!design.balls) json["surface"] = design.mesh ? texture_json(design.texture) : surface_json(design);
+  if (!design.balls()) json["surface"] = design.elements() ? surface_json(design) : texture_json(design.texture);
   json["idealisation"] = {{"facets", design.idealisation.mirror_facets ? "mirror" : "real"},
                           {"entrance", design.idealisation.lossless_entrance ? "lossless" : "real"}};
   return json;
@@ -283,11 +294,19 @@ nlohmann::ordered_json spectrum_json(const std::vector<SpectralOptics>& light) {
 
 std::string short_name(const Design& design) {
   if (!design.title.empty()) return design.title;
-  if (design.mesh) return design.mesh->name;
-  if (design.balls)
-    return fmt::format("{} {} mm", design.balls->pitch_mm ? "balls" : "ball", shortest(design.balls->diameter_mm));
-  const std::string element = std::visit(ElementName{}, design.part.element);
-  return fmt::format("{}, {}", element, design.part.is_pin_bundle ? "pins" : name_of(design.part.arrangement));
+  return std::visit(
+      Overloaded{[](const ElementArray& array) {
+                   const std::string element = std::visit(ElementName{}, array.part.element);
+                   return fmt::format("{}, {}", element, arrangement_name(array.part));
+                 },
+                 [](const PartMesh& mesh) { return mesh.name; },
+                 [](const Plate& plate) {
+                   return fmt::format("plate {} x {} mm", shortest(plate.size_mm[0]), shortest(plate.size_mm[1]));
+                 },
+                 [](const raytrace::BallLayer& balls) {
+                   return fmt::format("{} {} mm", balls.pitch_mm ? "balls" : "ball", shortest(balls.diameter_mm));
+                 }},
+      design.shape);
 }
 
 }  // namespace retrace::studies

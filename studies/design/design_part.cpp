@@ -8,15 +8,15 @@ namespace retrace::studies {
 
 geometry::Part part_of(const Design& design) {
   design.require_no_balls();
-  if (design.mask && design.facet_planes)
+  if (design.mask() && design.facet_planes())
     throw InputError(design.where("array.mask"), "not allowed together with facets in [part]");
-  if (design.mask) return geometry::build_part(design.part, elements_of_mask(design));
-  if (!design.facet_planes) return geometry::build_part(design.part);
-  const std::string file = design.facet_planes->file.string();
+  if (design.mask()) return geometry::build_part(design.part(), elements_of_mask(design));
+  if (!design.facet_planes()) return geometry::build_part(design.part());
+  const std::string file = design.facet_planes()->file.string();
   const geometry::FacetPlanes planes =
-      parse_facet_planes(read_file(design.facet_planes->file, kMostFacetPlanesBytes), file, design.part);
+      parse_facet_planes(read_file(design.facet_planes()->file, kMostFacetPlanesBytes), file, design.part());
   try {
-    return geometry::build_part(design.part, planes);
+    return geometry::build_part(design.part(), planes);
   } catch (const InputError& error) {
     throw InputError({file, 0, ""}, error.what());
   }

@@ -13,6 +13,7 @@
 #include "core/atomic_file.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/overloaded.h"
 #include "core/schema/reader.h"
 #include "geometry/lattice.h"
 #include "studies/design/ball_reader.h"
@@ -40,20 +41,13 @@ std::array<double, 2> pair_of(const Document& document, std::string_view key, st
   return {given[0], given[1]};
 }
 
-/// A mesh or plate in place of element and array; none if there is neither.
-std::optional<PartMesh> read_mesh(const Document& document) {
-  PartMesh mesh;
-  if (document.has("part.plate_mm")) {
-    const auto [x_mm, y_mm] = pair_of(document, "part.plate_mm", " lengths, along x and y");
-    mesh.name = fmt::format("plate {} x {} mm", shortest(x_mm), shortest(y_mm));
-    mesh.plate_mm = {x_mm, y_mm};
-    return mesh;
-  }
-  if (!document.has("part.mesh")) return std::nullopt;
-  mesh.name = document.text("part.mesh");
-  mesh.file = document.file("part.mesh");
-  mesh.allow_open = document.flag("part.allow_open");
-  return mesh;
+Plate read_plate(const Document& document) {
+  return {pair_of(document, "part.plate_mm", " lengths, along x and y"), document.number("body.thickness_mm")};
+}
+
+PartMesh read_mesh(const Document& document) {
+  return {document.text("part.mesh"), document.file("part.mesh"), document.flag("part.allow_open"),
+          document.number_if("body.thickness_mm")};
 }
 
 /// The picture of the array.
@@ -75,11 +69,33 @@ std::optional<FacetPlanesFile> read_facet_planes(const Document& document, const
   return FacetPlanesFile{document.text(key), document.file(key)};
 }
 
-void read_elements(const Document& document, Design& design) {
-  design.part = read_part(document);
-  design.mask = read_mask(document, design.part);
-  design.facet_planes = read_facet_planes(document, design.part);
-  check_base(document, design.part);
+/// The plate covers all rims.
+double read_thickness(const Document& document, const PartSpec& part) {
+  constexpr std::string_view key = "body.thickness_mm";
+  const double given_mm = document.number(key);
+  const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
+  const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;
+  if (given_mm < least_mm)
+    document.fail(key, fmt::format("must be >= {} to cover rims that errors of angle or cant lift to {}, got {}",
+                                   shortest(least_mm), shortest(top_mm), shortest(given_mm)));
+  return given_mm;
+}
+
+ElementArray read_elements(const Document& document) {
+  ElementArray array;
+  array.part = read_part(document);
+  array.mask = read_mask(document, array.part);
+  array.facet_planes = read_facet_planes(document, array.part);
+  check_base(document, array.part);
+  array.part.thickness_mm = read_thickness(document, array.part);
+  return array;
+}
+
+Shape read_shape(const Document& document) {
+  if (document.has("part.plate_mm")) return read_plate(document);
+  if (document.has("part.mesh")) return read_mesh(document);
+  if (document.text("element.kind") == "ball") return read_balls(document);
+  return read_elements(document);
 }
 
 /// A number, or pairs over the wavelength.
@@ -99,19 +115,7 @@ void read_absorption(const Document& document, Design& design) {
   if (curve.size() < 2) document.fail(key, "must be a number or a list of two or more pairs, got a list of one");
 }
 
-void read_thickness(const Document& document, Design& design) {
-  constexpr std::string_view key = "body.thickness_mm";
-  design.part.thickness_mm = document.number_if(key).value_or(0.0);
-  if (design.mesh || design.balls) return;
-  const double top_mm = geometry::element_top_mm(design.part.element, design.part.angle_errors);
-  const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;
-  if (design.part.thickness_mm < least_mm)
-    document.fail(key, fmt::format("must be >= {} to cover rims that errors of angle or cant lift to {}, got {}",
-                                   shortest(least_mm), shortest(top_mm), shortest(design.part.thickness_mm)));
-}
-
 void read_body(const Document& document, Design& design) {
-  read_thickness(document, design);
   design.material = document.text("body.material");
   if (design.material.empty()) document.fail("body.material", "must name a material, such as \"PMMA\", got \"\"");
   design.refractive_index = document.number_if("body.refractive_index");
@@ -122,7 +126,7 @@ void read_body(const Document& document, Design& design) {
 
 /// A bowl behind balls is nothing but its mirror.
 void check_ball_mirror(const Document& document, const Design& design) {
-  if (!design.balls || design.balls->mirror_offset_mm == 0.0) return;
+  if (!design.balls() || design.balls()->mirror_offset_mm == 0.0) return;
   if (design.aluminised_facets || design.idealisation.mirror_facets) return;
   document.fail("element.mirror_offset_mm",
                 "needs a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = \"mirror\"");
@@ -175,8 +179,7 @@ std::optional<FrontFile> read_front(const Document& document, const Design& desi
   front.name = document.text(key);
   front.mesh_bottom = is_mesh && document.text("front.mesh_side") == "bottom";
   if (document.has("front.centre_mm")) front.centre_mm = pair_of(document, "front.centre_mm", ", x and y");
-  if (!design.mesh && design.part.extent == Extent::infinite)
-    document.fail(key, "not allowed for extent = \"infinite\": give lengths");
+  if (design.is_endless()) document.fail(key, "not allowed for extent = \"infinite\": give lengths");
   return front;
 }
 
@@ -186,14 +189,8 @@ Design resolved(std::shared_ptr<const Document> given) {
   Design design;
   design.source = document.source();
   design.title = document.text_if("title");
-  design.mesh = read_mesh(document);
-  if (design.mesh)
-    design.texture = read_texture(document);
-  else if (document.text("element.kind") == "ball")
-    design.balls = read_balls(document);
-  else
-    read_elements(document, design);
-  if (!design.balls) design.texture = read_texture(document);
+  design.shape = read_shape(document);
+  if (!design.balls()) design.texture = read_texture(document);
   read_body(document, design);
   read_light_and_detector(document, design);
   design.idealisation = {document.text("idealisation.facets") == "mirror",
@@ -230,15 +227,31 @@ std::string_view Design::front_key() const {
   return front && front->is_mesh ? "front.mesh" : "front.turned";
 }
 
+const ArrayMask* Design::mask() const {
+  return elements() != nullptr && elements()->mask ? &*elements()->mask : nullptr;
+}
+
+const FacetPlanesFile* Design::facet_planes() const {
+  return elements() != nullptr && elements()->facet_planes ? &*elements()->facet_planes : nullptr;
+}
+
+double Design::thickness_mm() const {
+  return std::visit(
+      Overloaded{[](const ElementArray& array) { return array.part.thickness_mm; },
+                 [](const PartMesh& mesh) { return mesh.thickness_mm.value_or(0.0); },
+                 [](const Plate& plate) { return plate.thickness_mm; }, [](const raytrace::BallLayer&) { return 0.0; }},
+      shape);
+}
+
 void Design::require_no_balls() const {
-  if (balls) throw InputError(where("element.kind"), "balls are taken by retrace rre, photometry and inspect alone");
+  if (balls()) throw InputError(where("element.kind"), "balls are taken by retrace rre, photometry and inspect alone");
 }
 
 void Design::require_elements(const std::string& what) const {
   require_no_balls();
-  if (mesh)
-    throw InputError(where(mesh->key()), fmt::format("{} takes no {}, only [element] and [array]", what,
-                                                     mesh->plate_mm ? "plate" : "mesh"));
+  if (elements()) return;
+  throw InputError(where(mesh() ? "part.mesh" : "part.plate_mm"),
+                   fmt::format("{} takes no {}, only [element] and [array]", what, mesh() ? "mesh" : "plate"));
 }
 
 void Design::require_plane_front(const std::string& what) const {
@@ -246,8 +259,8 @@ void Design::require_plane_front(const std::string& what) const {
 }
 
 void Design::require_no_base(const std::string& what) const {
-  if (part.base)
-    throw InputError(where(base_shape_key(*part.base)), what + " takes no [base], only elements on a plane");
+  if (elements() && part().base)
+    throw InputError(where(base_shape_key(*part().base)), what + " takes no [base], only elements on a plane");
 }
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {

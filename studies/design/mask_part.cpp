@@ -43,14 +43,14 @@ geometry::ElementPlanes element_at(const PartSpec& spec, const Vec2& corner, boo
 }  // namespace
 
 geometry::FacetPlanes elements_of_mask(const Design& design) {
-  const PartSpec& spec = design.part;
+  const PartSpec& spec = design.part();
   if (spec.random_tilts.sigma_arcmin > 0.0)
     throw InputError(design.where("array.mask"), "not allowed together with surface.angle_error_sigma_arcmin");
   const auto& element = std::get<RtpElement>(spec.element);
   const fabrication::CellCounts cells{whole_count(spec.x_length_mm, spec.x_offset_mm, spec.x_gap_mm, element.base_mm),
                                       whole_count(spec.y_length_mm, spec.y_offset_mm, spec.y_gap_mm, element.width_mm)};
   const std::vector<std::string> pattern =
-      fabrication::mask_pattern(design.mask->file, design.mask->threshold, cells, design.where("array.mask"));
+      fabrication::mask_pattern(design.mask()->file, design.mask()->threshold, cells, design.where("array.mask"));
   const Vec2 gap(spec.x_gap_mm, spec.y_gap_mm);
   const Vec2 pitch = Vec2(element.base_mm, element.width_mm) + gap;
   const Vec2 filled =

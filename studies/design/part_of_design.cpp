@@ -21,13 +21,13 @@ constexpr double kSameThickness = 1e-4;
 
 void tell(std::vector<std::string>* warnings, const Design& design, const std::string& text) {
   if (warnings != nullptr)
-    warnings->push_back(fmt::format("{}: {}: {}", design.source_name(), design.mesh->file.string(), text));
+    warnings->push_back(fmt::format("{}: {}: {}", design.source_name(), design.mesh()->file.string(), text));
 }
 
 geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh, std::vector<std::string>* warnings) {
   geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
   if (report.is_closed) return mesh;
-  if (!design.mesh->allow_open)
+  if (!design.mesh()->allow_open)
     throw InputError("the mesh is not closed; allow_open = true in [part] traces it as it is");
   geometry::ClosedMesh mended = geometry::with_openings_closed(mesh);
   tell(warnings, design,
@@ -49,14 +49,14 @@ geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh
   const char* const fault = !report.is_manifold      ? "touches itself along edges"
                             : report.self_intersects ? "crosses itself"
                                                      : "does not enclose one volume";
-  if (!design.mesh->allow_open)
+  if (!design.mesh()->allow_open)
     throw InputError(fmt::format("the mesh {}; allow_open = true in [part] traces it as it is", fault));
   tell(warnings, design, fmt::format("the mesh {}; it is traced as it is", fault));
   return mesh;
 }
 
 void check_thickness(const Design& design, const geometry::Part& part) {
-  const double given_mm = design.part.thickness_mm;
+  const double given_mm = design.thickness_mm();
   if (given_mm == 0.0 || std::abs(given_mm - part.thickness_mm) <= kSameThickness * part.thickness_mm) return;
   throw InputError(fmt::format("its plate is {} mm thick, which body.thickness_mm must say or leave out, got {}",
                                fixed(part.thickness_mm, 6), shortest(given_mm)));
@@ -65,32 +65,32 @@ void check_thickness(const Design& design, const geometry::Part& part) {
 }  // namespace
 
 geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::string>* warnings) {
-  if (const auto& plate = design.mesh->plate_mm)
-    return geometry::box_mesh({(*plate)[0], (*plate)[1]}, design.part.thickness_mm);
-  const std::string name = design.mesh->file.string();
+  if (const Plate* const plate = std::get_if<Plate>(&design.shape))
+    return geometry::box_mesh({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
+  const std::string name = design.mesh()->file.string();
   try {
-    geometry::TriangleMesh mesh = geometry::parse_stl(read_file(design.mesh->file, kMostDataBytes), name);
+    geometry::TriangleMesh mesh = geometry::parse_stl(read_file(design.mesh()->file, kMostDataBytes), name);
     try {
       return checked(design, std::move(mesh), warnings);
     } catch (const InputError& error) {
       throw InputError({name, 0, ""}, error.what());
     }
   } catch (const InputError& error) {
-    throw InputError(design.where(design.mesh->key()), error.what());  // which does not know who named the file
+    throw InputError(design.where("part.mesh"), error.what());  // which does not know who named the file
   }
 }
 
 geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings) {
-  if (!design.mesh) return part_of(design);
-  if (const auto& plate = design.mesh->plate_mm)
-    return geometry::build_plate({(*plate)[0], (*plate)[1]}, design.part.thickness_mm);
+  if (const Plate* const plate = std::get_if<Plate>(&design.shape))
+    return geometry::build_plate({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
+  if (!design.mesh()) return part_of(design);
   const geometry::TriangleMesh mesh = mesh_of_design(design, warnings);
   try {
     geometry::Part part = geometry::part_of_mesh(mesh);
     check_thickness(design, part);
     return part;
   } catch (const InputError& error) {
-    throw InputError(design.where(design.mesh->key()), fmt::format("{}: {}", design.mesh->file.string(), error.what()));
+    throw InputError(design.where("part.mesh"), fmt::format("{}: {}", design.mesh()->file.string(), error.what()));
   }
 }
 

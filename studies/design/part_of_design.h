@@ -15,7 +15,7 @@ namespace retrace::studies {
 /// \throw InputError naming file and line
 geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings);
 
-/// The mesh of a design as part_of_design() takes it, outward. \pre design.mesh
+/// The mesh of a design as part_of_design() takes it, outward. \pre it is a mesh or a plate
 geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::string>* warnings);
 
 }  // namespace retrace::studies

@@ -68,7 +68,7 @@ void measure_prisms(ArrayFigures& a, const Design& design, const Part& part) {
   };
   a.element_is_shifted = is_shifted(0.0);
   a.element_mm = a.block_mm.lower + Vec2(a.element_is_shifted ? a.shift_mm : 0.0, 0.0);
-  if (design.mask || design.facet_planes)
+  if (design.mask() || design.facet_planes())
     if (const auto there = first_element_there(part, a.size_mm)) {
       a.element_mm = *there;
       a.element_is_shifted = is_shifted((there->y() - a.block_mm.lower.y()) / a.pitch_mm.y());
@@ -105,7 +105,7 @@ void measure_cubes(ArrayFigures& a, const Part& part) {
 ArrayFigures array_figures(const Design& design, const Part& part) {
   ArrayFigures a;
   a.extent_mm = extent_of(part);
-  if (design.mesh) {
+  if (!design.elements()) {
     a.block_mm = a.extent_mm;
     a.size_mm = a.extent_mm.size();
     a.root_mm = 0.5 * (a.extent_mm.lower + a.extent_mm.upper);

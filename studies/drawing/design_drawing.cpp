@@ -171,7 +171,7 @@ AngleDimension apex_angle(const PartSpec& spec, const Vec2& root) {
 }
 
 void add_section(DesignDrawing& drawing, const Design& design, const Part& part, const ArrayFigures& a) {
-  const bool whole = part.spec.arrangement == Arrangement::single || design.mesh;
+  const bool whole = part.spec.arrangement == Arrangement::single || !design.elements();
   double from = a.extent_mm.lower.x();
   double to = a.extent_mm.upper.x();
   if (!whole) {
@@ -196,13 +196,13 @@ void add_section(DesignDrawing& drawing, const Design& design, const Part& part,
   const double deepest = -part.element_depth_mm;
   panel.dimensions.push_back({Side::right, {right, 0.0}, {right, part.thickness_mm}, "thickness", part.thickness_mm});
   panel.dimensions.push_back(
-      {Side::left, {design.mesh ? left : a.root_mm.x(), deepest}, {left, 0.0}, "depth", part.element_depth_mm});
-  if (const auto* rtp = std::get_if<RtpElement>(&part.spec.element); rtp != nullptr && !design.mesh) {
+      {Side::left, {!design.elements() ? left : a.root_mm.x(), deepest}, {left, 0.0}, "depth", part.element_depth_mm});
+  if (const auto* rtp = std::get_if<RtpElement>(&part.spec.element); rtp != nullptr && design.elements()) {
     const double middle = a.root_mm.x();
     panel.dimensions.push_back(
         {Side::below, {middle - 0.5 * rtp->base_mm, 0.0}, {middle + 0.5 * rtp->base_mm, 0.0}, "base", rtp->base_mm});
   }
-  if (!design.mesh && !design.facet_planes && part.spec.random_tilts.sigma_arcmin == 0.0)
+  if (design.elements() && !design.facet_planes() && part.spec.random_tilts.sigma_arcmin == 0.0)
     panel.angle =
         apex_angle(part.spec, {a.root_mm.x(), -geometry::element_depth_mm(part.spec.element, part.spec.angle_errors)});
   drawing.section = std::move(panel);
@@ -228,7 +228,7 @@ DesignDrawing draw_design(const Design& design, const Part& part) {
   DesignDrawing drawing;
   drawing.title = short_name(design);
   const ArrayFigures a = array_figures(design, part);
-  if (design.mesh) {
+  if (!design.elements()) {
     drawing.remarks.emplace_back("part read from a mesh");
     drawing.plan.push_back(panel_of(part, a.extent_mm, "Seen from the light"));
     PlanPanel& panel = drawing.plan.back();

@@ -80,9 +80,9 @@ void add_patch(DesignView& view, const SurfacePatch& patch, const std::vector<Ed
 /// Fewer elements of the same kind: the first ones of a large or endless array.
 Design piece_of(const Design& design, std::vector<std::string>& remarks) {
   Design piece = design;
-  geometry::PartSpec& spec = piece.part;
-  if (design.mesh || design.mask || design.facet_planes || spec.arrangement == geometry::Arrangement::single)
-    return piece;
+  if (!design.elements() || design.mask() || design.facet_planes()) return piece;
+  geometry::PartSpec& spec = piece.part();
+  if (spec.arrangement == geometry::Arrangement::single) return piece;
   const Vec2 size = geometry::bounding_box(geometry::aperture_outline(spec.element)).size();
   const Vec2 pitch = size + Vec2(spec.x_gap_mm, spec.y_gap_mm);
   const bool infinite = spec.extent == geometry::Extent::infinite;
@@ -134,7 +134,7 @@ DesignView view_of(const Part& part) {
 DesignView view_of(const Design& design) {
   std::vector<std::string> remarks;
   DesignView view;
-  if (design.mesh) {
+  if (!design.elements()) {
     view = view_of_mesh(design);
   } else {
     const Design piece = piece_of(design, remarks);

@@ -56,15 +56,15 @@ geometry::Element upright(const Cube& cube, const Design& design) {
 geometry::Element element_of(const Design& design, const JobRequest& request) {
   design.require_elements("retrace job");
   design.require_plane_front("retrace job");
-  if (design.part.extent == geometry::Extent::infinite)
+  if (design.part().extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
-  if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part.element)) {
+  if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part().element)) {
     if (is_dmc(request))
       throw InputError({"", 0, "--strategy"},
                        "dmc cuts cube corners: must be unidirectional, bidirectional or two-step "
                        "for element.kind = \"rtp\", got dmc");
     geometry::RtpElement prism = *rtp;
-    prism.apex_angle_deg += design.part.angle_errors.dihedral_error_arcmin[0] / 60.0;
+    prism.apex_angle_deg += design.part().angle_errors.dihedral_error_arcmin[0] / 60.0;
     return prism;
   }
   if (!is_dmc(request))
@@ -72,14 +72,14 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
         {"", 0, "--strategy"},
         fmt::format("a chisel with a straight edge reaches {} % of the facets of this cube corner, and not "
                     "its apex: must be dmc, or --reachable FILE for the part that it can make, got {}",
-                    fixed(100.0 * reachable_share(design.part.element, request.tool_width_mm), 2), request.strategy));
-  if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&design.part.element))
+                    fixed(100.0 * reachable_share(design.part().element, request.tool_width_mm), 2), request.strategy));
+  if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&design.part().element))
     return upright(*hexagonal, design);
-  return upright(std::get<geometry::TriangularCube>(design.part.element), design);
+  return upright(std::get<geometry::TriangularCube>(design.part().element), design);
 }
 
 fabrication::Array array_of(const Design& design) {
-  const PartSpec& part = design.part;
+  const PartSpec& part = design.part();
   fabrication::Array array;
   array.arrangement = part.arrangement;
   array.shifted_rows = part.shifted_rows;
@@ -117,19 +117,19 @@ std::int64_t partial_elements(const PartSpec& part) {
 
 void add_warnings(const Design& design, MadeJob& made) {
   const std::string name = design.source_name();
-  made.partial_elements = partial_elements(design.part);
+  made.partial_elements = partial_elements(design.part());
   if (made.partial_elements > 0) {
     made.job.notes.push_back(fmt::format("{} partial elements are left out", made.partial_elements));
-    if (design.part.partial_elements == geometry::PartialElements::cut)
+    if (design.part().partial_elements == geometry::PartialElements::cut)
       made.warnings.push_back(
           fmt::format("{}: array.partial_elements is \"cut\", but a job leaves partial elements out: {}", name,
                       made.partial_elements));
   }
-  if (has_errors(design.part))
+  if (has_errors(design.part()))
     made.warnings.push_back(
         fmt::format("{}: {}facet tilts, random errors, edges and scratches of [surface] are not cut", name,
-                    std::holds_alternative<geometry::RtpElement>(design.part.element) ? "" : "dihedral errors, "));
-  if (design.part.arrangement == Arrangement::honeycomb)
+                    std::holds_alternative<geometry::RtpElement>(design.part().element) ? "" : "dihedral errors, "));
+  if (design.part().arrangement == Arrangement::honeycomb)
     made.job.notes.push_back("cavities are triangular: those at the border reach beyond the elements' outlines");
 }
 
@@ -183,8 +183,8 @@ namespace {
 
 /// Pins are ground one by one and bundled; elements that are cut into a base are cut into a mould.
 void check_base(const Design& design, const JobRequest& request) {
-  if (!design.part.base) return;
-  if (design.part.is_pin_bundle)
+  if (!design.part().base) return;
+  if (design.part().is_pin_bundle)
     throw InputError({design.source_name(), 0, "array.arrangement"},
                      "pins are ground one by one and bundled, not cut: must be \"honeycomb\" for a job, got \"pins\"");
   if (request.workpiece != fabrication::kWorkpieceWords[0])
@@ -196,7 +196,7 @@ void check_base(const Design& design, const JobRequest& request) {
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
   check_base(design, request);
-  if (design.facet_planes)
+  if (design.facet_planes())
     throw InputError(design.where("part.facets"), "planes of single facets are traced, not cut, in this version");
   MadeJob made;
   Job& job = made.job;
@@ -205,7 +205,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.strategy = strategy_of(request.strategy);
   job.element = element_of(design, request);
   job.array = array_of(design);
-  job.base = design.part.base;
+  job.base = design.part().base;
   check_making(request);
   job.workpiece.kind = static_cast<fabrication::WorkpieceKind>(
       word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords));
@@ -213,8 +213,8 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.tool = tool_of(job, request);
   job.machine = machine_of(request);
   job.process = fabrication::load_process(request.process, {"", 0, "--process"});
-  if (design.mask)
-    job.array.pattern = fabrication::mask_pattern(design.mask->file, design.mask->threshold,
+  if (design.mask())
+    job.array.pattern = fabrication::mask_pattern(design.mask()->file, design.mask()->threshold,
                                                   fabrication::cell_counts(job.array, fabrication::prism_of(job)),
                                                   design.where("array.mask"));
   fabrication::check_job(job, {design.source_name(), 0, ""});

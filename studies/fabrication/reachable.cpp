@@ -59,7 +59,7 @@ Vec2 middle_of(const geometry::PartSpec& part) {
 }
 
 std::string design_text(const Design& design, const std::string& facets_file) {
-  const geometry::PartSpec& part = design.part;
+  const geometry::PartSpec& part = design.part();
   const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&part.element);
   const double aperture_mm =
       hexagonal != nullptr ? hexagonal->aperture_mm : std::get<geometry::TriangularCube>(part.element).aperture_mm;
@@ -87,7 +87,7 @@ std::string design_text(const Design& design, const std::string& facets_file) {
 void check_design(const Design& design, const JobRequest& request) {
   design.require_elements("retrace job");
   design.require_plane_front("retrace job");
-  const geometry::PartSpec& part = design.part;
+  const geometry::PartSpec& part = design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element))
     throw InputError({"", 0, "--reachable"}, "is for cube corners: a chisel reaches all of a prism");
   if (request.strategy == "dmc")
@@ -113,7 +113,7 @@ double reachable_share(const geometry::Element& element, double tool_width_mm) {
 ReachablePart reachable_part(const Design& design, const JobRequest& request, const std::string& facets_file) {
   check_design(design, request);
   check_making(request);
-  const geometry::PartSpec& part = design.part;
+  const geometry::PartSpec& part = design.part();
   fabrication::Tool tool;
   tool.width_mm = request.tool_width_mm;
   const InputLocation at{"", 0, "--tool-width-mm"};

@@ -153,7 +153,7 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
   if (!is_unpolarised(design_.polarisation))
     throw InputError({design_.source, 0, "light.polarisation"},
                      "cameras take unpolarised light in this version: leave it out");
-  check_film(request_, design_.part.extent == geometry::Extent::infinite);
+  check_film(request_, design_.is_endless());
   model_ = make_model(design_, materials::MaterialLibrary::shipped());
   scene_ = scene_of(request_, model_.part);
   check_place(model_.part, scene_, scene_.view.eye_mm, request_.eye_mm ? "--eye-mm" : "--observation-deg", "camera");

@@ -42,9 +42,9 @@ geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_
 }
 
 std::string boundary_finding(const Design& design, double element_mm) {
-  bool is_whole = design.facet_planes.has_value() || design.mask.has_value();
+  bool is_whole = design.facet_planes() != nullptr || design.mask() != nullptr;
   const geometry::Part part =
-      is_whole ? part_of(design) : geometry::build_part(part_to_check(design.part, element_mm, is_whole));
+      is_whole ? part_of(design) : geometry::build_part(part_to_check(design.part(), element_mm, is_whole));
   if (part.placements.size() != 1) return "not checked: the elements differ too much in size from their array";
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
   // Errors of angle and cant may leave neighbours at such heights that the part touches itself where more than three
@@ -71,14 +71,14 @@ double mean_index(const std::vector<SpectralOptics>& light) {
 std::string circumstances(const Inspection& result) {
   std::string text;
   if (result.design.back_index > 1.0) text += fmt::format(", {} behind them", shortest(result.design.back_index));
-  const geometry::Cant cant = geometry::cant_of(result.design.part.element);
+  const geometry::Cant cant = geometry::cant_of(result.design.part().element);
   if (cant.deg > 0.0) text += fmt::format(", canted by {} degrees", shortest(cant.deg));
   return text;
 }
 
 /// Where light on the other side of the normal is totally reflected after all; empty if nowhere.
 std::string where_it_begins(const Inspection& result) {
-  const geometry::PartSpec& part = result.design.part;
+  const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element)) return {};
   const double away_deg = std::fmod(*result.tir_limit_azimuth_deg + 180.0, 360.0);
   const auto from_deg =
@@ -93,7 +93,7 @@ std::string of_turned_elements(const geometry::PartSpec& part) {
 
 /// Says where total reflection ends in cube corners that do worse than upright ones in air.
 void tell_early_end(Inspection& result) {
-  const geometry::PartSpec& part = result.design.part;
+  const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element) || circumstances(result).empty()) return;
   result.warnings.push_back(fmt::format(
       "{}: total reflection at the facets ends at {:.2f} degrees of incidence at azimuth {:.1f} (n = {:.4f}{}){}",
@@ -111,13 +111,13 @@ void warn_of_lost_reflection(Inspection& result) {
   double from_nm = 0.0;  // indices fall with the wavelength, but need not
   double to_nm = 0.0;
   for (const SpectralOptics& at : result.light) {
-    if (tir_limit_deg(result.design.part, at.optics.index, at.optics.back_index)) continue;
+    if (tir_limit_deg(result.design.part(), at.optics.index, at.optics.back_index)) continue;
     if (share == 0.0) from_nm = at.wavelength_nm;
     to_nm = at.wavelength_nm;
     share += at.weight;
   }
   const std::string begins = where_it_begins(result);
-  const std::string ends = begins.empty() ? begins : begins + of_turned_elements(result.design.part);
+  const std::string ends = begins.empty() ? begins : begins + of_turned_elements(result.design.part());
   if (result.light.size() == 1)
     result.warnings.push_back(
         fmt::format("{} (n = {:.4f}{}){}", lost, result.refractive_index, circumstances(result), ends));
@@ -149,7 +149,7 @@ void add_warnings(Inspection& result, const geometry::Part& part) {
 }
 
 Inspection inspect_balls(const Design& design, const materials::MaterialLibrary& library) {
-  const raytrace::BallLayer& layer = *design.balls;
+  const raytrace::BallLayer& layer = *design.balls();
   const OpticalModel model = make_light_model(design, library);
   Inspection result;
   result.design = design;
@@ -184,7 +184,7 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
 }  // namespace
 
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library) {
-  if (design.balls) return inspect_balls(design, library);
+  if (design.balls()) return inspect_balls(design, library);
   const OpticalModel model = make_model(design, library, Fronts::any);
   const geometry::Part& part = model.part;
   Inspection result;
@@ -200,21 +200,21 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.light = model.spectral;
   result.wavelength_nm = model.wavelength_nm;
   if (model.front) result.front = report_front(*model.front, part);
-  if (design.mesh) {
+  if (!design.elements()) {
     // make_model() refuses one that is not; what was mended is in the warnings.
     result.boundary = result.warnings.empty() ? "closed, free of self-intersections" : "see warnings";
     return result;
   }
-  const double aperture = geometry::area(geometry::aperture_outline(design.part.element));
+  const double aperture = geometry::area(geometry::aperture_outline(design.part().element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
-  if (design.part.base) {
+  if (design.part().base) {
     add_base(result, part);
   } else if (!design.front) {
-    result.tir_limit_deg = tir_limit_deg(design.part, least_index(model.spectral), model.optics.back_index);
-    if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part);
+    result.tir_limit_deg = tir_limit_deg(design.part(), least_index(model.spectral), model.optics.back_index);
+    if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part());
   }
-  result.dead_zone_share = geometry::edge_share(
-      geometry::finished_cell(geometry::element_cell(design.part.element, design.part.angle_errors), design.part));
+  result.dead_zone_share = geometry::edge_share(geometry::finished_cell(
+      geometry::element_cell(design.part().element, design.part().angle_errors), design.part()));
   result.boundary = boundary_finding(design, part.size_mm);
   add_warnings(result, part);
   return result;

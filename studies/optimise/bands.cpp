@@ -15,7 +15,7 @@ namespace {
 
 /// The value of a key in a design; nothing for keys without one number.
 std::optional<double> nominal_of(const std::string& key, const Design& design) {
-  const geometry::PartSpec& part = design.part;
+  const geometry::PartSpec& part = design.part();
   constexpr double um_per_mm = 1e3;
   if (key == "surface.dihedral_error_arcmin") return part.angle_errors.dihedral_error_arcmin[0];
   if (key == "surface.root_radius_um") return um_per_mm * part.edges.root_radius_mm;

@@ -111,7 +111,7 @@ namespace {
 /// The parameter of RRE that a parameter of a study is, and how much of it one unit is.
 std::optional<std::pair<RreParameter, double>> rre_parameter(const Parameter& parameter, const Design& design) {
   const std::vector<std::string>& keys = parameter.keys;
-  const bool prism = std::holds_alternative<geometry::RtpElement>(design.part.element);
+  const bool prism = std::holds_alternative<geometry::RtpElement>(design.part().element);
   const auto is = [&](std::initializer_list<const char*> names) {
     return std::set<std::string>(keys.begin(), keys.end()) == std::set<std::string>(names.begin(), names.end());
   };

@@ -36,17 +36,17 @@ struct Knob {
 Knob angle_knob(const Design& design) {
   Knob knob;
   knob.key = "surface.dihedral_error_arcmin";
-  const auto& errors = design.part.angle_errors.dihedral_error_arcmin;
-  const bool is_prism = std::holds_alternative<RtpElement>(design.part.element);
+  const auto& errors = design.part().angle_errors.dihedral_error_arcmin;
+  const bool is_prism = std::holds_alternative<RtpElement>(design.part().element);
   knob.from = is_prism ? errors[0] : (errors[0] + errors[1] + errors[2]) / 3.0;
   for (const double step : kAngleSteps)
     if (std::abs(knob.from + step) <= kMostErrorArcmin) knob.tries.push_back(knob.from + step);
   knob.with = [design, is_prism](double value) {
     Design changed = design;
     if (is_prism)
-      changed.part.angle_errors.dihedral_error_arcmin[0] = value;
+      changed.part().angle_errors.dihedral_error_arcmin[0] = value;
     else
-      changed.part.angle_errors.dihedral_error_arcmin.fill(value);
+      changed.part().angle_errors.dihedral_error_arcmin.fill(value);
     return changed;
   };
   return knob;
@@ -54,25 +54,25 @@ Knob angle_knob(const Design& design) {
 
 Knob size_knob(const Design& design) {
   Knob knob;
-  if (const auto* prism = std::get_if<RtpElement>(&design.part.element)) {
+  if (const auto* prism = std::get_if<RtpElement>(&design.part().element)) {
     knob.key = "element.base_mm";
     knob.from = prism->base_mm;
     knob.with = [design](double value) {
       Design changed = design;
-      auto& element = std::get<RtpElement>(changed.part.element);
+      auto& element = std::get<RtpElement>(changed.part().element);
       element.width_mm *= value / element.base_mm;
       element.base_mm = value;
       return changed;
     };
   } else {
     knob.key = "element.aperture_mm";
-    knob.from = std::holds_alternative<HexagonalCube>(design.part.element)
-                    ? std::get<HexagonalCube>(design.part.element).aperture_mm
-                    : std::get<TriangularCube>(design.part.element).aperture_mm;
+    knob.from = std::holds_alternative<HexagonalCube>(design.part().element)
+                    ? std::get<HexagonalCube>(design.part().element).aperture_mm
+                    : std::get<TriangularCube>(design.part().element).aperture_mm;
     knob.with = [design](double value) {
       Design changed = design;
-      if (auto* cube = std::get_if<HexagonalCube>(&changed.part.element)) cube->aperture_mm = value;
-      if (auto* cube = std::get_if<TriangularCube>(&changed.part.element)) cube->aperture_mm = value;
+      if (auto* cube = std::get_if<HexagonalCube>(&changed.part().element)) cube->aperture_mm = value;
+      if (auto* cube = std::get_if<TriangularCube>(&changed.part().element)) cube->aperture_mm = value;
       return changed;
     };
   }

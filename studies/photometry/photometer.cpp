@@ -73,31 +73,32 @@ WeighedLight lamp_light(const materials::CieTable& cie, const PhotometryRequest&
 
 /// Length of the way through a design and back, for the dye.
 double way_through_mm(const Design& design) {
-  if (design.balls) return 2.0 * design.balls->diameter_mm;
+  if (design.balls()) return 2.0 * design.balls()->diameter_mm;
   const geometry::Part part = part_of_design(design, nullptr);
   return 2.0 * (part.thickness_mm + part.element_depth_mm);
 }
 
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library) {
-  return design.balls ? make_light_model(design, library) : make_model(design, library, Fronts::any);
+  return design.balls() ? make_light_model(design, library) : make_model(design, library, Fronts::any);
 }
 
 /// R_A is of an area, which a single ball has none of, and rays are followed in one way alone.
 void check_balls(const Design& design, const PhotometryRequest& request) {
-  if (!design.balls->pitch_mm)
-    throw InputError(design.where("element.kind"), "photometry takes layers of balls: give array.arrangement = \"packed\"");
+  if (!design.balls()->pitch_mm)
+    throw InputError(design.where("element.kind"),
+                     "photometry takes layers of balls: give array.arrangement = \"packed\"");
   if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
     throw InputError({"", 0, "--engine"}, "must be auto or montecarlo for balls");
 }
 
 /// Width of the cells whose edges diffract. 0: not known, as of meshes, and of fronts whose own cells divide the light.
 double cell_width_mm(const Design& design) {
-  if (design.balls) return design.balls->diameter_mm;
-  if (design.mesh || design.front) return 0.0;
-  if (const auto* prism = std::get_if<geometry::RtpElement>(&design.part.element))
+  if (design.balls()) return design.balls()->diameter_mm;
+  if (!design.elements() || design.front) return 0.0;
+  if (const auto* prism = std::get_if<geometry::RtpElement>(&design.part().element))
     return std::min(prism->base_mm, prism->width_mm);
-  if (const auto* cube = std::get_if<geometry::HexagonalCube>(&design.part.element)) return cube->aperture_mm;
-  return std::get<geometry::TriangularCube>(design.part.element).aperture_mm;
+  if (const auto* cube = std::get_if<geometry::HexagonalCube>(&design.part().element)) return cube->aperture_mm;
+  return std::get<geometry::TriangularCube>(design.part().element).aperture_mm;
 }
 
 /// The design in the light of the photometer.
@@ -179,7 +180,7 @@ struct Photometer::Piece {
 Photometer::Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts)
     : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
-  if (design_.balls) check_balls(design_, request);
+  if (design_.balls()) check_balls(design_, request);
   if (design_.front && (request.engine == Engine::exact || request.engine == Engine::cell))
     throw InputError({"", 0, "--engine"}, "must be auto, montecarlo or embree for a [front]");
   if (request.own_light) {
@@ -190,13 +191,13 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
-  is_exact_ = !design_.balls && !design_.front && model_.optics.is_smooth() &&
+  is_exact_ = !design_.balls() && !design_.front && model_.optics.is_smooth() &&
               (request.engine == Engine::exact || request.engine == Engine::automatic);
 }
 
 std::optional<Photometer> Photometer::mean_field() const {
   const bool is_asked = request_.engine == Engine::automatic && request_.diffraction;
-  if (!is_asked || is_exact_ || design_.balls || design_.front || model_.optics.is_smooth()) return std::nullopt;
+  if (!is_asked || is_exact_ || design_.balls() || design_.front || model_.optics.is_smooth()) return std::nullopt;
   Photometer bound = *this;
   bound.is_exact_ = true;
   return bound;
@@ -204,7 +205,7 @@ std::optional<Photometer> Photometer::mean_field() const {
 
 std::string Photometer::why_undiffracted() const {
   if (!request_.diffraction) return "it was not asked for";
-  if (design_.balls) return "balls are traced by rays";
+  if (design_.balls()) return "balls are traced by rays";
   if (design_.front) return "curved fronts are traced by rays";
   if (is_exact_) return "its cells differ too much to diffract the light of each";
   if (!model_.optics.is_smooth()) return "facets that scatter are traced by rays";
@@ -296,9 +297,9 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.polarisation};
   const std::vector<double>& cones = design_.acceptance_half_angle_deg;
   const raytrace::MonteCarloResult traced =
-      tracer != nullptr
-          ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score)
-          : raytrace::BallTracer(*design_.balls).trace(light.optics, illumination, cones, sampling, {}, cancel, &score);
+      tracer != nullptr ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score)
+                        : raytrace::BallTracer(*design_.balls())
+                              .trace(light.optics, illumination, cones, sampling, {}, cancel, &score);
   Piece piece;
   if (!traced.complete) return piece;
   const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
@@ -377,7 +378,7 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vec
     });
   } else {
     std::optional<raytrace::MonteCarlo> tracer;
-    if (!design_.balls)
+    if (!design_.balls())
       tracer.emplace(model_.part, raytrace::MonteCarlo::Engine::embree, model_.front ? &*model_.front : nullptr);
     for (std::size_t k = 0; k < settings.size() * wavelengths; ++k) {
       if (is_cancelled(cancel)) return std::nullopt;

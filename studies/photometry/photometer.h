@@ -44,7 +44,7 @@ class Photometer {
 
   const std::vector<std::string>& warnings() const { return model_.warnings; }
   std::vector<double> wavelengths_nm() const;
-  std::string engine_name() const { return design_.balls ? "balls" : is_exact_ ? "exact" : "embree"; }
+  std::string engine_name() const { return design_.balls() ? "balls" : is_exact_ ? "exact" : "embree"; }
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
   /// Why readings lack diffraction, if they do.
   std::string why_undiffracted() const;

@@ -118,7 +118,7 @@ class ShareQuantity final : public Quantity {
 };
 
 const geometry::RtpElement& prism_of(const Candidate& candidate) {
-  const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part.element);
+  const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part().element);
   if (prism == nullptr) throw InputError("machining time is known for prisms (element.kind = \"rtp\") alone");
   candidate.design().require_no_base("machining time");
   return *prism;
@@ -139,12 +139,12 @@ double facets_of_element_mm2(const geometry::PartSpec& spec) {
 }
 
 std::optional<double> total_reflection_limit_deg(const Candidate& candidate) {
-  if (candidate.design().part.base) return std::nullopt;  // elements stand at angles of their own
+  if (candidate.design().part().base) return std::nullopt;  // elements stand at angles of their own
   const auto library = materials::MaterialLibrary::shipped();
   const OpticalModel model = make_model(candidate.design(), library);
   double least = model.spectral.front().optics.index;
   for (const SpectralOptics& light : model.spectral) least = std::min(least, light.optics.index);
-  return tir_limit_deg(candidate.design().part, least, model.optics.back_index);
+  return tir_limit_deg(candidate.design().part(), least, model.optics.back_index);
 }
 
 /// The machine cuts whole elements alone.
@@ -162,7 +162,7 @@ double tool_fit_mm(const Candidate& candidate) {
 
 std::optional<double> plain_value(PlainQuantity which, const Candidate& candidate) {
   constexpr double um_per_mm = 1e3;
-  const geometry::PartSpec& spec = candidate.design().part;
+  const geometry::PartSpec& spec = candidate.design().part();
   switch (which) {
     case PlainQuantity::elements_full:
       return static_cast<double>(candidate.part().elements_full);
@@ -170,7 +170,7 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
       return static_cast<double>(candidate.part().elements_partial);
     case PlainQuantity::element_depth_mm:
       // A part on a base is deeper than its elements.
-      return candidate.design().part.base
+      return candidate.design().part().base
                  ? geometry::element_depth_mm(candidate.part().spec.element, candidate.part().spec.angle_errors)
                  : candidate.part().element_depth_mm;
     case PlainQuantity::lens_thickness_mm:

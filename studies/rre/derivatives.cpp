@@ -60,15 +60,15 @@ PartSpec changed(PartSpec spec, RreParameter parameter, double value) {
 double value_of(const TracedDirection& at, RreParameter parameter) {
   switch (parameter) {
     case RreParameter::size_mm:
-      return size_of(at.design.part.element);
+      return size_of(at.design.part().element);
     case RreParameter::apex_angle_deg:
-      return std::get<RtpElement>(at.design.part.element).apex_angle_deg;
+      return std::get<RtpElement>(at.design.part().element).apex_angle_deg;
     case RreParameter::dihedral_error_deg:
-      return mean_dihedral_error_deg(at.design.part);
+      return mean_dihedral_error_deg(at.design.part());
     case RreParameter::refractive_index:
       return at.model.optics.index;
     case RreParameter::thickness_mm:
-      return at.design.part.thickness_mm;
+      return at.design.part().thickness_mm;
     case RreParameter::incidence_deg:
       return at.illumination.incidence.deg();
   }
@@ -181,7 +181,7 @@ class TraceByParameter {
     else if (parameter_ == RreParameter::refractive_index)
       optics.index = value;
     else
-      return trace(geometry::build_part(changed(at_.design.part, parameter_, value)));
+      return trace(geometry::build_part(changed(at_.design.part(), parameter_, value)));
     return trace(at_.tracer, optics, illumination);
   }
 
@@ -219,7 +219,7 @@ std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDi
   };
   DifferenceRange range = range_of(at, parameter);
   const double value = value_of(at, parameter);
-  if (parameter == RreParameter::size_mm && !keep_elements(at.design.part, value, range))
+  if (parameter == RreParameter::size_mm && !keep_elements(at.design.part(), value, range))
     return left_out("the number of elements changes here");
   TraceByParameter trace(at, parameter, cancel);
   std::vector<RreDerivative> derivatives;
@@ -264,7 +264,7 @@ std::string_view parameter_name(RreParameter parameter) {
 }
 
 std::vector<RreParameter> parameters_of(const Design& design) {
-  const bool is_prism = std::holds_alternative<RtpElement>(design.part.element);
+  const bool is_prism = std::holds_alternative<RtpElement>(design.part().element);
   return {RreParameter::size_mm, is_prism ? RreParameter::apex_angle_deg : RreParameter::dihedral_error_deg,
           RreParameter::refractive_index, RreParameter::thickness_mm, RreParameter::incidence_deg};
 }

@@ -46,9 +46,9 @@ void check(const RreRequest& request) {
 
 /// A slope asks for the part at neighbouring sizes, which planes of single facets do not say.
 void check_planes(const Design& design, const RreRequest& request) {
-  if (request.derivatives && design.facet_planes)
+  if (request.derivatives && design.facet_planes())
     throw InputError(design.where("part.facets"), "has no derivatives: leave out --derivatives");
-  if (request.derivatives && design.mask)
+  if (request.derivatives && design.mask())
     throw InputError(design.where("array.mask"), "has no derivatives: leave out --derivatives");
 }
 
@@ -112,7 +112,7 @@ void check_front(const Design& design, const RreRequest& request) {
 
 /// Balls have one engine of their own.
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreRequest& request) {
-  if (!design.balls) {
+  if (!design.balls()) {
     check_front(design, request);
     return make_model(design, library, Fronts::any);
   }
@@ -143,7 +143,7 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     prepared_->models.push_back(model_of(design, library, request));
     check_light(design, prepared_->models.back(), request);
     check_planes(design, request);
-    if (design.balls) continue;
+    if (design.balls()) continue;
     if (request.derivatives) design.require_elements("--derivatives");
     if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
       throw InputError(design.where_texture(),

@@ -171,7 +171,7 @@ class DesignTracing {
   DesignTracing(const Design& design, const OpticalModel& model, const RreRequest& request, const Cancellation* cancel)
       : design_(design), model_(model), request_(request), cancel_(cancel), beams_(beam_policy(request)) {
     paths_.cutoff = request.cutoff.value_or(paths_.cutoff);
-    if (design.balls) return;
+    if (design.balls()) return;
     if (may_be_exact(design, model, request)) beam_tracer_.emplace(model.part);
   }
 
@@ -229,10 +229,11 @@ class DesignTracing {
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     const raytrace::Optics& optics = light(wavelength).optics;
     const raytrace::Sampling sampling = sampling_of(request_, light(wavelength).weight, wavelength);
-    if (design_.balls)
-      return keep(direction, wavelength,
-                  raytrace::BallTracer(*design_.balls).trace(optics, illumination, cones(), sampling, paths_, cancel_),
-                  "balls");
+    if (design_.balls())
+      return keep(
+          direction, wavelength,
+          raytrace::BallTracer(*design_.balls()).trace(optics, illumination, cones(), sampling, paths_, cancel_),
+          "balls");
     return keep(direction, wavelength, ray_tracer().trace(optics, illumination, cones(), sampling, paths_, cancel_),
                 name_of(ray_engine()));
   }
@@ -288,7 +289,7 @@ bool may_be_exact(const RreRequest& request) {
 }
 
 bool may_be_exact(const Design& design, const OpticalModel& model, const RreRequest& request) {
-  return may_be_exact(request) && !design.balls && !model.front && model.optics.is_smooth();
+  return may_be_exact(request) && !design.balls() && !model.front && model.optics.is_smooth();
 }
 
 bool must_be_exact(const RreRequest& request) {

@@ -29,14 +29,13 @@ geometry::Rectangle element_box(const geometry::Element& element) {
 /// A few elements of the design, and what was changed.
 Design few_elements(const Design& design, std::vector<std::string>& remarks) {
   Design small = design;
-  small.mask.reset();
-  if (design.mask) remarks.push_back("the mask is not shown");
   small.texture = {};
+  if (design.mask()) remarks.push_back("the mask is not shown");
   if (design.texture.model != FacetTexture::Model::smooth) remarks.push_back("facets are shown smooth");
-  small.facet_planes.reset();
-  if (design.facet_planes) remarks.push_back("facets are shown as designed");
-  if (design.mesh) return small;
-  geometry::PartSpec& spec = small.part;
+  if (design.facet_planes()) remarks.push_back("facets are shown as designed");
+  if (!design.elements()) return small;
+  small.shape = ElementArray{design.part(), {}, {}};
+  geometry::PartSpec& spec = small.part();
   const geometry::Vec2 size = element_box(spec.element).size();
   if (spec.arrangement != geometry::Arrangement::single) {
     const geometry::Vec2 wanted = kSceneElements * (size + geometry::Vec2(spec.x_gap_mm, spec.y_gap_mm));

@@ -30,7 +30,7 @@ double estimated_elements(const geometry::PartSpec& spec) {
 }
 
 geometry::PartSpec spec_of(const Design& design, SolidKind what) {
-  geometry::PartSpec spec = design.part;
+  geometry::PartSpec spec = design.part();
   if (what == SolidKind::element) {
     spec.arrangement = geometry::Arrangement::single;
     spec.extent = geometry::Extent::finite;
@@ -71,13 +71,13 @@ void add_warnings(Solid& solid) {
 
 geometry::Part part_to_write(const Design& design, SolidKind what) {
   const geometry::PartSpec spec = spec_of(design, what);
-  if (what == SolidKind::element && !design.facet_planes) return geometry::build_welded_part(spec);
-  if (!design.facet_planes && !design.mask) return geometry::build_welded_part(spec);
+  if (what == SolidKind::element && !design.facet_planes()) return geometry::build_welded_part(spec);
+  if (!design.facet_planes() && !design.mask()) return geometry::build_welded_part(spec);
   if (what == SolidKind::element)
     throw InputError(design.where("part.facets"), "--what element has no planes of single facets; export the array");
   geometry::Part part = part_of(design);
   if (part.placements.size() != 1)
-    throw InputError(design.where(design.mask ? "array.mask" : "part.facets"),
+    throw InputError(design.where(design.mask() ? "array.mask" : "part.facets"),
                      "arrays of more than some 2000 such elements are not exported");
   return part;
 }
@@ -85,7 +85,7 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
 /// What was read, mended where it had to be.
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
-    throw InputError(solid.design.where(solid.design.mesh->key()),
+    throw InputError(solid.design.where(solid.design.mesh() ? "part.mesh" : "part.plate_mm"),
                      fmt::format("--what {} takes no mesh, only [element] and [array]", name_of(solid.what)));
   solid.mesh = geometry::boundary_of(mesh_of_design(solid.design, &solid.warnings));
   measure(solid);
@@ -115,7 +115,7 @@ Solid make_solid(const Design& design, const SolidRequest& request) {
   Solid solid;
   solid.design = design;
   solid.what = request.what;
-  if (design.mesh) return solid_of_mesh(std::move(solid));
+  if (!design.elements()) return solid_of_mesh(std::move(solid));
   const geometry::Part part = part_to_write(design, request.what);
   solid.elements_full = part.elements_full;
   solid.elements_partial = part.elements_partial;

@@ -209,8 +209,8 @@ TEST(DesignDrawing, MasksAreShown) {
   element.centre_mm = {1.25, 0.75};
   element.planes = {HeightPlane{-0.25, {-1.0, 0.0}}, HeightPlane{-0.25, {1.0, 0.0}}};
   const FacetPlanes planes({element}, 0.5);
-  design.facet_planes = FacetPlanesFile{};
-  const Part part = build_part(design.part, planes);
+  std::get<ElementArray>(design.shape).facet_planes = FacetPlanesFile{};
+  const Part part = build_part(design.part(), planes);
   const DesignDrawing drawing = draw_design(design, part);
   std::size_t facets = 0;
   for (const PlanFace& face : drawing.plan.front().view.faces) facets += face.role == FacetRole::retro_facet ? 1 : 0;

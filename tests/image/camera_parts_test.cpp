@@ -21,7 +21,7 @@ using studies::FacetTexture;
 
 Design rough_cubes(FacetTexture::Model model) {
   Design design;
-  design.part = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
+  design.part() = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
   design.refractive_index = kPmma;
   design.texture.model = model;
   if (model == FacetTexture::Model::harvey_shack) {

@@ -95,8 +95,8 @@ TEST(Camera, MeanLuminanceIsThatOfThePhotometer) {
   for (const Case& c : {Case{0.0, 0.0, 0.0, 0.0, 10.0, 10.0}, Case{2.0, 0.2, 0.0, 0.0, 20.0, 10.0},
                         Case{2.0, 0.2, 10.0, 0.0, 10.0, 20.0}, Case{1.0, 0.1, 0.0, 20.0, 15.0, 15.0}}) {
     studies::Design design;
-    design.part = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
-    design.part.angle_errors.dihedral_error_arcmin.fill(c.error_arcmin);
+    design.part() = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
+    design.part().angle_errors.dihedral_error_arcmin.fill(c.error_arcmin);
     design.refractive_index = kPmma;
     studies::PhotometryRequest request;
     request.programme.points.push_back({c.alpha_deg, c.v_deg, c.h_deg, 1.0, studies::PhotometricUnit::cd_per_lx_per_m2,

@@ -148,8 +148,8 @@ TEST(DetectorMaps, AreTheSameWithAnyNumberOfThreads) {
 /// Table 1 of Hamilton et al. 2017: the dead spots of brick rows along two borders take away what RRE misses.
 TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
   studies::Design design;
-  design.part = finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0);
-  design.part.shifted_rows = RowParity::odd;
+  design.part() = finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0);
+  design.part().shifted_rows = RowParity::odd;
   design.refractive_index = kPmma;
   studies::RreRequest asked;
   asked.engine = studies::Engine::exact;

@@ -46,20 +46,20 @@ std::string refusal(const std::vector<std::string>& overrides, const std::string
 
 TEST(BallDesign, DefaultsAreAPackedLayerWithAMirrorOnTheBalls) {
   const Design design = balls();
-  ASSERT_TRUE(design.balls);
-  EXPECT_EQ(design.balls->diameter_mm, 0.05);
-  EXPECT_EQ(design.balls->pitch_mm, 0.05);
-  EXPECT_EQ(design.balls->mirror_offset_mm, 0.0);
-  EXPECT_EQ(design.balls->mirror_half_angle_deg, 90.0);
+  ASSERT_TRUE(design.balls());
+  EXPECT_EQ(design.balls()->diameter_mm, 0.05);
+  EXPECT_EQ(design.balls()->pitch_mm, 0.05);
+  EXPECT_EQ(design.balls()->mirror_offset_mm, 0.0);
+  EXPECT_EQ(design.balls()->mirror_half_angle_deg, 90.0);
 }
 
 TEST(BallDesign, BowlsReachAsFarAsTheirNeighboursLet) {
   const Design design = balls({"element.mirror_offset_mm=0.025", "array.gap_mm=0.01"});
-  EXPECT_NEAR(*design.balls->pitch_mm, 0.06, 1e-15);
-  EXPECT_NEAR(design.balls->mirror_half_angle_deg, std::asin(0.03 / 0.05) * 180.0 / pi, 1e-12);
+  EXPECT_NEAR(*design.balls()->pitch_mm, 0.06, 1e-15);
+  EXPECT_NEAR(design.balls()->mirror_half_angle_deg, std::asin(0.03 / 0.05) * 180.0 / pi, 1e-12);
   const Design single = balls({"element.mirror_offset_mm=0.025", "array.arrangement=single"});
-  EXPECT_EQ(single.balls->mirror_half_angle_deg, 90.0);
-  EXPECT_FALSE(single.balls->pitch_mm);
+  EXPECT_EQ(single.balls()->mirror_half_angle_deg, 90.0);
+  EXPECT_FALSE(single.balls()->pitch_mm);
 }
 
 TEST(BallDesign, JsonReadsBackAsTheSameDesign) {
@@ -143,7 +143,7 @@ TEST(BallStudies, RreIsThatOfTheTracerAndOfTheClosedForm) {
   EXPECT_EQ(result.engine, "balls");
   ASSERT_EQ(result.points.size(), 1U);
   EXPECT_NEAR(result.points[0].rre,
-              raytrace::packing_share(*design.balls) * raytrace::share_within(pi / 180.0, 1.93, 1.0, 1.0),
+              raytrace::packing_share(*design.balls()) * raytrace::share_within(pi / 180.0, 1.93, 1.0, 1.0),
               5.0 * result.points[0].std_error + 1e-3);
   EXPECT_NEAR(result.points[0].ledger.total(), 1.0, 1e-9);
 }

@@ -38,16 +38,16 @@ std::string complaint(const std::string& text) {
 
 TEST(BaseReader, ReadsEveryKind) {
   const geometry::Base plane =
-      *read(design(kPrisms, "kind = \"plane\"\nincline_deg = 12\nazimuth_deg = -30")).part.base;
+      *read(design(kPrisms, "kind = \"plane\"\nincline_deg = 12\nazimuth_deg = -30")).part().base;
   EXPECT_EQ(std::get<geometry::PlaneBase>(plane.shape).incline_deg, 12.0);
   EXPECT_EQ(std::get<geometry::PlaneBase>(plane.shape).azimuth_deg, -30.0);
   EXPECT_EQ(plane.standing, geometry::Standing::normal);
   const geometry::Base cylinder =
-      *read(design(kPrisms, "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelements = \"parallel\"")).part.base;
+      *read(design(kPrisms, "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelements = \"parallel\"")).part().base;
   EXPECT_EQ(std::get<geometry::CylinderBase>(cylinder.shape).radius_mm, -20.0);
   EXPECT_TRUE(std::get<geometry::CylinderBase>(cylinder.shape).axis_is_x);
   EXPECT_EQ(cylinder.standing, geometry::Standing::parallel);
-  const geometry::Base sphere = *read(design(kPrisms, "kind = \"sphere\"\nradius_mm = 25")).part.base;
+  const geometry::Base sphere = *read(design(kPrisms, "kind = \"sphere\"\nradius_mm = 25")).part().base;
   EXPECT_EQ(std::get<geometry::SphereBase>(sphere.shape).radius_mm, 25.0);
   const Design formula = read(design(kPrisms, "kind = \"formula\"\nsag_mm = \"-x^2 / 50\""));
   EXPECT_EQ(to_json(formula)["base"]["sag_mm"], "-x^2 / 50");
@@ -56,13 +56,13 @@ TEST(BaseReader, ReadsEveryKind) {
 
 TEST(BaseReader, PinsShareOneAxis) {
   const Design pins = read(design(kPins, "kind = \"plane\"\nincline_deg = 10"));
-  EXPECT_TRUE(pins.part.is_pin_bundle);
-  EXPECT_EQ(pins.part.arrangement, geometry::Arrangement::honeycomb);
-  EXPECT_EQ(pins.part.base->standing, geometry::Standing::parallel);
+  EXPECT_TRUE(pins.part().is_pin_bundle);
+  EXPECT_EQ(pins.part().arrangement, geometry::Arrangement::honeycomb);
+  EXPECT_EQ(pins.part().base->standing, geometry::Standing::parallel);
   EXPECT_EQ(to_json(pins)["array"]["arrangement"], "pins");
   EXPECT_EQ(complaint(design(kPins, "kind = \"plane\"\nincline_deg = 10\nelements = \"normal\"")),
             "d.toml:11: base.elements: must be \"parallel\" for arrangement = \"pins\", got \"normal\"");
-  EXPECT_FALSE(read(kPins + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n").part.base);
+  EXPECT_FALSE(read(kPins + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n").part().base);
 }
 
 struct Bad {

@@ -21,7 +21,7 @@ using namespace testing;
 Design design_of(const PartSpec& part, double index = kPmma) {
   Design design;
   design.source = "test.toml";
-  design.part = part;
+  design.part() = part;
   design.refractive_index = index;
   design.absorption_per_mm = 0.0;
   return design;
@@ -198,7 +198,7 @@ TEST(RreDerivatives, EndAtPartsThatCannotBeBuilt) {
 TEST(RreDerivatives, ApexAngleAgainstRoughDifferences) {
   Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.02}, Arrangement::aligned, 1.0));
   const auto rre = [&](double apex) {
-    std::get<RtpElement>(design.part.element).apex_angle_deg = apex;
+    std::get<RtpElement>(design.part().element).apex_angle_deg = apex;
     return point_of(design, exactly(3.0)).rre;
   };
   const double rough = (rre(90.0201) - rre(90.0199)) / 0.0002;
@@ -209,7 +209,7 @@ TEST(RreDerivatives, ApexAngleAgainstRoughDifferences) {
 TEST(RreDerivatives, DihedralErrorAgainstRoughDifferences) {
   Design design = idealised(design_of(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7)));
   const auto rre = [&](double arcmin) {
-    design.part.angle_errors.dihedral_error_arcmin = {1.0 + arcmin, 2.0 + arcmin, 3.0 + arcmin};
+    design.part().angle_errors.dihedral_error_arcmin = {1.0 + arcmin, 2.0 + arcmin, 3.0 + arcmin};
     return point_of(design, exactly(25.0, 10.0)).rre;
   };
   const double rough = (rre(0.003) - rre(-0.003)) / 1e-4;

@@ -27,23 +27,23 @@ using geometry::RtpElement;
 
 TEST(DesignReader, MinimalDesignHasTheDefaults) {
   const Design design = parse_design(joined(kLines), "d.toml", {});
-  const auto& rtp = std::get<RtpElement>(design.part.element);
+  const auto& rtp = std::get<RtpElement>(design.part().element);
   EXPECT_EQ(design.source, "d.toml");
   EXPECT_EQ(design.title, "");
   EXPECT_EQ(rtp.base_mm, 0.5);
   EXPECT_EQ(rtp.width_mm, 0.5);
   EXPECT_EQ(rtp.apex_angle_deg, 90.0);
-  EXPECT_EQ(design.part.arrangement, Arrangement::offset);
-  EXPECT_EQ(design.part.extent, Extent::finite);
-  EXPECT_EQ(design.part.shifted_rows, RowParity::even);
-  EXPECT_EQ(design.part.partial_elements, PartialElements::cut);
-  EXPECT_EQ(design.part.x_length_mm, 10.0);
-  EXPECT_EQ(design.part.y_length_mm, 10.0);
-  EXPECT_EQ(design.part.x_gap_mm, 0.0);
-  EXPECT_EQ(design.part.y_offset_mm, 0.0);
-  EXPECT_EQ(design.part.overlap_percent, 50.0);
-  EXPECT_EQ(design.part.angle_errors, AngleErrors{});
-  EXPECT_EQ(design.part.thickness_mm, 2.0);
+  EXPECT_EQ(design.part().arrangement, Arrangement::offset);
+  EXPECT_EQ(design.part().extent, Extent::finite);
+  EXPECT_EQ(design.part().shifted_rows, RowParity::even);
+  EXPECT_EQ(design.part().partial_elements, PartialElements::cut);
+  EXPECT_EQ(design.part().x_length_mm, 10.0);
+  EXPECT_EQ(design.part().y_length_mm, 10.0);
+  EXPECT_EQ(design.part().x_gap_mm, 0.0);
+  EXPECT_EQ(design.part().y_offset_mm, 0.0);
+  EXPECT_EQ(design.part().overlap_percent, 50.0);
+  EXPECT_EQ(design.part().angle_errors, AngleErrors{});
+  EXPECT_EQ(design.part().thickness_mm, 2.0);
   EXPECT_EQ(design.material, "PMMA");
   EXPECT_FALSE(design.refractive_index);
   EXPECT_FALSE(design.absorption_per_mm);
@@ -99,15 +99,15 @@ entrance = "lossless"
 )",
                                      "d.toml", {});
   EXPECT_EQ(design.title, "all");
-  EXPECT_EQ(std::get<RtpElement>(design.part.element).apex_angle_deg, 91.5);
-  EXPECT_EQ(design.part.shifted_rows, RowParity::odd);
-  EXPECT_EQ(design.part.partial_elements, PartialElements::omit);
-  EXPECT_EQ(design.part.y_length_mm, 30.0);
-  EXPECT_EQ(design.part.x_gap_mm, 0.1);
-  EXPECT_EQ(design.part.y_gap_mm, 0.2);
-  EXPECT_EQ(design.part.x_offset_mm, 1.0);
-  EXPECT_EQ(design.part.y_offset_mm, 2.0);
-  EXPECT_EQ(design.part.overlap_percent, 25.0);
+  EXPECT_EQ(std::get<RtpElement>(design.part().element).apex_angle_deg, 91.5);
+  EXPECT_EQ(design.part().shifted_rows, RowParity::odd);
+  EXPECT_EQ(design.part().partial_elements, PartialElements::omit);
+  EXPECT_EQ(design.part().y_length_mm, 30.0);
+  EXPECT_EQ(design.part().x_gap_mm, 0.1);
+  EXPECT_EQ(design.part().y_gap_mm, 0.2);
+  EXPECT_EQ(design.part().x_offset_mm, 1.0);
+  EXPECT_EQ(design.part().y_offset_mm, 2.0);
+  EXPECT_EQ(design.part().overlap_percent, 25.0);
   EXPECT_EQ(design.material, "PC");
   EXPECT_EQ(design.where("body.material").line, 22);
   EXPECT_EQ(design.where("body.material").key, "body.material");
@@ -115,7 +115,7 @@ entrance = "lossless"
   EXPECT_EQ(design.absorption_per_mm, 0.001);
   EXPECT_EQ(design.wavelength_nm, 633.0);
   EXPECT_NEAR(design.polarisation.q, 0.5, 1e-15);
-  EXPECT_EQ(design.part.angle_errors, (AngleErrors{{-0.5, 0.0, 0.0}, {1.0, 2.5, 0.0}}));
+  EXPECT_EQ(design.part().angle_errors, (AngleErrors{{-0.5, 0.0, 0.0}, {1.0, 2.5, 0.0}}));
   EXPECT_EQ(design.acceptance_half_angle_deg, (std::vector<double>{0.2, 0.5, 1.0}));
   EXPECT_TRUE(design.idealisation.mirror_facets);
   EXPECT_TRUE(design.idealisation.lossless_entrance);
@@ -156,8 +156,8 @@ TEST(DesignReader, ApexAngleIsFrom60To120) {
             "d.toml:5: element.apex_angle_deg: " + range + "59.9");
   EXPECT_EQ(complaint(with_line(4, "width_mm = 0.5\napex_angle_deg = 121")),
             "d.toml:5: element.apex_angle_deg: " + range + "121");
-  EXPECT_EQ(std::get<RtpElement>(set({"element.apex_angle_deg=60"}).part.element).apex_angle_deg, 60.0);
-  EXPECT_EQ(std::get<RtpElement>(set({"element.apex_angle_deg=120"}).part.element).apex_angle_deg, 120.0);
+  EXPECT_EQ(std::get<RtpElement>(set({"element.apex_angle_deg=60"}).part().element).apex_angle_deg, 60.0);
+  EXPECT_EQ(std::get<RtpElement>(set({"element.apex_angle_deg=120"}).part().element).apex_angle_deg, 120.0);
 }
 
 TEST(DesignReader, AcceptanceIsANumberOrAListWithin90Degrees) {
@@ -295,14 +295,14 @@ TEST(DesignReader, MessagesShowControlCharactersEscapedAndStayShort) {
 TEST(DesignReader, OverridesTakePrecedenceAndTheLastOneWins) {
   const Design design = set({"element.base_mm=0.3", "array.arrangement=aligned", "title=\"two words\"",
                              "array.x_length_mm = 12", "element.base_mm=0.4"});
-  EXPECT_EQ(std::get<RtpElement>(design.part.element).base_mm, 0.4);
-  EXPECT_EQ(design.part.arrangement, Arrangement::aligned);
-  EXPECT_EQ(design.part.x_length_mm, 12.0);
+  EXPECT_EQ(std::get<RtpElement>(design.part().element).base_mm, 0.4);
+  EXPECT_EQ(design.part().arrangement, Arrangement::aligned);
+  EXPECT_EQ(design.part().x_length_mm, 12.0);
   EXPECT_EQ(design.title, "two words");
-  EXPECT_EQ(set({"array.arrangement=\"aligned\""}).part.arrangement, Arrangement::aligned);
+  EXPECT_EQ(set({"array.arrangement=\"aligned\""}).part().arrangement, Arrangement::aligned);
   EXPECT_EQ(set({"title=Part #3 \"new\" \\ old"}).title, "Part #3 \"new\" \\ old");
   EXPECT_EQ(set({"detector.acceptance_half_angle_deg=[1,2]"}).acceptance_half_angle_deg, (std::vector<double>{1, 2}));
-  EXPECT_EQ(set({"body={material=\"PC\"}"}).part.thickness_mm, 2.0);
+  EXPECT_EQ(set({"body={material=\"PC\"}"}).part().thickness_mm, 2.0);
   EXPECT_EQ(set({"body.material=PC"}).where("body.material").file, "--set body.material=PC");
 }
 

@@ -57,9 +57,9 @@ TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
       "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 1\ny_length_mm = 1\n"
       "[body]\nthickness_mm = 1\n[part]\nfacets = \"planes.csv\"\n";
   const Design design = parse_design(text, "folder/d.toml");
-  ASSERT_TRUE(design.facet_planes);
-  EXPECT_EQ(design.facet_planes->name, "planes.csv");
-  EXPECT_EQ(design.facet_planes->file, std::filesystem::path("folder/planes.csv"));
+  ASSERT_TRUE(design.facet_planes());
+  EXPECT_EQ(design.facet_planes()->name, "planes.csv");
+  EXPECT_EQ(design.facet_planes()->file, std::filesystem::path("folder/planes.csv"));
   const auto refused = [&](const std::vector<std::string>& sets) {
     try {
       parse_design(text, "d.toml", sets);
@@ -77,7 +77,7 @@ TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
 
 TEST(DesignReader, CantIsReadForCubeCornersAlone) {
   const auto read = [](const std::string& element, const std::vector<std::string>& overrides) {
-    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part;
+    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part();
   };
   const auto refused = [&](const std::string& element, const std::vector<std::string>& overrides) -> std::string {
     try {
@@ -113,7 +113,7 @@ TEST(DesignReader, CantIsReadForCubeCornersAlone) {
 
 TEST(DesignReader, AngleErrorsAreReadForEveryKind) {
   const auto errors = [](const std::string& element, const std::vector<std::string>& overrides) {
-    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part.angle_errors;
+    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part().angle_errors;
   };
   EXPECT_EQ(errors(kRtp, {"surface.dihedral_error_arcmin=2"}), (AngleErrors{{2.0, 0.0, 0.0}, {}}));
   EXPECT_EQ(errors(kRtp, {"surface.facet_tilt_arcmin=[2, -300]"}), (AngleErrors{{}, {2.0, -300.0, 0.0}}));
@@ -130,8 +130,8 @@ TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
   const std::string key = "surface.angle_error_sigma_arcmin";
   const Design design = parse_design(design_of(kHexagonal, "x_length_mm = 10\ny_length_mm = 10"), "d",
                                      std::vector<std::string>{key + "=1.5", "surface.angle_error_seed=7"});
-  EXPECT_EQ(design.part.random_tilts.sigma_arcmin, 1.5);
-  EXPECT_EQ(design.part.random_tilts.seed, 7U);
+  EXPECT_EQ(design.part().random_tilts.sigma_arcmin, 1.5);
+  EXPECT_EQ(design.part().random_tilts.seed, 7U);
   EXPECT_EQ(set_complaint({key + "=-1"}), "--set " + key + "=-1: " + key + ": must be >= 0 and <= 60, got -1");
   EXPECT_EQ(set_complaint({"surface.angle_error_seed=1.5"}),
             "--set surface.angle_error_seed=1.5: surface.angle_error_seed: must be a whole number, got 1.5");
@@ -183,7 +183,7 @@ TEST(DesignReader, TexturesThatSayTooLittleOrTooMuchAreRefused) {
 TEST(DesignReader, EdgesMustFitIntoTheFacets) {
   const Design design = parse_design(design_of(kRtp, "extent = \"infinite\""), "d",
                                      std::vector<std::string>{"surface.root_radius_um=5", "surface.rim_radius_um=2"});
-  EXPECT_EQ(design.part.edges, (geometry::EdgeShape{5e-3, 0.0, 2e-3}));
+  EXPECT_EQ(design.part().edges, (geometry::EdgeShape{5e-3, 0.0, 2e-3}));
   for (const std::string key :
        {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um", "surface.rim_chamfer_um"})
     for (const std::string value : {"-1", "1e6", "nan", "wide"})
@@ -206,11 +206,11 @@ TEST(DesignReader, ScratchesAreThoseOfPrisms) {
   };
   const std::string other = "{ facet = \"+x\", position_um = 40, width_um = 3, depth_um = -0.5 }";
   const Design design = parse_design(with(kRtp, "[{ " + good + " }, " + other + "]"), "d.toml", {});
-  ASSERT_EQ(design.part.scratches.size(), 2U);
-  EXPECT_EQ(design.part.scratches[0].facet, 0U);
-  EXPECT_DOUBLE_EQ(design.part.scratches[0].position_mm, 0.04);
-  EXPECT_EQ(design.part.scratches[1].facet, 1U);
-  EXPECT_DOUBLE_EQ(design.part.scratches[1].depth_mm, -5e-4);
+  ASSERT_EQ(design.part().scratches.size(), 2U);
+  EXPECT_EQ(design.part().scratches[0].facet, 0U);
+  EXPECT_DOUBLE_EQ(design.part().scratches[0].position_mm, 0.04);
+  EXPECT_EQ(design.part().scratches[1].facet, 1U);
+  EXPECT_DOUBLE_EQ(design.part().scratches[1].depth_mm, -5e-4);
   const auto refused = [&](const std::string& from, const std::string& to) {
     std::string entry = good;
     return complaint(with(kRtp, "[{ " + entry.replace(entry.find(from), from.size(), to) + " }]"));
@@ -233,7 +233,7 @@ TEST(DesignReader, ScratchesAreThoseOfPrisms) {
 
 TEST(DesignReader, RimsOfEveryKindAndWhatTheyNeed) {
   const auto rims = [](const std::string& element, const std::string& array, const std::string& lines) {
-    return parse_design(design_of(element, array) + "[surface]\n" + lines, "d.toml", {}).part.edges;
+    return parse_design(design_of(element, array) + "[surface]\n" + lines, "d.toml", {}).part().edges;
   };
   EXPECT_EQ(rims(kHexagonal, "extent = \"infinite\"", "rim_radius_um = 1"), (geometry::EdgeShape{0.0, 0.0, 1e-3}));
   EXPECT_EQ(rims(kTriangular, "extent = \"infinite\"", "rim_chamfer_um = 2\nedge_chords = 8"),

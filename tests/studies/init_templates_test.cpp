@@ -23,11 +23,11 @@ TEST(InitTemplates, EveryKindParsesAndIsCommented) {
     EXPECT_NO_THROW(parse_design(text, "t.toml", {})) << kind;
     EXPECT_EQ(text.substr(0, 2), "# ");
   }
-  EXPECT_TRUE(std::holds_alternative<RtpElement>(parse_design(design_template("rtp"), "t", {}).part.element));
+  EXPECT_TRUE(std::holds_alternative<RtpElement>(parse_design(design_template("rtp"), "t", {}).part().element));
   EXPECT_TRUE(
-      std::holds_alternative<HexagonalCube>(parse_design(design_template("hexagonal_icc"), "t", {}).part.element));
+      std::holds_alternative<HexagonalCube>(parse_design(design_template("hexagonal_icc"), "t", {}).part().element));
   EXPECT_TRUE(
-      std::holds_alternative<TriangularCube>(parse_design(design_template("triangular_icc"), "t", {}).part.element));
+      std::holds_alternative<TriangularCube>(parse_design(design_template("triangular_icc"), "t", {}).part().element));
 }
 
 /// The lines that show a default must be valid when their "#" is taken away.

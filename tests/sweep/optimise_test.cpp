@@ -23,7 +23,7 @@ class Analytic : public Quantity {
   using Function = std::function<double(double x, double y)>;
   Analytic(std::string name, Function f) : Quantity(std::move(name)), f_(std::move(f)) {}
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
-    return Measured{f_(candidate.design().part.thickness_mm, candidate.design().back_index), 0.0};
+    return Measured{f_(candidate.design().part().thickness_mm, candidate.design().back_index), 0.0};
   }
 
  private:
@@ -69,12 +69,12 @@ class WithSlope : public Quantity {
   using Function = std::function<double(double thickness_mm)>;
   WithSlope(Function f, Function slope) : Quantity("f"), f_(std::move(f)), slope_(std::move(slope)) {}
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
-    return Measured{f_(candidate.design().part.thickness_mm), 0.0};
+    return Measured{f_(candidate.design().part().thickness_mm), 0.0};
   }
   std::optional<double> slope(const Candidate& candidate, RreParameter parameter, const Cancellation*) const override {
     EXPECT_EQ(parameter, RreParameter::thickness_mm);
     ++asked;
-    return slope_(candidate.design().part.thickness_mm);
+    return slope_(candidate.design().part().thickness_mm);
   }
   mutable int asked = 0;
 

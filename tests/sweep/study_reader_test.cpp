@@ -85,7 +85,7 @@ TEST(StudyReader, GridAndZip) {
 TEST(StudyReader, AParameterSetsItsKeys) {
   const Sweep sweep = sweep_of(with_parameter("key = [\"element.base_mm\", \"element.width_mm\"]\nvalues = [0.25]\n"));
   const Candidate candidate = make_candidate(sweep.study(), sweep.values(0));
-  const auto& prism = std::get<geometry::RtpElement>(candidate.design().part.element);
+  const auto& prism = std::get<geometry::RtpElement>(candidate.design().part().element);
   EXPECT_EQ(prism.base_mm, 0.25);
   EXPECT_EQ(prism.width_mm, 0.25);
 }
@@ -108,7 +108,7 @@ TEST(StudyReader, AnalysisMachiningAndWordsCanBeVaried) {
   EXPECT_EQ(candidate.analysis().incidence_deg, 7.0);
   EXPECT_EQ(candidate.analysis().engine, Engine::exact);
   EXPECT_EQ(candidate.machining().tool_width_mm, 0.3);
-  EXPECT_EQ(candidate.design().part.thickness_mm, 3.0);
+  EXPECT_EQ(candidate.design().part().thickness_mm, 3.0);
 }
 
 TEST(StudyReader, DesignsCanBeVaried) {
@@ -116,7 +116,7 @@ TEST(StudyReader, DesignsCanBeVaried) {
       "[[parameter]]\nkey = \"design\"\nvalues = [\"rtp_brick_1mm.toml\", \"rtp_brick_2mm.toml\"]\n" + kQuantity);
   ASSERT_EQ(sweep.size(), 2U);
   const Candidate candidate = make_candidate(sweep.study(), sweep.values(1));
-  EXPECT_EQ(std::get<geometry::RtpElement>(candidate.design().part.element).base_mm, 2.0);
+  EXPECT_EQ(std::get<geometry::RtpElement>(candidate.design().part().element).base_mm, 2.0);
 }
 
 TEST(StudyReader, CommentsAreNoChangeButValuesAre) {
@@ -176,8 +176,7 @@ TEST(StudyReader, WhatIsWrongIsSaidWithItsLine) {
        "study.toml:7: quantity.incidence_deg.to: must be > from (20), got 10"},
       {with_quantity("kind = \"rre\"\nincidence_deg = {from = 10, to = 20}\n"),
        "study.toml:7: quantity.incidence_deg.count: missing"},
-      {with_quantity("kind = \"ledger\"\n"),
-       "study.toml:5: quantity.account: missing, must be \"retroreflected\""},
+      {with_quantity("kind = \"ledger\"\n"), "study.toml:5: quantity.account: missing, must be \"retroreflected\""},
       {with_quantity("kind = \"far_field\"\nfrom_deg = 2\nto_deg = 1\n"),
        "study.toml:8: quantity.to_deg: must be > from_deg (2), got 1"},
       {with_quantity("kind = \"rre\"\nname = \"1 2\"\n"), "study.toml:7: quantity.name: must be of letters"},

@@ -28,7 +28,7 @@ class Analytic : public Quantity {
   Analytic(std::string name, Function f) : Quantity(std::move(name)), f_(std::move(f)) {}
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
     const AnalysisSettings& analysis = candidate.analysis();
-    return Measured{f_(analysis.azimuth_deg, analysis.incidence_deg, candidate.design().part.thickness_mm), 0.0};
+    return Measured{f_(analysis.azimuth_deg, analysis.incidence_deg, candidate.design().part().thickness_mm), 0.0};
   }
 
  private:

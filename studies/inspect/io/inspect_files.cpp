@@ -19,7 +19,7 @@ std::string total_reflection(const Inspection& i) {
   if (i.base) return "not stated: elements on a base stand at angles of their own";
   if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
   if (!i.tir_limit_deg) return "none at normal incidence";
-  const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part.element);
+  const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part().element);
   return fmt::format("up to {} degrees {}", fixed(*i.tir_limit_deg, 2),
                      is_rtp ? "across the roof edge" : "at every azimuth");
 }
@@ -119,7 +119,7 @@ std::string inspect_json(const Inspection& i) {
                                  {"entrance_area_mm2", i.entrance_area_mm2},
                                  {"full_element_share", i.full_element_share},
                                  {"refractive_index", i.refractive_index}};
-  if (i.design.mesh) {
+  if (!i.design.elements()) {
     // A mesh tells no elements.
     for (const char* key : {"elements_full", "elements_partial", "full_element_share"}) json.erase(key);
     json["thickness_mm"] = i.thickness_mm;
@@ -127,7 +127,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.design.spectrum) json["spectrum"] = spectrum_json(i.light);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
-  if (!i.design.mesh) json["dead_zone_share"] = i.dead_zone_share;
+  if (i.design.elements()) json["dead_zone_share"] = i.dead_zone_share;
   if (i.base) json["base"] = base_json(*i.base);
   if (i.front) json["front"] = front_json(*i.front);
   json["boundary"] = i.boundary;
@@ -157,7 +157,7 @@ std::string ball_text(const Inspection& i) {
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));
   text += fmt::format("  packing             {} % of the plan\n", fixed(100.0 * balls.packing_share, 3));
   text += fmt::format("  mirror              {} mm behind the balls, to {} degrees from their axes\n",
-                      shortest(i.design.balls->mirror_offset_mm), fixed(balls.mirror_half_angle_deg, 2));
+                      shortest(i.design.balls()->mirror_offset_mm), fixed(balls.mirror_half_angle_deg, 2));
   text += fmt::format("  in focus at         {}\n",
                       balls.focal_offset_mm ? fixed(*balls.focal_offset_mm, 6) + " mm" : "no offset");
   text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
@@ -173,8 +173,8 @@ std::string ball_text(const Inspection& i) {
 
 std::string inspect_text(const Inspection& i) {
   if (i.balls) return ball_text(i);
-  if (i.design.mesh) return mesh_text(i);
-  const bool infinite = i.design.part.extent == geometry::Extent::infinite;
+  if (!i.design.elements()) return mesh_text(i);
+  const bool infinite = i.design.part().extent == geometry::Extent::infinite;
   const char* per_period = infinite ? " per period" : "";
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));
   text += fmt::format("  elements            {} full, {} partial{}\n", i.elements_full, i.elements_partial, per_period);
