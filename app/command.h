@@ -30,7 +30,7 @@ using Words = std::vector<std::string>;
 
 /// What an argument is beside its name, its help and its place.
 struct Traits {
-  std::function<Words()> words = {};            ///< that it may be, for completion; what ends with "." goes on
+  std::function<Words()> words = {};            ///< that it may be, for completion; what ends with "=" goes on
   std::optional<std::string> files = {};        ///< ending of files that it may be; "": any file; "/": folders
   std::uint64_t least = 0;                      ///< of a whole number
   std::uint64_t most = std::uint64_t{1} << 36;  ///< of a whole number

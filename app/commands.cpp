@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/schema/reader.h"
+#include "studies/design/design_format.h"
+
 namespace retrace::app {
 
 std::span<const Command> commands() {
@@ -83,18 +86,21 @@ std::string synopsis(const Command& command) {
 }
 
 std::vector<Argument> common_arguments(CommonOptions& common) {
-  const Words tables = {"element.", "array.", "body.",  "light.", "detector.",
-                        "surface.", "base.",  "front.", "part.",  "idealisation."};
-  return {{"--json FILE", "write the result as JSON to FILE; - is standard output", &common.json, files(".json")},
-          {"-o,--out DIR", "write the result's files to folder DIR (init, job, export: to file FILE)", &common.out,
-           files("/")},
-          {"--threads N", "threads to use [all cores the process may use]", &common.threads, whole(1, 4096)},
-          {"--seed S", "seed of the random numbers", &common.seed, whole(0, std::numeric_limits<std::uint32_t>::max())},
-          {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4", &common.overrides,
-           one_of(tables)},
-          {"--quiet", "no progress bar, no table, no remarks", &common.quiet},
-          {"--version", "show the version and leave", {}},
-          {"-h,--help", "show this help and leave", {}}};
+  const auto keys = [] {
+    Words words = schema::keys_of(studies::design_format());
+    for (std::string& word : words) word += '=';
+    return words;
+  };
+  return {
+      {"--json FILE", "write the result as JSON to FILE; - is standard output", &common.json, files(".json")},
+      {"-o,--out DIR", "write the result's files to folder DIR (init, job, export: to file FILE)", &common.out,
+       files("/")},
+      {"--threads N", "threads to use [all cores the process may use]", &common.threads, whole(1, 4096)},
+      {"--seed S", "seed of the random numbers", &common.seed, whole(0, std::numeric_limits<std::uint32_t>::max())},
+      {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4", &common.overrides, one_of(keys)},
+      {"--quiet", "no progress bar, no table, no remarks", &common.quiet},
+      {"--version", "show the version and leave", {}},
+      {"-h,--help", "show this help and leave", {}}};
 }
 
 }  // namespace retrace::app

@@ -84,7 +84,7 @@ _retrace_options() {{
 _retrace_reply() {{
   local path
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$1")
-  [[ $words != *. ]] || compopt -o nospace 2>/dev/null
+  [[ $words != *= ]] || compopt -o nospace 2>/dev/null
   [[ $files != none ]] || return 0
   compopt -o filenames 2>/dev/null
   while IFS= read -r path; do
@@ -159,7 +159,7 @@ std::string zsh_action(const Argument& argument) {
                                               : fmt::format("_files -g \"*{}\"", *ending);
   const Words words = known_words(argument);
   if (words.empty()) return files.empty() ? " " : files;
-  const bool goes_on = words.front().ends_with('.');
+  const bool goes_on = words.front().ends_with('=');
   return fmt::format("{{compadd {}-- {}{}}}", goes_on ? "-S \"\" " : "", fmt::join(words, " "),
                      files.empty() ? "" : "; " + files);
 }

@@ -326,8 +326,15 @@ void fill(const Document& document, const Table& table, const std::string& path,
 }
 
 void add_keys(const Table& table, const std::string& path, std::vector<std::string>& keys) {
-  for (const Row& row : table.rows) keys.push_back(path_in(path, row.key));
-  for (const Table& inner : table.tables) add_keys(inner, path_in(path, inner.name), keys);
+  for (const Row& row : table.rows)
+    if (std::string key = path_in(path, row.key); keys.empty() || keys.back() != key) keys.push_back(std::move(key));
+  for (const Table& inner : table.tables) {
+    const std::string inner_path = path_in(path, inner.name);
+    if (inner.presence == Presence::list)
+      keys.push_back(inner_path);
+    else
+      add_keys(inner, inner_path, keys);
+  }
 }
 
 /// The root without the key that names the format.
@@ -364,9 +371,14 @@ void read_table(const Table& table, const TomlTable& source, void* object) {
   fill(read_values(table, source, false), table, "", object);
 }
 
-std::string complaint_about_key(const Format& format, std::string_view path) {
+std::vector<std::string> keys_of(const Format& format) {
   std::vector<std::string> keys;
   add_keys(format.root, "", keys);
+  return keys;
+}
+
+std::string complaint_about_key(const Format& format, std::string_view path) {
+  const std::vector<std::string> keys = keys_of(format);
   if (std::ranges::count(keys, path) > 0) return {};
   const std::string_view meant = closest(path, std::vector<std::string_view>(keys.begin(), keys.end()));
   return fmt::format("{} is no key of a {}{}", in_quotes(path), format.name,

@@ -32,6 +32,9 @@ void read_object(const Format& format, std::string_view text, const std::string&
 /// The same of a table of a larger document.
 void read_table(const Table& table, const TomlTable& source, void* object);
 
+/// The paths of all keys that a value can be given for; a list of tables is one.
+std::vector<std::string> keys_of(const Format& format);
+
 /// What is wrong with `path` as the path of a key of the format, such as "element.base_mm", with a "did you mean" where
 /// a known name is close; empty if a document may have it.
 std::string complaint_about_key(const Format& format, std::string_view path);

@@ -54,8 +54,6 @@ geometry::Element upright(const Cube& cube, const Design& design) {
 /// The element of the design, its dihedral error included if it is a prism.
 /// \throw InputError for one that the strategy does not cut
 geometry::Element element_of(const Design& design, const JobRequest& request) {
-  design.require_elements("retrace job");
-  design.require_plane_front("retrace job");
   if (design.part().extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
   if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part().element)) {
@@ -195,6 +193,8 @@ void check_base(const Design& design, const JobRequest& request) {
 }  // namespace
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
+  design.require_elements("retrace job");
+  design.require_plane_front("retrace job");
   check_base(design, request);
   if (design.facet_planes())
     throw InputError(design.where("part.facets"), "planes of single facets are traced, not cut, in this version");

@@ -120,9 +120,11 @@ TEST_P(Completion, KnowsWhatMayStandForAValue) {
   EXPECT_TRUE(offers("retrace photometry a.toml --colour ", "amber"));
   EXPECT_TRUE(offers("retrace verify a.toml c.txt --dialect ", "auto"));
   EXPECT_EQ(completed("retrace metrology c.txt --form pl"), Arguments{"plane"});
-  EXPECT_EQ(completed("retrace rre --set el"), Arguments{"element."});
+  EXPECT_EQ(completed("retrace rre --set body.t"), Arguments{"body.thickness_mm="});
+  EXPECT_TRUE(offers("retrace rre --set ", "surface.root_radius_um="));
   EXPECT_EQ(completed("retrace list "), (Arguments{"machines", "materials", "processes", "standards"}));
-  EXPECT_EQ(completed("retrace --json list schema "), (Arguments{"design", "machine", "materials", "process"})) << "list is a file here";
+  EXPECT_EQ(completed("retrace --json list schema "), (Arguments{"design", "machine", "materials", "process"}))
+      << "list is a file here";
   EXPECT_EQ(completed("retrace report "), Arguments{"results"});
   EXPECT_EQ(completed("retrace rre a.toml -o "), Arguments{"results"});
   EXPECT_TRUE(offers("retrace rre ", "a.toml"));

@@ -43,8 +43,8 @@ constexpr std::array<RoadRow, 12> kRows = {{{10, 0, 0, 2.847349387, 99.983102856
 /// Small prisms, whose diffraction sends some light everywhere.
 Design design() {
   Design d;
-  d.part = infinite(RtpElement{0.1, 0.1}, Arrangement::aligned, 0.5);
-  d.part.angle_errors.dihedral_error_arcmin[0] = 10.0;
+  d.part() = infinite(RtpElement{0.1, 0.1}, Arrangement::aligned, 0.5);
+  d.part().angle_errors.dihedral_error_arcmin[0] = 10.0;
   d.refractive_index = kPmma;
   return d;
 }

@@ -130,7 +130,7 @@ TEST(AdaptiveCurve, KneeOfPrismsIsWhereTotalReflectionEnds) {
 TEST(AdaptiveCurve, KinksOfPrismsComeInPairsAboutTheNormal) {
   const double limit_deg =
       std::asin(kIndex * std::sin(std::numbers::pi / 4.0 - std::asin(1.0 / kIndex))) / testing::kDeg;
-  const auto edges = total_reflection_edges_deg(prisms().part, kIndex, 1.0, Angle{});
+  const auto edges = total_reflection_edges_deg(prisms().part(), kIndex, 1.0, Angle{});
   ASSERT_FALSE(edges.empty());
   for (const double edge : edges) EXPECT_NEAR(std::abs(edge), limit_deg, 1e-9);
   EXPECT_NEAR(edges.front(), -edges.back(), 1e-12);

@@ -260,7 +260,7 @@ TEST(Photometry, FindsTheAngleErrorThatPasses) {
   EXPECT_EQ(change.key, "surface.dihedral_error_arcmin");
   EXPECT_EQ(change.verdict, Verdict::pass);
   Design changed = design;
-  changed.part.angle_errors.dihedral_error_arcmin.fill(change.to);
+  changed.part().angle_errors.dihedral_error_arcmin.fill(change.to);
   request.advice = false;
   const PhotometryResult again = run(changed, request);
   ASSERT_EQ(again.points.size(), change.points.size());

@@ -275,9 +275,9 @@ TEST(MachiningLoop, SurfacesAreThoseThatTheStrategyLeaves) {
   };
   const Design drawn = design("edge_radius_um = 3\n");
   EXPECT_EQ(drawn.texture.roughness_sq_nm, 0.0);
-  EXPECT_EQ(drawn.part.edges.root_radius_mm, 0.0);
+  EXPECT_EQ(drawn.part().edges.root_radius_mm, 0.0);
   const Design cut = design("edge_radius_um = 3\nsurface = \"as_cut\"\n");
-  EXPECT_NEAR(cut.part.edges.root_radius_mm, 3e-3, 1e-15);
+  EXPECT_NEAR(cut.part().edges.root_radius_mm, 3e-3, 1e-15);
   // 48.9 nm as finished, of which 19.7 are roughness; Sq of Gaussian heights is sqrt(pi / 2) Sa.
   EXPECT_NEAR(cut.texture.roughness_sq_nm, 19.7 * std::sqrt(M_PI / 2.0), 1e-9);
   EXPECT_NEAR(cut.texture.waviness_sq_nm, 29.9 * std::sqrt(M_PI / 2.0), 1e-9);
