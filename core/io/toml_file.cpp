@@ -401,11 +401,10 @@ void TomlTable::refuse(std::initializer_list<std::string_view> keys, std::string
 
 std::optional<std::vector<TomlItem>> TomlTable::items(std::string_view key) {
   const toml::node* const node = hidden_->take(key);
-  const toml::array* const list = node != nullptr ? node->as_array() : nullptr;
-  if (list == nullptr) return std::nullopt;
+  if (node == nullptr || !node->is_array()) return std::nullopt;
   std::vector<TomlItem> items;
-  for (const toml::node& entry : *list) {
-    TomlItem item;
+  for (const toml::node& entry : *node->as_array()) {
+    TomlItem& item = items.emplace_back();
     if (entry.is_number()) item.number = entry.value<double>();
     if (entry.is_string()) item.text = entry.as_string()->get();
     item.is_list = entry.is_array();
@@ -414,16 +413,14 @@ std::optional<std::vector<TomlItem>> TomlTable::items(std::string_view key) {
     item.toml = text.str();
     std::replace(item.toml.begin(), item.toml.end(), '\n', ' ');
     item.shown = shown_node(entry);
-    items.push_back(std::move(item));
   }
   return items;
 }
 
 std::string TomlTable::as_json(std::string_view key) const {
-  const toml::node* const node = hidden_->find(key);
-  if (node == nullptr) return {};
   toml::table holder;
-  node->visit([&](const auto& value) { holder.insert("value", value); });
+  if (!has(key)) return {};
+  hidden_->find(key)->visit([&](const auto& value) { holder.insert("value", value); });
   return json_text(holder);
 }
 
