@@ -52,7 +52,7 @@ class Document {
   }
   /// The file that a key names, from the working directory. \pre it was given
   std::filesystem::path file(std::string_view path) const;
-  /// Every file that is named, in the order of the format.
+  /// Every file that is named, in the order of the keys' names.
   std::vector<std::filesystem::path> files() const;
 
   /// What messages call the file.

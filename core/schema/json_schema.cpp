@@ -25,6 +25,11 @@ Json list_json(Json items, std::size_t least, std::size_t most) {
   return {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}, {"maxItems", most}};
 }
 
+/// The pattern of texts that end so.
+std::string ends_in(std::string_view ending) {
+  return fmt::format("\\{}$", ending);
+}
+
 Json kind_json(const Kind& kind) {
   return std::visit(
       Overloaded{[](const Number& number) {
@@ -46,7 +51,8 @@ Json kind_json(const Kind& kind) {
                    return Json{{"type", "string"}, {"minLength", 1}, {"title", file.what}};
                  },
                  [](const WordOrFile& either) {
-                   return Json{{"anyOf", {{{"enum", either.words}}, {{"type", "string"}, {"pattern", either.ending}}}}};
+                   return Json{{"anyOf",
+                                {{{"enum", either.words}}, {{"type", "string"}, {"pattern", ends_in(either.ending)}}}}};
                  },
                  [](const NumberOrNumbers& list) {
                    Json items = {{"type", "array"}, {"items", number_json(list.range)}, {"minItems", 1}};

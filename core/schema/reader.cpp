@@ -232,8 +232,7 @@ class Values {
     if (refused != nullptr) throw InputError(document_.where(path), refusal(*refused));
     if (table.presence != Presence::list) return read(table, around.table(table.name), path);
     std::size_t index = 0;
-    for (const TomlTable& entry : around.tables(table.name, table.shape, true))
-      read(table, entry, path_of_entry(path, index++));
+    for (const TomlTable& entry : entries(table, around)) read(table, entry, path_of_entry(path, index++));
   }
 
   /// Of the rows of a key, the one that serves. They stand one after another.
@@ -352,15 +351,14 @@ Document read_document(const Format& format, std::string_view text, const std::s
   return read_values(format.root, root, true, std::filesystem::path(source_name).parent_path());
 }
 
-std::vector<std::filesystem::path> files_named(const Format& format, std::string_view text,
-                                               const std::string& source_name, std::size_t most_bytes,
-                                               std::span<const std::string> overrides) {
+Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
+                         std::size_t most_bytes, std::span<const std::string> overrides) {
   Document document(format.root, {source_name, 0, ""}, std::filesystem::path(source_name).parent_path());
   try {
     Names(document, true).take(format.root, parse_toml(text, source_name, most_bytes, overrides), "");
   } catch (const Error&) {  // told by whoever reads it as a document
   }
-  return document.files();
+  return document;
 }
 
 void read_object(const Format& format, std::string_view text, const std::string& source_name, void* object) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,10 +19,10 @@ namespace retrace::schema {
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
                        std::size_t most_bytes = kMostTextBytes, std::span<const std::string> overrides = {});
 
-/// The files that a document names, though it may be no document of the format: those that come before what is wrong.
-std::vector<std::filesystem::path> files_named(const Format& format, std::string_view text,
-                                               const std::string& source_name, std::size_t most_bytes,
-                                               std::span<const std::string> overrides);
+/// What can be read of a text that may be no document of the format: its names and texts up to what is wrong,
+/// unchecked. It knows the files that it names.
+Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
+                         std::size_t most_bytes, std::span<const std::string> overrides);
 
 /// Reads a document into an object, which is that of the format's root.
 /// \throw InputError likewise, and where values that are allowed each by itself do not fit together

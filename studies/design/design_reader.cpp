@@ -268,9 +268,23 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
       schema::read_document(design_format(), text, source_name, kShortTomlBytes, overrides)));
 }
 
+/// The order in which stores of studies have the files of a design: it is part of what a study is. New keys come
+/// behind.
+constexpr std::array<std::string_view, 7> kFilesOfStores = {
+    "part.mesh", "array.mask", "surface.height_map", "part.facets", "light.spectrum", "front.turned", "front.mesh"};
+
 std::vector<fs::path> files_named(std::string_view text, const std::string& source_name,
                                   std::span<const std::string> overrides) {
-  return schema::files_named(design_format(), text, source_name, kShortTomlBytes, overrides);
+  const Document document = schema::unchecked_names(design_format(), text, source_name, kShortTomlBytes, overrides);
+  const std::vector<fs::path> all = document.files();
+  std::vector<fs::path> files;
+  const auto add = [&](const fs::path& file) {
+    if (std::ranges::count(all, file) > std::ranges::count(files, file)) files.push_back(file);
+  };
+  for (const std::string_view key : kFilesOfStores)
+    if (!document.text_if(key).empty()) add(document.file(key));
+  for (const fs::path& file : all) add(file);
+  return files;
 }
 
 std::string read_toml_text(const fs::path& file) {

@@ -310,6 +310,16 @@ TEST(DesignReader, AnOverrideMendsAFileThatIsWrongThere) {
   EXPECT_EQ(complaint(with_line(3, "base_mm = -1"), {"element.base_mm=1"}), "");
 }
 
+TEST(DesignReader, FilesAreNamedInTheOrderThatStoresOfStudiesHave) {
+  const std::string text =
+      "[front]\nturned = \"f.toml\"\n[light]\nspectrum = \"l.csv\"\n[part]\nfacets = \"p.csv\"\n"
+      "[surface]\nheight_map = \"h.txt\"\n[array]\nmask = \"m.png\"\n[element]\nkind = \"rtp\"\n";
+  const std::vector<std::filesystem::path> expected = {"d/m.png", "d/h.txt", "d/p.csv", "d/l.csv", "d/f.toml"};
+  EXPECT_EQ(files_named(text, "d/d.toml", {}), expected);
+  EXPECT_EQ(files_named("[light]\nspectrum = \"A\"\n[element]\nkind = \"rtp\"\n", "d/d.toml", {}),
+            std::vector<std::filesystem::path>{});
+}
+
 TEST(DesignReader, ErrorsInOverridesNameTheOverride) {
   EXPECT_EQ(set_complaint({"element.base_mm=0"}), "--set element.base_mm=0: element.base_mm: must be > 0, got 0");
   EXPECT_EQ(set_complaint({"element.base_mm=0.4mm"}),
