@@ -14,6 +14,7 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design_format.h"
+#include "studies/quantity/io/study_format.h"
 
 namespace retrace::app {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 /// The formats of files that have a schema, by name.
 std::vector<const schema::Format*> formats() {
   return {&studies::design_format(), &fabrication::machine_format(), &materials::materials_format(),
-          &fabrication::process_format()};
+          &fabrication::process_format(), &studies::study_format()};
 }
 
 struct SchemaOptions {

@@ -11,40 +11,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The tables around a key or table, and its own name.
-struct SplitPath {
-  std::string_view around;
-  std::string_view name;
-};
-
-SplitPath split(std::string_view path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string_view::npos ? SplitPath{{}, path} : SplitPath{path.substr(0, dot), path.substr(dot + 1)};
+Form form_of(const Value& value) {
+  if (std::holds_alternative<bool>(value)) return Form::other;
+  if (std::holds_alternative<double>(value)) return Form::number;
+  if (std::holds_alternative<std::string>(value)) return Form::text;
+  return std::holds_alternative<Named>(value) ? Form::table : Form::list;
 }
 
-std::string_view without_entry(std::string_view name) {
-  return name.substr(0, name.find('['));
-}
-
-const Table* inner_table(const Table& table, std::string_view name) {
-  const auto found = std::ranges::find(table.tables, name, &Table::name);
-  return found != table.tables.end() ? &*found : nullptr;
-}
-
-/// The table of that path; null if there is none.
-const Table* table_at(const Table& root, std::string_view path) {
-  if (path.empty()) return &root;
-  const auto [around, name] = split(path);
-  const Table* const outer = table_at(root, around);
-  return outer != nullptr ? inner_table(*outer, without_entry(name)) : nullptr;
-}
-
-bool is_a_list(const Value& value) {
-  return value.index() >= 4;  // behind nothing, flag, number and text
-}
-
-bool has_form(const Row& row, const Value& value) {
-  return row.form == Form::any || is_a_list(value) == (row.form == Form::list);
+/// Whether the row may have that value, or what was given is not read yet.
+bool may_have(const Row& row, const Value& value) {
+  return std::holds_alternative<std::monostate>(value) || takes(row.kind, form_of(value));
 }
 
 }  // namespace
@@ -66,7 +42,7 @@ Value Document::value(std::string_view path) const {
 }
 
 bool Document::is_list(std::string_view path) const {
-  return is_a_list(value(path));
+  return form_of(value(path)) == Form::list;
 }
 
 std::vector<double> Document::numbers(std::string_view path) const {
@@ -113,31 +89,31 @@ std::vector<fs::path> Document::files() const {
 InputLocation Document::where(std::string_view path) const {
   if (const auto found = given_.find(path); found != given_.end()) return found->second.place;
   if (path.empty()) return place_;
-  const std::string_view around = split(path).around;
+  const std::string_view around = split_path(path).around;
   const auto table = given_.find(around);
   if (table == given_.end()) return {place_.file, around.empty() ? place_.line : 0, path_in(place_.key, path)};
-  return {place_.file, table->second.place.line, path_in(table->second.place.key, split(path).name)};
+  return {place_.file, table->second.place.line, path_in(table->second.place.key, split_path(path).name)};
 }
 
 const Row* Document::row(std::string_view path) const {
-  const auto [around, name] = split(path);
+  const auto [around, name] = split_path(path);
   const Table* const table = table_at(*table_, around);
   if (table == nullptr) return nullptr;
   const auto given = given_.find(path);
   for (const Row& row : table->rows)
-    if (row.key == name && holds(row.when, around) && (given == given_.end() || has_form(row, given->second.value)))
+    if (row.key == name && holds(row.when, around) && (given == given_.end() || may_have(row, given->second.value)))
       return &row;
   return nullptr;
 }
 
 std::string Document::path_of(std::string_view key, std::string_view around) const {
   const auto is_key = [&](const std::string& path) {
-    const auto [tables, name] = split(path);
+    const auto [tables, name] = split_path(path);
     const Table* const table = table_at(*table_, tables);
     return table != nullptr &&
-           (inner_table(*table, name) != nullptr || std::ranges::count(table->rows, name, &Row::key) > 0);
+           (table_at(*table, name) != nullptr || std::ranges::count(table->rows, name, &Row::key) > 0);
   };
-  for (std::string_view place = around;; place = split(place).around) {
+  for (std::string_view place = around;; place = split_path(place).around) {
     if (std::string path = path_in(place, key); is_key(path)) return path;
     if (place.empty()) throw std::logic_error("a condition names no key: " + std::string(key));
   }

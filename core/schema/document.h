@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -17,6 +18,12 @@ namespace retrace::schema {
 /// \pre of every function with a path: the format has that key or table
 class Document {
  public:
+  /// What it was read from.
+  struct Origin {
+    std::string text;
+    std::vector<std::string> overrides;  ///< each KEY=VALUE
+  };
+
   /// \param table whose keys the paths are; it must outlive the document. \param place of that table
   /// \param folder that names of files are meant from
   explicit Document(const Table& table, InputLocation place = {}, std::filesystem::path folder = {});
@@ -50,6 +57,10 @@ class Document {
   Enum choice(std::string_view path) const {
     return static_cast<Enum>(index(path));
   }
+  std::vector<std::string> texts(std::string_view path) const {
+    return std::get<std::vector<std::string>>(value(path));
+  }
+  const Named& named(std::string_view path) const { return std::get<Named>(given_.find(path)->second.value); }
   /// The file that a key names, from the working directory. \pre it was given
   std::filesystem::path file(std::string_view path) const;
   /// Every file that is named, in the order of the keys' names.
@@ -57,6 +68,9 @@ class Document {
 
   /// What messages call the file.
   const std::string& source() const { return place_.file; }
+  /// Of a document that was read from a file; otherwise empty.
+  const Origin& origin() const { return origin_; }
+  void set_origin(Origin origin) { origin_ = std::move(origin); }
   /// Where a key was given, or would be missed.
   InputLocation where(std::string_view path) const;
   [[noreturn]] void fail(std::string_view path, std::string_view text) const { throw InputError(where(path), text); }
@@ -70,6 +84,7 @@ class Document {
 
   /// Gives a key, a table or an entry of a list. \param value of a table: nothing
   void set(const std::string& path, Value value, InputLocation place = {}, bool is_overridden = false);
+  /// Takes a key back. \pre it was given
   void drop(std::string_view path) { given_.erase(given_.find(path)); }
 
   /// The path of the key that a condition within the table or key `around` means.
@@ -86,6 +101,7 @@ class Document {
   const Table* table_;
   InputLocation place_;
   std::filesystem::path folder_;
+  Origin origin_;
   std::map<std::string, Given, std::less<>> given_;
 };
 

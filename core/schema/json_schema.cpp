@@ -30,6 +30,24 @@ std::string ends_in(std::string_view ending) {
   return fmt::format("\\{}$", ending);
 }
 
+Json texts_json() {
+  return {{"type", "array"}, {"items", {{"type", "string"}}}, {"minItems", 1}};
+}
+
+Json named_json(const ByName& named) {
+  const Json each = std::visit(Overloaded{[](const Number& number) { return number_json(number.range); },
+                                          [](const Word& word) {
+                                            return Json{{"type", "string"}, {"enum", word.words}};
+                                          }},
+                               named.each);
+  Json json = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", each}};
+  if (named.names.empty()) return json;
+  json["additionalProperties"] = false;
+  json["required"] = named.names;
+  for (const std::string_view name : named.names) json["properties"][name] = each;
+  return json;
+}
+
 Json kind_json(const Kind& kind) {
   return std::visit(
       Overloaded{[](const Number& number) {
@@ -73,9 +91,14 @@ Json kind_json(const Kind& kind) {
                    return list_json(list_json(number_json(rows.range), rows.columns, rows.columns), rows.least,
                                     rows.most);
                  },
-                 [](const Texts&) {
-                   return Json{{"type", "array"}, {"items", {{"type", "string"}}}, {"minItems", 1}};
-                 }},
+                 [](const Texts&) { return texts_json(); },
+                 [](const TextOrTexts&) {
+                   return Json{{"anyOf", {{{"type", "string"}}, texts_json()}}};
+                 },
+                 [](const Anything&) {
+                   return Json{{"type", "array"}, {"minItems", 1}};
+                 },
+                 [](const ByName& named) { return named_json(named); }},
       kind);
 }
 

@@ -69,7 +69,10 @@ std::string allowed_words(const Kind& kind) {
             return with_range(fmt::format("{} to {} {} of {} numbers", rows.least, rows.most, rows.what, rows.columns),
                               rows.range);
           },
-          [](const Texts&) { return std::string("a list of texts"); }},
+          [](const Texts&) { return std::string("a list of texts"); },
+          [](const TextOrTexts& texts) { return std::string(texts.what); },
+          [](const Anything&) { return std::string("a list of numbers, texts or lists"); },
+          [](const ByName& named) { return std::string(named.what); }},
       kind);
 }
 
@@ -135,7 +138,7 @@ std::string in_line_words(const Table& table) {
 std::string rows_text(const Table& table) {
   std::string text;
   for (const Row& row : table.rows)
-    if (row.form != Form::list)
+    if (&row == &table.rows.front() || (&row - 1)->key != row.key || (&row - 1)->when.data() != row.when.data())
       text += line(row.key, default_words(row.otherwise),
                    fmt::format("{}. {}{}", allowed_words(row.kind), row.meaning, conditions_words(row.when)));
   for (const Table& inner : table.tables)

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -153,6 +154,47 @@ std::optional<std::vector<std::vector<double>>> number_rows(const NumberRows& ki
   return rows;
 }
 
+std::vector<std::string> texts_of(const TextOrTexts& kind, std::string_view key, TomlTable& source) {
+  if (source.shape_of(key) == Shape::text) return {*source.text(key)};
+  std::vector<std::string> texts;
+  for (const TomlItem& item : source.items(key).value_or(std::vector<TomlItem>()))
+    if (item.text) texts.push_back(*item.text);
+  if (texts.empty()) source.fail(key, fmt::format("must be {}, got {}", kind.what, source.shown(key)));
+  return texts;
+}
+
+/// The TOML text of each entry.
+std::vector<std::string> anything_of(std::string_view key, TomlTable& source) {
+  const auto items = source.items(key);
+  if (!items || items->empty())
+    source.fail(key, fmt::format("must be {}, got {}", allowed(Anything{}), source.shown(key)));
+  std::vector<std::string> texts;
+  for (const TomlItem& item : *items) {
+    if (!item.text && !item.is_list && !(item.number && std::isfinite(*item.number)))
+      source.fail(key, fmt::format("must be a list of finite numbers, strings or lists, got {} in it", item.shown));
+    texts.push_back(item.toml);
+  }
+  return texts;
+}
+
+Named named_of(const ByName& kind, std::string_view key, TomlTable& source) {
+  if (source.shape_of(key) != Shape::table)
+    source.fail(key, fmt::format("must be {}, got {}", kind.what, source.shown(key)));
+  TomlTable table = source.table(key);
+  std::vector<std::string> names(kind.names.begin(), kind.names.end());
+  if (names.empty()) names = table.names();
+  if (names.empty()) source.fail(key, "must name at least one, got an empty table");
+  Named named;
+  for (const std::string& name : names)
+    std::visit(Overloaded{[&](const Number& each) { named[name] = table.required_number(name, each.range); },
+                          [&](const Word& each) {
+                            named[name] = std::string(each.words[table.required_choice(name, each.words)]);
+                          }},
+               kind.each);
+  table.finish();
+  return named;
+}
+
 /// What was given for a key, checked.
 Value given(const Kind& kind, std::string_view key, TomlTable& source) {
   return std::visit(
@@ -173,7 +215,10 @@ Value given(const Kind& kind, std::string_view key, TomlTable& source) {
           [&](const Terms& terms) { return terms_of(terms, key, source); },
           [&](const NumberRows& rows) { return value_of(number_rows(rows, key, source)); },
           [&](const Pairs& pairs) { return value_of(source.pairs(key, pairs.shape, pairs.first, pairs.second)); },
-          [&](const Texts&) { return value_of(source.texts(key)); }},
+          [&](const Texts&) { return value_of(source.texts(key)); },
+          [&](const TextOrTexts& texts) { return Value(texts_of(texts, key, source)); },
+          [&](const Anything&) { return Value(anything_of(key, source)); },
+          [&](const ByName& named) { return Value(named_of(named, key, source)); }},
       kind);
 }
 
@@ -204,6 +249,21 @@ std::string refusal(const Condition& condition) {
       break;
   }
   return fmt::format("not allowed together with {}", key);
+}
+
+Form form_of(Shape shape) {
+  switch (shape) {
+    case Shape::text:
+      return Form::text;
+    case Shape::number:
+      return Form::number;
+    case Shape::list:
+      return Form::list;
+    case Shape::table:
+      return Form::table;
+    default:
+      return Form::other;
+  }
 }
 
 /// Reads the values of a document whose names are there.
@@ -238,14 +298,14 @@ class Values {
   /// Of the rows of a key, the one that serves. They stand one after another.
   void read_key(const Table& table, std::string_view key, TomlTable& source, const std::string& around) {
     const std::string path = path_in(around, key);
-    const Form given_form = source.shape_of(key) == Shape::list ? Form::list : Form::single;
+    const Form form = form_of(source.shape_of(key));
     const Row* served = nullptr;
     const Row* refused = nullptr;
     for (const Row& row : table.rows) {
       if (row.key != key) continue;
       const bool holds = document_.holds(row.when, around);
       if (!holds && refused == nullptr) refused = &row;
-      if (holds && (row.form == Form::any || row.form == given_form)) served = &row;
+      if (holds && (served == nullptr || takes(row.kind, form))) served = &row;
     }
     if (served == nullptr) {
       if (document_.has(path)) refuse(path, *refused, source);
@@ -348,7 +408,19 @@ TomlTable checked_root(const Format& format, TomlTable root) {
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
                        std::size_t most_bytes, std::span<const std::string> overrides) {
   const TomlTable root = checked_root(format, parse_toml(text, source_name, most_bytes, overrides));
-  return read_values(format.root, root, true, std::filesystem::path(source_name).parent_path());
+  Document document = read_values(format.root, root, true, std::filesystem::path(source_name).parent_path());
+  document.set_origin({std::string(text), {overrides.begin(), overrides.end()}});
+  return document;
+}
+
+Document with(const Format& format, const Document& document, std::span<const std::string> overrides) {
+  std::vector<std::string> all = document.origin().overrides;
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return read_document(format, document.origin().text, document.source(), kMostTextBytes, all);
+}
+
+void fill_object(const Document& document, std::string_view table, void* object) {
+  fill(document, *table_at(document.table(), table), std::string(table), object);
 }
 
 Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
@@ -373,6 +445,13 @@ std::vector<std::string> keys_of(const Format& format) {
   std::vector<std::string> keys;
   add_keys(format.root, "", keys);
   return keys;
+}
+
+bool is_number_key(const Format& format, std::string_view path) {
+  const auto [around, name] = split_path(path);
+  const Table* const table = table_at(format.root, around);
+  const auto is_it = [&](const Row& row) { return row.key == name && takes(row.kind, Form::number); };
+  return table != nullptr && std::ranges::any_of(table->rows, is_it);
 }
 
 std::string complaint_about_key(const Format& format, std::string_view path) {

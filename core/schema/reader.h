@@ -19,6 +19,12 @@ namespace retrace::schema {
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
                        std::size_t most_bytes = kMostTextBytes, std::span<const std::string> overrides = {});
 
+/// A document that was read, with further overrides, so that all that is checked holds of it too. \throw InputError
+Document with(const Format& format, const Document& document, std::span<const std::string> overrides);
+
+/// Fills an object, whose type is that of the table's access, from a table of a document. \throw InputError likewise
+void fill_object(const Document& document, std::string_view table, void* object);
+
 /// What can be read of a text that may be no document of the format: its names and texts up to what is wrong,
 /// unchecked. It knows the files that it names.
 Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
@@ -33,6 +39,9 @@ void read_table(const Table& table, const TomlTable& source, void* object);
 
 /// The paths of all keys that a value can be given for; a list of tables is one.
 std::vector<std::string> keys_of(const Format& format);
+
+/// Whether the format has that key, and it may be a number.
+bool is_number_key(const Format& format, std::string_view path);
 
 /// What is wrong with `path` as the path of a key of the format, such as "element.base_mm", with a "did you mean" where
 /// a known name is close; empty if a document may have it.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -47,7 +48,22 @@ std::string allowed(const Kind& kind) {
                  [](const Terms& terms) { return fmt::format("a list of numbers, {} for each term", terms.count); },
                  [](const NumberRows& rows) { return fmt::format("a list of lists of {} numbers", rows.columns); },
                  [](const Pairs& pairs) { return fmt::format("a list of {}", pairs.shape); },
-                 [](const Texts&) { return std::string("a list of one or more strings"); }},
+                 [](const Texts&) { return std::string("a list of one or more strings"); },
+                 [](const TextOrTexts& texts) { return std::string(texts.what); },
+                 [](const Anything&) { return std::string("a list of at least one value"); },
+                 [](const ByName& named) { return std::string(named.what); }},
+      kind);
+}
+
+bool takes(const Kind& kind, Form form) {
+  return std::visit(
+      Overloaded{[&](const Flag&) { return form == Form::other; }, [&](const Number&) { return form == Form::number; },
+                 [&](const Whole&) { return form == Form::number; }, [&](const Word&) { return form == Form::text; },
+                 [&](const Text&) { return form == Form::text; }, [&](const File&) { return form == Form::text; },
+                 [&](const WordOrFile&) { return form == Form::text; },
+                 [&](const NumberOrNumbers&) { return form == Form::number || form == Form::list; },
+                 [&](const TextOrTexts&) { return form == Form::text || form == Form::list; },
+                 [&](const ByName&) { return form == Form::table; }, [&](const auto&) { return form == Form::list; }},
       kind);
 }
 
@@ -59,6 +75,20 @@ Value default_value(const Row& row) {
           [](double number) { return Value(number); }, [](std::string_view text) { return Value(std::string(text)); },
           [](std::span<const double> numbers) { return Value(std::vector<double>(numbers.begin(), numbers.end())); }},
       row.otherwise);
+}
+
+SplitPath split_path(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string_view::npos ? SplitPath{{}, path} : SplitPath{path.substr(0, dot), path.substr(dot + 1)};
+}
+
+const Table* table_at(const Table& root, std::string_view path) {
+  if (path.empty()) return &root;
+  const auto [around, name] = split_path(path);
+  const Table* const outer = table_at(root, around);
+  if (outer == nullptr) return nullptr;
+  const auto found = std::ranges::find(outer->tables, name.substr(0, name.find('[')), &Table::name);
+  return found != outer->tables.end() ? &*found : nullptr;
 }
 
 std::string path_in(std::string_view around, std::string_view name) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,9 +15,12 @@
 
 namespace retrace::schema {
 
+/// Numbers or words by names that whoever writes the file may choose.
+using Named = std::map<std::string, std::variant<double, std::string>>;
+
 /// A value of a file. A word is its text, a whole number a double, nothing a key that is not given.
 using Value = std::variant<std::monostate, bool, double, std::string, std::vector<double>,
-                           std::vector<std::vector<double>>, std::vector<std::string>>;
+                           std::vector<std::vector<double>>, std::vector<std::string>, Named>;
 
 /// How a value comes from an object and goes into it (core/schema/access.h makes both), where a word is its index among
 /// the words of its key. A value that an object does not have, or that another key says, is got as nothing. Formats
@@ -84,8 +88,25 @@ struct Pairs {
 };
 /// A list of one or more texts.
 struct Texts {};
+/// A text, or a list of one or more texts.
+struct TextOrTexts {
+  std::string_view what;  ///< that it must be, for messages
+};
+/// A list of one or more finite numbers, texts or lists. Its value has the TOML text of each.
+struct Anything {};
+/// A table of numbers or words, of one or more names; of exactly these names if there are any.
+struct ByName {
+  std::variant<Number, Word> each;
+  std::span<const std::string_view> names = {};
+  std::string_view what = "a table";  ///< that it must be, for messages
+};
 using Kind = std::variant<Number, Whole, Flag, Word, Text, File, WordOrFile, NumberOrNumbers, Numbers, Terms,
-                          NumberRows, Pairs, Texts>;
+                          NumberRows, Pairs, Texts, TextOrTexts, Anything, ByName>;
+
+/// The form of a value, in which rows of one key may differ.
+enum class Form { other, number, text, list, table };
+/// Whether a value of that form may be of the kind.
+bool takes(const Kind& kind, Form form);
 
 /// The key must be given.
 struct Required {};
@@ -113,21 +134,27 @@ struct Condition {
 /// All of them must hold.
 using When = std::span<const Condition>;
 
-/// The form of a value, where rows of one key differ in it.
-enum class Form { any, list, single };
-
 /// A key of a table. There may be several rows of one key, of which at most one serves a file by its conditions and the
 /// form of what was given.
 struct Row {
+  constexpr Row(std::string_view of_key, Kind of_kind, Default by_default, std::string_view sentence, Access by = {},
+                When only_when = {})
+      : key(of_key), kind(of_kind), otherwise(by_default), meaning(sentence), access(by), when(only_when) {}
+  constexpr Row(std::string_view of_key, Kind of_kind, Default by_default, std::string_view sentence, When only_when,
+                bool may_be_zero = false)
+      : Row(of_key, of_kind, by_default, sentence, Access{}, only_when) {
+    zero_is_none = may_be_zero;
+  }
+
   std::string_view key;
   Kind kind;
   Default otherwise;
   std::string_view meaning;  ///< one sentence
-  Access access = {};
-  When when = {};
-  Form form = Form::any;
+  Access access;
+  When when;
   bool zero_is_none = false;  ///< 0 is let pass where the conditions do not hold
 };
+inline constexpr bool kZeroIsNone = true;
 
 /// Exactly one of `keys` must be given.
 struct OneOf {
@@ -193,6 +220,16 @@ std::string allowed(const Kind& kind);
 
 /// The value that a key has by default; nothing if it has none.
 Value default_value(const Row& row);
+
+/// A path as that of the table around a key or table, empty at the top, and its own name.
+struct SplitPath {
+  std::string_view around;
+  std::string_view name;
+};
+SplitPath split_path(std::string_view path);
+
+/// The table of that path, "" the root itself; null if there is none.
+const Table* table_at(const Table& root, std::string_view path);
 
 /// The path of a key or table within the one that `around` is the path of.
 std::string path_in(std::string_view around, std::string_view name);

@@ -30,6 +30,16 @@ std::string lines_text(const std::vector<std::string>& texts) {
   return result + "]";
 }
 
+std::string named_text(const Named& named) {
+  std::vector<std::string> items;
+  for (const auto& [name, value] : named) {
+    const double* const number = std::get_if<double>(&value);
+    items.push_back(fmt::format("{} = {}", toml_text(name),
+                                number != nullptr ? shortest(*number) : toml_text(std::get<std::string>(value))));
+  }
+  return fmt::format("{{ {} }}", fmt::join(items, ", "));
+}
+
 std::string value_text(const Value& value) {
   return std::visit(
       Overloaded{
@@ -37,8 +47,15 @@ std::string value_text(const Value& value) {
           [](double number) { return shortest(number); }, [](const std::string& text) { return toml_text(text); },
           [](const std::vector<double>& numbers) { return numbers_text(numbers); },
           [](const std::vector<std::vector<double>>& rows) { return list_text(rows, numbers_text); },
-          [](const std::vector<std::string>& texts) { return lines_text(texts); }},
+          [](const std::vector<std::string>& texts) { return lines_text(texts); },
+          [](const Named& named) { return named_text(named); }},
       value);
+}
+
+std::string value_text(const Kind& kind, const Value& value) {
+  const auto* const texts = std::get_if<std::vector<std::string>>(&value);
+  if (texts == nullptr || !std::holds_alternative<Anything>(kind)) return value_text(value);
+  return fmt::format("[{}]", fmt::join(*texts, ", "));
 }
 
 /// Writes a table and those in it.
@@ -60,7 +77,7 @@ class Writer {
     std::vector<std::string> texts;
     for (const Row& row : table.rows)
       if (const std::string key = path_in(path, row.key); document_.has(key) && document_.row(key) == &row)
-        texts.push_back(fmt::format("{} = {}", row.key, value_text(document_.value(key))));
+        texts.push_back(fmt::format("{} = {}", row.key, value_text(row.kind, document_.value(key))));
     for (const Table& inner : table.tables)
       if (const std::string name = path_in(path, inner.name); inner.layout == Layout::in_line && document_.has(name))
         texts.push_back(fmt::format("{} = {}", inner.name, in_line(inner, name)));
@@ -100,16 +117,18 @@ bool is_left_out(const Row& row, const Value& value) {
   return (text != nullptr && text->empty()) || (texts != nullptr && texts->empty());
 }
 
-Value as_word(const Kind& kind, Value value) {
+Value as_word(const Kind& kind, const Value& value) {
   const Word* const word = std::get_if<Word>(&kind);
-  return word != nullptr ? Value(std::string(word->words[static_cast<std::size_t>(std::get<double>(value))])) : value;
+  const double* const index = std::get_if<double>(&value);
+  if (word == nullptr || index == nullptr) return value;
+  return std::string(word->words[static_cast<std::size_t>(*index)]);
 }
 
 void add_values(Document& document, const Table& table, const std::string& path, const void* object) {
   for (const Row& row : table.rows) {
     if (!document.holds(row.when, path)) continue;
     Value value = row.access.get(object);
-    if (!is_left_out(row, value)) document.set(path_in(path, row.key), as_word(row.kind, std::move(value)));
+    if (!is_left_out(row, value)) document.set(path_in(path, row.key), as_word(row.kind, value));
   }
   for (const Table& inner : table.tables) {
     const std::string inner_path = path_in(path, inner.name);
@@ -130,6 +149,52 @@ Document document_of(const Table& table, const void* object) {
 }
 
 }  // namespace
+
+namespace {
+
+/// A number stands for a list of such numbers.
+bool is_default(const Value& value, const Row& row) {
+  const Value otherwise = default_value(row);
+  const auto* const numbers = std::get_if<std::vector<double>>(&value);
+  const double* const number = std::get_if<double>(&otherwise);
+  if (numbers == nullptr || number == nullptr) return value == otherwise;
+  return std::ranges::count(*numbers, *number) == std::ranges::ssize(*numbers);
+}
+
+/// \return whether anything is left of the table
+bool drop_defaults(Document& document, const Table& table, const std::string& path) {
+  bool is_left = false;
+  // From the last key to the first: what a key means may depend on keys before it.
+  for (auto row = table.rows.rbegin(); row != table.rows.rend(); ++row) {
+    const std::string key = path_in(path, row->key);
+    if (!document.has(key) || document.row(key) != &*row) continue;
+    if (is_default(document.value(key), *row))
+      document.drop(key);
+    else
+      is_left = true;
+  }
+  for (const Table& inner : table.tables) {
+    const std::string name = path_in(path, inner.name);
+    if (!document.has(name)) continue;
+    const bool is_list = inner.presence == Presence::list;
+    if (is_list || drop_defaults(document, inner, name) || inner.presence == Presence::optional)
+      is_left = true;
+    else
+      document.drop(name);
+  }
+  return is_left;
+}
+
+}  // namespace
+
+Document without_defaults(Document document) {
+  drop_defaults(document, document.table(), "");
+  return document;
+}
+
+std::string override_text(std::string_view path, const Value& value) {
+  return fmt::format("{}={}", path, value_text(value));
+}
 
 std::string document_text(const Format& format, const Document& document) {
   return fmt::format("schema = {}\n", toml_text(format.id)) + Writer(document).table(format.root, "");

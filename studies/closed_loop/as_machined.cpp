@@ -1,7 +1,6 @@
 #include "studies/closed_loop/as_machined.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,9 +10,9 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "core/toml_file.h"
-#include "fabrication/job/io/base_keys.h"
+#include "fabrication/job/base_cells.h"
 #include "geometry/lattice.h"
+#include "studies/design/design_document.h"
 #include "studies/design/design_reader.h"
 
 namespace retrace::studies {
@@ -24,6 +23,7 @@ using namespace fabrication;
 using geometry::Vec3;
 
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
+constexpr double kUmPerMm = 1e3;
 
 // Of five facets finished by plunging, with a mean Sa of 48.9 nm, the roughness below an 80 um cut-off has a mean Sa of
 // 19.7 nm, the waviness above of 29.9 nm (Milliken 2017, Table 3.4). Other motions are shared in the same way.
@@ -51,79 +51,34 @@ double sa_of(const Job& job) {
   return 0.0;
 }
 
-/// [body] of the design that the job was made from, if it lies beside the job.
-std::string body_of(const VerificationRun& run, std::vector<std::string>& warnings) {
+/// As the design says that the job was made from, if that lies beside the job.
+MachinedBody body_of(const VerificationRun& run, std::vector<std::string>& warnings) {
   const fs::path file = fs::path(run.request.job).parent_path() / run.job.design;
   std::error_code error;
   if (!run.job.design.empty() && fs::is_regular_file(file, error)) {
     const Design design = read_design(file);
-    std::string body = fmt::format("thickness_mm = {}\n", shortest(design.thickness_mm()));
-    if (design.refractive_index)
-      body += fmt::format("refractive_index = {}\n", shortest(*design.refractive_index));
-    else
-      body += fmt::format("material = {}\n", toml_text(design.material));
-    if (design.absorption_per_mm) body += fmt::format("absorption_per_mm = {}\n", shortest(*design.absorption_per_mm));
-    return body;
+    return {design.thickness_mm(), design.substance.material, design.substance.refractive_index,
+            design.substance.absorption_per_mm};
   }
   warnings.push_back("the job's design is not beside it: the as-machined part is given a plate of 2 mm of PMMA");
-  return "thickness_mm = 2\nmaterial = \"PMMA\"\n";
-}
-
-std::string_view arrangement_word(geometry::Arrangement arrangement) {
-  switch (arrangement) {
-    case geometry::Arrangement::aligned:
-      return "aligned";
-    case geometry::Arrangement::offset:
-      return "offset";
-    case geometry::Arrangement::checker:
-      return "checker";
-    case geometry::Arrangement::honeycomb:
-      return "honeycomb";
-    case geometry::Arrangement::triangular:
-      return "triangular";
-    default:
-      return "single";
-  }
+  return {};
 }
 
 bool is_prism(const Job& job) {
   return std::holds_alternative<geometry::RtpElement>(job.element);
 }
 
-std::string element_text(const Job& job) {
-  if (!is_prism(job)) {
-    const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&job.element);
-    const double aperture_mm =
-        hexagonal != nullptr ? hexagonal->aperture_mm : std::get<geometry::TriangularCube>(job.element).aperture_mm;
-    return fmt::format("kind = \"{}\"\naperture_mm = {}\n", hexagonal != nullptr ? "hexagonal_icc" : "triangular_icc",
-                       shortest(aperture_mm));
-  }
-  const geometry::RtpElement& prism = prism_of(job);
-  return fmt::format("kind = \"rtp\"\nbase_mm = {}\nwidth_mm = {}\napex_angle_deg = {}\n", shortest(prism.base_mm),
-                     shortest(prism.width_mm), shortest(prism.apex_angle_deg));
-}
-
-std::string array_text(const Job& job, bool has_planes) {
-  const Array& a = job.array;
-  std::string text = fmt::format("arrangement = \"{}\"\n", arrangement_word(a.arrangement));
-  if (a.arrangement == geometry::Arrangement::single) return text;
-  text += fmt::format("x_length_mm = {}\ny_length_mm = {}\n", shortest(a.x_length_mm), shortest(a.y_length_mm));
-  const auto put = [&](const char* key, double value) {
-    if (value != 0.0) text += fmt::format("{} = {}\n", key, shortest(value));
-  };
-  put("x_gap_mm", a.x_gap_mm);
-  put("y_gap_mm", a.y_gap_mm);
+/// The elements of the job, all alike.
+geometry::PartSpec elements_of(const Job& job, bool has_planes) {
+  geometry::PartSpec part = part_on_base(job);
   // Flares reach into margins: which elements there are, the table of planes says.
   if (!has_planes || is_prism(job)) {
-    put("x_offset_mm", a.x_offset_mm);
-    put("y_offset_mm", a.y_offset_mm);
+    part.x_offset_mm = job.array.x_offset_mm;
+    part.y_offset_mm = job.array.y_offset_mm;
   }
-  if (!is_prism(job) || (job.base && a.arrangement != geometry::Arrangement::offset))
-    text += "partial_elements = \"omit\"\n";
-  if (a.arrangement == geometry::Arrangement::offset)
-    text += fmt::format("overlap_percent = {}\nshifted_rows = \"{}\"\npartial_elements = \"omit\"\n",
-                        shortest(a.overlap_percent), a.shifted_rows == geometry::RowParity::odd ? "odd" : "even");
-  return text;
+  if (is_prism(job) && !job.base && part.arrangement != geometry::Arrangement::offset)
+    part.partial_elements = geometry::PartialElements::cut;
+  return part;
 }
 
 }  // namespace
@@ -162,16 +117,6 @@ std::vector<geometry::Scratch> scratches_of(const Job& job) {
     }
   }
   return scratches;
-}
-
-std::string scratches_text(const std::vector<geometry::Scratch>& scratches) {
-  if (scratches.empty()) return "";
-  std::string text = "# Scratches that the chips of the tool's edge leave.\nscratches = [\n";
-  for (const geometry::Scratch& s : scratches)
-    text += fmt::format("  {{ facet = \"{}\", position_um = {}, width_um = {}, depth_um = {} }},\n",
-                        s.facet == 0 ? "-x" : "+x", shortest(1e3 * s.position_mm), shortest(1e3 * s.width_mm),
-                        shortest(1e3 * s.depth_mm));
-  return text + "]\n";
 }
 
 /// Tilts of one element's facets, opening is positive.
@@ -365,34 +310,34 @@ AsMachined as_machined(const VerificationRun& run) {
 }
 
 std::string as_machined_toml(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
-  const auto nonzero = [](double v) { return std::abs(v) < 1e-6 ? 0.0 : v; };
-  std::vector<std::string> tilts;
-  for (const double tilt : part.facet_tilt_arcmin) tilts.push_back(shortest(nonzero(tilt)));
-  std::string text = "schema = \"retrace.design/1\"\n";
-  text += fmt::format("title = {}\n", toml_text((run.job.title.empty() ? "Part" : run.job.title) + ", as machined"));
-  text += "\n[element]\n" + element_text(run.job);
-  text += "\n[array]\n" + array_text(run.job, part.planes.has_value());
-  if (run.job.base) text += "\n[base]\n" + fabrication::base_text(*run.job.base);
-  text += "\n[body]\n" + part.body;
+  const auto rounded = [](double value) { return std::round(1e3 * value) / 1e3; };
+  Design design;
+  design.title = (run.job.title.empty() ? "Part" : run.job.title) + ", as machined";
+  ElementArray array{elements_of(run.job, part.planes.has_value()), {}, {}};
   if (part.planes)
-    text += fmt::format("\n# Facets as the programs leave them: a plane each.\n[part]\nfacets = {}\n\n[surface]\n",
-                        toml_text(facets_file));
+    array.facet_planes = FacetPlanesFile{facets_file, facets_file};
   else
-    text += fmt::format(
-        "\n# Facets as the programs leave them; the mean over the elements.\n[surface]\n"
-        "facet_tilt_arcmin = [{}]\n",
-        fmt::join(tilts, ", "));
-  if (part.root_chamfer_um > 0.0) text += fmt::format("root_chamfer_um = {}\n", shortest(part.root_chamfer_um));
-  if (part.root_radius_um > 0.0) text += fmt::format("root_radius_um = {}\n", shortest(part.root_radius_um));
-  const PredictedTexture& t = part.texture;
-  text += fmt::format(
-      "# Sa {} nm, as published for facets that were made by such motions; feed marks at 7.07 Hz.\n"
-      "roughness_sq_nm = {}\ncorrelation_length_um = {}\nwaviness_sq_nm = {}\nwaviness_length_um = {}\n",
-      fixed(t.sa_nm, 1), fixed(t.roughness_sq_nm, 3), shortest(t.correlation_length_um), fixed(t.waviness_sq_nm, 3),
-      fixed(t.waviness_length_um, 3));
-  text += scratches_text(part.scratches);
-  text += "\n[detector]\nacceptance_half_angle_deg = [0.05, 0.5]\n";
-  return text;
+    for (std::size_t f = 0; f < part.facet_tilt_arcmin.size(); ++f)
+      if (std::abs(part.facet_tilt_arcmin[f]) >= 1e-6)
+        array.part.angle_errors.facet_tilt_arcmin[f] = part.facet_tilt_arcmin[f];
+  array.part.edges.root_chamfer_mm = part.root_chamfer_um / kUmPerMm;
+  array.part.edges.root_radius_mm = part.root_radius_um / kUmPerMm;
+  array.part.scratches = part.scratches;
+  array.part.thickness_mm = part.body.thickness_mm;
+  design.shape = std::move(array);
+  design.substance.material = part.body.material;
+  design.substance.refractive_index = part.body.refractive_index;
+  design.substance.absorption_per_mm = part.body.absorption_per_mm;
+  design.surface.texture.model = FacetTexture::Model::harvey_shack;
+  design.surface.texture.roughness_sq_nm = rounded(part.texture.roughness_sq_nm);
+  design.surface.texture.correlation_length_um = part.texture.correlation_length_um;
+  design.surface.texture.waviness_sq_nm = rounded(part.texture.waviness_sq_nm);
+  design.surface.texture.waviness_length_um = rounded(part.texture.waviness_length_um);
+  design.detector.acceptance_half_angle_deg = {0.05, 0.5};
+  return design_text(
+      design, fmt::format("# Facets as the programs leave them: {}. Sa {} nm, as published for facets\n"
+                          "# that were made by such motions; feed marks at 7.07 Hz.\n",
+                          part.planes ? "a plane each" : "the mean over the elements", fixed(part.texture.sa_nm, 1)));
 }
 
 }  // namespace retrace::studies

@@ -21,6 +21,14 @@ struct PredictedTexture {
 };
 PredictedTexture predicted_texture(const fabrication::Job& job);
 
+/// What the part is made of: that of the job's design, or what is taken without one.
+struct MachinedBody {
+  double thickness_mm = 2.0;
+  std::string material = "PMMA";
+  std::optional<double> refractive_index;
+  std::optional<double> absorption_per_mm;
+};
+
 /// The part that programs leave, moulded in it or cut directly. Where its elements are alike, a design file says it
 /// with the mean tilts of their facets; else every facet of a moulded part has a plane of its own.
 struct AsMachined {
@@ -31,7 +39,7 @@ struct AsMachined {
   double root_chamfer_um = 0.0;
   PredictedTexture texture;
   std::vector<geometry::Scratch> scratches;  ///< that the chips of the tool's edge leave
-  std::string body;                          ///< the table [body] of the job's design, or a default
+  MachinedBody body;
   std::vector<std::string> warnings;
 };
 

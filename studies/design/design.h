@@ -113,26 +113,50 @@ struct FrontFile {
   std::optional<std::array<double, 2>> centre_mm;
 };
 
+/// What the part is made of, and what lies behind its retro facets.
+struct Substance {
+  std::string material = "PMMA";
+  std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
+  std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
+  /// The same by wavelength: linear between two or more pairs that ascend; empty if it was not given so.
+  std::vector<SpectralAbsorption> absorption_by_wavelength;
+  double back_index = 1.0;  ///< of what lies behind the facets, relative to air; 1..3
+};
+
+/// What the retro facets do beside reflecting.
+struct Surface {
+  bool aluminised_facets = false;  ///< an opaque film behind them
+  FacetTexture texture;
+};
+
+/// The light that falls on the part.
+struct Light {
+  std::variant<double, LightSpectrum> colour = 587.56;  ///< one wavelength in vacuum, in nm, or a spectrum
+  /// Along the axes of raytrace::source_axis(); i = 1.
+  raytrace::Stokes polarisation = raytrace::kUnpolarised;
+
+  /// Null for one wavelength.
+  const LightSpectrum* spectrum() const { return std::get_if<LightSpectrum>(&colour); }
+  /// \pre no spectrum
+  double wavelength_nm() const { return std::get<double>(colour); }
+};
+
+/// What counts as returned.
+struct Detector {
+  std::vector<double> acceptance_half_angle_deg = {0.5};  ///< in air; ascending, each in (0, 90]
+};
+
 /// Everything a design file says, checked and with its defaults filled in.
 struct Design {
   std::string source;  ///< file name as given, "-" for standard input
   std::string title;   ///< empty if none was given
   Shape shape;
   std::optional<FrontFile> front;  ///< none: the plane z = thickness_mm; balls and endless arrays have none
-  std::string material = "PMMA";
-  std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
-  std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
-  /// The same by wavelength: linear between two or more pairs that ascend; empty if it was not given so.
-  std::vector<SpectralAbsorption> absorption_by_wavelength;
-  double back_index = 1.0;         ///< of what lies behind the facets, relative to air; 1..3
-  bool aluminised_facets = false;  ///< an opaque film behind the retro facets
-  double wavelength_nm = 587.56;   ///< means nothing where there is a spectrum
-  std::optional<LightSpectrum> spectrum;
-  /// Of the incident light, along the axes of raytrace::source_axis(); i = 1.
-  raytrace::Stokes polarisation = raytrace::kUnpolarised;
-  std::vector<double> acceptance_half_angle_deg = {0.5};  ///< ascending, each in (0, 90]
+  Substance substance;
+  Surface surface;
+  Light light;
+  Detector detector;
   Idealisation idealisation;
-  FacetTexture texture;
   /// What the file says; none of a design that is not from a file.
   std::shared_ptr<const schema::Document> document;
 
@@ -172,7 +196,7 @@ struct Design {
   /// \throw InputError if light enters through a curved front. \param what does not take it, such as "retrace job"
   void require_plane_front(const std::string& what) const;
   /// Whether the retro facets rely on total reflection.
-  bool needs_total_reflection() const { return !idealisation.mirror_facets && !aluminised_facets; }
+  bool needs_total_reflection() const { return !idealisation.mirror_facets && !surface.aluminised_facets; }
 };
 
 }  // namespace retrace::studies

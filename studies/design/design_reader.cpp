@@ -102,10 +102,10 @@ Shape read_shape(const Document& document) {
 void read_absorption(const Document& document, Design& design) {
   constexpr std::string_view key = "body.absorption_per_mm";
   if (!document.is_list(key)) {
-    design.absorption_per_mm = document.number_if(key);
+    design.substance.absorption_per_mm = document.number_if(key);
     return;
   }
-  std::vector<SpectralAbsorption>& curve = design.absorption_by_wavelength;
+  std::vector<SpectralAbsorption>& curve = design.substance.absorption_by_wavelength;
   for (const std::vector<double>& pair : document.rows(key)) {
     if (!curve.empty() && !(pair[0] > curve.back().wavelength_nm))
       document.fail(key, fmt::format("wavelengths must ascend, got {} after {}", shortest(pair[0]),
@@ -116,18 +116,19 @@ void read_absorption(const Document& document, Design& design) {
 }
 
 void read_body(const Document& document, Design& design) {
-  design.material = document.text("body.material");
-  if (design.material.empty()) document.fail("body.material", "must name a material, such as \"PMMA\", got \"\"");
-  design.refractive_index = document.number_if("body.refractive_index");
+  design.substance.material = document.text("body.material");
+  if (design.substance.material.empty())
+    document.fail("body.material", "must name a material, such as \"PMMA\", got \"\"");
+  design.substance.refractive_index = document.number_if("body.refractive_index");
   read_absorption(document, design);
-  design.back_index = document.number("body.back_index");
-  design.aluminised_facets = document.text("body.facet_coating") == "aluminium";
+  design.substance.back_index = document.number("body.back_index");
+  design.surface.aluminised_facets = document.text("body.facet_coating") == "aluminium";
 }
 
 /// A bowl behind balls is nothing but its mirror.
 void check_ball_mirror(const Document& document, const Design& design) {
   if (!design.balls() || design.balls()->mirror_offset_mm == 0.0) return;
-  if (design.aluminised_facets || design.idealisation.mirror_facets) return;
+  if (design.surface.aluminised_facets || design.idealisation.mirror_facets) return;
   document.fail("element.mirror_offset_mm",
                 "needs a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = \"mirror\"");
 }
@@ -158,13 +159,15 @@ raytrace::Stokes read_polarisation(const Document& document) {
 }
 
 void read_light_and_detector(const Document& document, Design& design) {
-  design.spectrum = read_spectrum(document);
-  design.wavelength_nm = document.number_if("light.wavelength_nm").value_or(design.wavelength_nm);
-  design.polarisation = read_polarisation(document);
+  if (auto spectrum = read_spectrum(document))
+    design.light.colour = *std::move(spectrum);
+  else
+    design.light.colour = document.number("light.wavelength_nm");
+  design.light.polarisation = read_polarisation(document);
   std::vector<double> angles_deg = document.numbers("detector.acceptance_half_angle_deg");
   std::sort(angles_deg.begin(), angles_deg.end());
   angles_deg.erase(std::unique(angles_deg.begin(), angles_deg.end()), angles_deg.end());
-  design.acceptance_half_angle_deg = angles_deg;
+  design.detector.acceptance_half_angle_deg = angles_deg;
 }
 
 /// The face through which light enters; none without such a table.
@@ -190,7 +193,7 @@ Design resolved(std::shared_ptr<const Document> given) {
   design.source = document.source();
   design.title = document.text_if("title");
   design.shape = read_shape(document);
-  if (!design.balls()) design.texture = read_texture(document);
+  if (!design.balls()) design.surface.texture = read_texture(document);
   read_body(document, design);
   read_light_and_detector(document, design);
   design.idealisation = {document.text("idealisation.facets") == "mirror",
@@ -266,6 +269,13 @@ void Design::require_no_base(const std::string& what) const {
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
   return resolved(std::make_shared<const Document>(
       schema::read_document(design_format(), text, source_name, kShortTomlBytes, overrides)));
+}
+
+Design with(const Design& design, std::span<const std::string> overrides) {
+  Design changed =
+      resolved(std::make_shared<const Document>(schema::with(design_format(), *design.document, overrides)));
+  changed.source = design.source;
+  return changed;
 }
 
 /// The order in which stores of studies have the files of a design: it is part of what a study is. New keys come

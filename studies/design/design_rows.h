@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/schema/schema.h"
+#include "core/schema/conditions.h"
 
 // Internal to studies/design: the rows of the tables of design files, and what they share.
 
@@ -38,22 +38,5 @@ inline constexpr std::string_view kArrangement = "array.arrangement";
 inline constexpr std::string_view kExtent = "array.extent";
 
 inline constexpr std::string_view kOfAMesh = "not allowed with [part], whose mesh has the angles and edges that it has";
-
-// Conditions; the refusal says more than the condition does, if there is one.
-
-constexpr schema::Condition is(std::string_view key, std::span<const std::string_view> words,
-                               std::string_view refusal = {}) {
-  return {key, schema::Condition::Is::one_of, words, refusal};
-}
-constexpr schema::Condition is_not(std::string_view key, std::span<const std::string_view> words,
-                                   std::string_view refusal = {}) {
-  return {key, schema::Condition::Is::none_of, words, refusal};
-}
-constexpr schema::Condition with(std::string_view key, std::string_view refusal = {}) {
-  return {key, schema::Condition::Is::given, {}, refusal};
-}
-constexpr schema::Condition without(std::string_view key, std::string_view refusal = {}) {
-  return {key, schema::Condition::Is::absent, {}, refusal};
-}
 
 }  // namespace retrace::studies

@@ -22,7 +22,7 @@ constexpr double kMissingShareToTell = 0.05;
 
 /// Where the design says what wavelengths its light has.
 InputLocation light_location(const Design& design) {
-  return design.where(design.spectrum ? "light.spectrum" : "light.wavelength_nm");
+  return design.where(design.light.spectrum() ? "light.spectrum" : "light.wavelength_nm");
 }
 
 double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air,
@@ -59,9 +59,9 @@ surface_models::HeightMap levelled_map(const FacetTexture& t, const std::string&
 
 /// The measured map of the facets; nothing for other models of their texture. Warnings are appended.
 std::optional<surface_models::HeightMap> facet_map(const Design& design, std::vector<std::string>& warnings) {
-  if (design.texture.model != FacetTexture::Model::height_map) return std::nullopt;
+  if (design.surface.texture.model != FacetTexture::Model::height_map) return std::nullopt;
   try {
-    return levelled_map(design.texture, design.source_name(), warnings);
+    return levelled_map(design.surface.texture, design.source_name(), warnings);
   } catch (const InputError& error) {
     throw InputError(design.where_texture(), error.what());  // which does not know who named the file
   }
@@ -80,7 +80,7 @@ surface_models::ScatterModel height_map_model(const FacetTexture& t, const surfa
 surface_models::ScatterModel scatter_model(const Design& design, const std::optional<surface_models::HeightMap>& map,
                                            double wavelength_nm) {
   using Model = FacetTexture::Model;
-  const FacetTexture& t = design.texture;
+  const FacetTexture& t = design.surface.texture;
   const auto shape = t.ggx ? surface_models::SlopeShape::ggx : surface_models::SlopeShape::beckmann;
   try {
     switch (t.model) {
@@ -103,9 +103,10 @@ surface_models::ScatterModel scatter_model(const Design& design, const std::opti
 }
 
 double absorption_at(const Design& design, const materials::Material& material, double wavelength_nm) {
-  if (design.absorption_by_wavelength.empty()) return design.absorption_per_mm.value_or(material.absorption_per_mm);
+  if (design.substance.absorption_by_wavelength.empty())
+    return design.substance.absorption_per_mm.value_or(material.absorption_per_mm);
   materials::SpectralCurve curve;
-  for (const auto& [at_nm, per_mm] : design.absorption_by_wavelength) {
+  for (const auto& [at_nm, per_mm] : design.substance.absorption_by_wavelength) {
     curve.wavelengths_nm.push_back(at_nm);
     curve.values.push_back(per_mm);
   }
@@ -120,20 +121,20 @@ double absorption_at(const Design& design, const materials::Material& material, 
 /// \param map that of facet_map()
 raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrary& library,
                            const std::optional<surface_models::HeightMap>& map, double wavelength_nm) {
-  const materials::Material& material = library.find(design.material, design.where("body.material"));
+  const materials::Material& material = library.find(design.substance.material, design.where("body.material"));
   raytrace::Optics optics;
   optics.mirror_facets = design.idealisation.mirror_facets;
   optics.facet_scatter = scatter_model(design, map, wavelength_nm);
-  optics.back_index = design.back_index;
-  if (design.aluminised_facets)
+  optics.back_index = design.substance.back_index;
+  if (design.surface.aluminised_facets)
     optics.coating_index = materials::complex_index(library.find_metal("aluminium").model, wavelength_nm) /
                            materials::refractive_index(library.air().dispersion, wavelength_nm);
-  optics.absorbing_walls = design.texture.absorbing_walls;
+  optics.absorbing_walls = design.surface.texture.absorbing_walls;
   optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
   optics.absorption_per_mm = absorption_at(design, material, wavelength_nm);
-  if (design.refractive_index) {
-    optics.index = *design.refractive_index;
+  if (design.substance.refractive_index) {
+    optics.index = *design.substance.refractive_index;
     return optics;
   }
   optics.index = index_at_wavelength(design, material, library.air(), wavelength_nm);
@@ -146,7 +147,7 @@ raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrar
 /// The flux of a lamp, or of its lines, before wavelengths are chosen.
 materials::Spectrum flux_of(const Design& design) {
   using Kind = LightSpectrum::Kind;
-  const LightSpectrum& light = *design.spectrum;
+  const LightSpectrum& light = *design.light.spectrum();
   const materials::CieTable cie = materials::shipped_cie_table();
   const materials::SpectralCurve* const efficiency = light.photopic ? &cie.photopic_efficiency : nullptr;
   switch (light.kind) {
@@ -166,8 +167,8 @@ materials::Spectrum flux_of(const Design& design) {
 
 /// Every line of a design, or the wavelengths that stand for a lamp.
 materials::Spectrum wavelengths_to_trace(const Design& design) {
-  if (!design.spectrum) return materials::monochromatic(design.wavelength_nm);
-  const LightSpectrum& light = *design.spectrum;
+  if (!design.light.spectrum()) return materials::monochromatic(design.light.wavelength_nm());
+  const LightSpectrum& light = *design.light.spectrum();
   try {
     const materials::Spectrum flux = flux_of(design);
     return light.kind == LightSpectrum::Kind::lines ? flux : materials::traced_spectrum(flux);
@@ -242,7 +243,7 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
 
 OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library) {
   OpticalModel model;
-  const materials::Material& material = library.find(design.material, design.where("body.material"));
+  const materials::Material& material = library.find(design.substance.material, design.where("body.material"));
   const materials::Spectrum light = wavelengths_to_trace(design);
   const std::optional<surface_models::HeightMap> map = facet_map(design, model.warnings);
   for (std::size_t k = 0; k < light.size(); ++k)
@@ -250,8 +251,8 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
         {light.wavelengths_nm[k], light.weights[k], optics_at(design, library, map, light.wavelengths_nm[k])});
   model.wavelength_nm = light.centroid_nm();
   model.optics = nearest(model.spectral, model.wavelength_nm).optics;
-  if (!design.refractive_index) warn_of_extrapolation(design, material, model);
-  if (design.aluminised_facets) warn_of_extrapolation(design, library.find_metal("aluminium"), model);
+  if (!design.substance.refractive_index) warn_of_extrapolation(design, material, model);
+  if (design.surface.aluminised_facets) warn_of_extrapolation(design, library.find_metal("aluminium"), model);
   add_texture_warnings(design, model);
   return model;
 }

@@ -8,11 +8,11 @@
 
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/toml_file.h"
 #include "core/version.h"
 #include "fabrication/job/cube_cells.h"
 #include "geometry/facet_planes.h"
 #include "geometry/lattice.h"
+#include "studies/design/design_document.h"
 #include "studies/design/facet_planes_reader.h"
 
 namespace retrace::studies {
@@ -58,30 +58,24 @@ Vec2 middle_of(const geometry::PartSpec& part) {
   return 0.5 * geometry::bounding_box(geometry::aperture_outline(part.element)).size();
 }
 
-std::string design_text(const Design& design, const std::string& facets_file) {
+/// What the design is as far as a chisel reaches: whole elements of the same body, with planes from a table.
+Design reached(const Design& design, const std::string& facets_file) {
   const geometry::PartSpec& part = design.part();
-  const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&part.element);
-  const double aperture_mm =
-      hexagonal != nullptr ? hexagonal->aperture_mm : std::get<geometry::TriangularCube>(part.element).aperture_mm;
-  std::string text = "schema = \"retrace.design/1\"\n";
-  text += fmt::format("title = {}\n", toml_text((design.title.empty() ? "Part" : design.title) +
-                                                ", as far as a chisel with a straight edge reaches"));
-  text += fmt::format("\n[element]\nkind = \"{}\"\naperture_mm = {}\n",
-                      hexagonal != nullptr ? "hexagonal_icc" : "triangular_icc", shortest(aperture_mm));
-  const bool is_single = part.arrangement == geometry::Arrangement::single;
-  text += fmt::format("\n[array]\narrangement = \"{}\"\n", is_single              ? "single"
-                                                           : hexagonal != nullptr ? "honeycomb"
-                                                                                  : "triangular");
-  if (!is_single)
-    text += fmt::format("x_length_mm = {}\ny_length_mm = {}\npartial_elements = \"omit\"\n", shortest(part.x_length_mm),
-                        shortest(part.y_length_mm));
-  text += fmt::format("\n[body]\nthickness_mm = {}\n", shortest(part.thickness_mm));
-  if (design.refractive_index)
-    text += fmt::format("refractive_index = {}\n", shortest(*design.refractive_index));
-  else
-    text += fmt::format("material = {}\n", toml_text(design.material));
-  if (design.absorption_per_mm) text += fmt::format("absorption_per_mm = {}\n", shortest(*design.absorption_per_mm));
-  return text + fmt::format("\n[part]\nfacets = {}\n", toml_text(facets_file));
+  Design reached;
+  reached.title = (design.title.empty() ? "Part" : design.title) + ", as far as a chisel with a straight edge reaches";
+  ElementArray array;
+  array.part.element = part.element;
+  array.part.arrangement = part.arrangement;
+  array.part.partial_elements = geometry::PartialElements::omit;
+  array.part.x_length_mm = part.x_length_mm;
+  array.part.y_length_mm = part.y_length_mm;
+  array.part.thickness_mm = part.thickness_mm;
+  array.facet_planes = FacetPlanesFile{facets_file, facets_file};
+  reached.shape = std::move(array);
+  reached.substance.material = design.substance.material;
+  reached.substance.refractive_index = design.substance.refractive_index;
+  reached.substance.absorption_per_mm = design.substance.absorption_per_mm;
+  return reached;
 }
 
 void check_design(const Design& design, const JobRequest& request) {
@@ -130,7 +124,7 @@ ReachablePart reachable_part(const Design& design, const JobRequest& request, co
   if (hexagonal != nullptr && part.arrangement != geometry::Arrangement::single)
     geometry::add_flares(planes, 0.5 * hexagonal->aperture_mm);
   result.facets = facet_planes_text({std::move(planes), geometry::cube_spacing_mm(part.element)});
-  result.design = design_text(design, facets_file);
+  result.design = design_text(reached(design, facets_file));
   return result;
 }
 

@@ -150,7 +150,7 @@ bool is_unpolarised(const raytrace::Stokes& s) {
 CameraStudy::CameraStudy(Design design, CameraRequest request)
     : design_(std::move(design)), request_(std::move(request)) {
   check(request_);
-  if (!is_unpolarised(design_.polarisation))
+  if (!is_unpolarised(design_.light.polarisation))
     throw InputError({design_.source, 0, "light.polarisation"},
                      "cameras take unpolarised light in this version: leave it out");
   check_film(request_, design_.is_endless());

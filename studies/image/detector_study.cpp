@@ -41,7 +41,7 @@ void check(const DetectorRequest& request) {
 }
 
 raytrace::Illumination illumination_of(const Design& design, const DetectorRequest& request) {
-  return {Angle::from_deg(request.incidence_deg), Angle::from_deg(request.azimuth_deg), design.polarisation};
+  return {Angle::from_deg(request.incidence_deg), Angle::from_deg(request.azimuth_deg), design.light.polarisation};
 }
 
 raytrace::ReturnFrame frame_of(const raytrace::Illumination& light) {
@@ -123,7 +123,7 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
   result.design = design_;
   result.request = request_;
   result.warnings = model_.warnings;
-  result.acceptance_half_angle_deg = design_.acceptance_half_angle_deg.back();
+  result.acceptance_half_angle_deg = design_.detector.acceptance_half_angle_deg.back();
   result.face = face_grid(model_.part, request_.pixels);
   result.is_period = model_.part.period_mm.has_value();
   const raytrace::DetectorSetting setting{

@@ -70,7 +70,8 @@ double mean_index(const std::vector<SpectralOptics>& light) {
 /// What is unusual about the facets, so that total reflection ends early; empty if nothing is.
 std::string circumstances(const Inspection& result) {
   std::string text;
-  if (result.design.back_index > 1.0) text += fmt::format(", {} behind them", shortest(result.design.back_index));
+  if (result.design.substance.back_index > 1.0)
+    text += fmt::format(", {} behind them", shortest(result.design.substance.back_index));
   const geometry::Cant cant = geometry::cant_of(result.design.part().element);
   if (cant.deg > 0.0) text += fmt::format(", canted by {} degrees", shortest(cant.deg));
   return text;
@@ -81,8 +82,8 @@ std::string where_it_begins(const Inspection& result) {
   const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element)) return {};
   const double away_deg = std::fmod(*result.tir_limit_azimuth_deg + 180.0, 360.0);
-  const auto from_deg =
-      total_reflection_from_deg(part, least_index(result.light), result.design.back_index, Angle::from_deg(away_deg));
+  const auto from_deg = total_reflection_from_deg(part, least_index(result.light), result.design.substance.back_index,
+                                                  Angle::from_deg(away_deg));
   if (!from_deg) return {};
   return fmt::format("; it begins at {:.2f} degrees of incidence at azimuth {:.1f}", *from_deg, away_deg);
 }
@@ -174,7 +175,7 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
   if (const auto offset = raytrace::focal_offset_over_radius(index, model.optics.back_index))
     figures.focal_offset_mm = *offset * layer.radius_mm();
   figures.largest_return_error_deg = Angle::from_rad(raytrace::largest_return_error_rad(index, spacer, rho)).deg();
-  const double acceptance_rad = Angle::from_deg(design.acceptance_half_angle_deg.front()).rad();
+  const double acceptance_rad = Angle::from_deg(design.detector.acceptance_half_angle_deg.front()).rad();
   figures.share_within_acceptance = raytrace::share_within(acceptance_rad, index, spacer, rho);
   figures.mirror_half_angle_deg = layer.mirror_half_angle_deg;
   result.balls = figures;

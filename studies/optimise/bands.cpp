@@ -13,22 +13,10 @@
 namespace retrace::studies {
 namespace {
 
-/// The value of a key in a design; nothing for keys without one number.
+/// The value of a key in a design, of a list its first; nothing for a key without one.
 std::optional<double> nominal_of(const std::string& key, const Design& design) {
-  const geometry::PartSpec& part = design.part();
-  constexpr double um_per_mm = 1e3;
-  if (key == "surface.dihedral_error_arcmin") return part.angle_errors.dihedral_error_arcmin[0];
-  if (key == "surface.root_radius_um") return um_per_mm * part.edges.root_radius_mm;
-  if (key == "surface.root_chamfer_um") return um_per_mm * part.edges.root_chamfer_mm;
-  if (key == "surface.rim_radius_um") return um_per_mm * part.edges.rim_radius_mm;
-  if (key == "surface.roughness_sq_nm") return design.texture.roughness_sq_nm;
-  if (key == "body.thickness_mm") return part.thickness_mm;
-  if (key == "body.refractive_index") return design.refractive_index;
-  const auto* prism = std::get_if<geometry::RtpElement>(&part.element);
-  if (key == "element.apex_angle_deg" && prism != nullptr) return prism->apex_angle_deg;
-  if (key == "element.base_mm" && prism != nullptr) return prism->base_mm;
-  if (key == "element.width_mm" && prism != nullptr) return prism->width_mm;
-  return std::nullopt;
+  if (design.document->is_list(key)) return design.document->numbers(key).front();
+  return design.document->number_if(key);
 }
 
 /// A first step that loses little, by the unit in the key's name.

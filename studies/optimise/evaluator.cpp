@@ -110,17 +110,15 @@ namespace {
 
 /// The parameter of RRE that a parameter of a study is, and how much of it one unit is.
 std::optional<std::pair<RreParameter, double>> rre_parameter(const Parameter& parameter, const Design& design) {
-  const std::vector<std::string>& keys = parameter.keys;
-  const bool prism = std::holds_alternative<geometry::RtpElement>(design.part().element);
-  const auto is = [&](std::initializer_list<const char*> names) {
-    return std::set<std::string>(keys.begin(), keys.end()) == std::set<std::string>(names.begin(), names.end());
-  };
-  if (is({"element.base_mm", "element.width_mm"}) || is({"element.aperture_mm"})) return {{RreParameter::size_mm, 1.0}};
-  if (is({"element.apex_angle_deg"})) return {{RreParameter::apex_angle_deg, 1.0}};
-  if (is({"body.refractive_index"})) return {{RreParameter::refractive_index, 1.0}};
-  if (is({"body.thickness_mm"})) return {{RreParameter::thickness_mm, 1.0}};
-  if (is({"surface.dihedral_error_arcmin"}))
-    return {{prism ? RreParameter::apex_angle_deg : RreParameter::dihedral_error_deg, 1.0 / 60.0}};
+  constexpr double deg_per_arcmin = 1.0 / 60.0;
+  const std::vector<RreParameter> all = parameters_of(design);
+  const std::set<std::string> varied(parameter.keys.begin(), parameter.keys.end());
+  // An error of the angle between the facets of a prism is one of its apex.
+  if (varied == std::set<std::string>{"surface.dihedral_error_arcmin"}) return {{all[1], deg_per_arcmin}};
+  for (const RreParameter each : all) {
+    const std::vector<std::string> keys = keys_of(each, design);
+    if (varied == std::set(keys.begin(), keys.end())) return {{each, 1.0}};
+  }
   return std::nullopt;
 }
 

@@ -7,13 +7,12 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/schema/writer.h"
+#include "studies/design/design_reader.h"
+#include "studies/rre/derivatives.h"
 
 namespace retrace::studies {
 namespace {
-
-using geometry::HexagonalCube;
-using geometry::RtpElement;
-using geometry::TriangularCube;
 
 constexpr std::size_t kSearchParts = 1;
 // Changes of the angle errors that are tried, in arc minutes, and of the size, as factors.
@@ -34,49 +33,21 @@ struct Knob {
 };
 
 Knob angle_knob(const Design& design) {
-  Knob knob;
-  knob.key = "surface.dihedral_error_arcmin";
+  const std::string key = keys_of(RreParameter::dihedral_error_deg, design).front();
   const auto& errors = design.part().angle_errors.dihedral_error_arcmin;
-  const bool is_prism = std::holds_alternative<RtpElement>(design.part().element);
-  knob.from = is_prism ? errors[0] : (errors[0] + errors[1] + errors[2]) / 3.0;
+  const bool is_prism = std::holds_alternative<geometry::RtpElement>(design.part().element);
+  Knob knob{key, is_prism ? errors[0] : (errors[0] + errors[1] + errors[2]) / 3.0, {}, {}};
   for (const double step : kAngleSteps)
     if (std::abs(knob.from + step) <= kMostErrorArcmin) knob.tries.push_back(knob.from + step);
-  knob.with = [design, is_prism](double value) {
-    Design changed = design;
-    if (is_prism)
-      changed.part().angle_errors.dihedral_error_arcmin[0] = value;
-    else
-      changed.part().angle_errors.dihedral_error_arcmin.fill(value);
-    return changed;
-  };
+  knob.with = [design, key](double value) { return with(design, std::vector{schema::override_text(key, value)}); };
   return knob;
 }
 
 Knob size_knob(const Design& design) {
-  Knob knob;
-  if (const auto* prism = std::get_if<RtpElement>(&design.part().element)) {
-    knob.key = "element.base_mm";
-    knob.from = prism->base_mm;
-    knob.with = [design](double value) {
-      Design changed = design;
-      auto& element = std::get<RtpElement>(changed.part().element);
-      element.width_mm *= value / element.base_mm;
-      element.base_mm = value;
-      return changed;
-    };
-  } else {
-    knob.key = "element.aperture_mm";
-    knob.from = std::holds_alternative<HexagonalCube>(design.part().element)
-                    ? std::get<HexagonalCube>(design.part().element).aperture_mm
-                    : std::get<TriangularCube>(design.part().element).aperture_mm;
-    knob.with = [design](double value) {
-      Design changed = design;
-      if (auto* cube = std::get_if<HexagonalCube>(&changed.part().element)) cube->aperture_mm = value;
-      if (auto* cube = std::get_if<TriangularCube>(&changed.part().element)) cube->aperture_mm = value;
-      return changed;
-    };
-  }
+  constexpr RreParameter size = RreParameter::size_mm;
+  Knob knob{keys_of(size, design).front(), value_of(design, size), {}, {}};
   for (const double factor : kSizeFactors) knob.tries.push_back(factor * knob.from);
+  knob.with = [design](double value) { return with(design, size, value); };
   return knob;
 }
 

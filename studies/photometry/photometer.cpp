@@ -107,7 +107,7 @@ Design lit(Design design, const PhotometryRequest& request, const WeighedLight& 
   spectrum.kind = LightSpectrum::Kind::lines;
   spectrum.photopic = false;
   for (const double w : light.wavelengths_nm) spectrum.lines.push_back({w, 1.0});
-  design.spectrum = spectrum;
+  design.light.colour = spectrum;
   design.set_where("body.absorption_per_mm", {request.dye, 0, "absorption_per_mm"});
   return design;
 }
@@ -115,10 +115,10 @@ Design lit(Design design, const PhotometryRequest& request, const WeighedLight& 
 Design dyed(Design design, const PhotometryRequest& request) {
   const materials::SpectralCurve& dye = request.dye_absorption_per_mm;
   if (dye.values.empty()) return design;
-  design.absorption_per_mm.reset();
-  design.absorption_by_wavelength.clear();
+  design.substance.absorption_per_mm.reset();
+  design.substance.absorption_by_wavelength.clear();
   for (std::size_t k = 0; k < dye.values.size(); ++k)
-    design.absorption_by_wavelength.push_back({dye.wavelengths_nm[k], dye.values[k]});
+    design.substance.absorption_by_wavelength.push_back({dye.wavelengths_nm[k], dye.values[k]});
   return design;
 }
 
@@ -237,7 +237,7 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
   const PhotometricGeometry geometry = geometry_at(setting, 0.0);
   const raytrace::ReturnFrame frame = raytrace::return_frame(geometry);
   const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
-  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.polarisation};
+  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
   raytrace::FarFieldPolicy policy;
   policy.diffraction = request_.diffraction;
   policy.wavelength_nm = light.wavelength_nm;
@@ -251,7 +251,7 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
   if (request_.engine != Engine::exact) beams.max_beams = kMostBeams;
   raytrace::FarFieldCollector collector(model_.part, illumination, policy);
   const raytrace::BeamResult traced =
-      tracer.trace(light.optics, illumination, design_.acceptance_half_angle_deg, beams, cancel,
+      tracer.trace(light.optics, illumination, design_.detector.acceptance_half_angle_deg, beams, cancel,
                    [&](const raytrace::ReturnedBeam& beam) { collector.add(beam); });
   Piece piece;
   if (!traced.complete) return piece;
@@ -294,8 +294,8 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
   raytrace::Sampling sampling;
   sampling.seed = request_.seed + kGolden * static_cast<std::uint32_t>(wavelength);
   sampling.rays = std::max<std::uint64_t>(1, request_.rays / model_.spectral.size());
-  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.polarisation};
-  const std::vector<double>& cones = design_.acceptance_half_angle_deg;
+  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
+  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
   const raytrace::MonteCarloResult traced =
       tracer != nullptr ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score)
                         : raytrace::BallTracer(*design_.balls())

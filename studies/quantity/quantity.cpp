@@ -63,7 +63,7 @@ class ShareQuantity final : public Quantity {
     const RreStudy study({design_of(candidate)}, request_of(spec_.window, candidate.analysis()));
     const RreResult result = study.run(nullptr, cancel);
     if (!result.complete) return std::nullopt;
-    const std::size_t cones = result.designs.front().acceptance_half_angle_deg.size();
+    const std::size_t cones = result.designs.front().detector.acceptance_half_angle_deg.size();
     std::vector<Share> shares;
     std::vector<double> weights;
     for (std::size_t k = 0; k < result.points.size(); k += cones) {
@@ -102,7 +102,7 @@ class ShareQuantity final : public Quantity {
   /// The design with the acceptance cones that are needed, ascending.
   Design design_of(const Candidate& candidate) const {
     Design design = candidate.design();
-    std::vector<double>& cones = design.acceptance_half_angle_deg;
+    std::vector<double>& cones = design.detector.acceptance_half_angle_deg;
     cones = {spec_.acceptance_half_angle_deg.value_or(cones.front())};
     if (spec_.beyond_half_angle_deg) cones.insert(cones.begin(), *spec_.beyond_half_angle_deg);
     return design;

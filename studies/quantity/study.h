@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/schema/document.h"
 #include "studies/quantity/quantity.h"
 
 namespace retrace::studies {
@@ -58,11 +60,11 @@ struct Parameter {
 struct Study {
   std::string source;  ///< file name as given
   std::string title;
-  std::string text;                                 ///< of the study file
-  std::string design_file;                          ///< of the base design; from the working directory
-  std::map<std::string, std::string> design_texts;  ///< by file name, as read once
-  std::vector<std::string> files;                   ///< all that are read: its own, designs, what these name
-  std::vector<std::string> overrides;               ///< --set
+  std::shared_ptr<const schema::Document> document;  ///< of the study file
+  std::string design_file;                           ///< of the base design; from the working directory
+  std::map<std::string, std::string> design_texts;   ///< by file name, as read once
+  std::vector<std::string> files;                    ///< all that are read: its own, designs, what these name
+  std::vector<std::string> overrides;                ///< --set
   std::uint32_t seed = 1;
   std::vector<Parameter> parameters;
   Quantities quantities;

@@ -27,18 +27,18 @@ void check(const std::vector<double>& values, double most, bool zero_allowed, co
 void check(const Design& design) {
   design.require_no_balls();
   design.require_plane_front("retrace roughness");
-  if (design.texture.model != FacetTexture::Model::smooth)
+  if (design.surface.texture.model != FacetTexture::Model::smooth)
     throw InputError(design.where_texture(), "must be left out here: the roughness is what is varied");
-  if (design.acceptance_half_angle_deg.size() != 1)
+  if (design.detector.acceptance_half_angle_deg.size() != 1)
     throw InputError({design.source_name(), 0, "detector.acceptance_half_angle_deg"},
-                     fmt::format("must be one angle here, got {}", design.acceptance_half_angle_deg.size()));
+                     fmt::format("must be one angle here, got {}", design.detector.acceptance_half_angle_deg.size()));
 }
 
 /// The design with that texture. \param where to blame for it
 Design textured(const Design& design, const RoughnessPoint& point, double waviness_length_um,
                 const InputLocation& where) {
   Design rough = design;
-  FacetTexture& texture = rough.texture;
+  FacetTexture& texture = rough.surface.texture;
   texture.model = FacetTexture::Model::harvey_shack;
   texture.roughness_sq_nm = gaussian_sq_nm(point.roughness_sa_nm);
   texture.correlation_length_um = point.correlation_length_um;

@@ -8,7 +8,9 @@
 #include <variant>
 
 #include "core/error.h"
+#include "core/schema/writer.h"
 #include "raytrace/threads.h"
+#include "studies/design/design_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -27,52 +29,32 @@ double size_of(const geometry::Element& element) {
   return std::get<geometry::TriangularCube>(element).aperture_mm;
 }
 
-geometry::Element resized(geometry::Element element, double size_mm) {
-  if (auto* rtp = std::get_if<RtpElement>(&element)) {
-    rtp->width_mm *= size_mm / rtp->base_mm;
-    rtp->base_mm = size_mm;
-  } else if (auto* hexagonal = std::get_if<geometry::HexagonalCube>(&element)) {
-    hexagonal->aperture_mm = size_mm;
-  } else {
-    std::get<geometry::TriangularCube>(element).aperture_mm = size_mm;
-  }
-  return element;
-}
-
 /// Of the three dihedral errors of a cube corner.
 double mean_dihedral_error_deg(const PartSpec& spec) {
   const auto& errors = spec.angle_errors.dihedral_error_arcmin;
   return (errors[0] + errors[1] + errors[2]) / (3.0 * kArcminPerDeg);
 }
 
-/// \pre the part has the parameter
-PartSpec changed(PartSpec spec, RreParameter parameter, double value) {
-  if (parameter == RreParameter::size_mm) spec.element = resized(spec.element, value);
-  if (parameter == RreParameter::apex_angle_deg) std::get<RtpElement>(spec.element).apex_angle_deg = value;
-  if (parameter == RreParameter::thickness_mm) spec.thickness_mm = value;
+/// What the keys of a parameter are where it has that value, in their order.
+std::vector<schema::Value> values_at(const Design& design, RreParameter parameter, double value) {
+  const PartSpec& spec = design.part();
   if (parameter == RreParameter::dihedral_error_deg) {
     const double more_deg = value - mean_dihedral_error_deg(spec);
-    for (double& error : spec.angle_errors.dihedral_error_arcmin) error += kArcminPerDeg * more_deg;
+    std::vector<double> errors(spec.angle_errors.dihedral_error_arcmin.begin(),
+                               spec.angle_errors.dihedral_error_arcmin.end());
+    for (double& error : errors) error += kArcminPerDeg * more_deg;
+    return {errors};
   }
-  return spec;
+  const auto* const prism = std::get_if<RtpElement>(&spec.element);
+  if (parameter == RreParameter::size_mm && prism != nullptr)
+    return {value, prism->width_mm * (value / prism->base_mm)};
+  return {value};
 }
 
 double value_of(const TracedDirection& at, RreParameter parameter) {
-  switch (parameter) {
-    case RreParameter::size_mm:
-      return size_of(at.design.part().element);
-    case RreParameter::apex_angle_deg:
-      return std::get<RtpElement>(at.design.part().element).apex_angle_deg;
-    case RreParameter::dihedral_error_deg:
-      return mean_dihedral_error_deg(at.design.part());
-    case RreParameter::refractive_index:
-      return at.model.optics.index;
-    case RreParameter::thickness_mm:
-      return at.design.part().thickness_mm;
-    case RreParameter::incidence_deg:
-      return at.illumination.incidence.deg();
-  }
-  return 0.0;
+  if (parameter == RreParameter::refractive_index) return at.model.optics.index;
+  if (parameter == RreParameter::incidence_deg) return at.illumination.incidence.deg();
+  return value_of(at.design, parameter);
 }
 
 /// What one trace tells.
@@ -106,7 +88,7 @@ DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
   const double relative_step = 0.01 * wider;
   const double value = value_of(at, parameter);
   // An error of an angle turns light away by some three times as much: out of a narrow cone soon.
-  const double angle_step = std::min(0.05 * wider, 0.1 * at.design.acceptance_half_angle_deg.front());
+  const double angle_step = std::min(0.05 * wider, 0.1 * at.design.detector.acceptance_half_angle_deg.front());
   switch (parameter) {
     case RreParameter::size_mm:
       return {relative_step * value, kOpen * value};
@@ -125,9 +107,9 @@ DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
 }
 
 /// Full and partial elements; nothing if there is no room for one.
-std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const PartSpec& spec) {
+std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design& design) {
   try {
-    const geometry::Part part = geometry::build_part(spec);
+    const geometry::Part part = geometry::build_part(design.part());
     return std::pair{part.elements_full, part.elements_partial};
   } catch (const InputError&) {
     return std::nullopt;
@@ -136,10 +118,10 @@ std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const PartSp
 
 /// Shortens the first step until the array holds the same elements at both its ends. False if there is no such step:
 /// RRE jumps here.
-bool keep_elements(const PartSpec& spec, double size_mm, DifferenceRange& range) {
+bool keep_elements(const Design& design, double size_mm, DifferenceRange& range) {
   constexpr int kHalvings = 10;
-  const auto here = count_elements(spec);
-  const auto same_at = [&](double size) { return count_elements(changed(spec, RreParameter::size_mm, size)) == here; };
+  const auto here = count_elements(design);
+  const auto same_at = [&](double size) { return count_elements(with(design, RreParameter::size_mm, size)) == here; };
   for (int k = 0; k <= kHalvings; ++k, range.first_step *= 0.5)
     if (same_at(size_mm - range.first_step) && same_at(size_mm + range.first_step)) return true;
   return false;
@@ -181,7 +163,7 @@ class TraceByParameter {
     else if (parameter_ == RreParameter::refractive_index)
       optics.index = value;
     else
-      return trace(geometry::build_part(changed(at_.design.part(), parameter_, value)));
+      return trace(geometry::build_part(with(at_.design, parameter_, value).part()));
     return trace(at_.tracer, optics, illumination);
   }
 
@@ -192,7 +174,7 @@ class TraceByParameter {
   raytrace::BeamResult trace(const raytrace::BeamTracer& tracer, const raytrace::Optics& optics,
                              const raytrace::Illumination& illumination) const {
     raytrace::BeamResult traced =
-        tracer.trace(optics, illumination, at_.design.acceptance_half_angle_deg, policy_, cancel_);
+        tracer.trace(optics, illumination, at_.design.detector.acceptance_half_angle_deg, policy_, cancel_);
     if (!traced.complete) throw Cancelled{};
     return traced;
   }
@@ -213,13 +195,13 @@ std::string why_not(const Derivative& derivative) {
 /// By cone.
 std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDirection& at,
                                           const Cancellation* cancel) {
-  const std::size_t cones = at.design.acceptance_half_angle_deg.size();
+  const std::size_t cones = at.design.detector.acceptance_half_angle_deg.size();
   const auto left_out = [&](const char* reason) {
     return std::vector<RreDerivative>(cones, RreDerivative{parameter, {}, reason});
   };
   DifferenceRange range = range_of(at, parameter);
   const double value = value_of(at, parameter);
-  if (parameter == RreParameter::size_mm && !keep_elements(at.design.part(), value, range))
+  if (parameter == RreParameter::size_mm && !keep_elements(at.design, value, range))
     return left_out("the number of elements changes here");
   TraceByParameter trace(at, parameter, cancel);
   std::vector<RreDerivative> derivatives;
@@ -269,6 +251,41 @@ std::vector<RreParameter> parameters_of(const Design& design) {
           RreParameter::refractive_index, RreParameter::thickness_mm, RreParameter::incidence_deg};
 }
 
+std::vector<std::string> keys_of(RreParameter parameter, const Design& design) {
+  switch (parameter) {
+    case RreParameter::size_mm:
+      if (std::holds_alternative<RtpElement>(design.part().element)) return {"element.base_mm", "element.width_mm"};
+      return {"element.aperture_mm"};
+    case RreParameter::apex_angle_deg:
+      return {"element.apex_angle_deg"};
+    case RreParameter::dihedral_error_deg:
+      return {"surface.dihedral_error_arcmin"};
+    case RreParameter::refractive_index:
+      return {"body.refractive_index"};
+    case RreParameter::thickness_mm:
+      return {"body.thickness_mm"};
+    case RreParameter::incidence_deg:
+      break;
+  }
+  return {};
+}
+
+double value_of(const Design& design, RreParameter parameter) {
+  const PartSpec& spec = design.part();
+  if (parameter == RreParameter::size_mm) return size_of(spec.element);
+  if (parameter == RreParameter::apex_angle_deg) return std::get<RtpElement>(spec.element).apex_angle_deg;
+  if (parameter == RreParameter::dihedral_error_deg) return mean_dihedral_error_deg(spec);
+  return spec.thickness_mm;
+}
+
+Design with(const Design& design, RreParameter parameter, double value) {
+  const std::vector<std::string> keys = keys_of(parameter, design);
+  const std::vector<schema::Value> values = values_at(design, parameter, value);
+  std::vector<std::string> overrides;
+  for (std::size_t k = 0; k < keys.size(); ++k) overrides.push_back(schema::override_text(keys[k], values[k]));
+  return with(design, overrides);
+}
+
 std::optional<std::vector<std::vector<RreDerivative>>> rre_derivatives(const TracedDirection& at,
                                                                        const Cancellation* cancel) {
   const std::vector<RreParameter> parameters = parameters_of(at.design);
@@ -282,7 +299,7 @@ std::optional<std::vector<std::vector<RreDerivative>>> rre_derivatives(const Tra
     }
   });
   if (cancelled) return std::nullopt;
-  std::vector<std::vector<RreDerivative>> by_cone(at.design.acceptance_half_angle_deg.size());
+  std::vector<std::vector<RreDerivative>> by_cone(at.design.detector.acceptance_half_angle_deg.size());
   for (const std::vector<RreDerivative>& cones : by_parameter)
     for (std::size_t cone = 0; cone < cones.size(); ++cone) by_cone[cone].push_back(cones[cone]);
   return by_cone;

@@ -24,6 +24,15 @@ std::string_view parameter_name(RreParameter parameter);
 /// Those that a design has.
 std::vector<RreParameter> parameters_of(const Design& design);
 
+/// The keys of a design that are that parameter together; none of the incidence.
+std::vector<std::string> keys_of(RreParameter parameter, const Design& design);
+
+/// What it is in a design. \pre the design has it, and has a value of its own: not its material's index
+double value_of(const Design& design, RreParameter parameter);
+
+/// The design where it has another value. \pre likewise \throw InputError if there is no such design
+Design with(const Design& design, RreParameter parameter, double value);
+
 /// The change of RRE with one parameter, per unit of its name.
 struct RreDerivative {
   RreParameter parameter = RreParameter::incidence_deg;

@@ -41,7 +41,7 @@ std::vector<Direction> directions_of(const std::vector<OpticalModel>& models, co
 void finish(Direction& direction, const Design& design, const OpticalModel& model) {
   const auto& spectral = direction.spectral;
   if (std::any_of(spectral.begin(), spectral.end(), [](const auto& cones) { return cones.empty(); })) return;
-  if (!design.spectrum) {
+  if (!design.light.spectrum()) {
     direction.points = spectral.front();
     return;
   }
@@ -63,7 +63,7 @@ std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vect
   for (std::size_t d = 0; d < designs.size(); ++d) {
     const Design& design = designs[d];
     if (design.balls() || design.front) continue;
-    for (const double cone_deg : design.acceptance_half_angle_deg)
+    for (const double cone_deg : design.detector.acceptance_half_angle_deg)
       kinks.insert(kinks.end(), {-0.5 * cone_deg, 0.5 * cone_deg});
     if (!design.elements() || design.part().base || !design.needs_total_reflection()) continue;
     for (const double azimuth : request.azimuth_deg)

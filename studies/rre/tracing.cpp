@@ -35,7 +35,7 @@ constexpr double kHedge = 0.2;
 constexpr double kFirstLook = 30'000.0;
 
 raytrace::Illumination illumination_of(const RrePoint& at, const Design& design) {
-  return {Angle::from_deg(at.incidence_deg), Angle::from_deg(at.azimuth_deg), design.polarisation};
+  return {Angle::from_deg(at.incidence_deg), Angle::from_deg(at.azimuth_deg), design.light.polarisation};
 }
 
 /// The sampling of one wavelength. Rays are shared in proportion to the weights w: variances v / (w N) of the estimates
@@ -186,7 +186,7 @@ class DesignTracing {
 
  private:
   const SpectralOptics& light(std::size_t wavelength) const { return model_.spectral[wavelength]; }
-  const std::vector<double>& cones() const { return design_.acceptance_half_angle_deg; }
+  const std::vector<double>& cones() const { return design_.detector.acceptance_half_angle_deg; }
 
   raytrace::MonteCarlo::Engine ray_engine() const {
     using raytrace::MonteCarlo;

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "core/number_format.h"
-#include "core/toml_file.h"
+#include "core/schema/json.h"
 #include "geometry/faceted_solid.h"
 #include "geometry/lattice.h"
+#include "studies/design/design_format.h"
 #include "studies/design/design_reader.h"
 
 namespace retrace::studies {
@@ -29,9 +29,10 @@ geometry::Rectangle element_box(const geometry::Element& element) {
 /// A few elements of the design, and what was changed.
 Design few_elements(const Design& design, std::vector<std::string>& remarks) {
   Design small = design;
-  small.texture = {};
+  small.surface.texture = {};
+  if (small.light.spectrum() != nullptr) small.light.colour = Light{}.colour;
   if (design.mask()) remarks.push_back("the mask is not shown");
-  if (design.texture.model != FacetTexture::Model::smooth) remarks.push_back("facets are shown smooth");
+  if (design.surface.texture.model != FacetTexture::Model::smooth) remarks.push_back("facets are shown smooth");
   if (design.facet_planes()) remarks.push_back("facets are shown as designed");
   if (!design.elements()) return small;
   small.shape = ElementArray{design.part(), {}, {}};
@@ -133,47 +134,12 @@ std::vector<ScenePath> paths_from(const SceneLight& light, const OpticalModel& m
   return chosen;
 }
 
-using Json = nlohmann::ordered_json;
-
-std::string toml_value(const Json& value) {
-  if (value.is_string()) return toml_text(value.get<std::string>());
-  if (value.is_object()) {
-    std::string table = "{";
-    for (const auto& [key, item] : value.items())
-      table += (table.size() > 1 ? ", " : "") + toml_text(key) + " = " + toml_value(item);
-    return table + "}";
-  }
-  if (!value.is_array()) return value.is_number_float() ? shortest(value.get<double>()) : value.dump();
-  std::string list = "[";
-  for (const Json& item : value) list += (list.size() > 1 ? ", " : "") + toml_value(item);
-  return list + "]";
-}
-
 }  // namespace
 
-Design design_of_json(const Json& json) {
-  static const std::vector<std::pair<std::string, std::set<std::string>>> tables = {
-      {"element", {}},
-      {"array", {}},
-      {"base", {}},
-      {"part", {}},
-      {"front", {}},  // which make_scene() refuses: a plane one in its place would be another part
-      {"body", {}},
-      {"light", {"wavelength_nm"}},
-      {"detector", {}},
-      {"surface",
-       {"dihedral_error_arcmin", "facet_tilt_arcmin", "angle_error_sigma_arcmin", "angle_error_seed", "root_radius_um",
-        "root_chamfer_um", "rim_radius_um", "rim_chamfer_um", "edge_chords", "scratches"}},
-      {"idealisation", {}}};
-  std::string text;
-  for (const auto& [name, kept] : tables) {
-    if (!json.is_object() || !json.contains(name) || !json[name].is_object()) continue;
-    text += fmt::format("[{}]\n", name);
-    for (const auto& [key, value] : json[name].items())
-      if (kept.empty() || kept.contains(key)) text += fmt::format("{} = {}\n", toml_text(key), toml_value(value));
-  }
+Design design_of_json(const nlohmann::ordered_json& json) {
   const bool has_source = json.is_object() && json.contains("source") && json["source"].is_string();
-  return parse_design(text, has_source ? json["source"].get<std::string>() : std::string("result"));
+  return parse_design(schema::toml_of_json(design_format(), json),
+                      has_source ? json["source"].get<std::string>() : std::string("result"));
 }
 
 DesignScene make_scene(const Design& design, const std::vector<SceneLight>& lights) {
@@ -188,7 +154,7 @@ DesignScene make_scene(const Design& design, const std::vector<SceneLight>& ligh
   }
   scene.edges = sharp_edges(scene.mesh);
   for (const SceneLight& light : lights)
-    for (ScenePath& path : paths_from(light, model, design.acceptance_half_angle_deg.back()))
+    for (ScenePath& path : paths_from(light, model, design.detector.acceptance_half_angle_deg.back()))
       scene.paths.push_back(std::move(path));
   return scene;
 }

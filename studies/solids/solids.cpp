@@ -65,7 +65,7 @@ void add_warnings(Solid& solid) {
   const std::string name = solid.design.source_name();
   if (!solid.is_manifold)
     solid.warnings.push_back(name + ": the part touches itself along edges, which some programs take for open");
-  if (solid.design.texture.model != FacetTexture::Model::smooth)
+  if (solid.design.surface.texture.model != FacetTexture::Model::smooth)
     solid.warnings.push_back(name + ": the texture of the facets is left out: a solid's facets are plane");
 }
 

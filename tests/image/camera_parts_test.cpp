@@ -22,15 +22,15 @@ using studies::FacetTexture;
 Design rough_cubes(FacetTexture::Model model) {
   Design design;
   design.part() = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
-  design.refractive_index = kPmma;
-  design.texture.model = model;
+  design.substance.refractive_index = kPmma;
+  design.surface.texture.model = model;
   if (model == FacetTexture::Model::harvey_shack) {
-    design.texture.roughness_sq_nm = 25.0;
-    design.texture.correlation_length_um = 12.0;
+    design.surface.texture.roughness_sq_nm = 25.0;
+    design.surface.texture.correlation_length_um = 12.0;
   }
   if (model == FacetTexture::Model::microfacet) {
-    design.texture.waviness_sq_nm = 30.0;
-    design.texture.waviness_length_um = 60.0;
+    design.surface.texture.waviness_sq_nm = 30.0;
+    design.surface.texture.waviness_length_um = 60.0;
   }
   return design;
 }

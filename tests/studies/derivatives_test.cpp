@@ -22,8 +22,8 @@ Design design_of(const PartSpec& part, double index = kPmma) {
   Design design;
   design.source = "test.toml";
   design.part() = part;
-  design.refractive_index = index;
-  design.absorption_per_mm = 0.0;
+  design.substance.refractive_index = index;
+  design.substance.absorption_per_mm = 0.0;
   return design;
 }
 
@@ -89,7 +89,7 @@ TEST(RreDerivatives, IndexOfABrickArray) {
 
 TEST(RreDerivatives, IndexAndIncidenceOfAnIdealHoneycomb) {
   Design design = idealised(design_of(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0)));
-  design.acceptance_half_angle_deg = {0.01};
+  design.detector.acceptance_half_angle_deg = {0.01};
   for (const auto& [t, p] : {std::pair{10.0, 10.0}, {30.0, 10.0}, {30.0, 47.0}, {-50.0, 25.0}, {70.0, 100.0}}) {
     const RrePoint point = point_of(design, exactly(t, p));
     expect_derivative(point, RreParameter::incidence_deg,
@@ -104,7 +104,7 @@ TEST(RreDerivatives, IndexAndIncidenceOfAnIdealHoneycomb) {
 // share = 2 - (4/3) / cos^2 t' up to t' = 19.47 degrees, whatever the azimuth.
 TEST(RreDerivatives, IncidenceOfAnIdealTriangularArray) {
   Design design = idealised(design_of(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0)));
-  design.acceptance_half_angle_deg = {0.01};
+  design.detector.acceptance_half_angle_deg = {0.01};
   for (const double t : {0.0, 12.0, -12.0}) {
     const double c = cos_inner(t, kPmma);
     const double s = std::sin(t * kDeg);
@@ -119,7 +119,7 @@ TEST(RreDerivatives, IncidenceOfAnIdealTriangularArray) {
 TEST(RreDerivatives, ThicknessAndSizeOfAnAbsorbingPrism) {
   for (const double a : {0.01, 0.3, 2.0}) {
     Design design = idealised(design_of(single(RtpElement{0.6, 0.4, 90.0}, 0.7)));
-    design.absorption_per_mm = a;
+    design.substance.absorption_per_mm = a;
     const RrePoint point = point_of(design, exactly(0.0));
     EXPECT_NEAR(point.rre, std::exp(-a * (2.0 * 0.7 + 0.6)), 1e-12);
     expect_derivative(point, RreParameter::thickness_mm, -2.0 * a * point.rre);
@@ -131,10 +131,10 @@ TEST(RreDerivatives, ThicknessAndSizeOfAnAbsorbingPrism) {
 // Along the roof edge RRE is even in the incidence, and smooth until light leaves the cone.
 TEST(RreDerivatives, VanishesBySymmetry) {
   Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
-  design.absorption_per_mm = 0.05;
+  design.substance.absorption_per_mm = 0.05;
   expect_derivative(point_of(design, exactly(0.0, 90.0)), RreParameter::incidence_deg, 0.0);
   design = design_of(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7));
-  design.absorption_per_mm = 1.0;
+  design.substance.absorption_per_mm = 1.0;
   RreRequest request = exactly(0.0, 0.0);
   request.cutoff = 1e-8;
   EXPECT_NEAR(by(RreParameter::incidence_deg, point_of(design, request)).derivative.value, 0.0, 1e-5);
@@ -143,7 +143,7 @@ TEST(RreDerivatives, VanishesBySymmetry) {
 // Its own mirror image about x = 0, the array sends back as much from -t as from t.
 TEST(RreDerivatives, IsOddInTheIncidence) {
   Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
-  design.absorption_per_mm = 0.5;  // ends deep beams
+  design.substance.absorption_per_mm = 0.5;  // ends deep beams
   const RreDerivative from_right = by(RreParameter::incidence_deg, point_of(design, exactly(23.0)));
   const RreDerivative from_left = by(RreParameter::incidence_deg, point_of(design, exactly(-23.0)));
   ASSERT_EQ(from_right.left_out + from_left.left_out, "");
@@ -168,7 +168,7 @@ TEST(RreDerivatives, SizeAndThicknessAreInProportion) {
 TEST(RreDerivatives, ThicknessAboveCantedCubes) {
   for (const double cant_deg : {4.0, 12.0}) {
     Design design = idealised(design_of(infinite(HexagonalCube{1.0, {cant_deg, 25.0}}, Arrangement::honeycomb, 0.9)));
-    design.absorption_per_mm = 0.3;
+    design.substance.absorption_per_mm = 0.3;
     const RrePoint point = point_of(design, exactly(0.0));
     EXPECT_GT(point.rre, 0.2);
     expect_derivative(point, RreParameter::thickness_mm, -2.0 * 0.3 * point.rre);
@@ -280,18 +280,18 @@ TEST(RreDerivatives, CutOffThatHidesThemIsSaid) {
 
 TEST(RreDerivatives, AtTheEndsOfARangeOneSideServes) {
   Design design = idealised(design_of(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0), 1.0));
-  design.acceptance_half_angle_deg = {0.01};
+  design.detector.acceptance_half_angle_deg = {0.01};
   expect_derivative(point_of(design, exactly(15.0, 10.0)), RreParameter::refractive_index,
                     slope([](double n) { return honeycomb_rre(15.0, 10.0, n); }, 1.0));
-  design.refractive_index = kPmma;
+  design.substance.refractive_index = kPmma;
   expect_derivative(point_of(design, exactly(89.99, 100.0)), RreParameter::incidence_deg,
                     slope([](double t) { return honeycomb_rre(t, 100.0, kPmma); }, 89.99), 1e-6);
 }
 
 TEST(RreDerivatives, OneACone) {
   Design design = idealised(design_of(single(RtpElement{0.6, 0.4, 90.0}, 0.7)));
-  design.absorption_per_mm = 0.3;
-  design.acceptance_half_angle_deg = {0.5, 2.0};
+  design.substance.absorption_per_mm = 0.3;
+  design.detector.acceptance_half_angle_deg = {0.5, 2.0};
   const RreResult result = RreStudy({design, design}, exactly(0.0)).run();
   ASSERT_EQ(result.points.size(), 4U);
   for (const RrePoint& point : result.points) expect_derivative(point, RreParameter::thickness_mm, -0.6 * point.rre);

@@ -14,7 +14,9 @@ namespace retrace::studies::design_light_test {
 namespace {
 
 TEST(DesignReader, PolarisationIsAWordOrStokesParameters) {
-  const auto stokes = [](const std::vector<std::string>& overrides) { return set(overrides).polarisation.values(); };
+  const auto stokes = [](const std::vector<std::string>& overrides) {
+    return set(overrides).light.polarisation.values();
+  };
   using Values = std::array<double, 4>;
   EXPECT_EQ(stokes({"light.polarisation=unpolarised"}), (Values{1, 0, 0, 0}));
   EXPECT_EQ(stokes({"light.polarisation=linear"}), (Values{1, 1, 0, 0}));
@@ -66,18 +68,18 @@ TEST(DesignReader, WhatIsNoPolarisationIsRefused) {
 
 TEST(DesignReader, SpectrumIsANameAFileOrLines) {
   using Kind = LightSpectrum::Kind;
-  EXPECT_FALSE(set({}).spectrum);
-  const auto spectrum = [](const std::string& value) { return *set({"light.spectrum=" + value}).spectrum; };
+  EXPECT_FALSE(set({}).light.spectrum());
+  const auto spectrum = [](const std::string& value) { return *set({"light.spectrum=" + value}).light.spectrum(); };
   EXPECT_EQ(spectrum("A").kind, Kind::illuminant_a);
   EXPECT_EQ(spectrum("D65").kind, Kind::illuminant_d65);
   EXPECT_TRUE(spectrum("A").photopic);
-  EXPECT_FALSE(set({"light.spectrum=A", "light.weighting=radiant"}).spectrum->photopic);
-  EXPECT_TRUE(set({"light.spectrum=A", "light.weighting=photopic"}).spectrum->photopic);
+  EXPECT_FALSE(set({"light.spectrum=A", "light.weighting=radiant"}).light.spectrum()->photopic);
+  EXPECT_TRUE(set({"light.spectrum=A", "light.weighting=photopic"}).light.spectrum()->photopic);
   const LightSpectrum file = spectrum("\"lamps/led.csv\"");
   EXPECT_EQ(file.kind, Kind::file);
   EXPECT_EQ(file.name, "lamps/led.csv");
   EXPECT_EQ(file.file, "lamps/led.csv") << "of an override: from the working directory";
-  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"led.csv\"\n", "a/d.toml", {}).spectrum->file,
+  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"led.csv\"\n", "a/d.toml", {}).light.spectrum()->file,
             "a/led.csv");
   const LightSpectrum lines = spectrum("[[589.6, 1], [589.0, 2]]");
   EXPECT_EQ(lines.kind, Kind::lines);
@@ -96,7 +98,7 @@ TEST(DesignReader, AbsorptionIsANumberOrPairsOverTheWavelength) {
   ASSERT_EQ(red.absorption_by_wavelength.size(), 3U);
   EXPECT_EQ(red.absorption_by_wavelength[1].wavelength_nm, 600.0);
   EXPECT_EQ(red.absorption_by_wavelength[1].per_mm, 0.5);
-  EXPECT_TRUE(set({key + "=0.1"}).absorption_by_wavelength.empty());
+  EXPECT_TRUE(set({key + "=0.1"}).substance.absorption_by_wavelength.empty());
   const auto refused = [&](const std::string& value) {
     return complaint(with_line(11, "absorption_per_mm = " + value));
   };

@@ -44,12 +44,12 @@ TEST(DesignReader, MinimalDesignHasTheDefaults) {
   EXPECT_EQ(design.part().overlap_percent, 50.0);
   EXPECT_EQ(design.part().angle_errors, AngleErrors{});
   EXPECT_EQ(design.part().thickness_mm, 2.0);
-  EXPECT_EQ(design.material, "PMMA");
-  EXPECT_FALSE(design.refractive_index);
-  EXPECT_FALSE(design.absorption_per_mm);
-  EXPECT_EQ(design.wavelength_nm, 587.56);
-  EXPECT_EQ(design.polarisation.values(), raytrace::kUnpolarised.values());
-  EXPECT_EQ(design.acceptance_half_angle_deg, std::vector<double>{0.5});
+  EXPECT_EQ(design.substance.material, "PMMA");
+  EXPECT_FALSE(design.substance.refractive_index);
+  EXPECT_FALSE(design.substance.absorption_per_mm);
+  EXPECT_EQ(design.light.wavelength_nm, 587.56);
+  EXPECT_EQ(design.light.polarisation.values(), raytrace::kUnpolarised.values());
+  EXPECT_EQ(design.detector.acceptance_half_angle_deg, std::vector<double>{0.5});
   EXPECT_FALSE(design.idealisation.mirror_facets);
   EXPECT_FALSE(design.idealisation.lossless_entrance);
 }
@@ -108,15 +108,15 @@ entrance = "lossless"
   EXPECT_EQ(design.part().x_offset_mm, 1.0);
   EXPECT_EQ(design.part().y_offset_mm, 2.0);
   EXPECT_EQ(design.part().overlap_percent, 25.0);
-  EXPECT_EQ(design.material, "PC");
+  EXPECT_EQ(design.substance.material, "PC");
   EXPECT_EQ(design.where("body.material").line, 22);
   EXPECT_EQ(design.where("body.material").key, "body.material");
-  EXPECT_EQ(design.refractive_index, 1.58);
-  EXPECT_EQ(design.absorption_per_mm, 0.001);
-  EXPECT_EQ(design.wavelength_nm, 633.0);
-  EXPECT_NEAR(design.polarisation.q, 0.5, 1e-15);
+  EXPECT_EQ(design.substance.refractive_index, 1.58);
+  EXPECT_EQ(design.substance.absorption_per_mm, 0.001);
+  EXPECT_EQ(design.light.wavelength_nm, 633.0);
+  EXPECT_NEAR(design.light.polarisation.q, 0.5, 1e-15);
   EXPECT_EQ(design.part().angle_errors, (AngleErrors{{-0.5, 0.0, 0.0}, {1.0, 2.5, 0.0}}));
-  EXPECT_EQ(design.acceptance_half_angle_deg, (std::vector<double>{0.2, 0.5, 1.0}));
+  EXPECT_EQ(design.detector.acceptance_half_angle_deg, (std::vector<double>{0.2, 0.5, 1.0}));
   EXPECT_TRUE(design.idealisation.mirror_facets);
   EXPECT_TRUE(design.idealisation.lossless_entrance);
 }
@@ -301,7 +301,8 @@ TEST(DesignReader, OverridesTakePrecedenceAndTheLastOneWins) {
   EXPECT_EQ(design.title, "two words");
   EXPECT_EQ(set({"array.arrangement=\"aligned\""}).part().arrangement, Arrangement::aligned);
   EXPECT_EQ(set({"title=Part #3 \"new\" \\ old"}).title, "Part #3 \"new\" \\ old");
-  EXPECT_EQ(set({"detector.acceptance_half_angle_deg=[1,2]"}).acceptance_half_angle_deg, (std::vector<double>{1, 2}));
+  EXPECT_EQ(set({"detector.acceptance_half_angle_deg=[1,2]"}).detector.acceptance_half_angle_deg,
+            (std::vector<double>{1, 2}));
   EXPECT_EQ(set({"body={material=\"PC\"}"}).part().thickness_mm, 2.0);
   EXPECT_EQ(set({"body.material=PC"}).where("body.material").file, "--set body.material=PC");
 }

@@ -19,16 +19,16 @@ using geometry::AngleErrors;
 
 TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
   const std::string text = with_line(11, "[surface]\nheight_map = \"maps/m.gsf\"");
-  const FacetTexture texture = parse_design(text, "parts/d.toml").texture;
+  const FacetTexture texture = parse_design(text, "parts/d.toml").surface.texture;
   EXPECT_EQ(texture.model, FacetTexture::Model::height_map);
   EXPECT_EQ(texture.height_map, "maps/m.gsf");
   EXPECT_EQ(texture.height_map_file, fs::path("parts/maps/m.gsf"));
   EXPECT_EQ(texture.height_map_level_axis, HeightMapAxis::x);
   EXPECT_EQ(texture.height_map_form_degree, 1);
-  EXPECT_EQ(parse_design(text, "standard input").texture.height_map_file, fs::path("maps/m.gsf"));
+  EXPECT_EQ(parse_design(text, "standard input").surface.texture.height_map_file, fs::path("maps/m.gsf"));
   const std::vector<std::string> overrides = {"surface.height_map=m.txt", "surface.height_map_level_axis=y",
                                               "surface.height_map_form=poly3"};
-  const FacetTexture other = parse_design(text, "parts/d.toml", overrides).texture;
+  const FacetTexture other = parse_design(text, "parts/d.toml", overrides).surface.texture;
   EXPECT_EQ(other.height_map_file, fs::path("m.txt")) << "as typed, from the working directory";
   EXPECT_EQ(other.height_map_level_axis, HeightMapAxis::y);
   EXPECT_EQ(other.height_map_form_degree, 3);
@@ -143,7 +143,7 @@ TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
 TEST(DesignReader, TexturesOfFacetsAreRead) {
   using Model = FacetTexture::Model;
   const auto texture = [](const std::vector<std::string>& overrides) {
-    return parse_design(design_of(kRtp, "extent = \"infinite\""), "d", overrides).texture;
+    return parse_design(design_of(kRtp, "extent = \"infinite\""), "d", overrides).surface.texture;
   };
   const FacetTexture rough = texture({"surface.roughness_sq_nm=5", "surface.correlation_length_um=2"});
   EXPECT_EQ(rough.model, Model::harvey_shack) << "usual for a roughness";

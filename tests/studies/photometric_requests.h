@@ -25,7 +25,7 @@ inline TestProgramme r150(const std::string& part_class, const std::string& colo
 inline Design design_of(const geometry::PartSpec& part, bool is_ideal = false) {
   Design design;
   design.part() = part;
-  design.refractive_index = retrace::testing::kPmma;
+  design.substance.refractive_index = retrace::testing::kPmma;
   design.idealisation = {is_ideal, is_ideal};
   return design;
 }

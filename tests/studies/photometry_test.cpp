@@ -133,7 +133,7 @@ TEST(Limits, OnlyConfirmedAndCompleteProgrammesPass) {
 // sees between two.
 TEST(Photometry, ReceiverSeesOneOfSixSpots) {
   Design design = design_of(honeycomb(2.46), true);
-  design.refractive_index = 1.49;
+  design.substance.refractive_index = 1.49;
   PhotometryRequest request = request_of(points_at({0.2}, 1.0));
   request.apertures = {Angle::from_deg(0.1), Angle::from_deg(0.05)};
   const double source_sr = pi * std::pow(0.05 * kDeg, 2.0);

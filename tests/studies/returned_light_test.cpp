@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 Design design_of(const geometry::PartSpec& part, bool is_ideal = false) {
   Design design;
   design.part() = part;
-  design.refractive_index = kPmma;
+  design.substance.refractive_index = kPmma;
   design.idealisation = {is_ideal, is_ideal};
   return design;
 }

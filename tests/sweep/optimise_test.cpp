@@ -23,7 +23,7 @@ class Analytic : public Quantity {
   using Function = std::function<double(double x, double y)>;
   Analytic(std::string name, Function f) : Quantity(std::move(name)), f_(std::move(f)) {}
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
-    return Measured{f_(candidate.design().part().thickness_mm, candidate.design().back_index), 0.0};
+    return Measured{f_(candidate.design().part().thickness_mm, candidate.design().substance.back_index), 0.0};
   }
 
  private:
@@ -232,9 +232,9 @@ TEST(Optimise, WhatIsWrongIsSaidWithItsLine) {
       message("[optimize]\nscan = 5\n").starts_with("study.toml:13: optimize.maximize: either maximize or minimize"));
   EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\nscan = 2\n").substr(0, 36), "study.toml:15: optimize.scan: must b");
   EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\n"),
-            "study.toml:15: constraint.max: missing: a constraint has min, max or both");
+            "study.toml:15: constraint[0].max: missing: a constraint has min, max or both");
   EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\nmin = 2\nmax = 1\n"),
-            "study.toml:18: constraint.max: must be >= min (2), got 1");
+            "study.toml:18: constraint[0].max: must be >= min (2), got 1");
 }
 
 }  // namespace

@@ -249,18 +249,19 @@ TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
 }
 
 TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
-  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "study.toml:12: quantity.points: must be >= 1 and <= 3, got 4");
-  EXPECT_EQ(message("name = \"q\"\npoints = 1.5\n"), "study.toml:12: quantity.points: must be a whole number, got 1.5");
-  EXPECT_TRUE(message("name = \"q\"\npoints = \"all\"\n").starts_with("study.toml:12: quantity.points: must be "));
-  EXPECT_TRUE(message("name = \"q\"\nfigure = \"R\"\n").starts_with("study.toml:12: quantity.figure: must be "));
-  EXPECT_TRUE(message("name = \"q\"\ncolour = \"green\"\n").starts_with("study.toml:12: quantity.colour: must be "))
+  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "study.toml:12: quantity[0].points: must be >= 1 and <= 3, got 4");
+  EXPECT_EQ(message("name = \"q\"\npoints = 1.5\n"),
+            "study.toml:12: quantity[0].points: must be a whole number, got 1.5");
+  EXPECT_TRUE(message("name = \"q\"\npoints = \"all\"\n").starts_with("study.toml:12: quantity[0].points: must be "));
+  EXPECT_TRUE(message("name = \"q\"\nfigure = \"R\"\n").starts_with("study.toml:12: quantity[0].figure: must be "));
+  EXPECT_TRUE(message("name = \"q\"\ncolour = \"green\"\n").starts_with("study.toml:12: quantity[0].colour: must be "))
       << message("name = \"q\"\ncolour = \"green\"\n");
-  EXPECT_TRUE(message("name = \"q\"\ndye = \"no.csv\"\n").starts_with("study.toml:12: quantity.dye: must be "))
+  EXPECT_TRUE(message("name = \"q\"\ndye = \"no.csv\"\n").starts_with("study.toml:12: quantity[0].dye: must be "))
       << message("name = \"q\"\ndye = \"no.csv\"\n");
   EXPECT_TRUE(
-      message("name = \"q\"\nwindow_deg = 0.1\n").starts_with("study.toml:12: quantity.window_deg: must be >= 0.2"));
+      message("name = \"q\"\nwindow_deg = 0.1\n").starts_with("study.toml:12: quantity[0].window_deg: must be >= 0.2"));
   EXPECT_TRUE(message("name = \"q\"\nwidth = 1\n")
-                  .starts_with("study.toml:12: quantity.width: unknown key (known: area_cm2, class, "));
+                  .starts_with("study.toml:12: quantity[0].width: unknown key (known: area_cm2, class, "));
 }
 
 /// What cutting leaves comes into the design; what the study says itself counts more.
@@ -274,17 +275,17 @@ TEST(MachiningLoop, SurfacesAreThoseThatTheStrategyLeaves) {
     return make_candidate(study, study.parameters[0].values).design();
   };
   const Design drawn = design("edge_radius_um = 3\n");
-  EXPECT_EQ(drawn.texture.roughness_sq_nm, 0.0);
+  EXPECT_EQ(drawn.surface.texture.roughness_sq_nm, 0.0);
   EXPECT_EQ(drawn.part().edges.root_radius_mm, 0.0);
   const Design cut = design("edge_radius_um = 3\nsurface = \"as_cut\"\n");
   EXPECT_NEAR(cut.part().edges.root_radius_mm, 3e-3, 1e-15);
   // 48.9 nm as finished, of which 19.7 are roughness; Sq of Gaussian heights is sqrt(pi / 2) Sa.
-  EXPECT_NEAR(cut.texture.roughness_sq_nm, 19.7 * std::sqrt(M_PI / 2.0), 1e-9);
-  EXPECT_NEAR(cut.texture.waviness_sq_nm, 29.9 * std::sqrt(M_PI / 2.0), 1e-9);
+  EXPECT_NEAR(cut.surface.texture.roughness_sq_nm, 19.7 * std::sqrt(M_PI / 2.0), 1e-9);
+  EXPECT_NEAR(cut.surface.texture.waviness_sq_nm, 29.9 * std::sqrt(M_PI / 2.0), 1e-9);
   const Design rough = design("strategy = \"unidirectional\"\nsurface = \"as_cut\"\n");
-  EXPECT_GT(rough.texture.roughness_sq_nm, 5.0 * cut.texture.roughness_sq_nm);
+  EXPECT_GT(rough.surface.texture.roughness_sq_nm, 5.0 * cut.surface.texture.roughness_sq_nm);
   const std::vector<std::string> smoother = {"surface.roughness_sq_nm=7"};
-  EXPECT_EQ(design("surface = \"as_cut\"\n", smoother).texture.roughness_sq_nm, 7.0);
+  EXPECT_EQ(design("surface = \"as_cut\"\n", smoother).surface.texture.roughness_sq_nm, 7.0);
 }
 
 /// A process that leaves too much is excluded by what it leaves.

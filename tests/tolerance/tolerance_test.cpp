@@ -264,10 +264,10 @@ TEST(Tolerance, WhatIsWrongIsSaidWithItsLine) {
   };
   EXPECT_EQ(
       message("values = [1, 2]", ""),
-      "study.toml:2: parameter: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
+      "study.toml:2: parameter[0]: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
   EXPECT_EQ(
       message("from = 1\nto = 2", ""),
-      "study.toml:2: parameter: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
+      "study.toml:2: parameter[0]: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
   const auto keys = [&](const std::string& text) { return message(kNormals[0], text); };
   EXPECT_EQ(keys("[tolerance]\nsamples = 1\n"), "study.toml:21: tolerance.samples: must be >= 2 and <= 1e+06, got 1");
   EXPECT_EQ(keys("[tolerance]\nsamples = 2.5\n"), "study.toml:21: tolerance.samples: must be a whole number, got 2.5");
@@ -283,7 +283,7 @@ TEST(Tolerance, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"sobol\"\n"), "");
   EXPECT_EQ(
       keys("[[constraint]]\nquantity = \"g\"\nmax = 1\n"),
-      "study.toml:21: constraint.quantity: must be a quantity of the study (\"f\"), got \"g\"; did you mean \"f\"?");
+      "study.toml:21: constraint[0].quantity: must be a quantity of the study (\"f\"), got \"g\"; did you mean \"f\"?");
 }
 
 }  // namespace

@@ -25,12 +25,12 @@ std::string total_reflection(const Inspection& i) {
 }
 
 std::string wavelength_text(const Inspection& i) {
-  return i.design.spectrum ? fixed(i.wavelength_nm, 1) : shortest(i.wavelength_nm);
+  return i.design.light.spectrum() ? fixed(i.wavelength_nm, 1) : shortest(i.wavelength_nm);
 }
 
 /// What a spectrum spans, and what its wavelengths see; a line of its own.
 std::string spectrum_text(const Inspection& i) {
-  if (!i.design.spectrum) return {};
+  if (!i.design.light.spectrum()) return {};
   const SpectralOptics& first = i.light.front();
   const SpectralOptics& last = i.light.back();
   return fmt::format("  spectrum            {} wavelengths, {} to {} nm, index {} to {}\n", i.light.size(),
@@ -99,7 +99,7 @@ std::string ball_json(const Inspection& i) {
                                  {"largest_return_error_deg", balls.largest_return_error_deg},
                                  {"share_within_acceptance", balls.share_within_acceptance}};
   if (balls.focal_offset_mm) json["focal_offset_mm"] = *balls.focal_offset_mm;
-  if (i.design.spectrum) json["spectrum"] = spectrum_json(i.light);
+  if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
   json["version"] = kVersion;
   json["warnings"] = i.warnings;
   json["complete"] = true;
@@ -124,7 +124,7 @@ std::string inspect_json(const Inspection& i) {
     for (const char* key : {"elements_full", "elements_partial", "full_element_share"}) json.erase(key);
     json["thickness_mm"] = i.thickness_mm;
   }
-  if (i.design.spectrum) json["spectrum"] = spectrum_json(i.light);
+  if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (i.design.elements()) json["dead_zone_share"] = i.dead_zone_share;

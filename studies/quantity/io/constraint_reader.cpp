@@ -7,7 +7,6 @@
 
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/toml_file.h"
 
 namespace retrace::studies {
 namespace {
@@ -30,20 +29,18 @@ std::string checked_quantity(const Study& study, const std::string& name, const 
 }
 
 std::vector<Constraint> read_constraints(const Study& study) {
-  TomlTable document = parse_toml(study.text, study.source, kShortTomlBytes);
+  const schema::Document& document = *study.document;
   std::vector<Constraint> constraints;
-  for (TomlTable& table : document.tables("constraint", "one or more tables [[constraint]]")) {
+  for (std::size_t k = 0; k < document.count("constraint"); ++k) {
+    const std::string at = schema::path_of_entry("constraint", k);
     Constraint constraint;
-    const std::optional<std::string> name = table.text("quantity");
-    if (!name) table.fail("quantity", "missing, must be a quantity of the study");
-    constraint.quantity = checked_quantity(study, *name, table.where("quantity"));
-    constraint.least = table.number("min");
-    constraint.most = table.number("max");
-    if (!constraint.least && !constraint.most) table.fail("max", "missing: a constraint has min, max or both");
+    constraint.quantity = checked_quantity(study, document.text(at + ".quantity"), document.where(at + ".quantity"));
+    constraint.least = document.number_if(at + ".min");
+    constraint.most = document.number_if(at + ".max");
+    if (!constraint.least && !constraint.most) document.fail(at + ".max", "missing: a constraint has min, max or both");
     if (constraint.least && constraint.most && *constraint.least > *constraint.most)
-      table.fail("max",
-                 fmt::format("must be >= min ({}), got {}", shortest(*constraint.least), shortest(*constraint.most)));
-    table.finish();
+      document.fail(at + ".max", fmt::format("must be >= min ({}), got {}", shortest(*constraint.least),
+                                             shortest(*constraint.most)));
     constraints.push_back(constraint);
   }
   return constraints;

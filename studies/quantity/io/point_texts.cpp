@@ -48,7 +48,7 @@ std::vector<std::string> overrides_for(std::span<const std::string> overrides, b
 }
 
 PointTexts texts_at(const Study& study, std::span<const ParameterValue> values) {
-  PointTexts texts{study.design_file, overrides_for(study.overrides, false), overrides_for(study.overrides, true)};
+  PointTexts texts{study.design_file, overrides_for(study.overrides, false), {}};
   for (std::size_t k = 0; k < study.parameters.size(); ++k)
     for (const std::string& key : study.parameters[k].keys) {
       if (key == "design")

@@ -23,7 +23,7 @@ std::vector<std::string> overrides_for(std::span<const std::string> overrides, b
 struct PointTexts {
   std::string design;                   ///< file
   std::vector<std::string> for_design;  ///< overrides
-  std::vector<std::string> for_study;   ///< likewise
+  std::vector<std::string> for_study;   ///< overrides of its document, beside those that it was read with
 };
 
 /// \param values one for each parameter

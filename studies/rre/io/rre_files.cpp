@@ -39,7 +39,7 @@ Json by_wavelength_json(const std::vector<SpectralRre>& points) {
 /// The design as it was read, and the wavelengths that stood for its spectrum.
 Json design_json(const RreResult& result, std::size_t d) {
   Json json = to_json(result.designs[d]);
-  if (result.designs[d].spectrum) json["spectrum"] = spectrum_json(result.light[d]);
+  if (result.designs[d].light.spectrum()) json["spectrum"] = spectrum_json(result.light[d]);
   return json;
 }
 
@@ -50,7 +50,7 @@ std::string csv_number(double value) {
 
 bool has_several_cones(const RreResult& result) {
   for (const Design& design : result.designs)
-    if (design.acceptance_half_angle_deg.size() > 1) return true;
+    if (design.detector.acceptance_half_angle_deg.size() > 1) return true;
   return false;
 }
 

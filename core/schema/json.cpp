@@ -1,0 +1,76 @@
+#include "core/schema/json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/number_format.h"
+#include "core/overloaded.h"
+#include "core/toml_file.h"
+
+namespace retrace::schema {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json value_json(const Kind& kind, const Value& value) {
+  if (std::holds_alternative<Whole>(kind)) return static_cast<std::int64_t>(std::get<double>(value));
+  return std::visit(Overloaded{[](std::monostate) { return Json(); },
+                               [](const Named& named) {
+                                 Json json = Json::object();
+                                 for (const auto& [name, each] : named)
+                                   std::visit([&, &key = name](const auto& v) { json[key] = v; }, each);
+                                 return json;
+                               },
+                               [](const auto& each) { return Json(each); }},
+                    value);
+}
+
+Json table_json(const Document& document, const Table& table, const std::string& path) {
+  Json json = Json::object();
+  for (const Row& row : table.rows)
+    if (const std::string key = path_in(path, row.key); document.has(key) && document.row(key) == &row)
+      json[row.key] = value_json(row.kind, document.value(key));
+  for (const Table& inner : table.tables) {
+    const std::string name = path_in(path, inner.name);
+    if (!document.has(name)) continue;
+    if (inner.presence != Presence::list) json[inner.name] = table_json(document, inner, name);
+    for (std::size_t k = 0; inner.presence == Presence::list && k < document.count(name); ++k)
+      json[inner.name].push_back(table_json(document, inner, path_of_entry(name, k)));
+  }
+  return json;
+}
+
+std::string toml_value(const Json& value) {
+  if (value.is_string()) return toml_text(value.get<std::string>());
+  if (value.is_number_float()) return shortest(value.get<double>());
+  if (!value.is_array() && !value.is_object()) return value.dump();
+  std::string text;
+  for (const auto& [key, item] : value.items())
+    text += (text.empty() ? "" : ", ") + (value.is_object() ? toml_text(key) + " = " : "") + toml_value(item);
+  return value.is_object() ? fmt::format("{{{}}}", text) : fmt::format("[{}]", text);
+}
+
+}  // namespace
+
+Json to_json(const Document& document) {
+  return table_json(document, document.table(), "");
+}
+
+std::string toml_of_json(const Format& format, const Json& json) {
+  std::string keys = fmt::format("schema = {}\n", toml_text(format.id));
+  std::string tables;
+  if (!json.is_object()) return keys;
+  for (const auto& [name, value] : json.items()) {
+    const bool is_known = std::ranges::count(format.root.rows, name, &Row::key) > 0 ||
+                          std::ranges::count(format.root.tables, name, &Table::name) > 0;
+    if (is_known && !value.is_object()) keys += fmt::format("{} = {}\n", name, toml_value(value));
+    if (!is_known || !value.is_object()) continue;
+    tables += fmt::format("[{}]\n", name);
+    for (const auto& [key, item] : value.items()) tables += fmt::format("{} = {}\n", toml_text(key), toml_value(item));
+  }
+  return keys + tables;
+}
+
+}  // namespace retrace::schema
