@@ -3,26 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <unordered_set>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace retrace::app {
 namespace {
 
 constexpr std::size_t kMostValues = 100000;
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = text.find(separator, begin);
-    parts.push_back(text.substr(begin, end - begin));
-    if (end == std::string_view::npos) return parts;
-    begin = end + 1;
-  }
-}
 
 class ListReader {
  public:
@@ -53,14 +43,9 @@ class ListReader {
   std::string_view ranges() const { return may_choose_ ? "start:stop:step or start:stop:auto" : "start:stop:step"; }
 
   double number(std::string_view text, std::string_view item) const {
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-      fail(fmt::format("must be numbers a,b,c or ranges {}, got \"{}\"", ranges(), item));
-    return value;
+    const std::optional<double> value = number_in(text);
+    if (!value) fail(fmt::format("must be numbers a,b,c or ranges {}, got \"{}\"", ranges(), item));
+    return *value;
   }
 
   void add_range(double start, double stop, double step, std::string_view item) {

@@ -7,23 +7,20 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.h"
+
 namespace retrace {
 namespace {
 
 /// Length in bytes of the printable UTF-8 character that `text` starts with; 0 if it starts with anything else.
 std::size_t printable_character(std::string_view text) {
+  const std::size_t length = utf8_length(text);
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned lead = byte(0);
-  if (lead < 0x80) return lead >= 0x20 && lead != 0x7f ? 1 : 0;
-  const std::size_t length = lead >= 0xf5 ? 0 : lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : lead >= 0xc2 ? 2 : 0;
-  if (length == 0 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  const bool overlong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
-  const bool outside = (lead == 0xed && byte(1) >= 0xa0) || (lead == 0xf4 && byte(1) >= 0x90);
-  const bool c1_control = lead == 0xc2 && byte(1) < 0xa0;
-  const bool line_separator = lead == 0xe2 && byte(1) == 0x80 && (byte(2) == 0xa8 || byte(2) == 0xa9);
-  return overlong || outside || c1_control || line_separator ? 0 : length;
+  const bool is_control =
+      length == 1 ? byte(0) < 0x20 || byte(0) == 0x7f : length == 2 && byte(0) == 0xc2 && byte(1) < 0xa0;
+  const bool is_line_separator =
+      length == 3 && byte(0) == 0xe2 && byte(1) == 0x80 && (byte(2) == 0xa8 || byte(2) == 0xa9);
+  return is_control || is_line_separator ? 0 : length;
 }
 
 std::string escaped(char c) {

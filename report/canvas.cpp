@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/text.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 // Fontconfig keeps what it learned of the fonts until the process ends; the leak checker asks here what to pass over.
@@ -49,26 +50,11 @@ cairo_status_t append(void* closure, const unsigned char* data, unsigned int len
   }
 }
 
-/// Bytes of the UTF-8 sequence at the start of `text`, or 0 if it is broken (overlong and surrogate forms included).
-std::size_t sequence_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
-  const std::uint8_t lead = byte(0);
-  if (lead < 0x80) return 1;
-  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  const std::uint8_t second = byte(1);
-  if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second > 0x9f)) return 0;
-  if ((lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second > 0x8f)) return 0;
-  return length;
-}
-
 /// The characters of valid UTF-8.
 std::vector<std::string> characters(std::string_view text) {
   std::vector<std::string> result;
   while (!text.empty()) {
-    const std::size_t length = std::max<std::size_t>(1, sequence_length(text));
+    const std::size_t length = std::max<std::size_t>(1, utf8_length(text));
     result.emplace_back(text.substr(0, length));
     text.remove_prefix(length);
   }
@@ -108,7 +94,7 @@ std::string with_own_image_ids(std::string svg) {
 std::string printable(std::string_view text) {
   std::string result;
   while (!text.empty()) {
-    const std::size_t length = sequence_length(text);
+    const std::size_t length = utf8_length(text);
     if (length == 0) {
       result += "\ufffd";
     } else if (length == 1 && (static_cast<unsigned char>(text[0]) < 0x20 || text[0] == 0x7f)) {

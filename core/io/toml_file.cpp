@@ -11,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/text.h"
 
 namespace retrace {
 namespace {
@@ -47,12 +48,6 @@ toml::table parse_file(std::string_view text, const std::string& file) {
     throw InputError({file, static_cast<int>(error.source().begin.line), ""},
                      "not valid TOML: " + printable(error.description(), 300));
   }
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 /// `key = value` as TOML; where that fails, with the value as a bare string.

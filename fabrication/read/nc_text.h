@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "fabrication/read/nc_program.h"
 
 namespace retrace::fabrication {
@@ -51,9 +52,6 @@ NcWord take_word(std::string_view& text, const NcLines& lines);
 
 /// `text` without blanks and tabs, in capitals.
 std::string without_blanks(std::string_view text);
-
-/// `text` without blanks at both ends.
-std::string_view trimmed(std::string_view text);
 
 bool starts_with_word(std::string_view text, std::string_view word);
 

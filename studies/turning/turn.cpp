@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 
 #include "core/atomic_file.h"
+#include "core/csv.h"
 #include "core/number_format.h"
 #include "fabrication/post/post.h"
 #include "fabrication/read/nc_motion.h"
@@ -45,24 +45,20 @@ void write_programs(TurningResult& r) {
     r.programs.push_back(
         {std::string(dialect.name), "part" + std::string(dialect.ending), fabrication::nc_text(program, dialect.name)});
   if (r.part.path.servo != turning::Servo::fast) return;
-  r.servo_csv = "c_deg,stroke_mm\n";
+  CsvWriter csv("c_deg,stroke_mm");
   for (const turning::PathPoint& p : r.passes.front())
-    r.servo_csv += fmt::format("{:.7f},{:.6f}\n", p.c_deg, p.servo_mm);
+    csv.row(fmt::format("{:.7f}", p.c_deg), fmt::format("{:.6f}", p.servo_mm));
+  r.servo_csv = csv.text();
 }
 
 /// Adds the strokes of the servo's file to the heights that the slide's program reaches.
 void add_strokes(const std::string& csv, std::vector<turning::CutPass>& cuts, std::vector<std::string>& findings) {
   if (csv.empty()) return;
-  std::size_t i = 0;
-  std::size_t line = csv.find('\n') + 1;
-  while (line < csv.size() && i < cuts.front().z_mm.size()) {
-    const std::size_t comma = csv.find(',', line);
-    double stroke = 0.0;
-    std::from_chars(csv.data() + comma + 1, csv.data() + csv.size(), stroke);
-    cuts.front().z_mm[i++] += stroke;
-    line = csv.find('\n', comma) + 1;
-  }
-  if (i != cuts.front().z_mm.size() || line < csv.size())
+  std::vector<double>& z_mm = cuts.front().z_mm;
+  CsvReader strokes(csv, "servo.csv", csv.size());
+  while (strokes.next())
+    if (strokes.rows() <= z_mm.size()) z_mm[strokes.rows() - 1] += strokes.number(1);
+  if (strokes.rows() != z_mm.size())
     findings.push_back("the servo's file does not have one stroke for every point of the program");
 }
 

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/message_text.h"
+#include "core/text.h"
 #include "surface_models/io/height_map_reader.h"
 
 namespace retrace::surface_models {
@@ -41,11 +43,6 @@ std::optional<double> nm_per(std::string_view unit);
 /// The units as messages name them.
 inline constexpr std::string_view kUnits = "m, mm, um, nm or pm";
 
-/// A finite number with a decimal point; nothing for other text.
-std::optional<double> number_in(std::string_view text);
-/// Text between quotes, fit for a one-line message and no longer than a word may be.
-std::string in_quotes(std::string_view text);
-std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);
 
 /// Refuses sizes that no map has. \param line where they are given, 0 if unknown

@@ -94,11 +94,11 @@ TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
 
 TEST(BadInput, WrongFilesOfSpectraAreRefusedWithFileLineAndColumn) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"", ": must begin with the header wavelength_nm,power"},
+      {"", ": must have the header wavelength_nm,power"},
       {"wavelength_nm,power\n", ": must hold at least two wavelengths, got 0"},
       {"400,1\n500,1\n", ":1: must be the header"},
-      {"wavelength_nm,power\n400,1\n500,nan\n", ":3: power: must be a finite number, got \"nan\""},
-      {"wavelength_nm,power\n400,1\n500,-1\n", ":3: power: must be >= 0, got -1"},
+      {"wavelength_nm,power\n400,1\n500,nan\n", ":3: power: must be a number >= 0, got \"nan\""},
+      {"wavelength_nm,power\n400,1\n500,-1\n", ":3: power: must be a number >= 0, got \"-1\""},
       {"wavelength_nm,power\n500,1\n400,1\n", ":3: wavelength_nm: must ascend, got 400 after 500"},
       {"wavelength_nm,power\n400,0\n500,0\n", ""},   // the file is sound, but all of it is dark
       {"wavelength_nm,power\n900,1\n1000,1\n", ""},  // or unseen

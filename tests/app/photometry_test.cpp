@@ -184,7 +184,7 @@ TEST(Photometry, RefusesBadInputInOneLine) {
       {also("--window-deg=1"), "r150:8: observation_deg: must lie within the far field that is computed"},
       {also("--rotation=a"), "--rotation: "},
       {also("--dye=blue"), "--dye: must be none, red, amber or a file that exists, got \"blue\""},
-      {also("--dye=dye.csv"), "dye.csv:2: absorption_per_mm: must be >= 0"},
+      {also("--dye=dye.csv"), "dye.csv:2: absorption_per_mm: must be a number >= 0"},
       {also("--dye=short.csv"), "short.csv: absorption_per_mm: must reach all wavelengths"},
       {also("--light=sun"), "--light: must be a or design, got \"sun\""},
       {also("--engine=cell"), "--engine: must be auto, exact, montecarlo or embree, got cell"},

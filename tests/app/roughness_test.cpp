@@ -69,7 +69,7 @@ TEST(Roughness, RefusesBadInputInOneLine) {
   folder.write("bad.csv", "facet,sa_nm\nF1,smooth\n");
   const Arguments before = folder.names();
   const std::vector<Refused> cases = {
-      {{"d.toml", "--facets", "bad.csv"}, "bad.csv:2: sa_nm: must be a number from 0 to 1e+05, got \"smooth\""},
+      {{"d.toml", "--facets", "bad.csv"}, "bad.csv:2: sa_nm: must be a number >= 0 and <= 1e+05, got \"smooth\""},
       {{"d.toml", "--facets", "none.csv"}, "none.csv: cannot be read"},
       {{"d.toml", "--sa", "-3"}, "--sa: must be >= 0"},
       {{"d.toml", "--sa", "x"}, "--sa: "},

@@ -133,9 +133,11 @@ TEST(Forces, BadTablesAreRefused) {
     }
     return "accepted";
   };
-  const std::string header = "experiment,strategy,configuration,doc_um,width_mm,event,time_s,fx_n,fy_n,fz_n\n";
-  EXPECT_EQ(refusal(""), "f.csv: must hold forces, is empty");
-  EXPECT_EQ(refusal(header + "1,a,b,5,1,root,,,\n"), "f.csv:2: must have 10 columns, got 9");
+  const std::string columns = "experiment,strategy,configuration,doc_um,width_mm,event,time_s,fx_n,fy_n,fz_n";
+  const std::string header = columns + "\n";
+  EXPECT_EQ(refusal(""), "f.csv: must have the header " + columns);
+  EXPECT_EQ(refusal(header), "f.csv: must hold forces, is empty");
+  EXPECT_EQ(refusal(header + "1,a,b,5,1,root,,,\n"), "f.csv:2: must have the 10 values of the header, got 9");
   EXPECT_EQ(refusal(header + "1,a,b,0,1,root,,,,1\n"), "f.csv:2: doc_um: must be a number > 0, got \"0\"");
   EXPECT_EQ(refusal(header + "1,a,b,5,1,root,,,,x\n"), "f.csv:2: fz_n: must be a number or empty, got \"x\"");
   EXPECT_THROW(calibrate(parse_forces(header + "1,a,b,5,1,root,,,,1\n", "f.csv")), InputError);

@@ -76,18 +76,16 @@ TEST(FacetTable, ShippedPrismFacetsGiveThePublishedMeanAndDeviation) {
 
 TEST(FacetTable, SaysWhatIsWrongAndWhere) {
   const std::string empty = "must have a line of column names and one line for each facet";
-  EXPECT_EQ(complaint(""), "t.csv: " + empty);
-  EXPECT_EQ(complaint("# only words\n"), "t.csv: " + empty);
+  EXPECT_EQ(complaint("# only words\n"), "t.csv: must have a line of column names");
   EXPECT_EQ(complaint("facet,sa_nm\n"), "t.csv: " + empty);
-  EXPECT_EQ(complaint("# x\nfacet,sa\nF1,3\n"),
-            "t.csv:2: the line of column names must hold roughness_sa_nm or sa_nm, got \"facet\"");
-  EXPECT_EQ(complaint("sa_nm,sa_nm\n1,2\n"), "t.csv:1: sa_nm: stands twice in the heading");
-  EXPECT_EQ(complaint("facet,sa_nm\nF1,3\nF2\n"), "t.csv:3: every line must have the 2 fields of the heading, got 1");
+  EXPECT_EQ(complaint("# x\nfacet,sa\nF1,3\n"), "t.csv:2: must have a column roughness_sa_nm or sa_nm");
+  EXPECT_EQ(complaint("sa_nm,sa_nm\n1,2\n"), "t.csv:1: sa_nm: stands twice in the header");
+  EXPECT_EQ(complaint("facet,sa_nm\nF1,3\nF2\n"), "t.csv:3: must have the 2 values of the header, got 1");
   for (const std::string value : {"-1", "nan", "inf", "1e6", "3 nm", ""})
     EXPECT_EQ(complaint("facet,sa_nm\nF1," + value + "\n"),
-              "t.csv:2: sa_nm: must be a number from 0 to 1e+05, got \"" + value + "\"");
+              "t.csv:2: sa_nm: must be a number >= 0 and <= 1e+05, got \"" + value + "\"");
   EXPECT_EQ(complaint("process,roughness_sa_nm,waviness_sa_nm\npin,1,x\n"),
-            "t.csv:2: waviness_sa_nm: must be a number from 0 to 1e+05, got \"x\"");
+            "t.csv:2: waviness_sa_nm: must be a number >= 0 and <= 1e+05, got \"x\"");
   EXPECT_EQ(complaint("process,sa_nm\n,1\n"), "t.csv:2: process: must name a process, got \"\"");
   EXPECT_TRUE(complaint("sa_nm\n" + std::string(1 << 20, ' ')).starts_with("t.csv: must have at most 1048576 bytes"));
 }

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace retrace {
+
+/// `text` without blanks, tabs and carriage returns at its ends.
+std::string_view trimmed(std::string_view text);
+
+/// What stands between separators, trimmed; at least one part.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+/// The finite number that `text` is, with a decimal point whatever the locale; none if it is anything else.
+std::optional<double> number_in(std::string_view text);
+
+/// Bytes of the UTF-8 character that `text` begins with; 0 if they are none (overlong and surrogate forms included).
+/// \pre text is not empty
+std::size_t utf8_length(std::string_view text);
+
+}  // namespace retrace
