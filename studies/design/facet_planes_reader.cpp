@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "core/angle.h"
-#include "core/atomic_file.h"
+#include "core/csv.h"
 #include "core/error.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
@@ -23,20 +22,13 @@ using geometry::ElementPlanes;
 using geometry::HeightPlane;
 using geometry::Vec2;
 
-constexpr std::string_view kHeader = "x_mm,y_mm,facet,height_mm,x_slope,y_slope";
 constexpr std::array<std::string_view, 6> kColumns = {"x_mm", "y_mm", "facet", "height_mm", "x_slope", "y_slope"};
-constexpr double kMostValue = 1e6;
+constexpr NumberRange kValue{.low = -1e6, .high = 1e6};
 /// Flares are the facets behind the three of an element.
 constexpr std::size_t kFlares = 3;
 constexpr std::size_t kCaps = 6;
 constexpr double kMostTurnDeg = 5.0;
 constexpr double kMostHeightShare = 0.1;
-
-std::string_view without_blanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 /// One line of the table.
 struct Row {
@@ -57,25 +49,12 @@ class Reader {
   }
 
   geometry::FacetPlanes read(std::string_view text) {
-    require_short_text(text, file_, kMostFacetPlanesBytes);
-    int line = 0;
-    bool has_header = false;
-    for (std::size_t begin = 0; begin < text.size();) {
-      const std::size_t end = std::min(text.find('\n', begin), text.size());
-      const std::string_view content = without_blanks(text.substr(begin, end - begin));
-      ++line;
-      begin = end + 1;
-      if (content.empty() || content.starts_with('#')) continue;
-      if (!has_header && content != kHeader) fail(line, "", fmt::format("must be the header {}", kHeader));
-      if (has_header) take(row_of(content, line));
-      has_header = true;
-    }
+    CsvReader table(text, file_, kMostFacetPlanesBytes, kColumns);
+    while (table.next()) take(row_of(table));
     if (!pending_.empty())
       fail(pending_.back().line, "",
            fmt::format("must be followed by the other {} of its element", is_prism() ? "facet" : "facets"));
-    if (!has_element_)
-      fail(0, "",
-           fmt::format("must have the header {} and {} lines for each element", kHeader, is_prism() ? "two" : "three"));
+    if (!has_element_) fail(0, "", fmt::format("must have {} lines for each element", is_prism() ? "two" : "three"));
     try {
       return {std::move(elements_), spacing_mm_};
     } catch (const InputError& error) {
@@ -88,38 +67,20 @@ class Reader {
     throw InputError({file_, line, std::string(column)}, text);
   }
 
-  double number(std::string_view text, std::size_t column, int line) const {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !(std::abs(value) <= kMostValue))
-      fail(line, kColumns[column],
-           fmt::format("must be a number from -{0} to {0}, got {1}", shortest(kMostValue), in_quotes(text)));
-    return value;
-  }
-
-  Row row_of(std::string_view content, int line) const {
+  Row row_of(const CsvReader& table) const {
     std::array<double, kColumns.size()> values{};
-    std::size_t column = 0;
-    for (std::size_t begin = 0; begin <= content.size(); ++column) {
-      const std::size_t comma = std::min(content.find(',', begin), content.size());
-      if (column < values.size())
-        values[column] = number(without_blanks(content.substr(begin, comma - begin)), column, line);
-      begin = comma + 1;
-    }
-    if (column != values.size())
-      fail(line, "", fmt::format("must have the {} fields of the heading, got {}", values.size(), column));
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = table.number(k, kValue);
     if (!is_facet(values[2]))
-      fail(line, "facet",
-           fmt::format("must be {}, got {}",
-                       is_prism()       ? "1 or 2"
-                       : is_hexagonal() ? "1 to 9"
-                                        : "1 to 3 or 7 to 9",
-                       shortest(values[2])));
+      table.fail(2, fmt::format("must be {}, got {}",
+                                is_prism()       ? "1 or 2"
+                                : is_hexagonal() ? "1 to 9"
+                                                 : "1 to 3 or 7 to 9",
+                                shortest(values[2])));
     Row row;
     row.centre_mm = {values[0], values[1]};
     row.facet = static_cast<std::size_t>(values[2]) - 1;
     row.plane = {values[3], {values[4], values[5]}};
-    row.line = line;
+    row.line = table.line();
     check(row);
     return row;
   }
@@ -236,11 +197,10 @@ geometry::FacetPlanes parse_facet_planes(std::string_view text, const std::strin
 }
 
 std::string facet_planes_text(const geometry::FacetPlanes& planes) {
-  std::string text = std::string(kHeader) + "\n";
+  CsvWriter csv("x_mm,y_mm,facet,height_mm,x_slope,y_slope");
   for (const ElementPlanes& element : planes.elements()) {
     const auto put = [&](std::size_t facet, const HeightPlane& plane) {
-      text += fmt::format("{},{},{},{},{},{}\n", shortest(element.centre_mm.x()), shortest(element.centre_mm.y()),
-                          facet, shortest(plane.height_mm), shortest(plane.slope.x()), shortest(plane.slope.y()));
+      csv.row(element.centre_mm.x(), element.centre_mm.y(), facet, plane.height_mm, plane.slope.x(), plane.slope.y());
     };
     for (std::size_t k = 0; k < element.planes.size(); ++k) put(k + 1, element.planes[k]);
     for (std::size_t k = 0; k < element.flares.size(); ++k)
@@ -248,7 +208,7 @@ std::string facet_planes_text(const geometry::FacetPlanes& planes) {
     for (std::size_t k = 0; k < element.caps.size(); ++k)
       if (element.caps[k]) put(kCaps + k + 1, *element.caps[k]);
   }
-  return text;
+  return csv.text();
 }
 
 }  // namespace retrace::studies
