@@ -6,7 +6,6 @@
 
 #include "app/commands.h"
 #include "app/output.h"
-#include "app/text_result.h"
 #include "core/message_text.h"
 
 namespace retrace::app {
@@ -309,8 +308,7 @@ std::vector<Argument> arguments(CompletionOptions& options) {
 
 ExitCode run(const CompletionOptions& options, const CommonOptions& common) {
   for (const auto& [name, script] : kShells)
-    if (name == options.shell)
-      return write_text(common, {{"schema", "retrace.completion/1"}, {"shell", options.shell}}, script());
+    if (name == options.shell) return write_text(common, "retrace.completion/1", {{"shell", options.shell}}, script());
   throw InputError(fmt::format("completion: must be bash, zsh or fish, got {}", in_quotes(options.shell)));
 }
 

@@ -2,7 +2,6 @@
 
 #include "app/commands.h"
 #include "app/output.h"
-#include "app/text_result.h"
 #include "studies/design/init_templates.h"
 
 namespace retrace::app {
@@ -27,7 +26,7 @@ ExitCode run(const InitOptions& options, const CommonOptions& common) {
   if (!common.out.empty() &&
       std::filesystem::symlink_status(common.out).type() != std::filesystem::file_type::not_found)
     throw OutputError(common.out + ": is there already; not overwritten");
-  return write_text(common, {{"schema", "retrace.template/1"}, {"kind", options.kind}}, text);
+  return write_text(common, "retrace.template/1", {{"kind", options.kind}}, text);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "core/data_directory.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "materials/io/material_library.h"
@@ -25,14 +24,11 @@ constexpr double kShownWavelengthNm = 587.56;
 
 using Json = nlohmann::ordered_json;
 
-/// Ends a list: what every document carries, and where it goes.
+/// Writes a list as the document of that name.
 ExitCode write_list(const CommonOptions& common, const std::string& what, Json json, const std::string& text) {
-  json["version"] = kVersion;
-  json["warnings"] = Json::array();
-  json["complete"] = true;
   const ResultFiles files(common, {}, what + ".json");
   files.prepare();
-  files.write(to_text(json), text);
+  files.write(result_text("retrace." + what + "/1", std::move(json), {}), text);
   return ExitCode::done;
 }
 
@@ -49,7 +45,7 @@ Json direction_json(const fabrication::Sourced<geometry::Vec3>& item) {
 
 ExitCode list_machines(const CommonOptions& common) {
   std::string text = fmt::format("{:<10} {:<10} {:<10} {}\n", "name", "A or B", "C axis", "title");
-  Json json = {{"schema", "retrace.machines/1"}, {"machines", Json::array()}};
+  Json json = {{"machines", Json::array()}};
   for (const fabrication::Machine& m : fabrication::shipped_machines()) {
     const auto basis = [](const auto& item) {
       return item.basis == fabrication::Basis::measured ? "measured" : "assumed";
@@ -65,7 +61,7 @@ ExitCode list_machines(const CommonOptions& common) {
 
 ExitCode list_processes(const CommonOptions& common) {
   std::string text = fmt::format("{:<16} {:<13} {:<16} {}\n", "name", "roughing (um)", "finishing (um)", "source");
-  Json json = {{"schema", "retrace.processes/1"}, {"processes", Json::array()}};
+  Json json = {{"processes", Json::array()}};
   for (const fabrication::Process& p : fabrication::shipped_processes()) {
     text += fmt::format("{:<16} {:<13} {:<16} {}\n", p.name, shortest(p.roughing_depth_um),
                         fmt::format("{} x {}", p.finishing_cuts, shortest(p.finishing_depth_um)), p.source);
@@ -87,7 +83,7 @@ ExitCode list_processes(const CommonOptions& common) {
 ExitCode list_materials(const CommonOptions& common) {
   const auto library = materials::MaterialLibrary::shipped();
   std::string text = fmt::format("{:<16} {:<10} {:<12} {}\n", "name", "n 588 nm", "data (nm)", "description");
-  Json json = {{"schema", "retrace.materials/1"}, {"materials", Json::array()}};
+  Json json = {{"materials", Json::array()}};
   for (const materials::Material& m : library.all()) {
     const double n = materials::refractive_index(m.dispersion, kShownWavelengthNm);
     const std::string range = shortest(m.valid_from_nm) + "-" + shortest(m.valid_to_nm);
@@ -151,7 +147,7 @@ Json standard_json(const studies::ShippedStandard& standard, const studies::Limi
 ExitCode list_standards(const CommonOptions& common) {
   const studies::LimitTable table = studies::read_limits(data_directory() / "photometry_limits.csv");
   std::string text = fmt::format("{:<9} {:<22} {:<17} {}\n", "name", "classes", "colours", "description");
-  Json json = {{"schema", "retrace.standards/1"}, {"standards", Json::array()}};
+  Json json = {{"standards", Json::array()}};
   for (const studies::ShippedStandard& standard : studies::shipped_standards()) {
     json["standards"].push_back(standard_json(standard, table));
     const auto& one = json["standards"].back();

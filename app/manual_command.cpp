@@ -5,7 +5,6 @@
 
 #include "app/commands.h"
 #include "app/output.h"
-#include "app/text_result.h"
 #include "core/version.h"
 
 namespace retrace::app {
@@ -177,11 +176,8 @@ std::vector<Argument> arguments(ManualOptions&) {
 
 ExitCode run(const ManualOptions&, const CommonOptions& common) {
   CommonOptions every;
-  return write_text(common,
-                    {{"schema", "retrace.manual/1"},
-                     {"arguments", json_of(common_arguments(every))},
-                     {"commands", json_of_commands()}},
-                    manual_page());
+  return write_text(common, "retrace.manual/1",
+                    {{"arguments", json_of(common_arguments(every))}, {"commands", json_of_commands()}}, manual_page());
 }
 
 }  // namespace

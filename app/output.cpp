@@ -8,6 +8,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_text.h"
 #include "core/message_text.h"
 
 namespace retrace::app {
@@ -122,6 +123,18 @@ void ResultFiles::write(std::string_view json, std::string_view text) const {
   }
   if (!options_.json.empty()) write_file_atomically(options_.json, json);
   if (!options_.quiet) print(std::string(text) + remarks);
+}
+
+ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohmann::ordered_json content,
+                    const std::string& text) {
+  CommonOptions outputs = without_folder(common);
+  outputs.quiet = common.quiet && !common.out.empty();
+  ResultFiles files(outputs, {});
+  files.add_named("--out", common.out, [&] { return text; });
+  files.prepare();
+  content["text"] = text;
+  files.write(result_text(schema, std::move(content), {}), common.out.empty() ? text : "");
+  return ExitCode::done;
 }
 
 void say(std::string_view text) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -72,6 +73,11 @@ void ResultFiles::add_drawing(const std::string& name, Plot plot) {
   add(name + ".svg", [once] { return render_svg(once()); });
   add(name + ".png", [once] { return render_png(once()); });
 }
+
+/// Writes a text that is the result itself: to the file of --out, else to standard output, which --quiet does not take
+/// away. \param content of the document of --json, to which the text is added \throw InputError, OutputError
+ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohmann::ordered_json content,
+                    const std::string& text);
 
 /// One line on standard error, free of control characters. That nobody can read it is no reason to stop.
 void say(std::string_view text);

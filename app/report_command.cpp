@@ -7,7 +7,6 @@
 #include "app/output.h"
 #include "core/atomic_file.h"
 #include "core/json_text.h"
-#include "core/version.h"
 #include "report/page/scene_view.h"
 #include "report/page/sections.h"
 #include "studies/scene/scene.h"
@@ -73,16 +72,13 @@ std::string report_json(const report::Page& page, const report::ResultFolder& fo
   for (const auto& document : folder.documents) documents.push_back(document.name);
   Json sections = Json::array();
   for (const auto& section : page.sections) sections.push_back(section.title);
-  return to_text({{"schema", "retrace.report/1"},
-                  {"file", file.string()},
-                  {"title", page.title},
-                  {"documents", documents},
-                  {"sections", sections},
-                  {"light_paths", page.scene ? page.scene->paths.size() : 0},
-                  {"bytes", bytes},
-                  {"version", kVersion},
-                  {"warnings", warnings},
-                  {"complete", true}});
+  const Json json = {{"file", file.string()},
+                     {"title", page.title},
+                     {"documents", documents},
+                     {"sections", sections},
+                     {"light_paths", page.scene ? page.scene->paths.size() : 0},
+                     {"bytes", bytes}};
+  return result_text("retrace.report/1", json, warnings);
 }
 
 ExitCode run(const ReportOptions& options, const CommonOptions& common) {

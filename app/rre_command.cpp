@@ -13,9 +13,6 @@
 #include "report/footprint_plot.h"
 #include "report/rre_plot.h"
 #include "studies/design/design_reader.h"
-#include "studies/rre/io/derivative_files.h"
-#include "studies/rre/io/far_field_files.h"
-#include "studies/rre/io/footprint_files.h"
 #include "studies/rre/io/rre_files.h"
 
 namespace retrace::app {

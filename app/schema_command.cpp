@@ -9,7 +9,6 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/schema/json_schema.h"
-#include "core/version.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "materials/io/material_library.h"
@@ -38,25 +37,22 @@ std::vector<Argument> arguments(SchemaOptions& options) {
   return {{"FORMAT", "name of a format [the list of formats]", &options.format, one_of(names)}};
 }
 
-ExitCode write_schema(const CommonOptions& common, const nlohmann::ordered_json& json, const std::string& text,
+ExitCode write_schema(const CommonOptions& common, const std::string& json, const std::string& text,
                       const std::string& file) {
   const ResultFiles files(common, {}, file);
   files.prepare();
-  files.write(to_text(json), text);
+  files.write(json, text);
   return ExitCode::done;
 }
 
 ExitCode list_formats(const CommonOptions& common) {
   std::string text = fmt::format("{:<10} {:<20} {}\n", "name", "schema", "title");
-  nlohmann::ordered_json json = {{"schema", "retrace.formats/1"}, {"formats", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = {{"formats", nlohmann::ordered_json::array()}};
   for (const schema::Format* const format : formats()) {
     text += fmt::format("{:<10} {:<20} {}\n", format->name, format->id, format->title);
     json["formats"].push_back({{"name", format->name}, {"schema", format->id}, {"title", format->title}});
   }
-  json["version"] = kVersion;
-  json["warnings"] = nlohmann::ordered_json::array();
-  json["complete"] = true;
-  return write_schema(common, json, text, "formats.json");
+  return write_schema(common, result_text("retrace.formats/1", json, {}), text, "formats.json");
 }
 
 ExitCode run(const SchemaOptions& options, const CommonOptions& common) {
@@ -65,8 +61,8 @@ ExitCode run(const SchemaOptions& options, const CommonOptions& common) {
   for (const schema::Format* const format : formats()) {
     names.push_back(format->name);
     if (format->name != *options.format) continue;
-    const nlohmann::ordered_json json = schema::json_schema(*format);
-    return write_schema(common, json, to_text(json), *options.format + ".schema.json");
+    const std::string text = to_text(schema::json_schema(*format));
+    return write_schema(common, text, text, *options.format + ".schema.json");
   }
   throw InputError(fmt::format("schema: must be {}, got {}", fmt::join(names, ", "), printable(*options.format)));
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_format.h"
+#include "core/version.h"
 
 namespace retrace {
 namespace {
@@ -62,6 +63,16 @@ std::string to_text(const nlohmann::ordered_json& document) {
   Writer writer;
   writer.write(document, 0);
   return writer.text + '\n';
+}
+
+std::string result_text(std::string_view schema, Json content, const std::vector<std::string>& warnings,
+                        bool complete) {
+  Json document = {{"schema", schema}};
+  for (auto& member : content.items()) document[member.key()] = std::move(member.value());
+  document["version"] = kVersion;
+  document["warnings"] = warnings;
+  document["complete"] = complete;
+  return to_text(document);
 }
 
 }  // namespace retrace

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace retrace {
 
@@ -9,5 +11,10 @@ namespace retrace {
 /// keys whose value is NaN or infinite left out. Objects of numbers and texts alone stand on one line, and so do
 /// numbers in arrays, nested or not. Ends with a newline.
 std::string to_text(const nlohmann::ordered_json& document);
+
+/// The document of a result: its schema, what it holds, and what every result says of itself at its end: the program's
+/// version, warnings, and whether all that was asked for is there.
+std::string result_text(std::string_view schema, nlohmann::ordered_json content,
+                        const std::vector<std::string>& warnings, bool complete = true);
 
 }  // namespace retrace

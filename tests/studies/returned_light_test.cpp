@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "raytrace/threads.h"
-#include "studies/rre/io/far_field_files.h"
-#include "studies/rre/io/footprint_files.h"
+#include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"

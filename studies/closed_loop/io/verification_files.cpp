@@ -6,7 +6,6 @@
 
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 
 namespace retrace::studies {
 namespace {
@@ -56,8 +55,7 @@ std::string place_of(const Finding& finding) {
 
 std::string verification_json(const VerificationRun& run, double elapsed_s) {
   const Verification& r = run.result;
-  const Json json = {{"schema", "retrace.verification/1"},
-                     {"verdict", r.passes() ? "pass" : "fail"},
+  const Json json = {{"verdict", r.passes() ? "pass" : "fail"},
                      {"job", run.request.job},
                      {"machine", run.machine.name},
                      {"programs", programs_json(run)},
@@ -85,11 +83,8 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"time_rapid_s", r.time.rapid_s},
                      {"time_rotary_s", r.time.rotary_s},
                      {"time_dwell_s", r.time.dwell_s},
-                     {"elapsed_s", elapsed_s},
-                     {"version", kVersion},
-                     {"warnings", run.warnings},
-                     {"complete", true}};
-  return to_text(json);
+                     {"elapsed_s", elapsed_s}};
+  return result_text("retrace.verification/1", json, run.warnings);
 }
 
 std::string verification_table(const VerificationRun& run) {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 #include "fabrication/job/tool_angles.h"
 
 namespace retrace::studies {
@@ -68,19 +68,15 @@ Json poses_json(const FabricationResult& result) {
 
 std::string job_json(const MadeJob& made) {
   const fabrication::Job& job = made.job;
-  const Json json = {{"schema", "retrace.job_summary/1"},
-                     {"elements", made.elements},
+  const Json json = {{"elements", made.elements},
                      {"partial_elements", made.partial_elements},
                      {"machine", job.machine},
                      {"strategy", word_of(job.strategy)},
                      {"process", job.process.name},
                      {"process_source", job.process.source},
                      {"tool_width_mm", job.tool.width_mm},
-                     {"workpiece", fabrication::kWorkpieceWords[static_cast<std::size_t>(job.workpiece.kind)]},
-                     {"version", kVersion},
-                     {"warnings", made.warnings},
-                     {"complete", true}};
-  return to_text(json);
+                     {"workpiece", fabrication::kWorkpieceWords[static_cast<std::size_t>(job.workpiece.kind)]}};
+  return result_text("retrace.job_summary/1", json, made.warnings);
 }
 
 std::string job_table(const MadeJob& made) {
@@ -143,8 +139,7 @@ std::string fabrication_json(const FabricationResult& result) {
   }
   const fabrication::CuttingAngles plunge = fabrication::plunge_angles(result.job.tool);
   const fabrication::CuttingAngles plough = fabrication::plough_angles(result.job.tool);
-  Json json = {{"schema", "retrace.fabrication/1"},
-               {"job", result.job.source},
+  Json json = {{"job", result.job.source},
                {"machine", result.machine.name},
                {"dialect", result.dialect},
                {"strategy", word_of(result.job.strategy)},
@@ -167,26 +162,22 @@ std::string fabrication_json(const FabricationResult& result) {
                {"stages", stages},
                {"section_path", section_path_json(result)},
                {"programs", programs},
-               {"program_times_s", plan.program_times_s},
-               {"version", kVersion},
-               {"warnings", result.warnings},
-               {"complete", true}};
+               {"program_times_s", plan.program_times_s}};
   // A V cuts in both directions with its leading edge, always with the same rake.
   if (result.job.strategy == fabrication::Strategy::dmc) json.erase("plough_rake_deg");
-  return to_text(json);
+  return result_text("retrace.fabrication/1", json, result.warnings);
 }
 
 std::string stages_csv(const FabricationResult& result) {
-  std::string text =
-      "name," + tilt_key(result.machine) + ",c_deg,elements,time_s,cutting_s,dwell_s,retract_s,rapid_s,fixed_s\n";
+  CsvWriter csv("name," + tilt_key(result.machine) +
+                ",c_deg,elements,time_s,cutting_s,dwell_s,retract_s,rapid_s,fixed_s");
   for (const fabrication::Stage& stage : result.plan.stages) {
     const fabrication::CuttingPose& pose = result.plan.poses[stage.pose];
     const TimeShares& t = stage.time;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", stage.name, shortest(pose.rounded.a_deg),
-                        shortest(pose.rounded.c_deg), stage.visits, shortest(t.total_s()), shortest(t.cutting_s),
-                        shortest(t.dwell_s), shortest(t.retract_s), shortest(t.rapid_s), shortest(t.fixed_s));
+    csv.row(stage.name, pose.rounded.a_deg, pose.rounded.c_deg, stage.visits, t.total_s(), t.cutting_s, t.dwell_s,
+            t.retract_s, t.rapid_s, t.fixed_s);
   }
-  return text;
+  return csv.text();
 }
 
 std::string fabrication_table(const FabricationResult& result) {

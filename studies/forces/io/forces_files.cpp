@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 
 namespace retrace::studies {
 namespace {
@@ -31,8 +31,7 @@ std::string forces_json(const ForcesResult& result) {
                        {"fx_n", s.fx_n},
                        {"fy_n", s.fy_n},
                        {"fz_n", s.fz_n}});
-  const Json json = {{"schema", "retrace.forces/1"},
-                     {"job", result.request.job},
+  const Json json = {{"job", result.request.job},
                      {"configuration", result.request.configuration},
                      {"depth_of_cut_um", cut.depth_of_cut_um},
                      {"width_mm", cut.width_mm},
@@ -44,19 +43,15 @@ std::string forces_json(const ForcesResult& result) {
                      {"root_fx_n", e.root_fx_n},
                      {"root_fz_n", e.root_fz_n},
                      {"peak_fy_n", e.peak_fy_n},
-                     {"profile", std::move(profile)},
-                     {"version", kVersion},
-                     {"warnings", result.warnings},
-                     {"complete", true}};
-  return to_text(json);
+                     {"profile", std::move(profile)}};
+  return result_text("retrace.forces/1", json, result.warnings);
 }
 
 std::string forces_csv(const ForcesResult& result) {
-  std::string text = "time_s,phase,engaged_mm,fx_n,fy_n,fz_n\n";
+  CsvWriter csv("time_s,phase,engaged_mm,fx_n,fy_n,fz_n");
   for (const ForceSample& s : result.profile)
-    text += fmt::format("{},{},{},{},{},{}\n", shortest(s.time_s), phase_word(s.phase), shortest(s.engaged_mm),
-                        shortest(s.fx_n), shortest(s.fy_n), shortest(s.fz_n));
-  return text;
+    csv.row(s.time_s, phase_word(s.phase), s.engaged_mm, s.fx_n, s.fy_n, s.fz_n);
+  return csv.text();
 }
 
 std::string forces_table(const ForcesResult& result) {

@@ -7,7 +7,6 @@
 
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 #include "studies/design/design_json.h"
 
 namespace retrace::studies {
@@ -24,17 +23,12 @@ Json place(const geometry::Vec3& p) {
 }
 
 Json header(const char* kind, const Design& design, std::uint32_t seed) {
-  Json json = {{"schema", "retrace.image/1"}, {"kind", kind}};
-  json["design"] = to_json(design);
-  json["seed"] = seed;
-  return json;
+  return {{"kind", kind}, {"design", to_json(design)}, {"seed", seed}};
 }
 
-void add_footer(Json& json, double elapsed_s, const std::vector<std::string>& warnings, bool complete) {
+std::string image_text(Json json, double elapsed_s, const std::vector<std::string>& warnings, bool complete) {
   json["elapsed_s"] = elapsed_s;
-  json["version"] = kVersion;
-  json["warnings"] = warnings;
-  json["complete"] = complete;
+  return result_text("retrace.image/1", std::move(json), warnings, complete);
 }
 
 }  // namespace
@@ -60,8 +54,7 @@ std::string detector_json(const DetectorResult& result) {
   json["relative_irradiance_max"] = largest(result.maps.leaving.value);
   json["per_sr_max"] = largest(result.maps.per_sr.value);
   json[result.engine == "exact" ? "beams" : "rays"] = result.maps.rays;
-  add_footer(json, result.elapsed_s, result.warnings, result.complete);
-  return to_text(json);
+  return image_text(std::move(json), result.elapsed_s, result.warnings, result.complete);
 }
 
 std::string camera_json(const CameraResult& result) {
@@ -97,13 +90,11 @@ std::string camera_json(const CameraResult& result) {
     json["noise"] = result.image.relative_noise();
   }
   json["luminance_max_cd_per_m2"] = largest(result.image.luminance);
-  add_footer(json, result.elapsed_s, result.warnings, result.complete);
-  return to_text(json);
+  return image_text(std::move(json), result.elapsed_s, result.warnings, result.complete);
 }
 
 std::string road_json(const RoadResult& result) {
-  Json json = {{"schema", "retrace.image/1"}, {"kind", "road"}};
-  json["design"] = to_json(result.design);
+  Json json = {{"kind", "road"}, {"design", to_json(result.design)}};
   json["engine"] = result.engine;
   json["lamp_cd"] = result.request.lamp_cd;
   json["dye"] = result.request.dye;
@@ -131,8 +122,7 @@ std::string road_json(const RoadResult& result) {
                             {"luminance_cd_per_m2", r.luminance}});
     json["views"].push_back({{"distance_m", view.distance_m}, {"reflectors", std::move(reflectors)}});
   }
-  add_footer(json, result.elapsed_s, result.warnings, result.complete);
-  return to_text(json);
+  return image_text(std::move(json), result.elapsed_s, result.warnings, result.complete);
 }
 
 std::string road_table(const RoadResult& result) {

@@ -8,7 +8,6 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 #include "studies/design/design_json.h"
 
 namespace retrace::studies {
@@ -24,18 +23,16 @@ std::string total_reflection(const Inspection& i) {
                      is_rtp ? "across the roof edge" : "at every azimuth");
 }
 
-std::string wavelength_text(const Inspection& i) {
-  return i.design.light.spectrum() ? fixed(i.wavelength_nm, 1) : shortest(i.wavelength_nm);
-}
-
-/// What a spectrum spans, and what its wavelengths see; a line of its own.
-std::string spectrum_text(const Inspection& i) {
-  if (!i.design.light.spectrum()) return {};
+/// The index, and of a spectrum a line of its own: what it spans, and what its wavelengths see.
+std::string light_text(const Inspection& i) {
+  const std::string wavelength = i.design.light.spectrum() ? fixed(i.wavelength_nm, 1) : shortest(i.wavelength_nm);
+  const std::string text = fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength);
+  if (!i.design.light.spectrum()) return text;
   const SpectralOptics& first = i.light.front();
   const SpectralOptics& last = i.light.back();
-  return fmt::format("  spectrum            {} wavelengths, {} to {} nm, index {} to {}\n", i.light.size(),
-                     fixed(first.wavelength_nm, 1), fixed(last.wavelength_nm, 1), fixed(first.optics.index, 5),
-                     fixed(last.optics.index, 5));
+  return text + fmt::format("  spectrum            {} wavelengths, {} to {} nm, index {} to {}\n", i.light.size(),
+                            fixed(first.wavelength_nm, 1), fixed(last.wavelength_nm, 1), fixed(first.optics.index, 5),
+                            fixed(last.optics.index, 5));
 }
 
 nlohmann::ordered_json base_json(const BaseReport& base) {
@@ -82,43 +79,36 @@ std::string base_text(const Inspection& i) {
 
 namespace {
 
+/// What both kinds of designs begin with.
+nlohmann::ordered_json common_json(const Inspection& i) {
+  return {{"design", to_json(i.design)},
+          {"elements_full", i.elements_full},
+          {"elements_partial", i.elements_partial},
+          {"element_depth_mm", i.element_depth_mm},
+          {"facet_area_mm2", i.facet_area_mm2},
+          {"entrance_area_mm2", i.entrance_area_mm2},
+          {"full_element_share", i.full_element_share},
+          {"refractive_index", i.refractive_index}};
+}
+
 std::string ball_json(const Inspection& i) {
   const BallFigures& balls = *i.balls;
-  nlohmann::ordered_json json = {{"schema", "retrace.inspect/1"},
-                                 {"design", to_json(i.design)},
-                                 {"elements_full", i.elements_full},
-                                 {"elements_partial", 0},
-                                 {"element_depth_mm", i.element_depth_mm},
-                                 {"facet_area_mm2", i.facet_area_mm2},
-                                 {"entrance_area_mm2", i.entrance_area_mm2},
-                                 {"full_element_share", i.full_element_share},
-                                 {"refractive_index", i.refractive_index},
-                                 {"packing_share", balls.packing_share},
-                                 {"mirror_half_angle_deg", balls.mirror_half_angle_deg},
-                                 {"paraxial_error", balls.paraxial_error},
-                                 {"largest_return_error_deg", balls.largest_return_error_deg},
-                                 {"share_within_acceptance", balls.share_within_acceptance}};
+  nlohmann::ordered_json json = common_json(i);
+  json["packing_share"] = balls.packing_share;
+  json["mirror_half_angle_deg"] = balls.mirror_half_angle_deg;
+  json["paraxial_error"] = balls.paraxial_error;
+  json["largest_return_error_deg"] = balls.largest_return_error_deg;
+  json["share_within_acceptance"] = balls.share_within_acceptance;
   if (balls.focal_offset_mm) json["focal_offset_mm"] = *balls.focal_offset_mm;
   if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
-  json["version"] = kVersion;
-  json["warnings"] = i.warnings;
-  json["complete"] = true;
-  return to_text(json);
+  return result_text("retrace.inspect/1", json, i.warnings);
 }
 
 }  // namespace
 
 std::string inspect_json(const Inspection& i) {
   if (i.balls) return ball_json(i);
-  nlohmann::ordered_json json = {{"schema", "retrace.inspect/1"},
-                                 {"design", to_json(i.design)},
-                                 {"elements_full", i.elements_full},
-                                 {"elements_partial", i.elements_partial},
-                                 {"element_depth_mm", i.element_depth_mm},
-                                 {"facet_area_mm2", i.facet_area_mm2},
-                                 {"entrance_area_mm2", i.entrance_area_mm2},
-                                 {"full_element_share", i.full_element_share},
-                                 {"refractive_index", i.refractive_index}};
+  nlohmann::ordered_json json = common_json(i);
   if (!i.design.elements()) {
     // A mesh tells no elements.
     for (const char* key : {"elements_full", "elements_partial", "full_element_share"}) json.erase(key);
@@ -131,10 +121,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.base) json["base"] = base_json(*i.base);
   if (i.front) json["front"] = front_json(*i.front);
   json["boundary"] = i.boundary;
-  json["version"] = kVersion;
-  json["warnings"] = i.warnings;
-  json["complete"] = true;
-  return to_text(json);
+  return result_text("retrace.inspect/1", json, i.warnings);
 }
 
 namespace {
@@ -146,8 +133,7 @@ std::string mesh_text(const Inspection& i) {
   text += front_text(i);
   text += fmt::format("  entrance area       {} mm2\n", fixed(i.entrance_area_mm2, 4));
   text += fmt::format("  retro facet area    {} mm2\n", fixed(i.facet_area_mm2, 4));
-  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
-  text += spectrum_text(i);
+  text += light_text(i);
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;
 }
@@ -160,8 +146,7 @@ std::string ball_text(const Inspection& i) {
                       shortest(i.design.balls()->mirror_offset_mm), fixed(balls.mirror_half_angle_deg, 2));
   text += fmt::format("  in focus at         {}\n",
                       balls.focal_offset_mm ? fixed(*balls.focal_offset_mm, 6) + " mm" : "no offset");
-  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
-  text += spectrum_text(i);
+  text += light_text(i);
   text += fmt::format("  paraxial error      {} rad over height / radius\n", fixed(balls.paraxial_error, 6));
   text += fmt::format("  largest error       {} degrees\n", fixed(balls.largest_return_error_deg, 3));
   text +=
@@ -184,8 +169,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += base_text(i);
   text += front_text(i);
-  text += fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength_text(i));
-  text += spectrum_text(i);
+  text += light_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
   text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_share, 3));
   text += fmt::format("  boundary            {}\n", i.boundary);

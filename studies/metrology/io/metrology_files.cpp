@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 
 namespace retrace::studies {
 namespace {
@@ -136,18 +136,16 @@ std::string edge_text(const EdgeResult& edge) {
       name_of(edge.better), fixed(edge.dihedral_deg.mean, 3), edge.radius_um.count);
 }
 
-void add_rows(std::string& csv, const char* direction, const Spectrum& spectrum, const char* unit) {
+void add_rows(CsvWriter& csv, const char* direction, const Spectrum& spectrum, const char* unit) {
   for (std::size_t k = 0; k < spectrum.density.size(); ++k)
-    csv += fmt::format("{},{},{},{}\n", direction, shortest(spectrum.frequency_per_mm[k]),
-                       shortest(spectrum.density[k]), unit);
+    csv.row(direction, spectrum.frequency_per_mm[k], spectrum.density[k], unit);
 }
 
 }  // namespace
 
 std::string metrology_json(const MetrologyResult& result) {
   const HeightMap& map = result.surface;
-  Json json = {{"schema", "retrace.metrology/1"},
-               {"source", result.request.file},
+  Json json = {{"source", result.request.file},
                {"format", result.format},
                {"columns", map.columns},
                {"rows", map.rows},
@@ -169,10 +167,7 @@ std::string metrology_json(const MetrologyResult& result) {
   if (result.edge) json["edge"] = edge_json(*result.edge);
   json["surface"] = Json::object();
   for (const auto& [key, value] : surface_keys(result)) json["surface"][key] = value;
-  json["version"] = kVersion;
-  json["warnings"] = result.warnings;
-  json["complete"] = true;
-  return to_text(json);
+  return result_text("retrace.metrology/1", json, result.warnings);
 }
 
 std::string surface_toml(const MetrologyResult& result) {
@@ -200,11 +195,11 @@ std::string metrology_text(const MetrologyResult& result) {
 }
 
 std::string spectra_csv(const MetrologyResult& result) {
-  std::string csv = "direction,frequency_per_mm,psd,unit\n";
+  CsvWriter csv("direction,frequency_per_mm,psd,unit");
   add_rows(csv, "x", result.along_x, "nm^2 mm");
   add_rows(csv, "y", result.along_y, "nm^2 mm");
   add_rows(csv, "radial", result.radial, "nm^2 mm^2");
-  return csv;
+  return csv.text();
 }
 
 }  // namespace retrace::studies

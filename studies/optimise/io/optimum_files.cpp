@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 
 namespace retrace::studies {
 namespace {
@@ -49,7 +49,7 @@ Json band_json(const ToleranceBand& band) {
 }  // namespace
 
 std::string optimum_json(const Study& study, const OptimiseRequest& request, const Optimum& optimum, double elapsed_s) {
-  Json json = {{"schema", "retrace.optimum/1"}, {"study", study.source}};
+  Json json = {{"study", study.source}};
   if (!study.title.empty()) json["title"] = study.title;
   json["objective"] = Json::object();
   for (const auto& [name, weight] : request.objective.weights) json["objective"][name] = weight;
@@ -73,26 +73,24 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
   json["evaluations"] = optimum.evaluations;
   json["seed"] = study.seed;
   json["elapsed_s"] = elapsed_s;
-  json["version"] = kVersion;
-  json["warnings"] = Json::array();
-  json["complete"] = optimum.complete;
-  return to_text(json);
+  return result_text("retrace.optimum/1", json, {}, optimum.complete);
 }
 
 std::string front_csv(const Study& study, const Optimum& optimum) {
-  std::string csv;
-  for (const Parameter& parameter : study.parameters) csv += parameter.name + ',';
-  for (const auto& quantity : study.quantities) csv += quantity->name() + ',';
-  csv += "objective\n";
+  CsvWriter csv;
+  for (const Parameter& parameter : study.parameters) csv.add(parameter.name);
+  for (const auto& quantity : study.quantities) csv.add(quantity->name());
+  csv.row("objective");
   for (const Variant& variant : optimum.front) {
-    for (const ParameterValue& value : variant.values) {
-      const double* const number = std::get_if<double>(&value.shown);
-      csv += (number != nullptr ? shortest(*number) : '"' + std::get<std::string>(value.shown) + '"') + ',';
-    }
-    for (const StoredOutput& output : variant.outputs) csv += (output.value ? shortest(*output.value) : "") + ',';
-    csv += shortest(*variant.objective) + '\n';
+    for (const ParameterValue& value : variant.values)
+      if (const double* const number = std::get_if<double>(&value.shown))
+        csv.add(*number);
+      else
+        csv.add_quoted(std::get<std::string>(value.shown));
+    for (const StoredOutput& output : variant.outputs) csv.add(output.value);
+    csv.row(*variant.objective);
   }
-  return csv;
+  return csv.text();
 }
 
 std::string optimum_text(const Study& study, const OptimiseRequest& request, const Optimum& optimum) {

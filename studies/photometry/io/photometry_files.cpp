@@ -5,10 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 #include "studies/design/design_json.h"
 
 namespace retrace::studies {
@@ -124,8 +124,7 @@ std::string change_text(const PhotometricChange& change, const TestProgramme& pr
 
 std::string photometry_json(const PhotometryResult& result) {
   const PhotometryRequest& asked = result.request;
-  Json json = {{"schema", "retrace.photometry/1"},
-               {"engine", result.engine},
+  Json json = {{"engine", result.engine},
                {"engine_requested", engine_name(asked.engine)},
                {"diffraction", result.has_diffraction},
                {"design", to_json(result.design)},
@@ -147,37 +146,30 @@ std::string photometry_json(const PhotometryResult& result) {
   json["changes"] = Json::array();
   for (const PhotometricChange& change : result.changes) json["changes"].push_back(change_json(change));
   json["elapsed_s"] = result.elapsed_s;
-  json["version"] = kVersion;
-  json["warnings"] = result.warnings;
-  json["complete"] = result.complete;
-  return to_text(json);
+  return result_text("retrace.photometry/1", json, result.warnings, result.complete);
 }
 
 std::string photometry_csv(const PhotometryResult& result) {
-  std::string csv =
+  CsvWriter csv(
       "observation_deg,v_deg,h_deg,rotation_deg,value_mcd_per_lx,std_error_mcd_per_lx,limit_mcd_per_lx,margin,"
-      "limit_status,pass,r_a_cd_per_lx_m2,r_l_cd_per_lx_m2,verdict,lower_bound\n";
-  for (const PhotometricPoint& p : result.points) {
-    for (const double value : {p.asked.observation_deg, p.asked.v_deg, p.asked.h_deg, p.rotation_deg, p.r_i_mcd_per_lx,
-                               p.std_error_mcd_per_lx, p.limit_mcd_per_lx, p.margin()})
-      csv += shortest(value) + ',';
-    csv += fmt::format("{},{},{},{},{},{}\n", status_name(p.asked.status), p.verdict() == Verdict::pass,
-                       shortest(p.r_a), shortest(p.r_l), verdict_name(p.verdict()), p.is_lower_bound);
-  }
-  return csv;
+      "limit_status,pass,r_a_cd_per_lx_m2,r_l_cd_per_lx_m2,verdict,lower_bound");
+  for (const PhotometricPoint& p : result.points)
+    csv.row(p.asked.observation_deg, p.asked.v_deg, p.asked.h_deg, p.rotation_deg, p.r_i_mcd_per_lx,
+            p.std_error_mcd_per_lx, p.limit_mcd_per_lx, p.margin(), status_name(p.asked.status),
+            p.verdict() == Verdict::pass, p.r_a, p.r_l, verdict_name(p.verdict()), p.is_lower_bound);
+  return csv.text();
 }
 
 std::string far_field_map_csv(const PhotometryResult& result) {
-  std::string csv = "v_deg,h_deg,right_deg,up_deg,r_a_cd_per_lx_m2\n";
+  CsvWriter csv("v_deg,h_deg,right_deg,up_deg,r_a_cd_per_lx_m2");
   for (const FarFieldMap& map : result.maps)
     for (std::size_t k = 0; k < map.r_a.size(); ++k) {
       const auto middle = [&](std::size_t bin) {
         return map.half_width_deg * (2.0 * (static_cast<double>(bin) + 0.5) / static_cast<double>(map.columns) - 1.0);
       };
-      csv += fmt::format("{},{},{},{},{}\n", shortest(map.v_deg), shortest(map.h_deg),
-                         fixed(middle(k % map.columns), 6), fixed(middle(k / map.columns), 6), shortest(map.r_a[k]));
+      csv.row(map.v_deg, map.h_deg, fixed(middle(k % map.columns), 6), fixed(middle(k / map.columns), 6), map.r_a[k]);
     }
-  return csv;
+  return csv.text();
 }
 
 std::string photometry_table(const PhotometryResult& result) {

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/angle.h"
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 #include "fabrication/planing/zone_profile.h"
 
 namespace retrace::studies {
@@ -122,8 +122,7 @@ void add_machine(const PlaningResult& result, Json& json) {
 
 std::string planing_json(const PlaningResult& result) {
   const Totals totals = totals_of(result);
-  Json json = {{"schema", "retrace.planing/1"},
-               {"part", result.part.source},
+  Json json = {{"part", result.part.source},
                {"title", result.part.title},
                {"dialect", result.dialect},
                {"element", element_json(result.part)},
@@ -138,17 +137,14 @@ std::string planing_json(const PlaningResult& result) {
   json["hours"] = result.plan.runs * totals.time_s / 3600.0;
   json["seconds_per_frame"] = per_frame(totals.time_s, totals.frames);
   if (result.part.mill) json["published_seconds_per_frame"] = kPublishedSecondsPerFrame;
-  json["version"] = kVersion;
-  json["warnings"] = result.warnings;
-  json["complete"] = true;
-  return to_text(json);
+  return result_text("retrace.planing/1", json, result.warnings);
 }
 
 std::string planing_csv(const PlaningResult& result) {
-  std::string text = "x_mm,design_mm,left_mm\n";
+  CsvWriter csv("x_mm,design_mm,left_mm");
   for (const ProfileSample& s : result.check.profile)
-    text += fmt::format("{},{},{}\n", fixed(s.x_mm, 6), fixed(s.design_mm, 6), fixed(s.left_mm, 6));
-  return text;
+    csv.row(fixed(s.x_mm, 6), fixed(s.design_mm, 6), fixed(s.left_mm, 6));
+  return csv.text();
 }
 
 std::string planing_table(const PlaningResult& result) {

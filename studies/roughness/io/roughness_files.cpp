@@ -5,24 +5,16 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 #include "studies/design/design_json.h"
 
 namespace retrace::studies {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Quoted where the name would be taken for something else.
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
 
 Json curve_json(const RoughnessPoint& p) {
   return {{"correlation_length_um", p.correlation_length_um},
@@ -51,8 +43,7 @@ std::string percent(double share) {
 
 std::string roughness_json(const RoughnessResult& result) {
   const RoughnessRequest& asked = result.request;
-  Json json = {{"schema", "retrace.roughness/1"},
-               {"design", to_json(result.design)},
+  Json json = {{"design", to_json(result.design)},
                {"seed", asked.seed},
                {"incidence_deg", asked.incidence_deg},
                {"azimuth_deg", asked.azimuth_deg},
@@ -68,22 +59,18 @@ std::string roughness_json(const RoughnessResult& result) {
       json["points"].push_back(curve_json(p));
   json["elapsed_s"] = result.elapsed_s;
   json["rays"] = result.rays;
-  json["version"] = kVersion;
-  json["warnings"] = result.warnings;
-  json["complete"] = result.complete;
-  return to_text(json);
+  return result_text("retrace.roughness/1", json, result.warnings, result.complete);
 }
 
 std::string roughness_csv(const RoughnessResult& result) {
-  std::string csv = "name,facets,correlation_length_um,roughness_sa_nm,waviness_sa_nm,rre,std_error\n";
+  CsvWriter csv("name,facets,correlation_length_um,roughness_sa_nm,waviness_sa_nm,rre,std_error");
   for (const RoughnessPoint& p : result.points) {
     const FacetGroup* const group = p.measured ? &result.request.measured[*p.measured] : nullptr;
-    csv += group != nullptr ? fmt::format("{},{}", csv_text(group->name), group->facets) : ",";
-    for (const double value : {p.correlation_length_um, p.roughness_sa_nm, p.waviness_sa_nm, p.rre, p.std_error})
-      csv += ',' + shortest(value);
-    csv += '\n';
+    csv.add(group != nullptr ? group->name : "");
+    csv.add(group != nullptr ? fmt::format("{}", group->facets) : "");
+    csv.row(p.correlation_length_um, p.roughness_sa_nm, p.waviness_sa_nm, p.rre, p.std_error);
   }
-  return csv;
+  return csv.text();
 }
 
 std::string roughness_table(const RoughnessResult& result) {

@@ -2,15 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <ranges>
+#include <string_view>
+#include <utility>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 #include "studies/design/design_json.h"
-#include "studies/rre/io/derivative_files.h"
 
 namespace retrace::studies {
 namespace {
@@ -18,6 +20,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 using raytrace::kAccountCount;
 using raytrace::kAccountNames;
+
+Json direction_of(const RrePoint& at) {
+  return {{"design", at.design},
+          {"incidence_deg", at.incidence_deg},
+          {"azimuth_deg", at.azimuth_deg},
+          {"wavelength_nm", at.wavelength_nm}};
+}
+
+Json direction_and_cone_of(const RrePoint& at) {
+  Json json = direction_of(at);
+  json["acceptance_half_angle_deg"] = at.acceptance_half_angle_deg;
+  return json;
+}
 
 Json ledger_json(const raytrace::Ledger& ledger) {
   Json json = Json::object();
@@ -43,9 +58,31 @@ Json design_json(const RreResult& result, std::size_t d) {
   return json;
 }
 
-/// Empty where the JSON leaves the key out.
-std::string csv_number(double value) {
-  return std::isfinite(value) ? shortest(value) : std::string();
+Json derivatives_json(const std::vector<RreDerivative>& derivatives) {
+  Json json = Json::object();
+  for (const RreDerivative& by : derivatives) {
+    Json& entry = json[std::string(parameter_name(by.parameter))];
+    if (by.left_out.empty())
+      entry = {{"value", by.derivative.value}, {"error", by.derivative.error}};
+    else
+      entry = {{"left_out", by.left_out}};
+  }
+  return json;
+}
+
+Json point_json(const RrePoint& p) {
+  Json json = direction_and_cone_of(p);
+  json["rre"] = p.rre;
+  json["std_error"] = p.std_error;
+  json["stokes"] = p.stokes.values();
+  json["ledger"] = ledger_json(p.ledger);
+  json["engine"] = p.engine;
+  if (!p.by_wavelength.empty()) json["by_wavelength"] = by_wavelength_json(p.by_wavelength);
+  if (p.engine != "exact") return json;
+  json["beams"] = p.beams;
+  json["depth"] = p.depth;
+  if (!p.derivatives.empty()) json["derivatives"] = derivatives_json(p.derivatives);
+  return json;
 }
 
 bool has_several_cones(const RreResult& result) {
@@ -54,52 +91,36 @@ bool has_several_cones(const RreResult& result) {
   return false;
 }
 
+std::string line_of(const RrePoint& point, const RreDerivative& by) {
+  std::string line =
+      fmt::format("{:>6}  {:>13}  {:>11}  {:>14}  {:<18}  ", point.design, shortest(point.incidence_deg),
+                  shortest(point.azimuth_deg), shortest(point.acceptance_half_angle_deg), parameter_name(by.parameter));
+  if (!by.left_out.empty()) return line + "left out: " + by.left_out + "\n";
+  return line + fmt::format("{:>13.6g}  {:.1e}\n", by.derivative.value, by.derivative.error);
+}
+
 }  // namespace
 
 std::string rre_json(const RreResult& result) {
-  Json json = {{"schema", "retrace.rre/1"}, {"engine", result.engine}, {"engine_requested", result.engine_requested}};
+  Json json = {{"engine", result.engine}, {"engine_requested", result.engine_requested}};
   json["designs"] = Json::array();
   for (std::size_t d = 0; d < result.designs.size(); ++d) json["designs"].push_back(design_json(result, d));
   json["seed"] = result.seed;
   json["points"] = Json::array();
-  for (const RrePoint& p : result.points) {
-    json["points"].push_back({{"design", p.design},
-                              {"incidence_deg", p.incidence_deg},
-                              {"azimuth_deg", p.azimuth_deg},
-                              {"wavelength_nm", p.wavelength_nm},
-                              {"acceptance_half_angle_deg", p.acceptance_half_angle_deg},
-                              {"rre", p.rre},
-                              {"std_error", p.std_error},
-                              {"stokes", p.stokes.values()},
-                              {"ledger", ledger_json(p.ledger)},
-                              {"engine", p.engine}});
-    if (!p.by_wavelength.empty()) json["points"].back()["by_wavelength"] = by_wavelength_json(p.by_wavelength);
-    if (p.engine != "exact") continue;
-    json["points"].back()["beams"] = p.beams;
-    json["points"].back()["depth"] = p.depth;
-    if (!p.derivatives.empty()) json["points"].back()["derivatives"] = derivatives_json(p.derivatives);
-  }
+  for (const RrePoint& p : result.points) json["points"].push_back(point_json(p));
   json["elapsed_s"] = result.elapsed_s;
   json["rays"] = result.rays;
-  json["version"] = kVersion;
-  json["warnings"] = result.warnings;
-  json["complete"] = result.complete;
-  return to_text(json);
+  return result_text("retrace.rre/1", json, result.warnings, result.complete);
 }
 
 std::string rre_csv(const RreResult& result) {
-  std::string csv = "design,incidence_deg,azimuth_deg,wavelength_nm,acceptance_half_angle_deg,rre,std_error";
-  for (const auto name : kAccountNames) csv += fmt::format(",{}", name);
-  csv += ",engine\n";
-  for (const RrePoint& p : result.points) {
-    csv += std::to_string(p.design);
-    for (const double value :
-         {p.incidence_deg, p.azimuth_deg, p.wavelength_nm, p.acceptance_half_angle_deg, p.rre, p.std_error})
-      csv += ',' + csv_number(value);
-    for (const double power : p.ledger.power) csv += ',' + csv_number(power);
-    csv += ',' + p.engine + '\n';
-  }
-  return csv;
+  CsvWriter csv;
+  csv.row("design", "incidence_deg", "azimuth_deg", "wavelength_nm", "acceptance_half_angle_deg", "rre", "std_error",
+          kAccountNames, "engine");
+  for (const RrePoint& p : result.points)
+    csv.row(p.design, p.incidence_deg, p.azimuth_deg, p.wavelength_nm, p.acceptance_half_angle_deg, p.rre, p.std_error,
+            p.ledger.power, p.engine);
+  return csv.text();
 }
 
 std::string rre_table(const RreResult& result) {
@@ -121,6 +142,115 @@ std::string rre_table(const RreResult& result) {
                          fixed(100.0 * p.ledger[raytrace::Account::truncated], 4), p.engine);
   }
   return table;
+}
+
+std::string derivative_table(const RreResult& result) {
+  std::string lines;
+  for (const RrePoint& point : result.points)
+    for (const RreDerivative& by : point.derivatives) lines += line_of(point, by);
+  if (lines.empty()) return {};
+  return "\nd RRE (a fraction) per unit of the parameter\n"
+         "design  incidence_deg  azimuth_deg  acceptance_deg  parameter               derivative  +-\n" +
+         lines;
+}
+
+namespace {
+
+/// Closed: the first corner comes again at the end.
+Json ring_of(const geometry::Polygon& outline) {
+  Json ring = Json::array();
+  for (std::size_t k = 0; k <= outline.size(); ++k) {
+    const geometry::Vec2& p = outline[k % outline.size()];
+    ring.push_back(Json::array({p.x(), p.y()}));
+  }
+  return ring;
+}
+
+Json feature_of(const RrePoint& at, const ActiveRegion& region) {
+  Json feature = {{"type", "Feature"}};
+  feature["geometry"] = {{"type", "Polygon"}, {"coordinates", Json::array({ring_of(region.outline_mm)})}};
+  feature["properties"] = direction_and_cone_of(at);
+  feature["properties"]["efficiency"] = region.efficiency;
+  return feature;
+}
+
+Json summary_of(const RrePoint& at, const Footprint& footprint) {
+  Json summary = direction_and_cone_of(at);
+  summary["entrance_area_mm2"] = footprint.entrance_area_mm2;
+  summary["active_area_mm2"] = footprint.active_area_mm2;
+  summary["active_share"] = footprint.active_share();
+  summary["rre_shown"] = footprint.rre_shown();
+  summary["rre"] = at.rre;
+  return summary;
+}
+
+}  // namespace
+
+std::string footprint_json(const RreResult& result) {
+  Json json = {{"type", "FeatureCollection"}};
+  json["features"] = Json::array();
+  json["regions"] = Json::array();
+  for (const ReturnedLight& light : result.returned) {
+    if (!light.footprint) continue;
+    for (const ActiveRegion& region : light.footprint->regions)
+      json["features"].push_back(feature_of(light.at, region));
+    json["regions"].push_back(summary_of(light.at, *light.footprint));
+  }
+  return result_text("retrace.footprint/1", json, result.warnings, result.complete);
+}
+
+namespace {
+
+using Fields = std::array<std::pair<std::string_view, double>, 6>;
+
+Fields fields_of(const FarFieldSpot& spot) {
+  const raytrace::Stokes& s = spot.stokes;
+  return {{{"deviation_arcmin", 60.0 * spot.deviation.deg()},
+           {"deviation_azimuth_deg", spot.orientation.deg()},
+           {"power", s.i},
+           {"s1", s.q / s.i},
+           {"s2", s.u / s.i},
+           {"s3", s.v / s.i}}};
+}
+
+Json spot_of(const FarFieldSpot& spot) {
+  Json json = Json::object();
+  for (const auto& [name, value] : fields_of(spot)) json[std::string(name)] = value;
+  json["depth_min"] = spot.least_depth;
+  return json;
+}
+
+}  // namespace
+
+std::string far_field_json(const RreResult& result) {
+  Json json;
+  json["directions"] = Json::array();
+  for (const ReturnedLight& light : result.returned) {
+    if (!light.far_field) continue;
+    Json direction = direction_of(light.at);
+    direction["total_power"] = light.far_field->total_power;
+    direction["other_power"] = light.far_field->other_power;
+    direction["spots"] = Json::array();
+    for (const FarFieldSpot& spot : light.far_field->spots) direction["spots"].push_back(spot_of(spot));
+    json["directions"].push_back(std::move(direction));
+  }
+  return result_text("retrace.far_field/1", json, result.warnings, result.complete);
+}
+
+std::string far_field_csv(const RreResult& result) {
+  CsvWriter csv;
+  const Fields names = fields_of({});
+  csv.row("design", "incidence_deg", "azimuth_deg", "wavelength_nm", std::views::keys(names), "depth_min");
+  for (const ReturnedLight& light : result.returned) {
+    if (!light.far_field) continue;
+    const RrePoint& at = light.at;
+    for (const FarFieldSpot& spot : light.far_field->spots) {
+      const Fields fields = fields_of(spot);
+      csv.row(at.design, at.incidence_deg, at.azimuth_deg, at.wavelength_nm, std::views::values(fields),
+              spot.least_depth);
+    }
+  }
+  return csv.text();
 }
 
 }  // namespace retrace::studies

@@ -15,4 +15,18 @@ std::string rre_csv(const RreResult& result);
 /// A table for a terminal: RRE and its standard error in percent.
 std::string rre_table(const RreResult& result);
 
+/// A table for a terminal: the change of RRE, as a fraction, per unit of each parameter. Empty if none was asked for.
+std::string derivative_table(const RreResult& result);
+
+/// The active regions of every direction as a `retrace.footprint/1` document, a GeoJSON feature collection in mm.
+/// \pre a footprint was asked for
+std::string footprint_json(const RreResult& result);
+
+/// The directions in which light leaves the entrance face as a `retrace.far_field/1` document.
+/// \pre a far field was asked for
+std::string far_field_json(const RreResult& result);
+
+/// One line a spot; the header holds the keys of the JSON.
+std::string far_field_csv(const RreResult& result);
+
 }  // namespace retrace::studies

@@ -64,7 +64,7 @@ std::string solid_text(const Solid& solid, SolidFormat format) {
 }
 
 std::string solid_json(const Solid& solid, const std::string& file) {
-  Json json = {{"schema", "retrace.export/1"}, {"design", to_json(solid.design)}, {"what", name_of(solid.what)}};
+  Json json = {{"design", to_json(solid.design)}, {"what", name_of(solid.what)}};
   if (!file.empty()) json["file"] = file;
   if (solid.what == SolidKind::mould) json["block_mm"] = solid.block_mm;
   json.update({{"elements_full", solid.elements_full},
@@ -74,11 +74,8 @@ std::string solid_json(const Solid& solid, const std::string& file) {
                {"lower_mm", vector_json(solid.lower_mm)},
                {"upper_mm", vector_json(solid.upper_mm)},
                {"triangles", solid.mesh.triangles.size()},
-               {"is_manifold", solid.is_manifold},
-               {"version", kVersion},
-               {"warnings", solid.warnings},
-               {"complete", true}});
-  return to_text(json);
+               {"is_manifold", solid.is_manifold}});
+  return result_text("retrace.export/1", json, solid.warnings);
 }
 
 std::string solid_table(const Solid& solid) {

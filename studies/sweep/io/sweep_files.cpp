@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 
 namespace retrace::studies {
 namespace {
@@ -28,14 +28,6 @@ std::string value_text(const StoredValue& value) {
   return number != nullptr ? shortest(*number) : std::get<std::string>(value);
 }
 
-/// A field of CSV, in quotes where it needs them (RFC 4180).
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
-}
-
 Json point_json(const StoredPoint& point, const StoreLayout& layout) {
   Json json = {{"point", point.point}, {"status", point.failed ? "failed" : "done"}};
   for (std::size_t k = 0; k < layout.inputs.size(); ++k) json[layout.inputs[k]] = value_json(point.inputs[k]);
@@ -46,17 +38,6 @@ Json point_json(const StoredPoint& point, const StoreLayout& layout) {
     json[layout.outputs[k] + "_std_error"] = point.outputs[k].std_error;
   }
   return json;
-}
-
-std::string csv_line(const StoredPoint& point, const StoreLayout& layout) {
-  std::string line = fmt::format("{},{}", point.point, point.failed ? "failed" : "done");
-  for (const StoredValue& input : point.inputs) line += ',' + field(value_text(input));
-  for (std::size_t k = 0; k < layout.outputs.size(); ++k) {
-    const bool has_value = k < point.outputs.size() && point.outputs[k].value;
-    line += ',' + (has_value ? shortest(*point.outputs[k].value) : std::string());
-    line += ',' + (has_value ? shortest(point.outputs[k].std_error) : std::string());
-  }
-  return line + ',' + field(point.version) + ',' + field(point.reason) + '\n';
 }
 
 using Row = std::vector<std::string>;
@@ -78,7 +59,7 @@ Row table_row(const StoredPoint& point) {
 std::string sweep_json(const SweepResult& result) {
   const StoreLayout layout = result.sweep.layout();
   const Study& study = result.sweep.study();
-  Json json = {{"schema", "retrace.sweep/1"}, {"study", study.source}};
+  Json json = {{"study", study.source}};
   if (!study.title.empty()) json["title"] = study.title;
   json["parameters"] = layout.inputs;
   json["quantities"] = layout.outputs;
@@ -88,20 +69,27 @@ std::string sweep_json(const SweepResult& result) {
   json["points"] = Json::array();
   for (const StoredPoint& point : result.points) json["points"].push_back(point_json(point, layout));
   json["elapsed_s"] = result.elapsed_s;
-  json["version"] = kVersion;
-  json["warnings"] = result.warnings;
-  json["complete"] = result.complete;
-  return to_text(json);
+  return result_text("retrace.sweep/1", json, result.warnings, result.complete);
 }
 
 std::string sweep_csv(const SweepResult& result) {
   const StoreLayout layout = result.sweep.layout();
-  std::string csv = "point,status";
-  for (const std::string& name : layout.inputs) csv += ',' + field(name);
-  for (const std::string& name : layout.outputs) csv += fmt::format(",{0},{0}_std_error", name);
-  csv += ",version,reason\n";
-  for (const StoredPoint& point : result.points) csv += csv_line(point, layout);
-  return csv;
+  CsvWriter csv;
+  std::vector<std::string> outputs;
+  for (const std::string& name : layout.outputs) outputs.insert(outputs.end(), {name, name + "_std_error"});
+  csv.row("point", "status", layout.inputs, outputs, "version", "reason");
+  for (const StoredPoint& point : result.points) {
+    csv.add(point.point);
+    csv.add(point.failed ? "failed" : "done");
+    for (const StoredValue& input : point.inputs) csv.add(value_text(input));
+    for (std::size_t k = 0; k < layout.outputs.size(); ++k) {
+      const StoredOutput output = k < point.outputs.size() ? point.outputs[k] : StoredOutput{};
+      csv.add(output.value);
+      csv.add(output.value ? std::optional(output.std_error) : std::nullopt);
+    }
+    csv.row(point.version, point.reason);
+  }
+  return csv.text();
 }
 
 std::string sweep_table(const SweepResult& result) {

@@ -9,7 +9,6 @@
 
 #include "core/json_text.h"
 #include "core/message_text.h"
-#include "core/version.h"
 
 namespace retrace::studies {
 namespace {
@@ -99,7 +98,7 @@ std::string quantity_text(const Study& study, const QuantityTolerance& quantity)
 
 std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& request, const ToleranceResult& result) {
   const Study& study = swept.sweep.study();
-  Json json = {{"schema", "retrace.tolerance/1"}, {"study", study.source}};
+  Json json = {{"study", study.source}};
   if (!study.title.empty()) json["title"] = study.title;
   json["parameters"] = Json::array();
   for (const Parameter& parameter : study.parameters) json["parameters"].push_back(parameter.name);
@@ -120,10 +119,7 @@ std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& req
     json["quantities"].push_back(quantity_json(study, quantity));
   json["seed"] = study.seed;
   json["elapsed_s"] = swept.elapsed_s;
-  json["version"] = kVersion;
-  json["warnings"] = swept.warnings;
-  json["complete"] = swept.complete;
-  return to_text(json);
+  return result_text("retrace.tolerance/1", json, swept.warnings, swept.complete);
 }
 
 std::string tolerance_text(const Study& study, const ToleranceRequest& request, const ToleranceResult& result) {

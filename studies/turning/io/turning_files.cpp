@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 
 namespace retrace::studies {
 namespace {
@@ -61,8 +61,7 @@ std::string turning_json(const TurningResult& r) {
   Json programs = Json::array();
   for (const TurningText& program : r.programs)
     programs.push_back({{"dialect", program.dialect}, {"file", program.file}});
-  Json json = {{"schema", "retrace.turning/1"},
-               {"part", r.file},
+  Json json = {{"part", r.file},
                {"title", r.part.title},
                {"lenslets", r.part.surface.lenslets().size()},
                {"points", r.points},
@@ -79,17 +78,13 @@ std::string turning_json(const TurningResult& r) {
   if (!r.servo_csv.empty()) json["axes"]["servo"] = axis_json(r.axes[3]);
   json["programs"] = std::move(programs);
   json["verification"] = verification_json(r);
-  json["version"] = kVersion;
-  json["warnings"] = r.part.warnings;
-  json["complete"] = true;
-  return to_text(json);
+  return result_text("retrace.turning/1", json, r.part.warnings);
 }
 
 std::string turning_path_csv(const TurningResult& r) {
   constexpr std::size_t kMostRows = 50000;
   const std::size_t stride = r.points / kMostRows + 1;
-  std::string text =
-      "time_s,x_mm,y_mm,z_mm,c_deg,servo_mm,z_speed_mm_per_s,z_acceleration_mm_per_s2,z_jerk_mm_per_s3\n";
+  CsvWriter csv("time_s,x_mm,y_mm,z_mm,c_deg,servo_mm,z_speed_mm_per_s,z_acceleration_mm_per_s2,z_jerk_mm_per_s3");
   std::size_t count = 0;
   double start_s = 0.0;
   for (const turning::Pass& pass : r.passes) {
@@ -97,22 +92,20 @@ std::string turning_path_csv(const TurningResult& r) {
     for (std::size_t i = 0; i < pass.size(); ++i) {
       if (count++ % stride != 0) continue;
       const turning::PathPoint& p = pass[i];
-      text += fmt::format("{},{},{},{},{},{},{},{},{}\n", fixed(start_s + z[i].time_s, 6), fixed(p.x_mm, 7),
-                          fixed(p.y_mm, 7), fixed(p.z_mm, 7), fixed(p.c_deg, 7), fixed(p.servo_mm, 7),
-                          fixed(z[i].speed_mm_per_s, 6), fixed(z[i].acceleration_mm_per_s2, 4),
-                          fixed(z[i].jerk_mm_per_s3, 2));
+      csv.row(fixed(start_s + z[i].time_s, 6), fixed(p.x_mm, 7), fixed(p.y_mm, 7), fixed(p.z_mm, 7), fixed(p.c_deg, 7),
+              fixed(p.servo_mm, 7), fixed(z[i].speed_mm_per_s, 6), fixed(z[i].acceleration_mm_per_s2, 4),
+              fixed(z[i].jerk_mm_per_s3, 2));
     }
     start_s += z.empty() ? 0.0 : z.back().time_s;
   }
-  return text;
+  return csv.text();
 }
 
 std::string turning_cusps_csv(const TurningResult& r) {
-  std::string text = "x_mm,y_mm,scallop_nm,predicted_nm,valley_nm\n";
+  CsvWriter csv("x_mm,y_mm,scallop_nm,predicted_nm,valley_nm");
   for (const turning::CuspSample& s : r.inspection.cusps)
-    text += fmt::format("{},{},{},{},{}\n", shortest(s.at_mm.x()), shortest(s.at_mm.y()), shortest(s.scallop_nm),
-                        shortest(s.predicted_nm), shortest(s.valley_nm));
-  return text;
+    csv.row(s.at_mm.x(), s.at_mm.y(), s.scallop_nm, s.predicted_nm, s.valley_nm);
+  return csv.text();
 }
 
 std::string turning_table(const TurningResult& r) {
