@@ -17,14 +17,12 @@ class Fanuc : public DialectWriter {
     out.line("G54 G61 G69");
     out.line("M5");
   }
-  void mist(NcText& out, bool on) const override { out.line(on ? "M7" : "M9"); }
   void start_spindle(NcText& out, const Spindle& spindle) const override {
     out.add("G97 ");  // S is no cutting speed
     DialectWriter::start_spindle(out, spindle);
   }
   void comment(NcText& out, std::string_view text) const override { out.add("(").add(text).line(")"); }
   void message(NcText& out, std::string_view text) const override { comment(out, text); }
-  void optional_stop(NcText& out) const override { out.line("M1"); }
   void begin_subroutine(NcText& out, const Subroutine& subroutine) const override {
     out.add(number_of('O', subroutine.number)).end_line();
     comment(out, subroutine.title);
@@ -35,23 +33,7 @@ class Fanuc : public DialectWriter {
     out.line("M99");
   }
   void call(NcText& out, int number) const override { out.add("M98 ").add(number_of('P', number)).end_line(); }
-  void rapid(NcText& out, const Words& words) const override { out.add("G0").words(words).end_line(); }
-  void feed(NcText& out, const Words& words, double feed_mm_per_min) const override {
-    out.add("G1").words(words).add(" F").decimal(feed_mm_per_min).end_line();
-  }
   void dwell(NcText& out, int ms) const override { out.add("G4 P").number(ms).end_line(); }
-  void begin_trace(NcText& out) const override {
-    out.line("G64");
-    out.line("G93");
-  }
-  void trace_point(NcText& out, const Words& words, double seconds) const override {
-    // Inverse time: F is the number of such moves in a minute.
-    out.add("G1").words(words).add(" F").decimal(60.0 / seconds, 6).end_line();
-  }
-  void end_trace(NcText& out) const override {
-    out.line("G94");
-    out.line("G61");
-  }
 
  private:
   /// Four digits, as program numbers have.

@@ -10,8 +10,6 @@ namespace {
 class Pmac : public DialectWriter {
  public:
   bool subroutines_first() const override { return true; }
-  void begin_file(NcText&) const override {}
-  void end_file(NcText&) const override {}
   void begin_main(NcText& out) const override { out.line("open prog 1"); }
   void end_main(NcText& out) const override { out.line("close"); }
   void prepare(NcText& out) const override {
@@ -23,13 +21,11 @@ class Pmac : public DialectWriter {
     out.line("abs");
     out.line("M5");
   }
-  void mist(NcText& out, bool on) const override { out.line(on ? "M7" : "M9"); }
   /// \pre the spindle has its texts
   void start_spindle(NcText& out, const Spindle& spindle) const override { out.line(spindle.start_text); }
   void stop_spindle(NcText& out, const Spindle& spindle) const override { out.line(spindle.stop_text); }
   void comment(NcText& out, std::string_view text) const override { out.add("// ").line(text); }
   void message(NcText& out, std::string_view text) const override { comment(out, text); }
-  void optional_stop(NcText& out) const override { out.line("M1"); }
   void begin_subroutine(NcText& out, const Subroutine& subroutine) const override {
     comment(out, subroutine.title);
     out.add("open subprog ").number(subroutine.number).end_line();

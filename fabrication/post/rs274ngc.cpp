@@ -9,21 +9,18 @@ class Rs274ngc : public DialectWriter {
   bool subroutines_first() const override { return true; }
   void begin_file(NcText& out) const override { out.line("%"); }
   void end_file(NcText& out) const override { out.line("%"); }
-  void begin_main(NcText&) const override {}
   void end_main(NcText& out) const override { out.line("M2"); }
   void prepare(NcText& out) const override {
     out.line("G17 G21 G40 G49 G80 G90 G94");
     out.line("G54 G61 G92.1");
     out.line("M5");
   }
-  void mist(NcText& out, bool on) const override { out.line(on ? "M7" : "M9"); }
   void start_spindle(NcText& out, const Spindle& spindle) const override {
     out.add("G97 ");  // S is no cutting speed
     DialectWriter::start_spindle(out, spindle);
   }
   void comment(NcText& out, std::string_view text) const override { out.add("(").add(text).line(")"); }
   void message(NcText& out, std::string_view text) const override { out.add("(MSG, ").add(text).line(")"); }
-  void optional_stop(NcText& out) const override { out.line("M1"); }
   void begin_subroutine(NcText& out, const Subroutine& subroutine) const override {
     comment(out, subroutine.title);
     out.add("o").number(subroutine.number).line(" sub");
@@ -34,23 +31,7 @@ class Rs274ngc : public DialectWriter {
     out.add("o").number(subroutine.number).line(" endsub");
   }
   void call(NcText& out, int number) const override { out.add("o").number(number).line(" call"); }
-  void rapid(NcText& out, const Words& words) const override { out.add("G0").words(words).end_line(); }
-  void feed(NcText& out, const Words& words, double feed_mm_per_min) const override {
-    out.add("G1").words(words).add(" F").decimal(feed_mm_per_min).end_line();
-  }
   void dwell(NcText& out, int ms) const override { out.add("G4 P").decimal(1e-3 * ms).end_line(); }
-  void begin_trace(NcText& out) const override {
-    out.line("G64");
-    out.line("G93");
-  }
-  void trace_point(NcText& out, const Words& words, double seconds) const override {
-    // Inverse time: F is the number of such moves in a minute.
-    out.add("G1").words(words).add(" F").decimal(60.0 / seconds, 6).end_line();
-  }
-  void end_trace(NcText& out) const override {
-    out.line("G94");
-    out.line("G61");
-  }
 };
 
 }  // namespace

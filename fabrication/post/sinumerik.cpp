@@ -8,9 +8,6 @@ namespace {
 class Sinumerik : public DialectWriter {
  public:
   bool subroutines_first() const override { return false; }
-  void begin_file(NcText&) const override {}
-  void end_file(NcText&) const override {}
-  void begin_main(NcText&) const override {}
   void end_main(NcText& out) const override { out.line("M30"); }
   void prepare(NcText& out) const override {
     out.line("TRAFOOF");
@@ -19,10 +16,8 @@ class Sinumerik : public DialectWriter {
     out.line("G54 G60 D0");
     out.line("M5");
   }
-  void mist(NcText& out, bool on) const override { out.line(on ? "M7" : "M9"); }
   void comment(NcText& out, std::string_view text) const override { out.add("; ").line(text); }
   void message(NcText& out, std::string_view text) const override { out.add("MSG(\"").add(text).line("\")"); }
-  void optional_stop(NcText& out) const override { out.line("M1"); }
   void begin_subroutine(NcText& out, const Subroutine& subroutine) const override {
     comment(out, subroutine.title);
     out.add("RT").number(subroutine.number).line(":");
@@ -35,19 +30,7 @@ class Sinumerik : public DialectWriter {
   void call(NcText& out, int number) const override {
     out.add("CALL BLOCK RT").number(number).add(" TO RE").number(number).end_line();
   }
-  void rapid(NcText& out, const Words& words) const override { out.add("G0").words(words).end_line(); }
-  void feed(NcText& out, const Words& words, double feed_mm_per_min) const override {
-    out.add("G1").words(words).add(" F").decimal(feed_mm_per_min).end_line();
-  }
   void dwell(NcText& out, int ms) const override { out.add("G4 F").decimal(1e-3 * ms).end_line(); }
-  void begin_trace(NcText& out) const override {
-    out.line("G64");
-    out.line("G93");
-  }
-  void trace_point(NcText& out, const Words& words, double seconds) const override {
-    // Inverse time: F is the number of such moves in a minute.
-    out.add("G1").words(words).add(" F").decimal(60.0 / seconds, 6).end_line();
-  }
   void end_trace(NcText& out) const override {
     out.line("G94");
     out.line("G60");
