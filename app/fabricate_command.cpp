@@ -4,7 +4,7 @@
 #include "app/output.h"
 #include "app/shared_arguments.h"
 #include "fabrication/post/post.h"
-#include "report/fabrication_plot.h"
+#include "report/result_plots.h"
 #include "studies/fabrication/fabricate.h"
 #include "studies/fabrication/io/fabrication_files.h"
 

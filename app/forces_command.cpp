@@ -1,7 +1,7 @@
 #include "app/commands.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
-#include "report/forces_plot.h"
+#include "report/result_plots.h"
 #include "studies/forces/forces_study.h"
 #include "studies/forces/io/forces_files.h"
 

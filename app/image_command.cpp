@@ -1,26 +1,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 
 #include "app/commands.h"
-#include "app/image_options.h"
 #include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/shared_arguments.h"
 #include "core/atomic_file.h"
-#include "core/data_directory.h"
 #include "core/message_text.h"
+#include "core/text.h"
 #include "materials/io/spectrum_reader.h"
-#include "report/picture_plot.h"
-#include "report/road_plot.h"
+#include "report/io/picture_file.h"
+#include "report/result_plots.h"
 #include "studies/design/design_reader.h"
 #include "studies/image/io/image_documents.h"
+#include "studies/photometry/io/standard_reader.h"
 
 namespace retrace::app {
 namespace {
@@ -30,34 +29,129 @@ constexpr std::chrono::seconds kPreview{10};
 // Written by previews too.
 constexpr const char* kCameraPng = "camera.png";
 
+/// Options of `retrace image`. Exactly one kind of picture is asked for.
+struct ImageOptions {
+  std::string design;
+  bool detector = false;
+  bool camera = false;
+  bool road = false;
+
+  // Detector.
+  double incidence_deg = 0.0;
+  double azimuth_deg = 0.0;
+  std::string engine = "auto";
+  std::optional<double> cutoff;
+  std::uint64_t samples = 1U << 22;
+  double window_deg = 1.0;
+  std::uint64_t angle_pixels = 201;
+
+  // Camera.
+  double distance_m = 10.0;
+  double observation_deg = 0.33;
+  double v_deg = 0.0;
+  double h_deg = 0.0;
+  double rotation_deg = 0.0;
+  std::optional<std::string> eye_mm;
+  std::optional<std::string> lamp_mm;
+  double lamp_arcmin = 10.0;
+  double pupil_arcmin = 10.0;
+  double illuminance_lx = 10.0;
+  double ambient_lx = 0.0;
+  double backlight_lx = 0.0;
+  std::optional<double> field_mm;
+  std::string film_mm = "100x100";
+  std::optional<double> cylinder_mm;
+  double noise = 0.02;
+  std::optional<std::uint32_t> passes;
+  bool false_colour = false;
+
+  // Road.
+  std::string road_distance_m = "10,30,100";
+  double lamp_cd = 10'000.0;
+  std::string dye = "none";
+
+  std::optional<std::string> pixels;
+};
+
+constexpr std::uint64_t kMostWhole = std::numeric_limits<std::uint32_t>::max();
+
+std::vector<Argument> detector_arguments(ImageOptions& o) {
+  return {
+      {"--detector", "maps of the light that comes back, by place and by direction", &o.detector},
+      {"--incidence T", "detector: angle of incidence in degrees", &o.incidence_deg},
+      {"--azimuth P", "detector: azimuth of the source in degrees", &o.azimuth_deg},
+      engine_argument(o.engine, "detector: exact, montecarlo (embree), or auto: exact where it serves"),
+      {"--cutoff W",
+       "detector, exact: least power that is followed, as a share of the incident [what leaves 1e-5 truncated]",
+       &o.cutoff},
+      {"--samples N", "detector: rays, by Monte Carlo", &o.samples, whole(0, kMostWhole)},
+      {"--window-deg W", "detector: half width of the angular map", &o.window_deg},
+      {"--angle-pixels N", "detector: pixels along a side of the angular map", &o.angle_pixels, whole(0, kMostWhole)}};
+}
+
+std::vector<Argument> camera_arguments(ImageOptions& o) {
+  return {{"--camera", "the part in the light of a lamp, as a camera sees it", &o.camera},
+          {"--distance-m D", "camera: distance of lamp and eye", &o.distance_m},
+          {"--observation-deg A", "camera: angle by which the eye is above the lamp", &o.observation_deg},
+          {"--v-deg V", "camera: vertical angle of the lamp", &o.v_deg},
+          {"--h-deg H", "camera: horizontal angle of the lamp", &o.h_deg},
+          {"--rotation-deg E", "camera: turn of the part about its normal", &o.rotation_deg},
+          {"--eye-mm X,Y,Z", "camera: place of the eye [by distance and angles]", &o.eye_mm},
+          {"--lamp-mm X,Y,Z", "camera: place of the lamp [by distance and angles]", &o.lamp_mm},
+          {"--lamp-arcmin D", "camera: diameter of the lamp's disc", &o.lamp_arcmin},
+          {"--pupil-arcmin D", "camera: diameter of the eye's disc", &o.pupil_arcmin},
+          {"--illuminance-lx E", "camera: of the lamp, across its beam at the part", &o.illuminance_lx},
+          {"--ambient-lx E", "camera: even light from in front, on the face", &o.ambient_lx},
+          {"--backlight-lx E", "camera: even light from behind and round the part", &o.backlight_lx},
+          {"--field-mm W", "camera: width shown at the part [the part and a margin]", &o.field_mm},
+          {"--film-mm WxH", "camera: size of the sheet that an endless design is seen as", &o.film_mm},
+          {"--cylinder-mm R", "camera: radius of the cylinder that the sheet is bent over; negative: inside it [plane]",
+           &o.cylinder_mm},
+          {"--noise E", "camera: relative noise of pixels to reach", &o.noise},
+          {"--passes N", "camera: passes of four paths a pixel, in place of --noise", &o.passes, whole(0, kMostWhole)},
+          {"--false-colour", "camera: luminance as colours too", &o.false_colour}};
+}
+
+std::vector<Argument> road_arguments(ImageOptions& o) {
+  return {{"--road", "two such reflectors on a car ahead at night, from a driver's eye", &o.road},
+          {"--road-distance-m LIST", "road: distances of the car ahead", &o.road_distance_m},
+          {"--lamp-cd I", "road: intensity of each headlamp towards the reflectors", &o.lamp_cd},
+          dye_argument(o.dye, "road: none, red, amber (illustrative) or a file")};
+}
+
+std::vector<Argument> arguments(ImageOptions& options) {
+  std::vector<Argument> all = {
+      design_argument(options.design),
+      {"--pixels N|CxR", "detector: along the longer side of the face [400]; camera: columns and rows [400x300]",
+       &options.pixels}};
+  for (const auto& some : {detector_arguments(options), camera_arguments(options), road_arguments(options)})
+    all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+
 /// Numbers with `separator` between. \throw InputError naming the option if there are not `count` of them
-template <class Number>
-std::vector<Number> numbers_of(std::string_view text, char separator, std::size_t count, const std::string& option,
+std::vector<double> numbers_of(const std::string& text, char separator, std::size_t count, const std::string& option,
                                const std::string& form) {
-  std::vector<Number> numbers;
-  const char* at = text.data();
-  const char* const end = text.data() + text.size();
-  while (true) {
-    Number value{};
-    const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc{}) break;
-    numbers.push_back(value);
-    if (next == end) {
-      at = end;
-      break;
-    }
-    if (*next != separator) break;
-    at = next + 1;
-  }
-  const bool finite =
-      std::all_of(numbers.begin(), numbers.end(), [](Number n) { return std::isfinite(static_cast<double>(n)); });
-  if (at != end || numbers.size() != count || !finite)
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, separator)) numbers.push_back(number_in(part).value_or(NAN));
+  if (numbers.size() != count || std::any_of(numbers.begin(), numbers.end(), [](double n) { return std::isnan(n); }))
     throw InputError({"", 0, option}, fmt::format("must be {}, got {}", form, in_quotes(text)));
   return numbers;
 }
 
+/// Likewise of numbers of pixels.
+std::vector<std::size_t> pixels_of(const std::string& text, std::size_t count, const std::string& form) {
+  std::vector<std::size_t> pixels;
+  for (const double n : numbers_of(text, 'x', count, "--pixels", form)) {
+    if (!(n >= 0.0 && n < 1e15) || n != std::floor(n))
+      throw InputError({"", 0, "--pixels"}, fmt::format("must be {}, got {}", form, in_quotes(text)));
+    pixels.push_back(static_cast<std::size_t>(n));
+  }
+  return pixels;
+}
+
 std::array<double, 3> place_of(const std::string& text, const std::string& option) {
-  const auto n = numbers_of<double>(text, ',', 3, option, "three numbers X,Y,Z in mm");
+  const std::vector<double> n = numbers_of(text, ',', 3, option, "three numbers X,Y,Z in mm");
   return {n[0], n[1], n[2]};
 }
 
@@ -65,8 +159,7 @@ studies::DetectorRequest detector_request(const ImageOptions& options, const Com
   studies::DetectorRequest request;
   request.incidence_deg = options.incidence_deg;
   request.azimuth_deg = options.azimuth_deg;
-  if (options.pixels)
-    request.pixels = numbers_of<std::size_t>(*options.pixels, 'x', 1, "--pixels", "a whole number")[0];
+  if (options.pixels) request.pixels = pixels_of(*options.pixels, 1, "a whole number")[0];
   request.angle_pixels = options.angle_pixels;
   request.window_deg = options.window_deg;
   request.engine = studies::engine_from_name(options.engine);
@@ -94,12 +187,12 @@ studies::CameraRequest camera_request(const ImageOptions& options, const CommonO
   request.ambient_lx = options.ambient_lx;
   request.backlight_lx = options.backlight_lx;
   if (options.pixels) {
-    const auto n = numbers_of<std::size_t>(*options.pixels, 'x', 2, "--pixels", "columns and rows, such as 400x300");
+    const auto n = pixels_of(*options.pixels, 2, "columns and rows, such as 400x300");
     request.columns = n[0];
     request.rows = n[1];
   }
   request.field_mm = options.field_mm;
-  const auto film = numbers_of<double>(options.film_mm, 'x', 2, "--film-mm", "width and height, such as 100x100");
+  const auto film = numbers_of(options.film_mm, 'x', 2, "--film-mm", "width and height, such as 100x100");
   request.film_mm = {film[0], film[1]};
   request.cylinder_mm = options.cylinder_mm;
   request.noise = options.noise;
@@ -191,22 +284,12 @@ ExitCode run_camera(const ImageOptions& options, const CommonOptions& common, st
   return exit_code_of(result.complete);
 }
 
-/// The dye's file; empty for none.
-std::filesystem::path dye_file(const std::string& name) {
-  if (name == "none") return {};
-  if (name == "red" || name == "amber") return data_directory() / ("dye_" + name + ".csv");
-  if (!std::filesystem::exists(name))
-    throw InputError({"", 0, "--dye"},
-                     fmt::format("must be none, red, amber or a file that exists, got {}", in_quotes(name)));
-  return name;
-}
-
 ExitCode run_road(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
   std::vector<std::string> inputs = files_read({design});
   studies::RoadRequest request;
   request.distance_m = read_number_list(options.road_distance_m, "--road-distance-m");
   request.lamp_cd = options.lamp_cd;
-  const std::filesystem::path dye = dye_file(options.dye);
+  const std::filesystem::path dye = studies::dye_file_of(options.dye, false, {});
   if (!dye.empty()) {
     request.dye = options.dye;
     request.dye_absorption_per_mm = materials::read_spectral_absorption(dye);
@@ -252,7 +335,7 @@ Command image_command() {
               "says which. Pictures need `--out`; OpenEXR files have the numbers.",
           .reads = {"retrace.design/1", "absorption of a dye (CSV)"},
           .writes = {"retrace.image/1"},
-          .begin = begins<ImageOptions>(image_arguments, run)};
+          .begin = begins<ImageOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
-
 #include "app/commands.h"
 #include "app/output.h"
-#include "report/metrology_plot.h"
+#include "core/text.h"
+#include "report/result_plots.h"
 #include "studies/metrology/io/metrology_files.h"
 #include "studies/metrology/metrology.h"
 #include "surface_models/form.h"
@@ -47,11 +45,10 @@ std::vector<Argument> arguments(MetrologyOptions& options) {
 }
 
 double spacing_of(std::string_view text, const std::string& whole) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) || !(value > 0.0))
+  const std::optional<double> value = number_in(text);
+  if (!value || !(*value > 0.0))
     throw InputError({"", 0, "--pixel-um"}, "must be one number > 0, or two for x and y as in 0.5,0.6, got " + whole);
-  return value;
+  return *value;
 }
 
 studies::MetrologyRequest request_of(const MetrologyOptions& options) {

@@ -9,7 +9,7 @@
 #include "app/job_output.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
-#include "app/study_options.h"
+#include "app/shared_arguments.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"

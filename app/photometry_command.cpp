@@ -13,7 +13,7 @@
 #include "core/data_directory.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "report/photometry_plot.h"
+#include "report/result_plots.h"
 #include "studies/design/design_reader.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/io/photometry_files.h"

@@ -1,7 +1,7 @@
 #include "app/commands.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
-#include "report/planing_plot.h"
+#include "report/result_plots.h"
 #include "studies/planing/io/planing_files.h"
 #include "studies/planing/planing_study.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/output.h"
-#include "app/study_options.h"
+#include "app/shared_arguments.h"
 #include "core/error.h"
 #include "studies/sweep/sweep.h"
 

@@ -9,7 +9,7 @@
 #include "app/progress_bar.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
-#include "report/roughness_plot.h"
+#include "report/result_plots.h"
 #include "studies/design/design_reader.h"
 #include "studies/roughness/io/facet_table_reader.h"
 #include "studies/roughness/io/roughness_files.h"

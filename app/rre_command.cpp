@@ -10,8 +10,7 @@
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/shared_arguments.h"
-#include "report/footprint_plot.h"
-#include "report/rre_plot.h"
+#include "report/result_plots.h"
 #include "studies/design/design_reader.h"
 #include "studies/rre/io/rre_files.h"
 

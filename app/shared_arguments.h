@@ -3,6 +3,7 @@
 #include <string>
 
 #include "app/command.h"
+#include "studies/store/store.h"
 
 namespace retrace::app {
 
@@ -26,5 +27,21 @@ Argument dye_argument(Name& dye, const std::string& help) {
 
 /// Names of all engines, or of those without `cell`.
 Words engine_words(bool with_cell);
+
+/// Of commands that keep their points in a store.
+struct StudyOptions {
+  std::string study;
+  bool resume = false;
+  bool overwrite = false;
+};
+
+/// STUDY and what is done with a store that is there.
+std::vector<Argument> study_arguments(StudyOptions& options);
+
+/// \throw InputError for --resume or --overwrite without a folder
+void check_study_options(const StudyOptions& options, const CommonOptions& common);
+
+/// What is done with a store that is there.
+studies::IfExists if_exists_of(const StudyOptions& options);
 
 }  // namespace retrace::app

@@ -1,6 +1,6 @@
 #include "app/commands.h"
 #include "app/points_run.h"
-#include "report/tolerance_plot.h"
+#include "report/result_plots.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_files.h"
 #include "studies/tolerance/io/tolerance_files.h"

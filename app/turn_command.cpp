@@ -1,7 +1,7 @@
 #include "app/commands.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
-#include "report/turning_plot.h"
+#include "report/result_plots.h"
 #include "studies/turning/io/turning_files.h"
 #include "studies/turning/turn.h"
 

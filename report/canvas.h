@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "report/render.h"
+
 namespace retrace::report {
 
 struct Point {
@@ -50,7 +52,7 @@ std::string printable(std::string_view text);
 /// fails.
 class Canvas {
  public:
-  enum class Format { svg, png };
+  using Format = PlotFormat;
   /// \param scale pixels a unit of a PNG, > 0 and <= 16 \throw std::invalid_argument for another scale
   Canvas(Format format, Size size, double scale);
   Canvas(const Canvas&) = delete;

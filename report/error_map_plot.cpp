@@ -1,9 +1,9 @@
-#include "report/error_map_plot.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/number_format.h"
+#include "report/result_plots.h"
+#include "studies/closed_loop/verification.h"
 
 namespace retrace::report {
 

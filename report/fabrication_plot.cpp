@@ -1,5 +1,3 @@
-#include "report/fabrication_plot.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -10,6 +8,8 @@
 
 #include "core/number_format.h"
 #include "geometry/lattice.h"
+#include "report/result_plots.h"
+#include "studies/fabrication/fabricate.h"
 
 namespace retrace::report {
 namespace {

@@ -1,5 +1,3 @@
-#include "report/footprint_plot.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,9 @@
 #include <string>
 
 #include "core/number_format.h"
+#include "report/result_plots.h"
 #include "studies/design/design_json.h"
+#include "studies/rre/rre.h"
 
 namespace retrace::report {
 namespace {

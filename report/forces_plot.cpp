@@ -1,8 +1,8 @@
-#include "report/forces_plot.h"
-
 #include <fmt/format.h>
 
 #include "core/number_format.h"
+#include "report/result_plots.h"
+#include "studies/forces/forces_study.h"
 
 namespace retrace::report {
 
@@ -14,11 +14,9 @@ LinePlot forces_plot(const studies::ForcesResult& result) {
   plot.y_label = "force on the tool (N)";
   plot.series = {{"Fx", {}, {}, {}}, {"Fy", {}, {}, {}}, {"Fz", {}, {}, {}}};
   for (const fabrication::ForceSample& s : result.profile) {
-    const double forces[] = {s.fx_n, s.fy_n, s.fz_n};
-    for (std::size_t k = 0; k < 3; ++k) {
-      plot.series[k].x.push_back(s.time_s);
-      plot.series[k].y.push_back(forces[k]);
-    }
+    plot.series[0].add(s.time_s, s.fx_n);
+    plot.series[1].add(s.time_s, s.fy_n);
+    plot.series[2].add(s.time_s, s.fz_n);
   }
   return plot;
 }

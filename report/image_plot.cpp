@@ -3,27 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include "core/number_format.h"
-#include "report/axis_ticks.h"
-#include "report/canvas.h"
 #include "report/colour_scale.h"
+#include "report/style.h"
 
 namespace retrace::report {
 namespace {
 
-constexpr Colour kWhite{1.0, 1.0, 1.0};
-constexpr Colour kAxis{0.35, 0.35, 0.35};
-constexpr Colour kText{0.13, 0.13, 0.13};
-constexpr Font kTitleFont{16.0, true};
-constexpr Font kImagePanelFont{12.5, true};
 constexpr Font kImageLabelFont{11.5, false};
 constexpr Font kImageTickFont{10.5, false};
 
-constexpr double kMargin = 22.0;
 constexpr double kRemarkHeight = 17.0;
 constexpr double kPicture = 340.0;    ///< longer side of a picture
 constexpr double kPanelTop = 30.0;    ///< for its title
@@ -67,11 +58,6 @@ double panel_width(const ImagePanel& panel) {
   return std::max(200.0, picture_size(panel).width) + kImageBarGap + kImageBarWidth + kBarTexts;
 }
 
-void draw_frame(Canvas& canvas, Point corner, Size size) {
-  const Point far{corner.x + size.width, corner.y + size.height};
-  canvas.line({corner, {far.x, corner.y}, far, {corner.x, far.y}, corner}, {kAxis, 1.0, {}});
-}
-
 void draw_tick(Canvas& canvas, Point at, const std::string& label) {
   canvas.line({at, {at.x + 4.0, at.y}}, {kAxis, 1.0, {}});
   canvas.text({at.x + 7.0, at.y + 3.6}, label, kImageTickFont, kText, Align::left);
@@ -111,7 +97,7 @@ void draw_scale_bar(Canvas& canvas, const ImagePanel& panel, Point corner, doubl
 }
 
 void draw(Canvas& canvas, const ImagePanel& panel, Point corner) {
-  canvas.text({corner.x, corner.y + 16.0}, panel.title, kImagePanelFont, kText, Align::left);
+  canvas.text({corner.x, corner.y + 16.0}, panel.title, kPanelFont, kText, Align::left);
   const ValueScale scale = scale_of(panel);
   std::vector<Colour> colours;
   colours.reserve(panel.values.size());
@@ -135,8 +121,7 @@ double scale_bar_length(double width) {
   return best;
 }
 
-std::string render_png(const ImagePlot& plot, double scale) {
-  if (!(scale > 0.0 && scale <= 16.0)) throw std::invalid_argument(fmt::format("plot scale {}: not in (0, 16]", scale));
+std::string render(const ImagePlot& plot, PlotFormat format, double scale) {
   double width = 2.0 * kMargin;
   double height = 0.0;
   for (const ImagePanel& panel : plot.panels) {
@@ -146,11 +131,10 @@ std::string render_png(const ImagePlot& plot, double scale) {
   width = std::max(width, 420.0);
   const double head = kMargin + 26.0 + kRemarkHeight * static_cast<double>(plot.remarks.size());
   const Size size{std::ceil(width), std::ceil(head + height + 8.0)};
-  Canvas canvas(Canvas::Format::png, size, scale);
+  Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
   const auto line = [&](const std::string& text, Font font, double y) {
-    const auto fitted = canvas.fitted(text, font, size.width - 2.0 * kMargin, 1, Ellipsis::end);
-    if (!fitted.empty()) canvas.text({kMargin, y}, fitted.front(), font, kText, Align::left);
+    draw_within(canvas, size.width - 2.0 * kMargin, Ellipsis::end, {kMargin, y}, text, font, kText, Align::left);
   };
   line(plot.title, kTitleFont, kMargin + 12.0);
   for (std::size_t k = 0; k < plot.remarks.size(); ++k)

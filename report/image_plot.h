@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "report/render.h"
+
 namespace retrace::report {
 
 /// A picture of values with a scale bar for lengths or angles and a colour bar for values.
@@ -26,9 +28,8 @@ struct ImagePlot {
   std::vector<ImagePanel> panels;
 };
 
-/// The plot as a PNG file, `scale` pixels to the drawing unit (1/96 inch). The same plot gives the same bytes.
-/// \pre 0 < scale <= 16 \throw OutputError if it cannot be drawn; std::invalid_argument for a scale out of range
-std::string render_png(const ImagePlot& plot, double scale = 2.0);
+/// What render_svg() and render_png() call.
+std::string render(const ImagePlot& plot, PlotFormat format, double scale);
 
 /// The length of a scale bar: 1, 2 or 5 times a power of ten, near a quarter of `width`. \pre width > 0
 double scale_bar_length(double width);

@@ -8,8 +8,6 @@
 #include <map>
 #include <utility>
 
-#include "report/axis_ticks.h"
-#include "report/canvas.h"
 #include "report/style.h"
 
 namespace retrace::report {
@@ -24,15 +22,15 @@ constexpr Colour kHatch{0.80, 0.80, 0.80};
 constexpr Colour kLine{0.55, 0.55, 0.55};  ///< seen on the palest and the darkest region
 
 // YlGnBu of ColorBrewer (Harrower and Brewer 2003): sequential in lightness, safe with any kind of colour vision.
-constexpr std::array<Colour, 9> kMapScale = {{{1.000, 1.000, 0.851},
-                                              {0.929, 0.973, 0.694},
-                                              {0.780, 0.914, 0.706},
-                                              {0.498, 0.804, 0.733},
-                                              {0.255, 0.714, 0.769},
-                                              {0.114, 0.569, 0.753},
-                                              {0.133, 0.369, 0.659},
-                                              {0.145, 0.204, 0.580},
-                                              {0.031, 0.114, 0.345}}};
+constexpr ColourScale kMapScale = {{{1.000, 1.000, 0.851},
+                                    {0.929, 0.973, 0.694},
+                                    {0.780, 0.914, 0.706},
+                                    {0.498, 0.804, 0.733},
+                                    {0.255, 0.714, 0.769},
+                                    {0.114, 0.569, 0.753},
+                                    {0.133, 0.369, 0.659},
+                                    {0.145, 0.204, 0.580},
+                                    {0.031, 0.114, 0.345}}};
 constexpr int kColourSteps = 200;
 
 constexpr Font kMapRemarkFont{11.0, false};
@@ -40,6 +38,11 @@ constexpr Font kMapLabelFont{13.0, false};
 constexpr Font kMapTickFont{11.0, false};
 
 constexpr double kMapTickLength = 4.0;
+constexpr AxisLook kMapAxis{.font = kMapTickFont,
+                            .tick = kMapTickLength,
+                            .below = kMapTickLength + 3.0 + kMapTickFont.size,
+                            .beside = kMapTickLength + 3.0,
+                            .baseline = 0.36 * kMapTickFont.size};
 constexpr double kPlanLeft = 40.0;  ///< in its cell: room for the labels of the axis
 constexpr double kMapBarWidth = 16.0;
 constexpr double kHatchSpacing = 6.0;
@@ -50,15 +53,6 @@ constexpr double kSurroundings = 0.3;
 constexpr double kSurroundingsVeil = 0.62;
 /// Thin lines need this much room each.
 constexpr double kLeastCell = 3.0;
-
-Colour map_colour_at(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kMapScale.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(at), kMapScale.size() - 2);
-  const double t = at - static_cast<double>(k);
-  const Colour& a = kMapScale[k];
-  const Colour& b = kMapScale[k + 1];
-  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
-}
 
 /// What of the plane a panel shows.
 Rectangle shown_by(const MapPanel& panel) {
@@ -217,7 +211,7 @@ void draw_regions(Canvas& canvas, const MapPanel& panel, const Plan& plan, const
       by_colour[static_cast<int>(std::lround(share * kColourSteps))].push_back(plan.at(region.outline, copy));
     }
   for (const auto& [step, paths] : by_colour)
-    canvas.fill(paths, map_colour_at(static_cast<double>(step) / kColourSteps), kSwell);
+    canvas.fill(paths, colour_at(kMapScale, static_cast<double>(step) / kColourSteps), kSwell);
 }
 
 void draw_lines(Canvas& canvas, const MapPanel& panel, const Plan& plan) {
@@ -273,20 +267,8 @@ void draw_axes(Canvas& canvas, const Plan& plan) {
   canvas.line({{plan.x.first, bottom}, {plan.x.last, bottom}}, axis);
   canvas.line({{left, plan.y.first}, {left, plan.y.last}}, axis);
   const auto most = [](double length, double each) { return std::max(1, static_cast<int>(length / each)); };
-  const Ticks xs = make_ticks(plan.x.values, most(plan.size().width, 48.0));
-  for (std::size_t k = 0; k < xs.positions.size(); ++k) {
-    const double x = plan.x.at(xs.positions[k]);
-    canvas.line({{x, bottom}, {x, bottom + kMapTickLength}}, axis);
-    canvas.text({x, bottom + kMapTickLength + 3.0 + kMapTickFont.size}, xs.labels[k], kMapTickFont, kText,
-                Align::centre);
-  }
-  const Ticks ys = make_ticks(plan.y.values, most(plan.size().height, 34.0));
-  for (std::size_t k = 0; k < ys.positions.size(); ++k) {
-    const double y = plan.y.at(ys.positions[k]);
-    canvas.line({{left - kMapTickLength, y}, {left, y}}, axis);
-    canvas.text({left - kMapTickLength - 3.0, y + 0.36 * kMapTickFont.size}, ys.labels[k], kMapTickFont, kText,
-                Align::right);
-  }
+  draw_x_ticks(canvas, kMapAxis, plan.x, make_ticks(plan.x.values, most(plan.size().width, 48.0)), bottom);
+  draw_y_ticks(canvas, kMapAxis, plan.y, make_ticks(plan.y.values, most(plan.size().height, 34.0)), left);
 }
 
 void draw_panel(Canvas& canvas, const MapPanel& panel, const MapLayout& layout, Point cell_corner) {
@@ -294,8 +276,8 @@ void draw_panel(Canvas& canvas, const MapPanel& panel, const MapLayout& layout, 
   const Plan plan = plan_of(panel, layout, {cell_corner.x + kPlanLeft, cell_corner.y + layout.head});
   double baseline = plan.corner().y - 9.0;
   const auto line_above = [&](const std::string& text, Font font, Colour colour) {
-    for (const std::string& shown : canvas.fitted(text, font, layout.cell.width - 8.0, 1, Ellipsis::middle))
-      canvas.text({middle, baseline}, shown, font, colour, Align::centre);
+    draw_within(canvas, layout.cell.width - 8.0, Ellipsis::middle, {middle, baseline}, text, font, colour,
+                Align::centre);
     baseline -= font.size + 5.0;
   };
   for (auto remark = panel.remarks.rbegin(); remark != panel.remarks.rend(); ++remark)
@@ -312,17 +294,9 @@ void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const MapLayout& layou
   for (int k = 0; k < kColourSteps; ++k)  // each a little taller than its step, to leave no gap
     canvas.fill_rectangle({layout.bar_left, layout.bar_top + k * step},
                           {kMapBarWidth, k + 1 < kColourSteps ? 1.5 * step : step},
-                          map_colour_at(1.0 - (k + 0.5) / kColourSteps));
+                          colour_at(kMapScale, 1.0 - (k + 0.5) / kColourSteps));
   const AxisScale scale{layout.values, bottom, layout.bar_top};
-  const auto frame = [&](double top, double height) {
-    canvas.line({{layout.bar_left, top},
-                 {right, top},
-                 {right, top + height},
-                 {layout.bar_left, top + height},
-                 {layout.bar_left, top}},
-                {kAxis, 0.9, {}});
-  };
-  frame(layout.bar_top, layout.bar_height);
+  draw_frame(canvas, {layout.bar_left, layout.bar_top}, {kMapBarWidth, layout.bar_height}, 0.9);
   double widest = 0.0;
   for (std::size_t k = 0; k < layout.value_ticks.positions.size(); ++k) {
     const double y = scale.at(layout.value_ticks.positions[k]);
@@ -340,12 +314,14 @@ void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const MapLayout& layou
       {layout.bar_left, top}, {right, top}, {right, top + kMapBarWidth}, {layout.bar_left, top + kMapBarWidth}};
   canvas.fill({swatch}, kRest);
   canvas.hatch(swatch, kHatchSpacing, {kHatch, 0.8, {}});
-  frame(top, kMapBarWidth);
+  draw_frame(canvas, {layout.bar_left, top}, {kMapBarWidth, kMapBarWidth}, 0.9);
   canvas.text({right + 6.0, top + 0.5 * kMapBarWidth + 0.36 * kMapTickFont.size}, plot.rest_label, kMapTickFont, kText,
               Align::left);
 }
 
-std::string render(const MapPlot& plot, Canvas::Format format, double scale) {
+}  // namespace
+
+std::string render(const MapPlot& plot, PlotFormat format, double scale) {
   const MapLayout layout = lay_out(plot, Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0));
   Canvas canvas(format, layout.figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, layout.figure, kWhite);
@@ -367,16 +343,6 @@ std::string render(const MapPlot& plot, Canvas::Format format, double scale) {
               fmt::format("y ({})", plot.axis_unit), kMapLabelFont, kText, Align::centre, true);
   draw_colour_bar(canvas, plot, layout);
   return canvas.finish();
-}
-
-}  // namespace
-
-std::string render_svg(const MapPlot& plot) {
-  return render(plot, Canvas::Format::svg, 1.0);
-}
-
-std::string render_png(const MapPlot& plot, double scale) {
-  return render(plot, Canvas::Format::png, scale);
 }
 
 }  // namespace retrace::report

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/polygon.h"
+#include "report/render.h"
 
 namespace retrace::report {
 
@@ -37,11 +38,7 @@ struct MapPlot {
   std::vector<MapPanel> panels;
 };
 
-/// The plot as an SVG document. The same plot gives the same bytes. \throw OutputError if it cannot be drawn.
-std::string render_svg(const MapPlot& plot);
-
-/// The plot as a PNG file, `scale` pixels to the drawing unit of the SVG.
-/// \pre 0 < scale <= 16 \throw as render_svg(); std::invalid_argument for a scale out of range.
-std::string render_png(const MapPlot& plot, double scale = 2.0);
+/// What render_svg() and render_png() call.
+std::string render(const MapPlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

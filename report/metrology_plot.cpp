@@ -1,10 +1,10 @@
-#include "report/metrology_plot.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 
 #include "core/number_format.h"
+#include "report/result_plots.h"
+#include "studies/metrology/metrology.h"
 
 namespace retrace::report {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "report/axis_ticks.h"
-#include "report/canvas.h"
 #include "report/style.h"
 
 namespace retrace::report {
@@ -13,13 +11,11 @@ namespace {
 using geometry::Vec2;
 
 constexpr Colour kMaterial{0.88, 0.88, 0.88};
-constexpr Colour kPathOutline{0.35, 0.35, 0.35};
-// Okabe and Ito (2008): blue, vermillion, bluish green, reddish purple, black.
-constexpr std::array<Colour, 5> kColours = {
-    {{0.0, 0.447, 0.698}, {0.835, 0.369, 0.0}, {0.0, 0.620, 0.451}, {0.8, 0.475, 0.655}, {0.0, 0.0, 0.0}}};
+constexpr std::array<Colour, 5> kColours = {kBlue, kVermilion, kBluishGreen, kReddishPurple, kBlack};
 constexpr Font kPathRemarkFont{11.5, false};
 constexpr Font kPathLabelFont{13.0, false};
 constexpr Font kPathTickFont{11.0, false};
+constexpr AxisLook kPathAxis{.font = kPathTickFont, .below = 17.0, .beside = 7.0, .baseline = 4.0};
 constexpr double kPathPlanWidth = 560.0;
 constexpr double kPathLeft = 74.0;
 constexpr double kPathBelow = 52.0;
@@ -49,7 +45,9 @@ Box box_of(const PathPlot& plot) {
   return {{across.low - room, up.low - room}, {across.high + room, up.high + room}};
 }
 
-std::string draw(const PathPlot& plot, Canvas::Format format, double scale) {
+}  // namespace
+
+std::string render(const PathPlot& plot, PlotFormat format, double scale) {
   const Box box = box_of(plot);
   const Vec2 size = box.high - box.low;
   const double height = kPathPlanWidth * std::clamp(size.y() / size.x(), 0.15, 1.4);
@@ -61,15 +59,12 @@ std::string draw(const PathPlot& plot, Canvas::Format format, double scale) {
                     legend_top + kLegendLine * static_cast<double>((plot.kinds.size() + 3) / 4) + kMargin};
   Canvas canvas(format, figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, figure, kWhite);
-  const std::vector<std::string> title =
-      canvas.fitted(plot.title, kTitleFont, figure.width - 2.0 * kMargin, 1, Ellipsis::end);
+  const double width = figure.width - 2.0 * kMargin;
   double y = kMargin + kTitleFont.size;
-  for (const std::string& line : title) canvas.text({kMargin, y}, line, kTitleFont, kText, Align::left);
+  draw_within(canvas, width, Ellipsis::end, {kMargin, y}, plot.title, kTitleFont, kText, Align::left);
   for (const std::string& remark : plot.remarks) {
     y += kPathRemarkFont.size + 5.0;
-    for (const std::string& line :
-         canvas.fitted(remark, kPathRemarkFont, figure.width - 2.0 * kMargin, 1, Ellipsis::end))
-      canvas.text({kMargin, y}, line, kPathRemarkFont, kFaint, Align::left);
+    draw_within(canvas, width, Ellipsis::end, {kMargin, y}, remark, kPathRemarkFont, kFaint, Align::left);
   }
 
   const auto at = [&](const Vec2& p) {
@@ -79,7 +74,7 @@ std::string draw(const PathPlot& plot, Canvas::Format format, double scale) {
   for (const Vec2& p : plot.material) material.push_back(at(p));
   if (!material.empty()) {
     canvas.fill({material}, kMaterial);
-    canvas.line(material, {kPathOutline, 1.0, {}});
+    canvas.line(material, {kAxis, 1.0, {}});
   }
   for (std::size_t k = 0; k < plot.kinds.size(); ++k) {
     Stroke stroke{kColours[k % kColours.size()], 0.9, {}};
@@ -92,36 +87,16 @@ std::string draw(const PathPlot& plot, Canvas::Format format, double scale) {
     canvas.text({sample.x + 30.0, sample.y + 4.0}, plot.kinds[k].label, kPathTickFont, kText, Align::left);
   }
 
-  const Range across{box.low.x(), box.low.x() + kPathPlanWidth / unit};
-  const Range up{box.low.y(), box.low.y() + height / unit};
-  const Stroke axis{kPathOutline, 1.0, {}};
-  canvas.line({{kPathLeft, top}, {kPathLeft, top + height}, {kPathLeft + kPathPlanWidth, top + height}}, axis);
-  const Ticks below = make_ticks(across, 6);
-  for (std::size_t k = 0; k < below.positions.size(); ++k) {
-    const double x = kPathLeft + (below.positions[k] - across.low) * unit;
-    canvas.line({{x, top + height}, {x, top + height + 4.0}}, axis);
-    canvas.text({x, top + height + 17.0}, below.labels[k], kPathTickFont, kText, Align::centre);
-  }
-  const Ticks beside = make_ticks(up, 6);
-  for (std::size_t k = 0; k < beside.positions.size(); ++k) {
-    const double at_y = top + height - (beside.positions[k] - up.low) * unit;
-    canvas.line({{kPathLeft - 4.0, at_y}, {kPathLeft, at_y}}, axis);
-    canvas.text({kPathLeft - 7.0, at_y + 4.0}, beside.labels[k], kPathTickFont, kText, Align::right);
-  }
+  const AxisScale across{{box.low.x(), box.low.x() + kPathPlanWidth / unit}, kPathLeft, kPathLeft + kPathPlanWidth};
+  const AxisScale up{{box.low.y(), box.low.y() + height / unit}, top + height, top};
+  canvas.line({{kPathLeft, top}, {kPathLeft, top + height}, {kPathLeft + kPathPlanWidth, top + height}},
+              {kAxis, 1.0, {}});
+  draw_x_ticks(canvas, kPathAxis, across, make_ticks(across.values, 6), top + height);
+  draw_y_ticks(canvas, kPathAxis, up, make_ticks(up.values, 6), kPathLeft);
   canvas.text({kPathLeft + 0.5 * kPathPlanWidth, top + height + 38.0}, plot.x_label, kPathLabelFont, kText,
               Align::centre);
   canvas.text({18.0, top + 0.5 * height}, plot.y_label, kPathLabelFont, kText, Align::centre, true);
   return canvas.finish();
-}
-
-}  // namespace
-
-std::string render_svg(const PathPlot& plot) {
-  return draw(plot, Canvas::Format::svg, 1.0);
-}
-
-std::string render_png(const PathPlot& plot, double scale) {
-  return draw(plot, Canvas::Format::png, scale);
 }
 
 }  // namespace retrace::report

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "report/render.h"
 
 namespace retrace::report {
 
@@ -25,11 +26,7 @@ struct PathPlot {
   std::vector<PathKind> kinds;
 };
 
-/// The plot as an SVG document. The same plot gives the same bytes. \throw OutputError if it cannot be drawn.
-std::string render_svg(const PathPlot& plot);
-
-/// The plot as a PNG file, `scale` pixels to the drawing unit of the SVG.
-/// \pre 0 < scale <= 16 \throw as render_svg(); std::invalid_argument for a scale out of range.
-std::string render_png(const PathPlot& plot, double scale = 2.0);
+/// What render_svg() and render_png() call.
+std::string render(const PathPlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

@@ -1,11 +1,11 @@
-#include "report/photometry_plot.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "core/number_format.h"
+#include "report/result_plots.h"
 #include "studies/design/design_json.h"
+#include "studies/photometry/photometry.h"
 
 namespace retrace::report {
 namespace {

@@ -1,5 +1,3 @@
-#include "report/picture_plot.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,7 +5,10 @@
 #include "core/number_format.h"
 #include "core/version.h"
 #include "report/colour_scale.h"
+#include "report/result_plots.h"
 #include "studies/design/design_json.h"
+#include "studies/image/camera_study.h"
+#include "studies/image/detector_study.h"
 
 namespace retrace::report {
 namespace {
@@ -31,19 +32,18 @@ std::string direction_text(const DetectorResult& result) {
   return text;
 }
 
-std::vector<std::pair<std::string, std::string>> detector_texts(const DetectorResult& result) {
-  return {{"Software", std::string("retrace ") + kVersion},
-          {"retrace:schema", "retrace.image/1"},
-          {"retrace:kind", "detector"},
-          {"retrace:design", result.design.source_name()},
-          {"retrace:engine", result.engine}};
-}
-
 void add_channel(FloatPicture& picture, const std::string& name, const std::vector<double>& values) {
   if (!values.empty()) picture.channels.emplace_back(name, values);
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind, const studies::Design& design) {
+  return {{"Software", std::string("retrace ") + kVersion},
+          {"retrace:schema", "retrace.image/1"},
+          {"retrace:kind", kind},
+          {"retrace:design", design.source_name()}};
+}
 
 ImagePlot irradiance_plot(const DetectorResult& result) {
   ImagePlot plot;
@@ -91,7 +91,8 @@ FloatPicture irradiance_picture(const DetectorResult& result) {
   add_channel(picture, "leaving.std_error", result.maps.leaving.std_error);
   add_channel(picture, "entering", result.maps.entering.value);
   add_channel(picture, "entering.std_error", result.maps.entering.std_error);
-  picture.texts = detector_texts(result);
+  picture.texts = picture_texts("detector", result.design);
+  picture.texts.emplace_back("retrace:engine", result.engine);
   picture.texts.emplace_back("retrace:unit", "irradiance over that of the beam on the face");
   const geometry::Rectangle& bounds = result.face.bounds_mm();
   picture.numbers = {{"retrace:x_from_mm", bounds.lower.x()},
@@ -111,7 +112,8 @@ FloatPicture angular_picture(const DetectorResult& result) {
   add_channel(picture, "per_sr", turned_over(result.maps.per_sr.value, picture.columns));
   if (!result.maps.per_sr.std_error.empty())
     add_channel(picture, "per_sr.std_error", turned_over(result.maps.per_sr.std_error, picture.columns));
-  picture.texts = detector_texts(result);
+  picture.texts = picture_texts("detector", result.design);
+  picture.texts.emplace_back("retrace:engine", result.engine);
   picture.texts.emplace_back("retrace:unit", "share of the incident power per steradian");
   picture.numbers = {{"retrace:half_width_deg", result.request.window_deg},
                      {"retrace:incidence_deg", result.request.incidence_deg},
@@ -130,11 +132,8 @@ FloatPicture luminance_picture(const CameraResult& result) {
   for (std::size_t k = 0; k < image.luminance.size() && image.passes > 1; ++k) errors.push_back(image.std_error(k));
   add_channel(picture, "std_error", errors);
   add_channel(picture, "coverage", image.coverage);
-  picture.texts = {{"Software", std::string("retrace ") + kVersion},
-                   {"retrace:schema", "retrace.image/1"},
-                   {"retrace:kind", "camera"},
-                   {"retrace:design", result.design.source_name()},
-                   {"retrace:unit", "cd/m2"}};
+  picture.texts = picture_texts("camera", result.design);
+  picture.texts.emplace_back("retrace:unit", "cd/m2");
   picture.numbers = {{"retrace:width_mm", result.scene.view.width_mm},
                      {"retrace:observation_deg", result.observation_deg},
                      {"retrace:entrance_deg", result.entrance_deg},

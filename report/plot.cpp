@@ -8,21 +8,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "report/canvas.h"
 #include "report/style.h"
 
 namespace retrace::report {
 namespace {
 
-// Colours of Okabe and Ito (2008), told apart with any kind of colour vision; their yellow is too pale for a line on
-// white. Dashes and marker shapes change when the colours start again.
-constexpr std::array<Colour, 7> kPalette = {{{0.000, 0.447, 0.698},    // blue
-                                             {0.835, 0.369, 0.000},    // vermilion
-                                             {0.000, 0.620, 0.451},    // bluish green
-                                             {0.800, 0.475, 0.655},    // reddish purple
-                                             {0.902, 0.624, 0.000},    // orange
-                                             {0.337, 0.706, 0.914},    // sky blue
-                                             {0.000, 0.000, 0.000}}};  // black
+// Dashes and marker shapes change when the colours start again.
+constexpr std::array<Colour, 7> kPalette = {kBlue, kVermilion, kBluishGreen, kReddishPurple, kOrange, kSkyBlue, kBlack};
 const std::array<std::vector<double>, 4> kDashes = {{{}, {7.0, 3.5}, {2.0, 2.5}, {8.0, 3.0, 2.0, 3.0}}};
 constexpr std::array kMarkers = {Marker::circle, Marker::square, Marker::triangle, Marker::diamond,
                                  Marker::inverted_triangle};
@@ -36,6 +28,12 @@ constexpr Font kLegendFont{12.0, false};
 constexpr double kPlotWidth = 620.0;  ///< of the area inside the axes
 constexpr double kPlotHeight = 370.0;
 constexpr double kTickLength = 5.0;
+constexpr AxisLook kPlotAxis{.font = kTickFont,
+                             .tick = kTickLength,
+                             .below = kTickLength + 5.0 + kTickFont.size,
+                             .beside = kTickLength + 5.0,
+                             .baseline = 0.36 * kTickFont.size,
+                             .width = 1.1};
 constexpr double kLineSpacing = 1.3;
 constexpr double kLegendRow = 19.0;
 constexpr double kLegendKey = 30.0;  ///< length of a legend's sample of the line
@@ -221,20 +219,9 @@ void draw_axes(Canvas& canvas, const Layout& layout) {
   for (const double value : layout.y_ticks.positions)
     grid({left, layout.y.at(value)}, {right, layout.y.at(value)}, value);
 
-  const Stroke axis{kAxis, 1.1, {}};
-  canvas.line({{left, top}, {left, bottom}, {right, bottom}}, axis);
-  for (std::size_t i = 0; i < layout.x_ticks.positions.size(); ++i) {
-    const double x = layout.x.at(layout.x_ticks.positions[i]);
-    canvas.line({{x, bottom}, {x, bottom + kTickLength}}, axis);
-    canvas.text({x, bottom + kTickLength + 5.0 + kTickFont.size}, layout.x_ticks.labels[i], kTickFont, kText,
-                Align::centre);
-  }
-  for (std::size_t i = 0; i < layout.y_ticks.positions.size(); ++i) {
-    const double y = layout.y.at(layout.y_ticks.positions[i]);
-    canvas.line({{left - kTickLength, y}, {left, y}}, axis);
-    canvas.text({left - kTickLength - 5.0, y + 0.36 * kTickFont.size}, layout.y_ticks.labels[i], kTickFont, kText,
-                Align::right);
-  }
+  canvas.line({{left, top}, {left, bottom}, {right, bottom}}, {kAxis, kPlotAxis.width, {}});
+  draw_x_ticks(canvas, kPlotAxis, layout.x, layout.x_ticks, bottom);
+  draw_y_ticks(canvas, kPlotAxis, layout.y, layout.y_ticks, left);
 }
 
 void draw_texts(Canvas& canvas, const Layout& layout) {
@@ -329,7 +316,9 @@ void draw_series(Canvas& canvas, const Layout& layout, const Series& series, con
   }
 }
 
-std::string render(const LinePlot& plot, Canvas::Format format, double scale) {
+}  // namespace
+
+std::string render(const LinePlot& plot, PlotFormat format, double scale) {
   for (const Series& series : plot.series) {
     const bool errors_match = series.y_error.empty() || series.y_error.size() == series.x.size();
     if (series.x.size() != series.y.size() || !errors_match)
@@ -345,16 +334,6 @@ std::string render(const LinePlot& plot, Canvas::Format format, double scale) {
   draw_legend(canvas, layout);
   for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(canvas, layout, plot.series[i], look_of(i));
   return canvas.finish();
-}
-
-}  // namespace
-
-std::string render_svg(const LinePlot& plot) {
-  return render(plot, Canvas::Format::svg, 1.0);
-}
-
-std::string render_png(const LinePlot& plot, double scale) {
-  return render(plot, Canvas::Format::png, scale);
 }
 
 }  // namespace retrace::report

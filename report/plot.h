@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "report/axis_ticks.h"
+#include "report/render.h"
 
 namespace retrace::report {
 
@@ -14,6 +15,15 @@ struct Series {
   std::vector<double> x;
   std::vector<double> y;        ///< as many as x
   std::vector<double> y_error;  ///< standard errors, as many as x, or none
+
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
+  void add(double at, double value, double error) {
+    add(at, value);
+    y_error.push_back(error);
+  }
 };
 
 /// What a line plot shows. Texts are UTF-8; what does not fit is wrapped, then shortened by an ellipsis.
@@ -26,12 +36,7 @@ struct LinePlot {
   std::optional<Range> y_range;  ///< default: \ref rounded_range of the points
 };
 
-/// The plot as an SVG document. The same plot gives the same bytes.
-/// \throw std::invalid_argument if a series' vectors differ in length; OutputError if it cannot be drawn.
-std::string render_svg(const LinePlot& plot);
-
-/// The plot as a PNG file, `scale` pixels to the drawing unit of the SVG. The same plot gives the same bytes.
-/// \pre 0 < scale <= 16 \throw as render_svg(); std::invalid_argument for a scale out of range.
-std::string render_png(const LinePlot& plot, double scale = 2.0);
+/// What render_svg() and render_png() call.
+std::string render(const LinePlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

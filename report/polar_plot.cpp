@@ -9,8 +9,6 @@
 #include <numbers>
 
 #include "core/number_format.h"
-#include "report/axis_ticks.h"
-#include "report/canvas.h"
 #include "report/style.h"
 
 namespace retrace::report {
@@ -18,19 +16,6 @@ namespace {
 
 constexpr Colour kRing{0.85, 0.85, 0.85};
 constexpr Colour kHolds{1.0, 1.0, 1.0};
-constexpr Colour kUndetermined{0.337, 0.706, 0.914};  // Okabe and Ito's sky blue
-constexpr Colour kFails{0.902, 0.624, 0.0};           // and their orange
-constexpr Colour kPolarOutline{0.0, 0.0, 0.0};
-// Viridis (Smith and van der Walt 2015), as the other pictures of grids.
-constexpr std::array<Colour, 9> kPolarScale = {{{0.267, 0.005, 0.329},
-                                                {0.279, 0.175, 0.483},
-                                                {0.230, 0.322, 0.546},
-                                                {0.173, 0.449, 0.558},
-                                                {0.128, 0.567, 0.551},
-                                                {0.158, 0.684, 0.502},
-                                                {0.369, 0.789, 0.383},
-                                                {0.678, 0.864, 0.190},
-                                                {0.993, 0.906, 0.144}}};
 constexpr Font kPolarLabelFont{12.0, false};
 constexpr Font kPolarTickFont{10.0, false};
 constexpr double kDisc = 250.0;  ///< diameter
@@ -40,15 +25,6 @@ constexpr double kPolarBarWidth = 14.0;
 constexpr std::size_t kMostAbreast = 3;
 /// Decades below the largest value that colours tell apart.
 constexpr double kPolarDecades = 4.0;
-
-Colour polar_colour_at(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kPolarScale.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(at), kPolarScale.size() - 2);
-  const double t = at - static_cast<double>(k);
-  const Colour& a = kPolarScale[k];
-  const Colour& b = kPolarScale[k + 1];
-  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
-}
 
 std::vector<Point> circle(Point centre, double radius) {
   constexpr int kCorners = 120;
@@ -77,7 +53,7 @@ void draw_disc(Canvas& canvas, const PolarPanel& panel, Point centre, Range deca
   for (std::size_t row = panel.columns; row-- > 0;)
     for (std::size_t column = 0; column < panel.columns; ++column) {
       const double v = panel.values[row * panel.columns + column];
-      colours.push_back(polar_colour_at(v > 0.0 ? (std::log10(v) - decades.low) / decades.span() : 0.0));
+      colours.push_back(colour_at(kViridis, v > 0.0 ? (std::log10(v) - decades.low) / decades.span() : 0.0));
     }
   if (colours.empty()) return;
   canvas.clip(circle(centre, radius));
@@ -111,9 +87,9 @@ PolarMarkStyle style_of(PolarMark::Kind kind) {
     case PolarMark::Kind::holds:
       return {};
     case PolarMark::Kind::open:
-      return {Marker::square, 5.2, 3.8, kUndetermined};
+      return {Marker::square, 5.2, 3.8, kSkyBlue};
     case PolarMark::Kind::fails:
-      return {Marker::triangle, 6.2, 4.6, kFails};
+      return {Marker::triangle, 6.2, 4.6, kOrange};
   }
   return {};
 }
@@ -123,18 +99,14 @@ void draw_marks(Canvas& canvas, const PolarPanel& panel, Point centre) {
   for (const PolarMark& mark : panel.marks) {
     const Point at{centre.x + scale * mark.right_deg, centre.y - scale * mark.up_deg};
     const PolarMarkStyle style = style_of(mark.kind);
-    canvas.marker(at, style.shape, style.outline, kPolarOutline);
+    canvas.marker(at, style.shape, style.outline, kBlack);
     canvas.marker(at, style.shape, style.size, style.colour);
     canvas.text({at.x + 8.0, at.y + 3.6}, mark.label, kPolarTickFont, kWhite, Align::left);
   }
 }
 
 void draw_bar(Canvas& canvas, Point corner, Range decades, std::string_view label) {
-  constexpr std::size_t kSteps = 128;
-  std::vector<Colour> colours;
-  for (std::size_t i = 0; i < kSteps; ++i)
-    colours.push_back(polar_colour_at(1.0 - static_cast<double>(i) / static_cast<double>(kSteps - 1)));
-  canvas.image(corner, {kPolarBarWidth, kDisc}, 1, colours);
+  draw_colour_bar(canvas, kViridis, corner, {kPolarBarWidth, kDisc});
   const AxisScale scale{decades, corner.y + kDisc, corner.y};
   for (int e = static_cast<int>(std::ceil(decades.low)); e <= static_cast<int>(std::floor(decades.high)); ++e) {
     canvas.line({{corner.x + kPolarBarWidth, scale.at(e)}, {corner.x + kPolarBarWidth + 4.0, scale.at(e)}},
@@ -145,16 +117,16 @@ void draw_bar(Canvas& canvas, Point corner, Range decades, std::string_view labe
   canvas.text({corner.x + kBarRoom - 24.0, corner.y + 0.5 * kDisc}, label, kPolarLabelFont, kText, Align::centre, true);
 }
 
-std::string render(const PolarPlot& plot, Canvas::Format format, double scale) {
+}  // namespace
+
+std::string render(const PolarPlot& plot, PlotFormat format, double scale) {
   const std::size_t abreast = std::clamp<std::size_t>(plot.panels.size(), 1, kMostAbreast);
   const std::size_t rows = std::max<std::size_t>(1, (plot.panels.size() + abreast - 1) / abreast);
   const Size size{2.0 * kMargin + static_cast<double>(abreast) * kPolarCell.width + kBarRoom,
                   2.0 * kMargin + 24.0 + static_cast<double>(rows) * kPolarCell.height};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
-  const auto title = canvas.fitted(plot.title, kTitleFont, size.width - 2.0 * kMargin, 1, Ellipsis::middle);
-  if (!title.empty())
-    canvas.text({0.5 * size.width, kMargin + kTitleFont.size}, title.front(), kTitleFont, kText, Align::centre);
+  draw_title(canvas, size, plot.title);
   const Range decades = decades_of(plot);
   for (std::size_t k = 0; k < plot.panels.size(); ++k) {
     const PolarPanel& panel = plot.panels[k];
@@ -169,16 +141,6 @@ std::string render(const PolarPlot& plot, Canvas::Format format, double scale) {
   draw_bar(canvas, {kMargin + static_cast<double>(abreast) * kPolarCell.width + 10.0, kMargin + 58.0}, decades,
            plot.value_label);
   return canvas.finish();
-}
-
-}  // namespace
-
-std::string render_svg(const PolarPlot& plot) {
-  return render(plot, Canvas::Format::svg, 1.0);
-}
-
-std::string render_png(const PolarPlot& plot, double scale) {
-  return render(plot, Canvas::Format::png, scale);
 }
 
 }  // namespace retrace::report

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "report/render.h"
+
 namespace retrace::report {
 
 /// A place that is marked on a polar panel.
@@ -31,12 +33,7 @@ struct PolarPlot {
   std::vector<PolarPanel> panels;
 };
 
-/// The plot as an SVG document; discs are embedded as pictures. The same plot gives the same bytes.
-/// \throw OutputError if it cannot be drawn
-std::string render_svg(const PolarPlot& plot);
-
-/// The plot as a PNG file, `scale` pixels to the drawing unit of the SVG.
-/// \pre 0 < scale <= 16 \throw as render_svg(); std::invalid_argument for a scale out of range.
-std::string render_png(const PolarPlot& plot, double scale = 2.0);
+/// What render_svg() and render_png() call.
+std::string render(const PolarPlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

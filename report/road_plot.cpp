@@ -1,15 +1,14 @@
-#include "report/road_plot.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
 #include "core/number_format.h"
-#include "core/version.h"
 #include "report/canvas.h"
 #include "report/colour_scale.h"
+#include "report/result_plots.h"
 #include "studies/design/design_json.h"
+#include "studies/image/road_study.h"
 
 namespace retrace::report {
 namespace {
@@ -104,11 +103,8 @@ FloatPicture road_picture(const RoadResult& result) {
       reflected.insert(reflected.end(), view.coloured.begin() + from, view.coloured.begin() + to);
     }
   picture.channels = {{"Y", luminance}, {"reflected", reflected}};
-  picture.texts = {{"Software", std::string("retrace ") + kVersion},
-                   {"retrace:schema", "retrace.image/1"},
-                   {"retrace:kind", "road"},
-                   {"retrace:design", result.design.source_name()},
-                   {"retrace:unit", "cd/m2"}};
+  picture.texts = picture_texts("road", result.design);
+  picture.texts.emplace_back("retrace:unit", "cd/m2");
   picture.numbers = {{"retrace:field_deg", result.request.field_deg}, {"retrace:lamp_cd", result.request.lamp_cd}};
   return picture;
 }

@@ -1,5 +1,3 @@
-#include "report/roughness_plot.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -9,19 +7,15 @@
 #include <utility>
 
 #include "core/number_format.h"
+#include "report/result_plots.h"
 #include "studies/design/design_json.h"
+#include "studies/roughness/roughness.h"
 
 namespace retrace::report {
 namespace {
 
 using studies::FacetGroup;
 using studies::RoughnessPoint;
-
-void append(Series& series, double x, double y, double error) {
-  series.x.push_back(x);
-  series.y.push_back(y);
-  series.y_error.push_back(error);
-}
 
 /// Processes stand alone; single facets go together by their table.
 std::string label_of(const FacetGroup& group) {
@@ -46,8 +40,8 @@ LinePlot roughness_plot(const studies::RoughnessResult& result) {
     if (is_new) plot.series.push_back(Series{label, {}, {}, {}});
     Series& series = plot.series[it->second];
     // Nothing leads from one measured facet to the next.
-    if (p.measured && !is_new) append(series, kNone, kNone, 0.0);
-    append(series, p.roughness_sa_nm, 100.0 * p.rre, 100.0 * p.std_error);
+    if (p.measured && !is_new) series.add(kNone, kNone, 0.0);
+    series.add(p.roughness_sa_nm, 100.0 * p.rre, 100.0 * p.std_error);
   }
   return plot;
 }

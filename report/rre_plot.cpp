@@ -1,5 +1,3 @@
-#include "report/rre_plot.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,7 +8,9 @@
 #include <utility>
 
 #include "core/number_format.h"
+#include "report/result_plots.h"
 #include "studies/design/design_json.h"
+#include "studies/rre/rre.h"
 
 namespace retrace::report {
 namespace {
@@ -97,9 +97,7 @@ LinePlot rre_plot(const RreResult& result) {
                    [&](const RrePoint* a, const RrePoint* b) { return coordinate(*a, axis) < coordinate(*b, axis); });
   for (const RrePoint* p : points) {
     Series& series = plot.series[series_of.at(curve_of(*p, axis))];
-    series.x.push_back(coordinate(*p, axis));
-    series.y.push_back(100.0 * p->rre);
-    series.y_error.push_back(100.0 * p->std_error);
+    series.add(coordinate(*p, axis), 100.0 * p->rre, 100.0 * p->std_error);
   }
   return plot;
 }

@@ -2,6 +2,10 @@
 
 // Private to report/: what all plots share.
 
+#include <array>
+#include <string_view>
+
+#include "report/axis_ticks.h"
 #include "report/canvas.h"
 
 namespace retrace::report {
@@ -13,5 +17,61 @@ inline constexpr Colour kFaint{0.42, 0.42, 0.42};
 inline constexpr Font kTitleFont{16.0, true};
 inline constexpr Font kPanelFont{12.5, true};
 inline constexpr double kMargin = 22.0;
+
+/// Colours of Okabe and Ito (2008), told apart with any kind of colour vision; their yellow is too pale for a line on
+/// white.
+inline constexpr Colour kBlue{0.000, 0.447, 0.698};
+inline constexpr Colour kVermilion{0.835, 0.369, 0.000};
+inline constexpr Colour kBluishGreen{0.000, 0.620, 0.451};
+inline constexpr Colour kReddishPurple{0.800, 0.475, 0.655};
+inline constexpr Colour kOrange{0.902, 0.624, 0.000};
+inline constexpr Colour kSkyBlue{0.337, 0.706, 0.914};
+inline constexpr Colour kBlack{0.000, 0.000, 0.000};
+
+/// Colours at even steps of a share.
+using ColourScale = std::array<Colour, 9>;
+
+/// Viridis (Smith and van der Walt 2015): even in lightness, safe with any kind of colour vision.
+inline constexpr ColourScale kViridis = {{{0.267, 0.005, 0.329},
+                                          {0.279, 0.175, 0.483},
+                                          {0.230, 0.322, 0.546},
+                                          {0.173, 0.449, 0.558},
+                                          {0.128, 0.567, 0.551},
+                                          {0.158, 0.684, 0.502},
+                                          {0.369, 0.789, 0.383},
+                                          {0.678, 0.864, 0.190},
+                                          {0.993, 0.906, 0.144}}};
+
+/// \param share 0..1, clamped
+Colour colour_at(const ColourScale& scale, double share);
+
+/// An upright bar of all the colours, in a frame or none.
+void draw_colour_bar(Canvas& canvas, const ColourScale& scale, Point corner, Size size);
+
+void draw_frame(Canvas& canvas, Point corner, Size size, double width = 1.0);
+
+/// A text in one line, shortened where it is wider than that.
+void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline, std::string_view text, Font font,
+                 Colour colour, Align align);
+
+/// The title in the middle of a figure's top.
+void draw_title(Canvas& canvas, Size figure, std::string_view title);
+
+/// The marks of an axis and their labels.
+struct AxisLook {
+  Font font;
+  double tick = 4.0;      ///< length of a mark
+  double below = 0.0;     ///< from an axis to the baseline of a label below it
+  double beside = 0.0;    ///< from an axis to the end of a label to its left
+  double baseline = 0.0;  ///< of that label, below its mark
+  double width = 1.0;
+};
+
+void draw_x_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label);
+void draw_y_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label);
+/// Of an axis at the height y.
+void draw_x_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double y);
+/// Of an upright axis at x.
+void draw_y_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double x);
 
 }  // namespace retrace::report

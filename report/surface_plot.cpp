@@ -7,8 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "report/axis_ticks.h"
-#include "report/canvas.h"
 #include "report/style.h"
 
 namespace retrace::report {
@@ -16,21 +14,14 @@ namespace {
 
 constexpr Colour kSurfaceGrid{0.88, 0.88, 0.88};
 constexpr Colour kMissingColour{0.75, 0.75, 0.75};
-// Okabe and Ito (2008), as the other plots.
-constexpr std::array<Colour, 3> kCurves = {{{0.0, 0.447, 0.698}, {0.835, 0.369, 0.0}, {0.0, 0.620, 0.451}}};
-// Viridis (Smith and van der Walt 2015): even in lightness, safe with any kind of colour vision.
-constexpr std::array<Colour, 9> kSurfaceScale = {{{0.267, 0.005, 0.329},
-                                                  {0.279, 0.175, 0.483},
-                                                  {0.230, 0.322, 0.546},
-                                                  {0.173, 0.449, 0.558},
-                                                  {0.128, 0.567, 0.551},
-                                                  {0.158, 0.684, 0.502},
-                                                  {0.369, 0.789, 0.383},
-                                                  {0.678, 0.864, 0.190},
-                                                  {0.993, 0.906, 0.144}}};
+constexpr std::array<Colour, 3> kCurves = {kBlue, kVermilion, kBluishGreen};
 
 constexpr Font kSurfaceLabelFont{12.0, false};
 constexpr Font kSurfaceTickFont{10.5, false};
+constexpr AxisLook kSurfaceAxis{.font = kSurfaceTickFont,
+                                .below = 6.0 + kSurfaceTickFont.size,
+                                .beside = 7.0,
+                                .baseline = 0.36 * kSurfaceTickFont.size};
 
 constexpr Size kSurfaceCell{430.0, 390.0};  ///< of one panel with its texts
 constexpr Size kPlotArea{290.0, 290.0};
@@ -41,15 +32,6 @@ constexpr double kSurfaceBarWidth = 14.0;
 constexpr std::size_t kMostPixels = 480;  ///< of a grid along an axis; finer ones are averaged
 /// Heights this many standard deviations off the mean have the colour of the end of the scale.
 constexpr double kColourReach = 3.0;
-
-Colour surface_colour_at(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kSurfaceScale.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(at), kSurfaceScale.size() - 2);
-  const double t = at - static_cast<double>(k);
-  const Colour& a = kSurfaceScale[k];
-  const Colour& b = kSurfaceScale[k + 1];
-  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
-}
 
 /// The values that the colours spread over.
 Range colour_range(const std::vector<double>& values) {
@@ -103,25 +85,6 @@ struct Area {
   double bottom() const { return corner.y + size.height; }
 };
 
-void draw_frame(Canvas& canvas, const Area& area) {
-  canvas.line({area.corner,
-               {area.right(), area.corner.y},
-               {area.right(), area.bottom()},
-               {area.corner.x, area.bottom()},
-               area.corner},
-              {kAxis, 1.0, {}});
-}
-
-void draw_x_tick(Canvas& canvas, const Area& area, double x, std::string_view label) {
-  canvas.line({{x, area.bottom()}, {x, area.bottom() + 4.0}}, {kAxis, 1.0, {}});
-  canvas.text({x, area.bottom() + 6.0 + kSurfaceTickFont.size}, label, kSurfaceTickFont, kText, Align::centre);
-}
-
-void draw_y_tick(Canvas& canvas, const Area& area, double y, std::string_view label) {
-  canvas.line({{area.corner.x - 4.0, y}, {area.corner.x, y}}, {kAxis, 1.0, {}});
-  canvas.text({area.corner.x - 7.0, y + 0.36 * kSurfaceTickFont.size}, label, kSurfaceTickFont, kText, Align::right);
-}
-
 void draw_texts(Canvas& canvas, const Area& area, Point cell, std::string_view title, std::string_view x_label,
                 std::string_view y_label) {
   const double middle = area.corner.x + 0.5 * area.size.width;
@@ -133,12 +96,8 @@ void draw_texts(Canvas& canvas, const Area& area, Point cell, std::string_view t
 
 void draw_bar(Canvas& canvas, const Area& area, Range range, std::string_view label) {
   const double left = area.right() + kSurfaceBarGap;
-  constexpr std::size_t kSteps = 128;
-  std::vector<Colour> colours;
-  for (std::size_t i = 0; i < kSteps; ++i)
-    colours.push_back(surface_colour_at(1.0 - static_cast<double>(i) / static_cast<double>(kSteps - 1)));
-  canvas.image({left, area.corner.y}, {kSurfaceBarWidth, area.size.height}, 1, colours);
-  draw_frame(canvas, {{left, area.corner.y}, {kSurfaceBarWidth, area.size.height}});
+  draw_colour_bar(canvas, kViridis, {left, area.corner.y}, {kSurfaceBarWidth, area.size.height});
+  draw_frame(canvas, {left, area.corner.y}, {kSurfaceBarWidth, area.size.height});
   const AxisScale scale{range, area.bottom(), area.corner.y};
   const Ticks ticks = make_ticks(range, 5);
   double widest = 0.0;
@@ -156,12 +115,8 @@ void draw_bar(Canvas& canvas, const Area& area, Range range, std::string_view la
 void draw_linear_axes(Canvas& canvas, const Area& area, Range x_range, Range y_range, bool y_down) {
   const AxisScale x{x_range, area.corner.x, area.right()};
   const AxisScale y{y_range, y_down ? area.corner.y : area.bottom(), y_down ? area.bottom() : area.corner.y};
-  const Ticks x_ticks = make_ticks(x_range, 5);
-  const Ticks y_ticks = make_ticks(y_range, 5);
-  for (std::size_t i = 0; i < x_ticks.positions.size(); ++i)
-    draw_x_tick(canvas, area, x.at(x_ticks.positions[i]), x_ticks.labels[i]);
-  for (std::size_t i = 0; i < y_ticks.positions.size(); ++i)
-    draw_y_tick(canvas, area, y.at(y_ticks.positions[i]), y_ticks.labels[i]);
+  draw_x_ticks(canvas, kSurfaceAxis, x, make_ticks(x_range, 5), area.bottom());
+  draw_y_ticks(canvas, kSurfaceAxis, y, make_ticks(y_range, 5), area.corner.x);
 }
 
 /// A profile: heights over x.
@@ -183,7 +138,7 @@ void draw_profile(Canvas& canvas, const GridPanel& panel, Point cell) {
       draw_stretch();
   }
   draw_stretch();
-  draw_frame(canvas, area);
+  draw_frame(canvas, area.corner, area.size);
   draw_linear_axes(canvas, area, x.values, heights, false);
   draw_texts(canvas, area, cell, panel.title, "x (µm)", panel.value_label);
 }
@@ -201,9 +156,9 @@ void draw(Canvas& canvas, const GridPanel& panel, Point cell) {
   const Range range = colour_range(small.values);
   std::vector<Colour> colours;
   for (const double v : small.values)
-    colours.push_back(std::isfinite(v) ? surface_colour_at((v - range.low) / range.span()) : kMissingColour);
+    colours.push_back(std::isfinite(v) ? colour_at(kViridis, (v - range.low) / range.span()) : kMissingColour);
   canvas.image(area.corner, area.size, small.columns, colours);
-  draw_frame(canvas, area);
+  draw_frame(canvas, area.corner, area.size);
   draw_linear_axes(canvas, area, {0.0, panel.x_size_um}, {0.0, panel.y_size_um}, true);
   draw_bar(canvas, area, range, panel.value_label);
   draw_texts(canvas, area, cell, panel.title, "x (µm)", "y (µm)");
@@ -237,13 +192,13 @@ void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
   const AxisScale y{decades(panel, false, kMostDecades), area.bottom(), area.corner.y};
   for (int e = static_cast<int>(std::ceil(x.values.low)); e <= static_cast<int>(std::floor(x.values.high)); ++e) {
     canvas.line({{x.at(e), area.corner.y}, {x.at(e), area.bottom()}}, {kSurfaceGrid, 0.9, {}});
-    draw_x_tick(canvas, area, x.at(e), power_of_ten(e));
+    draw_x_tick(canvas, kSurfaceAxis, {x.at(e), area.bottom()}, power_of_ten(e));
   }
   const int y_step = y.values.span() > 7.0 ? 2 : 1;
   for (int e = static_cast<int>(std::ceil(y.values.low)); e <= static_cast<int>(std::floor(y.values.high));
        e += y_step) {
     canvas.line({{area.corner.x, y.at(e)}, {area.right(), y.at(e)}}, {kSurfaceGrid, 0.9, {}});
-    draw_y_tick(canvas, area, y.at(e), power_of_ten(e));
+    draw_y_tick(canvas, kSurfaceAxis, {area.corner.x, y.at(e)}, power_of_ten(e));
   }
   canvas.clip(area.corner, area.size);
   for (std::size_t c = 0; c < panel.curves.size(); ++c) {
@@ -255,7 +210,7 @@ void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
     if (points.size() > 1) canvas.line(points, {kCurves[c % kCurves.size()], 1.2, {}});
   }
   canvas.end_clip();
-  draw_frame(canvas, area);
+  draw_frame(canvas, area.corner, area.size);
   double right = area.right() - 10.0;
   for (std::size_t c = panel.curves.size(); c-- > 0;) {
     canvas.text({right, area.corner.y + 18.0}, panel.curves[c].label, kSurfaceLabelFont, kText, Align::right);
@@ -267,31 +222,21 @@ void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
   draw_texts(canvas, area, cell, panel.title, panel.x_label, panel.y_label);
 }
 
-std::string render(const SurfacePlot& plot, Canvas::Format format, double scale) {
+}  // namespace
+
+std::string render(const SurfacePlot& plot, PlotFormat format, double scale) {
   const std::size_t rows = (plot.panels.size() + 1) / 2;
   const Size size{2.0 * kSurfaceCell.width + 2.0 * kMargin,
                   static_cast<double>(rows) * kSurfaceCell.height + 2.0 * kMargin + 24.0};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
-  const auto title = canvas.fitted(plot.title, kTitleFont, size.width - 2.0 * kMargin, 1, Ellipsis::middle);
-  if (!title.empty())
-    canvas.text({0.5 * size.width, kMargin + kTitleFont.size}, title.front(), kTitleFont, kText, Align::centre);
+  draw_title(canvas, size, plot.title);
   for (std::size_t i = 0; i < plot.panels.size(); ++i) {
     const Point cell{kMargin + kSurfaceCell.width * static_cast<double>(i % 2),
                      kMargin + 24.0 + kSurfaceCell.height * static_cast<double>(i / 2)};
     std::visit([&](const auto& panel) { draw(canvas, panel, cell); }, plot.panels[i]);
   }
   return canvas.finish();
-}
-
-}  // namespace
-
-std::string render_svg(const SurfacePlot& plot) {
-  return render(plot, Canvas::Format::svg, 1.0);
-}
-
-std::string render_png(const SurfacePlot& plot, double scale) {
-  return render(plot, Canvas::Format::png, scale);
 }
 
 }  // namespace retrace::report

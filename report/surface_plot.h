@@ -5,6 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "report/render.h"
+
 namespace retrace::report {
 
 /// Values on a grid, as colours with a bar that explains them; one row is drawn as a curve.
@@ -39,12 +41,7 @@ struct SurfacePlot {
   std::vector<std::variant<GridPanel, LogPanel>> panels;
 };
 
-/// The plot as an SVG document; grids are embedded as pictures. The same plot gives the same bytes.
-/// \throw OutputError if it cannot be drawn
-std::string render_svg(const SurfacePlot& plot);
-
-/// The plot as a PNG file, `scale` pixels to the drawing unit of the SVG.
-/// \pre 0 < scale <= 16 \throw as render_svg(); std::invalid_argument for a scale out of range.
-std::string render_png(const SurfacePlot& plot, double scale = 2.0);
+/// What render_svg() and render_png() call.
+std::string render(const SurfacePlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

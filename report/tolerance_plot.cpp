@@ -1,7 +1,8 @@
-#include "report/tolerance_plot.h"
-
 #include <algorithm>
 #include <filesystem>
+
+#include "report/result_plots.h"
+#include "studies/tolerance/tolerance.h"
 
 namespace retrace::report {
 namespace {
@@ -19,8 +20,7 @@ Series distribution(const std::vector<double>& ascending) {
   const std::size_t points = std::min(kMostPoints, ascending.size());
   for (std::size_t k = 0; k < points; ++k) {
     const double share = points > 1 ? static_cast<double>(k) / static_cast<double>(points - 1) : 0.5;
-    series.x.push_back(studies::percentile(ascending, share));
-    series.y.push_back(kPercent * share);
+    series.add(studies::percentile(ascending, share), kPercent * share);
   }
   return series;
 }

@@ -1,11 +1,11 @@
-#include "report/turning_plot.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/number_format.h"
+#include "report/result_plots.h"
+#include "studies/turning/turn.h"
 
 namespace retrace::report {
 namespace {
@@ -23,10 +23,7 @@ LinePlot turning_acceleration_plot(const studies::TurningResult& r) {
   plot.x_label = "time (s)";
   plot.y_label = "acceleration (mm/s²)";
   Series series;
-  for (const auto& s : r.stretch.z) {
-    series.x.push_back(s.time_s);
-    series.y.push_back(s.acceleration_mm_per_s2);
-  }
+  for (const auto& s : r.stretch.z) series.add(s.time_s, s.acceleration_mm_per_s2);
   plot.series = {series};
   return plot;
 }
@@ -37,10 +34,7 @@ LinePlot turning_profile_plot(const studies::TurningResult& r) {
   plot.x_label = "x (mm)";
   plot.y_label = "deviation from the design (nm)";
   Series series;
-  for (const geometry::Vec2& p : r.stretch.profile) {
-    series.x.push_back(p.x());
-    series.y.push_back(p.y());
-  }
+  for (const geometry::Vec2& p : r.stretch.profile) series.add(p.x(), p.y());
   plot.series = {series};
   return plot;
 }

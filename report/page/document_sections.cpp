@@ -52,9 +52,8 @@ PageSection roughness_section(const ResultDocument& document, const ResultFolder
   chart.y_label = "RRE (%)";
   for (const Json& p : list(document.json, "points")) {
     const double length = number(p, "correlation_length_um");
-    ChartSeries& series = series_of(chart, fmt::format("correlation length {} um", shown(length)));
-    series.x.push_back(number(p, "sa_nm"));
-    series.y.push_back(100.0 * number(p, "rre"));
+    series_of(chart, fmt::format("correlation length {} um", shown(length)))
+        .add(number(p, "sa_nm"), 100.0 * number(p, "rre"));
   }
   section.charts.push_back(chart);
   section.tables.push_back(table_of(list(document.json, "points"),
@@ -143,10 +142,7 @@ PageSection forces_section(const ResultDocument& document, const ResultFolder&) 
   chart.y_label = "force (N)";
   for (const char* key : {"fx_n", "fy_n", "fz_n"}) {
     ChartSeries series{column_name(key), {}, {}};
-    for (const Json& sample : list(document.json, "profile")) {
-      series.x.push_back(number(sample, "time_s"));
-      series.y.push_back(number(sample, key));
-    }
+    for (const Json& sample : list(document.json, "profile")) series.add(number(sample, "time_s"), number(sample, key));
     chart.series.push_back(std::move(series));
   }
   section.charts.push_back(std::move(chart));
@@ -180,9 +176,7 @@ PageChart sweep_chart(const Json& json) {
     if (!std::isfinite(number(p, quantities.front().c_str()))) continue;
     const auto is_it = [&](const ChartSeries& series) { return series.label == label; };
     if (chart.series.size() == most_series && std::none_of(chart.series.begin(), chart.series.end(), is_it)) continue;
-    ChartSeries& series = series_of(chart, label);
-    series.x.push_back(number(p, axis->c_str()));
-    series.y.push_back(number(p, quantities.front().c_str()));
+    series_of(chart, label).add(number(p, axis->c_str()), number(p, quantities.front().c_str()));
   }
   return chart;
 }

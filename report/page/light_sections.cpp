@@ -41,9 +41,7 @@ PageChart rre_chart(const Json& json) {
     if (tell_azimuth) words.push_back(fmt::format("azimuth {} deg", shown(number(p, "azimuth_deg"))));
     if (tell_cone) words.push_back(fmt::format("within {} deg", shown(number(p, "acceptance_half_angle_deg"))));
     const std::string label = words.empty() ? "RRE (%)" : fmt::format("{}", fmt::join(words, ", "));
-    ChartSeries& series = series_of(chart, label);
-    series.x.push_back(number(p, along));
-    series.y.push_back(100.0 * number(p, "rre"));
+    series_of(chart, label).add(number(p, along), 100.0 * number(p, "rre"));
   }
   return chart;
 }

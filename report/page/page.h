@@ -34,6 +34,11 @@ struct ChartSeries {
   std::string label;
   std::vector<double> x;
   std::vector<double> y;
+
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
 };
 
 /// Curves that can be hovered and zoomed.

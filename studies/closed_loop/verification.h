@@ -8,6 +8,7 @@
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_program.h"
+#include "fabrication/verify/error_field.h"
 #include "fabrication/verify/verify.h"
 
 namespace retrace::studies {
@@ -33,5 +34,13 @@ struct VerificationRun {
 /// Reads the job, its machine and the programs, and carries the programs out.
 /// \throw InputError for a file that cannot be read or understood, with its line
 VerificationRun run_verification(const VerificationRequest& request, const Cancellation* cancellation = nullptr);
+
+/// What the programs leave against the design, for a picture.
+struct ErrorMap {
+  fabrication::ErrorField field;
+  double shown_nm = 0.0;  ///< heights beyond +- this are drawn as this
+};
+
+ErrorMap error_map(const VerificationRun& run);
 
 }  // namespace retrace::studies

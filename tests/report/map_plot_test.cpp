@@ -5,7 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "report/footprint_plot.h"
+#include "report/result_plots.h"
+#include "studies/rre/rre.h"
 
 namespace retrace::report::map_plot_test {
 namespace {

@@ -7,7 +7,8 @@
 
 #include "core/atomic_file.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "report/fabrication_plot.h"
+#include "report/result_plots.h"
+#include "studies/fabrication/fabricate.h"
 
 namespace retrace::report::path_plot_test {
 namespace {

@@ -7,7 +7,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "report/photometry_plot.h"
+#include "report/result_plots.h"
+#include "studies/photometry/photometry.h"
 
 namespace retrace::report::polar_plot_test {
 namespace {

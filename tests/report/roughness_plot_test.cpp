@@ -1,8 +1,10 @@
-#include "report/roughness_plot.h"
+#include "report/result_plots.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "studies/roughness/roughness.h"
 
 namespace retrace::report::roughness_plot_test {
 namespace {

@@ -1,6 +1,8 @@
-#include "report/rre_plot.h"
+#include "report/result_plots.h"
 
 #include <gtest/gtest.h>
+
+#include "studies/rre/rre.h"
 
 namespace retrace::report::rre_plot_test {
 namespace {

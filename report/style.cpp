@@ -1,0 +1,60 @@
+#include "report/style.h"
+
+#include <algorithm>
+
+namespace retrace::report {
+
+Colour colour_at(const ColourScale& scale, double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(scale.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(at), scale.size() - 2);
+  const double t = at - static_cast<double>(k);
+  const Colour& a = scale[k];
+  const Colour& b = scale[k + 1];
+  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
+}
+
+void draw_colour_bar(Canvas& canvas, const ColourScale& scale, Point corner, Size size) {
+  constexpr std::size_t kSteps = 128;
+  std::vector<Colour> colours;
+  for (std::size_t i = 0; i < kSteps; ++i)
+    colours.push_back(colour_at(scale, 1.0 - static_cast<double>(i) / static_cast<double>(kSteps - 1)));
+  canvas.image(corner, size, 1, colours);
+}
+
+void draw_frame(Canvas& canvas, Point corner, Size size, double width) {
+  const Point far{corner.x + size.width, corner.y + size.height};
+  canvas.line({corner, {far.x, corner.y}, far, {corner.x, far.y}, corner}, {kAxis, width, {}});
+}
+
+void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline, std::string_view text, Font font,
+                 Colour colour, Align align) {
+  for (const std::string& line : canvas.fitted(text, font, width, 1, ellipsis))
+    canvas.text(baseline, line, font, colour, align);
+}
+
+void draw_title(Canvas& canvas, Size figure, std::string_view title) {
+  draw_within(canvas, figure.width - 2.0 * kMargin, Ellipsis::middle, {0.5 * figure.width, kMargin + kTitleFont.size},
+              title, kTitleFont, kText, Align::centre);
+}
+
+void draw_x_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label) {
+  canvas.line({at, {at.x, at.y + look.tick}}, {kAxis, look.width, {}});
+  canvas.text({at.x, at.y + look.below}, label, look.font, kText, Align::centre);
+}
+
+void draw_y_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label) {
+  canvas.line({{at.x - look.tick, at.y}, at}, {kAxis, look.width, {}});
+  canvas.text({at.x - look.beside, at.y + look.baseline}, label, look.font, kText, Align::right);
+}
+
+void draw_x_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double y) {
+  for (std::size_t k = 0; k < ticks.positions.size(); ++k)
+    draw_x_tick(canvas, look, {scale.at(ticks.positions[k]), y}, ticks.labels[k]);
+}
+
+void draw_y_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double x) {
+  for (std::size_t k = 0; k < ticks.positions.size(); ++k)
+    draw_y_tick(canvas, look, {x, scale.at(ticks.positions[k])}, ticks.labels[k]);
+}
+
+}  // namespace retrace::report
