@@ -11,6 +11,7 @@
 #include "core/schema/json_schema.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
+#include "fabrication/planing/io/part_files.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design_format.h"
 #include "studies/quantity/io/study_format.h"
@@ -21,7 +22,7 @@ namespace {
 /// The formats of files that have a schema, by name.
 std::vector<const schema::Format*> formats() {
   return {&studies::design_format(), &fabrication::machine_format(), &materials::materials_format(),
-          &fabrication::process_format(), &studies::study_format()};
+          &fabrication::planed_part_format(), &fabrication::process_format(), &studies::study_format()};
 }
 
 struct SchemaOptions {
@@ -46,10 +47,10 @@ ExitCode write_schema(const CommonOptions& common, const std::string& json, cons
 }
 
 ExitCode list_formats(const CommonOptions& common) {
-  std::string text = fmt::format("{:<10} {:<20} {}\n", "name", "schema", "title");
+  std::string text = fmt::format("{:<12} {:<22} {}\n", "name", "schema", "title");
   nlohmann::ordered_json json = {{"formats", nlohmann::ordered_json::array()}};
   for (const schema::Format* const format : formats()) {
-    text += fmt::format("{:<10} {:<20} {}\n", format->name, format->id, format->title);
+    text += fmt::format("{:<12} {:<22} {}\n", format->name, format->id, format->title);
     json["formats"].push_back({{"name", format->name}, {"schema", format->id}, {"title", format->title}});
   }
   return write_schema(common, result_text("retrace.formats/1", json, {}), text, "formats.json");

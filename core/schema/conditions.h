@@ -1,11 +1,22 @@
 #pragma once
 
+#include <algorithm>
+
 #include "core/schema/schema.h"
 
-// Conditions under which keys and tables mean something. `refusal` is what is said of one that was given all the same,
-// if that needs more than the condition does.
+// Conditions of rows and tables. `refusal` is what is said of one that was given all the same, if that needs more than
+// the condition does.
 
 namespace retrace::schema {
+
+using Words = std::string_view[];
+
+/// Of some words one, or those from one to another. \pre they are among them, or it does not compile
+constexpr std::span<const std::string_view> only(std::span<const std::string_view> words, std::string_view first,
+                                                 std::string_view last = {}) {
+  const auto begin = std::ranges::find(words, first);
+  return {begin, (last.empty() ? begin : std::ranges::find(words, last)) + 1};
+}
 
 constexpr Condition is(std::string_view key, std::span<const std::string_view> words, std::string_view refusal = {}) {
   return {key, Condition::Is::one_of, words, refusal};

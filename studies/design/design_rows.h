@@ -21,11 +21,10 @@ std::span<const schema::Row> surface_rows();
 std::span<const schema::Row> scratch_rows();
 std::span<const schema::Row> idealisation_rows();
 
-using Words = std::string_view[];
-inline constexpr Words kRtp = {"rtp"};
-inline constexpr Words kBall = {"ball"};
-inline constexpr Words kAxes = {"x", "y"};
-inline constexpr Words kCubes = {"hexagonal_icc", "triangular_icc"};
+inline constexpr schema::Words kRtp = {"rtp"};
+inline constexpr schema::Words kBall = {"ball"};
+inline constexpr schema::Words kAxes = {"x", "y"};
+inline constexpr schema::Words kCubes = {"hexagonal_icc", "triangular_icc"};
 
 inline constexpr NumberRange kAboveZero{.low = 0.0, .low_included = false};
 /// From one nanometre to one kilometre: beyond that, differences of coordinates have too few digits.

@@ -14,11 +14,12 @@ TEST(SchemaCommand, ListsTheFormats) {
   const Outcome outcome = retrace(folder, {"schema"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out,
-            "name       schema               title\n"
-            "design     retrace.design/1     Design of a retroreflector array\n"
-            "machine    retrace.machine/1    Machine with five axes\n"
-            "materials  retrace.materials/1  Materials and metals\n"
-            "process    retrace.process/1    Process of a fabrication job\n");
+            "name         schema                 title\n"
+            "design       retrace.design/1       Design of a retroreflector array\n"
+            "machine      retrace.machine/1      Machine with five axes\n"
+            "materials    retrace.materials/1    Materials and metals\n"
+            "planed_part  retrace.planed_part/1  Flat lens of zones, planed or turned\n"
+            "process      retrace.process/1      Process of a fabrication job\n");
   const Json json = retrace_json(folder, {"schema"});
   EXPECT_EQ(json["schema"], "retrace.formats/1");
   EXPECT_EQ(json["formats"][1],
@@ -40,7 +41,7 @@ TEST(SchemaCommand, RefusesAnUnknownFormat) {
   const TemporaryFolder folder;
   const Outcome outcome = retrace(folder, {"schema", "procces"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, "retrace: schema: must be design, machine, materials, process, got procces\n");
+  EXPECT_EQ(outcome.err, "retrace: schema: must be design, machine, materials, planed_part, process, got procces\n");
 }
 
 /// One line for each TOML file: its name, and whether the schema accepts it.
@@ -81,7 +82,8 @@ TEST(SchemaCommand, AValidatorAcceptsWhatIsShipped) {
   for (const auto& [format, name, least] :
        {std::tuple{"machine", "data/machines", 4U}, std::tuple{"process", "data/processes", 4U},
         std::tuple{"materials", "data", 1U}, std::tuple{"design", "examples", 15U},
-        std::tuple{"design", "examples/fronts", 1U}, std::tuple{"design", "examples/luminance_fixture", 1U}}) {
+        std::tuple{"planed_part", "examples/planing", 2U}, std::tuple{"design", "examples/fronts", 1U},
+        std::tuple{"design", "examples/luminance_fixture", 1U}}) {
     const std::vector<std::string> lines = judged(folder, format, files_in(name));
     EXPECT_GE(lines.size(), least) << name;
     for (const std::string& line : lines) EXPECT_TRUE(line.ends_with(" accepted")) << format << ": " << line;
@@ -139,7 +141,7 @@ struct Wrong {
 /// retrace and the validator both refuse each of these.
 void expect_refused(const std::string& format, const std::string& file, const std::vector<Wrong>& cases) {
   const TemporaryFolder folder;
-  const std::string good = read_text(fs::path(RETRACE_SOURCE_DIR) / "data" / file);
+  const std::string good = read_text(fs::path(RETRACE_SOURCE_DIR) / file);
   std::vector<std::string> names;
   for (const Wrong& wrong : cases) {
     std::string text = good;
@@ -154,7 +156,7 @@ void expect_refused(const std::string& format, const std::string& file, const st
 }
 
 TEST(SchemaCommand, AValidatorRefusesWrongMachines) {
-  expect_refused("machine", "machines/paper.toml",
+  expect_refused("machine", "data/machines/paper.toml",
                  {{"[0.999995, -0.0014502, 0.00268292]", "[0, 1]"},
                   {"value = 10,", "value = 0,"},
                   {", assumed = \"square guideways\"", ""},
@@ -168,7 +170,7 @@ TEST(SchemaCommand, AValidatorRefusesWrongMachines) {
 }
 
 TEST(SchemaCommand, AValidatorRefusesWrongProcesses) {
-  expect_refused("process", "processes/paper-pmma.toml",
+  expect_refused("process", "data/processes/paper-pmma.toml",
                  {{"clearance_mm = 0.2\n", ""},
                   {"clearance_mm = 0.2", "clearance_mm = 0"},
                   {"clearance_mm = 0.2", "clearance_mm = \"0.2\""},
@@ -176,6 +178,15 @@ TEST(SchemaCommand, AValidatorRefusesWrongProcesses) {
                   {"finishing_cuts = 2", "finishing_cut = 2"},
                   {"dwell_s = 0.1", "dwell_s = 61"},
                   {"dwell_s = 0.1", "shortest_plough = 1"}});
+}
+
+TEST(SchemaCommand, AValidatorRefusesWrongPlanedParts) {
+  expect_refused("planed_part", "examples/planing/zone_lens_60ghz.toml",
+                 {{"kind = \"zone_lens\"", "kind = \"round_zone_lens\""},
+                  {"refractive_index = 1.52", "refractive_index = 1"},
+                  {"\nlength_mm", "\nlength"},
+                  {"[mill]", "[lathe]"},
+                  {"[13, 13, 6]", "[13, 13]"}});
 }
 
 }  // namespace

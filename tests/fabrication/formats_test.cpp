@@ -1,13 +1,8 @@
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
-#include <string>
-
-#include "core/atomic_file.h"
 #include "core/schema/key_table.h"
-#include "core/schema/writer.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
+#include "fabrication/planing/io/part_files.h"
+#include "tests/support/documents.h"
 
 // Process and machine files: what is written reads back the same, and the documentation says what the rows say.
 
@@ -165,19 +160,14 @@ TEST(ProcessFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
             "p.toml:11: dwel_s: unknown key, did you mean \"dwell_s\"? (allowed: schema, n");
 }
 
-/// What stands in a page of docs/ between the marks of a format.
-std::string documented(const std::string& page, const schema::Format& format) {
-  const std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/docs/" + page);
-  const std::string mark = "<!-- keys of " + std::string(format.name) + " -->\n";
-  const std::size_t at = text.find(mark);
-  if (at == std::string::npos) return "no mark in " + page;
-  const std::size_t first = at + mark.size();
-  return text.substr(first, text.find("<!-- end of keys -->", first) - first);
+RC_GTEST_PROP(PlanedPartFile, DocumentsReadBackTheSame, ()) {
+  documents_test::expect_random_document_to_read_back(planed_part_format());
 }
 
 TEST(FormatsInTheDocumentation, AreWhatTheRowsSay) {
-  EXPECT_EQ(documented("machine_file.md", machine_format()), schema::key_tables(machine_format()));
-  EXPECT_EQ(documented("job_file.md", process_format()), schema::key_tables(process_format()));
+  EXPECT_EQ(documents_test::documented("machine_file.md", "machine"), schema::key_tables(machine_format()));
+  EXPECT_EQ(documents_test::documented("job_file.md", "process"), schema::key_tables(process_format()));
+  EXPECT_EQ(documents_test::documented("planing_file.md", "planed_part"), schema::key_tables(planed_part_format()));
 }
 
 }  // namespace

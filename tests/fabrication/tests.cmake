@@ -6,7 +6,7 @@ retrace_test(fabrication_tests
   LIBRARIES retrace::machine rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/formats_test.cpp
-  LIBRARIES retrace::job retrace::machine rapidcheck)
+  LIBRARIES retrace::job retrace::machine retrace::planing retrace::turning rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plan_test.cpp
   LIBRARIES retrace::plan rapidcheck)

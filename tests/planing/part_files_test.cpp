@@ -88,7 +88,8 @@ TEST(PlanedPart, SpindleOfALathe) {
   const auto turned = [](const std::string& from, const std::string& to) {
     return refusal(from, to, kTurned + kTexts);
   };
-  EXPECT_EQ(turned("spindle_rpm = 800\n", ""), "p.toml:10: lathe.spindle_rpm: missing, must be >= 1 and <= 99999");
+  EXPECT_EQ(turned("spindle_rpm = 800\n", ""),
+            "p.toml:10: lathe.spindle_rpm: missing, must be a whole number >= 1 and <= 99999");
   EXPECT_EQ(turned("spindle_rpm = 800", "spindle_rpm = 0"),
             "p.toml:13: lathe.spindle_rpm: must be >= 1 and <= 99999, got 0");
   EXPECT_EQ(turned("spindle_rpm = 800", "spindle_rpm = 100000"),
@@ -99,8 +100,10 @@ TEST(PlanedPart, SpindleOfALathe) {
             "p.toml:10: lathe.spindle_direction: missing, must be \"clockwise\" or \"counterclockwise\"");
   EXPECT_EQ(turned("\"counterclockwise\"", "\"left\""),
             "p.toml:14: lathe.spindle_direction: must be \"clockwise\" or \"counterclockwise\", got \"left\"");
-  EXPECT_EQ(turned("spindle_start = \"M103\"\n", ""), "p.toml:10: lathe.spindle_start: missing, must be a string");
-  EXPECT_EQ(turned("spindle_stop = \"M105\"\n", ""), "p.toml:10: lathe.spindle_stop: missing, must be a string");
+  EXPECT_EQ(turned("spindle_start = \"M103\"\n", ""),
+            "p.toml:15: lathe.spindle_stop: only allowed with spindle_start, got \"M105\"");
+  EXPECT_EQ(turned("spindle_stop = \"M105\"\n", ""),
+            "p.toml:15: lathe.spindle_start: only allowed with spindle_stop, got \"M103\"");
   EXPECT_EQ(turned("M105", "M103"), "p.toml:16: lathe.spindle_stop: must not be spindle_start, got \"M103\"");
   for (const char* bad : {"", " M103", "M103 ", "M103 // on", "M103\\nM7", "M\\u00fc"})
     EXPECT_TRUE(turned("\"M103\"", "\"" + std::string(bad) + "\"")

@@ -3,31 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "core/atomic_file.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "core/toml_file.h"
+#include "core/schema/conditions.h"
+#include "core/schema/reader.h"
 #include "fabrication/planing/nose_path.h"
 
 namespace retrace::fabrication {
 namespace {
 
-constexpr std::string_view kSchema = "retrace.planed_part/1";
-constexpr std::array<std::string_view, 2> kKinds = {"zone_lens", "round_zone_lens"};
-constexpr NumberRange kLength{.low = 0.1, .high = 1e4};
-constexpr NumberRange kIndex{.low = 1.01, .high = 5.0};
-constexpr NumberRange kTolerance{.low = 1e-4, .high = 10.0};
-constexpr NumberRange kFeed{.low = 1.0, .high = 1e6};
-constexpr NumberRange kFrame{.low = 0.0, .high = 60.0};
-constexpr NumberRange kGrid{.low = 1e-3, .high = 1.0};
-constexpr NumberRange kLeastMove{.low = 0.0, .high = 1e3};
-constexpr NumberRange kHours{.low = 0.01, .high = 1000.0};
-constexpr NumberRange kNose{.low = 0.0, .high = 100.0};
-constexpr NumberRange kDepthOfCut{.low = 0.01, .high = 100.0};
-/// A word S has up to five digits.
-constexpr NumberRange kSpindleSpeed{.low = 1.0, .high = 99999.0};
+using namespace schema;
+
+constexpr Kind kLength = Number{{.low = 0.1, .high = 1e4}};
+constexpr Kind kFeed = Number{{.low = 1.0, .high = 1e6}};
 constexpr std::size_t kLongestSpindleText = 200;
 /// Quanta are tried from the tolerance down, step by step of the grid, and places are counted in such steps.
 constexpr double kMostQuanta = 200.0;
@@ -35,141 +25,172 @@ constexpr double kMostSteps = 1e6;
 /// Zones that are narrower than this many steps have no profile.
 constexpr double kLeastStepsOfZone = 4.0;
 
-ZoneLens read_lens(TomlTable& element) {
-  ZoneLens lens;
-  lens.focal_length_mm = element.required_number("focal_length_mm", kLength);
-  lens.wavelength_mm = element.required_number("wavelength_mm", kLength);
-  lens.refractive_index = element.required_number("refractive_index", kIndex);
-  lens.half_width_mm = 0.5 * element.required_number("width_mm", kLength);
-  return lens;
-}
+constexpr Words kLenses = {"zone_lens", "round_zone_lens"};
+constexpr Condition kMilledOnly[] = {is("element.kind", only(kLenses, "zone_lens"))};
+constexpr Condition kTurnedOnly[] = {is("element.kind", only(kLenses, "round_zone_lens"))};
+constexpr Condition kWithStart[] = {beside("spindle_start")};
+constexpr Condition kWithStop[] = {beside("spindle_stop")};
 
-PlaningMill read_mill(TomlTable& table) {
-  PlaningMill mill;
-  mill.fast_feed_mm_per_min = table.required_number("fast_feed_mm_per_min", kFeed);
-  mill.frame_s = table.number("frame_s", kFrame).value_or(0.0);
-  mill.grid_mm = table.number("grid_mm", kGrid).value_or(mill.grid_mm);
-  if (const auto least = table.numbers("least_move_mm", 3, kLeastMove)) {
-    mill.least_x_mm = (*least)[0];
-    mill.least_y_mm = (*least)[1];
-    mill.least_z_mm = (*least)[2];
-  }
-  if (const auto travel = table.numbers("travel_mm", 3, kLength)) {
-    mill.travel_x_mm = (*travel)[0];
-    mill.travel_y_mm = (*travel)[1];
-    mill.travel_z_mm = (*travel)[2];
-  }
-  mill.most_hours = table.number("most_hours", kHours).value_or(mill.most_hours);
-  mill.run_out_mm = table.number("run_out_mm", kLength).value_or(mill.run_out_mm);
-  mill.clear_mm = table.number("clear_mm", kLength).value_or(mill.clear_mm);
-  if (mill.clear_mm < mill.least_z_mm)
-    table.fail("clear_mm", fmt::format("must be at least the least move of Z, {}, got {}", shortest(mill.least_z_mm),
-                                       shortest(mill.clear_mm)));
-  table.finish();
-  return mill;
+constexpr Row kRows[] = {{"title", Text{}, kNone, "Names plots."}};
+constexpr Row kElementRows[] = {
+    {"kind", Word{kLenses}, kRequired, "A cylindrical lens, for a mill, or a round one, for a lathe."},
+    {"focal_length_mm", kLength, kRequired, "From the middle of the stepped face."},
+    {"wavelength_mm", kLength, kRequired, "In air."},
+    {"refractive_index", Number{{.low = 1.01, .high = 5.0}}, kRequired, "At that wavelength."},
+    {"width_mm", kLength, kRequired, "Across the zones; of a round lens its diameter."},
+    {"length_mm", kLength, kRequired, "Along the zones.", Access(), kMilledOnly}};
+constexpr Row kToleranceRows[] = {{"form_mm", Number{{.low = 1e-4, .high = 10.0}}, kRequired,
+                                   "At most half the depth of a zone. Of a mill: of depth, 2 to 200 steps of its grid; "
+                                   "of a lathe: distance from what "
+                                   "the nose can leave of the profile."}};
+constexpr double kLeastMovesMm[] = {13.0, 13.0, 6.0};
+constexpr double kTravelsMm[] = {350.0, 1500.0, 400.0};
+constexpr Row kMillRows[] = {
+    {"fast_feed_mm_per_min", kFeed, kRequired, "Of all moves."},
+    {"frame_s", Number{{.low = 0.0, .high = 60.0}}, 0.0, "That a frame takes beside its move."},
+    {"grid_mm", Number{{.low = 1e-3, .high = 1.0}}, 0.01, "Step of the machine's words."},
+    {"least_move_mm", Numbers{3, {.low = 0.0, .high = 1e3}}, kLeastMovesMm,
+     "Shortest moves `[x, y, z]` of fast feed: X across the zones, Y along them, Z up."},
+    {"travel_mm", Numbers{3, {.low = 0.1, .high = 1e4}}, kTravelsMm,
+     "Likewise of the machine; `retrace plane` says what the part takes."},
+    {"most_hours", Number{{.low = 0.01, .high = 1000.0}}, 8.0, "Of one program."},
+    {"run_out_mm", kLength, 20.0, "By which strokes begin and end beside the part."},
+    {"clear_mm", kLength, 14.0, "Height of moves over the blank, at least the least move of Z."}};
+constexpr std::string_view kSpindleText =
+    "A line of a PMAC program, of up to 200 printable ASCII characters without `//`; required for `--dialect pmac`, "
+    "and "
+    "not that of the other.";
+constexpr Row kLatheRows[] = {
+    {"feed_mm_per_min", kFeed, kRequired, "Of all cuts."},
+    {"depth_of_cut_mm", Number{{.low = 0.01, .high = 100.0}}, 1.0, "Of a pass."},
+    {"clear_mm", kLength, 2.0, "Height of moves over the blank."},
+    {"nose_radius_mm", Number{{.low = 0.0, .high = 100.0}}, 0.0,
+     "Of the tool, round on both sides; at most what reaches the bottom of every zone beside its wall."},
+    // A word S has up to five digits.
+    {"spindle_rpm", Whole{{.low = 1.0, .high = 99999.0}}, kRequired, "Speed of the spindle."},
+    {"spindle_direction", Word{kSpindleDirectionWords}, kRequired, "`M3` and `M4`."},
+    {"spindle_start", Text{}, kNone, kSpindleText, Access(), kWithStop},
+    {"spindle_stop", Text{}, kNone, kSpindleText, Access(), kWithStart}};
+constexpr Table kTables[] = {
+    {.name = "element", .meaning = "The lens.", .rows = kElementRows},
+    {.name = "tolerance", .meaning = "How near to its form it must be.", .rows = kToleranceRows},
+    {.name = "mill", .meaning = "The mill that planes it.", .rows = kMillRows, .when = kMilledOnly},
+    {.name = "lathe", .meaning = "The lathe that turns it.", .rows = kLatheRows, .when = kTurnedOnly}};
+constexpr Format kFormat = {"planed_part",
+                            "retrace.planed_part/1",
+                            "Flat lens of zones, planed or turned",
+                            {"", "A lens of zones, its tolerance, and the machine that makes it.", kRows, kTables},
+                            true};
+
+PlaningMill mill_of(const Document& file) {
+  const auto number = [&](std::string_view key) { return file.number(path_in("mill", key)); };
+  const std::vector<double> least = file.numbers("mill.least_move_mm");
+  const std::vector<double> travel = file.numbers("mill.travel_mm");
+  const double clear_mm = number("clear_mm");
+  if (clear_mm < least[2])
+    file.fail("mill.clear_mm",
+              fmt::format("must be at least the least move of Z, {}, got {}", shortest(least[2]), shortest(clear_mm)));
+  return {number("fast_feed_mm_per_min"),
+          number("frame_s"),
+          number("grid_mm"),
+          least[0],
+          least[1],
+          least[2],
+          travel[0],
+          travel[1],
+          travel[2],
+          number("most_hours"),
+          number("run_out_mm"),
+          clear_mm};
 }
 
 /// One line of a PMAC program that is written as it is. Whatever follows two slashes would be a comment.
-std::string read_spindle_text(TomlTable& table, std::string_view key) {
-  std::string text = table.required_text(key);
-  const bool is_printable = std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
-  if (text.empty() || text.size() > kLongestSpindleText || !is_printable || text.front() == ' ' || text.back() == ' ' ||
-      text.find("//") != std::string::npos)
-    table.fail(key, fmt::format("must be one line of 1 to {} printable ASCII characters, without // and without blanks "
-                                "at its ends, got {}",
-                                kLongestSpindleText, in_quotes(text)));
+std::string spindle_text(const Document& file, std::string_view key) {
+  std::string text = file.text_if(key);
+  const bool is_printable = std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
+  if (file.has(key) && (text.empty() || text.size() > kLongestSpindleText || !is_printable || text.front() == ' ' ||
+                        text.back() == ' ' || text.find("//") != std::string::npos))
+    file.fail(key, fmt::format("must be one line of 1 to {} printable ASCII characters, without // and without blanks "
+                               "at its ends, got {}",
+                               kLongestSpindleText, in_quotes(text)));
   return text;
 }
 
-void read_spindle(TomlTable& table, PlaningLathe& lathe) {
-  table.required_number("spindle_rpm", kSpindleSpeed);
-  lathe.spindle_rpm = static_cast<std::int32_t>(table.whole("spindle_rpm", kSpindleSpeed).value());
-  lathe.spindle_direction =
-      static_cast<SpindleDirection>(table.required_choice("spindle_direction", kSpindleDirectionWords));
-  lathe.spindle_start_at = table.where("spindle_start");
-  if (!table.has("spindle_start") && !table.has("spindle_stop")) return;
-  lathe.spindle_start = read_spindle_text(table, "spindle_start");
-  lathe.spindle_stop = read_spindle_text(table, "spindle_stop");
-  if (lathe.spindle_start == lathe.spindle_stop)
-    table.fail("spindle_stop", "must not be spindle_start, got " + in_quotes(lathe.spindle_stop));
-}
-
-PlaningLathe read_lathe(TomlTable& table) {
-  PlaningLathe lathe;
-  lathe.feed_mm_per_min = table.required_number("feed_mm_per_min", kFeed);
-  lathe.depth_of_cut_mm = table.number("depth_of_cut_mm", kDepthOfCut).value_or(lathe.depth_of_cut_mm);
-  lathe.clear_mm = table.number("clear_mm", kLength).value_or(lathe.clear_mm);
-  lathe.nose_radius_mm = table.number("nose_radius_mm", kNose).value_or(lathe.nose_radius_mm);
-  read_spindle(table, lathe);
-  table.finish();
+PlaningLathe lathe_of(const Document& file) {
+  const auto number = [&](std::string_view key) { return file.number(path_in("lathe", key)); };
+  PlaningLathe lathe = {number("feed_mm_per_min"),
+                        number("depth_of_cut_mm"),
+                        number("clear_mm"),
+                        number("nose_radius_mm"),
+                        static_cast<std::int32_t>(number("spindle_rpm")),
+                        file.choice<SpindleDirection>("lathe.spindle_direction"),
+                        spindle_text(file, "lathe.spindle_start"),
+                        spindle_text(file, "lathe.spindle_stop"),
+                        file.where("lathe.spindle_start")};
+  if (file.has("lathe.spindle_stop") && lathe.spindle_start == lathe.spindle_stop)
+    file.fail("lathe.spindle_stop", "must not be spindle_start, got " + in_quotes(lathe.spindle_stop));
   return lathe;
 }
 
-void check_nose(TomlTable& table, const PlanedPart& part) {
-  const ZoneProfile profile(part.lens);
-  if (nose_fits(profile, part.lathe->nose_radius_mm)) return;
-  table.fail("nose_radius_mm", fmt::format("must be <= {}, or the nose does not reach the bottom of every zone, got {}",
-                                           fixed(largest_nose_mm(profile), 3), shortest(part.lathe->nose_radius_mm)));
+ZoneProfile profile_of(const Document& file, const ZoneLens& lens) {
+  try {
+    return ZoneProfile(lens);
+  } catch (const InputError& error) {
+    file.fail("element.focal_length_mm", error.what());
+  }
 }
 
 /// What would take beyond measure, or has no profile on the machine's grid.
-void check_sizes(TomlTable& element, TomlTable& tolerance, const PlanedPart& part) {
-  const double step_mm = part.lens.wavelength_mm / (part.lens.refractive_index - 1.0);
-  if (part.tolerance_mm > 0.5 * step_mm)
-    tolerance.fail("form_mm", fmt::format("must be <= half the depth of a zone, {}, got {}", shortest(0.5 * step_mm),
-                                          shortest(part.tolerance_mm)));
+void check_sizes(const Document& file, const PlanedPart& part) {
   const double grid = part.mill ? part.mill->grid_mm : 0.1 * part.tolerance_mm;
-  if (part.mill && part.tolerance_mm < 2.0 * grid)
-    tolerance.fail("form_mm", fmt::format("must be >= two steps of the machine's grid, {}, got {}",
-                                          shortest(2.0 * grid), shortest(part.tolerance_mm)));
+  const double step_mm = part.lens.wavelength_mm / (part.lens.refractive_index - 1.0);
+  const auto refuse_form = [&](std::string_view limit, double limit_mm) {
+    file.fail("tolerance.form_mm",
+              fmt::format("must be {}, {}, got {}", limit, shortest(limit_mm), shortest(part.tolerance_mm)));
+  };
+  if (part.tolerance_mm > 0.5 * step_mm) refuse_form("<= half the depth of a zone", 0.5 * step_mm);
+  if (part.mill && part.tolerance_mm < 2.0 * grid) refuse_form(">= two steps of the machine's grid", 2.0 * grid);
   if (part.mill && part.tolerance_mm > kMostQuanta * grid)
-    tolerance.fail("form_mm", fmt::format("must be <= {} steps of the machine's grid, {}, got {}", kMostQuanta,
-                                          shortest(kMostQuanta * grid), shortest(part.tolerance_mm)));
-  if (part.lens.half_width_mm > kMostSteps * grid)
-    element.fail("width_mm",
-                 fmt::format("must be <= {} with a {} of {}, got {}", shortest(2.0 * kMostSteps * grid),
-                             part.mill ? "grid_mm" : "form_mm", shortest(part.mill ? grid : part.tolerance_mm),
-                             shortest(2.0 * part.lens.half_width_mm)));
-  try {
-    const ZoneProfile profile(part.lens);
-    for (const Zone& zone : profile.zones())
-      if (zone.to_mm - zone.from_mm < kLeastStepsOfZone * grid && zone.to_mm < part.lens.half_width_mm)
-        element.fail("width_mm",
-                     fmt::format("zones must be >= {} wide, got one of {} at {}", shortest(kLeastStepsOfZone * grid),
-                                 fixed(zone.to_mm - zone.from_mm, 4), fixed(zone.from_mm, 3)));
-  } catch (const InputError& error) {
-    const std::string text = error.what();
-    if (text.find("zone ") == std::string::npos || text.find("focus") == std::string::npos) throw;
-    element.fail("focal_length_mm", text);
-  }
+    refuse_form(fmt::format("<= {} steps of the machine's grid", kMostQuanta), kMostQuanta * grid);
+  const double width_mm = 2.0 * part.lens.half_width_mm;
+  if (width_mm > 2.0 * kMostSteps * grid)
+    file.fail("element.width_mm", fmt::format("must be <= {} with a {} of {}, got {}",
+                                              shortest(2.0 * kMostSteps * grid), part.mill ? "grid_mm" : "form_mm",
+                                              shortest(part.mill ? grid : part.tolerance_mm), shortest(width_mm)));
+}
+
+void check_zones(const Document& file, const PlanedPart& part) {
+  const ZoneProfile profile = profile_of(file, part.lens);
+  const double least_mm = kLeastStepsOfZone * (part.mill ? part.mill->grid_mm : 0.1 * part.tolerance_mm);
+  for (const Zone& zone : profile.zones())
+    if (zone.to_mm - zone.from_mm < least_mm && zone.to_mm < part.lens.half_width_mm)
+      file.fail("element.width_mm", fmt::format("zones must be >= {} wide, got one of {} at {}", shortest(least_mm),
+                                                fixed(zone.to_mm - zone.from_mm, 4), fixed(zone.from_mm, 3)));
+  if (part.lathe && !nose_fits(profile, part.lathe->nose_radius_mm))
+    file.fail("lathe.nose_radius_mm",
+              fmt::format("must be <= {}, or the nose does not reach the bottom of every zone, got {}",
+                          fixed(largest_nose_mm(profile), 3), shortest(part.lathe->nose_radius_mm)));
 }
 
 }  // namespace
 
+const Format& planed_part_format() {
+  return kFormat;
+}
+
 PlanedPart parse_planed_part(std::string_view text, const std::string& source_name) {
-  TomlTable top = parse_toml(text, source_name);
-  const auto schema = top.text("schema");
-  if (schema && *schema != kSchema)
-    top.fail("schema", fmt::format("must be {}, got {}", in_quotes(kSchema), in_quotes(*schema)));
+  const Document file = read_document(kFormat, text, source_name);
   PlanedPart part;
   part.source = source_name;
-  part.title = top.text("title").value_or("");
-  TomlTable element = top.required_table("element");
-  const bool is_round = element.required_choice("kind", kKinds) == 1;
-  part.lens = read_lens(element);
-  if (!is_round) part.length_mm = element.required_number("length_mm", kLength);
-  element.finish();
-  TomlTable tolerance = top.required_table("tolerance");
-  part.tolerance_mm = tolerance.required_number("form_mm", kTolerance);
-  tolerance.finish();
-  TomlTable machine = top.required_table(is_round ? "lathe" : "mill");
-  if (is_round)
-    part.lathe = read_lathe(machine);
-  else
-    part.mill = read_mill(machine);
-  top.finish();
-  check_sizes(element, tolerance, part);
-  if (is_round) check_nose(machine, part);
+  part.title = file.text_if("title");
+  part.lens = {file.number("element.focal_length_mm"), file.number("element.wavelength_mm"),
+               file.number("element.refractive_index"), 0.5 * file.number("element.width_mm")};
+  part.length_mm = file.number_if("element.length_mm").value_or(0.0);
+  part.tolerance_mm = file.number("tolerance.form_mm");
+  if (file.has("mill")) part.mill = mill_of(file);
+  if (file.has("lathe")) part.lathe = lathe_of(file);
+  check_sizes(file, part);
+  check_zones(file, part);
   return part;
 }
 

@@ -4,9 +4,13 @@
 #include <string>
 #include <string_view>
 
+#include "core/schema/schema.h"
 #include "fabrication/planing/part.h"
 
 namespace retrace::fabrication {
+
+/// The format of parts to be planed or turned (retrace.planed_part/1).
+const schema::Format& planed_part_format();
 
 /// Reads a part to be planed or turned (`retrace.planed_part/1`, docs/planing_file.md). \throw InputError naming file,
 /// line and key

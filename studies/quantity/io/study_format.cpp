@@ -11,7 +11,6 @@ namespace {
 using namespace schema;
 using fabrication::Strategy;
 
-using Words = std::string_view[];
 constexpr NumberRange kAboveZero{.low = 0.0, .low_included = false};
 constexpr NumberRange kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
 constexpr NumberRange kHalfAngle{.low = 0.0, .low_included = false, .high = 90.0};
