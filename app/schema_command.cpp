@@ -12,6 +12,7 @@
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/planing/io/part_files.h"
+#include "fabrication/turning/io/part_files.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design_format.h"
 #include "studies/quantity/io/study_format.h"
@@ -21,8 +22,13 @@ namespace {
 
 /// The formats of files that have a schema, by name.
 std::vector<const schema::Format*> formats() {
-  return {&studies::design_format(), &fabrication::machine_format(), &materials::materials_format(),
-          &fabrication::planed_part_format(), &fabrication::process_format(), &studies::study_format()};
+  return {&studies::design_format(),
+          &fabrication::machine_format(),
+          &materials::materials_format(),
+          &fabrication::planed_part_format(),
+          &fabrication::process_format(),
+          &studies::study_format(),
+          &fabrication::turning::turned_part_format()};
 }
 
 struct SchemaOptions {

@@ -13,8 +13,10 @@ namespace retrace::schema {
 namespace {
 
 /// Suffixes of names; one that another one ends in stands after it.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kUnits = {{{"_mm_per_min", "mm/min"},
+constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kUnits = {{{"_mm_per_min", "mm/min"},
                                                                                    {"_mm_per_s2", "mm/s^2"},
+                                                                                   {"_mm_per_s3", "mm/s^3"},
+                                                                                   {"_mm_per_s", "mm/s"},
                                                                                    {"_deg_per_s2", "degrees/s^2"},
                                                                                    {"_deg_per_s", "degrees/s"},
                                                                                    {"_per_mm", "1/mm"},

@@ -19,7 +19,8 @@ TEST(SchemaCommand, ListsTheFormats) {
             "machine      retrace.machine/1      Machine with five axes\n"
             "materials    retrace.materials/1    Materials and metals\n"
             "planed_part  retrace.planed_part/1  Flat lens of zones, planed or turned\n"
-            "process      retrace.process/1      Process of a fabrication job\n");
+            "process      retrace.process/1      Process of a fabrication job\n"
+            "turned_part  retrace.turned_part/1  Freeform surface, turned\n");
   const Json json = retrace_json(folder, {"schema"});
   EXPECT_EQ(json["schema"], "retrace.formats/1");
   EXPECT_EQ(json["formats"][1],
@@ -41,7 +42,8 @@ TEST(SchemaCommand, RefusesAnUnknownFormat) {
   const TemporaryFolder folder;
   const Outcome outcome = retrace(folder, {"schema", "procces"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, "retrace: schema: must be design, machine, materials, planed_part, process, got procces\n");
+  EXPECT_EQ(outcome.err,
+            "retrace: schema: must be design, machine, materials, planed_part, process, turned_part, got procces\n");
 }
 
 /// One line for each TOML file: its name, and whether the schema accepts it.
@@ -82,8 +84,8 @@ TEST(SchemaCommand, AValidatorAcceptsWhatIsShipped) {
   for (const auto& [format, name, least] :
        {std::tuple{"machine", "data/machines", 4U}, std::tuple{"process", "data/processes", 4U},
         std::tuple{"materials", "data", 1U}, std::tuple{"design", "examples", 15U},
-        std::tuple{"planed_part", "examples/planing", 2U}, std::tuple{"design", "examples/fronts", 1U},
-        std::tuple{"design", "examples/luminance_fixture", 1U}}) {
+        std::tuple{"planed_part", "examples/planing", 2U}, std::tuple{"turned_part", "examples/turning", 3U},
+        std::tuple{"design", "examples/fronts", 1U}, std::tuple{"design", "examples/luminance_fixture", 1U}}) {
     const std::vector<std::string> lines = judged(folder, format, files_in(name));
     EXPECT_GE(lines.size(), least) << name;
     for (const std::string& line : lines) EXPECT_TRUE(line.ends_with(" accepted")) << format << ": " << line;
@@ -187,6 +189,19 @@ TEST(SchemaCommand, AValidatorRefusesWrongPlanedParts) {
                   {"\nlength_mm", "\nlength"},
                   {"[mill]", "[lathe]"},
                   {"[13, 13, 6]", "[13, 13]"}});
+}
+
+TEST(SchemaCommand, AValidatorRefusesWrongTurnedParts) {
+  expect_refused("turned_part", "examples/turning/rectangle_quartic.toml",
+                 {{"corner_mm = 0.15\n", ""},
+                  {"kind = \"rectangle\"", "kind = \"circle\""},
+                  {"[boundary]", "[lenslets]"},
+                  {"order = 4", "order = 10"},
+                  {"terms", "even"},
+                  {"feed_um = 20", "feed_um = 20\nscallop_nm = 3"},
+                  {"points_per_turn = 1440", "sampling = \"arc\""},
+                  {"points_per_turn = 1440", "sampling = \"arc\"\narc_um = 5\nservo = \"fast\""},
+                  {"[inspect]", "[machine.w]\n[inspect]"}});
 }
 
 }  // namespace

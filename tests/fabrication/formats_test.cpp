@@ -2,6 +2,7 @@
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/planing/io/part_files.h"
+#include "fabrication/turning/io/part_files.h"
 #include "tests/support/documents.h"
 
 // Process and machine files: what is written reads back the same, and the documentation says what the rows say.
@@ -164,10 +165,16 @@ RC_GTEST_PROP(PlanedPartFile, DocumentsReadBackTheSame, ()) {
   documents_test::expect_random_document_to_read_back(planed_part_format());
 }
 
+RC_GTEST_PROP(TurnedPartFile, DocumentsReadBackTheSame, ()) {
+  documents_test::expect_random_document_to_read_back(turning::turned_part_format());
+}
+
 TEST(FormatsInTheDocumentation, AreWhatTheRowsSay) {
   EXPECT_EQ(documents_test::documented("machine_file.md", "machine"), schema::key_tables(machine_format()));
   EXPECT_EQ(documents_test::documented("job_file.md", "process"), schema::key_tables(process_format()));
   EXPECT_EQ(documents_test::documented("planing_file.md", "planed_part"), schema::key_tables(planed_part_format()));
+  EXPECT_EQ(documents_test::documented("turning_file.md", "turned_part"),
+            schema::key_tables(turning::turned_part_format()));
 }
 
 }  // namespace

@@ -155,9 +155,10 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
            "positions_mm = [[0.1, 0.1], [0.2, 0.1]]\nkind = \"plane\"\nboundary = \"circle\"\nboundary_radius_mm = "
            "0.1\ninner_share = 0.8\nouter_share = 1.1\n"),
        "lenslets: must leave room between blends"},
-      {kHead + kBase + kTool + "[path]\nradius_mm = 1\nspindle_rpm = 60\n", "path.feed_um: must be given"},
+      {kHead + kBase + kTool + "[path]\nradius_mm = 1\nspindle_rpm = 60\n",
+       "path: must have either feed_um or scallop_nm"},
       {kHead + kBase + kTool + "[path]\nradius_mm = 1\nfeed_um = 1\nscallop_nm = 3\nspindle_rpm = 60\n",
-       "path.feed_um: must be given, or scallop_nm"},
+       "path.scallop_nm: must have either feed_um or scallop_nm"},
       {kHead + kBase + kTool + kPath + "sampling = \"arc\"\narc_um = 5\nservo = \"fast\"\n", "path.servo: must be"},
       {kHead + kBase + "[tool]\nnose_radius_mm = 0\nclearance_deg = 15\n" + kPath, "tool.nose_radius_mm: must be"},
       {kHead + "[base]\nkind = \"formula\"\nformula = \"sqrt(1-x^2)-1\"\n[tool]\nnose_radius_mm = 0.1\nclearance_deg = "

@@ -5,13 +5,14 @@
 #include <cmath>
 
 #include "core/number_format.h"
+#include "fabrication/turning/io/part_files.h"
 #include "fabrication/turning/io/sag_tables.h"
 
 namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::Vec2;
-constexpr std::size_t kMostLenslets = 100000;
+using schema::Document;
 
 /// Centres of a hexagonal or square grid within a circle round the origin.
 std::vector<Vec2> grid(double pitch, double within, bool hexagonal) {
@@ -30,27 +31,15 @@ std::vector<Vec2> grid(double pitch, double within, bool hexagonal) {
   return places;
 }
 
-std::vector<Vec2> read_places(TomlTable& table) {
-  const int given = static_cast<int>(table.has("positions_mm")) + static_cast<int>(table.has("hexagonal_pitch_mm")) +
-                    static_cast<int>(table.has("square_pitch_mm"));
-  if (given != 1)
-    table.fail("positions_mm", "must be given, or one of hexagonal_pitch_mm and square_pitch_mm instead of it");
-  std::vector<Vec2> places;
-  if (table.has("positions_mm")) {
-    for (const auto& row : table.required_number_rows("positions_mm", 2, kLengthMm))
-      places.emplace_back(row[0], row[1]);
-  } else {
-    const bool hexagonal = table.has("hexagonal_pitch_mm");
-    const std::string_view key = hexagonal ? "hexagonal_pitch_mm" : "square_pitch_mm";
-    const double pitch = table.required_number(key, kPositiveMm);
-    const double within = table.required_number("within_mm", kPositiveMm);
-    if (!(within / pitch < std::sqrt(static_cast<double>(kMostLenslets)) / 2.0))
-      table.fail(key, fmt::format("must leave at most {} lenslets, got {}", kMostLenslets, shortest(pitch)));
-    places = grid(pitch, within, hexagonal);
-  }
-  if (places.empty() || places.size() > kMostLenslets)
-    table.fail("positions_mm", fmt::format("must be 1 to {} places, got {}", kMostLenslets, places.size()));
-  return places;
+std::vector<Vec2> read_places(const Document& file) {
+  if (file.has("lenslets.positions_mm")) return read_points(file, "lenslets.positions_mm");
+  const bool hexagonal = file.has("lenslets.hexagonal_pitch_mm");
+  const std::string_view key = hexagonal ? "lenslets.hexagonal_pitch_mm" : "lenslets.square_pitch_mm";
+  const double pitch = file.number(key);
+  const double within = file.number("lenslets.within_mm");
+  if (!(within / pitch < std::sqrt(static_cast<double>(kMostLenslets)) / 2.0))
+    file.fail(key, fmt::format("must leave at most {} lenslets, got {}", kMostLenslets, shortest(pitch)));
+  return grid(pitch, within, hexagonal);
 }
 
 /// What is asked of the boundaries of all lenslets.
@@ -64,24 +53,21 @@ struct BoundaryRequest {
   InputLocation where;
 };
 
-BoundaryRequest read_request(TomlTable& table) {
-  static constexpr std::string_view kKinds[] = {"circle", "intersection"};
-  BoundaryRequest request;
-  request.is_intersection = table.required_choice("boundary", kKinds) == 1;
-  request.where = table.where("boundary");
-  request.options.degree = static_cast<int>(table.whole("degree", {.low = 2, .high = kMostSplineDegree}).value_or(3));
-  if (request.is_intersection) {
-    request.within_mm = table.required_number("search_mm", kPositiveMm);
-    request.options.samples = static_cast<int>(table.whole("samples", {.low = 16, .high = 4000}).value_or(60));
-  } else {
-    request.radius_mm = table.required_number("boundary_radius_mm", kPositiveMm);
-  }
-  request.inner_share = table.required_number("inner_share", {.low = 0.01, .high = 10.0});
-  request.outer_share = table.required_number("outer_share", {.low = 0.01, .high = 10.0});
-  if (!(request.inner_share < request.outer_share))
-    table.fail("outer_share", fmt::format("must be above inner_share, or the boundaries cross, got {} and {}",
-                                          shortest(request.inner_share), shortest(request.outer_share)));
-  return request;
+BoundaryRequest read_request(const Document& file) {
+  const auto number = [&](const char* key) { return file.number_if(schema::path_in("lenslets", key)).value_or(0.0); };
+  const double inner = number("inner_share");
+  const double outer = number("outer_share");
+  if (!(inner < outer))
+    file.fail("lenslets.outer_share", fmt::format("must be above inner_share, or the boundaries cross, got {} and {}",
+                                                  shortest(inner), shortest(outer)));
+  const BoundaryOptions options = {static_cast<int>(number("degree")), static_cast<int>(number("samples"))};
+  return {file.text("lenslets.boundary") == "intersection",
+          options,
+          number("boundary_radius_mm"),
+          number("search_mm"),
+          inner,
+          outer,
+          file.where("lenslets.boundary")};
 }
 
 void set_boundaries(Lenslet& lenslet, const TurnedSurface& base, const Vec2& centre, const BoundaryRequest& request) {
@@ -99,15 +85,14 @@ void set_boundaries(Lenslet& lenslet, const TurnedSurface& base, const Vec2& cen
 
 }  // namespace
 
-std::vector<Lenslet> read_lenslets(TomlTable& root, const TurnedSurface& base) {
-  if (!root.has("lenslets")) return {};
-  TomlTable table = root.table("lenslets");
-  const std::vector<Vec2> places = read_places(table);
-  const Sag sag = read_sag(table, "kind");
-  const BoundaryRequest request = read_request(table);
-  const double height = table.number("height_mm", kLengthMm).value_or(0.0);
-  const bool tilted = table.flag("tilted").value_or(true);
-  const int order = static_cast<int>(table.whole("blend_order", {.low = 1, .high = kMostBlendOrder}).value_or(2));
+std::vector<Lenslet> read_lenslets(const Document& file, const TurnedSurface& base) {
+  if (!file.has("lenslets")) return {};
+  const std::vector<Vec2> places = read_places(file);
+  const Sag sag = read_sag(file, "lenslets");
+  const BoundaryRequest request = read_request(file);
+  const double height = file.number("lenslets.height_mm");
+  const bool tilted = file.flag("lenslets.tilted");
+  const int order = static_cast<int>(file.number("lenslets.blend_order"));
   std::vector<Lenslet> lenslets;
   for (const Vec2& place : places) {
     Lenslet lenslet;

@@ -11,137 +11,120 @@ namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::Vec2;
-constexpr NumberRange kCoefficient{.low = -1e9, .high = 1e9};
-constexpr NumberRange kRadius{.low = -1e9, .high = 1e9};
-constexpr std::size_t kMostTerms = 200;
-constexpr std::size_t kMostTablePoints = 4000;
+using schema::Document;
 
-void read_conic(TomlTable& table, Sag& sag) {
-  const double radius = table.required_number("radius_mm", kRadius);
-  if (radius == 0.0) table.fail("radius_mm", "must not be 0, got 0");
-  sag.asphere.curvature_per_mm = 1.0 / radius;
-  sag.asphere.conic = table.number("conic", kCoefficient).value_or(0.0);
+Asphere conic_of(const Document& file, const std::string& table) {
+  const double radius = file.number(table + ".radius_mm");
+  if (radius == 0.0) file.fail(table + ".radius_mm", "must not be 0, got 0");
+  return {1.0 / radius, file.number(table + ".conic"), {}};
 }
 
-/// Rows [power, coefficient] of r^4, r^6, ...
-void read_even(TomlTable& table, Sag& sag) {
+/// Coefficients of r^4, r^6, ...
+std::vector<double> even_terms(const Document& file, const std::string& key) {
   constexpr int kMostPower = 20;
-  for (const auto& row : table.required_number_rows("even", 2, kCoefficient)) {
+  std::vector<double> terms;
+  for (const auto& row : file.rows(key)) {
     const int power = static_cast<int>(row[0]);
     if (power != row[0] || power % 2 != 0 || power < 4 || power > kMostPower)
-      table.fail("even", fmt::format("must have rows [power, coefficient] with even powers from 4 to {}, got power {}",
-                                     kMostPower, shortest(row[0])));
+      file.fail(key, fmt::format("must have rows [power, coefficient] with even powers from 4 to {}, got power {}",
+                                 kMostPower, shortest(row[0])));
     const auto index = static_cast<std::size_t>(power / 2 - 2);
-    if (sag.asphere.even.size() <= index) sag.asphere.even.resize(index + 1, 0.0);
-    sag.asphere.even[index] += row[1];
+    if (terms.size() <= index) terms.resize(index + 1, 0.0);
+    terms[index] += row[1];
   }
+  return terms;
 }
 
-int whole_in(TomlTable& table, double value, int low, int high) {
-  if (value != std::floor(value) || value < low || value > high)
-    table.fail("terms", fmt::format("must have whole numbers from {} to {} in front of its coefficients, got {}", low,
-                                    high, shortest(value)));
-  return static_cast<int>(value);
+/// Two whole numbers and a coefficient.
+struct Term {
+  int i = 0;
+  int j = 0;
+  double coefficient = 0.0;
+};
+
+/// \param is_signed the second number may be from minus the first to the first
+std::vector<Term> terms_of(const Document& file, const std::string& key, bool is_signed) {
+  const auto whole = [&](double value, int low, int high) {
+    if (value != std::floor(value) || value < low || value > high)
+      file.fail(key, fmt::format("must have whole numbers from {} to {} in front of its coefficients, got {}", low,
+                                 high, shortest(value)));
+    return static_cast<int>(value);
+  };
+  std::vector<Term> terms;
+  for (const auto& row : file.rows(key)) {
+    const int i = whole(row[0], 0, kMostPolynomialDegree);
+    terms.push_back({i, is_signed ? whole(row[1], -i, i) : whole(row[1], 0, kMostPolynomialDegree), row[2]});
+  }
+  return terms;
 }
 
-std::vector<std::vector<double>> term_rows(TomlTable& table) {
-  auto rows = table.required_number_rows("terms", 3, kCoefficient);
-  if (rows.empty() || rows.size() > kMostTerms)
-    table.fail("terms", fmt::format("must have 1 to {} rows, got {}", kMostTerms, rows.size()));
-  return rows;
-}
-
-void read_polynomial(TomlTable& table, Sag& sag) {
-  const auto rows = term_rows(table);
+XyPolynomial xy_polynomial(const Document& file, const std::string& table) {
+  const std::string key = table + ".terms";
+  const std::vector<Term> terms = terms_of(file, key, false);
   XyPolynomial p;
-  p.scale_mm = table.number("scale_mm", kPositiveMm).value_or(1.0);
-  for (const auto& row : rows) {
-    const int i = whole_in(table, row[0], 0, kMostPolynomialDegree);
-    const int j = whole_in(table, row[1], 0, kMostPolynomialDegree);
-    if (i + j > kMostPolynomialDegree)
-      table.fail("terms", fmt::format("must have a degree of at most {}, got {}", kMostPolynomialDegree, i + j));
-    p.degree = std::max(p.degree, i + j);
-  }
+  p.scale_mm = file.number(table + ".scale_mm");
+  for (const Term& term : terms) p.degree = std::max(p.degree, term.i + term.j);
+  if (p.degree > kMostPolynomialDegree)
+    file.fail(key, fmt::format("must have a degree of at most {}, got {}", kMostPolynomialDegree, p.degree));
   p.coefficients.assign(XyPolynomial::count(p.degree), 0.0);
-  for (const auto& row : rows) p.coefficients[p.index(static_cast<int>(row[0]), static_cast<int>(row[1]))] += row[2];
-  sag.polynomial = p;
+  for (const Term& term : terms) p.coefficients[p.index(term.i, term.j)] += term.coefficient;
+  return p;
 }
 
-void read_zernike(TomlTable& table, Sag& sag) {
+XyPolynomial zernike(const Document& file, const std::string& table) {
+  const std::string key = table + ".terms";
   std::vector<ZernikeTerm> terms;
-  for (const auto& row : term_rows(table)) {
-    const int n = whole_in(table, row[0], 0, kMostPolynomialDegree);
-    const int m = whole_in(table, row[1], -n, n);
-    if ((n - m) % 2 != 0) table.fail("terms", fmt::format("must have n - m even, got n = {} and m = {}", n, m));
-    terms.push_back({n, m, row[2]});
+  for (const auto& [n, m, coefficient] : terms_of(file, key, true)) {
+    if ((n - m) % 2 != 0) file.fail(key, fmt::format("must have n - m even, got n = {} and m = {}", n, m));
+    terms.push_back({n, m, coefficient});
   }
-  sag.polynomial = polynomial_of(terms, table.required_number("aperture_radius_mm", kPositiveMm));
+  return polynomial_of(terms, file.number(table + ".aperture_radius_mm"));
+}
+
+/// \param variables in their order
+Formula formula_of(const Document& file, const std::string& key, const std::vector<std::string>& variables) {
+  return parse_formula(file.text(key), variables, file.where(key));
 }
 
 }  // namespace
 
-Sag read_sag(TomlTable& table, std::string_view kind_key) {
-  static constexpr std::string_view kKinds[] = {"plane", "conic", "asphere", "xy_polynomial", "zernike", "formula"};
-  enum Kind { plane, conic, asphere, xy_polynomial, zernike, formula };
-  const auto kind = static_cast<Kind>(table.required_choice(kind_key, kKinds));
+Sag read_sag(const Document& file, const std::string& table) {
+  const std::string kind = file.text(table + ".kind");
   Sag sag;
-  switch (kind) {
-    case plane:
-      break;
-    case conic:
-      read_conic(table, sag);
-      break;
-    case asphere:
-      read_conic(table, sag);
-      read_even(table, sag);
-      break;
-    case xy_polynomial:
-    case zernike:
-      if (table.has("radius_mm")) read_conic(table, sag);
-      kind == zernike ? read_zernike(table, sag) : read_polynomial(table, sag);
-      break;
-    case formula:
-      sag.formula = parse_formula(table.required_text("formula"), sag_variables(), table.where("formula"));
-      break;
-  }
+  if (file.has(table + ".radius_mm")) sag.asphere = conic_of(file, table);
+  if (kind == "asphere") sag.asphere.even = even_terms(file, table + ".even");
+  if (kind == "xy_polynomial") sag.polynomial = xy_polynomial(file, table);
+  if (kind == "zernike") sag.polynomial = zernike(file, table);
+  if (kind == "formula") sag.formula = formula_of(file, table + ".formula", sag_variables());
   return sag;
 }
 
-Boundary read_boundary(TomlTable& table) {
-  static constexpr std::string_view kKinds[] = {"circle", "rectangle", "points", "formula"};
-  enum Kind { circle, rectangle, points, formula };
-  const auto kind = static_cast<Kind>(table.required_choice("kind", kKinds));
+std::vector<Vec2> read_points(const Document& file, std::string_view key) {
+  std::vector<Vec2> points;
+  for (const auto& row : file.rows(key)) points.emplace_back(row[0], row[1]);
+  return points;
+}
+
+Boundary read_boundary(const Document& file) {
+  const auto number = [&](const char* key) { return file.number(schema::path_in("boundary", key)); };
+  const std::string kind = file.text("boundary.kind");
   BoundaryOptions options;
-  options.degree = static_cast<int>(table.whole("degree", {.low = 2, .high = kMostSplineDegree}).value_or(3));
-  if (kind == rectangle || kind == formula)
-    options.samples = static_cast<int>(table.whole("samples", {.low = 16, .high = kMostTablePoints}).value_or(180));
+  options.degree = static_cast<int>(number("degree"));
   std::optional<Vec2> centre;
-  if (const auto c = table.numbers("centre_mm", 2, kLengthMm)) centre = Vec2((*c)[0], (*c)[1]);
+  if (file.has("boundary.centre_mm")) centre = Vec2(file.numbers("boundary.centre_mm").data());
+  if (kind == "points")
+    return boundary_from_points(read_points(file, "boundary.points_mm"), centre, file.flag("boundary.scattered"),
+                                options.degree, file.where("boundary.points_mm"));
   const Vec2 middle = centre.value_or(Vec2::Zero());
-  switch (kind) {
-    case circle:
-      return circle_boundary(middle, table.required_number("radius_mm", kPositiveMm), options.degree);
-    case rectangle: {
-      const std::vector<double> size = table.required_numbers("size_mm", 2, kPositiveMm);
-      return rectangle_boundary(middle, size[0], size[1], table.required_number("corner_mm", kPositiveMm), options,
-                                table.where("size_mm"));
-    }
-    case points: {
-      std::vector<Vec2> list;
-      for (const auto& row : table.required_number_rows("points_mm", 2, kLengthMm)) list.emplace_back(row[0], row[1]);
-      if (list.size() > kMostTablePoints)
-        table.fail("points_mm", fmt::format("must have at most {} points, got {}", kMostTablePoints, list.size()));
-      const bool scattered = table.flag("scattered").value_or(false);
-      return boundary_from_points(std::move(list), centre, scattered, options.degree, table.where("points_mm"));
-    }
-    case formula: {
-      const InputLocation where = table.where("formula");
-      const Formula r = parse_formula(table.required_text("formula"), {"theta"}, where);
-      return boundary_from_radius(
-          middle, [&](double theta) { return r.evaluate(&theta); }, options, where);
-    }
+  if (kind == "circle") return circle_boundary(middle, number("radius_mm"), options.degree);
+  options.samples = static_cast<int>(number("samples"));
+  if (kind == "rectangle") {
+    const std::vector<double> size = file.numbers("boundary.size_mm");
+    return rectangle_boundary(middle, size[0], size[1], number("corner_mm"), options, file.where("boundary.size_mm"));
   }
-  return {};
+  const Formula r = formula_of(file, "boundary.formula", {"theta"});
+  return boundary_from_radius(
+      middle, [&](double theta) { return r.evaluate(&theta); }, options, file.where("boundary.formula"));
 }
 
 }  // namespace retrace::fabrication::turning

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <optional>
+#include <string>
+#include <vector>
 
-#include "core/toml_file.h"
+#include "core/schema/document.h"
 #include "fabrication/turning/boundary.h"
 #include "fabrication/turning/sag.h"
 
@@ -10,13 +11,13 @@
 
 namespace retrace::fabrication::turning {
 
-inline constexpr NumberRange kLengthMm{.low = -1e4, .high = 1e4};
-inline constexpr NumberRange kPositiveMm{.low = 0.0, .low_included = false, .high = 1e4};
+/// The sag of `[base]` or `[lenslets]`.
+Sag read_sag(const schema::Document& file, const std::string& table);
 
-/// The keys of a sag: kind and what belongs to it.
-Sag read_sag(TomlTable& table, std::string_view kind_key);
+/// The curve of `[boundary]`. \pre it was given
+Boundary read_boundary(const schema::Document& file);
 
-/// A table [boundary]: circle, rectangle, points or formula.
-Boundary read_boundary(TomlTable& table);
+/// Of a key with rows [x, y].
+std::vector<geometry::Vec2> read_points(const schema::Document& file, std::string_view key);
 
 }  // namespace retrace::fabrication::turning
