@@ -19,7 +19,21 @@ add_custom_command(
   COMMAND retrace completion fish --quiet --out "${printed}/retrace.fish"
   DEPENDS retrace ${named} "${PROJECT_SOURCE_DIR}/data/photometry_limits.csv"
   COMMENT "Printing the manual page and completion" VERBATIM)
-add_custom_target(retrace_printed ALL DEPENDS "${printed}/retrace.1")
+
+# Schemas of files for editors, where `retrace init --editor` finds them: share/retrace_schemas beside bin/.
+set(schemas "${PROJECT_BINARY_DIR}/share/retrace_schemas")
+file(MAKE_DIRECTORY "${schemas}")
+set(schema_files "")
+foreach(format IN ITEMS design job machine materials planed_part process study turned_part)
+  add_custom_command(
+    OUTPUT "${schemas}/${format}.schema.json"
+    COMMAND retrace schema ${format} --quiet --out "${schemas}"
+    DEPENDS retrace VERBATIM)
+  list(APPEND schema_files "${schemas}/${format}.schema.json")
+endforeach()
+install(FILES ${schema_files} DESTINATION share/retrace_schemas)
+
+add_custom_target(retrace_printed ALL DEPENDS "${printed}/retrace.1" ${schema_files})
 install(FILES "${printed}/retrace.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES "${printed}/retrace" DESTINATION share/bash-completion/completions)
 install(FILES "${printed}/_retrace" DESTINATION share/zsh/site-functions)

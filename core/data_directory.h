@@ -10,6 +10,9 @@ namespace retrace {
 /// folder, which holds for the build tree and for an installation. \throw InputError if there is no such folder.
 std::filesystem::path data_directory();
 
+/// The JSON Schema of a file format, which lies beside that folder. \throw InputError if it is not there
+std::filesystem::path schema_file(std::string_view format);
+
 /// The TOML files of one of its folders, by name. \throw InputError if it cannot be read
 std::vector<std::filesystem::path> shipped_files(std::string_view folder);
 

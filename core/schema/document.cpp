@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Form form_of(const Value& value) {
-  if (std::holds_alternative<bool>(value)) return Form::other;
+  if (std::holds_alternative<std::monostate>(value) || std::holds_alternative<bool>(value)) return Form::other;
   if (std::holds_alternative<double>(value)) return Form::number;
   if (std::holds_alternative<std::string>(value)) return Form::text;
   return std::holds_alternative<Named>(value) ? Form::table : Form::list;

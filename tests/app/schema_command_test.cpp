@@ -85,8 +85,14 @@ TEST(SchemaCommand, AValidatorAcceptsWhatIsShipped) {
        {std::tuple{"machine", "data/machines", 4U}, std::tuple{"process", "data/processes", 4U},
         std::tuple{"materials", "data", 1U}, std::tuple{"design", "examples", 15U},
         std::tuple{"planed_part", "examples/planing", 2U}, std::tuple{"turned_part", "examples/turning", 3U},
-        std::tuple{"design", "examples/fronts", 1U}, std::tuple{"design", "examples/luminance_fixture", 1U}}) {
-    const std::vector<std::string> lines = judged(folder, format, files_in(name));
+        std::tuple{"design", "examples/fronts", 1U}, std::tuple{"design", "examples/luminance_fixture", 1U},
+        std::tuple{"study", "examples/studies", 9U}}) {
+    std::vector<std::string> files = files_in(name);
+    // Designs that are varied lie beside the studies.
+    if (format == std::string("study"))
+      std::erase_if(files,
+                    [](const std::string& file) { return read_text(file).find("[[parameter]]") == std::string::npos; });
+    const std::vector<std::string> lines = judged(folder, format, files);
     EXPECT_GE(lines.size(), least) << name;
     for (const std::string& line : lines) EXPECT_TRUE(line.ends_with(" accepted")) << format << ": " << line;
   }
@@ -202,6 +208,47 @@ TEST(SchemaCommand, AValidatorRefusesWrongTurnedParts) {
                   {"points_per_turn = 1440", "sampling = \"arc\""},
                   {"points_per_turn = 1440", "sampling = \"arc\"\narc_um = 5\nservo = \"fast\""},
                   {"[inspect]", "[machine.w]\n[inspect]"}});
+}
+
+TEST(SchemaCommand, AValidatorRefusesWrongStudies) {
+  expect_refused("study", "examples/studies/element_size.toml",
+                 {{"from = 0.1\n", "from = 0.1\nvalues = [1]\n"},
+                  {"scale = \"log\"", "scale = \"decades\""},
+                  {"scale = \"log\"", "scal = \"log\""},
+                  {"name = \"size_mm\"", "name = 3"},
+                  {"kind = \"rre\"", "kind = \"rree\""},
+                  {"kind = \"rre\"", "kind = \"rre\"\narea_cm2 = 3"},
+                  {"kind = \"rre\"", "kind = \"rre\"\nincidence_deg = [0, 90]"},
+                  {"kind = \"rre\"", "kind = \"ledger\""},
+                  {"[[quantity]]", "[sweep]\nsamples = 5\n[[quantity]]"},
+                  {"[[quantity]]", "[machining]\nstrategy = \"unidirectional\"\nfinishing_cuts = 1\n[[quantity]]"},
+                  {"maximize", "minimize = \"rre\"\nmaximize"}});
+}
+
+/// What editors read of a file of `init --editor` is the schema that `retrace schema` prints.
+TEST(SchemaCommand, EditorsFindTheSchema) {
+  const TemporaryFolder folder;
+  for (const auto& [kind, format] : {std::pair{"rtp", "design"}, std::pair{"round_zone_lens", "planed_part"}}) {
+    const std::string plain = retrace(folder, {"init", kind}).out;
+    const std::string text = retrace(folder, {"init", kind, "--editor"}).out;
+    const std::string start = "#:schema file:///";
+    ASSERT_TRUE(text.starts_with(start)) << text.substr(0, 100);
+    const std::size_t end = text.find('\n');
+    EXPECT_EQ(text.substr(end + 1), plain);
+    EXPECT_EQ(read_text(text.substr(start.size() - 1, end - start.size() + 1)),
+              retrace(folder, {"schema", format}).out);
+  }
+}
+
+/// Every format has its file beside the program.
+TEST(SchemaCommand, AllSchemasAreInstalled) {
+  const TemporaryFolder folder;
+  const auto formats = nlohmann::json::parse(retrace(folder, {"schema", "--json", "-"}).out)["formats"];
+  const fs::path program = fs::path(RETRACE_PROGRAM);
+  for (const auto& format : formats)
+    EXPECT_TRUE(fs::is_regular_file(program.parent_path().parent_path() / "share/retrace_schemas" /
+                                    (format["name"].get<std::string>() + ".schema.json")))
+        << format["name"];
 }
 
 }  // namespace

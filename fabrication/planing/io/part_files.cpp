@@ -38,7 +38,7 @@ constexpr Row kElementRows[] = {
     {"wavelength_mm", kLength, kRequired, "In air."},
     {"refractive_index", Number{{.low = 1.01, .high = 5.0}}, kRequired, "At that wavelength."},
     {"width_mm", kLength, kRequired, "Across the zones; of a round lens its diameter."},
-    {"length_mm", kLength, kRequired, "Along the zones.", Access(), kMilledOnly}};
+    {"length_mm", kLength, kRequired, "Along the zones.", kMilledOnly}};
 constexpr Row kToleranceRows[] = {{"form_mm", Number{{.low = 1e-4, .high = 10.0}}, kRequired,
                                    "At most half the depth of a zone. Of a mill: of depth, 2 to 200 steps of its grid; "
                                    "of a lathe: distance from what "
@@ -69,8 +69,8 @@ constexpr Row kLatheRows[] = {
     // A word S has up to five digits.
     {"spindle_rpm", Whole{{.low = 1.0, .high = 99999.0}}, kRequired, "Speed of the spindle."},
     {"spindle_direction", Word{kSpindleDirectionWords}, kRequired, "`M3` and `M4`."},
-    {"spindle_start", Text{}, kNone, kSpindleText, Access(), kWithStop},
-    {"spindle_stop", Text{}, kNone, kSpindleText, Access(), kWithStart}};
+    {"spindle_start", Text{}, kNone, kSpindleText, kWithStop},
+    {"spindle_stop", Text{}, kNone, kSpindleText, kWithStart}};
 constexpr Table kTables[] = {
     {.name = "element", .meaning = "The lens.", .rows = kElementRows},
     {.name = "tolerance", .meaning = "How near to its form it must be.", .rows = kToleranceRows},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/schema/conditions.h"
 #include "fabrication/turning/lenslet.h"
@@ -43,17 +44,17 @@ constexpr Row kSagRows[] = {
     {"kind", Word{kSags}, kRequired, "What gives the height."},
     {"radius_mm", Number{kCoefficient}, kRequired, "Not 0; negative: the middle is the highest place.", Access(),
      kOfConics},
-    {"radius_mm", Number{kCoefficient}, kNone, "Likewise, of a conic below the polynomial.", Access(), kOfPolynomials},
-    {"conic", Number{kCoefficient}, 0.0, "0 is a sphere, -1 a paraboloid.", Access(), kWithRadius},
+    {"radius_mm", Number{kCoefficient}, kNone, "Likewise, of a conic below the polynomial.", kOfPolynomials},
+    {"conic", Number{kCoefficient}, 0.0, "0 is a sphere, -1 a paraboloid.", kWithRadius},
     {"even", NumberRows{2, kCoefficient, 1, 200, "terms"}, kRequired,
-     "Rows `[power, coefficient]` of r^4, r^6, ... r^20, in mm.", Access(), kOfAsphere},
+     "Rows `[power, coefficient]` of r^4, r^6, ... r^20, in mm.", kOfAsphere},
     {"terms", kTerms, kRequired, "Rows `[i, j, c]` of c (x / s)^i (y / s)^j, of a degree of at most 16.", Access(),
      kOfPolynomial},
-    {"terms", kTerms, kRequired, "Rows `[n, m, c]` of orthonormal terms, of sin for m < 0.", Access(), kOfZernike},
-    {"scale_mm", kPositiveMm, 1.0, "The s of the terms.", Access(), kOfPolynomial},
-    {"aperture_radius_mm", kPositiveMm, kRequired, "Of the terms' disc.", Access(), kOfZernike},
+    {"terms", kTerms, kRequired, "Rows `[n, m, c]` of orthonormal terms, of sin for m < 0.", kOfZernike},
+    {"scale_mm", kPositiveMm, 1.0, "The s of the terms.", kOfPolynomial},
+    {"aperture_radius_mm", kPositiveMm, kRequired, "Of the terms' disc.", kOfZernike},
     {"formula", Text{"a formula"}, kRequired, "Of `x`, `y`, `r`, `theta` and, for lenslets, their place `cx`, `cy`.",
-     Access(), kOfFormula}};
+     kOfFormula}};
 
 constexpr Condition kCircleOnly[] = {is("kind", only(kCurves, "circle"))};
 constexpr Condition kRectangleOnly[] = {is("kind", only(kCurves, "rectangle"))};
@@ -61,16 +62,16 @@ constexpr Condition kPointsOnly[] = {is("kind", only(kCurves, "points"))};
 constexpr Condition kSampledOnly[] = {is("kind", kSampled)};
 constexpr Row kBoundaryRows[] = {
     {"kind", Word{kCurves}, kRequired, "What gives the curve."},
-    {"radius_mm", kPositiveMm, kRequired, "Of the circle.", Access(), kCircleOnly},
-    {"size_mm", Numbers{2, kSize}, kRequired, "`[width, height]`.", Access(), kRectangleOnly},
-    {"corner_mm", kPositiveMm, kRequired, "Radius of the corners.", Access(), kRectangleOnly},
+    {"radius_mm", kPositiveMm, kRequired, "Of the circle.", kCircleOnly},
+    {"size_mm", Numbers{2, kSize}, kRequired, "`[width, height]`.", kRectangleOnly},
+    {"corner_mm", kPositiveMm, kRequired, "Radius of the corners.", kRectangleOnly},
     {"points_mm", NumberRows{2, kPlace, 1, 4000, "points"}, kRequired, "In their order along the curve.", Access(),
      kPointsOnly},
-    {"scattered", Flag{}, false, "Whether they come in any order.", Access(), kPointsOnly},
-    {"formula", Text{"a formula"}, kRequired, "The radius, of `theta`.", Access(), kOfFormula},
+    {"scattered", Flag{}, false, "Whether they come in any order.", kPointsOnly},
+    {"formula", Text{"a formula"}, kRequired, "The radius, of `theta`.", kOfFormula},
     {"centre_mm", Numbers{2, kPlace}, Computed{"0, 0; of points their mean"}, "Of the polar form."},
     {"degree", kSplineDegree, 3.0, "Of the periodic spline: C^(degree - 1) in azimuth."},
-    {"samples", kSamples, 180.0, "Of the curve.", Access(), kSampledOnly}};
+    {"samples", kSamples, 180.0, "Of the curve.", kSampledOnly}};
 
 constexpr Row kExtrapolationRows[] = {{"order", Whole{{.low = 1.0, .high = kMostOrder}}, 2.0,
                                        "n: C^n along radial lines; smooth all round with a `degree` of n + 1."}};
@@ -82,26 +83,25 @@ constexpr Row kPlacedRows[] = {
     {"positions_mm", NumberRows{2, kPlace, 1, kMostLenslets, "places"}, kNone, "Rows `[x, y]`."},
     {"hexagonal_pitch_mm", kPositiveMm, kNone, "Of a hexagonal grid."},
     {"square_pitch_mm", kPositiveMm, kNone, "Of a square grid."},
-    {"within_mm", kPositiveMm, kRequired, "Radius within which the grid has places.", Access(), kGridOnly},
+    {"within_mm", kPositiveMm, kRequired, "Radius within which the grid has places.", kGridOnly},
     {"height_mm", Number{kPlace}, 0.0, "Of the origin of a lenslet above the base, along the normal."},
     {"tilted", Flag{}, true, "Whether lenslets are tilted to the base's normal."},
     {"boundary", Word{kBoundaries}, kRequired, "A circle, or where lenslet and base meet."},
-    {"boundary_radius_mm", kPositiveMm, kRequired, "Of the circle.", Access(), kCirclesOnly},
-    {"search_mm", kPositiveMm, kRequired, "How far the intersection is searched.", Access(), kIntersectionsOnly},
+    {"boundary_radius_mm", kPositiveMm, kRequired, "Of the circle.", kCirclesOnly},
+    {"search_mm", kPositiveMm, kRequired, "How far the intersection is searched.", kIntersectionsOnly},
     {"inner_share", kShare, kRequired, "Of the boundary's radius, where the blend leaves the lenslet."},
     {"outer_share", kShare, kRequired, "The same where it reaches the base; above `inner_share`."},
     {"blend_order", Whole{{.low = 1.0, .high = kMostBlendOrder}}, 2.0, "d: C^d at both ends."},
     {"degree", kSplineDegree, 3.0, "Of the boundary's spline."},
-    {"samples", kSamples, 60.0, "Of the intersection.", Access(), kIntersectionsOnly}};
+    {"samples", kSamples, 60.0, "Of the intersection.", kIntersectionsOnly}};
 constexpr std::string_view kPlaceKeys[] = {"positions_mm", "hexagonal_pitch_mm", "square_pitch_mm"};
 constexpr Rule kPlaceRules[] = {
     OneOf{kPlaceKeys, "must have one of positions_mm, hexagonal_pitch_mm and square_pitch_mm"}};
 
-constexpr auto kLensletRows = [] {
-  std::array<Row, std::size(kSagRows) + std::size(kPlacedRows)> rows;
-  std::ranges::copy(kPlacedRows, std::ranges::copy(kSagRows, rows.begin()).out);
-  return rows;
-}();
+constexpr auto kLensletRows = []<std::size_t... sag, std::size_t... place>(std::index_sequence<sag...>,
+                                                                           std::index_sequence<place...>) {
+  return std::array{kSagRows[sag]..., kPlacedRows[place]...};
+}(std::make_index_sequence<std::size(kSagRows)>{}, std::make_index_sequence<std::size(kPlacedRows)>{});
 
 constexpr Condition kNoLeastSkew[] = {without("find_least_skew")};
 constexpr Row kToolRows[] = {
@@ -111,7 +111,7 @@ constexpr Row kToolRows[] = {
     {"window_deg", Number{{.low = 1.0, .high = 178.0}}, 120.0, "Arc of the nose that is sharp, symmetric."},
     {"rake_deg", Number{{.low = -80.0, .high = 45.0}}, 0.0, "Positive: the face leans back."},
     {"skew_deg", Number{{.low = -80.0, .high = 80.0}}, 0.0,
-     "Turn about the shank: of a spiral made by moving along Y, of a raster by C = -skew.", Access(), kNoLeastSkew},
+     "Turn about the shank: of a spiral made by moving along Y, of a raster by C = -skew.", kNoLeastSkew},
     {"find_least_skew", Flag{}, false, "Whether to take the skew nearest to 0 that clears, within +-60."}};
 
 constexpr Condition kSpiralOnly[] = {is("strategy", only(kStrategies, "spiral"))};
@@ -125,26 +125,26 @@ constexpr Row kPathRows[] = {
     {"scallop_nm", Number{{.low = 1e-3, .high = 1e6}}, kNone,
      "In its place: the feed whose cusps on a flat are so high."},
     {"clear_mm", Number{{.low = 0.01, .high = 1e3}}, 1.0, "Above the part, for moves without cutting."},
-    {"radius_mm", kPositiveMm, kRequired, "From the part's rim to the centre.", Access(), kSpiralOnly},
+    {"radius_mm", kPositiveMm, kRequired, "From the part's rim to the centre.", kSpiralOnly},
     {"overrun_mm", Number{{.low = 0.0, .high = 1e3}}, 0.0,
      "Beyond the rim, where a spiral starts: on a surface that falls outwards the nose touches inside of its lowest "
      "point.",
-     Access(), kSpiralOnly},
-    {"spindle_rpm", Number{{.low = 0.01, .high = 1e5}}, kRequired, "Turns a minute.", Access(), kSpiralOnly},
+     kSpiralOnly},
+    {"spindle_rpm", Number{{.low = 0.01, .high = 1e5}}, kRequired, "Turns a minute.", kSpiralOnly},
     {"sampling", Word{kSamplings}, "angle",
      "What is equal from point to point; the controller joins them by straight moves of all axes, so a curved cut "
      "wants "
      "short ones: an arc s leaves s^2 k / 8.",
-     Access(), kSpiralOnly},
-    {"points_per_turn", Whole{{.low = 8.0, .high = 100000.0}}, 360.0, "Points by angle.", Access(), kAngleOnly},
-    {"arc_um", kArcUm, kRequired, "From point to point.", Access(), kArcOnly},
-    {"arc_um", kArcUm, kRequired, "Likewise along the lines.", Access(), kRasterOnly},
+     kSpiralOnly},
+    {"points_per_turn", Whole{{.low = 8.0, .high = 100000.0}}, 360.0, "Points by angle.", kAngleOnly},
+    {"arc_um", kArcUm, kRequired, "From point to point.", kArcOnly},
+    {"arc_um", kArcUm, kRequired, "Likewise along the lines.", kRasterOnly},
     {"servo", Word{kServos}, "slow",
-     "`\"fast\"`: Z follows the mean over a turn, the rest is the stroke in `servo.csv`.", Access(), kAngleOnly},
+     "`\"fast\"`: Z follows the mean over a turn, the rest is the stroke in `servo.csv`.", kAngleOnly},
     {"servo", Word{only(kServos, "slow")}, "slow", "A fast tool servo goes by the spindle's angle.", Access(),
      kArcOnly},
-    {"size_mm", Numbers{2, kSize}, kRequired, "`[across the lines (X), along them (Y)]`.", Access(), kRasterOnly},
-    {"cutting_mm_per_min", Number{{.low = 0.1, .high = 1e5}}, kRequired, "Along the lines.", Access(), kRasterOnly}};
+    {"size_mm", Numbers{2, kSize}, kRequired, "`[across the lines (X), along them (Y)]`.", kRasterOnly},
+    {"cutting_mm_per_min", Number{{.low = 0.1, .high = 1e5}}, kRequired, "Along the lines.", kRasterOnly}};
 constexpr std::string_view kFeedKeys[] = {"feed_um", "scallop_nm"};
 constexpr Rule kPathRules[] = {OneOf{kFeedKeys, "must have either feed_um or scallop_nm"}};
 
@@ -168,7 +168,7 @@ constexpr Row kInspectRows[] = {
     {"mesh_thickness_mm", kPositiveMm, kNone,
      "Writes `machined.stl`: what is moulded in the surface that the programs leave, with a level entrance face so far "
      "above its highest place.",
-     Access(), kRoundOnly},
+     kRoundOnly},
     {"mesh_rings", Whole{{.low = 2.0, .high = 1000.0}}, 100.0, "Circles of that mesh."}};
 
 constexpr Condition kBeyondBoundary[] = {beside("boundary", "needs a [boundary] beyond which to extrapolate")};

@@ -1,0 +1,111 @@
+#include "studies/quantity/io/study_format.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "core/atomic_file.h"
+#include "core/schema/json.h"
+#include "core/schema/key_table.h"
+#include "core/schema/reader.h"
+#include "core/schema/writer.h"
+#include "studies/design/design_document.h"
+#include "studies/design/design_format.h"
+#include "studies/design/design_reader.h"
+
+namespace retrace::studies::study_format_test {
+namespace {
+
+using namespace schema;
+
+const std::string kRoot = RETRACE_SOURCE_DIR;
+
+/// The files of a folder of the repository whose names end in .toml.
+std::vector<std::filesystem::path> files_in(const std::string& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(kRoot + "/" + folder))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  return files;
+}
+
+/// Written as TOML, and as JSON made TOML, it is the same document.
+void expect_round_trips(const Format& format, const std::string& text) {
+  const Document document = read_document(format, text, "d.toml");
+  const std::string written = document_text(format, document);
+  EXPECT_EQ(document_text(format, read_document(format, written, "d.toml")), written);
+  const auto json = to_json(document);
+  const Document back = read_document(format, toml_of_json(format, json), "d.toml");
+  EXPECT_EQ(document_text(format, back), written);
+  EXPECT_EQ(to_json(back), json);
+}
+
+TEST(StudyFormat, EveryExampleReadsBackTheSame) {
+  std::size_t studies = 0;
+  for (const auto& file : files_in("examples/studies")) {
+    const std::string text = read_file(file);
+    if (text.find("retrace.study/1") == std::string::npos) continue;
+    SCOPED_TRACE(file);
+    expect_round_trips(study_format(), text);
+    ++studies;
+  }
+  EXPECT_GE(studies, 6U);
+  for (const auto& file : files_in("examples")) {
+    SCOPED_TRACE(file);
+    expect_round_trips(design_format(), read_file(file));
+  }
+}
+
+/// Everything that a study can say.
+TEST(StudyFormat, EveryFormOfAValueReadsBackTheSame) {
+  expect_round_trips(
+      study_format(),
+      "title = \"a \\\"title\\\"\"\ndesign = \"d.toml\"\n"
+      "[[parameter]]\nkey = [\"a.b\", \"c.d\"]\nvalues = [1, 2.5, \"word\", [1, 2], [[3, 4]]]\n"
+      "[[parameter]]\nkey = \"x.y\"\ndistribution = \"triangular\"\nfrom = 1\nto = 3\nmode = 2\n"
+      "[[quantity]]\nkind = \"rre\"\nincidence_deg = {from = 0, to = 60, count = 8}\nazimuth_deg = [0, 90]\n"
+      "[[quantity]]\nkind = \"photometry\"\nname = \"p\"\nstandard = \"r150\"\narea_cm2 = 30\npoints = 3\n"
+      "[optimize]\nmaximize = {rre = 1, \"p.1\" = -0.5}\nfront = {rre = \"most\", \"p.1\" = \"least\"}\n"
+      "[[constraint]]\nquantity = \"rre\"\nmin = 0.5\n"
+      "[machining]\nstrategy = \"unidirectional\"\n");
+}
+
+/// A design that is written is the design that was read, whatever was given and whatever holds by default.
+TEST(StudyFormat, DesignsAreWrittenAsTheyAre) {
+  for (const std::string folder : {"examples", "examples/fronts"})
+    for (const auto& file : files_in(folder)) {
+      SCOPED_TRACE(file);
+      const Design design = read_design(file);
+      const Design back = parse_design(design_text(design), file.string());
+      EXPECT_EQ(to_json(document_of(back)), to_json(document_of(design)));
+    }
+}
+
+TEST(StudyFormat, AVariedDesignIsAnOverriddenOne) {
+  const std::string file = kRoot + "/examples/rtp_brick_1mm.toml";
+  const std::vector<std::string> overrides = {override_text("element.base_mm", 0.1),
+                                              override_text("title", "it's \"x\"")};
+  EXPECT_EQ(to_json(document_of(with(read_design(file), overrides))),
+            to_json(document_of(read_design(file, overrides))));
+  EXPECT_THROW(with(read_design(file), std::vector<std::string>{"element.apex_angle_deg=20"}), InputError);
+}
+
+/// What stands in the documentation between the marks of a table.
+std::string documented(const std::string& table) {
+  const std::string text = read_file(kRoot + "/docs/study_file.md");
+  const std::string mark = "<!-- keys of " + table + " -->\n";
+  const std::size_t at = text.find(mark);
+  if (at == std::string::npos) return "no mark of " + table;
+  const std::size_t first = at + mark.size();
+  return text.substr(first, text.find("<!-- end of keys -->", first) - first);
+}
+
+TEST(StudyFormat, DocumentationSaysWhatTheRowsSay) {
+  for (const Table& table : study_format().root.tables)
+    EXPECT_EQ(documented(std::string(table.name)), key_table(table)) << table.name;
+}
+
+}  // namespace
+}  // namespace retrace::studies::study_format_test
