@@ -9,6 +9,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/schema/json_schema.h"
+#include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/planing/io/part_files.h"
@@ -22,13 +23,10 @@ namespace {
 
 /// The formats of files that have a schema, by name.
 std::vector<const schema::Format*> formats() {
-  return {&studies::design_format(),
-          &fabrication::machine_format(),
-          &materials::materials_format(),
-          &fabrication::planed_part_format(),
-          &fabrication::process_format(),
-          &studies::study_format(),
-          &fabrication::turning::turned_part_format()};
+  return {&studies::design_format(),          &fabrication::job_format(),
+          &fabrication::machine_format(),     &materials::materials_format(),
+          &fabrication::planed_part_format(), &fabrication::process_format(),
+          &studies::study_format(),           &fabrication::turning::turned_part_format()};
 }
 
 struct SchemaOptions {

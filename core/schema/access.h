@@ -48,6 +48,18 @@ void set_member(void* object, const Value& value) {
 template <auto member>
 inline constexpr Access access = {get_member<member>, set_member<member>};
 
+/// The same of a member of the alternative that a member of the object has, a variant.
+template <auto variant, auto member>
+inline constexpr Access access_in = {
+    [](const void* object) {
+      const auto& value = static_cast<const typename MemberTypes<decltype(variant)>::Object*>(object)->*variant;
+      return get_member<member>(&std::get<typename MemberTypes<decltype(member)>::Object>(value));
+    },
+    [](void* object, const Value& given) {
+      auto& value = static_cast<typename MemberTypes<decltype(variant)>::Object*>(object)->*variant;
+      set_member<member>(&std::get<typename MemberTypes<decltype(member)>::Object>(value), given);
+    }};
+
 template <auto get>
 Value get_by(const void* object) {
   return get(*static_cast<const typename FirstOf<decltype(get)>::Type*>(object));

@@ -56,12 +56,11 @@ std::vector<TomlTable> entries(const Table& table, TomlTable& around) {
 /// Takes in the names of a table and of those in it.
 class Names {
  public:
-  /// \param has_id the document's root has the key that names its format
-  Names(Document& document, bool has_id) : document_(document), has_id_(has_id) {}
+  explicit Names(Document& document) : document_(document) {}
 
   void take(const Table& table, TomlTable source, const std::string& path) {
     for (const std::string& name : source.names()) {
-      if (has_id_ && path.empty() && name == kId) continue;
+      if (path.empty() && name == kId) continue;
       const auto inner = std::ranges::find(table.tables, name, &Table::name);
       if (inner != table.tables.end()) {
         take_table(*inner, source, path_in(path, name));
@@ -70,7 +69,7 @@ class Names {
         if (source.shape_of(name) == Shape::text) word = *source.text(name);
         document_.set(path_in(path, name), std::move(word), source.where(name), source.is_overridden(name));
       } else {
-        source.fail(name, unknown_name(table, name, source.shape_of(name) == Shape::table, has_id_ && path.empty()));
+        source.fail(name, unknown_name(table, name, source.shape_of(name) == Shape::table, path.empty()));
       }
     }
   }
@@ -94,7 +93,6 @@ class Names {
   }
 
   Document& document_;
-  bool has_id_;
 };
 
 // Values.
@@ -342,13 +340,6 @@ class Values {
   Document& document_;
 };
 
-Document read_values(const Table& table, const TomlTable& source, bool has_id, std::filesystem::path folder = {}) {
-  Document document(table, source.where(), std::move(folder));
-  Names(document, has_id).take(table, source, "");
-  Values(document).read(table, source, "");
-  return document;
-}
-
 // Objects.
 
 void check_rule(const Check& rule, const Document& document, const std::string& path, const void* object) {
@@ -365,23 +356,6 @@ Value as_index(const Kind& kind, Value value) {
   const std::string* const text = std::get_if<std::string>(&value);
   if (word == nullptr || text == nullptr) return value;
   return static_cast<double>(std::ranges::find(word->words, *text) - word->words.begin());
-}
-
-void fill(const Document& document, const Table& table, const std::string& path, void* object) {
-  for (const Row& row : table.rows) {
-    const std::string key = path_in(path, row.key);
-    if (document.row(key) != &row) continue;
-    Value value = document.value(key);
-    if (value.index() != 0) row.access.set(object, as_index(row.kind, std::move(value)));
-  }
-  for (const Table& inner : table.tables) {
-    const std::string inner_path = path_in(path, inner.name);
-    for (std::size_t i = 0; i < document.count(inner_path); ++i)
-      fill(document, inner, inner.presence == Presence::list ? path_of_entry(inner_path, i) : inner_path,
-           inner.child.add(object));
-  }
-  for (const Rule& rule : table.rules)
-    if (const Check* const check = std::get_if<Check>(&rule)) check_rule(*check, document, path, object);
 }
 
 void add_keys(const Table& table, const std::string& path, std::vector<std::string>& keys) {
@@ -408,7 +382,9 @@ TomlTable checked_root(const Format& format, TomlTable root) {
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
                        std::size_t most_bytes, std::span<const std::string> overrides) {
   const TomlTable root = checked_root(format, parse_toml(text, source_name, most_bytes, overrides));
-  Document document = read_values(format.root, root, true, std::filesystem::path(source_name).parent_path());
+  Document document(format.root, root.where(), std::filesystem::path(source_name).parent_path());
+  Names(document).take(format.root, root, "");
+  Values(document).read(format.root, root, "");
   document.set_origin({std::string(text), {overrides.begin(), overrides.end()}});
   return document;
 }
@@ -419,26 +395,42 @@ Document with(const Format& format, const Document& document, std::span<const st
   return read_document(format, document.origin().text, document.source(), kMostTextBytes, all);
 }
 
-void fill_object(const Document& document, std::string_view table, void* object) {
-  fill(document, *table_at(document.table(), table), std::string(table), object);
-}
-
 Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
                          std::size_t most_bytes, std::span<const std::string> overrides) {
   Document document(format.root, {source_name, 0, ""}, std::filesystem::path(source_name).parent_path());
   try {
-    Names(document, true).take(format.root, parse_toml(text, source_name, most_bytes, overrides), "");
+    Names(document).take(format.root, parse_toml(text, source_name, most_bytes, overrides), "");
   } catch (const Error&) {  // told by whoever reads it as a document
   }
   return document;
 }
 
-void read_object(const Format& format, std::string_view text, const std::string& source_name, void* object) {
-  fill(read_document(format, text, source_name), format.root, "", object);
+void fill(const Document& document, const Table& table, const std::string& path, void* object) {
+  for (const Row& row : table.rows) {
+    const std::string key = path_in(path, row.key);
+    if (document.row(key) != &row) continue;
+    Value value = document.value(key);
+    if (value.index() == 0) continue;
+    try {
+      row.access.set(object, as_index(row.kind, std::move(value)));
+    } catch (const InputError& error) {
+      document.fail(key, error.what());
+    }
+  }
+  for (const Table& inner : table.tables) {
+    const std::string inner_path = path_in(path, inner.name);
+    for (std::size_t i = 0; i < document.count(inner_path); ++i)
+      fill(document, inner, inner.presence == Presence::list ? path_of_entry(inner_path, i) : inner_path,
+           inner.child.add(object));
+  }
+  for (const Rule& rule : table.rules)
+    if (const Check* const check = std::get_if<Check>(&rule)) check_rule(*check, document, path, object);
 }
 
-void read_table(const Table& table, const TomlTable& source, void* object) {
-  fill(read_values(table, source, false), table, "", object);
+Document read_object(const Format& format, std::string_view text, const std::string& source_name, void* object) {
+  Document document = read_document(format, text, source_name);
+  fill(document, format.root, "", object);
+  return document;
 }
 
 std::vector<std::string> keys_of(const Format& format) {

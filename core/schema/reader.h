@@ -22,9 +22,6 @@ Document read_document(const Format& format, std::string_view text, const std::s
 /// A document that was read, with further overrides, so that all that is checked holds of it too. \throw InputError
 Document with(const Format& format, const Document& document, std::span<const std::string> overrides);
 
-/// Fills an object, whose type is that of the table's access, from a table of a document. \throw InputError likewise
-void fill_object(const Document& document, std::string_view table, void* object);
-
 /// What can be read of a text that may be no document of the format: its names and texts up to what is wrong,
 /// unchecked. It knows the files that it names.
 Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
@@ -32,10 +29,10 @@ Document unchecked_names(const Format& format, std::string_view text, const std:
 
 /// Reads a document into an object, which is that of the format's root.
 /// \throw InputError likewise, and where values that are allowed each by itself do not fit together
-void read_object(const Format& format, std::string_view text, const std::string& source_name, void* object);
+Document read_object(const Format& format, std::string_view text, const std::string& source_name, void* object);
 
-/// The same of a table of a larger document.
-void read_table(const Table& table, const TomlTable& source, void* object);
+/// Fills the object of a table at `path` of a document. \throw InputError where its values do not fit together
+void fill(const Document& document, const Table& table, const std::string& path, void* object);
 
 /// The paths of all keys that a value can be given for; a list of tables is one.
 std::vector<std::string> keys_of(const Format& format);

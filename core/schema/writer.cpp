@@ -67,7 +67,18 @@ class Writer {
     std::string text;
     for (const std::string& key : keys(table, path)) text += key + "\n";
     for (const Table& inner : table.tables)
-      if (inner.layout == Layout::headed) text += inner_tables(inner, path_in(path, inner.name));
+      if (inner.layout == Layout::headed) text += tables(inner, path_in(path, inner.name));
+    return text;
+  }
+
+  /// With their heads.
+  std::string tables(const Table& inner, const std::string& path) const {
+    const bool is_list = inner.presence == Presence::list;
+    std::string text;
+    for (std::size_t i = 0; i < document_.count(path); ++i) {
+      text += is_list ? fmt::format("\n[[{}]]\n", path) : fmt::format("\n[{}]\n", path);
+      text += table(inner, is_list ? path_of_entry(path, i) : path);
+    }
     return text;
   }
 
@@ -93,16 +104,6 @@ class Writer {
     for (std::size_t i = 0; i < document_.count(path); ++i)
       text += fmt::format("  {},\n", braces(path_of_entry(path, i)));
     return text + "]";
-  }
-
-  std::string inner_tables(const Table& inner, const std::string& path) const {
-    const bool is_list = inner.presence == Presence::list;
-    std::string text;
-    for (std::size_t i = 0; i < document_.count(path); ++i) {
-      text += is_list ? fmt::format("\n[[{}]]\n", path) : fmt::format("\n[{}]\n", path);
-      text += table(inner, is_list ? path_of_entry(path, i) : path);
-    }
-    return text;
   }
 
   const Document& document_;
@@ -140,12 +141,6 @@ void add_values(Document& document, const Table& table, const std::string& path,
       add_values(document, inner, at, inner.child.at(object, i));
     }
   }
-}
-
-Document document_of(const Table& table, const void* object) {
-  Document document(table);
-  add_values(document, table, "", object);
-  return document;
 }
 
 }  // namespace
@@ -201,15 +196,18 @@ std::string document_text(const Format& format, const Document& document) {
 }
 
 Document document_of(const Format& format, const void* object) {
-  return document_of(format.root, object);
+  Document document(format.root);
+  add_values(document, format.root, "", object);
+  return document;
 }
 
 std::string object_text(const Format& format, const void* object) {
   return document_text(format, document_of(format, object));
 }
 
-std::string table_text(const Table& table, const void* object) {
-  return fmt::format("\n[{}]\n", table.name) + Writer(document_of(table, object)).table(table, "");
+std::string table_text(const Format& format, std::string_view name, const void* object) {
+  const Document document = document_of(format, object);
+  return Writer(document).tables(*std::ranges::find(format.root.tables, name, &Table::name), std::string(name));
 }
 
 }  // namespace retrace::schema

@@ -55,36 +55,35 @@ double nose_strip_mm(const Tool& tool) {
   return 1e-3 * tool.edge_radius_um * (std::sin(rad(45.0)) / std::sin(rad(0.5 * tool.nose_angle_deg)) - 1.0);
 }
 
-void check_v_tool(const geometry::Element& element, const Tool& tool, const VToolPlaces& at) {
+void check_v_tool(const geometry::Element& element, const Tool& tool, const Refuse& refuse) {
   if (tool.nose_angle_deg >= 90.0)
-    throw InputError(at.nose_angle, fmt::format("must be < 90, the angle between the dihedral edges of a facet, for "
-                                                "the tool to reach the apex, got {}",
-                                                shortest(tool.nose_angle_deg)));
+    refuse("tool.nose_angle_deg", fmt::format("must be < 90, the angle between the dihedral edges of a facet, for "
+                                              "the tool to reach the apex, got {}",
+                                              shortest(tool.nose_angle_deg)));
   const VToolEdges edges = v_tool_edges(tool);
   for (const Vec3& edge : {edges.leading, edges.trailing, edges.spine})
     if (edge.minCoeff() < 0.0)
-      throw InputError(at.wedge, fmt::format("is too wide: with nose_angle_deg and clearance_deg the tool runs into a "
-                                             "neighbouring facet at the apex, got {}",
-                                             shortest(tool.wedge_deg)));
+      refuse("tool.wedge_deg", fmt::format("is too wide: with nose_angle_deg and clearance_deg the tool runs into a "
+                                           "neighbouring facet at the apex, got {}",
+                                           shortest(tool.wedge_deg)));
   if (covered_deg(edges) < 90.0)
-    throw InputError(at.wedge,
-                     fmt::format("is too narrow: with nose_angle_deg and clearance_deg the cuts of two facets "
-                                 "leave a fin along their edge, got {}",
-                                 shortest(tool.wedge_deg)));
+    refuse("tool.wedge_deg", fmt::format("is too narrow: with nose_angle_deg and clearance_deg the cuts of two facets "
+                                         "leave a fin along their edge, got {}",
+                                         shortest(tool.wedge_deg)));
   constexpr double kMostRadiusShare = 0.1;
   const double edge_mm = cavity_edge_mm(element);
   const double aperture_mm = geometry::bounding_box(geometry::element_cell(element).outline).upper.x() * 2.0;
   if (1e-3 * tool.edge_radius_um > kMostRadiusShare * aperture_mm)
-    throw InputError(at.radius,
-                     fmt::format("must be <= {}, a tenth of the element's aperture: the element is smaller than the "
-                                 "tool's nose, got {}",
-                                 shortest(1e3 * kMostRadiusShare * aperture_mm), shortest(tool.edge_radius_um)));
+    refuse("tool.edge_radius_um",
+           fmt::format("must be <= {}, a tenth of the element's aperture: the element is smaller than the "
+                       "tool's nose, got {}",
+                       shortest(1e3 * kMostRadiusShare * aperture_mm), shortest(tool.edge_radius_um)));
   // The ends of the cutting edges must come out of the blank while the tip stands in the apex.
   const double least_mm = std::numbers::sqrt2 * edge_mm * std::tan(rad(0.5 * tool.nose_angle_deg));
   if (tool.width_mm < least_mm)
-    throw InputError(at.width, fmt::format("must be >= {} for the cutting edges to reach from the apex to the blank's "
-                                           "face, got {}",
-                                           fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(tool.width_mm)));
+    refuse("tool.width_mm", fmt::format("must be >= {} for the cutting edges to reach from the apex to the blank's "
+                                        "face, got {}",
+                                        fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(tool.width_mm)));
 }
 
 }  // namespace retrace::fabrication

@@ -2,7 +2,10 @@
 
 #include <array>
 
-#include "core/error.h"
+#include <functional>
+#include <string>
+#include <string_view>
+
 #include "fabrication/job/job.h"
 #include "geometry/vec.h"
 
@@ -27,17 +30,11 @@ double cavity_depth_mm(const geometry::Element& element);
 /// Width that a nose of the tool's radius leaves uncut on either facet along a dihedral edge.
 double nose_strip_mm(const Tool& tool);
 
-/// Where the values of a tool were given.
-struct VToolPlaces {
-  InputLocation width;
-  InputLocation nose_angle;
-  InputLocation wedge;
-  InputLocation radius;
-};
+/// Throws an InputError that says what is wrong with a key of a job, such as "tool.width_mm".
+using Refuse = std::function<void(std::string_view key, const std::string& text)>;
 
 /// That the tool reaches the apex of a cube corner, and every place of its facets.
 /// \param element as it is cut into the blank \pre it is a cube corner
-/// \throw InputError at the value that is wrong
-void check_v_tool(const geometry::Element& element, const Tool& tool, const VToolPlaces& at);
+void check_v_tool(const geometry::Element& element, const Tool& tool, const Refuse& refuse);
 
 }  // namespace retrace::fabrication

@@ -1,5 +1,6 @@
 #include "studies/design/design_format.h"
 
+#include "geometry/io/base_rows.h"
 #include "studies/design/design_rows.h"
 
 namespace retrace::studies {
@@ -44,7 +45,7 @@ const Table kTables[] = {
      .when = kWithElements},
     {.name = "base",
      .meaning = "What the elements of a finite array stand on, in place of z = 0.",
-     .rows = base_rows(),
+     .rows = geometry::base_rows(),
      .presence = Presence::optional,
      .when = kWithPlanes},
     {.name = "part",

@@ -15,6 +15,7 @@
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "core/schema/reader.h"
+#include "geometry/io/base_rows.h"
 #include "geometry/lattice.h"
 #include "studies/design/ball_reader.h"
 #include "studies/design/base_reader.h"
@@ -263,7 +264,8 @@ void Design::require_plane_front(const std::string& what) const {
 
 void Design::require_no_base(const std::string& what) const {
   if (elements() && part().base)
-    throw InputError(where(base_shape_key(*part().base)), what + " takes no [base], only elements on a plane");
+    throw InputError(where(geometry::base_shape_key(*part().base)),
+                     what + " takes no [base], only elements on a plane");
 }
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {

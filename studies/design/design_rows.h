@@ -11,7 +11,6 @@ namespace retrace::studies {
 
 std::span<const schema::Row> element_rows();
 std::span<const schema::Row> array_rows();
-std::span<const schema::Row> base_rows();
 std::span<const schema::Row> part_rows();
 std::span<const schema::Row> front_rows();
 std::span<const schema::Row> body_rows();

@@ -25,13 +25,6 @@ constexpr Words kFinite = {"finite"};
 constexpr Words kInfinite = {"infinite"};
 constexpr Words kRowParities = {"even", "odd"};
 constexpr Words kPartialElements = {"cut", "omit"};
-constexpr Words kBaseKinds = {"plane", "cylinder", "sphere", "formula"};
-constexpr Words kPlane = {"plane"};
-constexpr Words kCylinder = {"cylinder"};
-constexpr Words kRound = {"cylinder", "sphere"};
-constexpr Words kFormula = {"formula"};
-constexpr Words kStandings = {"normal", "parallel"};
-constexpr Words kParallel = {"parallel"};
 constexpr Words kSides = {"top", "bottom"};
 
 constexpr Condition kElementOfNoBall = is_not(kKind, kBall, "not allowed for kind = \"ball\", which has diameter_mm");
@@ -119,32 +112,6 @@ constexpr Row kArrayRows[] = {
      "Pixels with grey < threshold * 255 are elements (0.7: 178 and below).", kThresholdOnly},
     {"gap_mm", Number{kGap}, 0.0, "Between neighbouring balls.", kBallGapOnly}};
 
-constexpr Condition kPlaneOnly[] = {is("kind", kPlane)};
-constexpr Condition kCylinderOnly[] = {is("kind", kCylinder)};
-constexpr Condition kRoundOnly[] = {is("kind", kRound)};
-constexpr Condition kFormulaOnly[] = {is("kind", kFormula)};
-constexpr Condition kOfPins[] = {is(kArrangement, kPins)};
-constexpr Condition kOfNoPins[] = {is_not(kArrangement, kPins)};
-
-constexpr Row kBaseRows[] = {
-    {"kind", Word{kBaseKinds}, kRequired, "The shape."},
-    {"incline_deg", Number{{.low = 0.0, .high = 60.0}}, kRequired, "By how much it rises.", kPlaneOnly},
-    {"azimuth_deg", Number{kAzimuth}, 0.0, "Towards where it rises, from +x towards +y.", kPlaneOnly},
-    {"radius_mm", Number{{.low = -1e9, .high = 1e9}}, kRequired,
-     "Not 0; > 0 bulges towards the light, < 0 is hollow; the middle of the part is its highest or lowest place.",
-     kRoundOnly},
-    {"axis", Word{kAxes}, "y", "Along which it does not bend.", kCylinderOnly},
-    {"sag_mm", Text{"a formula of x and y in mm, such as \"-(x^2 + y^2) / 200\""}, kRequired,
-     "The height in mm, towards the light, as a formula of `x` and `y` in mm from the middle of the part: numbers, "
-     "`pi`, `+ - * / ^`, brackets, `sqrt exp log sin cos tan asin acos atan atan2 sinh cosh tanh abs`; at most 2000 "
-     "characters.",
-     kFormulaOnly},
-    {"elements", Word{kParallel}, "parallel", "Pins share one axis.", kOfPins},
-    {"elements", Word{kStandings}, "normal",
-     "`\"normal\"`: each element stands along the base's normal at its middle, and sizes and gaps are arc lengths; "
-     "`\"parallel\"`: all stay upright and only move along z, and sizes and gaps are those in plan.",
-     kOfNoPins}};
-
 constexpr std::string_view kBesidePlate = "not allowed beside plate_mm";
 constexpr Condition kMeshOnly[] = {without("plate_mm", kBesidePlate)};
 constexpr Condition kWithMesh[] = {without("plate_mm", kBesidePlate), beside("mesh")};
@@ -186,9 +153,6 @@ std::span<const Row> element_rows() {
 }
 std::span<const Row> array_rows() {
   return kArrayRows;
-}
-std::span<const Row> base_rows() {
-  return kBaseRows;
 }
 std::span<const Row> part_rows() {
   return kPartRows;

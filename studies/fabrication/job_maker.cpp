@@ -165,7 +165,8 @@ fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
   const InputLocation at{"", 0, "--tool-width-mm"};
   if (job.strategy == fabrication::Strategy::dmc) {
     tool.wedge_deg = fabrication::kDmcWedgeDeg;
-    fabrication::check_v_tool(fabrication::blank_element(job), tool, {at, at, at, at});
+    fabrication::check_v_tool(fabrication::blank_element(job), tool,
+                              [&](std::string_view, const std::string& text) { throw InputError(at, text); });
     return tool;
   }
   const double element_width_mm = fabrication::blank_prism(job).width_mm;

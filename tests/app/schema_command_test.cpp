@@ -16,6 +16,7 @@ TEST(SchemaCommand, ListsTheFormats) {
   EXPECT_EQ(outcome.out,
             "name         schema                 title\n"
             "design       retrace.design/1       Design of a retroreflector array\n"
+            "job          retrace.job/1          Fabrication job\n"
             "machine      retrace.machine/1      Machine with five axes\n"
             "materials    retrace.materials/1    Materials and metals\n"
             "planed_part  retrace.planed_part/1  Flat lens of zones, planed or turned\n"
@@ -23,7 +24,7 @@ TEST(SchemaCommand, ListsTheFormats) {
             "turned_part  retrace.turned_part/1  Freeform surface, turned\n");
   const Json json = retrace_json(folder, {"schema"});
   EXPECT_EQ(json["schema"], "retrace.formats/1");
-  EXPECT_EQ(json["formats"][1],
+  EXPECT_EQ(json["formats"][2],
             (Json{{"name", "machine"}, {"schema", "retrace.machine/1"}, {"title", "Machine with five axes"}}));
 }
 
@@ -42,8 +43,9 @@ TEST(SchemaCommand, RefusesAnUnknownFormat) {
   const TemporaryFolder folder;
   const Outcome outcome = retrace(folder, {"schema", "procces"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err,
-            "retrace: schema: must be design, machine, materials, planed_part, process, turned_part, got procces\n");
+  EXPECT_EQ(
+      outcome.err,
+      "retrace: schema: must be design, job, machine, materials, planed_part, process, turned_part, got procces\n");
 }
 
 /// One line for each TOML file: its name, and whether the schema accepts it.
@@ -81,6 +83,11 @@ std::vector<std::string> files_in(const std::string& name) {
 
 TEST(SchemaCommand, AValidatorAcceptsWhatIsShipped) {
   const TemporaryFolder folder;
+  std::vector<std::string> jobs;
+  for (const auto& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "tests/fabrication/golden"))
+    if (entry.is_directory()) jobs.push_back((entry.path() / "job.toml").string());
+  EXPECT_GE(jobs.size(), 10U);
+  for (const std::string& line : judged(folder, "job", jobs)) EXPECT_EQ(line, "job.toml accepted");
   for (const auto& [format, name, least] :
        {std::tuple{"machine", "data/machines", 4U}, std::tuple{"process", "data/processes", 4U},
         std::tuple{"materials", "data", 1U}, std::tuple{"design", "examples", 15U},
@@ -186,6 +193,20 @@ TEST(SchemaCommand, AValidatorRefusesWrongProcesses) {
                   {"finishing_cuts = 2", "finishing_cut = 2"},
                   {"dwell_s = 0.1", "dwell_s = 61"},
                   {"dwell_s = 0.1", "shortest_plough = 1"}});
+}
+
+TEST(SchemaCommand, AValidatorRefusesWrongJobs) {
+  expect_refused("job", "tests/fabrication/golden/offset_two_step_thesis/job.toml",
+                 {{"strategy = \"two-step\"", "strategy = \"dmc\""},
+                  {"arrangement = \"offset\"", "arrangement = \"honeycomb\""},
+                  {"arrangement = \"offset\"", "arrangement = \"single\""},
+                  {"x_length_mm", "x_length"},
+                  {"[array]", "apex_angle_deg = 121\n[array]"},
+                  {"[process]", "nose_angle_deg = 50\n[process]"},
+                  {"[tool]", "[base]\nkind = \"sphere\"\n[tool]"},
+                  {"[process]", "[[tool.edge_chips]]\nwidth_um = 1\n[process]"},
+                  {"dwell_s", "dwel_s"},
+                  {"[tool]", "[workpiece]\nkind = \"optic\"\n[tool]"}});
 }
 
 TEST(SchemaCommand, AValidatorRefusesWrongPlanedParts) {

@@ -513,7 +513,7 @@ TEST(ChiselingJobs, WhatIsWrongIsRefusedWithFileLineAndKey) {
   const std::string good = job_text(cube_job(true));
   const WrongJob cases[] = {
       {"strategy = \"dmc\"", "strategy = \"two-step\"",
-       "strategy: must be \"dmc\" for element.kind = \"hexagonal_icc\", got \"two-step\""},
+       "element.kind: must be \"rtp\" for strategy = \"two-step\", got \"hexagonal_icc\""},
       {"kind = \"mould\"", "kind = \"direct\"", "workpiece.kind: must be \"mould\" for cube corners"},
       {"nose_angle_deg = 50", "nose_angle_deg = 95",
        "tool.nose_angle_deg: must be < 90, the angle between the dihedral edges of a facet"},
@@ -523,7 +523,8 @@ TEST(ChiselingJobs, WhatIsWrongIsRefusedWithFileLineAndKey) {
       {"aperture_mm = 0.3", "aperture_mm = -1", "element.aperture_mm: must be"},
       {"aperture_mm = 0.3", "aperture_mm = 9", "array.x_length_mm: with y_length_mm must hold one whole element"},
       {"arrangement = \"honeycomb\"", "arrangement = \"offset\"", "array.arrangement: must be"},
-      {"x_offset_mm = 0", "x_offset_mm = 0\nx_gap_mm = 0.1", "array.x_gap_mm: unknown key"},
+      {"x_offset_mm = 0", "x_offset_mm = 0\nx_gap_mm = 0.1",
+       "array.x_gap_mm: only allowed for kind = \"rtp\", got 0.1"},
       {"\"--\",", "\"-\",", "array.pattern: must have 2 cells in every row"},
   };
   for (const WrongJob& wrong : cases) {

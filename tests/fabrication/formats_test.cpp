@@ -1,4 +1,5 @@
 #include "core/schema/key_table.h"
+#include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/planing/io/part_files.h"
@@ -161,6 +162,10 @@ TEST(ProcessFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
             "p.toml:11: dwel_s: unknown key, did you mean \"dwell_s\"? (allowed: schema, n");
 }
 
+RC_GTEST_PROP(JobFile, DocumentsReadBackTheSame, ()) {
+  documents_test::expect_random_document_to_read_back(job_format());
+}
+
 RC_GTEST_PROP(PlanedPartFile, DocumentsReadBackTheSame, ()) {
   documents_test::expect_random_document_to_read_back(planed_part_format());
 }
@@ -171,7 +176,7 @@ RC_GTEST_PROP(TurnedPartFile, DocumentsReadBackTheSame, ()) {
 
 TEST(FormatsInTheDocumentation, AreWhatTheRowsSay) {
   EXPECT_EQ(documents_test::documented("machine_file.md", "machine"), schema::key_tables(machine_format()));
-  EXPECT_EQ(documents_test::documented("job_file.md", "process"), schema::key_tables(process_format()));
+  EXPECT_EQ(documents_test::documented("job_file.md", "job"), schema::key_tables(job_format()));
   EXPECT_EQ(documents_test::documented("planing_file.md", "planed_part"), schema::key_tables(planed_part_format()));
   EXPECT_EQ(documents_test::documented("turning_file.md", "turned_part"),
             schema::key_tables(turning::turned_part_format()));

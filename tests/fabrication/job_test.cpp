@@ -166,15 +166,16 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
       {"\nwidth_mm = 0.451\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 2",
        "\nwidth_mm = 0.1\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 9",
        "tool.side_clearance_deg: must be < 8.911, or the diamond ends in a point within its element, got 9"},
-      {"side_clearance_deg = 2\n", "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 226\nwidth_um = 2\n",
-       "tool.edge_chips.position_um: must be >= -224.5 and <= 224.5, got 226"},
+      {"side_clearance_deg = 2\n",
+       "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 226\nwidth_um = 2\ndepth_um = 1\n",
+       "tool.edge_chips[1].position_um: must be >= -224.5 and <= 224.5, got 226"},
       {"side_clearance_deg = 2\n",
        "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 1\nwidth_um = 2\ndepth_um = 1.1\n",
-       "tool.edge_chips.depth_um: must be > 0 and <= 1, got 1.1"},
+       "tool.edge_chips[1].depth_um: must be > 0 and <= 1, got 1.1"},
       {"side_clearance_deg = 2\n",
        "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 1\nwidth_um = 2\ndepth_um = 1\n"
        "[[tool.edge_chips]]\nposition_um = 2\nwidth_um = 2\ndepth_um = 1\n",
-       "tool.edge_chips.position_um: must keep clear of the other chips, got 2"},
+       "tool.edge_chips[2].position_um: must keep clear of the other chips, got 2"},
       {"side_clearance_deg = 2\n", "side_clearance_deg = 2\nedge_chips = 3\n", "tool.edge_chips: must be"},
       {"\nclearance_deg = 3", "\nclearance_deg = 1", "tool.clearance_deg: must be >= 2 and <= 15, got 1"},
       {"strategy = \"two-step\"", "strategy = \"two-steps\"", "strategy: must be"},
@@ -251,7 +252,7 @@ TEST(JobFile, BasesThatCannotBeAreRefused) {
   expect(good, "kind = \"cone\"\n", ".kind: must be");
   expect(good, "kind = \"plane\"\n", ".incline_deg: ");
   expect(good, "kind = \"plane\"\nincline_deg = 61\n", ".incline_deg: must be >= 0 and <= 60, got 61");
-  expect(good, plane + "radius_mm = 3\n", ".radius_mm: unknown key");
+  expect(good, plane + "radius_mm = 3\n", ".radius_mm: only allowed for kind = \"cylinder\" or \"sphere\", got 3");
   expect(good, plane + "elements = \"upright\"\n", ".elements: must be");
   expect(good, "kind = \"sphere\"\nradius_mm = 0\n", ".radius_mm: must not be 0");
   expect(good, "kind = \"cylinder\"\nradius_mm = 0.3\n", ".radius_mm: ");

@@ -2,385 +2,379 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
 
 #include "core/angle.h"
 #include "core/atomic_file.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/schema/access.h"
+#include "core/schema/conditions.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
-#include "core/toml_file.h"
+#include "fabrication/job/base_cells.h"
 #include "fabrication/job/cube_cells.h"
-#include "fabrication/job/io/base_keys.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/v_tool.h"
+#include "geometry/base_part.h"
+#include "geometry/io/base_rows.h"
 
 namespace retrace::fabrication {
 namespace fs = std::filesystem;
 namespace {
 
+using namespace schema;
 using geometry::Arrangement;
-using geometry::RowParity;
+using geometry::RtpElement;
 
-constexpr std::string_view kSchema = "retrace.job/1";
-/// Arrangements of an element in the order of their words.
-struct ArrangementWords {
-  std::vector<std::string_view> words;
-  std::vector<Arrangement> arrangements;
-};
-const ArrangementWords kPrismArrangements = {
-    {"single", "aligned", "offset", "checker"},
-    {Arrangement::single, Arrangement::aligned, Arrangement::offset, Arrangement::checker}};
-const ArrangementWords kHexagonalArrangements = {{"single", "honeycomb"},
-                                                 {Arrangement::single, Arrangement::honeycomb}};
-const ArrangementWords kTriangularArrangements = {{"single", "triangular"},
-                                                  {Arrangement::single, Arrangement::triangular}};
-constexpr std::array<std::string_view, 2> kRowWords = {"even", "odd"};
-/// In the order of the alternatives of geometry::Element.
-constexpr std::array<std::string_view, 3> kElementWords = {"rtp", "hexagonal_icc", "triangular_icc"};
+constexpr Words kArrangements = {"single", "aligned", "offset", "checker"};
+constexpr Words kHexagonalArrangements = {"single", "honeycomb"};
+constexpr Words kTriangularArrangements = {"single", "triangular"};
+constexpr Words kRowParities = {"even", "odd"};
+constexpr Words kElements = {"rtp", "hexagonal_icc", "triangular_icc"};
 
 /// From a tenth of a micrometre to ten metres, in which nanometres still are whole numbers of 64 bits.
-constexpr NumberRange kSize{.low = 1e-4, .high = 1e4};
-constexpr NumberRange kGap{.low = 0.0, .high = 1e4};
-constexpr NumberRange kApexAngle{.low = 60.0, .high = 120.0};
-constexpr NumberRange kOverlap{.low = 0.0, .high = 100.0, .high_included = false};
-constexpr NumberRange kShrinkage{.low = 0.0, .high = 10.0};
-constexpr NumberRange kToolWidth{.low = 0.1, .high = 2.0};
-constexpr NumberRange kDmcToolWidth{.low = 0.01, .high = 10.0};
-constexpr NumberRange kNoseAngle{.low = 10.0, .high = 120.0};
-constexpr NumberRange kWedge{.low = 10.0, .high = 80.0};
-constexpr NumberRange kToolClearance{.low = 2.0, .high = 15.0};
-constexpr NumberRange kEdgeRadius{.low = 0.0, .high = 50.0};
-constexpr NumberRange kSideClearance{.low = 0.0, .low_included = false, .high = 20.0};
+constexpr Kind kSize = Number{{.low = 1e-4, .high = 1e4}};
+constexpr Kind kGap = Number{{.low = 0.0, .high = 1e4}};
+constexpr Kind kWedge = Number{{.low = 10.0, .high = 80.0}};
 /// Keeps the memory of a plan within reason: about 1 KiB an element.
 constexpr double kMostElements = 2e6;
 /// A tool this much wider than the element fits it all the same.
 constexpr double kFitToleranceMm = 1e-6;
-constexpr NumberRange kChipWidth{.low = 0.01, .high = 100.0};
 constexpr std::size_t kMostChips = 100;
 /// The chip needs this much between the rake face and the other facet (assumed: half of what wedge 50 and clearance 15
 /// leave of a right angle).
 constexpr double kChipRoomDeg = 12.5;
 
-template <std::size_t size>
-std::span<const std::string_view> words(const std::array<std::string_view, size>& all) {
-  return all;
+// Values as files have them.
+
+Value get_prism(const Job&) {
+  return 0.0;
+}
+void set_prism(Job& job, const Value&) {
+  job.element = RtpElement();
+}
+Value get_cube(const Job& job) {
+  return std::holds_alternative<geometry::HexagonalCube>(job.element) ? 0.0 : 1.0;
+}
+void set_cube(Job& job, const Value& value) {
+  job.element = std::get<double>(value) == 0.0 ? geometry::Element(geometry::HexagonalCube())
+                                               : geometry::Element(geometry::TriangularCube());
 }
 
-Workpiece read_workpiece(TomlTable table) {
-  Workpiece workpiece;
-  if (const auto kind = table.choice("kind", kWorkpieceWords)) workpiece.kind = static_cast<WorkpieceKind>(*kind);
-  workpiece.shrinkage_percent = table.number("shrinkage_percent", kShrinkage).value_or(0.0);
-  return workpiece;
+Value get_aperture(const Job& job) {
+  const auto* const hexagon = std::get_if<geometry::HexagonalCube>(&job.element);
+  return hexagon != nullptr ? hexagon->aperture_mm : std::get<geometry::TriangularCube>(job.element).aperture_mm;
 }
+void set_aperture(Job& job, const Value& value) {
+  auto* const hexagon = std::get_if<geometry::HexagonalCube>(&job.element);
+  double& aperture_mm =
+      hexagon != nullptr ? hexagon->aperture_mm : std::get<geometry::TriangularCube>(job.element).aperture_mm;
+  aperture_mm = std::get<double>(value);
+}
+
+Value get_tiled(const Array& array) {
+  return array.arrangement == Arrangement::single ? 0.0 : 1.0;
+}
+template <Arrangement tiled>
+void set_tiled(Array& array, const Value& value) {
+  array.arrangement = std::get<double>(value) == 0.0 ? Arrangement::single : tiled;
+}
+
+constexpr std::string_view kElementKind = "element.kind";
+constexpr Condition kOfPrisms[] = {is(kElementKind, only(kElements, "rtp"))};
+constexpr Condition kOfCubes[] = {is(kElementKind, only(kElements, "hexagonal_icc", "triangular_icc"))};
+constexpr Condition kOfHexagons[] = {is(kElementKind, only(kElements, "hexagonal_icc"))};
+constexpr Condition kOfTriangles[] = {is(kElementKind, only(kElements, "triangular_icc"))};
+constexpr Condition kOfArrays[] = {is_not("arrangement", only(kArrangements, "single"))};
+constexpr Condition kOfChisels[] = {is_not("strategy", only(kStrategyWords, "dmc"))};
+constexpr Condition kOfVTools[] = {is("strategy", only(kStrategyWords, "dmc"))};
+
+constexpr Row kJobRows[] = {
+    {"title", Text{}, kNone, "For people.", access<&Job::title>},
+    {"design", Text{}, kNone, "The file that the job was made from, for people.", access<&Job::design>},
+    {"notes", Texts{}, kNone, "For people.", access<&Job::notes>},
+    {"machine", Text{}, kRequired,
+     "`\"ideal\"`, `\"paper\"`, `\"thesis\"`, `\"ideal-dmc\"`, or a [machine file](machine_file.md) (a name with an "
+     "ending), taken from the folder of the job.",
+     access<&Job::machine>},
+    {"strategy", Word{kStrategyWords}, kRequired, "`\"dmc\"` of cube corners, on a machine whose head tilts.",
+     access<&Job::strategy>}};
+constexpr Row kWorkpieceRows[] = {
+    {"kind", Word{kWorkpieceWords}, "mould",
+     "`\"mould\"`: the material on the far side of the part's back, in the part's frame; `\"direct\"`: the optic "
+     "itself, turned by 180 degrees about y, so that the array is mirrored in x; prisms only.",
+     access<&Workpiece::kind>},
+    {"shrinkage_percent", Number{{.low = 0.0, .high = 10.0}}, 0.0,
+     "All sizes of the blank are those of the part times 1 + this / 100.", access<&Workpiece::shrinkage_percent>}};
+constexpr Row kElementRows[] = {
+    {"kind", Word{only(kElements, "rtp")}, kRequired, "Prisms.", access_by<get_prism, set_prism>, kOfChisels},
+    {"kind", Word{only(kElements, "hexagonal_icc", "triangular_icc")}, kRequired, "Cube corners.",
+     access_by<get_cube, set_cube>, kOfVTools},
+    {"base_mm", kSize, kRequired, "Across the roof edge, of the part.", access_in<&Job::element, &RtpElement::base_mm>,
+     kOfPrisms},
+    {"width_mm", kSize, kRequired, "Along the roof edge, of the part.", access_in<&Job::element, &RtpElement::width_mm>,
+     kOfPrisms},
+    {"apex_angle_deg", Number{{.low = 60.0, .high = 120.0}}, 90.0, "Included angle of the two facets.",
+     access_in<&Job::element, &RtpElement::apex_angle_deg>, kOfPrisms},
+    {"aperture_mm", kSize, kRequired, "Diameter of the circle round the aperture, of the part.",
+     access_by<get_aperture, set_aperture>, kOfCubes}};
+constexpr Row kArrayRows[] = {
+    {"arrangement", Word{kArrangements}, kRequired, "Of prisms, as in a [design](design_file.md).",
+     access<&Array::arrangement>, kOfPrisms},
+    {"arrangement", Word{kHexagonalArrangements}, kRequired, "Likewise.",
+     access_by<get_tiled, set_tiled<Arrangement::honeycomb>>, kOfHexagons},
+    {"arrangement", Word{kTriangularArrangements}, kRequired, "Likewise.",
+     access_by<get_tiled, set_tiled<Arrangement::triangular>>, kOfTriangles},
+    {"shifted_rows", Word{kRowParities}, "even", "As in a design.", access<&Array::shifted_rows>, kOfPrisms},
+    {"overlap_percent", Number{{.low = 0.0, .high = 100.0, .high_included = false}}, 50.0, "As in a design.",
+     access<&Array::overlap_percent>, kOfPrisms},
+    {"x_length_mm", kSize, kRequired, "Of the extent; none of `single`.", access<&Array::x_length_mm>, kOfArrays},
+    {"y_length_mm", kSize, kRequired, "Of the extent; none of `single`.", access<&Array::y_length_mm>, kOfArrays},
+    {"x_gap_mm", kGap, 0.0, "Flat land between elements.", access<&Array::x_gap_mm>, kOfPrisms},
+    {"y_gap_mm", kGap, 0.0, "Flat land between elements.", access<&Array::y_gap_mm>, kOfPrisms},
+    {"x_offset_mm", kGap, 0.0, "Margin on both borders.", access<&Array::x_offset_mm>},
+    {"y_offset_mm", kGap, 0.0, "Margin on both borders.", access<&Array::y_offset_mm>},
+    {"pattern", Texts{}, kNone,
+     "Which cells are cut: a text for each row, that of largest y first, `#` for a cell that is cut and `-` for one "
+     "that is not. Of a shifted row the last cell lies beyond the border and is never cut. Of cube corners a row has "
+     "the "
+     "cells of one y that lie wholly within the margins.",
+     access<&Array::pattern>, kOfArrays}};
+constexpr Row kChipRows[] = {
+    {"position_um", Number{}, kRequired, "Of its middle, from the edge's middle towards +X of the machine.",
+     access<&EdgeChip::position_um>},
+    {"width_um", Number{{.low = 0.01, .high = 100.0}}, kRequired, "Along the edge.", access<&EdgeChip::width_um>},
+    {"depth_um", Number{}, kRequired, "Above 0, to half the width.", access<&EdgeChip::depth_um>}};
+constexpr Row kToolRows[] = {
+    {"width_mm", Number{{.low = 0.1, .high = 2.0}}, kRequired, "Of a chisel's edge, at most the element's width.",
+     access<&Tool::width_mm>, kOfChisels},
+    {"width_mm", Number{{.low = 0.01, .high = 10.0}}, kRequired,
+     "Across the ends of the V's edges, at least what reaches from the apex to the blank's face.",
+     access<&Tool::width_mm>, kOfVTools},
+    {"wedge_deg", kWedge, 50.0,
+     "Of a chisel; with the clearance at most the apex angle less 12.5 degrees, so that chips can leave.",
+     access<&Tool::wedge_deg>, kOfChisels},
+    {"wedge_deg", kWedge, kDmcWedgeDeg,
+     "Behind either edge (65, with clearance 3 a rake of 22), neither so wide that a flank meets the next facet nor so "
+     "narrow that a fin stays on dihedral edges.",
+     access<&Tool::wedge_deg>, kOfVTools},
+    {"clearance_deg", Number{{.low = 2.0, .high = 15.0}}, 3.0, "Between clearance face and plunged facet, as mounted.",
+     access<&Tool::clearance_deg>},
+    {"edge_radius_um", Number{{.low = 0.0, .high = 50.0}}, 0.0,
+     "Of a chisel's edge; of a V's nose, at most a tenth of the aperture.", access<&Tool::edge_radius_um>},
+    {"nose_angle_deg", Number{{.low = 10.0, .high = 120.0}}, 50.0,
+     "Between the V's edges, below 90, the angle between the dihedral edges of a facet.", access<&Tool::nose_angle_deg>,
+     kOfVTools},
+    {"side_clearance_deg", Number{{.low = 0.0, .low_included = false, .high = 20.0}}, 2.0,
+     "Of a chisel's side walls, so little that the diamond is still there where it leaves the element.",
+     access<&Tool::side_clearance_deg>, kOfChisels}};
+constexpr Table kToolTables[] = {
+    {.name = "edge_chips",
+     .meaning = "Pieces that are broken out of a chisel's edge, at most 100, clear of each other. The diamond cuts as "
+                "if whole; the as-machined part has their scratches.",
+     .rows = kChipRows,
+     .child = children<&Tool::edge_chips>,
+     .presence = Presence::list,
+     .when = kOfChisels}};
+
+/// Keys of the job itself that stand in a table.
+constexpr Child kItself = {[](const void*) -> std::size_t { return 1; },
+                           [](const void* job, std::size_t) { return job; }, [](void* job) { return job; }};
+constexpr Child kBase = {
+    [](const void* job) -> std::size_t { return static_cast<const Job*>(job)->base ? 1 : 0; },
+    [](const void* job, std::size_t) -> const void* { return &*static_cast<const Job*>(job)->base; },
+    [](void* job) -> void* { return &static_cast<Job*>(job)->base.emplace(); }};
+
+const Table kJobTables[] = {
+    {.name = "workpiece",
+     .meaning = "What is cut.",
+     .rows = kWorkpieceRows,
+     .child = child<&Job::workpiece>,
+     .presence = Presence::implied},
+    {.name = "element", .meaning = "What one element is.", .rows = kElementRows, .child = kItself},
+    {.name = "array",
+     .meaning = "How elements are laid out, at most 2,000,000 of them.",
+     .rows = kArrayRows,
+     .child = child<&Job::array>},
+    {.name = "base",
+     .meaning = "What the elements stand on, in place of z = 0.",
+     .rows = geometry::base_rows().first(geometry::base_rows().size() - 1),
+     .child = kBase,
+     .presence = Presence::optional},
+    {.name = "tool", .meaning = "The diamond.", .rows = kToolRows, .tables = kToolTables, .child = child<&Job::tool>},
+    process_table("process", child<&Job::process>)};
+const Format kJobFormat = {"job",
+                           "retrace.job/1",
+                           "Fabrication job",
+                           {"", "What is cut, with which tool, on which machine and how.", kJobRows, kJobTables}};
+
+// What values must be together.
 
 bool is_prism(const Job& job) {
-  return std::holds_alternative<geometry::RtpElement>(job.element);
+  return std::holds_alternative<RtpElement>(job.element);
 }
 
-const ArrangementWords& arrangements_of(const geometry::Element& element) {
-  if (std::holds_alternative<geometry::RtpElement>(element)) return kPrismArrangements;
-  return std::holds_alternative<geometry::HexagonalCube>(element) ? kHexagonalArrangements : kTriangularArrangements;
-}
-
-geometry::Element read_element(TomlTable table) {
-  const std::size_t kind = table.required_choice("kind", words(kElementWords));
-  if (kind == 1) return geometry::HexagonalCube{table.required_number("aperture_mm", kSize), {}};
-  if (kind == 2) return geometry::TriangularCube{table.required_number("aperture_mm", kSize), {}};
-  geometry::RtpElement element;
-  element.base_mm = table.required_number("base_mm", kSize);
-  element.width_mm = table.required_number("width_mm", kSize);
-  element.apex_angle_deg = table.number("apex_angle_deg", kApexAngle).value_or(90.0);
-  return element;
-}
-
-Array read_array(TomlTable table, const geometry::Element& element) {
-  Array array;
-  const ArrangementWords& known = arrangements_of(element);
-  array.arrangement = known.arrangements[table.required_choice("arrangement", known.words)];
-  if (array.arrangement != Arrangement::single) {
-    array.x_length_mm = table.required_number("x_length_mm", kSize);
-    array.y_length_mm = table.required_number("y_length_mm", kSize);
-  }
-  if (std::holds_alternative<geometry::RtpElement>(element)) {
-    if (const auto rows = table.choice("shifted_rows", words(kRowWords)))
-      array.shifted_rows = *rows == 0 ? RowParity::even : RowParity::odd;
-    array.overlap_percent = table.number("overlap_percent", kOverlap).value_or(50.0);
-    array.x_gap_mm = table.number("x_gap_mm", kGap).value_or(0.0);
-    array.y_gap_mm = table.number("y_gap_mm", kGap).value_or(0.0);
-  }
-  array.x_offset_mm = table.number("x_offset_mm", kGap).value_or(0.0);
-  array.y_offset_mm = table.number("y_offset_mm", kGap).value_or(0.0);
-  array.pattern = table.texts("pattern").value_or(std::vector<std::string>{});
-  return array;
-}
-
-/// The chips of an edge, each with its own table.
-std::vector<EdgeChip> read_edge_chips(TomlTable& tool, double tool_width_mm) {
-  std::vector<EdgeChip> chips;
-  for (TomlTable table : tool.tables("edge_chips")) {
-    EdgeChip chip;
-    chip.width_um = table.required_number("width_um", kChipWidth);
-    const double reach_um = 0.5 * (1e3 * tool_width_mm - chip.width_um);
-    chip.position_um = table.required_number("position_um", {.low = -reach_um, .high = reach_um});
-    chip.depth_um = table.required_number("depth_um", {.low = 0.0, .low_included = false, .high = 0.5 * chip.width_um});
-    for (const EdgeChip& other : chips)
-      if (std::abs(other.position_um - chip.position_um) < 0.5 * (other.width_um + chip.width_um) * (1.0 - 1e-9))
-        table.fail("position_um", "must keep clear of the other chips, got " + shortest(chip.position_um));
-    chips.push_back(chip);
-  }
+void check_chips(const Tool& tool, const Refuse& refuse) {
+  const auto& chips = tool.edge_chips;
   if (chips.size() > kMostChips)
-    tool.fail("edge_chips", fmt::format("must be at most {}, got {}", kMostChips, chips.size()));
-  return chips;
-}
-
-Tool read_tool(TomlTable table, Strategy strategy) {
-  Tool tool;
-  const bool is_v = strategy == Strategy::dmc;
-  tool.width_mm = table.required_number("width_mm", is_v ? kDmcToolWidth : kToolWidth);
-  tool.wedge_deg = table.number("wedge_deg", kWedge).value_or(is_v ? kDmcWedgeDeg : tool.wedge_deg);
-  tool.clearance_deg = table.number("clearance_deg", kToolClearance).value_or(tool.clearance_deg);
-  tool.edge_radius_um = table.number("edge_radius_um", kEdgeRadius).value_or(tool.edge_radius_um);
-  if (is_v) {
-    tool.nose_angle_deg = table.number("nose_angle_deg", kNoseAngle).value_or(tool.nose_angle_deg);
-  } else {
-    tool.side_clearance_deg = table.number("side_clearance_deg", kSideClearance).value_or(tool.side_clearance_deg);
-    tool.edge_chips = read_edge_chips(table, tool.width_mm);
+    refuse("tool.edge_chips", fmt::format("must be at most {}, got {}", kMostChips, chips.size()));
+  for (std::size_t i = 0; i < chips.size(); ++i) {
+    const std::string path = path_of_entry("tool.edge_chips", i);
+    const auto check = [&](std::string_view key, double value, const NumberRange& range) {
+      if (!range.contains(value))
+        refuse(path_in(path, key), fmt::format("must be {}, got {}", range.text(), shortest(value)));
+    };
+    const auto& [position_um, width_um, depth_um] = chips[i];
+    const double reach_um = 0.5 * (1e3 * tool.width_mm - width_um);
+    check("position_um", position_um, {.low = -reach_um, .high = reach_um});
+    check("depth_um", depth_um, {.low = 0.0, .low_included = false, .high = 0.5 * width_um});
+    for (std::size_t k = 0; k < i; ++k)
+      if (std::abs(chips[k].position_um - position_um) < 0.5 * (chips[k].width_um + width_um) * (1.0 - 1e-9))
+        refuse(path_in(path, "position_um"), "must keep clear of the other chips, got " + shortest(position_um));
   }
-  return tool;
 }
 
-/// Where the values that belong together were given.
-struct Places {
-  InputLocation strategy;
-  InputLocation workpiece;
-  InputLocation element_width;
-  InputLocation tool_width;
-  InputLocation tool_wedge;
-  InputLocation tool_side;
-  InputLocation tool_nose;
-  InputLocation tool_radius;
-  InputLocation x_length;
-  InputLocation y_length;
-  InputLocation pattern;
-  InputLocation base;
-};
-
-void check_chisel(const Job& job, const Places& at) {
+void check_chisel(const Job& job, const Refuse& refuse) {
   const double width_mm = blank_prism(job).width_mm;
   if (job.tool.width_mm > width_mm + kFitToleranceMm)
-    throw InputError(at.tool_width, fmt::format("must be <= {}, the element's width, got {}", shortest(width_mm),
-                                                shortest(job.tool.width_mm)));
+    refuse("tool.width_mm",
+           fmt::format("must be <= {}, the element's width, got {}", shortest(width_mm), shortest(job.tool.width_mm)));
   const double apex_deg = prism_of(job).apex_angle_deg;
   const double taken_deg = job.tool.wedge_deg + job.tool.clearance_deg;
   if (taken_deg >= apex_deg)
-    throw InputError(at.tool_wedge,
-                     fmt::format("with clearance_deg must be < {}, the element's apex angle, for the tool "
-                                 "to fit the root, got {}",
-                                 shortest(apex_deg), shortest(taken_deg)));
+    refuse("tool.wedge_deg", fmt::format("with clearance_deg must be < {}, the element's apex angle, for the tool "
+                                         "to fit the root, got {}",
+                                         shortest(apex_deg), shortest(taken_deg)));
   if (apex_deg - taken_deg < kChipRoomDeg)
-    throw InputError(at.tool_wedge, fmt::format("with clearance_deg must be <= {} for chips to leave between rake face "
-                                                "and facet, got {}",
-                                                shortest(apex_deg - kChipRoomDeg), shortest(taken_deg)));
+    refuse("tool.wedge_deg", fmt::format("with clearance_deg must be <= {} for chips to leave between rake face "
+                                         "and facet, got {}",
+                                         shortest(apex_deg - kChipRoomDeg), shortest(taken_deg)));
   // The diamond narrows towards its shank and must still be there where it leaves the element.
   const double half_apex_rad = 0.5 * Angle::from_deg(apex_deg).rad();
   const double facet_mm = 0.5 * blank_prism(job).base_mm / std::sin(half_apex_rad);
   const double side_limit_deg = Angle::from_rad(std::atan(0.5 * job.tool.width_mm / facet_mm)).deg();
   if (job.tool.side_clearance_deg >= side_limit_deg)
-    throw InputError(at.tool_side,
-                     fmt::format("must be < {}, or the diamond ends in a point within its element, got {}",
-                                 fixed(side_limit_deg, 3), shortest(job.tool.side_clearance_deg)));
+    refuse("tool.side_clearance_deg",
+           fmt::format("must be < {}, or the diamond ends in a point within its element, got {}",
+                       fixed(side_limit_deg, 3), shortest(job.tool.side_clearance_deg)));
 }
 
-void check_row(const std::string& row, std::size_t k, std::int64_t columns, const Places& at) {
+void check_row(const std::string& row, std::size_t k, std::int64_t columns, const Refuse& refuse) {
   if (static_cast<std::int64_t>(row.size()) != columns)
-    throw InputError(at.pattern, fmt::format("must have {} cells in every row, as many as the array, got {} in row {}",
-                                             columns, row.size(), k));
+    refuse("array.pattern", fmt::format("must have {} cells in every row, as many as the array, got {} in row {}",
+                                        columns, row.size(), k));
   const std::size_t wrong = row.find_first_not_of("#-");
   if (wrong != std::string::npos)
-    throw InputError(at.pattern, fmt::format("must hold # and - only, got {} in row {}",
-                                             in_quotes(std::string_view(row).substr(wrong, 1)), k));
+    refuse("array.pattern", fmt::format("must hold # and - only, got {} in row {}",
+                                        in_quotes(std::string_view(row).substr(wrong, 1)), k));
 }
 
 /// \param lengths cells of each row, from that of least y
-void check_pattern(const Job& job, const std::vector<std::int64_t>& lengths, const Places& at) {
+void check_pattern(const Job& job, const std::vector<std::int64_t>& lengths, const Refuse& refuse) {
   const std::vector<std::string>& pattern = job.array.pattern;
   if (pattern.empty()) return;
   if (pattern.size() != lengths.size())
-    throw InputError(at.pattern,
-                     fmt::format("must have {} rows, as many as the array, got {}", lengths.size(), pattern.size()));
-  for (std::size_t k = 0; k < pattern.size(); ++k) check_row(pattern[k], k, lengths[lengths.size() - 1 - k], at);
-  if (cut_elements(job).empty()) throw InputError(at.pattern, "leaves no element to cut");
+    refuse("array.pattern",
+           fmt::format("must have {} rows, as many as the array, got {}", lengths.size(), pattern.size()));
+  for (std::size_t k = 0; k < pattern.size(); ++k) check_row(pattern[k], k, lengths[lengths.size() - 1 - k], refuse);
+  if (cut_elements(job).empty()) refuse("array.pattern", "leaves no element to cut");
 }
 
-void refuse_too_many(double elements, const Places& at) {
+void refuse_too_many(double elements, const Refuse& refuse) {
   if (elements > kMostElements)
-    throw InputError(at.x_length, fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed",
-                                              elements, kMostElements));
+    refuse("array.x_length_mm",
+           fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed", elements, kMostElements));
 }
 
-void check_prism_array(const Job& job, const Places& at) {
+void check_prism_array(const Job& job, const Refuse& refuse) {
   const geometry::RtpElement& prism = prism_of(job);
   const double columns = (job.array.x_length_mm + job.array.x_gap_mm) / (prism.base_mm + job.array.x_gap_mm);
   const double rows = (job.array.y_length_mm + job.array.y_gap_mm) / (prism.width_mm + job.array.y_gap_mm);
-  refuse_too_many(columns * rows, at);
+  refuse_too_many(columns * rows, refuse);
   const CellCounts counts = cell_counts(job.array, prism);
   if (counts.columns < 1)
-    throw InputError(at.x_length, "must hold one element between the margins, got " + shortest(job.array.x_length_mm));
+    refuse("array.x_length_mm", "must hold one element between the margins, got " + shortest(job.array.x_length_mm));
   if (counts.rows < 1)
-    throw InputError(at.y_length, "must hold one element between the margins, got " + shortest(job.array.y_length_mm));
+    refuse("array.y_length_mm", "must hold one element between the margins, got " + shortest(job.array.y_length_mm));
   if (job.array.arrangement == Arrangement::checker && std::abs(prism.base_mm - prism.width_mm) > 1e-9 * prism.base_mm)
-    throw InputError(at.element_width, fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
-                                                   shortest(prism.base_mm), shortest(prism.width_mm)));
+    refuse("element.width_mm", fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
+                                           shortest(prism.base_mm), shortest(prism.width_mm)));
   // Without a pattern the first unshifted row has elements.
-  check_pattern(job, std::vector<std::int64_t>(static_cast<std::size_t>(counts.rows), counts.columns), at);
+  check_pattern(job, std::vector<std::int64_t>(static_cast<std::size_t>(counts.rows), counts.columns), refuse);
 }
 
-void check_cube_array(const Job& job, const Places& at) {
-  refuse_too_many(cube_cell_estimate(job.array, job.element), at);
+void check_cube_array(const Job& job, const Refuse& refuse) {
+  refuse_too_many(cube_cell_estimate(job.array, job.element), refuse);
   const std::vector<std::int64_t> lengths = cube_row_lengths(job.array, job.element);
   if (lengths.empty())
-    throw InputError(at.x_length,
-                     fmt::format("with y_length_mm must hold one whole element round the middle, got {} and {}",
-                                 shortest(job.array.x_length_mm), shortest(job.array.y_length_mm)));
-  check_pattern(job, lengths, at);
+    refuse("array.x_length_mm",
+           fmt::format("with y_length_mm must hold one whole element round the middle, got {} and {}",
+                       shortest(job.array.x_length_mm), shortest(job.array.y_length_mm)));
+  check_pattern(job, lengths, refuse);
 }
 
-void check_array(const Job& job, const Places& at) {
-  if (job.array.arrangement == Arrangement::single) {
-    if (!job.array.pattern.empty()) throw InputError(at.pattern, "not allowed for arrangement = \"single\"");
-    return;
+void check_array(const Job& job, const Refuse& refuse) {
+  if (job.array.arrangement == Arrangement::single) return;
+  is_prism(job) ? check_prism_array(job, refuse) : check_cube_array(job, refuse);
+}
+
+/// Moulds of arrays without margins and patterns can stand on a base.
+void check_array_on_base(const Job& job, const Refuse& refuse) {
+  const std::string_view key = geometry::base_shape_key(*job.base);
+  const Array& array = job.array;
+  if (job.workpiece.kind == WorkpieceKind::direct)
+    refuse(key, "needs a mould: workpiece.kind must be \"mould\" where elements stand on a base, got \"direct\"");
+  if (array.arrangement == Arrangement::single) refuse(key, "not allowed for arrangement = \"single\"");
+  if (array.x_offset_mm != 0.0 || array.y_offset_mm != 0.0)
+    refuse(key, "not allowed together with array.x_offset_mm and y_offset_mm");
+  if (!array.pattern.empty()) refuse(key, "not allowed together with array.pattern");
+}
+
+/// That the base carries the elements, and that a tool comes out of their cuts.
+void check_base(const Job& job, const Refuse& refuse) {
+  try {
+    geometry::check_base(part_on_base(job));
+    const std::vector<CutElement> elements = cut_elements(job);
+    if (elements.empty()) throw InputError("must carry one whole element within the part, it carries none");
+    stock_mm(job, elements, job.process.clearance_mm);
+  } catch (const InputError& error) {
+    refuse(geometry::base_shape_key(*job.base), error.what());
   }
-  is_prism(job) ? check_prism_array(job, at) : check_cube_array(job, at);
 }
 
-/// Prisms are cut by a chisel, cube corners by a V.
-void check_strategy(const Job& job, const InputLocation& at_strategy, const InputLocation& at_workpiece) {
-  const bool is_dmc = job.strategy == Strategy::dmc;
-  const std::string_view kind = kElementWords[job.element.index()];
-  if (is_dmc && is_prism(job))
-    throw InputError(at_strategy,
-                     R"(must be "unidirectional", "bidirectional" or "two-step" for element.kind = "rtp", got "dmc")");
-  if (!is_dmc && !is_prism(job))
-    throw InputError(at_strategy, fmt::format("must be \"dmc\" for element.kind = {}, got {}", in_quotes(kind),
-                                              in_quotes(kStrategyWords[static_cast<std::size_t>(job.strategy)])));
-  if (is_dmc && job.workpiece.kind == WorkpieceKind::direct)
-    throw InputError(at_workpiece,
-                     "must be \"mould\" for cube corners, whose cavities are not their elements, got "
-                     "\"direct\"");
-}
-
-void check_together(const Job& job, const Places& at) {
-  check_strategy(job, at.strategy, at.workpiece);
-  if (job.base) check_array_on_base(job, at.base);
-  check_array(job, at);
+void check_together(const Job& job, const Refuse& refuse) {
+  if (job.machine.empty()) refuse("machine", "must name a machine or a file, got \"\"");
+  if (!is_prism(job) && job.workpiece.kind == WorkpieceKind::direct)
+    refuse("workpiece.kind",
+           "must be \"mould\" for cube corners, whose cavities are not their elements, got \"direct\"");
+  check_chips(job.tool, refuse);
+  if (job.base) check_array_on_base(job, refuse);
+  check_array(job, refuse);
   if (is_prism(job))
-    check_chisel(job, at);
+    check_chisel(job, refuse);
   else
-    check_v_tool(blank_element(job), job.tool, {at.tool_width, at.tool_nose, at.tool_wedge, at.tool_radius});
-  if (job.base) check_base_of(job, at.base);
-}
-
-std::string rows_text(const std::vector<std::string>& pattern) {
-  std::string text = "pattern = [\n";
-  for (const std::string& row : pattern) text += "  " + toml_text(row) + ",\n";
-  return text + "]\n";
-}
-
-class TextWriter {
- public:
-  void head(std::string_view name) { text_ += fmt::format("\n[{}]\n", name); }
-  void number(std::string_view key, double value) { text_ += fmt::format("{} = {}\n", key, shortest(value)); }
-  void text(std::string_view key, std::string_view value) { text_ += fmt::format("{} = {}\n", key, toml_text(value)); }
-  void raw(std::string_view line) { text_ += line; }
-  std::string take() { return std::move(text_); }
-
- private:
-  std::string text_;
-};
-
-void write_element(TextWriter& out, const geometry::Element& element) {
-  out.head("element");
-  out.text("kind", kElementWords[element.index()]);
-  if (const auto* const prism = std::get_if<geometry::RtpElement>(&element)) {
-    out.number("base_mm", prism->base_mm);
-    out.number("width_mm", prism->width_mm);
-    out.number("apex_angle_deg", prism->apex_angle_deg);
-  } else if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&element)) {
-    out.number("aperture_mm", hexagonal->aperture_mm);
-  } else {
-    out.number("aperture_mm", std::get<geometry::TriangularCube>(element).aperture_mm);
-  }
-}
-
-void write_array(TextWriter& out, const Array& array, const geometry::Element& element) {
-  const ArrangementWords& known = arrangements_of(element);
-  const bool is_of_prisms = std::holds_alternative<geometry::RtpElement>(element);
-  out.head("array");
-  const auto index =
-      std::find(known.arrangements.begin(), known.arrangements.end(), array.arrangement) - known.arrangements.begin();
-  out.text("arrangement", known.words[static_cast<std::size_t>(index)]);
-  if (is_of_prisms) {
-    out.text("shifted_rows", array.shifted_rows == RowParity::even ? "even" : "odd");
-    out.number("overlap_percent", array.overlap_percent);
-  }
-  if (array.arrangement != Arrangement::single) {
-    out.number("x_length_mm", array.x_length_mm);
-    out.number("y_length_mm", array.y_length_mm);
-  }
-  if (is_of_prisms) {
-    out.number("x_gap_mm", array.x_gap_mm);
-    out.number("y_gap_mm", array.y_gap_mm);
-  }
-  out.number("x_offset_mm", array.x_offset_mm);
-  out.number("y_offset_mm", array.y_offset_mm);
-  if (!array.pattern.empty()) out.raw(rows_text(array.pattern));
+    check_v_tool(blank_element(job), job.tool, refuse);
+  if (job.base) check_base(job, refuse);
 }
 
 }  // namespace
 
+const Format& job_format() {
+  return kJobFormat;
+}
+
 void check_job(const Job& job, const InputLocation& where) {
-  const auto at = [&](std::string key) { return InputLocation{where.file, where.line, std::move(key)}; };
-  check_together(
-      job, {at("strategy"), at("workpiece.kind"), at("element.width_mm"), at("tool.width_mm"), at("tool.wedge_deg"),
-            at("tool.side_clearance_deg"), at("tool.nose_angle_deg"), at("tool.edge_radius_um"),
-            at("array.x_length_mm"), at("array.y_length_mm"), at("array.pattern"), at("base")});
+  check_together(job, [&](std::string_view key, const std::string& text) {
+    throw InputError({where.file, where.line, std::string(key)}, text);
+  });
 }
 
 Job parse_job(std::string_view text, const std::string& source_name) {
-  TomlTable root = parse_toml(text, source_name);
-  const std::string schema = root.required_text("schema");
-  if (schema != kSchema) root.fail("schema", fmt::format("must be {}, got {}", in_quotes(kSchema), in_quotes(schema)));
   Job job;
+  const Document file = read_object(kJobFormat, text, source_name, &job);
   job.source = source_name;
-  job.title = root.text("title").value_or("");
-  job.design = root.text("design").value_or("");
-  job.notes = root.texts("notes").value_or(std::vector<std::string>{});
-  job.strategy = static_cast<Strategy>(root.required_choice("strategy", kStrategyWords));
-  job.machine = root.required_text("machine");
-  if (job.machine.empty()) root.fail("machine", "must name a machine or a file, got \"\"");
-  TomlTable element = root.required_table("element");
-  TomlTable array = root.required_table("array");
-  TomlTable tool = root.required_table("tool");
-  TomlTable process = root.required_table("process");
-  TomlTable workpiece = root.table("workpiece");
-  job.workpiece = read_workpiece(workpiece);
-  job.element = read_element(element);
-  check_strategy(job, root.where("strategy"), workpiece.where("kind"));
-  job.array = read_array(array, job.element);
-  InputLocation base_at;
-  if (root.has("base")) job.base = read_base(root.required_table("base"), base_at);
-  job.tool = read_tool(tool, job.strategy);
-  schema::read_table(process_format().root, process, &job.process);
-  root.finish();
-  check_together(job, {root.where("strategy"), workpiece.where("kind"), element.where("width_mm"),
-                       tool.where("width_mm"), tool.where("wedge_deg"), tool.where("side_clearance_deg"),
-                       tool.where("nose_angle_deg"), tool.where("edge_radius_um"), array.where("x_length_mm"),
-                       array.where("y_length_mm"), array.where("pattern"), base_at});
+  check_together(job, [&](std::string_view key, const std::string& complaint) { file.fail(key, complaint); });
   return job;
 }
 
@@ -393,44 +387,8 @@ Job read_job(const fs::path& file) {
 }
 
 std::string job_text(const Job& job) {
-  TextWriter out;
-  out.raw("# A fabrication job for retrace. Lengths in mm, angles in degrees; depths of cut in um.\n");
-  out.text("schema", kSchema);
-  if (!job.title.empty()) out.text("title", job.title);
-  if (!job.design.empty()) out.text("design", job.design);
-  if (!job.notes.empty()) {
-    out.raw("notes = [\n");
-    for (const std::string& note : job.notes) out.raw("  " + toml_text(note) + ",\n");
-    out.raw("]\n");
-  }
-  out.text("machine", job.machine);
-  out.text("strategy", kStrategyWords[static_cast<std::size_t>(job.strategy)]);
-  out.head("workpiece");
-  out.text("kind", kWorkpieceWords[static_cast<std::size_t>(job.workpiece.kind)]);
-  out.number("shrinkage_percent", job.workpiece.shrinkage_percent);
-  write_element(out, job.element);
-  write_array(out, job.array, job.element);
-  if (job.base) {
-    out.head("base");
-    out.raw(base_text(*job.base));
-  }
-  out.head("tool");
-  out.number("width_mm", job.tool.width_mm);
-  out.number("wedge_deg", job.tool.wedge_deg);
-  out.number("clearance_deg", job.tool.clearance_deg);
-  out.number("edge_radius_um", job.tool.edge_radius_um);
-  if (job.strategy == Strategy::dmc)
-    out.number("nose_angle_deg", job.tool.nose_angle_deg);
-  else
-    out.number("side_clearance_deg", job.tool.side_clearance_deg);
-  for (const EdgeChip& chip : job.tool.edge_chips) {
-    out.raw("\n[[tool.edge_chips]]\n");
-    out.number("position_um", chip.position_um);
-    out.number("width_um", chip.width_um);
-    out.number("depth_um", chip.depth_um);
-  }
-  out.raw(schema::table_text(process_table("process"), &job.process));
-  return out.take();
+  return "# A fabrication job for retrace. Lengths in mm, angles in degrees; depths of cut in um.\n" +
+         object_text(kJobFormat, &job);
 }
 
 }  // namespace retrace::fabrication

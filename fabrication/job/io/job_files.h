@@ -5,11 +5,15 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/schema/schema.h"
 #include "fabrication/job/job.h"
 
 namespace retrace::fabrication {
 
-/// Reads and checks a job file (schema retrace.job/1). A machine named by a file is taken from the folder of the job.
+/// The format of job files (retrace.job/1), whose object is a Job.
+const schema::Format& job_format();
+
+/// Reads and checks a job file. A machine named by a file is taken from the folder of the job.
 /// \throw InputError naming file, line, key, what was given and what is allowed, on one line
 Job read_job(const std::filesystem::path& file);
 

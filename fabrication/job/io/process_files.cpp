@@ -93,9 +93,10 @@ const schema::Format& process_format() {
   return kFormat;
 }
 
-schema::Table process_table(std::string_view name) {
+schema::Table process_table(std::string_view name, schema::Child child) {
   schema::Table table = kFormat.root;
   table.name = name;
+  table.child = child;
   return table;
 }
 

@@ -14,7 +14,7 @@ namespace retrace::fabrication {
 const schema::Format& process_format();
 
 /// The keys of a process as a table of another file, such as `[process]` of a job.
-schema::Table process_table(std::string_view name);
+schema::Table process_table(std::string_view name, schema::Child child);
 
 /// A process from the text of its file; `source_name` stands for the file in messages. \throw InputError
 Process parse_process(std::string_view text, const std::string& source_name);

@@ -43,7 +43,7 @@ AnalysisSettings analysis_of(const Document& document, std::uint32_t seed) {
 
 MachiningProcess machining_of(const Document& document) {
   MachiningProcess process;
-  schema::fill_object(document, "machining", &process);
+  schema::fill(document, *schema::table_at(study_format().root, "machining"), "machining", &process);
   return process;
 }
 
