@@ -13,17 +13,17 @@ namespace {
 
 using namespace schema;
 
-constexpr std::string_view kFormulas[] = {"constant", "power series", "sellmeier", "gas"};
-constexpr std::string_view kConstant[] = {"constant"};
-constexpr Condition kIsConstant[] = {is("formula", kConstant)};
-constexpr Condition kIsCurve[] = {is_not("formula", kConstant)};
+constexpr Words kFormulas = {"constant", "power series", "sellmeier", "gas"};
+constexpr Condition kIsConstant[] = {is("formula", only(kFormulas, "constant"))};
+constexpr Condition kIsCurve[] = {is_not("formula", only(kFormulas, "constant"))};
 
 constexpr Row kMaterialRows[] = {
     {"name", Text{}, kRequired, "What designs call it."},
     {"description", Text{}, kRequired, "For people."},
     {"formula", Word{kFormulas}, kRequired, "Of the refractive index over the vacuum wavelength in um."},
     {"coefficients", Terms{1}, kRequired, "The index.", kIsConstant},
-    {"coefficients", Terms{2}, kRequired, "Of the formula's terms, as the head of the shipped file tells.", kIsCurve},
+    {"coefficients", Terms{2}, kRequired, "Of the formula's terms, as the head of the shipped file tells.", Access(),
+     kIsCurve},
     {"relative_to_vacuum", Flag{}, false, "Whether indices are relative to vacuum; otherwise to air."},
     {"valid_nm", Numbers{2, {}}, kRequired, "Wavelengths from which and to which the formula holds."},
     {"absorption_per_mm", Number{{.low = 0.0}}, 0.0, "Napierian, for power."},
