@@ -1,10 +1,7 @@
 #pragma once
 
-#include <array>
 #include <compare>
 #include <cstddef>
-#include <filesystem>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,13 +14,6 @@
 #include "core/number_range.h"
 
 namespace retrace {
-
-/// A word that a key may have, and what it stands for.
-template <class Type>
-struct TomlChoice {
-  std::string_view word;
-  Type value;
-};
 
 /// An entry of a list, whatever it is.
 struct TomlItem {
@@ -39,7 +29,6 @@ struct TomlItem {
 /// line and key if what was given is not what is allowed; numbers are finite.
 class TomlTable {
  public:
-  bool exists() const;
   bool has(std::string_view key) const;
   /// Where the table begins; of one that is not there, where it would be missed.
   InputLocation where() const;
@@ -56,17 +45,13 @@ class TomlTable {
   /// A list of exactly `count` numbers. \param what they are, for messages
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const NumberRange& range = {},
                                              std::string_view what = "numbers");
-  std::vector<double> required_numbers(std::string_view key, std::size_t count, const NumberRange& range = {});
   /// A list of lists of exactly `columns` numbers.
   std::optional<std::vector<std::vector<double>>> number_rows(std::string_view key, std::size_t columns,
                                                               const NumberRange& range = {});
-  std::vector<std::vector<double>> required_number_rows(std::string_view key, std::size_t columns,
-                                                        const NumberRange& range = {});
   /// A number without fraction. \pre the range's ends are whole and within 2^53
   std::optional<long long> whole(std::string_view key, const NumberRange& range);
   std::optional<bool> flag(std::string_view key);
   std::optional<std::string> text(std::string_view key);
-  std::string required_text(std::string_view key);
   /// A list of one or more texts.
   std::optional<std::vector<std::string>> texts(std::string_view key);
   /// The index of the word in `words`. \param or_else what the key may have instead, for messages
@@ -74,19 +59,6 @@ class TomlTable {
                                     std::string_view or_else = {});
   std::size_t required_choice(std::string_view key, std::span<const std::string_view> words);
 
-  /// The index of the value whose word was given.
-  template <class Type>
-  std::optional<Type> choice(std::string_view key, std::span<const TomlChoice<Type>> choices) {
-    std::vector<std::string_view> words;
-    for (const TomlChoice<Type>& each : choices) words.push_back(each.word);
-    const auto index = choice(key, words);
-    return index ? std::optional<Type>(choices[*index].value) : std::nullopt;
-  }
-  /// The name of a file: relative ones are taken from the folder of the file that names it, those of an override from
-  /// the working directory.
-  std::optional<std::filesystem::path> file(std::string_view key);
-  /// Throws for each of `keys` that was given: it has no meaning here. `why` says where it has.
-  void refuse(std::initializer_list<std::string_view> keys, std::string_view why);
   /// The entries of a list of anything; nothing if the key was not given or has no list.
   std::optional<std::vector<TomlItem>> items(std::string_view key);
   /// The value of a key, with `{"value": ...}` around it, as JSON; empty if it was not given.
@@ -96,7 +68,6 @@ class TomlTable {
 
   /// The table of that name in this one, empty if there is none.
   TomlTable table(std::string_view key);
-  TomlTable required_table(std::string_view key);
   /// The tables `[[key]]`, in the order of the file; none if there are none. \param shape what they must be, for
   /// messages \param are_numbered messages tell them apart: "key[1]"
   std::vector<TomlTable> tables(std::string_view key, std::string_view shape = "tables", bool are_numbered = false);
@@ -134,12 +105,6 @@ class TomlTable {
 /// toml++ recurses once per level when it destroys a tree, and two bytes of `a.a.a...` make a level: 64 KiB of it run
 /// out of an 8 MiB stack. Longer texts may have few dots a line; files that people write have about one KiB.
 inline constexpr std::size_t kShortTomlBytes = 16384;
-
-/// All choices of a list.
-template <class Type, std::size_t size>
-std::span<const TomlChoice<Type>> all(const std::array<TomlChoice<Type>, size>& choices) {
-  return choices;
-}
 
 /// The text of a TOML file; `source_name` stands for the file in messages. Overrides are of the form KEY=VALUE and add
 /// or replace values; their text stands for the file in messages about them.

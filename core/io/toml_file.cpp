@@ -103,7 +103,6 @@ std::string shown_node(const toml::node& node) {
 /// A document: keeps the tree alive.
 struct TomlSource {
   std::string file;
-  std::filesystem::path folder;
   toml::table root;
   std::vector<toml::source_path_ptr> paths;  ///< of the file, then of the overrides
 
@@ -167,10 +166,6 @@ struct TomlTable::Hidden {
 };
 
 TomlTable::TomlTable(std::shared_ptr<Hidden> hidden) : hidden_(std::move(hidden)) {}
-
-bool TomlTable::exists() const {
-  return hidden_->table != nullptr;
-}
 
 bool TomlTable::has(std::string_view key) const {
   return hidden_->find(key) != nullptr;
@@ -246,12 +241,6 @@ std::optional<std::vector<double>> TomlTable::numbers(std::string_view key, std:
   return values;
 }
 
-std::vector<double> TomlTable::required_numbers(std::string_view key, std::size_t count, const NumberRange& range) {
-  auto values = numbers(key, count, range);
-  if (!values) fail(key, fmt::format("missing, must be a list of {} numbers", count));
-  return *std::move(values);
-}
-
 std::optional<std::vector<std::vector<double>>> TomlTable::number_rows(std::string_view key, std::size_t columns,
                                                                        const NumberRange& range) {
   const toml::node* const node = hidden_->take(key);
@@ -269,13 +258,6 @@ std::optional<std::vector<std::vector<double>>> TomlTable::number_rows(std::stri
     for (const toml::node& value : *row) rows.back().push_back(hidden_->checked(key, value, range));
   }
   return rows;
-}
-
-std::vector<std::vector<double>> TomlTable::required_number_rows(std::string_view key, std::size_t columns,
-                                                                 const NumberRange& range) {
-  auto rows = number_rows(key, columns, range);
-  if (!rows) fail(key, fmt::format("missing, must be a list of lists of {} numbers", columns));
-  return *std::move(rows);
 }
 
 std::optional<long long> TomlTable::whole(std::string_view key, const NumberRange& range) {
@@ -297,12 +279,6 @@ std::optional<std::string> TomlTable::text(std::string_view key) {
   if (node == nullptr) return std::nullopt;
   if (!node->is_string()) fail(key, "must be a string, got " + shown_node(*node));
   return node->as_string()->get();
-}
-
-std::string TomlTable::required_text(std::string_view key) {
-  auto value = text(key);
-  if (!value) fail(key, "missing, must be a string");
-  return *std::move(value);
 }
 
 std::optional<std::vector<std::string>> TomlTable::texts(std::string_view key) {
@@ -346,11 +322,6 @@ TomlTable TomlTable::table(std::string_view key) {
   return hidden_->child(node->as_table(), hidden_->full_name(key), hidden_->source->line(*node));
 }
 
-TomlTable TomlTable::required_table(std::string_view key) {
-  if (!has(key)) fail(key, "missing, must be a table");
-  return table(key);
-}
-
 std::vector<TomlTable> TomlTable::tables(std::string_view key, std::string_view shape, bool are_numbered) {
   const toml::node* const node = hidden_->take(key);
   if (node == nullptr) return {};
@@ -378,20 +349,6 @@ TomlTable::Shape TomlTable::shape_of(std::string_view key) const {
 
 std::string TomlTable::shown(std::string_view key) const {
   return shown_node(*hidden_->find(key));
-}
-
-std::optional<std::filesystem::path> TomlTable::file(std::string_view key) {
-  const std::optional<std::string> given = text(key);
-  if (!given) return std::nullopt;
-  // A byte 0 would end the name for the system alone.
-  if (given->empty() || given->find('\0') != std::string::npos)
-    fail(key, fmt::format("must name a file, got {}", in_quotes(*given)));
-  return is_overridden(key) ? std::filesystem::path(*given) : hidden_->source->folder / *given;
-}
-
-void TomlTable::refuse(std::initializer_list<std::string_view> keys, std::string_view why) {
-  for (const std::string_view key : keys)
-    if (const toml::node* const node = hidden_->take(key)) fail(key, fmt::format("{}, got {}", why, shown_node(*node)));
 }
 
 std::optional<std::vector<TomlItem>> TomlTable::items(std::string_view key) {
@@ -461,7 +418,6 @@ TomlTable parse_toml(std::string_view text, const std::string& source_name, std:
                      std::span<const std::string> overrides) {
   auto source = std::make_shared<TomlSource>();
   source->file = printable(source_name, std::string::npos);
-  source->folder = std::filesystem::path(source_name).parent_path();
   require_short_text(text, source->file, most_bytes);
   if (most_bytes > kShortTomlBytes) check_nesting(text, source->file);
   source->root = parse_file(text, source->file);

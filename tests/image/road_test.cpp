@@ -45,7 +45,7 @@ Design design() {
   Design d;
   d.part() = infinite(RtpElement{0.1, 0.1}, Arrangement::aligned, 0.5);
   d.part().angle_errors.dihedral_error_arcmin[0] = 10.0;
-  d.refractive_index = kPmma;
+  d.substance.refractive_index = kPmma;
   return d;
 }
 

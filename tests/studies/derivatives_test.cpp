@@ -240,9 +240,9 @@ TEST(RreDerivatives, ErrorEstimateCoversTheCutOff) {
   Design prism = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   Design prisms = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
   Design cubes = design_of(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7));
-  prism.absorption_per_mm = 0.01;
-  prisms.absorption_per_mm = 0.5;
-  cubes.absorption_per_mm = 3.0;
+  prism.substance.absorption_per_mm = 0.01;
+  prisms.substance.absorption_per_mm = 0.5;
+  cubes.substance.absorption_per_mm = 3.0;
   int given = 0;
   int covered = 0;
   for (const Design& design : {prism, prisms, cubes})

@@ -101,7 +101,7 @@ TEST(PhotometryVerdict, MeanFieldIsTheSmoothPatternTimesTheSpecularShares) {
   const PhotometryResult before = run(smooth, request);
   const double sq_nm = 15.0;
   const PhotometryResult after = run(rough(smooth, sq_nm), request);
-  const double phase = 4.0 * pi * kPmma * sq_nm * std::sqrt(1.0 / 3.0) / smooth.wavelength_nm;
+  const double phase = 4.0 * pi * kPmma * sq_nm * std::sqrt(1.0 / 3.0) / smooth.light.wavelength_nm();
   for (std::size_t k = 0; k < 2; ++k) {
     ASSERT_TRUE(after.points[k].is_lower_bound);
     EXPECT_NEAR(after.points[k].r_a / before.points[k].r_a, std::exp(-3.0 * phase * phase), 1e-6);

@@ -122,7 +122,7 @@ TEST(RreFiles, TableNamesDesignsAndConesOnlyWhereThereAreSeveral) {
   result.designs.resize(1);
   result.points.resize(1);
   EXPECT_EQ(rre_table(result).find("design"), std::string::npos);
-  result.designs[0].acceptance_half_angle_deg = {0.5, 1.0};
+  result.designs[0].detector.acceptance_half_angle_deg = {0.5, 1.0};
   EXPECT_NE(rre_table(result).find("acceptance_deg"), std::string::npos);
 }
 

@@ -5,13 +5,16 @@
 
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/atomic_file.h"
 #include "core/overloaded.h"
+#include "core/schema/json.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
+#include "core/toml_file.h"
 
 // Documents of any format, by its rows, and what the documentation says of them.
 
@@ -35,6 +38,17 @@ inline std::string word_of(std::span<const std::string_view> words) {
 }
 inline std::string some_text() {
   return *rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::inRange<char>(1, 127)));
+}
+
+inline Named some_named(const ByName& kind) {
+  std::vector<std::string> names(kind.names.begin(), kind.names.end());
+  if (names.empty()) names = {some_text(), "a.b"};
+  Named named;
+  for (const std::string& name : names)
+    std::visit(Overloaded{[&](const Number& each) { named[name] = number_in(each.range); },
+                          [&](const Word& each) { named[name] = word_of(each.words); }},
+               kind.each);
+  return named;
 }
 
 inline Value some_value(const Kind& kind) {
@@ -62,7 +76,12 @@ inline Value some_value(const Kind& kind) {
                    for (auto& pair : list) pair = {number_in(pairs.first), number_in(pairs.second)};
                    return Value(std::move(list));
                  },
-                 [](const Texts&) { return Value(std::vector<std::string>{some_text()}); }},
+                 [](const Texts&) { return Value(std::vector<std::string>{some_text()}); },
+                 [](const TextOrTexts&) { return Value(std::vector<std::string>(2, some_text())); },
+                 [](const Anything&) {
+                   return Value(std::vector<std::string>{"1.5", "[ 1, 2 ]", toml_text(some_text())});
+                 },
+                 [](const ByName& named) { return Value(some_named(named)); }},
       kind);
 }
 
@@ -117,6 +136,8 @@ inline void expect_random_document_to_read_back(const Format& format) {
     RC_DISCARD("a key that a later one rules out");
   }
   RC_ASSERT(document_text(format, document) == text);
+  const auto json = to_json(document);
+  RC_ASSERT(to_json(read_document(format, toml_of_json(format, json), "d.toml")) == json);
 }
 
 /// What stands in a page of docs/ between the marks of a table or format.

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 
 #include "core/atomic_file.h"
@@ -15,6 +14,7 @@
 #include "studies/design/design_document.h"
 #include "studies/design/design_format.h"
 #include "studies/design/design_reader.h"
+#include "tests/support/documents.h"
 
 namespace retrace::studies::study_format_test {
 namespace {
@@ -58,6 +58,10 @@ TEST(StudyFormat, EveryExampleReadsBackTheSame) {
   }
 }
 
+RC_GTEST_PROP(StudyFormat, DocumentsReadBackTheSame, ()) {
+  documents_test::expect_random_document_to_read_back(study_format());
+}
+
 /// Everything that a study can say.
 TEST(StudyFormat, EveryFormOfAValueReadsBackTheSame) {
   expect_round_trips(
@@ -92,19 +96,9 @@ TEST(StudyFormat, AVariedDesignIsAnOverriddenOne) {
   EXPECT_THROW(with(read_design(file), std::vector<std::string>{"element.apex_angle_deg=20"}), InputError);
 }
 
-/// What stands in the documentation between the marks of a table.
-std::string documented(const std::string& table) {
-  const std::string text = read_file(kRoot + "/docs/study_file.md");
-  const std::string mark = "<!-- keys of " + table + " -->\n";
-  const std::size_t at = text.find(mark);
-  if (at == std::string::npos) return "no mark of " + table;
-  const std::size_t first = at + mark.size();
-  return text.substr(first, text.find("<!-- end of keys -->", first) - first);
-}
-
 TEST(StudyFormat, DocumentationSaysWhatTheRowsSay) {
   for (const Table& table : study_format().root.tables)
-    EXPECT_EQ(documented(std::string(table.name)), key_table(table)) << table.name;
+    EXPECT_EQ(documents_test::documented("study_file.md", table.name), key_table(table)) << table.name;
 }
 
 }  // namespace
