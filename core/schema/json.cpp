@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/number_format.h"
 #include "core/overloaded.h"
 #include "core/toml_file.h"
 
@@ -14,7 +13,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// TOML texts as JSON.
+Json anything_json(const std::vector<std::string>& texts) {
+  Json json = Json::array();
+  for (const std::string& text : texts)
+    json.push_back(Json::parse(parse_toml("value = " + text, "").as_json("value"))["value"]);
+  return json;
+}
+
 Json value_json(const Kind& kind, const Value& value) {
+  if (std::holds_alternative<Anything>(kind)) return anything_json(std::get<std::vector<std::string>>(value));
   if (std::holds_alternative<Whole>(kind)) return static_cast<std::int64_t>(std::get<double>(value));
   return std::visit(Overloaded{[](std::monostate) { return Json(); },
                                [](const Named& named) {
@@ -44,7 +52,6 @@ Json table_json(const Document& document, const Table& table, const std::string&
 
 std::string toml_value(const Json& value) {
   if (value.is_string()) return toml_text(value.get<std::string>());
-  if (value.is_number_float()) return shortest(value.get<double>());
   if (!value.is_array() && !value.is_object()) return value.dump();
   std::string text;
   for (const auto& [key, item] : value.items())

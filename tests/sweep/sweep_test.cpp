@@ -249,19 +249,19 @@ TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
 }
 
 TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
-  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "study.toml:12: quantity[0].points: must be >= 1 and <= 3, got 4");
+  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "study.toml:12: quantity[1].points: must be >= 1 and <= 3, got 4");
   EXPECT_EQ(message("name = \"q\"\npoints = 1.5\n"),
-            "study.toml:12: quantity[0].points: must be a whole number, got 1.5");
-  EXPECT_TRUE(message("name = \"q\"\npoints = \"all\"\n").starts_with("study.toml:12: quantity[0].points: must be "));
-  EXPECT_TRUE(message("name = \"q\"\nfigure = \"R\"\n").starts_with("study.toml:12: quantity[0].figure: must be "));
-  EXPECT_TRUE(message("name = \"q\"\ncolour = \"green\"\n").starts_with("study.toml:12: quantity[0].colour: must be "))
+            "study.toml:12: quantity[1].points: must be a whole number, got 1.5");
+  EXPECT_TRUE(message("name = \"q\"\npoints = \"all\"\n").starts_with("study.toml:12: quantity[1].points: must be "));
+  EXPECT_TRUE(message("name = \"q\"\nfigure = \"R\"\n").starts_with("study.toml:12: quantity[1].figure: must be "));
+  EXPECT_TRUE(message("name = \"q\"\ncolour = \"green\"\n").starts_with("study.toml:12: quantity[1].colour: must be "))
       << message("name = \"q\"\ncolour = \"green\"\n");
-  EXPECT_TRUE(message("name = \"q\"\ndye = \"no.csv\"\n").starts_with("study.toml:12: quantity[0].dye: must be "))
+  EXPECT_TRUE(message("name = \"q\"\ndye = \"no.csv\"\n").starts_with("study.toml:12: quantity[1].dye: must be "))
       << message("name = \"q\"\ndye = \"no.csv\"\n");
   EXPECT_TRUE(
-      message("name = \"q\"\nwindow_deg = 0.1\n").starts_with("study.toml:12: quantity[0].window_deg: must be >= 0.2"));
+      message("name = \"q\"\nwindow_deg = 0.1\n").starts_with("study.toml:12: quantity[1].window_deg: must be >= 0.2"));
   EXPECT_TRUE(message("name = \"q\"\nwidth = 1\n")
-                  .starts_with("study.toml:12: quantity[0].width: unknown key (known: area_cm2, class, "));
+                  .starts_with("study.toml:12: quantity[1].width: unknown key (known: area_cm2, class, "));
 }
 
 /// What cutting leaves comes into the design; what the study says itself counts more.

@@ -264,10 +264,10 @@ TEST(Tolerance, WhatIsWrongIsSaidWithItsLine) {
   };
   EXPECT_EQ(
       message("values = [1, 2]", ""),
-      "study.toml:2: parameter[0]: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
+      "study.toml:2: parameter[1]: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
   EXPECT_EQ(
       message("from = 1\nto = 2", ""),
-      "study.toml:2: parameter[0]: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
+      "study.toml:2: parameter[1]: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
   const auto keys = [&](const std::string& text) { return message(kNormals[0], text); };
   EXPECT_EQ(keys("[tolerance]\nsamples = 1\n"), "study.toml:21: tolerance.samples: must be >= 2 and <= 1e+06, got 1");
   EXPECT_EQ(keys("[tolerance]\nsamples = 2.5\n"), "study.toml:21: tolerance.samples: must be a whole number, got 2.5");
@@ -277,13 +277,15 @@ TEST(Tolerance, WhatIsWrongIsSaidWithItsLine) {
             "study.toml:21: tolerance.confidence_percent: must be >= 50 and <= 99.99, got 100");
   EXPECT_EQ(keys("[tolerance]\nleast_yield_percent = 90\n"),
             "study.toml:21: tolerance.least_yield_percent: needs one or more tables [[constraint]]");
-  EXPECT_EQ(keys("[tolerance]\nsample = 3\n"),
-            "study.toml:21: tolerance.sample: unknown key, did you mean \"samples\"?");
+  EXPECT_EQ(
+      keys("[tolerance]\nsample = 3\n"),
+      "study.toml:21: tolerance.sample: unknown key, did you mean \"samples\"? (allowed: samples, sampling, indices, "
+      "confidence_percent, least_yield_percent)");
   EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"none\"\n"), "");
   EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"sobol\"\n"), "");
   EXPECT_EQ(
       keys("[[constraint]]\nquantity = \"g\"\nmax = 1\n"),
-      "study.toml:21: constraint[0].quantity: must be a quantity of the study (\"f\"), got \"g\"; did you mean \"f\"?");
+      "study.toml:21: constraint[1].quantity: must be a quantity of the study (\"f\"), got \"g\"; did you mean \"f\"?");
 }
 
 }  // namespace
