@@ -19,6 +19,7 @@
 #include "geometry/lattice.h"
 #include "studies/design/ball_reader.h"
 #include "studies/design/base_reader.h"
+#include "studies/design/design_document.h"
 #include "studies/design/design_format.h"
 #include "studies/design/part_reader.h"
 #include "studies/design/spectrum_reader.h"
@@ -274,6 +275,8 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
 }
 
 Design with(const Design& design, std::span<const std::string> overrides) {
+  const bool is_of_file = design.document && !design.document->origin().text.empty();
+  if (!is_of_file) return parse_design(design_text(design), design.source, overrides);
   Design changed =
       resolved(std::make_shared<const Document>(schema::with(design_format(), *design.document, overrides)));
   changed.source = design.source;

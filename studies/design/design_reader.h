@@ -20,7 +20,7 @@ Design read_design(const std::filesystem::path& file, std::span<const std::strin
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides = {});
 
 /// A design with some keys at other values: it is read again, so that all that is checked of designs holds of it.
-/// \pre it is from a file, and as that file says \param overrides as of read_design() \throw InputError likewise
+/// \pre if it is from a file, it is as that file says \param overrides as of read_design() \throw InputError likewise
 Design with(const Design& design, std::span<const std::string> overrides);
 
 /// The files that a design names, though it may be none: those that its keys name up to the first that is wrong.

@@ -63,8 +63,7 @@ TEST_F(BaseJob, AsMachinedReturnsWhatTheDesignDoes) {
   ASSERT_EQ(retrace(folder_, verify).code, 0);
   std::string part = folder_.read("part.toml");
   EXPECT_NE(part.find("[base]\nkind = \"cylinder\"\nradius_mm = 20\n"), std::string::npos) << part;
-  const std::size_t texture = part.find("# Sa ");
-  part.erase(texture, part.find("\n[detector]") - texture);
+  part = without_texture(part);
   folder_.write("smooth.toml", part);
   const auto rre = [&](const std::string& name) {
     return retrace_json(folder_, {"rre", name, "--engine", "exact", "--incidence=0,3", "--set",

@@ -41,10 +41,7 @@ class ChiselingCommand : public ::testing::Test {
   }
   /// The design without what the cuts' texture adds.
   void write_smooth(const std::string& from, const std::string& to) {
-    std::string text = folder_.read(from);
-    const std::size_t texture = text.find("# Sa ");
-    ASSERT_NE(texture, std::string::npos);
-    folder_.write(to, text.erase(texture, text.find("\n[detector]") - texture));
+    folder_.write(to, without_texture(folder_.read(from)));
   }
 
   TemporaryFolder folder_;

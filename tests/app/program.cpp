@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
@@ -179,6 +180,17 @@ std::vector<std::string> lines_of(const std::string& text) {
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
+}
+
+std::string without_texture(const std::string& design) {
+  std::string rest;
+  for (const std::string& line : lines_of(design)) {
+    const bool is_texture =
+        std::ranges::any_of(std::array{"model = ", "roughness_sq_nm", "correlation_length_um", "waviness_"},
+                            [&](const char* key) { return line.starts_with(key); });
+    if (!is_texture) rest += line + "\n";
+  }
+  return rest;
 }
 
 std::string without_elapsed(const std::string& json) {

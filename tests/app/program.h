@@ -89,6 +89,8 @@ Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std:
 std::string example(const std::string& name);
 std::string read_text(const std::filesystem::path& file);
 std::vector<std::string> lines_of(const std::string& text);
+/// The text of a design without the keys of its surfaces' texture.
+std::string without_texture(const std::string& design);
 
 /// A result without its line or member on elapsed time, the only thing that may differ from run to run.
 std::string without_elapsed(const std::string& json);

@@ -123,7 +123,8 @@ TEST_P(Completion, KnowsWhatMayStandForAValue) {
   EXPECT_EQ(completed("retrace rre --set body.t"), Arguments{"body.thickness_mm="});
   EXPECT_TRUE(offers("retrace rre --set ", "surface.root_radius_um="));
   EXPECT_EQ(completed("retrace list "), (Arguments{"machines", "materials", "processes", "standards"}));
-  EXPECT_EQ(completed("retrace --json list schema "), (Arguments{"design", "machine", "materials", "process"}))
+  EXPECT_EQ(completed("retrace --json list schema "),
+            (Arguments{"design", "job", "machine", "materials", "planed_part", "process", "study", "turned_part"}))
       << "list is a file here";
   EXPECT_EQ(completed("retrace report "), Arguments{"results"});
   EXPECT_EQ(completed("retrace rre a.toml -o "), Arguments{"results"});

@@ -21,6 +21,7 @@ TEST(SchemaCommand, ListsTheFormats) {
             "materials    retrace.materials/1    Materials and metals\n"
             "planed_part  retrace.planed_part/1  Flat lens of zones, planed or turned\n"
             "process      retrace.process/1      Process of a fabrication job\n"
+            "study        retrace.study/1        Study of a design\n"
             "turned_part  retrace.turned_part/1  Freeform surface, turned\n");
   const Json json = retrace_json(folder, {"schema"});
   EXPECT_EQ(json["schema"], "retrace.formats/1");
@@ -43,9 +44,9 @@ TEST(SchemaCommand, RefusesAnUnknownFormat) {
   const TemporaryFolder folder;
   const Outcome outcome = retrace(folder, {"schema", "procces"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(
-      outcome.err,
-      "retrace: schema: must be design, job, machine, materials, planed_part, process, turned_part, got procces\n");
+  EXPECT_EQ(outcome.err,
+            "retrace: schema: must be design, job, machine, materials, planed_part, process, study, turned_part, got "
+            "procces\n");
 }
 
 /// One line for each TOML file: its name, and whether the schema accepts it.
@@ -242,7 +243,7 @@ TEST(SchemaCommand, AValidatorRefusesWrongStudies) {
                   {"kind = \"rre\"", "kind = \"rre\"\nincidence_deg = [0, 90]"},
                   {"kind = \"rre\"", "kind = \"ledger\""},
                   {"[[quantity]]", "[sweep]\nsamples = 5\n[[quantity]]"},
-                  {"[[quantity]]", "[machining]\nstrategy = \"unidirectional\"\nfinishing_cuts = 1\n[[quantity]]"},
+                  {"[[quantity]]", "[tolerance]\nsamples = 1\n[[quantity]]"},
                   {"maximize", "minimize = \"rre\"\nmaximize"}});
 }
 

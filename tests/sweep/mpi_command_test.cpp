@@ -156,7 +156,7 @@ TEST_F(SweepByMpi, WhatIsWrongIsSaidOnce) {
   EXPECT_EQ(outcome.code, 2);
   const std::vector<std::string> lines = lines_of(outcome.err);
   const auto count = std::count_if(lines.begin(), lines.end(),
-                                   [](const std::string& line) { return line.starts_with("retrace: study.toml: "); });
+                                   [](const std::string& line) { return line.starts_with("retrace: study.toml:"); });
   EXPECT_EQ(count, 1) << outcome.err;
 }
 

@@ -228,8 +228,7 @@ TEST(Optimise, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_EQ(
       message("[optimize]\nmaximize = \"ff\"\n"),
       "study.toml:14: optimize.maximize: must be a quantity of the study (\"f\"), got \"ff\"; did you mean \"f\"?");
-  EXPECT_TRUE(
-      message("[optimize]\nscan = 5\n").starts_with("study.toml:13: optimize: either maximize or minimize"));
+  EXPECT_TRUE(message("[optimize]\nscan = 5\n").starts_with("study.toml:13: optimize: either maximize or minimize"));
   EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\nscan = 2\n").substr(0, 36), "study.toml:15: optimize.scan: must b");
   EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\n"),
             "study.toml:15: constraint[1].max: missing: a constraint has min, max or both");

@@ -261,7 +261,7 @@ TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
   EXPECT_TRUE(
       message("name = \"q\"\nwindow_deg = 0.1\n").starts_with("study.toml:12: quantity[1].window_deg: must be >= 0.2"));
   EXPECT_TRUE(message("name = \"q\"\nwidth = 1\n")
-                  .starts_with("study.toml:12: quantity[1].width: unknown key (known: area_cm2, class, "));
+                  .starts_with("study.toml:12: quantity[1].width: unknown key (allowed: kind, name, "));
 }
 
 /// What cutting leaves comes into the design; what the study says itself counts more.

@@ -98,10 +98,11 @@ constexpr std::string_view kPlaceKeys[] = {"positions_mm", "hexagonal_pitch_mm",
 constexpr Rule kPlaceRules[] = {
     OneOf{kPlaceKeys, "must have one of positions_mm, hexagonal_pitch_mm and square_pitch_mm"}};
 
-constexpr auto kLensletRows = []<std::size_t... sag, std::size_t... place>(std::index_sequence<sag...>,
-                                                                           std::index_sequence<place...>) {
+constexpr auto kLensletRows =
+    []<std::size_t... sag, std::size_t... place>(std::index_sequence<sag...>, std::index_sequence<place...>) {
   return std::array{kSagRows[sag]..., kPlacedRows[place]...};
-}(std::make_index_sequence<std::size(kSagRows)>{}, std::make_index_sequence<std::size(kPlacedRows)>{});
+}
+(std::make_index_sequence<std::size(kSagRows)>{}, std::make_index_sequence<std::size(kPlacedRows)>{});
 
 constexpr Condition kNoLeastSkew[] = {without("find_least_skew")};
 constexpr Row kToolRows[] = {

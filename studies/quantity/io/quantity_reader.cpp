@@ -130,8 +130,9 @@ Quantities read_photometric(const std::string& name, const Document& document, c
   const auto table = read_photometric_table(document, at, files);
   const std::size_t points = table->request.programme.points.size();
   if (const auto point = document.number_if(at + ".points")) {
-    if (*point > static_cast<double>(points))
-      document.fail(at + ".points", fmt::format("must be <= {}, got {}", points, shortest(*point)));
+    const NumberRange there{.low = 1.0, .high = static_cast<double>(points)};
+    if (!there.contains(*point))
+      document.fail(at + ".points", fmt::format("must be {}, got {}", there.text(), shortest(*point)));
     return {make_photometric(name, table, static_cast<std::size_t>(*point) - 1, figure)};
   }
   if (document.text(at + ".points") == "worst") return {make_photometric(name, table, {}, figure)};
