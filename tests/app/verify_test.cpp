@@ -181,7 +181,7 @@ TEST_F(VerifyCommand, TheAsMachinedPartIsTraced) {
   ASSERT_NE(at, std::string::npos);
   folder_.write("job.toml", job.replace(at, 17, "machine = \"paper\""));
   EXPECT_EQ(retrace(folder_, {"verify", "job.toml", file, "--as-machined", "wrong.toml", "--quiet"}).code, 1);
-  EXPECT_EQ(folder_.read("right.toml").find("facet"), std::string::npos) << "neither tilts nor planes";
+  EXPECT_EQ(folder_.read("right.toml").find("facet_tilt"), std::string::npos) << "left as designed";
   EXPECT_NE(folder_.read("wrong.toml").find("[part]\nfacets = \"wrong_facets.csv\""), std::string::npos);
   const auto normals = normals_of(folder_.read("wrong_facets.csv"));
   ASSERT_EQ(normals.size(), 8U);
