@@ -106,10 +106,10 @@ DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
   return {};
 }
 
-/// Full and partial elements; nothing if there is no room for one.
-std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design& design) {
+/// Full and partial elements of that size; nothing if there is no room for one, or no such design.
+std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design& design, double size_mm) {
   try {
-    const geometry::Part part = geometry::build_part(design.part());
+    const geometry::Part part = geometry::build_part(with(design, RreParameter::size_mm, size_mm).part());
     return std::pair{part.elements_full, part.elements_partial};
   } catch (const InputError&) {
     return std::nullopt;
@@ -120,8 +120,8 @@ std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design
 /// RRE jumps here.
 bool keep_elements(const Design& design, double size_mm, DifferenceRange& range) {
   constexpr int kHalvings = 10;
-  const auto here = count_elements(design);
-  const auto same_at = [&](double size) { return count_elements(with(design, RreParameter::size_mm, size)) == here; };
+  const auto here = count_elements(design, size_mm);
+  const auto same_at = [&](double size) { return count_elements(design, size) == here; };
   for (int k = 0; k <= kHalvings; ++k, range.first_step *= 0.5)
     if (same_at(size_mm - range.first_step) && same_at(size_mm + range.first_step)) return true;
   return false;
