@@ -28,11 +28,22 @@ std::vector<Argument> arguments(InitOptions& options) {
            &options.editor}};
 }
 
+/// A file as a URL (RFC 3986): other bytes than letters, digits and "/-._~" as %XX.
+std::string url_of(const std::filesystem::path& file) {
+  std::string url = "file://";
+  for (const char c : file.string()) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                          std::string_view("/-._~").find(c) != std::string_view::npos;
+    url += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return url;
+}
+
 /// What Taplo and editors that use it read, such as Even Better TOML.
 std::string schema_line(const std::string& kind) {
   const schema::Format& format =
       kind == "round_zone_lens" ? fabrication::planed_part_format() : studies::design_format();
-  return fmt::format("#:schema file://{}\n", schema_file(format.name).string());
+  return fmt::format("#:schema {}\n", url_of(schema_file(format.name)));
 }
 
 ExitCode run(const InitOptions& options, const CommonOptions& common) {

@@ -154,10 +154,13 @@ std::optional<std::vector<std::vector<double>>> number_rows(const NumberRows& ki
 
 std::vector<std::string> texts_of(const TextOrTexts& kind, std::string_view key, TomlTable& source) {
   if (source.shape_of(key) == Shape::text) return {*source.text(key)};
+  const auto items = source.items(key);
+  if (!items || items->empty()) source.fail(key, fmt::format("must be {}, got {}", kind.what, source.shown(key)));
   std::vector<std::string> texts;
-  for (const TomlItem& item : source.items(key).value_or(std::vector<TomlItem>()))
-    if (item.text) texts.push_back(*item.text);
-  if (texts.empty()) source.fail(key, fmt::format("must be {}, got {}", kind.what, source.shown(key)));
+  for (const TomlItem& item : *items) {
+    if (!item.text) source.fail(key, fmt::format("must be {}, got {} in it", kind.what, item.shown));
+    texts.push_back(*item.text);
+  }
   return texts;
 }
 

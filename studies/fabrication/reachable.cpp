@@ -8,7 +8,6 @@
 
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/version.h"
 #include "fabrication/job/cube_cells.h"
 #include "geometry/facet_planes.h"
 #include "geometry/lattice.h"
@@ -130,19 +129,15 @@ ReachablePart reachable_part(const Design& design, const JobRequest& request, co
 
 std::string reach_json(const ReachablePart& part, const JobRequest& request) {
   const fabrication::ChiselReach& r = part.reach;
-  const nlohmann::ordered_json json = {{"schema", "retrace.reach/1"},
-                                       {"elements", part.elements},
+  const nlohmann::ordered_json json = {{"elements", part.elements},
                                        {"strategy", request.strategy},
                                        {"tool_width_mm", request.tool_width_mm},
                                        {"facet_area_mm2", r.facet_area_mm2},
                                        {"reached_share", r.share},
                                        {"reached_share_cut", r.cut_share},
                                        {"core_mm", r.core_mm},
-                                       {"core_mm_cut", r.cut_core_mm},
-                                       {"version", kVersion},
-                                       {"warnings", nlohmann::ordered_json::array()},
-                                       {"complete", true}};
-  return to_text(json);
+                                       {"core_mm_cut", r.cut_core_mm}};
+  return result_text("retrace.reach/1", json, {});
 }
 
 std::string reach_table(const ReachablePart& part) {

@@ -15,7 +15,8 @@ namespace {
 
 /// The value of a key in a design, of a list its first; nothing for a key without one.
 std::optional<double> nominal_of(const std::string& key, const Design& design) {
-  if (design.document->is_list(key)) return design.document->numbers(key).front();
+  const schema::Value value = design.document->value(key);
+  if (const auto* const numbers = std::get_if<std::vector<double>>(&value)) return numbers->front();
   return design.document->number_if(key);
 }
 

@@ -111,11 +111,12 @@ namespace {
 /// The parameter of RRE that a parameter of a study is, and how much of it one unit is.
 std::optional<std::pair<RreParameter, double>> rre_parameter(const Parameter& parameter, const Design& design) {
   constexpr double deg_per_arcmin = 1.0 / 60.0;
-  const std::vector<RreParameter> all = parameters_of(design);
   const std::set<std::string> varied(parameter.keys.begin(), parameter.keys.end());
   // An error of the angle between the facets of a prism is one of its apex.
-  if (varied == std::set<std::string>{"surface.dihedral_error_arcmin"}) return {{all[1], deg_per_arcmin}};
-  for (const RreParameter each : all) {
+  const bool is_prism = std::holds_alternative<geometry::RtpElement>(design.part().element);
+  if (varied == std::set<std::string>{"surface.dihedral_error_arcmin"})
+    return {{is_prism ? RreParameter::apex_angle_deg : RreParameter::dihedral_error_deg, deg_per_arcmin}};
+  for (const RreParameter each : parameters_of(design)) {
     const std::vector<std::string> keys = keys_of(each, design);
     if (varied == std::set(keys.begin(), keys.end())) return {{each, 1.0}};
   }

@@ -215,6 +215,20 @@ TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByT
   EXPECT_EQ(single.why, "lens_thickness_mm = 7 breaks lens_thickness_mm <= 5");
 }
 
+TEST(Optimise, AKeyThatIsACurveHasNoBand) {
+  Study study = read_study(kFolder + "element_size.toml",
+                           std::vector<std::string>{"body.absorption_per_mm=[[400, 0], [700, 0]]"});
+  study.parameters[0].interval->from = 0.8;
+  OptimiseRequest request = read_optimise(study);
+  request.scan = 3;
+  request.bands_of = {"body.absorption_per_mm"};
+  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  const Optimum optimum = optimise(study, request, store, nullptr, nullptr);
+  ASSERT_EQ(optimum.bands.size(), 1U);
+  EXPECT_FALSE(optimum.bands[0].up.has_value());
+  EXPECT_FALSE(optimum.bands[0].down.has_value());
+}
+
 TEST(Optimise, WhatIsWrongIsSaidWithItsLine) {
   const auto message = [](const std::string& keys) -> std::string {
     try {

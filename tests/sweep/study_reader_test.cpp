@@ -142,6 +142,10 @@ TEST(StudyReader, WhatIsWrongIsSaidWithItsLine) {
        "study.toml:3: parameter[1].key: \"element.bas_mm\" is no key of a design, did you mean \"element.base_mm\"?"},
       {with_parameter("key = \"analysis.engin\"\nvalues = [1]\n"),
        "study.toml:3: parameter[1].key: \"analysis.engin\" is no key of a study, did you mean \"analysis.engine\"?"},
+      {with_parameter("key = [\"element.base_mm\", 3]\nvalues = [1]\n"),
+       "study.toml:3: parameter[1].key: must be a key of a design such as \"element.base_mm\", or a list of keys, got "
+       "3 in "
+       "it"},
       {with_parameter("values = [1]\n"), "study.toml:2: parameter[1].key: missing, must be a key of a design"},
       {with_parameter("key = \"element.base_mm\"\n"),
        "study.toml:2: parameter[1].values: missing: a parameter has values"},

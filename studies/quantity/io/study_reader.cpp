@@ -279,8 +279,10 @@ Study read_study(const fs::path& file, std::span<const std::string> overrides, s
 
 Candidate make_candidate(const Study& study, std::span<const ParameterValue> values) {
   PointTexts texts = texts_at(study, values);
-  const Document document =
-      texts.for_study.empty() ? *study.document : schema::with(study_format(), *study.document, texts.for_study);
+  std::shared_ptr<const Document> given = study.document;
+  if (!texts.for_study.empty())
+    given = std::make_shared<const Document>(schema::with(study_format(), *given, texts.for_study));
+  const Document& document = *given;
   const MachiningProcess machining = machining_of(document);
   // What the study says of the surface counts more than what cutting leaves.
   const std::vector<std::string> as_cut = surface_overrides(machining);
