@@ -1,5 +1,5 @@
 // Whatever a study file holds, every command either takes it or refuses it in one line that names the place. Designs
-// are those of a folder of its own; what quantities and processes compute is left out.
+// are those of a folder of its own; quantities are not computed.
 
 #include <unistd.h>
 
@@ -12,37 +12,9 @@
 
 #include "core/error.h"
 #include "studies/optimise/io/optimise_reader.h"
-#include "studies/photometry/io/standard_reader.h"
 #include "studies/quantity/io/study_reader.h"
-#include "studies/quantity/photometric.h"
 #include "studies/sweep/io/sweep_reader.h"
 #include "studies/tolerance/io/tolerance_reader.h"
-
-namespace retrace::studies {
-
-class NoQuantity final : public Quantity {
- public:
-  using Quantity::Quantity;
-  std::optional<Measured> measure(const Candidate&, const Cancellation*) const override { return Measured{}; }
-};
-std::optional<double> Quantity::slope(const Candidate&, RreParameter, const Cancellation*) const {
-  return std::nullopt;
-}
-std::shared_ptr<const Quantity> make_share(std::string name, const ShareSpec&) {
-  return std::make_shared<NoQuantity>(std::move(name));
-}
-std::shared_ptr<const Quantity> make_plain(std::string name, PlainQuantity) {
-  return std::make_shared<NoQuantity>(std::move(name));
-}
-std::shared_ptr<const Quantity> make_photometric(std::string name, std::shared_ptr<const PhotometricTable>,
-                                                 std::optional<std::size_t>, PhotometricFigure) {
-  return std::make_shared<NoQuantity>(std::move(name));
-}
-std::vector<std::string> surface_overrides(const MachiningProcess&) {
-  return {};
-}
-
-}  // namespace retrace::studies
 
 namespace {
 
