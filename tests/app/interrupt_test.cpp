@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
         LongRun{
             "tolerance", {"tolerance", example("studies/tolerance_reflector.toml"), "--threads=1", "-o", "t"}, SIGTERM},
         LongRun{"optimize", {"optimize", example("studies/element_base.toml"), "--threads=1", "-o", "o"}},
-        LongRun{"inspect", {"inspect", "wide.toml", "--set=array.x_length_mm=320", "-o", "i"}},
+        LongRun{"inspect", {"inspect", "wide.toml", "--set=array.x_length_mm=40000", "-o", "i"}},
         LongRun{"export", {"export", "wide.toml", "e.stl"}, SIGTERM},
         LongRun{"turn", {"turn", example("turning/lenslet_array.toml"), "-o", "t"}},
         LongRun{"fabricate", kFabricate, SIGTERM, 1.0, {kJob}},

@@ -46,7 +46,7 @@ std::vector<Case> cases() {
           {"triangular", finite(triangle, Arrangement::triangular, 2.1, 1.9, 1.0)},
           {"triangular with errors of angle", with_errors},
           {"infinite honeycomb", infinite(hexagon, Arrangement::honeycomb, 1.0)},
-          {"infinite steep honeycomb", infinite(steep, Arrangement::honeycomb, 8.0)},
+          {"infinite steep honeycomb", infinite(steep, Arrangement::honeycomb, 5.0)},
           {"infinite triangular", infinite(triangle, Arrangement::triangular, 1.0)}};
 }
 
