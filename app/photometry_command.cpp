@@ -139,7 +139,7 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   studies::PhotometryRequest request =
       studies::photometry_request({options.standard, options.part_class, options.colour});
   const std::filesystem::path dye =
-      studies::dye_file_of(options.dye, !design.substance.absorption_by_wavelength.empty(), request.programme.colour);
+      studies::dye_file_of(options.dye, design.substance.is_coloured(), request.programme.colour);
   if (!dye.empty()) inputs.push_back(dye.string());
   request = with_options(std::move(request), options, common);
   studies::set_dye(request, options.dye, dye);

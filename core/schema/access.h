@@ -72,10 +72,17 @@ void set_by(void* object, const Value& value) {
 template <auto get, auto set>
 inline constexpr Access access_by = {get_by<get>, set_by<set>};
 
-/// `std::string function(const Object&)` as the complaint of a rule.
+/// A function of a rule's object: `void (const Object&, const Refuse&)`, `void (const Object&)`, which throws itself,
+/// or `std::string (const Object&)`, which returns what is wrong and nothing if it holds.
 template <auto function>
-std::string complaint_by(const void* object) {
-  return function(*static_cast<const typename FirstOf<decltype(function)>::Type*>(object));
+void check_by(const void* object, const Refuse& refuse) {
+  const auto& typed = *static_cast<const typename FirstOf<decltype(function)>::Type*>(object);
+  if constexpr (std::is_invocable_v<decltype(function), decltype(typed), const Refuse&>)
+    function(typed, refuse);
+  else if constexpr (std::is_void_v<std::invoke_result_t<decltype(function), decltype(typed)>>)
+    function(typed);
+  else if (const std::string complaint = function(typed); !complaint.empty())
+    refuse({}, complaint);
 }
 
 template <auto member>

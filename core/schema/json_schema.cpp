@@ -209,6 +209,21 @@ struct Property {
 
 Json table_json(const Table& table, Place* around);
 
+void add_meaning(std::string_view meaning, Json& json) {
+  json["description"] = fmt::format("{} {}", json["description"].get<std::string>(), meaning);
+}
+
+/// Appends what ties the key to others, by the rules of its table and of those around it.
+void add_ties(const Place& place, std::string_view key, Json& json) {
+  std::string path(key);
+  for (const Place* at = &place; at != nullptr; at = at->around) {
+    for (const Rule& rule : at->table.rules)
+      if (const Check* const check = std::get_if<Check>(&rule))
+        if (std::ranges::count(check->keys, std::string_view(path)) > 0) add_meaning(check->meaning, json);
+    path = path_in(at->table.name, path);
+  }
+}
+
 /// The rows of a key that differ in the form of the value alone are one property.
 std::vector<Property> properties_of(Place& place) {
   std::vector<Property> properties;
@@ -226,6 +241,7 @@ std::vector<Property> properties_of(Place& place) {
   for (const Table& inner : place.table.tables)
     properties.push_back(
         {inner.name, table_json(inner, &place), inner.presence == Presence::always, inner.when, false});
+  for (Property& property : properties) add_ties(place, property.name, property.json);
   return properties;
 }
 
@@ -266,8 +282,9 @@ void add_rule(const OneOf& rule, Json& json) {
   for (const std::string_view key : rule.keys) one_of.push_back({{"required", {key}}});
   json["oneOf"] = std::move(one_of);
 }
+/// What ties keys is said with each of them.
 void add_rule(const Check& rule, Json& json) {
-  json["description"] = fmt::format("{} {}", json["description"].get<std::string>(), rule.meaning);
+  if (rule.keys.empty()) add_meaning(rule.meaning, json);
 }
 
 Json table_json(const Table& table, Place* around) {

@@ -146,8 +146,13 @@ std::string rows_text(const Table& table) {
       text += line(inner.name, presence_words(inner, table),
                    fmt::format("{}. {}{}{}", in_line_words(inner), inner.meaning, rule_words(inner),
                                conditions_words(inner.when)));
+  return text;
+}
+
+/// What follows the rows of a table.
+std::string rules_text(const Table& table) {
   const std::string rules = rule_words(table);
-  return rules.empty() ? text : fmt::format("{}\n{}\n", text, rules.substr(1));
+  return rules.empty() ? "" : fmt::format("\n{}\n", rules.substr(1));
 }
 
 bool have_same_keys(const Table& a, const Table& b) {
@@ -176,7 +181,7 @@ std::string tables_text(const Table& table, const std::string& path) {
     for (; i < all.size() && have_same_keys(all[first], all[i]); ++i)
       heads.push_back(head_of(all[i], path_of(all[i], path)));
     --i;
-    text += "\n" + head(fmt::format("{}", fmt::join(heads, ", "))) + rows_text(all[i]) +
+    text += "\n" + head(fmt::format("{}", fmt::join(heads, ", "))) + rows_text(all[i]) + rules_text(all[i]) +
             tables_text(all[i], path_of(all[i], path));
   }
   return text;
@@ -185,12 +190,21 @@ std::string tables_text(const Table& table, const std::string& path) {
 }  // namespace
 
 std::string key_table(const Table& table) {
-  return head("key") + rows_text(table);
+  return head("key") + rows_text(table) + rules_text(table);
+}
+
+std::string rule_table(const Table& root) {
+  std::string text;
+  for (const Rule& rule : root.rules)
+    if (const Check* const check = std::get_if<Check>(&rule); check != nullptr && !check->keys.empty())
+      text += fmt::format("| `{}` | {} |\n", fmt::join(check->keys, "`, `"), check->meaning);
+  return text.empty() ? text : "| keys | what holds of them together |\n|---|---|\n" + text;
 }
 
 std::string key_tables(const Format& format) {
+  const std::string rules = rule_table(format.root);
   return head("key") + line("schema", format.id_is_optional ? "none" : "required", fmt::format("`\"{}\"`", format.id)) +
-         rows_text(format.root) + tables_text(format.root, "");
+         rows_text(format.root) + tables_text(format.root, "") + (rules.empty() ? "" : "\n" + rules);
 }
 
 }  // namespace retrace::schema

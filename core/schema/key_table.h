@@ -13,4 +13,7 @@ std::string key_tables(const Format& format);
 /// The same of the keys of one table alone, without what is in tables below it.
 std::string key_table(const Table& table);
 
+/// What holds between keys of several tables, as a table in Markdown. Empty without such rules.
+std::string rule_table(const Table& root);
+
 }  // namespace retrace::schema

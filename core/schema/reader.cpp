@@ -345,12 +345,11 @@ class Values {
 
 // Objects.
 
-void check_rule(const Check& rule, const Document& document, const std::string& path, const void* object) {
-  const std::string complaint = rule.complaint(object);
-  if (complaint.empty()) return;
+/// The key that is blamed where a rule names none.
+std::string_view blamed(const Check& rule, const Document& document, const std::string& path) {
   for (const std::string_view key : rule.keys)
-    if (document.has(path_in(path, key))) document.fail(path_in(path, key), complaint);
-  document.fail(rule.keys.empty() ? path : path_in(path, rule.keys.front()), complaint);
+    if (document.has(path_in(path, key))) return key;
+  return rule.keys.empty() ? std::string_view() : rule.keys.front();
 }
 
 /// A word as objects take it.
@@ -426,8 +425,21 @@ void fill(const Document& document, const Table& table, const std::string& path,
       fill(document, inner, inner.presence == Presence::list ? path_of_entry(inner_path, i) : inner_path,
            inner.child.add(object));
   }
+  check(document, table, path, object);
+}
+
+void check(const Document& document, const Table& table, const std::string& path, const void* object) {
   for (const Rule& rule : table.rules)
-    if (const Check* const check = std::get_if<Check>(&rule)) check_rule(*check, document, path, object);
+    if (const Check* const check = std::get_if<Check>(&rule))
+      check->check(object, [&](std::string_view key, const std::string& complaint) {
+        const std::string_view to_blame = key.empty() ? blamed(*check, document, path) : key;
+        document.fail(to_blame.empty() ? path : path_in(path, to_blame), complaint);
+      });
+}
+
+void check(const Table& table, const void* object, const Refuse& refuse) {
+  for (const Rule& rule : table.rules)
+    if (const Check* const check = std::get_if<Check>(&rule)) check->check(object, refuse);
 }
 
 Document read_object(const Format& format, std::string_view text, const std::string& source_name, void* object) {

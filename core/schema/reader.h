@@ -34,6 +34,12 @@ Document read_object(const Format& format, std::string_view text, const std::str
 /// Fills the object of a table at `path` of a document. \throw InputError where its values do not fit together
 void fill(const Document& document, const Table& table, const std::string& path, void* object);
 
+/// Checks the rules of a table at `path` of a document, which fill() does as well. \param object of the table, or the
+/// document \throw InputError where its values do not fit together
+void check(const Document& document, const Table& table, const std::string& path, const void* object);
+/// The same of an object that is from no document.
+void check(const Table& table, const void* object, const Refuse& refuse);
+
 /// The paths of all keys that a value can be given for; a list of tables is one.
 std::vector<std::string> keys_of(const Format& format);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -161,11 +162,15 @@ struct OneOf {
   std::span<const std::string_view> keys;
   std::string_view complaint;  ///< what the message says if none or several are
 };
+/// Throws an InputError that says what is wrong with a key, by its path from the table whose rule it is; without one,
+/// with the rule's first key that was given, or with the table.
+using Refuse = std::function<void(std::string_view key, const std::string& complaint)>;
 /// What must hold between values that are allowed each by itself.
 struct Check {
-  std::span<const std::string_view> keys;        ///< the first that was given is blamed; none: the table
-  std::string_view meaning;                      ///< one sentence
-  std::string (*complaint)(const void* object);  ///< what is wrong; empty: it holds
+  std::span<const std::string_view> keys;  ///< that it ties, by their paths from the table; none: all of the table
+  std::string_view meaning;                ///< one sentence
+  /// \param object that of the table; of formats that are read as documents alone: the document
+  void (*check)(const void* object, const Refuse& refuse);
 };
 using Rule = std::variant<OneOf, Check>;
 

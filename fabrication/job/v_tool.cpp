@@ -55,7 +55,7 @@ double nose_strip_mm(const Tool& tool) {
   return 1e-3 * tool.edge_radius_um * (std::sin(rad(45.0)) / std::sin(rad(0.5 * tool.nose_angle_deg)) - 1.0);
 }
 
-void check_v_tool(const geometry::Element& element, const Tool& tool, const Refuse& refuse) {
+void check_v_tool(const geometry::Element& element, const Tool& tool, const schema::Refuse& refuse) {
   if (tool.nose_angle_deg >= 90.0)
     refuse("tool.nose_angle_deg", fmt::format("must be < 90, the angle between the dihedral edges of a facet, for "
                                               "the tool to reach the apex, got {}",

@@ -2,10 +2,7 @@
 
 #include <array>
 
-#include <functional>
-#include <string>
-#include <string_view>
-
+#include "core/schema/schema.h"
 #include "fabrication/job/job.h"
 #include "geometry/vec.h"
 
@@ -30,11 +27,8 @@ double cavity_depth_mm(const geometry::Element& element);
 /// Width that a nose of the tool's radius leaves uncut on either facet along a dihedral edge.
 double nose_strip_mm(const Tool& tool);
 
-/// Throws an InputError that says what is wrong with a key of a job, such as "tool.width_mm".
-using Refuse = std::function<void(std::string_view key, const std::string& text)>;
-
 /// That the tool reaches the apex of a cube corner, and every place of its facets.
 /// \param element as it is cut into the blank \pre it is a cube corner
-void check_v_tool(const geometry::Element& element, const Tool& tool, const Refuse& refuse);
+void check_v_tool(const geometry::Element& element, const Tool& tool, const schema::Refuse& refuse);
 
 }  // namespace retrace::fabrication

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+
+#include "core/angle.h"
 
 namespace retrace::raytrace {
 
@@ -15,6 +19,11 @@ struct BallLayer {
 
   double radius_mm() const { return 0.5 * diameter_mm; }
   double mirror_radius_mm() const { return radius_mm() + mirror_offset_mm; }
+  /// How far a mirror can reach before the bowls of neighbours meet.
+  double most_mirror_half_angle_deg() const {
+    if (!pitch_mm || mirror_offset_mm <= 0.0) return 90.0;
+    return Angle::from_rad(std::asin(std::min(1.0, 0.5 * *pitch_mm / mirror_radius_mm()))).deg();
+  }
 };
 
 }  // namespace retrace::raytrace

@@ -328,11 +328,9 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
   design.substance.material = part.body.material;
   design.substance.refractive_index = part.body.refractive_index;
   design.substance.absorption_per_mm = part.body.absorption_per_mm;
-  design.surface.texture.model = FacetTexture::Model::harvey_shack;
-  design.surface.texture.roughness_sq_nm = rounded(part.texture.roughness_sq_nm);
-  design.surface.texture.correlation_length_um = part.texture.correlation_length_um;
-  design.surface.texture.waviness_sq_nm = rounded(part.texture.waviness_sq_nm);
-  design.surface.texture.waviness_length_um = rounded(part.texture.waviness_length_um);
+  design.surface.texture =
+      HarveyShackTexture{rounded(part.texture.roughness_sq_nm), part.texture.correlation_length_um,
+                         rounded(part.texture.waviness_sq_nm), rounded(part.texture.waviness_length_um)};
   design.detector.acceptance_half_angle_deg = {0.05, 0.5};
   return design_text(
       design, fmt::format("# Facets as the programs leave them: {}. Sa {} nm, as published for facets\n"

@@ -7,6 +7,7 @@
 
 #include "geometry/facet_planes.h"
 #include "studies/closed_loop/verification.h"
+#include "studies/design/design.h"
 
 namespace retrace::studies {
 
@@ -26,7 +27,7 @@ struct MachinedBody {
   double thickness_mm = 2.0;
   std::string material = "PMMA";
   std::optional<double> refractive_index;
-  std::optional<double> absorption_per_mm;
+  Absorption absorption_per_mm;
 };
 
 /// The part that programs leave, moulded in it or cut directly. Where its elements are alike, a design file says it

@@ -26,31 +26,42 @@ struct Idealisation {
 
 enum class HeightMapAxis { x, y };
 
-/// What the texture of the retro facets does to light, and whether walls absorb it.
-struct FacetTexture {
-  enum class Model { smooth, harvey_shack, abg, microfacet, height_map };
-  Model model = Model::smooth;
+struct SmoothTexture {};
+/// Roughness and waviness, one of the two above 0.
+struct HarveyShackTexture {
   double roughness_sq_nm = 0.0;        ///< rms height
   double correlation_length_um = 0.0;  ///< 1/e of a Gaussian autocorrelation
   double waviness_sq_nm = 0.0;
   double waviness_length_um = 0.0;  ///< period
-  double abg_a = 0.0;               ///< per sr; BSDF = A / (B + |dbeta|^g)
-  double abg_b = 0.0;
-  double abg_g = 0.0;
-  bool ggx = false;        ///< microfacets with longer tails of slopes than Gaussian
-  std::string height_map;  ///< name of the file, as given
-  /// The same, from the working directory; checked only when it is read, by make_model().
-  std::filesystem::path height_map_file;
-  /// Axis of the map that lies level on a facet: along the roof edge of a prism.
-  HeightMapAxis height_map_level_axis = HeightMapAxis::x;
-  int height_map_form_degree = 1;  ///< of the polynomial that is removed from the map, 1..8
-  bool absorbing_walls = false;    ///< of elements and of the border
 };
+/// BSDF = a / (b + |dbeta|^g), per sr.
+struct AbgTexture {
+  double a = 0.0;
+  double b = 0.0;
+  double g = 0.0;
+};
+struct MicrofacetTexture {
+  double waviness_sq_nm = 0.0;  ///< rms height, > 0
+  double waviness_length_um = 0.0;
+  bool ggx = false;  ///< longer tails of slopes than Gaussian
+};
+struct HeightMapTexture {
+  std::string name;            ///< of the file, as given
+  std::filesystem::path file;  ///< the same, from the working directory; checked only when it is read, by make_model()
+  HeightMapAxis level_axis = HeightMapAxis::x;  ///< of the map; level on a facet: along the roof edge of a prism
+  int form_degree = 1;                          ///< of the polynomial that is removed from the map, 1..8
+};
+/// What the retro facets are like, in the order of the words of `surface.model`.
+using FacetTexture = std::variant<SmoothTexture, HarveyShackTexture, AbgTexture, MicrofacetTexture, HeightMapTexture>;
 
 struct SpectralAbsorption {
   double wavelength_nm = 0.0;
   double per_mm = 0.0;  ///< Napierian, for power; >= 0
+
+  bool operator==(const SpectralAbsorption&) const = default;
 };
+/// Napierian, for power: that of the material, a number per mm, or linear between two or more pairs that ascend.
+using Absorption = std::variant<std::monostate, double, std::vector<SpectralAbsorption>>;
 
 /// Light of more than one wavelength, as the design names it.
 struct LightSpectrum {
@@ -116,17 +127,20 @@ struct FrontFile {
 /// What the part is made of, and what lies behind its retro facets.
 struct Substance {
   std::string material = "PMMA";
-  std::optional<double> refractive_index;   ///< wins over the material; relative to air, >= 1
-  std::optional<double> absorption_per_mm;  ///< Napierian, for power; wins over the material's; >= 0
-  /// The same by wavelength: linear between two or more pairs that ascend; empty if it was not given so.
-  std::vector<SpectralAbsorption> absorption_by_wavelength;
+  std::optional<double> refractive_index;  ///< wins over the material; relative to air, >= 1
+  Absorption absorption_per_mm;
   double back_index = 1.0;  ///< of what lies behind the facets, relative to air; 1..3
+
+  bool is_coloured() const { return std::holds_alternative<std::vector<SpectralAbsorption>>(absorption_per_mm); }
 };
 
 /// What the retro facets do beside reflecting.
 struct Surface {
   bool aluminised_facets = false;  ///< an opaque film behind them
+  bool absorbing_walls = false;    ///< of elements and of the border
   FacetTexture texture;
+
+  bool is_smooth() const { return std::holds_alternative<SmoothTexture>(texture); }
 };
 
 /// The light that falls on the part.
@@ -187,16 +201,19 @@ struct Design {
 
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }
-  /// \throw InputError if the shape is no array of elements. \param what does not take it, such as "retrace job"
-  void require_elements(const std::string& what) const;
-  /// \throw InputError if the elements are balls, which have no planes that could be traced, cut or written
-  void require_no_balls() const;
-  /// \throw InputError if its elements stand on a base. \param what does not take it, such as "retrace job"
-  void require_no_base(const std::string& what) const;
-  /// \throw InputError if light enters through a curved front. \param what does not take it, such as "retrace job"
-  void require_plane_front(const std::string& what) const;
   /// Whether the retro facets rely on total reflection.
   bool needs_total_reflection() const { return !idealisation.mirror_facets && !surface.aluminised_facets; }
 };
+
+/// What a question takes of designs beside elements on a plane behind a plane face.
+struct Takes {
+  std::string_view what;  ///< asks, such as "retrace job"
+  bool balls = false;
+  bool solids = false;  ///< meshes and plates
+  bool bases = true;
+  bool fronts = false;
+};
+/// \throw InputError for a design that is not taken
+void check_taken(const Design& design, const Takes& takes);
 
 }  // namespace retrace::studies

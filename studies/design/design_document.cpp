@@ -8,7 +8,22 @@
 namespace retrace::studies {
 namespace {
 
-using namespace geometry;
+using geometry::Arrangement;
+using geometry::Base;
+using geometry::Cant;
+using geometry::CylinderBase;
+using geometry::EdgeShape;
+using geometry::Element;
+using geometry::Extent;
+using geometry::FormulaBase;
+using geometry::HexagonalCube;
+using geometry::PartSpec;
+using geometry::PlaneBase;
+using geometry::RtpElement;
+using geometry::Scratch;
+using geometry::SphereBase;
+using geometry::Standing;
+using geometry::TriangularCube;
 using schema::Document;
 using schema::Value;
 
@@ -153,16 +168,24 @@ void set_front(Document& document, const FrontFile& front) {
   if (front.centre_mm) keys.set("centre_mm", list_of(*front.centre_mm));
 }
 
+Value absorption_value(const Absorption& absorption) {
+  return std::visit(Overloaded{[](std::monostate) { return Value(); }, [](double per_mm) { return Value(per_mm); },
+                               [](const std::vector<SpectralAbsorption>& curve) {
+                                 std::vector<std::vector<double>> pairs;
+                                 for (const auto& [wavelength_nm, per_mm] : curve)
+                                   pairs.push_back({wavelength_nm, per_mm});
+                                 return Value(pairs);
+                               }},
+                    absorption);
+}
+
 void set_body(Document& document, const Design& design) {
   Keys keys(document, "body");
   keys.set_positive("thickness_mm", design.thickness_mm());
   keys.set_word("material", design.substance.material);
   if (design.substance.refractive_index) keys.set("refractive_index", *design.substance.refractive_index);
-  if (design.substance.absorption_per_mm) keys.set("absorption_per_mm", *design.substance.absorption_per_mm);
-  std::vector<std::vector<double>> curve;
-  for (const auto& [wavelength_nm, per_mm] : design.substance.absorption_by_wavelength)
-    curve.push_back({wavelength_nm, per_mm});
-  if (!curve.empty()) keys.set("absorption_per_mm", curve);
+  if (const Value absorption = absorption_value(design.substance.absorption_per_mm); absorption.index() != 0)
+    keys.set("absorption_per_mm", absorption);
   if (design.surface.aluminised_facets) keys.set_word("facet_coating", "aluminium");
   if (design.substance.back_index != 1.0) keys.set("back_index", design.substance.back_index);
 }
@@ -207,30 +230,38 @@ void set_angle_errors(Keys& keys, const PartSpec& part) {
   keys.set("angle_error_seed", static_cast<double>(part.random_tilts.seed));
 }
 
-void set_texture(Keys& keys, const FacetTexture& t) {
-  using Model = FacetTexture::Model;
-  if (t.absorbing_walls) keys.set_word("walls", "absorbing");
-  if (t.model == Model::smooth) return;
-  keys.set_choice("model", t.model);
-  if (t.model == Model::abg) {
-    keys.set("abg_a", t.abg_a);
-    keys.set("abg_b", t.abg_b);
-    keys.set("abg_g", t.abg_g);
-  }
-  if (t.model == Model::height_map) {
-    keys.set_word("height_map", t.height_map);
-    keys.set_choice("height_map_level_axis", t.height_map_level_axis);
-    keys.set_choice("height_map_form", t.height_map_form_degree - 1);
-  }
-  if (t.model == Model::microfacet) keys.set_choice("slope_distribution", t.ggx);
-  if (t.roughness_sq_nm > 0.0) {
-    keys.set("roughness_sq_nm", t.roughness_sq_nm);
-    keys.set("correlation_length_um", t.correlation_length_um);
-  }
-  if (t.waviness_sq_nm > 0.0) {
-    keys.set("waviness_sq_nm", t.waviness_sq_nm);
-    keys.set("waviness_length_um", t.waviness_length_um);
-  }
+void set_height(Keys& keys, std::string_view height, double sq_nm, std::string_view length, double length_um) {
+  if (!(sq_nm > 0.0)) return;
+  keys.set(height, sq_nm);
+  keys.set(length, length_um);
+}
+
+void set_texture(Keys& keys, const Surface& surface) {
+  if (surface.absorbing_walls) keys.set_word("walls", "absorbing");
+  if (surface.is_smooth()) return;
+  keys.set_choice("model", surface.texture.index());
+  std::visit(
+      Overloaded{[](const SmoothTexture&) {},
+                 [&](const HarveyShackTexture& t) {
+                   set_height(keys, "roughness_sq_nm", t.roughness_sq_nm, "correlation_length_um",
+                              t.correlation_length_um);
+                   set_height(keys, "waviness_sq_nm", t.waviness_sq_nm, "waviness_length_um", t.waviness_length_um);
+                 },
+                 [&](const AbgTexture& t) {
+                   keys.set("abg_a", t.a);
+                   keys.set("abg_b", t.b);
+                   keys.set("abg_g", t.g);
+                 },
+                 [&](const MicrofacetTexture& t) {
+                   keys.set_choice("slope_distribution", t.ggx);
+                   set_height(keys, "waviness_sq_nm", t.waviness_sq_nm, "waviness_length_um", t.waviness_length_um);
+                 },
+                 [&](const HeightMapTexture& t) {
+                   keys.set_word("height_map", t.name);
+                   keys.set_choice("height_map_level_axis", t.level_axis);
+                   keys.set_choice("height_map_form", t.form_degree - 1);
+                 }},
+      surface.texture);
 }
 
 void set_edges(Keys& keys, const EdgeShape& edges) {
@@ -245,7 +276,7 @@ void set_surface(Document& document, const Design& design) {
   Keys keys(document, "surface");
   const ElementArray* const elements = design.elements();
   if (elements != nullptr) set_angle_errors(keys, elements->part);
-  set_texture(keys, design.surface.texture);
+  set_texture(keys, design.surface);
   if (elements == nullptr) return;
   set_edges(keys, elements->part.edges);
   std::size_t index = 0;

@@ -2,6 +2,7 @@
 
 #include "geometry/io/base_rows.h"
 #include "studies/design/design_rows.h"
+#include "studies/design/design_rules.h"
 
 namespace retrace::studies {
 namespace {
@@ -75,7 +76,11 @@ const Table kTables[] = {
 const Format kFormat = {"design",
                         "retrace.design/1",
                         "Design of a retroreflector array",
-                        {.name = "", .meaning = "A part and the light on it.", .rows = kRootRows, .tables = kTables},
+                        {.name = "",
+                         .meaning = "A part and the light on it.",
+                         .rows = kRootRows,
+                         .tables = kTables,
+                         .rules = design_rules()},
                         true};
 
 }  // namespace

@@ -31,7 +31,7 @@ constexpr double kMostTurnDeg = 5.0;
 constexpr double kMostHeightShare = 0.1;
 
 /// One line of the table.
-struct Row {
+struct FacetRow {
   Vec2 centre_mm = Vec2::Zero();
   std::size_t facet = 0;
   HeightPlane plane;
@@ -67,7 +67,7 @@ class Reader {
     throw InputError({file_, line, std::string(column)}, text);
   }
 
-  Row row_of(const CsvReader& table) const {
+  FacetRow row_of(const CsvReader& table) const {
     std::array<double, kColumns.size()> values{};
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = table.number(k, kValue);
     if (!is_facet(values[2]))
@@ -76,7 +76,7 @@ class Reader {
                                 : is_hexagonal() ? "1 to 9"
                                                  : "1 to 3 or 7 to 9",
                                 shortest(values[2])));
-    Row row;
+    FacetRow row;
     row.centre_mm = {values[0], values[1]};
     row.facet = static_cast<std::size_t>(values[2]) - 1;
     row.plane = {values[3], {values[4], values[5]}};
@@ -95,7 +95,7 @@ class Reader {
 
   /// Whether a plane resembles that of a nominal facet; in a checker every second element is turned, and in an array of
   /// triangles by 180 degrees. A flare lies in the plane of the facet across its edge.
-  bool resembles(const Row& row, bool turned) const {
+  bool resembles(const FacetRow& row, bool turned) const {
     const std::size_t facet = row.facet < kFlares ? row.facet : (row.facet - kFlares + 1) % 3;
     Vec2 slope = nominal_slopes_[facet];
     if (turned) slope = is_prism() ? Vec2(slope.y(), slope.x()) : Vec2(-slope);
@@ -105,7 +105,7 @@ class Reader {
   }
 
   /// Of a facet over the root or apex; of a flare over the middle of its hexagon, whose corner is half as deep.
-  double nominal_height_mm(const Row& row) const {
+  double nominal_height_mm(const FacetRow& row) const {
     if (row.facet < kFlares) return -depth_mm_;
     const double angle = Angle::from_deg(120.0 * static_cast<double>(row.facet - kFlares)).rad();
     const double radius_mm = 0.5 * std::get<geometry::HexagonalCube>(spec_.element).aperture_mm;
@@ -114,14 +114,14 @@ class Reader {
   }
 
   /// A cap may lean as its tool did, but it passes over the apex and below the rim.
-  void check_cap(const Row& row) const {
+  void check_cap(const FacetRow& row) const {
     if (!(row.plane.height_mm > -depth_mm_ && row.plane.height_mm < 0.0))
       fail(row.line, "height_mm",
            fmt::format("must be > {} and < 0, over the apex, got {}", fixed(-depth_mm_, 6),
                        shortest(row.plane.height_mm)));
   }
 
-  void check(const Row& row) const {
+  void check(const FacetRow& row) const {
     if (row.facet >= kCaps) return check_cap(row);
     const bool may_be_turned =
         spec_.arrangement == geometry::Arrangement::checker || spec_.arrangement == geometry::Arrangement::triangular;
@@ -137,10 +137,10 @@ class Reader {
                        fixed(nominal_mm + kMostHeightShare * depth_mm_, 6), shortest(row.plane.height_mm)));
   }
 
-  void take(const Row& row) {
+  void take(const FacetRow& row) {
     if (row.facet >= kCaps && pending_.empty()) return take_cap(row);
     if (row.facet >= kFlares && pending_.empty()) return take_flare(row);
-    for (const Row& other : pending_)
+    for (const FacetRow& other : pending_)
       if (other.centre_mm != row.centre_mm || other.facet == row.facet || row.facet >= kFlares)
         fail(row.line, "",
              fmt::format("must be {} facet of the element of the line before", is_prism() ? "the other" : "another"));
@@ -149,14 +149,14 @@ class Reader {
     ElementPlanes element;
     element.centre_mm = row.centre_mm;
     element.planes.resize(pending_.size());
-    for (const Row& known : pending_) element.planes[known.facet] = known.plane;
+    for (const FacetRow& known : pending_) element.planes[known.facet] = known.plane;
     elements_.push_back(std::move(element));
     has_element_ = true;
     pending_.clear();
   }
 
   /// Caps stand behind the facets of their element, in their order.
-  void take_cap(const Row& row) {
+  void take_cap(const FacetRow& row) {
     if (elements_.empty() || elements_.back().planes.empty() || elements_.back().centre_mm != row.centre_mm)
       fail(row.line, "facet", "must stand behind the three facets of its element");
     auto& caps = elements_.back().caps;
@@ -166,7 +166,7 @@ class Reader {
   }
 
   /// Flares of one place stand together.
-  void take_flare(const Row& row) {
+  void take_flare(const FacetRow& row) {
     const bool is_same =
         !elements_.empty() && elements_.back().planes.empty() && elements_.back().centre_mm == row.centre_mm;
     if (!is_same) {
@@ -185,7 +185,7 @@ class Reader {
   double depth_mm_ = 0.0;
   double spacing_mm_ = 0.0;
   std::vector<ElementPlanes> elements_;
-  std::vector<Row> pending_;
+  std::vector<FacetRow> pending_;
   bool has_element_ = false;
 };
 

@@ -35,78 +35,77 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
 }
 
 /// The map as it lies on a facet, x level. Warnings are appended.
-surface_models::HeightMap levelled_map(const FacetTexture& t, const std::string& source,
+surface_models::HeightMap levelled_map(const HeightMapTexture& t, const std::string& source,
                                        std::vector<std::string>& warnings) {
   using namespace surface_models;
   HeightMapOptions options;
   options.can_be_given = false;
-  HeightMapFile file = read_height_map(t.height_map_file, options);
+  HeightMapFile file = read_height_map(t.file, options);
   const std::size_t points = file.map.heights_nm.size();
   const std::size_t missing = points - measured_points(file.map);
   if (static_cast<double>(missing) > kMissingShareToTell * static_cast<double>(points))
     file.warnings.push_back(fmt::format("{:.1f} % of the points are missing; they count as the mean height",
                                         100.0 * static_cast<double>(missing) / static_cast<double>(points)));
   for (const std::string& warning : file.warnings)
-    warnings.push_back(fmt::format("{}: {}: {}", source, t.height_map_file.string(), warning));
-  const HeightMap level =
-      t.height_map_level_axis == HeightMapAxis::x ? std::move(file.map) : turned_by_quarter(file.map);
+    warnings.push_back(fmt::format("{}: {}: {}", source, t.file.string(), warning));
+  const HeightMap level = t.level_axis == HeightMapAxis::x ? std::move(file.map) : turned_by_quarter(file.map);
   try {
-    return without_form(level, t.height_map_form_degree);
+    return without_form(level, t.form_degree);
   } catch (const InputError& error) {
-    throw InputError({t.height_map_file.string(), 0, ""}, error.what());
+    throw InputError({t.file.string(), 0, ""}, error.what());
   }
 }
 
 /// The measured map of the facets; nothing for other models of their texture. Warnings are appended.
 std::optional<surface_models::HeightMap> facet_map(const Design& design, std::vector<std::string>& warnings) {
-  if (design.surface.texture.model != FacetTexture::Model::height_map) return std::nullopt;
+  const auto* const texture = std::get_if<HeightMapTexture>(&design.surface.texture);
+  if (texture == nullptr) return std::nullopt;
   try {
-    return levelled_map(design.surface.texture, design.source_name(), warnings);
+    return levelled_map(*texture, design.source_name(), warnings);
   } catch (const InputError& error) {
     throw InputError(design.where_texture(), error.what());  // which does not know who named the file
   }
 }
 
-surface_models::ScatterModel height_map_model(const FacetTexture& t, const surface_models::HeightMap& map,
+surface_models::ScatterModel height_map_model(const HeightMapTexture& t, const surface_models::HeightMap& map,
                                               double wavelength_nm) {
   try {
     return surface_models::HeightMapScatter(map, wavelength_nm);
   } catch (const InputError& error) {
-    throw InputError({t.height_map_file.string(), 0, ""}, error.what());
+    throw InputError({t.file.string(), 0, ""}, error.what());
   }
 }
 
 /// \param map that of facet_map()
 surface_models::ScatterModel scatter_model(const Design& design, const std::optional<surface_models::HeightMap>& map,
                                            double wavelength_nm) {
-  using Model = FacetTexture::Model;
-  const FacetTexture& t = design.surface.texture;
-  const auto shape = t.ggx ? surface_models::SlopeShape::ggx : surface_models::SlopeShape::beckmann;
+  using surface_models::ScatterModel;
+  using surface_models::SlopeShape;
   try {
-    switch (t.model) {
-      case Model::harvey_shack:
-        return surface_models::HarveyShack(
-            {t.roughness_sq_nm, t.correlation_length_um, t.waviness_sq_nm, t.waviness_length_um});
-      case Model::abg:
-        return surface_models::Abg(t.abg_a, t.abg_b, t.abg_g);
-      case Model::microfacet:
-        return surface_models::Microfacet::of_waviness(shape, t.waviness_sq_nm, t.waviness_length_um);
-      case Model::height_map:
-        return height_map_model(t, *map, wavelength_nm);
-      case Model::smooth:
-        break;
-    }
-    return surface_models::Smooth();
+    return std::visit(
+        Overloaded{[](const SmoothTexture&) { return ScatterModel(surface_models::Smooth()); },
+                   [](const HarveyShackTexture& t) {
+                     return ScatterModel(surface_models::HarveyShack(
+                         {t.roughness_sq_nm, t.correlation_length_um, t.waviness_sq_nm, t.waviness_length_um}));
+                   },
+                   [](const AbgTexture& t) { return ScatterModel(surface_models::Abg(t.a, t.b, t.g)); },
+                   [](const MicrofacetTexture& t) {
+                     return ScatterModel(surface_models::Microfacet::of_waviness(
+                         t.ggx ? SlopeShape::ggx : SlopeShape::beckmann, t.waviness_sq_nm, t.waviness_length_um));
+                   },
+                   [&](const HeightMapTexture& t) { return height_map_model(t, *map, wavelength_nm); }},
+        design.surface.texture);
   } catch (const InputError& error) {
     throw InputError(design.where_texture(), error.what());  // which knows the values but not where they were given
   }
 }
 
 double absorption_at(const Design& design, const materials::Material& material, double wavelength_nm) {
-  if (design.substance.absorption_by_wavelength.empty())
-    return design.substance.absorption_per_mm.value_or(material.absorption_per_mm);
+  const Absorption& given = design.substance.absorption_per_mm;
+  if (std::holds_alternative<std::monostate>(given)) return material.absorption_per_mm;
+  if (const double* const per_mm = std::get_if<double>(&given)) return *per_mm;
   materials::SpectralCurve curve;
-  for (const auto& [at_nm, per_mm] : design.substance.absorption_by_wavelength) {
+  for (const auto& [at_nm, per_mm] : std::get<std::vector<SpectralAbsorption>>(given)) {
     curve.wavelengths_nm.push_back(at_nm);
     curve.values.push_back(per_mm);
   }
@@ -129,7 +128,7 @@ raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrar
   if (design.surface.aluminised_facets)
     optics.coating_index = materials::complex_index(library.find_metal("aluminium").model, wavelength_nm) /
                            materials::refractive_index(library.air().dispersion, wavelength_nm);
-  optics.absorbing_walls = design.surface.texture.absorbing_walls;
+  optics.absorbing_walls = design.surface.absorbing_walls;
   optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
   optics.absorption_per_mm = absorption_at(design, material, wavelength_nm);
@@ -231,7 +230,7 @@ const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double w
 }  // namespace
 
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Fronts fronts) {
-  design.require_no_balls();
+  check_taken(design, {.what = {}, .solids = true, .fronts = true});
   if (fronts == Fronts::plane && design.front)
     throw InputError(design.where(design.front_key()),
                      "a [front] is taken by retrace rre, photometry and inspect alone");

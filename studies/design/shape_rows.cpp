@@ -126,7 +126,7 @@ constexpr Row kPartRows[] = {
      "Whether a mesh is traced that is not closed, or crosses itself. Openings are closed by flat pieces; a warning "
      "says how many, and results are those of the part with them.",
      kWithMesh},
-    {"plate_mm", NumberOrNumbers{kSaneSize}, kNone,
+    {"plate_mm", Numbers{2, kSaneSize, "lengths, along x and y"}, kNone,
      "Lengths along x and y of a plate whose flat back on z = 0 is its one retro facet, in place of elements."},
     {"facets", File{"a table of planes"}, kNone,
      "Of finite parts: a table of the planes in which their facets lie, in place of the nominal ones.", kFacetsOnly}};
@@ -143,7 +143,7 @@ constexpr Row kFrontRows[] = {
      "over, which is what `machined.stl` of `retrace turn` needs: it is the counterpart, moulded in the turned "
      "surface.",
      kSideOnly},
-    {"centre_mm", NumberOrNumbers{kPlace}, Computed{"the part's middle"},
+    {"centre_mm", Numbers{2, kPlace, "places, x and y"}, Computed{"the part's middle"},
      "`[x, y]`: where in the part's plane the file's origin lies."}};
 
 }  // namespace

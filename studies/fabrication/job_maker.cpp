@@ -194,8 +194,7 @@ void check_base(const Design& design, const JobRequest& request) {
 }  // namespace
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
-  design.require_elements("retrace job");
-  design.require_plane_front("retrace job");
+  check_taken(design, {.what = "retrace job"});
   check_base(design, request);
   if (design.facet_planes())
     throw InputError(design.where("part.facets"), "planes of single facets are traced, not cut, in this version");

@@ -78,8 +78,7 @@ Design reached(const Design& design, const std::string& facets_file) {
 }
 
 void check_design(const Design& design, const JobRequest& request) {
-  design.require_elements("retrace job");
-  design.require_plane_front("retrace job");
+  check_taken(design, {.what = "retrace job"});
   const geometry::PartSpec& part = design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element))
     throw InputError({"", 0, "--reachable"}, "is for cube corners: a chisel reaches all of a prism");

@@ -204,8 +204,7 @@ void draw_road(const RoadScene& s, const RoadRequest& r, RoadView& view) {
 
 RoadStudy::RoadStudy(Design design, RoadRequest request, std::uint32_t seed)
     : design_(std::move(design)), request_(std::move(request)), seed_(seed) {
-  design_.require_no_balls();
-  design_.require_plane_front("retrace image");
+  check_taken(design_, {.what = "retrace image", .solids = true});
   check(request_);
 }
 

@@ -115,10 +115,9 @@ Design lit(Design design, const PhotometryRequest& request, const WeighedLight& 
 Design dyed(Design design, const PhotometryRequest& request) {
   const materials::SpectralCurve& dye = request.dye_absorption_per_mm;
   if (dye.values.empty()) return design;
-  design.substance.absorption_per_mm.reset();
-  design.substance.absorption_by_wavelength.clear();
-  for (std::size_t k = 0; k < dye.values.size(); ++k)
-    design.substance.absorption_by_wavelength.push_back({dye.wavelengths_nm[k], dye.values[k]});
+  std::vector<SpectralAbsorption> curve;
+  for (std::size_t k = 0; k < dye.values.size(); ++k) curve.push_back({dye.wavelengths_nm[k], dye.values[k]});
+  design.substance.absorption_per_mm = std::move(curve);
   return design;
 }
 

@@ -44,7 +44,7 @@ class PhotometricQuantity final : public Quantity {
     request.cutoff = analysis.cutoff;
     if (analysis.rays) request.rays = *analysis.rays;
     request.seed = analysis.seed;
-    if (table_->dye_unless_coloured && !candidate.design().substance.absorption_by_wavelength.empty()) {
+    if (table_->dye_unless_coloured && candidate.design().substance.is_coloured()) {
       request.dye.clear();
       request.dye_absorption_per_mm = {};
     }

@@ -120,7 +120,7 @@ class ShareQuantity final : public Quantity {
 const geometry::RtpElement& prism_of(const Candidate& candidate) {
   const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part().element);
   if (prism == nullptr) throw InputError("machining time is known for prisms (element.kind = \"rtp\") alone");
-  candidate.design().require_no_base("machining time");
+  check_taken(candidate.design(), {.what = "machining time", .bases = false});
   return *prism;
 }
 

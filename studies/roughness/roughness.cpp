@@ -25,9 +25,8 @@ void check(const std::vector<double>& values, double most, bool zero_allowed, co
 }
 
 void check(const Design& design) {
-  design.require_no_balls();
-  design.require_plane_front("retrace roughness");
-  if (design.surface.texture.model != FacetTexture::Model::smooth)
+  check_taken(design, {.what = "retrace roughness", .solids = true});
+  if (!design.surface.is_smooth())
     throw InputError(design.where_texture(), "must be left out here: the roughness is what is varied");
   if (design.detector.acceptance_half_angle_deg.size() != 1)
     throw InputError({design.source_name(), 0, "detector.acceptance_half_angle_deg"},
@@ -38,12 +37,8 @@ void check(const Design& design) {
 Design textured(const Design& design, const RoughnessPoint& point, double waviness_length_um,
                 const InputLocation& where) {
   Design rough = design;
-  FacetTexture& texture = rough.surface.texture;
-  texture.model = FacetTexture::Model::harvey_shack;
-  texture.roughness_sq_nm = gaussian_sq_nm(point.roughness_sa_nm);
-  texture.correlation_length_um = point.correlation_length_um;
-  texture.waviness_sq_nm = gaussian_sq_nm(point.waviness_sa_nm);
-  texture.waviness_length_um = waviness_length_um;
+  rough.surface.texture = HarveyShackTexture{gaussian_sq_nm(point.roughness_sa_nm), point.correlation_length_um,
+                                             gaussian_sq_nm(point.waviness_sa_nm), waviness_length_um};
   rough.set_where("surface.model", where);
   return rough;
 }

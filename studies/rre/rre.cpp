@@ -107,7 +107,7 @@ void check_front(const Design& design, const RreRequest& request) {
   for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
                                       {request.far_field, "--far-field"},
                                       {request.derivatives, "--derivatives"}})
-    if (asked) design.require_plane_front(option);
+    if (asked) check_taken(design, {.what = option, .solids = true});
 }
 
 /// Balls have one engine of their own.
@@ -144,7 +144,7 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     check_light(design, prepared_->models.back(), request);
     check_planes(design, request);
     if (design.balls()) continue;
-    if (request.derivatives) design.require_elements("--derivatives");
+    if (request.derivatives) check_taken(design, {.what = "--derivatives"});
     if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
       throw InputError(design.where_texture(),
                        "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "

@@ -32,7 +32,7 @@ Design few_elements(const Design& design, std::vector<std::string>& remarks) {
   small.surface.texture = {};
   if (small.light.spectrum() != nullptr) small.light.colour = Light{}.colour;
   if (design.mask()) remarks.push_back("the mask is not shown");
-  if (design.surface.texture.model != FacetTexture::Model::smooth) remarks.push_back("facets are shown smooth");
+  if (!design.surface.is_smooth()) remarks.push_back("facets are shown smooth");
   if (design.facet_planes()) remarks.push_back("facets are shown as designed");
   if (!design.elements()) return small;
   small.shape = ElementArray{design.part(), {}, {}};

@@ -65,7 +65,7 @@ void add_warnings(Solid& solid) {
   const std::string name = solid.design.source_name();
   if (!solid.is_manifold)
     solid.warnings.push_back(name + ": the part touches itself along edges, which some programs take for open");
-  if (solid.design.surface.texture.model != FacetTexture::Model::smooth)
+  if (!solid.design.surface.is_smooth())
     solid.warnings.push_back(name + ": the texture of the facets is left out: a solid's facets are plane");
 }
 
@@ -110,8 +110,7 @@ Solid make_solid(const Design& design, const SolidRequest& request) {
     throw InputError({"", 0, "--block-mm"}, "only allowed with --what mould");
   if (request.block_mm && !(*request.block_mm > 0.0 && *request.block_mm <= 1e6))
     throw InputError({"", 0, "--block-mm"}, fmt::format("must be > 0 and <= 1e6, got {}", *request.block_mm));
-  design.require_no_balls();
-  design.require_plane_front("retrace export");
+  check_taken(design, {.what = "retrace export", .solids = true});
   Solid solid;
   solid.design = design;
   solid.what = request.what;

@@ -315,16 +315,16 @@ TEST_F(Front, KeysThatMakeNoSenseAreRefused) {
   EXPECT_EQ(refusal(plate_body + "[front]\nmesh = \"a.stl\"\nmesh_side = \"left\"\n"),
             "design.toml:8: front.mesh_side: must be \"top\" or \"bottom\", got \"left\"");
   EXPECT_EQ(refusal(plate_body + kFront + "centre_mm = [1]\n"),
-            "design.toml:8: front.centre_mm: must be a list of two, x and y, got a list of 1");
+            "design.toml:8: front.centre_mm: must be a list of 2 places, x and y, got 1 of them");
   EXPECT_EQ(refusal("[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n" + kFront +
                     kBody),
             "design.toml:8: front.turned: not allowed for extent = \"infinite\": give lengths");
   EXPECT_EQ(refusal("[element]\nkind = \"ball\"\ndiameter_mm = 1\n[body]\nrefractive_index = 1.9\n" + kFront),
             "design.toml:6: front: not allowed for kind = \"ball\"");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1, 1]\n" + kBody),
-            "design.toml:2: part.plate_mm: must be a list of two lengths, along x and y, got a list of 3");
+            "design.toml:2: part.plate_mm: must be a list of 2 lengths, along x and y, got 3 of them");
   EXPECT_EQ(refusal("[part]\nplate_mm = 1\n" + kBody),
-            "design.toml:2: part.plate_mm: must be a list of two lengths, along x and y, got 1");
+            "design.toml:2: part.plate_mm: must be a list of 2 lengths, along x and y, got 1");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\nmesh = \"a.stl\"\n" + kBody),
             "design.toml:3: part.mesh: not allowed beside plate_mm, got \"a.stl\"");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[element]\nkind = \"rtp\"\n" + kBody),

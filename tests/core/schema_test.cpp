@@ -100,7 +100,7 @@ std::string too_deep(const Thing& thing) {
 }
 constexpr std::string_view kSizeKeys[] = {"title", "size_mm"};
 constexpr std::string_view kOpenKeys[] = {"is_open", "notes"};
-constexpr Rule kThingRules[] = {Check{kSizeKeys, "Holes do not pass through.", complaint_by<too_deep>},
+constexpr Rule kThingRules[] = {Check{kSizeKeys, "Holes do not pass through.", check_by<too_deep>},
                                 OneOf{kOpenKeys, "must say either is_open or notes"}};
 constexpr Format kThing = {
     "thing", "retrace.thing/1", "Thing", {"", "A thing with holes.", kThingRows, kThingTables, kThingRules}};
@@ -260,8 +260,9 @@ TEST(Schema, JsonSchemaSaysWhatIsAllowed) {
   EXPECT_EQ(json["required"], (Json{"schema", "name", "size_mm"}));
   const Json& keys = json["properties"];
   EXPECT_EQ(keys["schema"]["const"], "retrace.thing/1");
-  EXPECT_EQ(keys["size_mm"],
-            (Json{{"description", "Its size. In mm."}, {"type", "number"}, {"exclusiveMinimum", 0.0}}));
+  EXPECT_EQ(keys["size_mm"], (Json{{"description", "Its size. In mm. Holes do not pass through."},
+                                   {"type", "number"},
+                                   {"exclusiveMinimum", 0.0}}));
   EXPECT_EQ(keys["shape"],
             (Json{{"description", "Its shape."}, {"type", "string"}, {"enum", {"ball", "cone"}}, {"default", "ball"}}));
   EXPECT_EQ(keys["count"]["type"], "integer");
@@ -272,7 +273,7 @@ TEST(Schema, JsonSchemaSaysWhatIsAllowed) {
   EXPECT_EQ(keys["hole"]["type"], "array");
   EXPECT_EQ(keys["hole"]["items"]["required"], Json{"depth_um"});
   EXPECT_EQ(json["oneOf"], (Json{{{"required", {"is_open"}}}, {{"required", {"notes"}}}}));
-  EXPECT_EQ(json["description"], "A thing with holes. Holes do not pass through.");
+  EXPECT_EQ(json["description"], "A thing with holes.");
 }
 
 TEST(Schema, JsonSchemaDecidesConditionsWhereTheirKeyIs) {

@@ -19,24 +19,16 @@ using std::numbers::pi;
 using studies::Design;
 using studies::FacetTexture;
 
-Design rough_cubes(FacetTexture::Model model) {
+Design rough_cubes(const FacetTexture& texture) {
   Design design;
   design.part() = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
   design.substance.refractive_index = kPmma;
-  design.surface.texture.model = model;
-  if (model == FacetTexture::Model::harvey_shack) {
-    design.surface.texture.roughness_sq_nm = 25.0;
-    design.surface.texture.correlation_length_um = 12.0;
-  }
-  if (model == FacetTexture::Model::microfacet) {
-    design.surface.texture.waviness_sq_nm = 30.0;
-    design.surface.texture.waviness_length_um = 60.0;
-  }
+  design.surface.texture = texture;
   return design;
 }
 
 struct RoughCase {
-  FacetTexture::Model model;
+  FacetTexture texture;
   double alpha_deg;
   double v_deg;
   double h_deg;
@@ -63,10 +55,11 @@ studies::PhotometricPoint forwards(const Design& design, const RoughCase& c, dou
 TEST(RoughCamera, SeesWhatIsSentForwards) {
   // Beside the specular return of discs of half a degree: within it, efficiencies that fall with the angle of incidence
   // make a difference of the order of the discs' radii, with smooth facets as well.
-  for (const RoughCase& c : {RoughCase{FacetTexture::Model::harvey_shack, 1.0, 10.0, 0.0},
-                             RoughCase{FacetTexture::Model::harvey_shack, 0.8, 0.0, 0.0},
-                             RoughCase{FacetTexture::Model::microfacet, 0.5, 0.0, 15.0}}) {
-    const Design design = rough_cubes(c.model);
+  const studies::HarveyShackTexture rough = {.roughness_sq_nm = 25.0, .correlation_length_um = 12.0};
+  const studies::MicrofacetTexture wavy = {.waviness_sq_nm = 30.0, .waviness_length_um = 60.0};
+  for (const RoughCase& c :
+       {RoughCase{rough, 1.0, 10.0, 0.0}, RoughCase{rough, 0.8, 0.0, 0.0}, RoughCase{wavy, 0.5, 0.0, 15.0}}) {
+    const Design design = rough_cubes(c.texture);
     const double disc_arcmin = 30.0;
     const studies::PhotometricPoint point = forwards(design, c, disc_arcmin);
     studies::CameraRequest camera;

@@ -128,7 +128,7 @@ TEST(BallDesign, WhatTakesNoBallsSaysWhatDoes) {
   };
   EXPECT_EQ(message([] { make_model(balls(), materials::MaterialLibrary::shipped()); }), text);
   EXPECT_EQ(message([] { part_of(balls()); }), text);
-  EXPECT_EQ(message([] { balls().require_elements("retrace job"); }), text);
+  EXPECT_EQ(message([] { check_taken(balls(), {.what = "retrace job"}); }), text);
 }
 
 RreRequest some_rays() {

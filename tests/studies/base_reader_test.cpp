@@ -114,8 +114,9 @@ TEST(BaseReader, RefusesWhatABaseCannotHave) {
   EXPECT_NE(complaint(rounded).find("rounded or chamfered rims need elements"), std::string::npos)
       << complaint(rounded);
   const Design inclined = read(design(kPrisms, "kind = \"plane\"\nincline_deg = 5"));
-  EXPECT_THROW(inclined.require_no_base("retrace job"), InputError);
-  EXPECT_NO_THROW(read(kPrisms + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n").require_no_base("x"));
+  EXPECT_THROW(check_taken(inclined, {.what = "x", .bases = false}), InputError);
+  EXPECT_NO_THROW(check_taken(read(kPrisms + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n"),
+                              {.what = "x", .bases = false}));
 }
 
 }  // namespace

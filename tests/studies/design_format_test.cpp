@@ -37,6 +37,7 @@ TEST(DesignFormat, ExamplesReadBackTheSame) {
 TEST(DesignFormat, DocumentationSaysWhatTheRowsSay) {
   for (const Table& table : design_format().root.tables)
     EXPECT_EQ(documents_test::documented("design_file.md", table.name), key_table(table)) << table.name;
+  EXPECT_EQ(documents_test::documented("design_file.md", "rules"), rule_table(design_format().root));
 }
 
 TEST(DesignFormat, RowsOfAKeyStandTogether) {

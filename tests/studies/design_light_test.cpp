@@ -94,11 +94,11 @@ TEST(DesignReader, SpectrumIsANameAFileOrLines) {
 TEST(DesignReader, AbsorptionIsANumberOrPairsOverTheWavelength) {
   const std::string key = "body.absorption_per_mm";
   const Design red = set({key + "=[[400, 2], [600, 0.5], [800, 0]]"});
-  EXPECT_FALSE(red.substance.absorption_per_mm);
-  ASSERT_EQ(red.substance.absorption_by_wavelength.size(), 3U);
-  EXPECT_EQ(red.substance.absorption_by_wavelength[1].wavelength_nm, 600.0);
-  EXPECT_EQ(red.substance.absorption_by_wavelength[1].per_mm, 0.5);
-  EXPECT_TRUE(set({key + "=0.1"}).substance.absorption_by_wavelength.empty());
+  const auto curve = std::get<std::vector<SpectralAbsorption>>(red.substance.absorption_per_mm);
+  ASSERT_EQ(curve.size(), 3U);
+  EXPECT_EQ(curve[1].wavelength_nm, 600.0);
+  EXPECT_EQ(curve[1].per_mm, 0.5);
+  EXPECT_EQ(set({key + "=0.1"}).substance.absorption_per_mm, Absorption(0.1));
   const auto refused = [&](const std::string& value) {
     return complaint(with_line(11, "absorption_per_mm = " + value));
   };

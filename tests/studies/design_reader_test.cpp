@@ -46,7 +46,7 @@ TEST(DesignReader, MinimalDesignHasTheDefaults) {
   EXPECT_EQ(design.part().thickness_mm, 2.0);
   EXPECT_EQ(design.substance.material, "PMMA");
   EXPECT_FALSE(design.substance.refractive_index);
-  EXPECT_FALSE(design.substance.absorption_per_mm);
+  EXPECT_EQ(design.substance.absorption_per_mm, Absorption());
   EXPECT_EQ(design.light.wavelength_nm(), 587.56);
   EXPECT_EQ(design.light.polarisation.values(), raytrace::kUnpolarised.values());
   EXPECT_EQ(design.detector.acceptance_half_angle_deg, std::vector<double>{0.5});
@@ -112,7 +112,7 @@ entrance = "lossless"
   EXPECT_EQ(design.where("body.material").line, 22);
   EXPECT_EQ(design.where("body.material").key, "body.material");
   EXPECT_EQ(design.substance.refractive_index, 1.58);
-  EXPECT_EQ(design.substance.absorption_per_mm, 0.001);
+  EXPECT_EQ(design.substance.absorption_per_mm, Absorption(0.001));
   EXPECT_EQ(design.light.wavelength_nm(), 633.0);
   EXPECT_NEAR(design.light.polarisation.q, 0.5, 1e-15);
   EXPECT_EQ(design.part().angle_errors, (AngleErrors{{-0.5, 0.0, 0.0}, {1.0, 2.5, 0.0}}));

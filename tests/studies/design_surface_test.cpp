@@ -19,19 +19,21 @@ using geometry::AngleErrors;
 
 TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
   const std::string text = with_line(11, "[surface]\nheight_map = \"maps/m.gsf\"");
-  const FacetTexture texture = parse_design(text, "parts/d.toml").surface.texture;
-  EXPECT_EQ(texture.model, FacetTexture::Model::height_map);
-  EXPECT_EQ(texture.height_map, "maps/m.gsf");
-  EXPECT_EQ(texture.height_map_file, fs::path("parts/maps/m.gsf"));
-  EXPECT_EQ(texture.height_map_level_axis, HeightMapAxis::x);
-  EXPECT_EQ(texture.height_map_form_degree, 1);
-  EXPECT_EQ(parse_design(text, "standard input").surface.texture.height_map_file, fs::path("maps/m.gsf"));
+  const auto texture_of = [&](const std::string& source, const std::vector<std::string>& overrides = {}) {
+    return std::get<HeightMapTexture>(parse_design(text, source, overrides).surface.texture);
+  };
+  const HeightMapTexture texture = texture_of("parts/d.toml");
+  EXPECT_EQ(texture.name, "maps/m.gsf");
+  EXPECT_EQ(texture.file, fs::path("parts/maps/m.gsf"));
+  EXPECT_EQ(texture.level_axis, HeightMapAxis::x);
+  EXPECT_EQ(texture.form_degree, 1);
+  EXPECT_EQ(texture_of("standard input").file, fs::path("maps/m.gsf"));
   const std::vector<std::string> overrides = {"surface.height_map=m.txt", "surface.height_map_level_axis=y",
                                               "surface.height_map_form=poly3"};
-  const FacetTexture other = parse_design(text, "parts/d.toml", overrides).surface.texture;
-  EXPECT_EQ(other.height_map_file, fs::path("m.txt")) << "as typed, from the working directory";
-  EXPECT_EQ(other.height_map_level_axis, HeightMapAxis::y);
-  EXPECT_EQ(other.height_map_form_degree, 3);
+  const HeightMapTexture other = texture_of("parts/d.toml", overrides);
+  EXPECT_EQ(other.file, fs::path("m.txt")) << "as typed, from the working directory";
+  EXPECT_EQ(other.level_axis, HeightMapAxis::y);
+  EXPECT_EQ(other.form_degree, 3);
 }
 
 TEST(DesignReader, HeightMapKeysAreChecked) {
@@ -141,23 +143,25 @@ TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
 }
 
 TEST(DesignReader, TexturesOfFacetsAreRead) {
-  using Model = FacetTexture::Model;
-  const auto texture = [](const std::vector<std::string>& overrides) {
-    return parse_design(design_of(kRtp, "extent = \"infinite\""), "d", overrides).surface.texture;
+  const auto surface = [](const std::vector<std::string>& overrides) {
+    return parse_design(design_of(kRtp, "extent = \"infinite\""), "d", overrides).surface;
   };
-  const FacetTexture rough = texture({"surface.roughness_sq_nm=5", "surface.correlation_length_um=2"});
-  EXPECT_EQ(rough.model, Model::harvey_shack) << "usual for a roughness";
-  EXPECT_EQ(rough.roughness_sq_nm, 5.0);
-  EXPECT_EQ(rough.correlation_length_um, 2.0);
-  EXPECT_EQ(texture({"surface.roughness_sq_nm=0"}).model, Model::smooth);
-  EXPECT_EQ(texture({"surface.model=harvey_shack"}).model, Model::smooth) << "0 is the smooth answer";
-  EXPECT_EQ(texture({"surface.model=abg", "surface.abg_a=1e-4", "surface.abg_b=1e-4", "surface.abg_g=2"}).model,
-            Model::abg);
-  const FacetTexture waves = texture({"surface.model=microfacet", "surface.waviness_sq_nm=300",
-                                      "surface.waviness_length_um=80", "surface.slope_distribution=ggx"});
-  EXPECT_EQ(waves.model, Model::microfacet);
-  EXPECT_TRUE(waves.ggx);
-  EXPECT_TRUE(texture({"surface.walls=absorbing"}).absorbing_walls);
+  const FacetTexture texture = surface({"surface.roughness_sq_nm=5", "surface.correlation_length_um=2"}).texture;
+  const auto* const rough = std::get_if<HarveyShackTexture>(&texture);
+  ASSERT_NE(rough, nullptr) << "usual for a roughness";
+  EXPECT_EQ(rough->roughness_sq_nm, 5.0);
+  EXPECT_EQ(rough->correlation_length_um, 2.0);
+  EXPECT_TRUE(surface({"surface.roughness_sq_nm=0"}).is_smooth());
+  EXPECT_TRUE(surface({"surface.model=harvey_shack"}).is_smooth()) << "0 is the smooth answer";
+  EXPECT_EQ(std::get<AbgTexture>(
+                surface({"surface.model=abg", "surface.abg_a=1e-4", "surface.abg_b=1e-4", "surface.abg_g=2"}).texture)
+                .g,
+            2.0);
+  EXPECT_TRUE(std::get<MicrofacetTexture>(surface({"surface.model=microfacet", "surface.waviness_sq_nm=300",
+                                                   "surface.waviness_length_um=80", "surface.slope_distribution=ggx"})
+                                              .texture)
+                  .ggx);
+  EXPECT_TRUE(surface({"surface.walls=absorbing"}).absorbing_walls);
 }
 
 TEST(DesignReader, TexturesThatSayTooLittleOrTooMuchAreRefused) {

@@ -56,9 +56,7 @@ TEST(PhotometryVerdict, AFailDecidesThenAnUndeterminedPoint) {
 }
 
 Design rough(Design design, double sq_nm) {
-  design.surface.texture.model = FacetTexture::Model::harvey_shack;
-  design.surface.texture.roughness_sq_nm = sq_nm;
-  design.surface.texture.correlation_length_um = 20.0;
+  design.surface.texture = HarveyShackTexture{.roughness_sq_nm = sq_nm, .correlation_length_um = 20.0};
   return design;
 }
 

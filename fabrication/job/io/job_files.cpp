@@ -204,19 +204,14 @@ const Table kJobTables[] = {
      .presence = Presence::optional},
     {.name = "tool", .meaning = "The diamond.", .rows = kToolRows, .tables = kToolTables, .child = child<&Job::tool>},
     process_table("process", child<&Job::process>)};
-const Format kJobFormat = {"job",
-                           "retrace.job/1",
-                           "Fabrication job",
-                           {"", "What is cut, with which tool, on which machine and how.", kJobRows, kJobTables}};
-
 // What values must be together.
 
 bool is_prism(const Job& job) {
   return std::holds_alternative<RtpElement>(job.element);
 }
 
-void check_chips(const Tool& tool, const Refuse& refuse) {
-  const auto& chips = tool.edge_chips;
+void check_chips(const Job& job, const Refuse& refuse) {
+  const auto& chips = job.tool.edge_chips;
   if (chips.size() > kMostChips)
     refuse("tool.edge_chips", fmt::format("must be at most {}, got {}", kMostChips, chips.size()));
   for (std::size_t i = 0; i < chips.size(); ++i) {
@@ -226,7 +221,7 @@ void check_chips(const Tool& tool, const Refuse& refuse) {
         refuse(path_in(path, key), fmt::format("must be {}, got {}", range.text(), shortest(value)));
     };
     const auto& [position_um, width_um, depth_um] = chips[i];
-    const double reach_um = 0.5 * (1e3 * tool.width_mm - width_um);
+    const double reach_um = 0.5 * (1e3 * job.tool.width_mm - width_um);
     check("position_um", position_um, {.low = -reach_um, .high = reach_um});
     check("depth_um", depth_um, {.low = 0.0, .low_included = false, .high = 0.5 * width_um});
     for (std::size_t k = 0; k < i; ++k)
@@ -270,10 +265,17 @@ void check_row(const std::string& row, std::size_t k, std::int64_t columns, cons
                                         in_quotes(std::string_view(row).substr(wrong, 1)), k));
 }
 
-/// \param lengths cells of each row, from that of least y
-void check_pattern(const Job& job, const std::vector<std::int64_t>& lengths, const Refuse& refuse) {
+/// Cells of each row, from that of least y. Without a pattern the first unshifted row has elements.
+std::vector<std::int64_t> row_lengths(const Job& job) {
+  if (!is_prism(job)) return cube_row_lengths(job.array, job.element);
+  const CellCounts counts = cell_counts(job.array, prism_of(job));
+  return std::vector<std::int64_t>(static_cast<std::size_t>(counts.rows), counts.columns);
+}
+
+void check_pattern(const Job& job, const Refuse& refuse) {
   const std::vector<std::string>& pattern = job.array.pattern;
   if (pattern.empty()) return;
+  const std::vector<std::int64_t> lengths = row_lengths(job);
   if (pattern.size() != lengths.size())
     refuse("array.pattern",
            fmt::format("must have {} rows, as many as the array, got {}", lengths.size(), pattern.size()));
@@ -281,46 +283,43 @@ void check_pattern(const Job& job, const std::vector<std::int64_t>& lengths, con
   if (cut_elements(job).empty()) refuse("array.pattern", "leaves no element to cut");
 }
 
-void refuse_too_many(double elements, const Refuse& refuse) {
-  if (elements > kMostElements)
+double element_estimate(const Job& job) {
+  const Array& array = job.array;
+  if (!is_prism(job)) return cube_cell_estimate(array, job.element);
+  const RtpElement& prism = prism_of(job);
+  return (array.x_length_mm + array.x_gap_mm) / (prism.base_mm + array.x_gap_mm) *
+         ((array.y_length_mm + array.y_gap_mm) / (prism.width_mm + array.y_gap_mm));
+}
+
+void check_room(const Job& job, const Refuse& refuse) {
+  const Array& array = job.array;
+  if (array.arrangement == Arrangement::single) return;
+  if (const double elements = element_estimate(job); elements > kMostElements)
     refuse("array.x_length_mm",
            fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed", elements, kMostElements));
-}
-
-void check_prism_array(const Job& job, const Refuse& refuse) {
-  const geometry::RtpElement& prism = prism_of(job);
-  const double columns = (job.array.x_length_mm + job.array.x_gap_mm) / (prism.base_mm + job.array.x_gap_mm);
-  const double rows = (job.array.y_length_mm + job.array.y_gap_mm) / (prism.width_mm + job.array.y_gap_mm);
-  refuse_too_many(columns * rows, refuse);
-  const CellCounts counts = cell_counts(job.array, prism);
-  if (counts.columns < 1)
-    refuse("array.x_length_mm", "must hold one element between the margins, got " + shortest(job.array.x_length_mm));
-  if (counts.rows < 1)
-    refuse("array.y_length_mm", "must hold one element between the margins, got " + shortest(job.array.y_length_mm));
-  if (job.array.arrangement == Arrangement::checker && std::abs(prism.base_mm - prism.width_mm) > 1e-9 * prism.base_mm)
-    refuse("element.width_mm", fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
-                                           shortest(prism.base_mm), shortest(prism.width_mm)));
-  // Without a pattern the first unshifted row has elements.
-  check_pattern(job, std::vector<std::int64_t>(static_cast<std::size_t>(counts.rows), counts.columns), refuse);
-}
-
-void check_cube_array(const Job& job, const Refuse& refuse) {
-  refuse_too_many(cube_cell_estimate(job.array, job.element), refuse);
-  const std::vector<std::int64_t> lengths = cube_row_lengths(job.array, job.element);
-  if (lengths.empty())
+  if (is_prism(job)) {
+    const CellCounts counts = cell_counts(array, prism_of(job));
+    for (const auto& [count, key, length_mm] : {std::tuple(counts.columns, "array.x_length_mm", array.x_length_mm),
+                                                {counts.rows, "array.y_length_mm", array.y_length_mm}})
+      if (count < 1) refuse(key, "must hold one element between the margins, got " + shortest(length_mm));
+  } else if (cube_row_lengths(array, job.element).empty()) {
     refuse("array.x_length_mm",
            fmt::format("with y_length_mm must hold one whole element round the middle, got {} and {}",
-                       shortest(job.array.x_length_mm), shortest(job.array.y_length_mm)));
-  check_pattern(job, lengths, refuse);
+                       shortest(array.x_length_mm), shortest(array.y_length_mm)));
+  }
 }
 
-void check_array(const Job& job, const Refuse& refuse) {
-  if (job.array.arrangement == Arrangement::single) return;
-  is_prism(job) ? check_prism_array(job, refuse) : check_cube_array(job, refuse);
+void check_square(const Job& job, const Refuse& refuse) {
+  if (job.array.arrangement != Arrangement::checker) return;
+  const RtpElement& prism = prism_of(job);
+  if (std::abs(prism.base_mm - prism.width_mm) > 1e-9 * prism.base_mm)
+    refuse("element.width_mm", fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
+                                           shortest(prism.base_mm), shortest(prism.width_mm)));
 }
 
 /// Moulds of arrays without margins and patterns can stand on a base.
 void check_array_on_base(const Job& job, const Refuse& refuse) {
+  if (!job.base) return;
   const std::string_view key = geometry::base_shape_key(*job.base);
   const Array& array = job.array;
   if (job.workpiece.kind == WorkpieceKind::direct)
@@ -333,6 +332,7 @@ void check_array_on_base(const Job& job, const Refuse& refuse) {
 
 /// That the base carries the elements, and that a tool comes out of their cuts.
 void check_base(const Job& job, const Refuse& refuse) {
+  if (!job.base) return;
   try {
     geometry::check_base(part_on_base(job));
     const std::vector<CutElement> elements = cut_elements(job);
@@ -343,20 +343,54 @@ void check_base(const Job& job, const Refuse& refuse) {
   }
 }
 
-void check_together(const Job& job, const Refuse& refuse) {
+void check_machine(const Job& job, const Refuse& refuse) {
   if (job.machine.empty()) refuse("machine", "must name a machine or a file, got \"\"");
+}
+
+void check_workpiece(const Job& job, const Refuse& refuse) {
   if (!is_prism(job) && job.workpiece.kind == WorkpieceKind::direct)
     refuse("workpiece.kind",
            "must be \"mould\" for cube corners, whose cavities are not their elements, got \"direct\"");
-  check_chips(job.tool, refuse);
-  if (job.base) check_array_on_base(job, refuse);
-  check_array(job, refuse);
+}
+
+void check_tool(const Job& job, const Refuse& refuse) {
   if (is_prism(job))
     check_chisel(job, refuse);
   else
     check_v_tool(blank_element(job), job.tool, refuse);
-  if (job.base) check_base(job, refuse);
 }
+
+constexpr Words kMachineKeys = {"machine"};
+constexpr Words kWorkpieceKeys = {"workpiece.kind", "element.kind"};
+constexpr Words kChipKeys = {"tool.edge_chips", "tool.width_mm"};
+constexpr Words kArrayOnBaseKeys = {"base.kind",         "workpiece.kind",    "array.arrangement",
+                                    "array.x_offset_mm", "array.y_offset_mm", "array.pattern"};
+constexpr Words kArrayKeys = {"array.x_length_mm", "array.y_length_mm"};
+constexpr Words kPatternKeys = {"array.pattern"};
+constexpr Words kSquareKeys = {"element.base_mm", "element.width_mm"};
+constexpr Words kToolKeys = {"tool.width_mm", "tool.wedge_deg", "tool.clearance_deg", "tool.side_clearance_deg"};
+constexpr Words kBaseKeys = {"base.kind"};
+constexpr Rule kJobRules[] = {
+    Check{kMachineKeys, "It has a name.", check_by<check_machine>},
+    Check{kWorkpieceKeys, "Cube corners are cut as moulds.", check_by<check_workpiece>},
+    Check{kChipKeys, "Chips lie on the edge, at most 100 of them, clear of each other.", check_by<check_chips>},
+    Check{kArrayOnBaseKeys, "On a `[base]` stand moulds of arrays without margins and pattern, not `single`.",
+          check_by<check_array_on_base>},
+    Check{kArrayKeys, "There is room for one element between the margins, and for at most 2,000,000.",
+          check_by<check_room>},
+    Check{kSquareKeys, "In a checker base and width are equal.", check_by<check_square>},
+    Check{kPatternKeys, "The pattern has a mark for each cell, and leaves one to cut.", check_by<check_pattern>},
+    Check{kToolKeys,
+          "The tool fits the element: a chisel's edge is no wider and its wedge leaves room for chips; a V reaches the "
+          "apex and every place of the facets.",
+          check_by<check_tool>},
+    Check{kBaseKeys, "The base carries the elements, and the tool comes out of their cuts.", check_by<check_base>}};
+
+const Format kJobFormat = {
+    "job",
+    "retrace.job/1",
+    "Fabrication job",
+    {"", "What is cut, with which tool, on which machine and how.", kJobRows, kJobTables, kJobRules}};
 
 }  // namespace
 
@@ -365,16 +399,15 @@ const Format& job_format() {
 }
 
 void check_job(const Job& job, const InputLocation& where) {
-  check_together(job, [&](std::string_view key, const std::string& text) {
+  schema::check(kJobFormat.root, &job, [&](std::string_view key, const std::string& text) {
     throw InputError({where.file, where.line, std::string(key)}, text);
   });
 }
 
 Job parse_job(std::string_view text, const std::string& source_name) {
   Job job;
-  const Document file = read_object(kJobFormat, text, source_name, &job);
+  read_object(kJobFormat, text, source_name, &job);
   job.source = source_name;
-  check_together(job, [&](std::string_view key, const std::string& complaint) { file.fail(key, complaint); });
   return job;
 }
 

@@ -79,7 +79,7 @@ std::string hanging_chip(const Process& p) {
 constexpr std::string_view kPloughKeys[] = {"plough_length_mm"};
 constexpr schema::Rule kRules[] = {
     schema::Check{kPloughKeys, "A plough is at least as long as the depth of roughing, unless shortest_plough is true.",
-                  schema::complaint_by<hanging_chip>}};
+                  schema::check_by<hanging_chip>}};
 
 constexpr schema::Format kFormat = {
     "process",

@@ -154,12 +154,12 @@ constexpr std::array<Row, 3> sourced(Kind kind, Access value) {
 template <class Type, class... More>
 constexpr std::array<Rule, 2 + sizeof...(More)> source_rules(More... more) {
   return {{more..., OneOf{kSourceKeys, "must say either measured = \"source\" or assumed = \"why\""},
-           Check{{}, "The source is named.", complaint_by<nameless_source<Type>>}}};
+           Check{{}, "The source is named.", check_by<nameless_source<Type>>}}};
 }
 
 template <auto complaint>
 constexpr Check value_check(std::string_view meaning) {
-  return {kValueKeys, meaning, complaint_by<complaint>};
+  return {kValueKeys, meaning, check_by<complaint>};
 }
 
 /// Rows and rules of the tables of one type of value.
@@ -283,8 +283,8 @@ constexpr std::string_view kZKeys[] = {"z"};
 constexpr std::string_view kCKeys[] = {"c"};
 constexpr Rule kRules[] = {
     OneOf{kTiltingKeys, "must have either [a], if the table tilts, or [b], if the head does"},
-    Check{kZKeys, "X, Y and Z are right-handed and near to square to each other.", complaint_by<skew_linear_axes>},
-    Check{kCKeys, "C lies across A or B.", complaint_by<aligned_rotary_axes>}};
+    Check{kZKeys, "X, Y and Z are right-handed and near to square to each other.", check_by<skew_linear_axes>},
+    Check{kCKeys, "C lies across A or B.", check_by<aligned_rotary_axes>}};
 
 constexpr schema::Format kFormat = {
     "machine",

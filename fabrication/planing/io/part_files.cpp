@@ -7,6 +7,7 @@
 #include "core/atomic_file.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/schema/access.h"
 #include "core/schema/conditions.h"
 #include "core/schema/reader.h"
 #include "fabrication/planing/nose_path.h"
@@ -76,20 +77,10 @@ constexpr Table kTables[] = {
     {.name = "tolerance", .meaning = "How near to its form it must be.", .rows = kToleranceRows},
     {.name = "mill", .meaning = "The mill that planes it.", .rows = kMillRows, .when = kMilledOnly},
     {.name = "lathe", .meaning = "The lathe that turns it.", .rows = kLatheRows, .when = kTurnedOnly}};
-constexpr Format kFormat = {"planed_part",
-                            "retrace.planed_part/1",
-                            "Flat lens of zones, planed or turned",
-                            {"", "A lens of zones, its tolerance, and the machine that makes it.", kRows, kTables},
-                            true};
-
 PlaningMill mill_of(const Document& file) {
   const auto number = [&](std::string_view key) { return file.number(path_in("mill", key)); };
   const std::vector<double> least = file.numbers("mill.least_move_mm");
   const std::vector<double> travel = file.numbers("mill.travel_mm");
-  const double clear_mm = number("clear_mm");
-  if (clear_mm < least[2])
-    file.fail("mill.clear_mm",
-              fmt::format("must be at least the least move of Z, {}, got {}", shortest(least[2]), shortest(clear_mm)));
   return {number("fast_feed_mm_per_min"),
           number("frame_s"),
           number("grid_mm"),
@@ -101,35 +92,62 @@ PlaningMill mill_of(const Document& file) {
           travel[2],
           number("most_hours"),
           number("run_out_mm"),
-          clear_mm};
-}
-
-/// One line of a PMAC program that is written as it is. Whatever follows two slashes would be a comment.
-std::string spindle_text(const Document& file, std::string_view key) {
-  std::string text = file.text_if(key);
-  const bool is_printable = std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
-  if (file.has(key) && (text.empty() || text.size() > kLongestSpindleText || !is_printable || text.front() == ' ' ||
-                        text.back() == ' ' || text.find("//") != std::string::npos))
-    file.fail(key, fmt::format("must be one line of 1 to {} printable ASCII characters, without // and without blanks "
-                               "at its ends, got {}",
-                               kLongestSpindleText, in_quotes(text)));
-  return text;
+          number("clear_mm")};
 }
 
 PlaningLathe lathe_of(const Document& file) {
   const auto number = [&](std::string_view key) { return file.number(path_in("lathe", key)); };
-  PlaningLathe lathe = {number("feed_mm_per_min"),
-                        number("depth_of_cut_mm"),
-                        number("clear_mm"),
-                        number("nose_radius_mm"),
-                        static_cast<std::int32_t>(number("spindle_rpm")),
-                        file.choice<SpindleDirection>("lathe.spindle_direction"),
-                        spindle_text(file, "lathe.spindle_start"),
-                        spindle_text(file, "lathe.spindle_stop"),
-                        file.where("lathe.spindle_start")};
-  if (file.has("lathe.spindle_stop") && lathe.spindle_start == lathe.spindle_stop)
-    file.fail("lathe.spindle_stop", "must not be spindle_start, got " + in_quotes(lathe.spindle_stop));
-  return lathe;
+  return {number("feed_mm_per_min"),
+          number("depth_of_cut_mm"),
+          number("clear_mm"),
+          number("nose_radius_mm"),
+          static_cast<std::int32_t>(number("spindle_rpm")),
+          file.choice<SpindleDirection>("lathe.spindle_direction"),
+          file.text_if("lathe.spindle_start"),
+          file.text_if("lathe.spindle_stop"),
+          file.where("lathe.spindle_start")};
+}
+
+PlanedPart part_of(const Document& file) {
+  PlanedPart part;
+  part.source = file.source();
+  part.title = file.text_if("title");
+  part.lens = {file.number("element.focal_length_mm"), file.number("element.wavelength_mm"),
+               file.number("element.refractive_index"), 0.5 * file.number("element.width_mm")};
+  part.length_mm = file.number_if("element.length_mm").value_or(0.0);
+  part.tolerance_mm = file.number("tolerance.form_mm");
+  if (file.has("mill")) part.mill = mill_of(file);
+  if (file.has("lathe")) part.lathe = lathe_of(file);
+  return part;
+}
+
+// What keys must be together.
+
+constexpr std::string_view kStart = "lathe.spindle_start";
+constexpr std::string_view kStop = "lathe.spindle_stop";
+
+void check_clearance(const Document& file) {
+  if (!file.has("mill")) return;
+  const double least_mm = file.numbers("mill.least_move_mm")[2];
+  const double clear_mm = file.number("mill.clear_mm");
+  if (clear_mm < least_mm)
+    file.fail("mill.clear_mm",
+              fmt::format("must be at least the least move of Z, {}, got {}", shortest(least_mm), shortest(clear_mm)));
+}
+
+/// Lines of a PMAC program that are written as they are. Whatever follows two slashes would be a comment.
+void check_spindle_texts(const Document& file) {
+  for (const std::string_view key : {kStart, kStop}) {
+    const std::string text = file.text_if(key);
+    const bool is_printable = std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
+    if (file.has(key) && (text.empty() || text.size() > kLongestSpindleText || !is_printable || text.front() == ' ' ||
+                          text.back() == ' ' || text.find("//") != std::string::npos))
+      file.fail(key, fmt::format("must be one line of 1 to {} printable ASCII characters, without // and without "
+                                 "blanks at its ends, got {}",
+                                 kLongestSpindleText, in_quotes(text)));
+  }
+  if (file.has(kStop) && file.text_if(kStart) == file.text(kStop))
+    file.fail(kStop, "must not be spindle_start, got " + in_quotes(file.text(kStop)));
 }
 
 ZoneProfile profile_of(const Document& file, const ZoneLens& lens) {
@@ -141,7 +159,8 @@ ZoneProfile profile_of(const Document& file, const ZoneLens& lens) {
 }
 
 /// What would take beyond measure, or has no profile on the machine's grid.
-void check_sizes(const Document& file, const PlanedPart& part) {
+void check_sizes(const Document& file) {
+  const PlanedPart part = part_of(file);
   const double grid = part.mill ? part.mill->grid_mm : 0.1 * part.tolerance_mm;
   const double step_mm = part.lens.wavelength_mm / (part.lens.refractive_index - 1.0);
   const auto refuse_form = [&](std::string_view limit, double limit_mm) {
@@ -159,7 +178,8 @@ void check_sizes(const Document& file, const PlanedPart& part) {
                                               shortest(part.mill ? grid : part.tolerance_mm), shortest(width_mm)));
 }
 
-void check_zones(const Document& file, const PlanedPart& part) {
+void check_zones(const Document& file) {
+  const PlanedPart part = part_of(file);
   const ZoneProfile profile = profile_of(file, part.lens);
   const double least_mm = kLeastStepsOfZone * (part.mill ? part.mill->grid_mm : 0.1 * part.tolerance_mm);
   for (const Zone& zone : profile.zones())
@@ -172,6 +192,26 @@ void check_zones(const Document& file, const PlanedPart& part) {
                           fixed(largest_nose_mm(profile), 3), shortest(part.lathe->nose_radius_mm)));
 }
 
+constexpr Words kClearKeys = {"mill.clear_mm", "mill.least_move_mm"};
+constexpr Words kSpindleKeys = {kStart, kStop};
+constexpr Words kSizeKeys = {"tolerance.form_mm", "mill.grid_mm", "element.width_mm"};
+constexpr Words kZoneKeys = {"element.focal_length_mm", "element.width_mm", "lathe.nose_radius_mm"};
+constexpr Rule kRules[] = {
+    Check{kClearKeys, "The clearance is at least the least move of Z.", check_by<check_clearance>},
+    Check{kSpindleKeys, "They differ.", check_by<check_spindle_texts>},
+    Check{kSizeKeys,
+          "The tolerance is at most half the depth of a zone and, of a mill, 2 to 200 steps of its grid; the width at "
+          "most 2 million of them.",
+          check_by<check_sizes>},
+    Check{kZoneKeys, "Zones are at least four steps wide, and a nose reaches the bottom of each.",
+          check_by<check_zones>}};
+constexpr Format kFormat = {
+    "planed_part",
+    "retrace.planed_part/1",
+    "Flat lens of zones, planed or turned",
+    {"", "A lens of zones, its tolerance, and the machine that makes it.", kRows, kTables, kRules},
+    true};
+
 }  // namespace
 
 const Format& planed_part_format() {
@@ -180,18 +220,8 @@ const Format& planed_part_format() {
 
 PlanedPart parse_planed_part(std::string_view text, const std::string& source_name) {
   const Document file = read_document(kFormat, text, source_name);
-  PlanedPart part;
-  part.source = source_name;
-  part.title = file.text_if("title");
-  part.lens = {file.number("element.focal_length_mm"), file.number("element.wavelength_mm"),
-               file.number("element.refractive_index"), 0.5 * file.number("element.width_mm")};
-  part.length_mm = file.number_if("element.length_mm").value_or(0.0);
-  part.tolerance_mm = file.number("tolerance.form_mm");
-  if (file.has("mill")) part.mill = mill_of(file);
-  if (file.has("lathe")) part.lathe = lathe_of(file);
-  check_sizes(file, part);
-  check_zones(file, part);
-  return part;
+  check(file, kFormat.root, "", &file);
+  return part_of(file);
 }
 
 PlanedPart read_planed_part(const std::filesystem::path& file) {
