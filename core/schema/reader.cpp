@@ -457,7 +457,7 @@ std::vector<std::string> keys_of(const Format& format) {
 bool is_number_key(const Format& format, std::string_view path) {
   const auto [around, name] = split_path(path);
   const Table* const table = table_at(format.root, around);
-  const auto is_it = [&](const Row& row) { return row.key == name && takes(row.kind, Form::number); };
+  const auto is_it = [key = name](const Row& row) { return row.key == key && takes(row.kind, Form::number); };
   return table != nullptr && std::ranges::any_of(table->rows, is_it);
 }
 
