@@ -4,7 +4,6 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <string_view>
 #include <utility>
 
@@ -203,6 +202,14 @@ namespace {
 
 using Fields = std::array<std::pair<std::string_view, double>, 6>;
 
+/// The names or the values of all of them.
+template <std::size_t part>
+std::vector<std::tuple_element_t<part, Fields::value_type>> parts_of(const Fields& fields) {
+  std::vector<std::tuple_element_t<part, Fields::value_type>> parts;
+  for (const auto& field : fields) parts.push_back(std::get<part>(field));
+  return parts;
+}
+
 Fields fields_of(const FarFieldSpot& spot) {
   const raytrace::Stokes& s = spot.stokes;
   return {{{"deviation_arcmin", 60.0 * spot.deviation.deg()},
@@ -240,14 +247,13 @@ std::string far_field_json(const RreResult& result) {
 std::string far_field_csv(const RreResult& result) {
   CsvWriter csv;
   const Fields names = fields_of({});
-  csv.row("design", "incidence_deg", "azimuth_deg", "wavelength_nm", std::views::keys(names), "depth_min");
+  csv.row("design", "incidence_deg", "azimuth_deg", "wavelength_nm", parts_of<0>(names), "depth_min");
   for (const ReturnedLight& light : result.returned) {
     if (!light.far_field) continue;
     const RrePoint& at = light.at;
     for (const FarFieldSpot& spot : light.far_field->spots) {
       const Fields fields = fields_of(spot);
-      csv.row(at.design, at.incidence_deg, at.azimuth_deg, at.wavelength_nm, std::views::values(fields),
-              spot.least_depth);
+      csv.row(at.design, at.incidence_deg, at.azimuth_deg, at.wavelength_nm, parts_of<1>(fields), spot.least_depth);
     }
   }
   return csv.text();
