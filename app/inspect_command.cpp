@@ -22,13 +22,13 @@ std::vector<Argument> arguments(InspectOptions& options) {
 }
 
 /// The front along two lines through the middle.
-std::string profile_svg(const studies::Design& design, const studies::FrontReport& front) {
+std::string profile_svg(const studies::Design& design, const studies::EntranceReport& entrance) {
   report::LinePlot plot;
   plot.title = studies::short_name(design) + ": front";
   plot.x_label = "x, y (mm)";
   plot.y_label = "z (mm)";
-  plot.series = {{"along x", front.along_x.place_mm, front.along_x.height_mm, {}},
-                 {"along y", front.along_y.place_mm, front.along_y.height_mm, {}}};
+  plot.series = {{"along x", entrance.along_x.place_mm, entrance.along_x.height_mm, {}},
+                 {"along y", entrance.along_y.place_mm, entrance.along_y.height_mm, {}}};
   return report::render_svg(plot);
 }
 
@@ -37,7 +37,7 @@ struct Drawings {
   std::string plan = {};
   std::string section = {};
   std::string view = {};
-  std::string front = {};
+  std::string entrance = {};
 };
 
 /// Plan, section and view of the design; of a curved front its profile in place of section and view, which know plane
@@ -45,8 +45,8 @@ struct Drawings {
 /// no plane.
 Drawings drawings_of(const studies::Design& design, studies::Inspection& inspection) {
   if (design.balls()) return {};  // no part of planes to draw
-  if (inspection.front) return {.front = profile_svg(design, *inspection.front)};
-  if (design.elements() && design.part().base) return {.view = report::view_png(studies::view_of(design))};
+  if (inspection.entrance) return {.entrance = profile_svg(design, *inspection.entrance)};
+  if (design.elements() && design.part().substrate) return {.view = report::view_png(studies::view_of(design))};
   const studies::DesignDrawing drawing = studies::draw_design(design, studies::part_of_design(design, nullptr));
   std::vector<std::string>& warnings = inspection.warnings;
   warnings.insert(warnings.end(), drawing.warnings.begin(), drawing.warnings.end());
@@ -63,7 +63,7 @@ ExitCode run(const InspectOptions& options, const CommonOptions& common) {
   files.add("plan.svg", [&] { return drawings.plan; });
   files.add("section.svg", [&] { return drawings.section; });
   files.add("view.png", [&] { return drawings.view; });
-  files.add("front.svg", [&] { return drawings.front; });
+  files.add("front.svg", [&] { return drawings.entrance; });
   files.prepare();
   if (!common.out.empty()) drawings = drawings_of(design, inspection);
   files.write(studies::inspect_json(inspection), studies::inspect_text(inspection));

@@ -7,7 +7,7 @@
 #include <ctime>
 
 #include "core/error.h"
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 
 namespace retrace::app {
 namespace {

@@ -6,7 +6,7 @@
 #include "app/shared_arguments.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/read/nc_program.h"
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "report/result_plots.h"
 #include "studies/closed_loop/as_machined.h"
 #include "studies/closed_loop/io/verification_files.h"

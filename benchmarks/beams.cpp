@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "benchmarks/scenes.h"
-#include "raytrace/beam_tracer.h"
+#include "raytrace/exact/beam_tracer.h"
 
 namespace retrace::benchmarks::beams_benchmark {
 namespace {

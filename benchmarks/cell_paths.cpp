@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "benchmarks/scenes.h"
-#include "raytrace/monte_carlo.h"
-#include "raytrace/threads.h"
+#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/sampling/threads.h"
 
 namespace retrace::benchmarks::cell_paths_benchmark {
 namespace {

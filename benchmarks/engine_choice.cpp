@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/design/design_reader.h"
 #include "studies/rre/rre.h"
 
@@ -38,8 +38,9 @@ class RandomDesigns {
     const bool is_infinite = one_in(2);
     const double size_mm = between(0.2, 3.0);
     std::string text = "[element]\n" + element(kind, size_mm) + "[array]\n" + array(kind, is_infinite, size_mm);
-    const bool has_base = !is_infinite && one_in(6);
-    if (has_base) text += fmt::format("[base]\nkind = \"cylinder\"\nradius_mm = {}\n", between(60.0, 400.0) * size_mm);
+    const bool has_substrate = !is_infinite && one_in(6);
+    if (has_substrate)
+      text += fmt::format("[base]\nkind = \"cylinder\"\nradius_mm = {}\n", between(60.0, 400.0) * size_mm);
     text += fmt::format("[body]\nthickness_mm = {}\nrefractive_index = {}\n", between(0.5, 3.0), between(1.3, 1.8));
     if (one_in(4)) text += fmt::format("back_index = {}\n", between(1.0, 1.4));
     if (one_in(4)) text += "facet_coating = \"aluminium\"\n";
@@ -47,8 +48,8 @@ class RandomDesigns {
     if (one_in(6)) text += "[light]\nspectrum = \"A\"\n";
     text += "[surface]\n";
     if (one_in(3)) text += fmt::format("dihedral_error_arcmin = {}\n", between(-20.0, 20.0));
-    if (!has_base && one_in(3)) text += fmt::format("root_radius_um = {}\n", between(1.0, 30.0));
-    if (!has_base && one_in(4)) text += fmt::format("rim_radius_um = {}\n", between(1.0, 30.0));
+    if (!has_substrate && one_in(3)) text += fmt::format("root_radius_um = {}\n", between(1.0, 30.0));
+    if (!has_substrate && one_in(4)) text += fmt::format("rim_radius_um = {}\n", between(1.0, 30.0));
     if (one_in(8)) text += fmt::format("roughness_sq_nm = {}\ncorrelation_length_um = 5\n", between(1.0, 20.0));
     return text;
   }

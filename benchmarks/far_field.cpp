@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "benchmarks/scenes.h"
-#include "raytrace/farfield/far_field.h"
+#include "raytrace/observers/far_field.h"
 
 namespace retrace::benchmarks::far_field_benchmark {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "benchmarks/raw_embree.h"
 #include "benchmarks/scenes.h"
-#include "raytrace/back_surface.h"
-#include "raytrace/monte_carlo.h"
-#include "raytrace/threads.h"
+#include "raytrace/faces/back_surface.h"
+#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/sampling/threads.h"
 
 namespace retrace::benchmarks {
 

@@ -14,19 +14,19 @@ namespace {
 
 /// A design file of side x side prisms of 0.451 mm; 222 on a side make a lens of 100 cm^2.
 /// \param base what they stand on, and the plate that covers it; "": the plane
-std::filesystem::path write_design(std::int64_t side, const std::string& base) {
+std::filesystem::path write_design(std::int64_t side, const std::string& substrate) {
   const auto path = std::filesystem::temp_directory_path() / ("retrace_scale_" + std::to_string(::getpid()) + ".toml");
   const double length = 0.451 * static_cast<double>(side);
   std::ofstream(path) << "[element]\nkind = \"rtp\"\nbase_mm = 0.451\nwidth_mm = 0.451\n"
                       << "[array]\narrangement = \"offset\"\nx_length_mm = " << length << "\ny_length_mm = " << length
                       << "\n"
-                      << base << "[body]\nthickness_mm = 3.0\nrefractive_index = 1.4917\n";
+                      << substrate << "[body]\nthickness_mm = 3.0\nrefractive_index = 1.4917\n";
   return path;
 }
 
 /// What prisms stand on, by number: a plane that rises by 10 degrees, a cylinder and a sphere that bend alike at every
 /// size of the part.
-std::string base_of(std::int64_t kind, std::int64_t side) {
+std::string substrate_of(std::int64_t kind, std::int64_t side) {
   const double radius_mm = 0.451 * static_cast<double>(side);
   switch (kind) {
     case 1:
@@ -42,7 +42,7 @@ std::string base_of(std::int64_t kind, std::int64_t side) {
 
 /// Args: elements along a side; the base.
 void scale(benchmark::State& state) {
-  const auto design = write_design(state.range(0), base_of(state.range(1), state.range(0)));
+  const auto design = write_design(state.range(0), substrate_of(state.range(1), state.range(0)));
   rusage usage{};
   for (auto _ : state) {
     const pid_t child = ::fork();

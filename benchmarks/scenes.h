@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/part.h"
-#include "raytrace/surface_ray.h"
+#include "geometry/part/part.h"
+#include "raytrace/faces/surface_ray.h"
 
 namespace retrace::benchmarks {
 

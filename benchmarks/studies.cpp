@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "core/version.h"
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_reader.h"
 #include "studies/sweep/mpi_session.h"

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "benchmarks/scenes.h"
-#include "raytrace/monte_carlo.h"
-#include "raytrace/threads.h"
+#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/sampling/threads.h"
 
 namespace retrace::benchmarks::time_to_error_benchmark {
 namespace {

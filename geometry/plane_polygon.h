@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
 #include "geometry/polygon.h"
 
 namespace retrace::geometry {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/number_format.h"
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
 #include "report/result_plots.h"
 #include "studies/fabrication/fabricate.h"
 
@@ -41,14 +41,14 @@ std::pair<double, double> section_of(const fabrication::Job& job) {
 }
 
 /// Outline of an element that is cut, in plan.
-Polygon outline_of(const geometry::Element& element, const Vec2& centre, bool turned) {
+Polygon outline_of(const geometry::Element& element, const Vec2& centre, bool rotated) {
   if (const auto* const prism = std::get_if<geometry::RtpElement>(&element)) {
     const Vec2 half =
-        turned ? 0.5 * Vec2(prism->width_mm, prism->base_mm) : 0.5 * Vec2(prism->base_mm, prism->width_mm);
+        rotated ? 0.5 * Vec2(prism->width_mm, prism->base_mm) : 0.5 * Vec2(prism->base_mm, prism->width_mm);
     return rectangle(centre - half, centre + half);
   }
   Polygon outline = geometry::element_cell(element).outline;
-  for (Vec2& p : outline) p = turned ? Vec2(centre - p) : Vec2(centre + p);
+  for (Vec2& p : outline) p = rotated ? Vec2(centre - p) : Vec2(centre + p);
   return outline;
 }
 
@@ -111,7 +111,7 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
   const auto in_plan = [&](const Vec2& w) -> Vec2 { return Vec2(-w.y(), w.x()) + 0.5 * extent; };
   for (std::size_t k = 0; k < elements.size();) {
     const Vec2 centre = in_plan(elements[k].centre_mm);
-    Polygon outline = outline_of(element, centre, elements[k].turned);
+    Polygon outline = outline_of(element, centre, elements[k].rotated);
     std::int64_t sum = places[k];
     std::int64_t count = 1;
     std::size_t next = k + 1;
@@ -119,7 +119,7 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
            elements[next].row == elements[k].row && elements[next].column == elements[next - 1].column + 1) {
       const geometry::Rectangle box = geometry::bounding_box(outline);
       const geometry::Rectangle more =
-          geometry::bounding_box(outline_of(element, in_plan(elements[next].centre_mm), elements[next].turned));
+          geometry::bounding_box(outline_of(element, in_plan(elements[next].centre_mm), elements[next].rotated));
       outline = rectangle(box.lower.cwiseMin(more.lower), box.upper.cwiseMax(more.upper));
       sum += places[next];
       ++count;
@@ -129,7 +129,7 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
     const Vec2 half = 0.5 * geometry::bounding_box(outline).size();
     panel.regions.push_back({outline, 100.0 * mean / static_cast<double>(elements.size())});
     if (count == 1 && is_of_prisms) {
-      const Vec2 along = elements[k].turned ? Vec2(half.x(), 0.0) : Vec2(0.0, half.y());
+      const Vec2 along = elements[k].rotated ? Vec2(half.x(), 0.0) : Vec2(0.0, half.y());
       panel.fine_lines.push_back({centre - along, centre + along});
     }
     k = next;

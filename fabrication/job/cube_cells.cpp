@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -54,11 +54,11 @@ class Finder {
   }
 
  private:
-  void add(const Vec2& apex, bool turned) {
-    const Vec2 low = turned ? Vec2(apex - box_.upper) : Vec2(apex + box_.lower);
-    const Vec2 high = turned ? Vec2(apex - box_.lower) : Vec2(apex + box_.upper);
+  void add(const Vec2& apex, bool rotated) {
+    const Vec2 low = rotated ? Vec2(apex - box_.upper) : Vec2(apex + box_.lower);
+    const Vec2 high = rotated ? Vec2(apex - box_.lower) : Vec2(apex + box_.upper);
     if ((low.array() < -half_block_mm_.array()).any() || (high.array() > half_block_mm_.array()).any()) return;
-    cells_.push_back({apex, rows_, 0, turned, true});
+    cells_.push_back({apex, rows_, 0, rotated, true});
   }
 
   void number_row(std::size_t first) {

@@ -12,7 +12,7 @@ struct CubeCell {
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< of its apex, from the middle of the array's extent
   std::int32_t row = 0;                               ///< from 0, the row of least y
   std::int32_t column = 0;                            ///< from 0, x rising
-  bool turned = false;                                ///< by 180 degrees about z
+  bool rotated = false;                               ///< by 180 degrees about z
   bool is_cut = true;                                 ///< the array's pattern says so
 };
 

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/error.h"
-#include "fabrication/job/base_cells.h"
 #include "fabrication/job/cube_cells.h"
-#include "geometry/lattice.h"
+#include "fabrication/job/substrate_cells.h"
+#include "geometry/elements/lattice.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -104,7 +104,7 @@ std::vector<CutElement> cut_prisms(const Job& job) {
       element.centre_mm = scale * geometry::Vec2(y_mm, mirrored ? x_mm : -x_mm);
       element.row = static_cast<std::int32_t>(row);
       element.column = static_cast<std::int32_t>(k);
-      element.turned = array.arrangement == geometry::Arrangement::checker && (row + column) % 2 == 1;
+      element.rotated = array.arrangement == geometry::Arrangement::checker && (row + column) % 2 == 1;
       elements.push_back(element);
     }
   }
@@ -120,7 +120,7 @@ std::vector<CutElement> cut_cubes(const Job& job) {
     element.centre_mm = scale * geometry::Vec2(cell.centre_mm.y(), -cell.centre_mm.x());
     element.row = cell.row;
     element.column = cell.column;
-    element.turned = cell.turned;
+    element.rotated = cell.rotated;
     elements.push_back(element);
   }
   return elements;
@@ -129,7 +129,7 @@ std::vector<CutElement> cut_cubes(const Job& job) {
 }  // namespace
 
 std::vector<CutElement> cut_elements(const Job& job) {
-  if (job.base) return elements_on_base(job);
+  if (job.substrate) return elements_on_substrate(job);
   std::vector<CutElement> elements =
       std::holds_alternative<geometry::RtpElement>(job.element) ? cut_prisms(job) : cut_cubes(job);
   for (CutElement& element : elements) element.foot_mm = {element.centre_mm.x(), element.centre_mm.y(), 0.0};

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/part_spec.h"
+#include "geometry/elements/part_spec.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication {
@@ -108,7 +108,7 @@ struct Job {
   Array array;
   /// What the elements stand on, of moulds and of arrays without offsets and patterns; its highest place over the part
   /// is z = 0, and the blank's face has its shape. None: the plane z = 0.
-  std::optional<geometry::Base> base;
+  std::optional<geometry::Substrate> substrate;
   Tool tool;
   std::string machine = "ideal";  ///< name of a shipped machine, or a file
   Strategy strategy = Strategy::two_step;
@@ -124,7 +124,7 @@ struct CutElement {
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();
   std::int32_t row = 0;     ///< from 0 at y = 0
   std::int32_t column = 0;  ///< from 0 at x = 0
-  bool turned = false;      ///< a prism by 90 degrees about z: its roof edge lies along y_w; a cube corner by 180
+  bool rotated = false;     ///< a prism by 90 degrees about z: its roof edge lies along y_w; a cube corner by 180
   geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< on the blank: the middle of the aperture, or over the apex
   /// Turns directions of an element on a flat blank into those of this one: the third column is its axis.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();

@@ -7,7 +7,7 @@
 
 #include "core/angle.h"
 #include "core/number_format.h"
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
 
 namespace retrace::fabrication {
 namespace {

@@ -20,8 +20,8 @@ namespace {
 using geometry::Vec3;
 
 /// Azimuth of dihedral edge 0, 1 or 2 in the workpiece frame, whose x runs along y of the part.
-double edge_azimuth_deg(bool turned, int edge) {
-  return 120.0 * edge - 90.0 + (turned ? 180.0 : 0.0);
+double edge_azimuth_deg(bool rotated, int edge) {
+  return 120.0 * edge - 90.0 + (rotated ? 180.0 : 0.0);
 }
 
 Vec3 horizontal(double azimuth_deg) {
@@ -31,7 +31,7 @@ Vec3 horizontal(double azimuth_deg) {
 
 /// In the middle between its two edges.
 double facet_azimuth_deg(const FacetChoice& facet) {
-  return edge_azimuth_deg(facet.turned, facet.facet - 1) + 60.0;
+  return edge_azimuth_deg(facet.rotated, facet.facet - 1) + 60.0;
 }
 
 Vec3 words_of(const Machine& machine, const Vec3& point_mm, const RotaryPose& pose) {
@@ -55,7 +55,7 @@ Vec3 cube_facet_normal(const FacetChoice& facet) {
 
 std::array<Vec3, 2> cube_facet_edges(const FacetChoice& facet) {
   const auto edge = [&](int k) -> Vec3 {
-    const Vec3 outwards = horizontal(edge_azimuth_deg(facet.turned, k));
+    const Vec3 outwards = horizontal(edge_azimuth_deg(facet.rotated, k));
     return (std::numbers::sqrt2 * outwards + Vec3::UnitZ()) / std::numbers::sqrt3;
   };
   return {edge(facet.facet - 1), edge(facet.facet)};

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
 
 namespace retrace::fabrication {
 namespace {

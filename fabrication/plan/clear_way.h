@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "fabrication/job/base_cells.h"
+#include "fabrication/job/substrate_cells.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/plan/section.h"
 #include "fabrication/program/program.h"

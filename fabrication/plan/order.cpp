@@ -6,14 +6,14 @@ namespace retrace::fabrication {
 
 namespace {
 
-void put_in_order(const std::vector<CutElement>& elements, bool turned, std::vector<std::int32_t>& order) {
+void put_in_order(const std::vector<CutElement>& elements, bool rotated, std::vector<std::int32_t>& order) {
   const auto line_of = [&](std::int32_t k) {
     const CutElement& element = elements[static_cast<std::size_t>(k)];
-    return turned ? element.row : element.column;
+    return rotated ? element.row : element.column;
   };
   const auto place_of = [&](std::int32_t k) {
     const CutElement& element = elements[static_cast<std::size_t>(k)];
-    return turned ? element.column : element.row;
+    return rotated ? element.column : element.row;
   };
   std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
     if (line_of(a) != line_of(b)) return line_of(a) < line_of(b);
@@ -34,7 +34,7 @@ void put_in_order(const std::vector<CutElement>& elements, bool turned, std::vec
 std::map<ElementGroup, std::vector<std::int32_t>> cutting_orders(const std::vector<CutElement>& elements) {
   std::map<ElementGroup, std::vector<std::int32_t>> orders;
   for (std::size_t k = 0; k < elements.size(); ++k)
-    orders[{elements[k].turned, elements[k].orientation}].push_back(static_cast<std::int32_t>(k));
+    orders[{elements[k].rotated, elements[k].orientation}].push_back(static_cast<std::int32_t>(k));
   for (auto& [group, order] : orders) put_in_order(elements, group.first, order);
   return orders;
 }

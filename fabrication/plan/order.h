@@ -13,7 +13,7 @@ namespace retrace::fabrication {
 using ElementGroup = std::pair<bool, std::int32_t>;
 
 /// The elements of each group in the order in which a pose cuts them: to and fro along lines that lie on machine X
-/// (columns of the array; of turned elements rows), so that most moves are one pitch long and keep their height.
+/// (columns of the array; of rotated elements rows), so that most moves are one pitch long and keep their height.
 std::map<ElementGroup, std::vector<std::int32_t>> cutting_orders(const std::vector<CutElement>& elements);
 
 }  // namespace retrace::fabrication

@@ -11,14 +11,14 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "fabrication/job/base_cells.h"
+#include "fabrication/job/substrate_cells.h"
 #include "fabrication/plan/chiseling.h"
 #include "fabrication/plan/clear_way.h"
 #include "fabrication/plan/move_time.h"
 #include "fabrication/plan/order.h"
 #include "fabrication/plan/routines.h"
 #include "fabrication/plan/stages.h"
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -108,7 +108,7 @@ class ProgramMaker {
     const std::map<ElementGroup, std::vector<std::int32_t>> orders = cutting_orders(plan_.elements);
     const auto order_of = [&](const Stage& stage) -> const std::vector<std::int32_t>& {
       const CuttingPose& pose = plan_.poses[stage.pose];
-      return orders.at({pose.facet.turned, pose.orientation});
+      return orders.at({pose.facet.rotated, pose.orientation});
     };
     for (const Stage& stage : plan_.stages)
       if (stage.roughs) roughing_total_ += static_cast<std::int64_t>(order_of(stage).size());
@@ -127,11 +127,11 @@ class ProgramMaker {
       for (const std::int32_t element : order) visit(stage, element, offsets);
     }
     end();
-    plan_.programs.size() == 1 ? void(plan_.programs.front().name = base_name()) : number_programs();
+    plan_.programs.size() == 1 ? void(plan_.programs.front().name = substrate_name()) : number_programs();
   }
 
  private:
-  std::string base_name() const {
+  std::string substrate_name() const {
     if (options_.phase == "all") return "program";
     if (!options_.phase.ends_with('+')) return options_.phase;
     return options_.phase.substr(0, options_.phase.size() - 1) + "_and_after";
@@ -139,7 +139,7 @@ class ProgramMaker {
 
   void number_programs() {
     for (std::size_t k = 0; k < plan_.programs.size(); ++k) {
-      plan_.programs[k].name = fmt::format("{}_{:03}", base_name(), k + 1);
+      plan_.programs[k].name = fmt::format("{}_{:03}", substrate_name(), k + 1);
       plan_.programs[k].header.insert(plan_.programs[k].header.begin(),
                                       fmt::format("Part {} of {}", k + 1, plan_.programs.size()));
     }
@@ -148,7 +148,7 @@ class ProgramMaker {
   void begin() {
     program_ = {};
     program_seconds_ = 0.0;
-    if (!job_.base) program_.subroutines = plan_.subroutines;
+    if (!job_.substrate) program_.subroutines = plan_.subroutines;
     program_.tilt_letter = machine_.tilt_letter();
     at_ = {};
     raise();
@@ -259,7 +259,7 @@ class ProgramMaker {
     *at_.y_nm += reach.y_end_nm;
     *at_.z_nm += reach.z_end_nm;
     program_.items.emplace_back(visit);
-    if (job_.base) used_.insert(visit.subroutine);
+    if (job_.substrate) used_.insert(visit.subroutine);
   }
 
   void spend(Stage* stage, double TimeShares::*on, double seconds) {
@@ -270,7 +270,7 @@ class ProgramMaker {
 
   bool is_full(const Stage& stage) const {
     if (program_.items.size() < 4) return false;
-    if (job_.base && is_out_of_numbers(stage)) return true;
+    if (job_.substrate && is_out_of_numbers(stage)) return true;
     if (!options_.split_hours) return false;
     constexpr double kToLeaveS = 30.0;  // for the way home
     return program_seconds_ + routine_times_[stage.subroutine].total_s() + kToLeaveS >
@@ -322,7 +322,7 @@ class ProgramMaker {
     raise();
     turn(0, 0);
     program_.header = header();
-    if (job_.base) add_used_subroutines();
+    if (job_.substrate) add_used_subroutines();
     used_.clear();
     plan_.program_times_s.push_back(program_seconds_);
     plan_.programs.push_back(std::move(program_));
@@ -335,8 +335,8 @@ class ProgramMaker {
 
   /// Where the tool is touched off.
   std::string zero() const {
-    return job_.base ? "Zero: centre of the array, as high as the highest place of the blank"
-                     : "Zero: centre of the array on the face of the blank";
+    return job_.substrate ? "Zero: centre of the array, as high as the highest place of the blank"
+                          : "Zero: centre of the array on the face of the blank";
   }
 
   /// What is cut, by which tool.
@@ -363,7 +363,7 @@ class ProgramMaker {
         fmt::format("Blank: {}, array of {} x {} mm along X and Y at {}0 C0",
                     kWorkpieceWords[static_cast<std::size_t>(job_.workpiece.kind)], fixed(extent.x(), 3),
                     fixed(extent.y(), 3), tilt)};
-    if (job_.base) lines.push_back(plain(base_description(job_)));
+    if (job_.substrate) lines.push_back(plain(substrate_description(job_)));
     for (const std::string& line : description()) lines.push_back(line);
     const bool is_finished = is_dmc || job_.strategy == Strategy::two_step;
     lines.push_back(plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
@@ -372,7 +372,7 @@ class ProgramMaker {
     constexpr std::size_t kMostPoses = 24;
     for (const CuttingPose& pose : std::span(plan_.poses).first(std::min(kMostPoses, plan_.poses.size())))
       lines.push_back(fmt::format("Pose: facet {}{} {}{:.7f} C{:.7f}", pose.facet.facet,
-                                  pose.facet.turned ? " of turned elements" : "", tilt, pose.rounded.a_deg,
+                                  pose.facet.rotated ? " of turned elements" : "", tilt, pose.rounded.a_deg,
                                   pose.rounded.c_deg));
     if (plan_.poses.size() > kMostPoses)
       lines.push_back(fmt::format("And {} poses more, each where it begins", plan_.poses.size() - kMostPoses));
@@ -451,7 +451,7 @@ Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& option
   plan.elements = cut_elements(job);
   check_options(options, plan.elements.size());
   check_machine(job, machine);
-  if (job.base) plan.stock_mm = stock_mm(job, plan.elements);
+  if (job.substrate) plan.stock_mm = stock_mm(job, plan.elements);
   plan.cuts_per_facet =
       job.strategy == Strategy::dmc ? chiseling_layers(job, plan.stock_mm) : cuts_per_facet(job, plan.stock_mm);
   const std::vector<RoutineStart> starts = add_stages(job, machine, plan);

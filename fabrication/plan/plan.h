@@ -36,7 +36,7 @@ struct TimeShares {
 
 /// One routine in one pose, for all elements of that orientation.
 struct Stage {
-  std::string name;      ///< "roughing", "finishing-1-facet-1", "layer-3-facet-2", with "-turned" for turned elements
+  std::string name;      ///< "roughing", "finishing-1-facet-1", "layer-3-facet-2", with "-turned" for rotated elements
   std::size_t pose = 0;  ///< index in Plan::poses
   std::uint32_t subroutine = 0;
   bool roughs = false;

@@ -60,12 +60,12 @@ Vec3 facet_normal(const geometry::RtpElement& element, const FacetChoice& facet)
   const double half = half_apex_rad(element);
   const double side = facet.facet == 1 ? -1.0 : 1.0;
   const Vec3 normal(0.0, side * std::cos(half), std::sin(half));
-  return facet.turned ? turned_back(normal) : normal;
+  return facet.rotated ? turned_back(normal) : normal;
 }
 
 Vec3 root_direction(const FacetChoice& facet) {
   const Vec3 root(facet.facet == 1 ? 1.0 : -1.0, 0.0, 0.0);
-  return facet.turned ? turned_back(root) : root;
+  return facet.rotated ? turned_back(root) : root;
 }
 
 double root_depth_mm(const geometry::RtpElement& element) {
@@ -108,7 +108,7 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   const InputLocation where{job.source, 0, "machine"};
   const geometry::RtpElement element = blank_prism(job);
   const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
-  const double nominal_c_deg = (facet.facet == 1 ? 0.0 : 180.0) + (facet.turned ? 90.0 : 0.0);
+  const double nominal_c_deg = (facet.facet == 1 ? 0.0 : 180.0) + (facet.rotated ? 90.0 : 0.0);
   CuttingPose pose;
   pose.facet = facet;
   pose.orientation = stance.orientation;
@@ -134,7 +134,7 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   section.floor_normal = {floor.y(), floor.z()};
   section.floor_direction = direction_in_words(machine, -std::sin(apex_rad), std::cos(apex_rad));
   section.bisector = direction_in_words(machine, -std::sin(0.5 * apex_rad), std::cos(0.5 * apex_rad));
-  const FacetChoice other{facet.turned, 3 - facet.facet};
+  const FacetChoice other{facet.rotated, 3 - facet.facet};
   const Vec3 design_floor = in_words(machine, motion.direction(pose.turn * facet_normal(element, other)));
   section.lift_mm = std::abs(design_floor.x() / design_floor.z()) * 0.5 * job.tool.width_mm;
   const Vec3 face = in_words(machine, motion.direction(pose.turn.col(2)));

@@ -12,10 +12,10 @@
 namespace retrace::fabrication {
 
 /// A facet of an element, as a pose can present it to the tool. Facet 1 of a prism faces -Y of the workpiece frame (for
-/// a turned element -X), facet 2 the other way (docs/theory/cutting.md). Facets 1 to 3 of a cube corner lie between its
-/// dihedral edges k and k + 1 (docs/theory/micro_chiseling.md).
+/// a rotated element -X), facet 2 the other way (docs/theory/cutting.md). Facets 1 to 3 of a cube corner lie between
+/// its dihedral edges k and k + 1 (docs/theory/micro_chiseling.md).
 struct FacetChoice {
-  bool turned = false;
+  bool rotated = false;
   int facet = 1;
 };
 

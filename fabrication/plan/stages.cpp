@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "fabrication/job/base_cells.h"
+#include "fabrication/job/substrate_cells.h"
 #include "fabrication/plan/chiseling.h"
 #include "fabrication/plan/order.h"
 #include "fabrication/plan/routines.h"
@@ -54,7 +54,7 @@ class StageMaker {
  private:
   /// The elements that stand alike, those that are not turned first.
   void find_groups() {
-    const double start_mm = job_.base ? stock_mm(job_, plan_.elements, job_.process.clearance_mm) : 0.0;
+    const double start_mm = job_.substrate ? stock_mm(job_, plan_.elements, job_.process.clearance_mm) : 0.0;
     for (std::size_t k = 0; k < plan_.elements.size(); ++k) {
       const CutElement& element = plan_.elements[k];
       Stance stance;
@@ -62,8 +62,8 @@ class StageMaker {
       stance.turn = element.turn;
       stance.stock_mm = plan_.stock_mm;
       stance.start_mm = start_mm;
-      if (job_.base) stance.element = static_cast<std::int64_t>(k);
-      groups_.try_emplace({element.turned, element.orientation}, stance);
+      if (job_.substrate) stance.element = static_cast<std::int64_t>(k);
+      groups_.try_emplace({element.rotated, element.orientation}, stance);
       has_tilts_ = has_tilts_ || element.orientation > 0;
     }
   }
@@ -120,7 +120,7 @@ class StageMaker {
 
   /// What tells the elements of a pose apart in the names of its stages.
   std::string group_name(std::size_t pose) const {
-    std::string name = plan_.poses[pose].facet.turned ? "-turned" : "";
+    std::string name = plan_.poses[pose].facet.rotated ? "-turned" : "";
     if (has_tilts_) name += fmt::format("-tilt-{}", plan_.poses[pose].orientation + 1);
     return name;
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fabrication/turning/hollowness.h"
+#include "fabrication/turning/concavity_bound.h"
 
 namespace retrace::fabrication::turning {
 namespace {
@@ -47,12 +47,12 @@ TouchMap::TouchMap(const TurnedSurface& surface, const TurningTool& tool, double
         },
         forget_box);
   }
-  prove_not_hollow(surface.base(), all, limit_per_mm, is_reached, forget_box);
+  bound_concavity(surface.base(), all, limit_per_mm, is_reached, forget_box);
   for (const Lenslet& lenslet : surface.lenslets()) {
     const Vec2 half = Vec2::Constant(lenslet.outer.most_mm);
     const PlanBox box{lenslet.outer.centre_mm - half, lenslet.outer.centre_mm + half};
-    if (is_reached(box) && !(is_proved_not_hollow(lenslet, limit_per_mm) &&
-                             is_blend_proved_not_hollow(lenslet, surface.base(), limit_per_mm)))
+    if (is_reached(box) && !(is_concavity_bounded(lenslet, limit_per_mm) &&
+                             is_blend_concavity_bounded(lenslet, surface.base(), limit_per_mm)))
       forget_box(box);
   }
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fabrication/machine/machine.h"
-#include "fabrication/verify/sweep.h"
+#include "fabrication/verify/swept_volume.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication {

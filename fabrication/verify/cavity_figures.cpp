@@ -70,10 +70,10 @@ class Places {
   double leading_rad_;
 };
 
-LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, std::span<const Sweep> sweeps,
+LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, std::span<const SweptVolume> sweeps,
                        std::span<const RigidMotion> poses, const ToolWedge& wedge, std::vector<LineSpan>& spans) {
   spans.clear();
-  for (const Sweep& sweep : sweeps)
+  for (const SweptVolume& sweep : sweeps)
     if (const auto span =
             swept_span(wedge, sweep, poses[sweep.pose].point(point), poses[sweep.pose].direction(direction)))
       spans.push_back(*span);
@@ -92,7 +92,7 @@ void take(FacetFigures& figures, const Vec2& place, const LineSurface& surface) 
 
 }  // namespace
 
-ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const Sweep> sweeps,
+ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const SweptVolume> sweeps,
                               std::span<const RigidMotion> poses, const ToolWedge& wedge, double nose_angle_deg,
                               const Prediction& prediction) {
   ElementFigures figures;

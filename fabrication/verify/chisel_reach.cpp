@@ -12,8 +12,8 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "fabrication/verify/groove.h"
-#include "fabrication/verify/sweep.h"
-#include "geometry/lattice.h"
+#include "fabrication/verify/swept_volume.h"
+#include "geometry/elements/lattice.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -95,7 +95,7 @@ class Cutter {
   /// Whether some plunge takes a point.
   bool is_open(const Vec3& point) const {
     constexpr double kNear = 1e-9;
-    return std::any_of(sweeps_.begin(), sweeps_.end(), [&](const Sweep& sweep) {
+    return std::any_of(sweeps_.begin(), sweeps_.end(), [&](const SweptVolume& sweep) {
       const RigidMotion& pose = poses_[sweep.pose];
       const auto span = swept_span(wedge_, sweep, pose.point(point), pose.direction(Vec3::UnitZ()));
       return span && span->low <= kNear && span->high >= -kNear;
@@ -104,7 +104,7 @@ class Cutter {
 
   double surface_over(const Vec3& point, const Vec3& direction) const {
     spans_.clear();
-    for (const Sweep& sweep : sweeps_) {
+    for (const SweptVolume& sweep : sweeps_) {
       const RigidMotion& pose = poses_[sweep.pose];
       if (const auto span = swept_span(wedge_, sweep, pose.point(point), pose.direction(direction)))
         spans_.push_back(*span);
@@ -117,7 +117,7 @@ class Cutter {
   double half_mm_;
   ToolWedge wedge_;
   std::vector<RigidMotion> poses_;
-  std::vector<Sweep> sweeps_;
+  std::vector<SweptVolume> sweeps_;
   mutable std::vector<LineSpan> spans_;
 };
 

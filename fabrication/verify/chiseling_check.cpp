@@ -28,7 +28,8 @@ ChiselingCheck::ChiselingCheck(const Job& job, const std::vector<Groove>& caviti
   }
 }
 
-void ChiselingCheck::move(const Sweep& sweep, const RigidMotion& back, const ToolWedge& wedge, std::size_t element) {
+void ChiselingCheck::move(const SweptVolume& sweep, const RigidMotion& back, const ToolWedge& wedge,
+                          std::size_t element) {
   const bool goes_down = cavities_[element].axis.dot(back.direction(sweep.to_mm - sweep.from_mm)) < 0.0;
   if (goes_down) {
     close();
@@ -38,7 +39,8 @@ void ChiselingCheck::move(const Sweep& sweep, const RigidMotion& back, const Too
   }
 }
 
-void ChiselingCheck::open(const Sweep& sweep, const RigidMotion& back, const ToolWedge& wedge, std::size_t element) {
+void ChiselingCheck::open(const SweptVolume& sweep, const RigidMotion& back, const ToolWedge& wedge,
+                          std::size_t element) {
   const Groove& cavity = cavities_[element];
   const Vec3 clearance_face = back.direction(wedge.sides[0].outward);
   OpenCut cut;

@@ -10,7 +10,7 @@
 #include "fabrication/job/job.h"
 #include "fabrication/read/nc_motion.h"
 #include "fabrication/verify/groove.h"
-#include "fabrication/verify/sweep.h"
+#include "fabrication/verify/swept_volume.h"
 
 namespace retrace::fabrication {
 
@@ -24,7 +24,7 @@ class ChiselingCheck {
   ChiselingCheck(const Job& job, const std::vector<Groove>& cavities, double tolerance_mm, Report report);
 
   /// A feed move within the material of an element. \param back from the frame of the machine to the workpiece's
-  void move(const Sweep& sweep, const RigidMotion& back, const ToolWedge& wedge, std::size_t element);
+  void move(const SweptVolume& sweep, const RigidMotion& back, const ToolWedge& wedge, std::size_t element);
   void dwell(double seconds);
   /// The tool has left the material, or turned, or the program ends.
   void close();
@@ -47,7 +47,7 @@ class ChiselingCheck {
     NcPlace last;
   };
 
-  void open(const Sweep& sweep, const RigidMotion& back, const ToolWedge& wedge, std::size_t element);
+  void open(const SweptVolume& sweep, const RigidMotion& back, const ToolWedge& wedge, std::size_t element);
   void check_layer(const OpenCut& cut, const State& state);
 
   const Job& job_;

@@ -19,7 +19,7 @@ struct Plane {
 
 /// The planes of the body that a wedge sweeps: its own sides, moved by what the travel adds to their support, and the
 /// planes that hold the travel and one of its edges.
-std::vector<Plane> planes_of(const Sweep& sweep, const RigidMotion& back, const ToolWedge& wedge) {
+std::vector<Plane> planes_of(const SweptVolume& sweep, const RigidMotion& back, const ToolWedge& wedge) {
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   const std::array<Vec3, 2> tips = {sweep.from_mm - wedge.half_width_mm * wedge.edge,
                                     sweep.from_mm + wedge.half_width_mm * wedge.edge};
@@ -70,10 +70,10 @@ double DexelField::volume_mm3() const {
   return sum * cell_area_mm2;
 }
 
-DexelField cut_dexels(std::span<const Sweep> sweeps, std::span<const RigidMotion> poses, const ToolWedge& wedge,
+DexelField cut_dexels(std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses, const ToolWedge& wedge,
                       const DexelBox& box, int axis, std::size_t lines) {
   std::vector<std::vector<Plane>> bodies;
-  for (const Sweep& sweep : sweeps) bodies.push_back(planes_of(sweep, poses[sweep.pose].inverse(), wedge));
+  for (const SweptVolume& sweep : sweeps) bodies.push_back(planes_of(sweep, poses[sweep.pose].inverse(), wedge));
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
   const Vec3 size = box.high_mm - box.low_mm;

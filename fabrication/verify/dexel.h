@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "fabrication/verify/sweep.h"
+#include "fabrication/verify/swept_volume.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication {
@@ -30,7 +30,7 @@ struct DexelField {
 /// Cuts a field of lines, as a check of the exact figures and for pictures: the swept bodies are clipped here as
 /// polyhedra, by their supporting planes, and not as in swept_span(). Resolution is that of the grid.
 /// \param lines along the longer side of the field \pre lines >= 1, the box has a volume
-DexelField cut_dexels(std::span<const Sweep> sweeps, std::span<const RigidMotion> poses, const ToolWedge& wedge,
+DexelField cut_dexels(std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses, const ToolWedge& wedge,
                       const DexelBox& box, int axis, std::size_t lines);
 
 }  // namespace retrace::fabrication

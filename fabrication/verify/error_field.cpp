@@ -45,7 +45,7 @@ struct ElementField {
   }
 };
 
-ElementField field_of(const Groove& groove, std::span<const Sweep> sweeps, std::span<const RigidMotion> poses,
+ElementField field_of(const Groove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
                       const ToolWedge& wedge, std::size_t lines) {
   const Vec3 across = groove.root_direction.cross(Vec3::UnitZ());
   const Vec3 half =
@@ -80,7 +80,8 @@ ElementField field_of(const Groove& groove, std::span<const Sweep> sweeps, std::
 
 ErrorField error_field(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                        std::size_t pixels) {
-  if (job.base) throw InputError({job.source, 0, "base"}, "no map is drawn of elements on a base, only of flat arrays");
+  if (job.substrate)
+    throw InputError({job.source, 0, "base"}, "no map is drawn of elements on a base, only of flat arrays");
   const Workpiece3d workpiece = workpiece_of(job, machine, {});
   FindingList findings;
   ProgramCheck check(workpiece, findings);

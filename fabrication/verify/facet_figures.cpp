@@ -32,10 +32,10 @@ struct Stations {
 
 class Measurer {
  public:
-  Measurer(const Groove& groove, std::span<const Sweep> sweeps, std::span<const RigidMotion> poses,
+  Measurer(const Groove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
            const ToolWedge& wedge, const Prediction& prediction)
       : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
-    for (const Sweep& sweep : sweeps) used_poses_.push_back(sweep.pose);
+    for (const SweptVolume& sweep : sweeps) used_poses_.push_back(sweep.pose);
     std::sort(used_poses_.begin(), used_poses_.end());
     used_poses_.erase(std::unique(used_poses_.begin(), used_poses_.end()), used_poses_.end());
     find_stations();
@@ -111,14 +111,14 @@ class Measurer {
   }
 
   /// Where the plane in which the middle of the edge moves meets the root line, along it.
-  double middle_of(const Sweep& sweep) const {
+  double middle_of(const SweptVolume& sweep) const {
     const Vec3& across = wedge_.edge;
     const RigidMotion& pose = poses_[sweep.pose];
     return across.dot(sweep.to_mm - pose.point(groove_.root_mm)) / across.dot(pose.direction(groove_.root_direction));
   }
 
   void find_stations() {
-    for (const Sweep& sweep : sweeps_) {
+    for (const SweptVolume& sweep : sweeps_) {
       const double middle = middle_of(sweep);
       const auto is_same = [&](double known) { return std::abs(known - middle) < kSamePassMm; };
       if (std::none_of(stations_.pass_middles_mm.begin(), stations_.pass_middles_mm.end(), is_same))
@@ -142,7 +142,7 @@ class Measurer {
   /// and evenly over the facet.
   std::vector<double> slant_positions(std::size_t facet) const {
     std::vector<double> corners = {strip_mm_, burr_end_mm_, groove_.facet_length_mm};
-    for (const Sweep& sweep : sweeps_)
+    for (const SweptVolume& sweep : sweeps_)
       for (const Vec3& tip : {sweep.from_mm, sweep.to_mm}) {
         const Vec3 p = poses_[sweep.pose].inverse().point(tip);
         corners.push_back(groove_.facets[facet].up_slope.dot(p - groove_.root_mm));
@@ -175,7 +175,7 @@ class Measurer {
     for (const std::uint32_t pose : used_poses_) {
       const Vec3 p = poses_[pose].point(point);
       const Vec3 d = poses_[pose].direction(direction);
-      for (const Sweep& sweep : sweeps_)
+      for (const SweptVolume& sweep : sweeps_)
         if (sweep.pose == pose)
           if (const auto span = swept_span(wedge_, sweep, p, d)) spans_.push_back(*span);
     }
@@ -248,7 +248,7 @@ class Measurer {
   }
 
   const Groove& groove_;
-  std::span<const Sweep> sweeps_;
+  std::span<const SweptVolume> sweeps_;
   std::span<const RigidMotion> poses_;
   const ToolWedge& wedge_;
   const Prediction& prediction_;
@@ -263,8 +263,9 @@ class Measurer {
 
 }  // namespace
 
-ElementFigures element_figures(const Groove& groove, std::span<const Sweep> sweeps, std::span<const RigidMotion> poses,
-                               const ToolWedge& wedge, const Prediction& prediction, bool is_one_facet_ploughed) {
+ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume> sweeps,
+                               std::span<const RigidMotion> poses, const ToolWedge& wedge, const Prediction& prediction,
+                               bool is_one_facet_ploughed) {
   ElementFigures figures;
   figures.is_cut = !sweeps.empty();
   if (!figures.is_cut) return figures;

@@ -7,7 +7,7 @@
 
 #include "fabrication/verify/groove.h"
 #include "fabrication/verify/prediction.h"
-#include "fabrication/verify/sweep.h"
+#include "fabrication/verify/swept_volume.h"
 
 namespace retrace::fabrication {
 
@@ -42,14 +42,15 @@ struct ElementFigures {
 
 /// Of a prism. \param poses machine_from_workpiece for each Sweep::pose
 /// \param is_one_facet_ploughed the strategy ploughs the facet that it does not plunge
-ElementFigures element_figures(const Groove& groove, std::span<const Sweep> sweeps, std::span<const RigidMotion> poses,
-                               const ToolWedge& wedge, const Prediction& prediction, bool is_one_facet_ploughed);
+ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume> sweeps,
+                               std::span<const RigidMotion> poses, const ToolWedge& wedge, const Prediction& prediction,
+                               bool is_one_facet_ploughed);
 
 /// Of a cube corner: the surface along lines normal to each facet over the whole of it, close to the dihedral edges and
 /// on both sides of where the leading edge stands with its tip in the apex.
 /// \param is_hexagonal the facets are squares of half the edges' length, not triangles up to the blank's face
 /// \param nose_angle_deg of the tool \param prediction how the facets stand to it
-ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const Sweep> sweeps,
+ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const SweptVolume> sweeps,
                               std::span<const RigidMotion> poses, const ToolWedge& wedge, double nose_angle_deg,
                               const Prediction& prediction);
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/angle.h"
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
 
 namespace retrace::fabrication {
 
@@ -33,14 +33,14 @@ void stand(Groove& groove, const CutElement& element, double stock_mm) {
 
 Groove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm) {
   const double half_apex = 0.5 * Angle::from_deg(size.apex_angle_deg).rad();
-  const Vec3 across = element.turned ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  const Vec3 across = element.rotated ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   Groove groove;
   groove.half_base_mm = 0.5 * size.base_mm;
   groove.half_width_mm = 0.5 * size.width_mm;
   groove.facet_length_mm = groove.half_base_mm / std::sin(half_apex);
   groove.depth_mm = groove.half_base_mm / std::tan(half_apex);
   groove.root_mm = {0.0, 0.0, -groove.depth_mm};
-  groove.root_direction = element.turned ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
+  groove.root_direction = element.rotated ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
   groove.facets.resize(2);
   for (std::size_t f = 0; f < 2; ++f) {
     const double side = f == 0 ? 1.0 : -1.0;  // facet 1 lies on the far side of the root and faces back
@@ -59,7 +59,7 @@ Groove cavity_of(const CutElement& element, const geometry::Element& size, doubl
   cavity.facet_length_mm = std::numbers::sqrt3 * cavity.depth_mm;
   cavity.half_base_mm = cavity.half_width_mm = geometry::element_cell(size).outline.front().norm();
   // The edges of a cube that stands on its corner: 1 / sqrt(3) up each, 120 degrees apart.
-  const double first = element.turned ? 0.5 * std::numbers::pi : -0.5 * std::numbers::pi;
+  const double first = element.rotated ? 0.5 * std::numbers::pi : -0.5 * std::numbers::pi;
   for (int k = 0; k < 3; ++k) {
     const double azimuth = first + 2.0 * std::numbers::pi / 3.0 * k;
     cavity.edges.emplace_back(std::sqrt(2.0 / 3.0) * std::cos(azimuth), std::sqrt(2.0 / 3.0) * std::sin(azimuth),

@@ -27,10 +27,10 @@ Vec3 across(const Vec3& v, const Vec3& unit) {
 
 class Searcher {
  public:
-  Searcher(const Groove& cavity, double radius_mm, std::span<const Sweep> sweeps, std::span<const RigidMotion> poses,
-           const ToolWedge& nosed)
+  Searcher(const Groove& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
+           std::span<const RigidMotion> poses, const ToolWedge& nosed)
       : cavity_(cavity), radius_mm_(radius_mm), poses_(poses), nosed_(nosed) {
-    for (const Sweep& sweep : sweeps)
+    for (const SweptVolume& sweep : sweeps)
       if (is_near(sweep)) sweeps_.push_back(sweep);
   }
 
@@ -56,7 +56,7 @@ class Searcher {
   }
 
  private:
-  bool is_near(const Sweep& sweep) const {
+  bool is_near(const SweptVolume& sweep) const {
     const RigidMotion back = poses_[sweep.pose].inverse();
     double least_mm = std::numeric_limits<double>::infinity();
     for (const Vec3& tip : {back.point(sweep.from_mm), back.point(sweep.to_mm)}) {
@@ -70,7 +70,7 @@ class Searcher {
   /// Where the first cut along a line begins, from its point.
   double first_cut_mm(const Vec3& point, const Vec3& direction, double furthest_mm) const {
     double first = furthest_mm;
-    for (const Sweep& sweep : sweeps_) {
+    for (const SweptVolume& sweep : sweeps_) {
       const RigidMotion& pose = poses_[sweep.pose];
       const auto span = swept_span(nosed_, sweep, pose.point(point), pose.direction(direction));
       if (span && span->high > 0.0) first = std::min(first, std::max(span->low, 0.0));
@@ -96,7 +96,7 @@ class Searcher {
   double radius_mm_;
   std::span<const RigidMotion> poses_;
   const ToolWedge& nosed_;
-  std::vector<Sweep> sweeps_;
+  std::vector<SweptVolume> sweeps_;
 };
 
 }  // namespace
@@ -126,7 +126,7 @@ ToolWedge nosed_wedge(const Tool& tool, const Machine& machine) {
   return wedge;
 }
 
-NoseResidue nose_residue(const Groove& cavity, double radius_mm, std::span<const Sweep> sweeps,
+NoseResidue nose_residue(const Groove& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
                          std::span<const RigidMotion> poses, const ToolWedge& nosed) {
   return Searcher(cavity, radius_mm, sweeps, poses, nosed).run();
 }

@@ -5,7 +5,7 @@
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/verify/groove.h"
-#include "fabrication/verify/sweep.h"
+#include "fabrication/verify/swept_volume.h"
 
 namespace retrace::fabrication {
 
@@ -24,7 +24,7 @@ struct NoseResidue {
 
 /// Found along lines, by cutting with the nosed wedge in the moves of the programs. Searched within 40 radii.
 /// \param sweeps of the element \param poses machine_from_workpiece for each Sweep::pose
-NoseResidue nose_residue(const Groove& cavity, double radius_mm, std::span<const Sweep> sweeps,
+NoseResidue nose_residue(const Groove& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
                          std::span<const RigidMotion> poses, const ToolWedge& nosed);
 
 }  // namespace retrace::fabrication

@@ -137,7 +137,7 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   const auto all = static_cast<std::uint8_t>(kLinearBits | rotary);
   const auto known_after = static_cast<std::uint8_t>((motion.known | motion.moved) & all);
   if (known_after != all || (motion.known & kLinearBits) != kLinearBits) return;
-  Sweep sweep;
+  SweptVolume sweep;
   sweep.pose = static_cast<std::uint32_t>(pose_index(rotary_pose(machine_, motion.to)));
   sweep.place = motion.place;
   sweep.is_rapid = motion.move == NcMove::rapid;
@@ -246,7 +246,7 @@ void ProgramCheck::check_turn_of_head(const NcMotion& motion) {
            lowest_mm, 0.0);
 }
 
-void ProgramCheck::find_corners(const Sweep& sweep, std::optional<std::size_t> element) {
+void ProgramCheck::find_corners(const SweptVolume& sweep, std::optional<std::size_t> element) {
   corners_.clear();
   const RigidMotion& back = back_[sweep.pose];
   // Beside the elements the blank ends in the plane that touches its face under the tool.
@@ -278,14 +278,14 @@ void ProgramCheck::find_corners(const Sweep& sweep, std::optional<std::size_t> e
   }
 }
 
-std::optional<std::size_t> ProgramCheck::element_of(const Sweep& sweep) const {
+std::optional<std::size_t> ProgramCheck::element_of(const SweptVolume& sweep) const {
   const Vec3 from = back_[sweep.pose].point(sweep.from_mm);
   const Vec3 to = back_[sweep.pose].point(sweep.to_mm);
   return map_.at(from.z() < to.z() ? from : to);
 }
 
 /// Least height of the tip over the blank on the way; over a flat one at an end of it.
-double ProgramCheck::lowest_over_blank_mm(const Sweep& sweep) const {
+double ProgramCheck::lowest_over_blank_mm(const SweptVolume& sweep) const {
   const Vec3 from = back_[sweep.pose].point(sweep.from_mm);
   const Vec3 to = back_[sweep.pose].point(sweep.to_mm);
   double lowest_mm = std::min(face_.height_mm(from), face_.height_mm(to));
@@ -298,7 +298,7 @@ double ProgramCheck::lowest_over_blank_mm(const Sweep& sweep) const {
   return lowest_mm;
 }
 
-void ProgramCheck::check_rapid(const NcMotion& motion, const Sweep& sweep) {
+void ProgramCheck::check_rapid(const NcMotion& motion, const SweptVolume& sweep) {
   const double clearance_mm = kClearanceShare * job_.process.clearance_mm;
   const double lowest_mm = lowest_over_blank_mm(sweep);
   const bool goes_down = motion.to.z_mm < motion.from.z_mm;
@@ -327,7 +327,7 @@ void ProgramCheck::check_feed(const NcMotion& motion, double allowed) {
 }
 
 /// The tool against table, cradle and fixtures, all of them convex.
-void ProgramCheck::check_fixtures(const Sweep& sweep) {
+void ProgramCheck::check_fixtures(const SweptVolume& sweep) {
   for (const BodyContact& contact : contacts(tool_bodies_, standing_[sweep.pose], sweep.from_mm, sweep.to_mm))
     report_contact(contact, sweep.place);
 }
@@ -336,7 +336,7 @@ void ProgramCheck::report_contact(const BodyContact& contact, const NcPlace& pla
   report("fixture_collision", place, -1, "the " + contact.tool + " runs into the " + contact.other, 0, 0);
 }
 
-void ProgramCheck::check_holder(const Sweep& sweep) {
+void ProgramCheck::check_holder(const SweptVolume& sweep) {
   const RigidMotion& back = back_[sweep.pose];
   for (const MachineBody& body : machine_.bodies) {
     if (body.carrier != Carrier::tool) continue;
@@ -354,7 +354,7 @@ void ProgramCheck::check_holder(const Sweep& sweep) {
   }
 }
 
-void ProgramCheck::check_outside(const Sweep& sweep) {
+void ProgramCheck::check_outside(const SweptVolume& sweep) {
   double deepest_mm = 0.0;
   for (const Vec3& corner : corners_) deepest_mm = std::min(deepest_mm, face_.height_mm(corner));
   if (deepest_mm < -workpiece_.tolerance_mm)
@@ -363,7 +363,7 @@ void ProgramCheck::check_outside(const Sweep& sweep) {
            -deepest_mm * kNmPerMm, workpiece_.tolerance_mm * kNmPerMm);
 }
 
-void ProgramCheck::check_cut(const NcMotion& motion, const Sweep& sweep, std::size_t element) {
+void ProgramCheck::check_cut(const NcMotion& motion, const SweptVolume& sweep, std::size_t element) {
   const Groove& groove = workpiece_.grooves[element];
   const Prediction& prediction = workpiece_.prediction(element);
   const auto number = static_cast<std::int64_t>(element);
@@ -398,7 +398,7 @@ void ProgramCheck::check_cut(const NcMotion& motion, const Sweep& sweep, std::si
   close_plunge();
 }
 
-void ProgramCheck::check_chiseling(const NcMotion& motion, const Sweep& sweep, std::size_t element) {
+void ProgramCheck::check_chiseling(const NcMotion& motion, const SweptVolume& sweep, std::size_t element) {
   check_feed(motion, std::max(job_.process.roughing_feed_mm_per_min, job_.process.finishing_feed_mm_per_min));
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   if (travel.dot(wedge_.sides[0].outward) > kMostSlip * travel.norm())
@@ -407,7 +407,7 @@ void ProgramCheck::check_chiseling(const NcMotion& motion, const Sweep& sweep, s
   chiseling_->move(sweep, back_[sweep.pose], wedge_, element);
 }
 
-void ProgramCheck::check_plunge(const NcMotion& motion, const Sweep& sweep, std::size_t element) {
+void ProgramCheck::check_plunge(const NcMotion& motion, const SweptVolume& sweep, std::size_t element) {
   close_plunge();
   check_feed(motion, std::max(job_.process.roughing_feed_mm_per_min, job_.process.finishing_feed_mm_per_min));
   const Groove& groove = workpiece_.grooves[element];
@@ -451,7 +451,7 @@ void ProgramCheck::check_chip_thickness(const OpenPlunge& plunge) {
            1e3 * plunge.chip_mm, 1e3 * limit_mm);
 }
 
-void ProgramCheck::check_plough(const NcMotion& motion, const Sweep& sweep, std::size_t element) {
+void ProgramCheck::check_plough(const NcMotion& motion, const SweptVolume& sweep, std::size_t element) {
   check_feed(motion, std::max(job_.process.roughing_feed_mm_per_min, job_.process.finishing_feed_mm_per_min));
   if (!open_ || open_->element != element) return;
   if (!open_->has_dwell && job_.process.dwell_s > 0.0)

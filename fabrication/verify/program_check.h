@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "fabrication/job/base_cells.h"
 #include "fabrication/job/job.h"
+#include "fabrication/job/substrate_cells.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_motion.h"
 #include "fabrication/verify/bodies.h"
@@ -18,7 +18,7 @@
 #include "fabrication/verify/findings.h"
 #include "fabrication/verify/groove.h"
 #include "fabrication/verify/prediction.h"
-#include "fabrication/verify/sweep.h"
+#include "fabrication/verify/swept_volume.h"
 #include "fabrication/verify/visits.h"
 
 namespace retrace::fabrication {
@@ -62,7 +62,7 @@ class ProgramCheck : public NcSink {
   /// After the last program.
   void finish();
 
-  const std::vector<std::vector<Sweep>>& sweeps() const { return sweeps_; }  ///< by element
+  const std::vector<std::vector<SweptVolume>>& sweeps() const { return sweeps_; }  ///< by element
   const std::vector<RotaryPose>& pose_words() const { return pose_words_; }
   std::vector<RigidMotion> poses() const;
   const ProgramTime& time() const { return time_; }
@@ -99,24 +99,24 @@ class ProgramCheck : public NcSink {
   void check_turn(const NcMotion& motion);
   void check_axes(const NcMotion& motion);
   void check_turn_of_head(const NcMotion& motion);
-  void check_chiseling(const NcMotion& motion, const Sweep& sweep, std::size_t element);
-  void check_rapid(const NcMotion& motion, const Sweep& sweep);
-  double lowest_over_blank_mm(const Sweep& sweep) const;
+  void check_chiseling(const NcMotion& motion, const SweptVolume& sweep, std::size_t element);
+  void check_rapid(const NcMotion& motion, const SweptVolume& sweep);
+  double lowest_over_blank_mm(const SweptVolume& sweep) const;
   void check_feed(const NcMotion& motion, double allowed);
-  void check_holder(const Sweep& sweep);
-  void check_fixtures(const Sweep& sweep);
+  void check_holder(const SweptVolume& sweep);
+  void check_fixtures(const SweptVolume& sweep);
   void report_contact(const BodyContact& contact, const NcPlace& place);
-  void check_cut(const NcMotion& motion, const Sweep& sweep, std::size_t element);
-  void check_outside(const Sweep& sweep);
-  void check_plunge(const NcMotion& motion, const Sweep& sweep, std::size_t element);
-  void check_plough(const NcMotion& motion, const Sweep& sweep, std::size_t element);
+  void check_cut(const NcMotion& motion, const SweptVolume& sweep, std::size_t element);
+  void check_outside(const SweptVolume& sweep);
+  void check_plunge(const NcMotion& motion, const SweptVolume& sweep, std::size_t element);
+  void check_plough(const NcMotion& motion, const SweptVolume& sweep, std::size_t element);
   void check_chip_thickness(const OpenPlunge& plunge);
   void close_plunge();
   void check_chip();
   void count_time(const NcMotion& motion);
   /// Corners of the tool within the blank during a move, in the workpiece frame.
-  void find_corners(const Sweep& sweep, std::optional<std::size_t> element);
-  std::optional<std::size_t> element_of(const Sweep& sweep) const;
+  void find_corners(const SweptVolume& sweep, std::optional<std::size_t> element);
+  std::optional<std::size_t> element_of(const SweptVolume& sweep) const;
 
   const Workpiece3d& workpiece_;
   const Job& job_;
@@ -134,7 +134,7 @@ class ProgramCheck : public NcSink {
   std::vector<RigidMotion> poses_;
   std::vector<RigidMotion> back_;
   std::vector<std::vector<PlacedBody>> standing_;  ///< table, cradle and fixtures in each pose
-  std::vector<std::vector<Sweep>> sweeps_;
+  std::vector<std::vector<SweptVolume>> sweeps_;
   std::vector<CutState> states_;
   std::optional<OpenPlunge> open_;
   std::optional<ChiselingCheck> chiseling_;  ///< of cube corners

@@ -14,7 +14,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "fabrication/job/base_cells.h"
+#include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/verify/nose.h"
 #include "fabrication/verify/rim_overcut.h"
@@ -173,7 +173,7 @@ double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<Elemen
 /// Which elements the runs of a job with a base belong to; none for others.
 std::vector<std::optional<std::size_t>> visits_of(const Workpiece3d& workpiece,
                                                   const std::vector<NcProgram>& programs) {
-  if (!workpiece.job->base) return {};
+  if (!workpiece.job->substrate) return {};
   const Machine& machine = *workpiece.machine;
   VisitFinder finder(machine, workpiece.grooves, wedge_of(*workpiece.job, machine).tip_mm);
   for (const NcProgram& program : programs) {
@@ -220,7 +220,7 @@ Workpiece3d workpiece_of(const Job& job, const Machine& machine, const VerifyOpt
   std::map<std::pair<bool, std::int32_t>, std::size_t> groups;
   for (const CutElement& element : elements) {
     Groove groove = prism != nullptr ? groove_of(element, *prism, stock) : cavity_of(element, size, stock);
-    const auto [group, is_new] = groups.try_emplace({element.turned, element.orientation}, groups.size());
+    const auto [group, is_new] = groups.try_emplace({element.rotated, element.orientation}, groups.size());
     if (is_new) workpiece.predictions.push_back(predict(machine, groove, job.tool.width_mm));
     groove.group = group->second;
     workpiece.grooves.push_back(std::move(groove));
@@ -245,8 +245,8 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   result.tolerance_nm = options.tolerance_nm;
   const std::vector<RigidMotion> poses = check.poses();
   std::vector<bool> cuts(poses.size());
-  for (const std::vector<Sweep>& sweeps : check.sweeps())
-    for (const Sweep& sweep : sweeps) cuts[sweep.pose] = true;
+  for (const std::vector<SweptVolume>& sweeps : check.sweeps())
+    for (const SweptVolume& sweep : sweeps) cuts[sweep.pose] = true;
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (cuts[i]) result.poses.push_back(check.pose_words()[i]);
   refuse_other_machine(job, machine, others, options, workpiece, result.poses, first);
@@ -280,7 +280,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   }
   result.wall_overcut_nm_max = check.deepest_wall_mm() * kNmPerMm;
   if (is_hexagonal) result.border_overcut_mm3 = border_overcut_mm3(workpiece, result.elements);
-  if (job.base) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
+  if (job.substrate) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
   result.removed_volume_mm3 += result.border_overcut_mm3;
   if (job.strategy == Strategy::dmc)
     cut_with_nose(workpiece, check, poses, result);

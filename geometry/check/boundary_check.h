@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/closed_boundary.h"
+#include "geometry/part/closed_boundary.h"
 
 namespace retrace::geometry {
 

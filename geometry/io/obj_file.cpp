@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::pair<FacetRole, std::string_view>, 6> kGroups = {{{FacetRole::entrance, "entrance"},
                                                                             {FacetRole::retro_facet, "facets"},
                                                                             {FacetRole::flat_back, "flat_back"},
-                                                                            {FacetRole::inner_gable, "gables"},
+                                                                            {FacetRole::inner_wall, "gables"},
                                                                             {FacetRole::border_wall, "border_walls"},
                                                                             {FacetRole::side, "sides"}}};
 

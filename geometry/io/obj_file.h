@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "geometry/closed_boundary.h"
+#include "geometry/part/closed_boundary.h"
 
 namespace retrace::geometry {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "geometry/faceted_solid.h"
+#include "geometry/part/faceted_solid.h"
 
 namespace retrace::geometry {
 

@@ -36,7 +36,7 @@
 #include <vector>
 
 #include "core/version.h"
-#include "geometry/faceted_solid.h"
+#include "geometry/part/faceted_solid.h"
 
 namespace retrace::geometry {
 namespace {

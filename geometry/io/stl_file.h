@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "geometry/closed_boundary.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/part/closed_boundary.h"
+#include "geometry/part/triangle_mesh.h"
 
 namespace retrace::geometry {
 

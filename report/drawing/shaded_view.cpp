@@ -28,7 +28,7 @@ Colour colour_of(FacetRole role) {
       return {0.45, 0.66, 0.86};
     case FacetRole::flat_back:
       return {0.80, 0.79, 0.75};
-    case FacetRole::inner_gable:
+    case FacetRole::inner_wall:
     case FacetRole::border_wall:
       return {0.92, 0.70, 0.45};
     case FacetRole::entrance:

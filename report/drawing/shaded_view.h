@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/closed_boundary.h"
+#include "geometry/part/closed_boundary.h"
 #include "report/canvas.h"
 
 namespace retrace::report {

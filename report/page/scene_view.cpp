@@ -20,7 +20,7 @@ std::string face_name(FacetRole role) {
       return "a facet";
     case FacetRole::flat_back:
       return "the flat back";
-    case FacetRole::inner_gable:
+    case FacetRole::inner_wall:
       return "a wall between elements";
     case FacetRole::border_wall:
       return "a wall on the border";

@@ -10,8 +10,8 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "fabrication/job/base_cells.h"
-#include "geometry/lattice.h"
+#include "fabrication/job/substrate_cells.h"
+#include "geometry/elements/lattice.h"
 #include "studies/design/design_document.h"
 #include "studies/design/design_reader.h"
 
@@ -70,13 +70,13 @@ bool is_prism(const Job& job) {
 
 /// The elements of the job, all alike.
 geometry::PartSpec elements_of(const Job& job, bool has_planes) {
-  geometry::PartSpec part = part_on_base(job);
+  geometry::PartSpec part = part_on_substrate(job);
   // Flares reach into margins: which elements there are, the table of planes says.
   if (!has_planes || is_prism(job)) {
     part.x_offset_mm = job.array.x_offset_mm;
     part.y_offset_mm = job.array.y_offset_mm;
   }
-  if (is_prism(job) && !job.base && part.arrangement != geometry::Arrangement::offset)
+  if (is_prism(job) && !job.substrate && part.arrangement != geometry::Arrangement::offset)
     part.partial_elements = geometry::PartialElements::cut;
   return part;
 }
@@ -186,7 +186,7 @@ Vec3 level_of(const Groove& groove, std::size_t f) {
 
 /// The planes that verification fitted to an element's facets, in the part's frame.
 geometry::ElementPlanes planes_of(const Groove& groove, const ElementFigures& figures, const PartFrame& frame,
-                                  bool turned) {
+                                  bool rotated) {
   geometry::ElementPlanes planes;
   planes.centre_mm = frame.point(groove.root_mm).head<2>();
   planes.planes.resize(figures.facets.size());
@@ -202,7 +202,7 @@ geometry::ElementPlanes planes_of(const Groove& groove, const ElementFigures& fi
     const geometry::HeightPlane plane =
         plane_through({surface(0.0, 0.0), surface(groove.facet_length_mm, 0.0), surface(0.0, groove.half_width_mm)},
                       planes.centre_mm);
-    planes.planes[groove.is_cube() ? f : plane.slope[turned ? 1 : 0] < 0.0 ? 0U : 1U] = plane;
+    planes.planes[groove.is_cube() ? f : plane.slope[rotated ? 1 : 0] < 0.0 ? 0U : 1U] = plane;
   }
   return planes;
 }
@@ -216,7 +216,7 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (!run.result.elements[i].figures.is_cut) continue;
     const Groove groove = prism != nullptr ? groove_of(elements[i], *prism) : cavity_of(elements[i], size);
-    planes.push_back(planes_of(groove, run.result.elements[i].figures, frame, elements[i].turned));
+    planes.push_back(planes_of(groove, run.result.elements[i].figures, frame, elements[i].rotated));
   }
   if (prism != nullptr) return {std::move(planes), std::min(prism_of(run.job).base_mm, prism_of(run.job).width_mm)};
   const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&run.job.element);
@@ -247,7 +247,7 @@ bool has_flares(const VerificationRun& run) {
 }
 
 /// A design has a base and elements that are alike, and no table of planes on it.
-void check_on_base(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
+void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
   if (unlike.missing > 0)
     throw InputError(
         {"", 0, "--as-machined"},
@@ -282,8 +282,8 @@ AsMachined as_machined(const VerificationRun& run) {
   if (is_direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
   if (is_direct)
     warn_of(unlike, part, "of a part that is cut directly");
-  else if (run.job.base)
-    check_on_base(run, unlike, part);
+  else if (run.job.substrate)
+    check_on_substrate(run, unlike, part);
   else if (has_flares(run) || unlike.along_arcmin > kShownArcmin || unlike.spread_arcmin > kShownArcmin ||
            unlike.missing > 0)
     part.planes = facet_planes_of(run);
@@ -301,7 +301,7 @@ AsMachined as_machined(const VerificationRun& run) {
         fixed(run.result.root_ridge_um, 2), fixed(run.result.root_chamfer_um, 2)));
   part.texture = predicted_texture(run.job);
   part.scratches = scratches_of(run.job);
-  if (run.job.base && !part.scratches.empty()) {
+  if (run.job.substrate && !part.scratches.empty()) {
     part.warnings.push_back("scratches of a chipped edge are left out on a base");
     part.scratches.clear();
   }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/facet_planes.h"
+#include "geometry/elements/facet_planes.h"
 #include "studies/closed_loop/verification.h"
 #include "studies/design/design.h"
 

@@ -11,9 +11,9 @@
 
 #include "core/error.h"
 #include "core/schema/document.h"
-#include "geometry/part_spec.h"
-#include "raytrace/beads/ball_layer.h"
-#include "raytrace/stokes.h"
+#include "geometry/elements/part_spec.h"
+#include "raytrace/balls/ball_layer.h"
+#include "raytrace/light/stokes.h"
 
 namespace retrace::studies {
 
@@ -115,9 +115,9 @@ struct Plate {
 using Shape = std::variant<ElementArray, PartMesh, Plate, raytrace::BallLayer>;
 
 /// A face through which light enters, in place of the plane one.
-struct FrontFile {
+struct EntranceFile {
   std::string name;            ///< of the file, as given
-  std::filesystem::path file;  ///< the same, from the working directory; read by front_of_design()
+  std::filesystem::path file;  ///< the same, from the working directory; read by entrance_of_design()
   bool is_mesh = false;        ///< an STL file; else that of a turned part
   bool mesh_bottom = false;    ///< the mesh is the counterpart: its triangles that look down are the front
   /// Where in the part's plane the origin of the file's frame lies; the part's middle if it was not given.
@@ -165,7 +165,7 @@ struct Design {
   std::string source;  ///< file name as given, "-" for standard input
   std::string title;   ///< empty if none was given
   Shape shape;
-  std::optional<FrontFile> front;  ///< none: the plane z = thickness_mm; balls and endless arrays have none
+  std::optional<EntranceFile> entrance;  ///< none: the plane z = thickness_mm; balls and endless arrays have none
   Substance substance;
   Surface surface;
   Light light;
@@ -180,7 +180,7 @@ struct Design {
   InputLocation where(std::string_view key) const;
   /// The same of what decides the texture of the facets.
   InputLocation where_texture() const;
-  std::string_view front_key() const;
+  std::string_view entrance_key() const;
   /// The key is now what `place` says, for messages.
   void set_where(const std::string& key, InputLocation place);
 
@@ -210,8 +210,8 @@ struct Takes {
   std::string_view what;  ///< asks, such as "retrace job"
   bool balls = false;
   bool solids = false;  ///< meshes and plates
-  bool bases = true;
-  bool fronts = false;
+  bool substrates = true;
+  bool entrances = false;
 };
 /// \throw InputError for a design that is not taken
 void check_taken(const Design& design, const Takes& takes);

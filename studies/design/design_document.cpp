@@ -2,27 +2,27 @@
 
 #include "core/overloaded.h"
 #include "core/schema/writer.h"
-#include "geometry/formula.h"
+#include "geometry/substrate/sag_formula.h"
 #include "studies/design/design_format.h"
 
 namespace retrace::studies {
 namespace {
 
 using geometry::Arrangement;
-using geometry::Base;
 using geometry::Cant;
-using geometry::CylinderBase;
+using geometry::CylinderSubstrate;
 using geometry::EdgeShape;
 using geometry::Element;
+using geometry::ElementAxes;
 using geometry::Extent;
-using geometry::FormulaBase;
+using geometry::FormulaSubstrate;
 using geometry::HexagonalCube;
 using geometry::PartSpec;
-using geometry::PlaneBase;
+using geometry::PlaneSubstrate;
 using geometry::RtpElement;
 using geometry::Scratch;
-using geometry::SphereBase;
-using geometry::Standing;
+using geometry::SphereSubstrate;
+using geometry::Substrate;
 using geometry::TriangularCube;
 using schema::Document;
 using schema::Value;
@@ -113,21 +113,21 @@ void set_array(Document& document, const ElementArray& elements) {
   keys.set("mask_threshold", elements.mask->threshold);
 }
 
-void set_base(Document& document, const Base& base) {
+void set_substrate(Document& document, const Substrate& substrate) {
   Keys keys(document, "base");
-  keys.set_choice("kind", base.shape.index());
-  std::visit(Overloaded{[&](const PlaneBase& plane) {
+  keys.set_choice("kind", substrate.shape.index());
+  std::visit(Overloaded{[&](const PlaneSubstrate& plane) {
                           keys.set("incline_deg", plane.incline_deg);
                           keys.set("azimuth_deg", plane.azimuth_deg);
                         },
-                        [&](const CylinderBase& cylinder) {
+                        [&](const CylinderSubstrate& cylinder) {
                           keys.set("radius_mm", cylinder.radius_mm);
                           keys.set_word("axis", cylinder.axis_is_x ? "x" : "y");
                         },
-                        [&](const SphereBase& sphere) { keys.set("radius_mm", sphere.radius_mm); },
-                        [&](const FormulaBase& formula) { keys.set_word("sag_mm", formula.sag_mm->text()); }},
-             base.shape);
-  keys.set_word("elements", base.standing == Standing::normal ? "normal" : "parallel");
+                        [&](const SphereSubstrate& sphere) { keys.set("radius_mm", sphere.radius_mm); },
+                        [&](const FormulaSubstrate& formula) { keys.set_word("sag_mm", formula.sag_mm->text()); }},
+             substrate.shape);
+  keys.set_word("elements", substrate.element_axes == ElementAxes::normal ? "normal" : "parallel");
 }
 
 void set_balls(Document& document, const raytrace::BallLayer& balls) {
@@ -148,7 +148,7 @@ void set_shape(Document& document, const Shape& shape) {
   std::visit(Overloaded{[&](const ElementArray& array) {
                           set_element(document, array.part.element);
                           set_array(document, array);
-                          if (array.part.base) set_base(document, *array.part.base);
+                          if (array.part.substrate) set_substrate(document, *array.part.substrate);
                           if (array.facet_planes) Keys(document, "part").set_word("facets", array.facet_planes->name);
                         },
                         [&](const PartMesh& mesh) {
@@ -161,11 +161,11 @@ void set_shape(Document& document, const Shape& shape) {
              shape);
 }
 
-void set_front(Document& document, const FrontFile& front) {
+void set_entrance(Document& document, const EntranceFile& entrance) {
   Keys keys(document, "front");
-  keys.set_word(front.is_mesh ? "mesh" : "turned", front.name);
-  if (front.is_mesh) keys.set_choice("mesh_side", front.mesh_bottom);
-  if (front.centre_mm) keys.set("centre_mm", list_of(*front.centre_mm));
+  keys.set_word(entrance.is_mesh ? "mesh" : "turned", entrance.name);
+  if (entrance.is_mesh) keys.set_choice("mesh_side", entrance.mesh_bottom);
+  if (entrance.centre_mm) keys.set("centre_mm", list_of(*entrance.centre_mm));
 }
 
 Value absorption_value(const Absorption& absorption) {
@@ -296,7 +296,7 @@ Document document_of(const Design& design) {
   Document document(design_format().root);
   if (!design.title.empty()) document.set("title", design.title);
   set_shape(document, design.shape);
-  if (design.front) set_front(document, *design.front);
+  if (design.entrance) set_entrance(document, *design.entrance);
   set_body(document, design);
   set_light(document, design);
   Keys(document, "detector").set("acceptance_half_angle_deg", design.detector.acceptance_half_angle_deg);

@@ -1,6 +1,6 @@
 #include "studies/design/design_format.h"
 
-#include "geometry/io/base_rows.h"
+#include "geometry/io/substrate_rows.h"
 #include "studies/design/design_rows.h"
 #include "studies/design/design_rules.h"
 
@@ -16,7 +16,7 @@ constexpr Condition kNoPlate = without("part.plate_mm", "not allowed beside part
 constexpr Condition kWithElements[] = {kNoMesh, kNoPlate};
 constexpr Condition kWithPlanes[] = {kNoMesh, kNoPlate, kTableOfNoBall};
 constexpr Condition kPartTable[] = {kTableOfNoBall};
-constexpr Condition kFrontTable[] = {kTableOfNoBall};
+constexpr Condition kEntranceTable[] = {kTableOfNoBall};
 constexpr Condition kSurfaceTable[] = {
     is_not(kKind, kBall, "not allowed for kind = \"ball\", whose surfaces are smooth")};
 constexpr Condition kScratchesOnly[] = {without("part.mesh", kOfAMesh), without("part.plate_mm", kOfAMesh),
@@ -46,7 +46,7 @@ const Table kTables[] = {
      .when = kWithElements},
     {.name = "base",
      .meaning = "What the elements of a finite array stand on, in place of z = 0.",
-     .rows = geometry::base_rows(),
+     .rows = geometry::substrate_rows(),
      .presence = Presence::optional,
      .when = kWithPlanes},
     {.name = "part",
@@ -56,9 +56,9 @@ const Table kTables[] = {
      .when = kPartTable},
     {.name = "front",
      .meaning = "A curved face through which light enters, in place of the plane z = thickness_mm.",
-     .rows = front_rows(),
+     .rows = entrance_rows(),
      .presence = Presence::optional,
-     .when = kFrontTable},
+     .when = kEntranceTable},
     {.name = "body", .meaning = "What the part is made of.", .rows = body_rows(), .presence = Presence::implied},
     {.name = "light", .meaning = "The light that falls on it.", .rows = light_rows(), .presence = Presence::implied},
     {.name = "detector", .meaning = "What counts as returned.", .rows = detector_rows(), .presence = Presence::implied},

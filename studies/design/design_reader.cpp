@@ -15,7 +15,7 @@
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "core/schema/reader.h"
-#include "geometry/io/base_rows.h"
+#include "geometry/io/substrate_rows.h"
 #include "studies/design/design_document.h"
 #include "studies/design/design_format.h"
 #include "studies/design/part_reader.h"
@@ -136,16 +136,16 @@ std::vector<double> read_acceptance(const Document& document) {
 }
 
 /// The face through which light enters; none without such a table.
-std::optional<FrontFile> read_front(const Document& document) {
+std::optional<EntranceFile> read_entrance(const Document& document) {
   if (!document.has("front")) return std::nullopt;
-  FrontFile front;
-  front.is_mesh = document.has("front.mesh");
-  const std::string_view key = front.is_mesh ? "front.mesh" : "front.turned";
-  front.file = document.file(key);
-  front.name = document.text(key);
-  front.mesh_bottom = front.is_mesh && document.text("front.mesh_side") == "bottom";
-  if (document.has("front.centre_mm")) front.centre_mm = pair_of(document, "front.centre_mm");
-  return front;
+  EntranceFile entrance;
+  entrance.is_mesh = document.has("front.mesh");
+  const std::string_view key = entrance.is_mesh ? "front.mesh" : "front.turned";
+  entrance.file = document.file(key);
+  entrance.name = document.text(key);
+  entrance.mesh_bottom = entrance.is_mesh && document.text("front.mesh_side") == "bottom";
+  if (document.has("front.centre_mm")) entrance.centre_mm = pair_of(document, "front.centre_mm");
+  return entrance;
 }
 
 /// What a document says, without the files that it names.
@@ -156,7 +156,7 @@ Design resolved(std::shared_ptr<const Document> given) {
   design.source = document.source();
   design.title = document.text_if("title");
   design.shape = read_shape(document);
-  design.front = read_front(document);
+  design.entrance = read_entrance(document);
   design.substance = {document.text("body.material"), document.number_if("body.refractive_index"),
                       read_absorption(document), document.number("body.back_index")};
   design.surface = read_surface(document);
@@ -190,8 +190,8 @@ InputLocation Design::where_texture() const {
   return where("surface.waviness_sq_nm");
 }
 
-std::string_view Design::front_key() const {
-  return front && front->is_mesh ? "front.mesh" : "front.turned";
+std::string_view Design::entrance_key() const {
+  return entrance && entrance->is_mesh ? "front.mesh" : "front.turned";
 }
 
 const ArrayMask* Design::mask() const {
@@ -217,8 +217,8 @@ void check_taken(const Design& design, const Takes& takes) {
       throw InputError(design.where(key), fmt::format("{} takes no {}, only [element] and [array]", what, solid));
   };
   std::visit(Overloaded{[&](const ElementArray& array) {
-                          if (array.part.base && !takes.bases)
-                            throw InputError(design.where(geometry::base_shape_key(*array.part.base)),
+                          if (array.part.substrate && !takes.substrates)
+                            throw InputError(design.where(geometry::substrate_shape_key(*array.part.substrate)),
                                              what + " takes no [base], only elements on a plane");
                         },
                         [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
@@ -229,8 +229,8 @@ void check_taken(const Design& design, const Takes& takes) {
                                              "balls are taken by retrace rre, photometry and inspect alone");
                         }},
              design.shape);
-  if (design.front && !takes.fronts)
-    throw InputError(design.where(design.front_key()), what + " takes no [front], only a plane entrance face");
+  if (design.entrance && !takes.entrances)
+    throw InputError(design.where(design.entrance_key()), what + " takes no [front], only a plane entrance face");
 }
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {

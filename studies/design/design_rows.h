@@ -12,7 +12,7 @@ namespace retrace::studies {
 std::span<const schema::Row> element_rows();
 std::span<const schema::Row> array_rows();
 std::span<const schema::Row> part_rows();
-std::span<const schema::Row> front_rows();
+std::span<const schema::Row> entrance_rows();
 std::span<const schema::Row> body_rows();
 std::span<const schema::Row> light_rows();
 std::span<const schema::Row> detector_rows();

@@ -13,9 +13,9 @@
 #include "core/number_format.h"
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
-#include "geometry/base_part.h"
-#include "geometry/io/base_rows.h"
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
+#include "geometry/io/substrate_rows.h"
+#include "geometry/part/substrate_part.h"
 #include "studies/design/part_reader.h"
 
 namespace retrace::studies {
@@ -25,13 +25,13 @@ using geometry::AngleErrors;
 using geometry::Arrangement;
 using geometry::Cell;
 using geometry::EdgeShape;
+using geometry::ElementAxes;
 using geometry::Extent;
 using geometry::HexagonalCube;
 using geometry::PartSpec;
-using geometry::PlaneBase;
+using geometry::PlaneSubstrate;
 using geometry::RtpElement;
 using geometry::Scratch;
-using geometry::Standing;
 using geometry::TriangularCube;
 using schema::Document;
 
@@ -119,7 +119,7 @@ void check_room(const Document& document, const PartSpec& part) {
                               count, kMostElements));
 }
 
-void check_array_on_base(const Document& document, const PartSpec& part) {
+void check_array_on_substrate(const Document& document, const PartSpec& part) {
   constexpr std::string_view key = "base.kind";
   if (!document.has("base")) return;
   if (part.extent == Extent::infinite) document.fail(key, "not allowed for extent = \"infinite\": give lengths");
@@ -226,7 +226,7 @@ void check_scratch(const Document& document, const PartSpec& part, std::size_t i
 
 void check_scratches(const Document& document, const PartSpec& part) {
   if (!document.has(kScratches)) return;
-  if (part.base) document.fail(kScratches, "not allowed with [base]");
+  if (part.substrate) document.fail(kScratches, "not allowed with [base]");
   if (part.scratches.size() > kMostScratches)
     document.fail(kScratches, fmt::format("must be at most {}, got {}", kMostScratches, part.scratches.size()));
   for (std::size_t i = 0; i < part.scratches.size(); ++i) check_scratch(document, part, i);
@@ -260,7 +260,7 @@ void check_angles(const Document& document, const PartSpec& part) {
 }
 
 void check_mask(const Document& document, const PartSpec& part) {
-  if (document.has("array.mask") && part.base) document.fail("array.mask", "not allowed together with [base]");
+  if (document.has("array.mask") && part.substrate) document.fail("array.mask", "not allowed together with [base]");
 }
 
 /// What else turns or shapes all facets alike has no place beside planes of single ones.
@@ -268,20 +268,20 @@ void check_facet_planes(const Document& document, const PartSpec& part) {
   constexpr std::string_view key = "part.facets";
   if (!document.has(key)) return;
   if (part.extent == Extent::infinite) document.fail(key, "only allowed for finite arrays");
-  if (part.base) document.fail(key, "not allowed together with [base]");
+  if (part.substrate) document.fail(key, "not allowed together with [base]");
   if (!(part.angle_errors == AngleErrors{}) || part.random_tilts.sigma_arcmin > 0.0)
     document.fail(key, "not allowed together with errors of angle, which its planes hold");
 }
 
-void check_base_of_part(const Document& document, const PartSpec& part) {
-  if (!part.base) return;
-  const std::string_view key = geometry::base_shape_key(*part.base);
+void check_substrate_of_part(const Document& document, const PartSpec& part) {
+  if (!part.substrate) return;
+  const std::string_view key = geometry::substrate_shape_key(*part.substrate);
   const bool has_gaps = part.x_gap_mm > 0.0 || part.y_gap_mm > 0.0;
-  const bool is_plane = std::holds_alternative<PlaneBase>(part.base->shape);
-  if (part.edges.rounds_rims() && part.base->standing == Standing::normal && (has_gaps || !is_plane))
+  const bool is_plane = std::holds_alternative<PlaneSubstrate>(part.substrate->shape);
+  if (part.edges.rounds_rims() && part.substrate->element_axes == ElementAxes::normal && (has_gaps || !is_plane))
     document.fail(key, "rounded or chamfered rims need elements = \"parallel\", or a plane base and no gaps");
   try {
-    geometry::check_base(part);
+    geometry::check_substrate(part);
   } catch (const InputError& error) {
     document.fail(key, error.what());
   }
@@ -382,7 +382,7 @@ void check_ball_mirror(const Document& document) {
   document.fail(key, "needs a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = \"mirror\"");
 }
 
-void check_front(const Document& document) {
+void check_entrance(const Document& document) {
   if (!document.has("front")) return;
   const std::string_view key = document.has("front.mesh") ? "front.mesh" : "front.turned";
   if (!document.has(key)) document.fail(key, "missing, must name the file of a turned part, or front.mesh an STL file");
@@ -393,8 +393,8 @@ void check_front(const Document& document) {
 constexpr schema::Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr schema::Words kRoomKeys = {"array.x_length_mm", "array.y_length_mm", "array.x_offset_mm",
                                      "array.y_offset_mm"};
-constexpr schema::Words kArrayOnBaseKeys = {"base.kind", "array.extent", "array.arrangement", "array.x_offset_mm",
-                                            "array.y_offset_mm"};
+constexpr schema::Words kArrayOnSubstrateKeys = {"base.kind", "array.extent", "array.arrangement", "array.x_offset_mm",
+                                                 "array.y_offset_mm"};
 constexpr schema::Words kDihedralKeys = {kDihedralError};
 constexpr schema::Words kTiltKeys = {kFacetTilt};
 constexpr schema::Words kRandomKeys = {kRandomTilt, "array.extent"};
@@ -407,7 +407,8 @@ constexpr schema::Words kAngleKeys = {"element.apex_angle_deg", "element.cant_de
 constexpr schema::Words kMaskKeys = {"array.mask", "base.kind"};
 constexpr schema::Words kFacetsKeys = {"part.facets",  "array.extent", "base.kind",
                                        kDihedralError, kFacetTilt,     kRandomTilt};
-constexpr schema::Words kBaseKeys = {"base.kind", "base.elements", "surface.rim_radius_um", "surface.rim_chamfer_um"};
+constexpr schema::Words kSubstrateKeys = {"base.kind", "base.elements", "surface.rim_radius_um",
+                                          "surface.rim_chamfer_um"};
 constexpr schema::Words kThicknessKeys = {"body.thickness_mm"};
 constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap_mm"};
 constexpr schema::Words kHeightKeys = {kRoughness, kRoughnessLength, kWaviness, kWavinessLength};
@@ -416,15 +417,15 @@ constexpr schema::Words kBodyKeys = {"body.material", kAbsorption};
 constexpr schema::Words kSpectrumKeys = {"light.spectrum"};
 constexpr schema::Words kStokesKeys = {"light.polarisation"};
 constexpr schema::Words kMirrorKeys = {"element.mirror_offset_mm", "body.facet_coating", "idealisation.facets"};
-constexpr schema::Words kFrontKeys = {"front.turned", "front.mesh", "array.extent"};
+constexpr schema::Words kEntranceKeys = {"front.turned", "front.mesh", "array.extent"};
 
 using schema::check_by;
 constexpr schema::Rule kRules[] = {
     schema::Check{kSquareKeys, "In a checker base and width are equal.", check_by<of_array<check_square>>},
     schema::Check{kRoomKeys, "There is room for one element between the margins, and for at most 1e8 in all.",
                   check_by<of_array<check_room>>},
-    schema::Check{kArrayOnBaseKeys, "On a `[base]` stand finite arrays without margins, not `single`.",
-                  check_by<of_array<check_array_on_base>>},
+    schema::Check{kArrayOnSubstrateKeys, "On a `[base]` stand finite arrays without margins, not `single`.",
+                  check_by<of_array<check_array_on_substrate>>},
     schema::Check{kDihedralKeys, "One number, or three for cube corners.", check_by<of_part<check_dihedral_errors>>},
     schema::Check{kTiltKeys, "One number for each facet: two for prisms, three for cube corners.",
                   check_by<of_part<check_facet_tilts>>},
@@ -444,10 +445,10 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kMaskKeys, "No mask on a `[base]`.", check_by<of_part<check_mask>>},
     schema::Check{kFacetsKeys, "Planes of facets are those of finite arrays without `[base]` and errors of angle.",
                   check_by<of_part<check_facet_planes>>},
-    schema::Check{kBaseKeys,
+    schema::Check{kSubstrateKeys,
                   "The base carries the elements; rounded or chamfered rims need elements that stand parallel, or a "
                   "plane base and no gaps.",
-                  check_by<of_part<check_base_of_part>>},
+                  check_by<of_part<check_substrate_of_part>>},
     schema::Check{kThicknessKeys, "The plate covers rims that errors of angle or cant lift.",
                   check_by<of_part<check_thickness>>},
     schema::Check{kBowlKeys, "A mirror behind balls ends where the bowls of neighbours meet.", check_by<check_bowl>},
@@ -459,7 +460,7 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kSpectrumKeys, "Lines have each wavelength once.", check_by<check_lines>},
     schema::Check{kStokesKeys, "Light is polarised to 1 at most.", check_by<check_stokes>},
     schema::Check{kMirrorKeys, "A bowl behind balls is a mirror: aluminium or ideal.", check_by<check_ball_mirror>},
-    schema::Check{kFrontKeys, "A `[front]` has one file and a finite part.", check_by<check_front>}};
+    schema::Check{kEntranceKeys, "A `[front]` has one file and a finite part.", check_by<check_entrance>}};
 
 }  // namespace
 

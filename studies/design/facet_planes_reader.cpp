@@ -95,10 +95,10 @@ class Reader {
 
   /// Whether a plane resembles that of a nominal facet; in a checker every second element is turned, and in an array of
   /// triangles by 180 degrees. A flare lies in the plane of the facet across its edge.
-  bool resembles(const FacetRow& row, bool turned) const {
+  bool resembles(const FacetRow& row, bool rotated) const {
     const std::size_t facet = row.facet < kFlares ? row.facet : (row.facet - kFlares + 1) % 3;
     Vec2 slope = nominal_slopes_[facet];
-    if (turned) slope = is_prism() ? Vec2(slope.y(), slope.x()) : Vec2(-slope);
+    if (rotated) slope = is_prism() ? Vec2(slope.y(), slope.x()) : Vec2(-slope);
     const geometry::Vec3 nominal = geometry::Vec3(slope.x(), slope.y(), -1.0).normalized();
     const geometry::Vec3 own = geometry::Vec3(row.plane.slope.x(), row.plane.slope.y(), -1.0).normalized();
     return own.dot(nominal) >= std::cos(Angle::from_deg(kMostTurnDeg).rad());

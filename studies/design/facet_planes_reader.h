@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "geometry/facet_planes.h"
+#include "geometry/elements/facet_planes.h"
 
 namespace retrace::studies {
 

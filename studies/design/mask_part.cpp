@@ -28,9 +28,9 @@ bool is_shifted(const PartSpec& spec, std::int64_t row, std::int64_t rows) {
 }
 
 /// The nominal element with its lower left corner there.
-geometry::ElementPlanes element_at(const PartSpec& spec, const Vec2& corner, bool turned) {
+geometry::ElementPlanes element_at(const PartSpec& spec, const Vec2& corner, bool rotated) {
   const auto& element = std::get<RtpElement>(spec.element);
-  const geometry::Cell cell = geometry::rtp_cell(element, spec.angle_errors, corner, turned);
+  const geometry::Cell cell = geometry::rtp_cell(element, spec.angle_errors, corner, rotated);
   geometry::ElementPlanes planes;
   planes.centre_mm = corner + 0.5 * Vec2(element.base_mm, element.width_mm);
   for (const std::size_t k : {0U, 1U}) {
@@ -65,8 +65,8 @@ geometry::FacetPlanes elements_of_mask(const Design& design) {
       if (pattern[static_cast<std::size_t>(cells.rows - 1 - row)][static_cast<std::size_t>(column)] != '#') continue;
       const Vec2 corner =
           first + Vec2(shift_mm, 0.0) + pitch.cwiseProduct(Vec2(static_cast<double>(column), static_cast<double>(row)));
-      const bool turned = spec.arrangement == geometry::Arrangement::checker && (row + column) % 2 == 1;
-      elements.push_back(element_at(spec, corner, turned));
+      const bool rotated = spec.arrangement == geometry::Arrangement::checker && (row + column) % 2 == 1;
+      elements.push_back(element_at(spec, corner, rotated));
     }
   }
   if (elements.empty()) throw InputError(design.where("array.mask"), "leaves no whole element");

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/facet_planes.h"
+#include "geometry/elements/facet_planes.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {

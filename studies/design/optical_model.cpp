@@ -9,7 +9,7 @@
 
 #include "core/number_format.h"
 #include "materials/io/spectrum_reader.h"
-#include "studies/design/front_of_design.h"
+#include "studies/design/entrance_of_design.h"
 #include "studies/design/part_of_design.h"
 #include "surface_models/form.h"
 #include "surface_models/io/height_map_reader.h"
@@ -229,14 +229,14 @@ const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double w
 
 }  // namespace
 
-OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Fronts fronts) {
-  check_taken(design, {.what = {}, .solids = true, .fronts = true});
-  if (fronts == Fronts::plane && design.front)
-    throw InputError(design.where(design.front_key()),
+OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Entrances entrances) {
+  check_taken(design, {.what = {}, .solids = true, .entrances = true});
+  if (entrances == Entrances::plane && design.entrance)
+    throw InputError(design.where(design.entrance_key()),
                      "a [front] is taken by retrace rre, photometry and inspect alone");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
-  if (design.front) model.front = front_of_design(design, model.part, &model.warnings);
+  if (design.entrance) model.entrance = entrance_of_design(design, model.part, &model.warnings);
   return model;
 }
 

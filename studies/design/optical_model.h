@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "geometry/front_surface.h"
-#include "geometry/part.h"
+#include "geometry/entrance/entrance_surface.h"
+#include "geometry/part/part.h"
 #include "materials/io/material_library.h"
-#include "raytrace/optics.h"
+#include "raytrace/light/optics.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {
@@ -22,20 +22,21 @@ struct SpectralOptics {
 /// A design made ready to trace.
 struct OpticalModel {
   geometry::Part part;
-  std::optional<geometry::Front> front;  ///< in place of the plane entrance face; none: that plane
-  double wavelength_nm = 0.0;            ///< of the light; of a spectrum, its centroid
-  raytrace::Optics optics;               ///< at that of the wavelengths to trace which lies nearest to it
-  std::vector<SpectralOptics> spectral;  ///< at the wavelengths to trace, ascending; their weights add to 1
-  std::vector<std::string> warnings;     ///< what the user should know, such as an index outside its data
+  std::optional<geometry::Entrance> entrance;  ///< in place of the plane entrance face; none: that plane
+  double wavelength_nm = 0.0;                  ///< of the light; of a spectrum, its centroid
+  raytrace::Optics optics;                     ///< at that of the wavelengths to trace which lies nearest to it
+  std::vector<SpectralOptics> spectral;        ///< at the wavelengths to trace, ascending; their weights add to 1
+  std::vector<std::string> warnings;           ///< what the user should know, such as an index outside its data
 };
 
 /// What a caller can trace: a plane entrance face alone, or a curved front as well.
-enum class Fronts { plane, any };
+enum class Entrances { plane, any };
 
 /// Builds the part, looks up the material and resolves the spectrum of the light. \throw InputError naming file and
 /// line for an unknown material, a spectrum that cannot be read, or a wavelength at which the material has no index
 /// and for balls, which are no part, or a curved front unless `fronts` lets it pass
-OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Fronts fronts = Fronts::plane);
+OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library,
+                        Entrances entrances = Entrances::plane);
 
 /// The same without the part: what can trace balls needs no more. \throw InputError likewise
 OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library);

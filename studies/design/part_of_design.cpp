@@ -7,10 +7,10 @@
 #include "core/atomic_file.h"
 #include "core/number_format.h"
 #include "geometry/check/boundary_check.h"
-#include "geometry/faceted_solid.h"
 #include "geometry/io/stl_file.h"
-#include "geometry/mesh_part.h"
-#include "geometry/plate.h"
+#include "geometry/part/faceted_solid.h"
+#include "geometry/part/mesh_part.h"
+#include "geometry/part/plate.h"
 #include "studies/design/design_part.h"
 
 namespace retrace::studies {

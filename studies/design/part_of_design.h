@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/part.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/part/part.h"
+#include "geometry/part/triangle_mesh.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {

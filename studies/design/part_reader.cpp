@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/schema/reader.h"
-#include "geometry/io/base_rows.h"
+#include "geometry/io/substrate_rows.h"
 
 namespace retrace::studies {
 namespace {
@@ -92,8 +92,8 @@ PartSpec read_array(const Document& document) {
 PartSpec read_part(const Document& document) {
   PartSpec part = read_array(document);
   if (document.has("base"))
-    schema::fill(document, {.name = "base", .meaning = {}, .rows = geometry::base_rows()}, "base",
-                 &part.base.emplace());
+    schema::fill(document, {.name = "base", .meaning = {}, .rows = geometry::substrate_rows()}, "base",
+                 &part.substrate.emplace());
   read_angle_errors(document, part);
   read_edges(document, part.edges);
   for (std::size_t i = 0; i < document.count("surface.scratches"); ++i)

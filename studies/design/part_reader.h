@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/schema/document.h"
-#include "geometry/part_spec.h"
-#include "raytrace/beads/ball_layer.h"
+#include "geometry/elements/part_spec.h"
+#include "raytrace/balls/ball_layer.h"
 
 namespace retrace::studies {
 

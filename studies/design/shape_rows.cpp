@@ -134,7 +134,7 @@ constexpr Row kPartRows[] = {
 constexpr Condition kTurnedOnly[] = {without("mesh", "not allowed beside mesh: a part has one front")};
 constexpr Condition kSideOnly[] = {beside("mesh")};
 
-constexpr Row kFrontRows[] = {
+constexpr Row kEntranceRows[] = {
     {"turned", File{"a turned part"}, kNone,
      "The file of a turned part (turning_file.md): its exact surface, material below.", kTurnedOnly},
     {"mesh", File{"an STL file"}, kNone, "An STL file, binary or ASCII, in mm, whose triangles are the front."},
@@ -157,8 +157,8 @@ std::span<const Row> array_rows() {
 std::span<const Row> part_rows() {
   return kPartRows;
 }
-std::span<const Row> front_rows() {
-  return kFrontRows;
+std::span<const Row> entrance_rows() {
+  return kEntranceRows;
 }
 
 }  // namespace retrace::studies

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/angle.h"
-#include "geometry/part.h"
+#include "geometry/part/part.h"
 
 namespace retrace::studies {
 

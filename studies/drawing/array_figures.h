@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/part.h"
+#include "geometry/part/part.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "geometry/mesh_part.h"
+#include "geometry/part/mesh_part.h"
 #include "studies/design/design_json.h"
 #include "studies/design/part_of_design.h"
 
@@ -94,7 +94,7 @@ Design piece_of(const Design& design, std::vector<std::string>& remarks) {
   spec.y_length_mm = infinite ? wanted.y() : std::min(spec.y_length_mm, wanted.y());
   spec.x_offset_mm = spec.y_offset_mm = 0.0;
   remarks.emplace_back("a piece of the array");
-  if (spec.thickness_mm > wanted.minCoeff() && !spec.base) {
+  if (spec.thickness_mm > wanted.minCoeff() && !spec.substrate) {
     const double top_mm = geometry::element_top_mm(spec.element, spec.angle_errors);
     spec.thickness_mm = std::max(1.5 * top_mm, 0.3 * wanted.minCoeff());
     remarks.emplace_back("its plate is thicker than shown");

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/part.h"
+#include "geometry/part/part.h"
 
 namespace retrace::studies {
 

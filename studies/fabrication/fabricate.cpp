@@ -9,7 +9,7 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/plan/chiseling.h"
 #include "fabrication/post/post.h"
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
 
 namespace retrace::studies {
 namespace {
@@ -37,11 +37,11 @@ geometry::Vec2 in_section(const FabricationResult& result, const fabrication::Cu
   const Vec3 root(0.0, 0.0, -geometry::element_depth_mm(fabrication::blank_element(result.job)));
   const Vec3 from_root = element.turn.transpose() * (tip - element.foot_mm) - root;
   if (result.job.strategy == fabrication::Strategy::dmc) {
-    const auto [first, second] = fabrication::cube_facet_edges({element.turned, 1});
+    const auto [first, second] = fabrication::cube_facet_edges({element.rotated, 1});
     return {(second - first).normalized().dot(from_root), (second + first).normalized().dot(from_root)};
   }
   // Facet 1 has its wall on the side of +y_w; of turned elements on that of +x_w.
-  return {element.turned ? -from_root.x() : -from_root.y(), from_root.z()};
+  return {element.rotated ? -from_root.x() : -from_root.y(), from_root.z()};
 }
 
 }  // namespace
@@ -74,8 +74,8 @@ std::vector<SectionMove> section_moves(const FabricationResult& result, bool rou
       if (std::holds_alternative<fabrication::Turn>(item)) first_only.items.push_back(item);
       const auto* const visit = std::get_if<fabrication::Visit>(&item);
       if (visit == nullptr || !wanted.contains(program.subroutines[visit->subroutine].title)) continue;
-      const bool turned = result.plan.elements[static_cast<std::size_t>(visit->element)].turned;
-      if (!element && !turned) element = visit->element;
+      const bool rotated = result.plan.elements[static_cast<std::size_t>(visit->element)].rotated;
+      if (!element && !rotated) element = visit->element;
       // Side-by-side passes look the same in the section.
       if (element == visit->element && seen.insert(visit->subroutine).second) first_only.items.push_back(item);
     }

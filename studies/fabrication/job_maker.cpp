@@ -13,7 +13,7 @@
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "geometry/part.h"
+#include "geometry/part/part.h"
 #include "studies/fabrication/reachable.h"
 
 namespace retrace::studies {
@@ -102,7 +102,7 @@ bool has_errors(const PartSpec& part) {
 
 /// Partial elements of the array, whether or not a mask is to leave out others.
 std::int64_t partial_elements(const PartSpec& part) {
-  if (!part.base && part.arrangement != Arrangement::offset && part.arrangement != Arrangement::honeycomb &&
+  if (!part.substrate && part.arrangement != Arrangement::offset && part.arrangement != Arrangement::honeycomb &&
       part.arrangement != Arrangement::triangular)
     return 0;
   PartSpec nominal = part;
@@ -181,8 +181,8 @@ fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
 namespace {
 
 /// Pins are ground one by one and bundled; elements that are cut into a base are cut into a mould.
-void check_base(const Design& design, const JobRequest& request) {
-  if (!design.part().base) return;
+void check_substrate(const Design& design, const JobRequest& request) {
+  if (!design.part().substrate) return;
   if (design.part().is_pin_bundle)
     throw InputError({design.source_name(), 0, "array.arrangement"},
                      "pins are ground one by one and bundled, not cut: must be \"honeycomb\" for a job, got \"pins\"");
@@ -195,7 +195,7 @@ void check_base(const Design& design, const JobRequest& request) {
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
   check_taken(design, {.what = "retrace job"});
-  check_base(design, request);
+  check_substrate(design, request);
   if (design.facet_planes())
     throw InputError(design.where("part.facets"), "planes of single facets are traced, not cut, in this version");
   MadeJob made;
@@ -205,7 +205,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.strategy = strategy_of(request.strategy);
   job.element = element_of(design, request);
   job.array = array_of(design);
-  job.base = design.part().base;
+  job.substrate = design.part().substrate;
   check_making(request);
   job.workpiece.kind = static_cast<fabrication::WorkpieceKind>(
       word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords));

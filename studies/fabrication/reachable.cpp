@@ -9,8 +9,8 @@
 #include "core/json_text.h"
 #include "core/number_format.h"
 #include "fabrication/job/cube_cells.h"
-#include "geometry/facet_planes.h"
-#include "geometry/lattice.h"
+#include "geometry/elements/facet_planes.h"
+#include "geometry/elements/lattice.h"
 #include "studies/design/design_document.h"
 #include "studies/design/facet_planes_reader.h"
 
@@ -21,23 +21,23 @@ using geometry::Vec2;
 using geometry::Vec3;
 
 /// A plane through a point told from the apex, which lies `depth_mm` below the rims; for a turned cell turned with it.
-geometry::HeightPlane height_plane(const Vec3& normal, const Vec3& point_mm, double depth_mm, bool turned) {
+geometry::HeightPlane height_plane(const Vec3& normal, const Vec3& point_mm, double depth_mm, bool rotated) {
   geometry::HeightPlane plane;
-  plane.slope = (turned ? 1.0 : -1.0) * normal.head<2>() / normal.z();
+  plane.slope = (rotated ? 1.0 : -1.0) * normal.head<2>() / normal.z();
   plane.height_mm = -depth_mm + normal.dot(point_mm) / normal.z();
   return plane;
 }
 
 geometry::ElementPlanes element_at(const geometry::Element& element, const fabrication::ChiselReach& reach,
-                                   const Vec2& centre_mm, bool turned) {
+                                   const Vec2& centre_mm, bool rotated) {
   const double depth_mm = geometry::element_depth_mm(element);
   geometry::ElementPlanes planes;
   planes.centre_mm = centre_mm;
   planes.planes.clear();
   for (const geometry::CellFacet& facet : geometry::element_cell(element).facets)
-    planes.planes.push_back({-depth_mm, turned ? Vec2(-facet.plane.slope) : facet.plane.slope});
+    planes.planes.push_back({-depth_mm, rotated ? Vec2(-facet.plane.slope) : facet.plane.slope});
   for (std::size_t k = 0; k < 3; ++k)
-    planes.caps[k] = height_plane(reach.caps[k].normal, reach.caps[k].point_mm, depth_mm, turned);
+    planes.caps[k] = height_plane(reach.caps[k].normal, reach.caps[k].point_mm, depth_mm, rotated);
   return planes;
 }
 
@@ -114,7 +114,7 @@ ReachablePart reachable_part(const Design& design, const JobRequest& request, co
   result.reach = fabrication::chisel_reach(part.element, tool);
   std::vector<geometry::ElementPlanes> planes;
   for (const fabrication::CubeCell& cell : fabrication::cube_cells(array_of(part), part.element))
-    planes.push_back(element_at(part.element, result.reach, middle_of(part) + cell.centre_mm, cell.turned));
+    planes.push_back(element_at(part.element, result.reach, middle_of(part) + cell.centre_mm, cell.rotated));
   if (planes.empty())
     throw InputError({design.source_name(), 0, "array.x_length_mm"}, "the array holds no whole element");
   result.elements = static_cast<std::int64_t>(planes.size());

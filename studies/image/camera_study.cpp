@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "raytrace/farfield/photometric_geometry.h"
+#include "raytrace/observers/photometric_geometry.h"
 
 namespace retrace::studies {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "raytrace/image/camera.h"
+#include "raytrace/observers/camera.h"
 #include "studies/design/optical_model.h"
 
 namespace retrace::studies {

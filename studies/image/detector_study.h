@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "raytrace/image/detector.h"
+#include "raytrace/observers/detector.h"
 #include "studies/design/optical_model.h"
 #include "studies/rre/rre.h"
 

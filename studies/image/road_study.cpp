@@ -12,8 +12,8 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "raytrace/farfield/photometric_geometry.h"
-#include "raytrace/threads.h"
+#include "raytrace/observers/photometric_geometry.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {

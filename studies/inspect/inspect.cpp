@@ -9,7 +9,7 @@
 #include "core/angle.h"
 #include "core/number_format.h"
 #include "geometry/check/boundary_check.h"
-#include "raytrace/beads/ball_forms.h"
+#include "raytrace/balls/ball_forms.h"
 #include "studies/design/design_part.h"
 #include "studies/design/optical_model.h"
 
@@ -131,18 +131,18 @@ void warn_of_lost_reflection(Inspection& result) {
 /// Of elements that stand at many angles only the depth is that of each; the part is as deep as its base as well.
 void add_base(Inspection& result, const geometry::Part& part) {
   const geometry::PartSpec& spec = part.spec;
-  BaseReport report;
-  report.measures = geometry::check_base(spec);
+  SubstrateReport report;
+  report.measures = geometry::check_substrate(spec);
   report.element_mm = geometry::width_across_mm(spec.element);
-  report.walls = geometry::inner_walls(part, geometry::base_surface_of(spec).normal_at(geometry::Vec2::Zero()));
-  result.base = report;
+  report.walls = geometry::inner_walls(part, geometry::substrate_surface_of(spec).normal_at(geometry::Vec2::Zero()));
+  result.substrate = report;
   result.element_depth_mm = geometry::element_depth_mm(spec.element, spec.angle_errors);
-  if (spec.base->standing == geometry::Standing::normal)
+  if (spec.substrate->element_axes == geometry::ElementAxes::normal)
     result.full_element_share *= part.entrance_area_mm2 / report.measures.area_mm2;
 }
 
 void add_warnings(Inspection& result, const geometry::Part& part) {
-  if (!part.spec.base) warn_of_lost_reflection(result);
+  if (!part.spec.substrate) warn_of_lost_reflection(result);
   if (part.elements_partial > 0 && part.spec.partial_elements == geometry::PartialElements::cut)
     result.warnings.push_back(
         fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
@@ -186,7 +186,7 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
 
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library) {
   if (design.balls()) return inspect_balls(design, library);
-  const OpticalModel model = make_model(design, library, Fronts::any);
+  const OpticalModel model = make_model(design, library, Entrances::any);
   const geometry::Part& part = model.part;
   Inspection result;
   result.design = design;
@@ -200,7 +200,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.refractive_index = mean_index(model.spectral);
   result.light = model.spectral;
   result.wavelength_nm = model.wavelength_nm;
-  if (model.front) result.front = report_front(*model.front, part);
+  if (model.entrance) result.entrance = report_entrance(*model.entrance, part);
   if (!design.elements()) {
     // make_model() refuses one that is not; what was mended is in the warnings.
     result.boundary = result.warnings.empty() ? "closed, free of self-intersections" : "see warnings";
@@ -208,9 +208,9 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   }
   const double aperture = geometry::area(geometry::aperture_outline(design.part().element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
-  if (design.part().base) {
+  if (design.part().substrate) {
     add_base(result, part);
-  } else if (!design.front) {
+  } else if (!design.entrance) {
     result.tir_limit_deg = tir_limit_deg(design.part(), least_index(model.spectral), model.optics.back_index);
     if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part());
   }

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "geometry/base_part.h"
+#include "geometry/part/substrate_part.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
 #include "studies/design/total_reflection.h"
-#include "studies/inspect/front_report.h"
+#include "studies/inspect/entrance_report.h"
 
 namespace retrace::studies {
 
@@ -25,8 +25,8 @@ struct BallFigures {
 };
 
 /// What a base is like under its elements.
-struct BaseReport {
-  geometry::BaseMeasures measures;
+struct SubstrateReport {
+  geometry::SubstrateMeasures measures;
   double element_mm = 0.0;     ///< circle round an element, which the least radius is to exceed
   geometry::InnerWalls walls;  ///< what stands open between neighbours, seen along the base's normal at its middle
 };
@@ -51,10 +51,11 @@ struct Inspection {
   /// From where light meets a facet most squarely, so that its total reflection ends first; 0 to below 360, the least
   /// of equal ones, of an unturned element. None where none is needed.
   std::optional<double> tir_limit_azimuth_deg;
-  std::optional<BaseReport> base;    ///< of elements that stand on one; there are no limits of total reflection then
-  std::optional<FrontReport> front;  ///< of a part with one; limits of total reflection are those of light that
-                                     ///< enters through a plane
-  double dead_zone_share = 0.0;      ///< of an element's plan that rounded and chamfered edges take
+  std::optional<SubstrateReport>
+      substrate;  ///< of elements that stand on one; there are no limits of total reflection then
+  std::optional<EntranceReport> entrance;  ///< of a part with one; limits of total reflection are those of light that
+                                           ///< enters through a plane
+  double dead_zone_share = 0.0;            ///< of an element's plan that rounded and chamfered edges take
   std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something
   std::string boundary;              ///< what the check of the boundary found
   std::vector<std::string> warnings;

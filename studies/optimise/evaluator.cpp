@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/number_format.h"
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/sweep.h"
 

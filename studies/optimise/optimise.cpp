@@ -269,7 +269,7 @@ bool dominates(const std::vector<double>& a, const std::vector<double>& b) {
   return better;
 }
 
-std::vector<Variant> front_of(const OptimiseRequest& request, const Evaluator& evaluator) {
+std::vector<Variant> entrance_of(const OptimiseRequest& request, const Evaluator& evaluator) {
   std::vector<std::pair<std::vector<double>, const Variant*>> open;
   for (const Variant& variant : evaluator.seen()) {
     if (!variant.feasible()) continue;
@@ -358,7 +358,7 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
   optimum.rejected.insert(optimum.rejected.end(), neighbours.begin(), neighbours.end());
   for (Rejected& rejected : optimum.rejected)
     rejected.why = why_not(rejected.variant, *optimum.best, request, evaluator);
-  optimum.front = front_of(request, evaluator);
+  optimum.front = entrance_of(request, evaluator);
   optimum.cheaper = cheaper_than(optimum, request, evaluator);
   for (const std::string& key : request.bands_of)
     optimum.bands.push_back(tolerance_band(study, request, *optimum.best, key, cancel));

@@ -7,9 +7,9 @@
 
 #include "core/error.h"
 #include "materials/io/spectrum_reader.h"
-#include "raytrace/beads/ball_tracer.h"
-#include "raytrace/farfield/coefficients.h"
-#include "raytrace/threads.h"
+#include "raytrace/balls/ball_tracer.h"
+#include "raytrace/observers/coefficients.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/design/part_of_design.h"
 
 namespace retrace::studies {
@@ -79,7 +79,7 @@ double way_through_mm(const Design& design) {
 }
 
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library) {
-  return design.balls() ? make_light_model(design, library) : make_model(design, library, Fronts::any);
+  return design.balls() ? make_light_model(design, library) : make_model(design, library, Entrances::any);
 }
 
 /// R_A is of an area, which a single ball has none of, and rays are followed in one way alone.
@@ -94,7 +94,7 @@ void check_balls(const Design& design, const PhotometryRequest& request) {
 /// Width of the cells whose edges diffract. 0: not known, as of meshes, and of fronts whose own cells divide the light.
 double cell_width_mm(const Design& design) {
   if (design.balls()) return design.balls()->diameter_mm;
-  if (!design.elements() || design.front) return 0.0;
+  if (!design.elements() || design.entrance) return 0.0;
   if (const auto* prism = std::get_if<geometry::RtpElement>(&design.part().element))
     return std::min(prism->base_mm, prism->width_mm);
   if (const auto* cube = std::get_if<geometry::HexagonalCube>(&design.part().element)) return cube->aperture_mm;
@@ -180,7 +180,7 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   if (design_.balls()) check_balls(design_, request);
-  if (design_.front && (request.engine == Engine::exact || request.engine == Engine::cell))
+  if (design_.entrance && (request.engine == Engine::exact || request.engine == Engine::cell))
     throw InputError({"", 0, "--engine"}, "must be auto, montecarlo or embree for a [front]");
   if (request.own_light) {
     model_ = model_of(design_, library);
@@ -190,13 +190,13 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
-  is_exact_ = !design_.balls() && !design_.front && model_.optics.is_smooth() &&
+  is_exact_ = !design_.balls() && !design_.entrance && model_.optics.is_smooth() &&
               (request.engine == Engine::exact || request.engine == Engine::automatic);
 }
 
 std::optional<Photometer> Photometer::mean_field() const {
   const bool is_asked = request_.engine == Engine::automatic && request_.diffraction;
-  if (!is_asked || is_exact_ || design_.balls() || design_.front || model_.optics.is_smooth()) return std::nullopt;
+  if (!is_asked || is_exact_ || design_.balls() || design_.entrance || model_.optics.is_smooth()) return std::nullopt;
   Photometer bound = *this;
   bound.is_exact_ = true;
   return bound;
@@ -205,7 +205,7 @@ std::optional<Photometer> Photometer::mean_field() const {
 std::string Photometer::why_undiffracted() const {
   if (!request_.diffraction) return "it was not asked for";
   if (design_.balls()) return "balls are traced by rays";
-  if (design_.front) return "curved fronts are traced by rays";
+  if (design_.entrance) return "curved fronts are traced by rays";
   if (is_exact_) return "its cells differ too much to diffract the light of each";
   if (!model_.optics.is_smooth()) return "facets that scatter are traced by rays";
   return request_.engine == Engine::automatic ? "the exact engine would take too many beams"
@@ -378,7 +378,7 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vec
   } else {
     std::optional<raytrace::MonteCarlo> tracer;
     if (!design_.balls())
-      tracer.emplace(model_.part, raytrace::MonteCarlo::Engine::embree, model_.front ? &*model_.front : nullptr);
+      tracer.emplace(model_.part, raytrace::MonteCarlo::Engine::embree, model_.entrance ? &*model_.entrance : nullptr);
     for (std::size_t k = 0; k < settings.size() * wavelengths; ++k) {
       if (is_cancelled(cancel)) return std::nullopt;
       pieces[k / wavelengths][k % wavelengths] =

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "raytrace/farfield/far_field.h"
-#include "raytrace/farfield/photometric_geometry.h"
+#include "raytrace/observers/far_field.h"
+#include "raytrace/observers/photometric_geometry.h"
 #include "studies/design/optical_model.h"
 #include "studies/photometry/photometry.h"
 

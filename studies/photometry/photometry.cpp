@@ -269,7 +269,7 @@ std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer
 bool add_changes(const Photometer& photometer, const Plan& plan, const Cancellation* cancel, PhotometryResult& result) {
   const Design& design = result.design;
   const PhotometryRequest& request = result.request;
-  if (result.verdict != Verdict::fail || !request.advice || !design.elements() || design.front) return true;
+  if (result.verdict != Verdict::fail || !request.advice || !design.elements() || design.entrance) return true;
   const auto measure = [&](const Design& changed, std::size_t parts) {
     Photometer other(changed, request, parts);
     if (!photometer.is_exact()) other.leave_exact();

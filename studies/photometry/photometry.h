@@ -8,7 +8,7 @@
 
 #include "core/progress.h"
 #include "materials/spectrum.h"
-#include "raytrace/farfield/aperture_kernel.h"
+#include "raytrace/observers/aperture_kernel.h"
 #include "studies/design/design.h"
 #include "studies/photometry/limits.h"
 #include "studies/rre/rre.h"

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "raytrace/farfield/aperture_kernel.h"
+#include "raytrace/observers/aperture_kernel.h"
 
 namespace retrace::studies {
 

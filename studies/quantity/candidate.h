@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "geometry/part.h"
+#include "geometry/part/part.h"
 #include "studies/design/design.h"
 #include "studies/design/design_part.h"
 #include "studies/quantity/machining.h"

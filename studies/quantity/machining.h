@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fabrication/job/job.h"
-#include "geometry/part_spec.h"
+#include "geometry/elements/part_spec.h"
 
 namespace retrace::studies {
 

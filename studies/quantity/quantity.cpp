@@ -6,7 +6,7 @@
 
 #include "core/angle.h"
 #include "core/error.h"
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
 #include "studies/design/optical_model.h"
 #include "studies/inspect/inspect.h"
 
@@ -120,7 +120,7 @@ class ShareQuantity final : public Quantity {
 const geometry::RtpElement& prism_of(const Candidate& candidate) {
   const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part().element);
   if (prism == nullptr) throw InputError("machining time is known for prisms (element.kind = \"rtp\") alone");
-  check_taken(candidate.design(), {.what = "machining time", .bases = false});
+  check_taken(candidate.design(), {.what = "machining time", .substrates = false});
   return *prism;
 }
 
@@ -139,7 +139,7 @@ double facets_of_element_mm2(const geometry::PartSpec& spec) {
 }
 
 std::optional<double> total_reflection_limit_deg(const Candidate& candidate) {
-  if (candidate.design().part().base) return std::nullopt;  // elements stand at angles of their own
+  if (candidate.design().part().substrate) return std::nullopt;  // elements stand at angles of their own
   const auto library = materials::MaterialLibrary::shipped();
   const OpticalModel model = make_model(candidate.design(), library);
   double least = model.spectral.front().optics.index;
@@ -170,7 +170,7 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
       return static_cast<double>(candidate.part().elements_partial);
     case PlainQuantity::element_depth_mm:
       // A part on a base is deeper than its elements.
-      return candidate.design().part().base
+      return candidate.design().part().substrate
                  ? geometry::element_depth_mm(candidate.part().spec.element, candidate.part().spec.angle_errors)
                  : candidate.part().element_depth_mm;
     case PlainQuantity::lens_thickness_mm:

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/schema/writer.h"
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/design/design_reader.h"
 
 namespace retrace::studies {

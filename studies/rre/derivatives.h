@@ -7,7 +7,7 @@
 
 #include "core/derivative.h"
 #include "core/progress.h"
-#include "raytrace/beam_tracer.h"
+#include "raytrace/exact/beam_tracer.h"
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "raytrace/beam_tracer.h"
-#include "raytrace/point_lookup.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/point_lookup.h"
 
 namespace retrace::studies {
 

@@ -3,9 +3,9 @@
 #include <array>
 #include <vector>
 
-#include "geometry/part.h"
-#include "raytrace/beam_tracer.h"
-#include "raytrace/overlay.h"
+#include "geometry/part/part.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/overlay.h"
 
 namespace retrace::studies {
 

@@ -62,10 +62,10 @@ std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vect
   std::vector<double> kinks;
   for (std::size_t d = 0; d < designs.size(); ++d) {
     const Design& design = designs[d];
-    if (design.balls() || design.front) continue;
+    if (design.balls() || design.entrance) continue;
     for (const double cone_deg : design.detector.acceptance_half_angle_deg)
       kinks.insert(kinks.end(), {-0.5 * cone_deg, 0.5 * cone_deg});
-    if (!design.elements() || design.part().base || !design.needs_total_reflection()) continue;
+    if (!design.elements() || design.part().substrate || !design.needs_total_reflection()) continue;
     for (const double azimuth : request.azimuth_deg)
       for (const SpectralOptics& light : models[d].spectral) {
         const std::vector<double> edges = total_reflection_edges_deg(design.part(), light.optics.index,

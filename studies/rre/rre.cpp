@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "raytrace/monte_carlo.h"
+#include "raytrace/paths/monte_carlo.h"
 #include "studies/rre/request_tracing.h"
 #include "studies/rre/tracing.h"
 
@@ -98,8 +98,8 @@ std::string_view engine_name(Engine engine) {
 namespace {
 
 /// Beams and cells know plane entrance faces alone.
-void check_front(const Design& design, const RreRequest& request) {
-  if (!design.front) return;
+void check_entrance(const Design& design, const RreRequest& request) {
+  if (!design.entrance) return;
   if (request.engine == Engine::exact || request.engine == Engine::cell)
     throw InputError({"", 0, "--engine"}, fmt::format("{} takes a plane entrance face alone, {} has a [front]: use "
                                                       "--engine embree",
@@ -113,8 +113,8 @@ void check_front(const Design& design, const RreRequest& request) {
 /// Balls have one engine of their own.
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreRequest& request) {
   if (!design.balls()) {
-    check_front(design, request);
-    return make_model(design, library, Fronts::any);
+    check_entrance(design, request);
+    return make_model(design, library, Entrances::any);
   }
   if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
     throw InputError({"", 0, "--engine"},

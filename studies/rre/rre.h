@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "raytrace/ledger.h"
-#include "raytrace/monte_carlo.h"
+#include "raytrace/light/ledger.h"
+#include "raytrace/paths/monte_carlo.h"
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
 #include "studies/rre/adaptive_curve.h"

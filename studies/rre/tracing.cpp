@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/error.h"
-#include "raytrace/beads/ball_tracer.h"
-#include "raytrace/beam_tracer.h"
-#include "raytrace/threads.h"
+#include "raytrace/balls/ball_tracer.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/sampling/threads.h"
 
 namespace retrace::studies {
 namespace {
@@ -190,8 +190,8 @@ class DesignTracing {
 
   raytrace::MonteCarlo::Engine ray_engine() const {
     using raytrace::MonteCarlo;
-    const bool may_be_cell =
-        !model_.front && request_.engine != Engine::embree && request_.sampling == raytrace::Sampling::Kind::stratified;
+    const bool may_be_cell = !model_.entrance && request_.engine != Engine::embree &&
+                             request_.sampling == raytrace::Sampling::Kind::stratified;
     return may_be_cell && MonteCarlo::cell_serves(model_.part) ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
   }
 
@@ -205,8 +205,9 @@ class DesignTracing {
 
   /// Made when it is first needed, by whichever thread needs it.
   const raytrace::MonteCarlo& ray_tracer() {
-    std::call_once(ray_tracer_is_made_,
-                   [this] { ray_tracer_.emplace(model_.part, ray_engine(), model_.front ? &*model_.front : nullptr); });
+    std::call_once(ray_tracer_is_made_, [this] {
+      ray_tracer_.emplace(model_.part, ray_engine(), model_.entrance ? &*model_.entrance : nullptr);
+    });
     return *ray_tracer_;
   }
 
@@ -289,7 +290,7 @@ bool may_be_exact(const RreRequest& request) {
 }
 
 bool may_be_exact(const Design& design, const OpticalModel& model, const RreRequest& request) {
-  return may_be_exact(request) && !design.balls() && !model.front && model.optics.is_smooth();
+  return may_be_exact(request) && !design.balls() && !model.entrance && model.optics.is_smooth();
 }
 
 bool must_be_exact(const RreRequest& request) {

@@ -10,8 +10,8 @@
 
 #include "core/number_format.h"
 #include "core/schema/json.h"
-#include "geometry/faceted_solid.h"
-#include "geometry/lattice.h"
+#include "geometry/elements/lattice.h"
+#include "geometry/part/faceted_solid.h"
 #include "studies/design/design_format.h"
 #include "studies/design/design_reader.h"
 
@@ -52,7 +52,7 @@ Design few_elements(const Design& design, std::vector<std::string>& remarks) {
   }
   const double top_mm = geometry::element_top_mm(spec.element, spec.angle_errors);
   const double plate_mm = std::max(1.5 * top_mm, 0.7 * size.maxCoeff());
-  if (spec.thickness_mm > 2.0 * plate_mm && !spec.base) {
+  if (spec.thickness_mm > 2.0 * plate_mm && !spec.substrate) {
     spec.thickness_mm = plate_mm;
     remarks.push_back("the plate is drawn thinner");
   }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/closed_boundary.h"
-#include "raytrace/light_path.h"
+#include "geometry/part/closed_boundary.h"
+#include "raytrace/paths/light_path.h"
 #include "studies/design/optical_model.h"
 
 namespace retrace::studies {

@@ -7,10 +7,10 @@
 
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "geometry/faceted_solid.h"
-#include "geometry/mesh_part.h"
-#include "geometry/mould_boundary.h"
-#include "geometry/welded_part.h"
+#include "geometry/part/faceted_solid.h"
+#include "geometry/part/mesh_part.h"
+#include "geometry/part/mould_boundary.h"
+#include "geometry/part/welded_part.h"
 #include "studies/design/design_part.h"
 #include "studies/design/part_of_design.h"
 

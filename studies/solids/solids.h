@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/closed_boundary.h"
+#include "geometry/part/closed_boundary.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {

@@ -20,7 +20,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/sweep/mpi_mailbox.h"
 
 namespace retrace::studies {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "core/version.h"
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies {

@@ -3,7 +3,7 @@ retrace_test(command_tests
   SOURCES
     app/bad_input_test.cpp
     app/balls_test.cpp
-    app/base_job_test.cpp
+    app/substrate_job_test.cpp
     app/commands_test.cpp
     app/derivatives_test.cpp
     app/chiseling_command_test.cpp
@@ -23,5 +23,5 @@ retrace_test(command_tests
     app/verify_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 retrace_test(command_tests
-  SOURCES app/front_test.cpp app/inputs_test.cpp app/interrupt_test.cpp
+  SOURCES app/entrance_test.cpp app/inputs_test.cpp app/interrupt_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)

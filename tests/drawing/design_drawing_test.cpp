@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "geometry/facet_planes.h"
+#include "geometry/elements/facet_planes.h"
 #include "report/drawing/design_sheets.h"
 #include "report/drawing/svg_sheet.h"
 #include "studies/design/design_part.h"

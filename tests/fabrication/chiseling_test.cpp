@@ -25,10 +25,10 @@
 #include "fabrication/verify/dexel.h"
 #include "fabrication/verify/error_field.h"
 #include "fabrication/verify/verify.h"
-#include "geometry/lattice.h"
-#include "geometry/part.h"
+#include "geometry/elements/lattice.h"
+#include "geometry/part/part.h"
 #include "tests/fabrication/chiseling_jobs.h"
-#include "tests/fabrication/sweep_sink.h"
+#include "tests/fabrication/swept_volume_sink.h"
 
 // Diamond micro chiseling: poses and paths against the geometry of cubes, programs cut again from their text, and
 // faults that are planted in them.
@@ -76,10 +76,10 @@ double degrees_between(const Vec3& a, const Vec3& b) {
 }
 
 TEST(Chiseling, FacetsAndEdgesOfACubeOnItsCorner) {
-  for (const bool turned : {false, true})
+  for (const bool rotated : {false, true})
     for (int k = 1; k <= 3; ++k) {
-      const Vec3 normal = cube_facet_normal({turned, k});
-      const auto [first, second] = cube_facet_edges({turned, k});
+      const Vec3 normal = cube_facet_normal({rotated, k});
+      const auto [first, second] = cube_facet_edges({rotated, k});
       EXPECT_NEAR(degrees_between(normal, Vec3::UnitZ()), 54.7356103172, 1e-9);
       for (const Vec3& edge : {first, second}) {
         EXPECT_NEAR(90.0 - degrees_between(edge, Vec3::UnitZ()), 35.2643896828, 1e-9);
@@ -91,12 +91,12 @@ TEST(Chiseling, FacetsAndEdgesOfACubeOnItsCorner) {
 
 TEST(Chiseling, ThePoseLaysTheToolOnTheFacetAndTheTipOnItsEdges) {
   for (const Machine& m : {machine(), crooked_machine()})
-    for (const bool turned : {false, true})
+    for (const bool rotated : {false, true})
       for (int k = 1; k <= 3; ++k) {
         const Job job = cube_job(false);
-        const CuttingPose pose = chiseling_pose(job, m, {turned, k}, 0.0);
+        const CuttingPose pose = chiseling_pose(job, m, {rotated, k}, 0.0);
         const RigidMotion motion = machine_from_workpiece(m, pose.rounded);
-        EXPECT_LT((motion.direction(cube_facet_normal({turned, k})) - plunged_normal(m)).norm(), 4e-9);
+        EXPECT_LT((motion.direction(cube_facet_normal({rotated, k})) - plunged_normal(m)).norm(), 4e-9);
         EXPECT_NEAR(pose.rounded.a_deg, 35.2643897, m.name == "ideal-dmc" ? 1e-7 : 0.5);
       }
 }
@@ -267,7 +267,7 @@ TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
   EXPECT_NEAR(v.border_overcut_mm3, volume_mm3 - 9.0 * std::pow(edge_mm, 3), 1e-12);
 
   // The same by dexels from the text alone.
-  SweepSink sink(m);
+  SweptVolumeSink sink(m);
   run_nc(parse_nc(text_of(job, m), "p", NcDialect::rs274ngc), sink);
   const double reach = 5.0 * edge_mm;
   const DexelField field = cut_dexels(sink.sweeps, sink.poses, v_tool_wedge(job.tool, m),

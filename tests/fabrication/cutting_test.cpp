@@ -29,21 +29,21 @@ Machine machine(const std::string& name) {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
 }
 
-Sweep sweep_of(const Vec3& from, const Vec3& to, std::uint32_t pose = 0) {
+SweptVolume sweep_of(const Vec3& from, const Vec3& to, std::uint32_t pose = 0) {
   return {pose, {1, 0}, false, from, to};
 }
 
 /// Volume removed from the blank z < 0 below a rectangle, by lines along z: lines are exact, and the integrand is
 /// piecewise linear across x and y with corners where the test puts the cells' borders.
-double volume_by_lines(const std::vector<Sweep>& sweeps, const std::vector<RigidMotion>& poses, const ToolWedge& wedge,
-                       double x_end, double y_low, double y_high, int cells) {
+double volume_by_lines(const std::vector<SweptVolume>& sweeps, const std::vector<RigidMotion>& poses,
+                       const ToolWedge& wedge, double x_end, double y_low, double y_high, int cells) {
   double volume = 0.0;
   std::vector<LineSpan> spans;
   const double dy = (y_high - y_low) / cells;
   for (int i = 0; i < cells; ++i) {
     const Vec3 p(0.3 * x_end, y_low + (i + 0.5) * dy, 0.0);
     spans.clear();
-    for (const Sweep& s : sweeps)
+    for (const SweptVolume& s : sweeps)
       if (const auto span = swept_span(wedge, s, poses[s.pose].point(p), poses[s.pose].direction(Vec3(0, 0, 1))))
         spans.push_back(*span);
     volume += -std::min(0.0, surface_along(spans, 0.0).top) * dy * 2.0 * x_end;
@@ -63,8 +63,8 @@ TEST(Cutting, VolumeOfASlot) {
   const Machine ideal = machine("ideal");
   const ToolWedge wedge = tool_wedge(tool_of_width(1.0), ideal, Angle::from_deg(90));
   const double depth = 0.1;
-  const std::vector<Sweep> sweeps = {sweep_of({0, 0, 0.2}, {0, 0, -depth}),
-                                     sweep_of({0, 0, -depth}, {0, -0.6, -depth})};
+  const std::vector<SweptVolume> sweeps = {sweep_of({0, 0, 0.2}, {0, 0, -depth}),
+                                           sweep_of({0, 0, -depth}, {0, -0.6, -depth})};
   const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {0, 0})};
   // Plunging leaves a vertical wall at y = 0; ploughing ends with the rake face, 53 degrees from the vertical.
   const double analytic = depth * 0.6 + 0.5 * depth * depth * std::tan(Angle::from_deg(53).rad());
@@ -80,13 +80,13 @@ TEST(Cutting, VolumeOfAPrism) {
   const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal, Angle::from_deg(90));
   const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {45, 0}),
                                           machine_from_workpiece(ideal, {45, 180})};
-  const double base = 0.5;
+  const double substrate = 0.5;
   const Vec3 root(0, 0, -0.25);
-  const std::vector<Sweep> sweeps = {sweep_of(poses[0].point(root) + Vec3(0, 0, 0.6), poses[0].point(root), 0),
-                                     sweep_of(poses[1].point(root) + Vec3(0, 0, 0.6), poses[1].point(root), 1)};
+  const std::vector<SweptVolume> sweeps = {sweep_of(poses[0].point(root) + Vec3(0, 0, 0.6), poses[0].point(root), 0),
+                                           sweep_of(poses[1].point(root) + Vec3(0, 0, 0.6), poses[1].point(root), 1)};
   const double left = volume_by_lines(sweeps, poses, wedge, 0.25, -0.25, 0.0, 1);
   const double right = volume_by_lines(sweeps, poses, wedge, 0.25, 0.0, 0.25, 1);
-  EXPECT_NEAR(left + right, 0.25 * base * base * 0.5, 1e-9 * 0.03125);
+  EXPECT_NEAR(left + right, 0.25 * substrate * substrate * 0.5, 1e-9 * 0.03125);
 }
 
 /// Prisms whose apertures overlap by a quarter of their base share a smaller prism.
@@ -95,16 +95,16 @@ TEST(Cutting, VolumeOfOverlappingPrisms) {
   const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal, Angle::from_deg(90));
   const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {45, 0}),
                                           machine_from_workpiece(ideal, {45, 180})};
-  const double base = 0.5;
-  const double shift = 0.75 * base;
-  std::vector<Sweep> sweeps;
+  const double substrate = 0.5;
+  const double shift = 0.75 * substrate;
+  std::vector<SweptVolume> sweeps;
   for (const double y : {0.0, shift})
     for (std::uint32_t pose : {0U, 1U}) {
       const Vec3 tip = poses[pose].point(Vec3(0, y, -0.25));
       sweeps.push_back(sweep_of(tip + Vec3(0, 0, 0.6), tip, pose));
     }
-  const double shared = base - shift;
-  const double analytic = (2.0 * 0.25 * base * base - 0.25 * shared * shared) * 0.5;
+  const double shared = substrate - shift;
+  const double analytic = (2.0 * 0.25 * substrate * substrate - 0.25 * shared * shared) * 0.5;
   double volume = 0.0;
   for (const auto& [from, to] : {std::pair{-0.25, 0.0}, {0.0, 0.1875}, {0.1875, 0.375}, {0.375, 0.625}})
     volume += volume_by_lines(sweeps, poses, wedge, 0.25, from, to, 1);
@@ -120,7 +120,7 @@ RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
     const double y = coordinate();
     return Vec3(x, y, coordinate());
   };
-  const Sweep sweep = sweep_of(vector(), vector());
+  const SweptVolume sweep = sweep_of(vector(), vector());
   const Vec3 point = vector();
   const Vec3 direction = (vector() + Vec3(0, 0, 2)).normalized();
   const auto span = swept_span(wedge, sweep, point, direction);
@@ -194,13 +194,13 @@ RC_GTEST_PROP(Bodies, HullsAgreeWithPlanesBetweenThem, ()) {
 
 /// Collects the sweeps of programs, for dexels.
 struct Cut {
-  std::vector<Sweep> sweeps;
+  std::vector<SweptVolume> sweeps;
   std::vector<RigidMotion> poses;
   ToolWedge wedge;
 };
 
-struct SweepSink : NcSink {
-  explicit SweepSink(const Machine& m) : machine_of(m) {}
+struct SweptVolumeSink : NcSink {
+  explicit SweptVolumeSink(const Machine& m) : machine_of(m) {}
   void motion(const NcMotion& m, const NcSettings&) override {
     if ((m.known | m.moved) != 31 || (m.moved & 24) != 0) return;
     cut.poses.push_back(machine_from_workpiece(machine_of, {m.to.a_deg, m.to.c_deg}));
@@ -213,7 +213,7 @@ struct SweepSink : NcSink {
 };
 
 Cut cut_of(const std::string& text, const Job& job, const Machine& m, NcDialect dialect = NcDialect::rs274ngc) {
-  SweepSink sink(m);
+  SweptVolumeSink sink(m);
   sink.cut.wedge = tool_wedge(job.tool, m, Angle::from_deg(prism_of(job).apex_angle_deg));
   run_nc(parse_nc(text, "p", dialect), sink);
   return sink.cut;

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "fabrication/job/io/job_files.h"
-#include "geometry/part.h"
+#include "geometry/part/part.h"
 #include "tests/fabrication/jobs.h"
 
 // Jobs: where the elements lie, files that are read and written without loss, and what is refused.
@@ -90,7 +90,7 @@ TEST(Job, NumbersDirectElementsFromItsOwnLeft) {
 TEST(Job, TurnsEverySecondElementOfAChecker) {
   const auto elements = cut_elements(square_job(4, Arrangement::checker));
   EXPECT_EQ(elements.size(), 16U);
-  for (const CutElement& element : elements) EXPECT_EQ(element.turned, (element.row + element.column) % 2 == 1);
+  for (const CutElement& element : elements) EXPECT_EQ(element.rotated, (element.row + element.column) % 2 == 1);
 }
 
 TEST(Job, PatternSaysWhatIsCut) {
@@ -216,25 +216,26 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
 }
 
 TEST(JobFile, BasesReadBackEqual) {
-  for (const char* const base : {"kind = \"plane\"\nincline_deg = 7.5\nazimuth_deg = 30\nelements = \"parallel\"\n",
-                                 "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelements = \"parallel\"\n",
-                                 "kind = \"cylinder\"\nradius_mm = 30\naxis = \"y\"\nelements = \"normal\"\n",
-                                 "kind = \"sphere\"\nradius_mm = 40\nelements = \"normal\"\n",
-                                 "kind = \"formula\"\nsag_mm = \"0.01*x^2 - y/9\"\nelements = \"parallel\"\n"}) {
-    const std::string text = job_text(square_job(4)) + "\n[base]\n" + base;
+  for (const char* const substrate :
+       {"kind = \"plane\"\nincline_deg = 7.5\nazimuth_deg = 30\nelements = \"parallel\"\n",
+        "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelements = \"parallel\"\n",
+        "kind = \"cylinder\"\nradius_mm = 30\naxis = \"y\"\nelements = \"normal\"\n",
+        "kind = \"sphere\"\nradius_mm = 40\nelements = \"normal\"\n",
+        "kind = \"formula\"\nsag_mm = \"0.01*x^2 - y/9\"\nelements = \"parallel\"\n"}) {
+    const std::string text = job_text(square_job(4)) + "\n[base]\n" + substrate;
     const Job job = parse_job(text, "j.toml");
-    ASSERT_TRUE(job.base) << base;
+    ASSERT_TRUE(job.substrate) << substrate;
     const std::string again = job_text(job);
-    EXPECT_NE(again.find(std::string("\n[base]\n") + base), std::string::npos) << again;
+    EXPECT_NE(again.find(std::string("\n[base]\n") + substrate), std::string::npos) << again;
     EXPECT_EQ(job_text(parse_job(again, "j.toml")), again);
     EXPECT_EQ(cut_elements(job).front().foot_mm, cut_elements(parse_job(again, "j.toml")).front().foot_mm);
   }
 }
 
 TEST(JobFile, BasesThatCannotBeAreRefused) {
-  const auto complaint = [](const Job& job, const std::string& base) -> std::string {
+  const auto complaint = [](const Job& job, const std::string& substrate) -> std::string {
     try {
-      parse_job(job_text(job) + "\n[base]\n" + base, "j.toml");
+      parse_job(job_text(job) + "\n[base]\n" + substrate, "j.toml");
     } catch (const InputError& error) {
       return error.what();
     }
@@ -243,8 +244,8 @@ TEST(JobFile, BasesThatCannotBeAreRefused) {
   const Job good = square_job(4);
   const std::string plane = "kind = \"plane\"\nincline_deg = 5\n";
   ASSERT_EQ(complaint(good, plane), "none");
-  const auto expect = [&](const Job& job, const std::string& base, const std::string& message) {
-    const std::string said = complaint(job, base);
+  const auto expect = [&](const Job& job, const std::string& substrate, const std::string& message) {
+    const std::string said = complaint(job, substrate);
     EXPECT_TRUE(said.starts_with("j.toml:")) << said;
     EXPECT_NE(said.find(": base" + message), std::string::npos) << said << "\nnot " << message;
     EXPECT_EQ(said.find('\n'), std::string::npos);

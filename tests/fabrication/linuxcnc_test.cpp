@@ -9,8 +9,8 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "tests/fabrication/base_jobs.h"
 #include "tests/fabrication/linuxcnc.h"
+#include "tests/fabrication/substrate_jobs.h"
 
 // LinuxCNC's own interpreter reads our RS274/NGC text: its canonical moves are the planned ones. Golden programs pin
 // the text of every dialect.
@@ -76,10 +76,11 @@ TEST(LinuxCnc, MovesAsPlannedForCubeCorners) {
 }
 
 TEST(LinuxCnc, MovesAsPlannedForElementsOnBases) {
-  expect_planned(make_plan(prisms_on(plane_base(12.0, 0.0, Standing::normal)), machine("ideal")), "incline");
-  expect_planned(make_plan(prisms_on(cylinder_base(6.0, false, Standing::normal)), machine("thesis")), "cylinder");
-  expect_planned(make_plan(prisms_on(sphere_base(-12.0, Standing::parallel)), machine("paper")), "bowl");
-  expect_planned(make_plan(cubes_on(cylinder_base(3.0, true, Standing::normal), true), machine("ideal-dmc")),
+  expect_planned(make_plan(prisms_on(plane_substrate(12.0, 0.0, ElementAxes::normal)), machine("ideal")), "incline");
+  expect_planned(make_plan(prisms_on(cylinder_substrate(6.0, false, ElementAxes::normal)), machine("thesis")),
+                 "cylinder");
+  expect_planned(make_plan(prisms_on(sphere_substrate(-12.0, ElementAxes::parallel)), machine("paper")), "bowl");
+  expect_planned(make_plan(cubes_on(cylinder_substrate(3.0, true, ElementAxes::normal), true), machine("ideal-dmc")),
                  "hexagons");
 }
 

@@ -113,16 +113,16 @@ TEST(Passes, LieSideBySide) {
 TEST(Poses, StandThePlungedFacetUpright) {
   for (const std::string& name : kMachines)
     for (const double apex_deg : {80.0, 90.0, 90.2, 110.0})
-      for (const bool turned : {false, true})
+      for (const bool rotated : {false, true})
         for (const int facet : {1, 2}) {
           Job job = square_job(2, Arrangement::checker);
           prism_of(job).apex_angle_deg = apex_deg;
           const Machine m = machine(name);
-          const CuttingPose pose = cutting_pose(job, m, {turned, facet}, 0.0);
+          const CuttingPose pose = cutting_pose(job, m, {rotated, facet}, 0.0);
           const RigidMotion motion = machine_from_workpiece(m, pose.rounded);
-          const Vec3 normal = motion.direction(facet_normal(prism_of(job), {turned, facet}));
+          const Vec3 normal = motion.direction(facet_normal(prism_of(job), {rotated, facet}));
           EXPECT_LT(kArcminPerRad * std::acos(std::min(1.0, -normal.y())), 0.01)
-              << name << " apex " << apex_deg << " facet " << facet << (turned ? " turned" : "");
+              << name << " apex " << apex_deg << " facet " << facet << (rotated ? " turned" : "");
           EXPECT_GT(motion.direction(pose.root).x(), 0.999);
         }
 }
@@ -151,7 +151,7 @@ TEST(Poses, LeaveThePredictedRotation) {
 /// Signed distance of a point of the workpiece from a facet of an element: positive outside the material.
 double distance_nm(const Job& job, const CutElement& element, int facet, const Vec3& point) {
   const Vec3 root(element.centre_mm.x(), element.centre_mm.y(), -root_depth_mm(blank_prism(job)));
-  return 1e6 * facet_normal(blank_prism(job), {element.turned, facet}).dot(point - root);
+  return 1e6 * facet_normal(blank_prism(job), {element.rotated, facet}).dot(point - root);
 }
 
 /// Both ends of the tool's edge in the workpiece, where the axes are there.
@@ -173,7 +173,7 @@ TEST(Plunges, EndWhereTheDeeperEndTouchesTheOtherFacetAndNeverBelow) {
         for (const PlannedMove& move : moves_of(plan)) {
           if (move.rapid || move.motion != Motion::plunge) continue;
           const CutElement& element = plan.elements[static_cast<std::size_t>(move.element)];
-          double c_deg = 1e-7 * static_cast<double>(move.to.c) - (element.turned ? 90.0 : 0.0);
+          double c_deg = 1e-7 * static_cast<double>(move.to.c) - (element.rotated ? 90.0 : 0.0);
           const int wall = std::abs(c_deg) < 45.0 || std::abs(c_deg - 360.0) < 45.0 ? 1 : 2;
           auto [it, is_new] = nearest.try_emplace({move.element, wall}, std::array{1e9, 1e9});
           for (const Vec3& end : edge_ends(job, m, move.to)) {

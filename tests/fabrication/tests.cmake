@@ -32,5 +32,5 @@ retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/chiseling_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::verify)
 retrace_test(fabrication_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_faults_test.cpp ${CMAKE_CURRENT_LIST_DIR}/base_jobs_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/substrate_faults_test.cpp ${CMAKE_CURRENT_LIST_DIR}/substrate_jobs_test.cpp
   LIBRARIES retrace::plan retrace::post retrace::verify)

@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 #include "materials/fresnel.h"
-#include "raytrace/farfield/far_field.h"
+#include "raytrace/observers/far_field.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "raytrace/farfield/coefficients.h"
-#include "raytrace/farfield/far_field.h"
-#include "raytrace/farfield/photometric_geometry.h"
-#include "raytrace/monte_carlo.h"
-#include "raytrace/sobol.h"
+#include "raytrace/observers/coefficients.h"
+#include "raytrace/observers/far_field.h"
+#include "raytrace/observers/photometric_geometry.h"
+#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/sampling/sobol.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"

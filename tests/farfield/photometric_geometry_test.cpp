@@ -1,5 +1,5 @@
 // The angles of CIE 54.2 and ASTM E808 against their published relations and against each other.
-#include "raytrace/farfield/photometric_geometry.h"
+#include "raytrace/observers/photometric_geometry.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "geometry/io/stl_file.h"
-#include "geometry/mesh_part.h"
+#include "geometry/part/mesh_part.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace retrace;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "geometry/part.h"
+#include "geometry/part/part.h"
 #include "tests/geometry/part_checks.h"
 
 // Dihedral errors and facet tilts: the angles that are built, and that the part stays a solid with them.
@@ -59,7 +59,7 @@ TEST(AngleErrors, CubeCornersIncludeTheDihedralAnglesAskedFor) {
     for (const Cell& cell :
          {hexagonal_cube_cell({1.3}, errors, {0.2, 0.3}), triangular_cube_cell({1.3}, errors, {0.2, 0.3}),
           triangular_cube_cell({1.3}, errors, {0.2, 0.3}, true)}) {
-      const bool turned = cell.outline[0].x() < 0.2;
+      const bool rotated = cell.outline[0].x() < 0.2;
       const std::vector<Vec3> normals = normals_of(cell);
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& before = normals[(k + 2) % 3];
@@ -68,7 +68,7 @@ TEST(AngleErrors, CubeCornersIncludeTheDihedralAnglesAskedFor) {
         // Edge k, seen from the apex outward, runs over 120 k degrees.
         const Vec3 edge = before.cross(normals[k]).normalized();
         EXPECT_GT(edge.z(), 0.0);
-        const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k) + (turned ? std::numbers::pi : 0.0);
+        const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k) + (rotated ? std::numbers::pi : 0.0);
         EXPECT_GT(edge.head<2>().normalized().dot(Vec2(std::cos(angle), std::sin(angle))), 0.99);
       }
     }
@@ -162,9 +162,9 @@ TEST(AngleErrors, AntisymmetricTiltsOfAPrismTurnItAboutItsRoot) {
 TEST(AngleErrors, TurnedPrismsCarryTheirErrorsWithThem) {
   const AngleErrors errors{{2.0, 0.0, 0.0}, {3.0, -1.0, 0.0}};
   const std::vector<Vec3> plain = normals_of(rtp_cell({0.5, 0.5, 90.0}, errors, Vec2::Zero()));
-  const std::vector<Vec3> turned = normals_of(rtp_cell({0.5, 0.5, 90.0}, errors, Vec2::Zero(), true));
+  const std::vector<Vec3> rotated = normals_of(rtp_cell({0.5, 0.5, 90.0}, errors, Vec2::Zero(), true));
   for (std::size_t k : {0U, 1U})
-    EXPECT_NEAR((turned[k] - Vec3(-plain[k].y(), plain[k].x(), plain[k].z())).norm(), 0.0, 1e-15);
+    EXPECT_NEAR((rotated[k] - Vec3(-plain[k].y(), plain[k].x(), plain[k].z())).norm(), 0.0, 1e-15);
 }
 
 TEST(AngleErrors, SurfaceLiesBetweenDepthAndTop) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "geometry/lattice.h"
-#include "geometry/part.h"
+#include "geometry/elements/lattice.h"
+#include "geometry/part/part.h"
 #include "tests/geometry/part_checks.h"
 
 // Canted cube corners: which way they lean, and that the part stays a solid.
@@ -39,7 +39,7 @@ TEST(Cant, TurnsTheAxisTowardsItsAzimuthAndKeepsTheCubeRight) {
          {hexagonal_cube_cell({1.3, cant}, {}, {0.2, 0.3}), triangular_cube_cell({1.3, cant}, {}, {0.2, 0.3}),
           triangular_cube_cell({1.3, cant}, {}, {0.2, 0.3}, true)}) {
       const std::vector<Vec3> normals = inward_normals(cell);
-      const Vec3 expected = cell.turned ? Vec3(-axis.x(), -axis.y(), axis.z()) : axis;
+      const Vec3 expected = cell.rotated ? Vec3(-axis.x(), -axis.y(), axis.z()) : axis;
       for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_NEAR(normals[k].dot(expected), 1.0 / std::numbers::sqrt3, 1e-13);
         EXPECT_NEAR(normals[k].dot(normals[(k + 1) % 3]), 0.0, 1e-13);

@@ -1,4 +1,4 @@
-#include "geometry/facet_planes.h"
+#include "geometry/elements/facet_planes.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "geometry/check/boundary_check.h"
-#include "geometry/closed_boundary.h"
+#include "geometry/part/closed_boundary.h"
 
 // Prisms with planes of their own: nominal ones are the nominal part, turned ones meet where their planes do.
 
@@ -32,14 +32,14 @@ PartSpec prisms(Arrangement arrangement) {
 enum class Twist { root_sinks, root_turns };
 
 /// The planes of a prism, nominal but for slopes along the root.
-ElementPlanes planes_at(const Vec2& centre, bool turned = false, double twist_rad = 0.0,
+ElementPlanes planes_at(const Vec2& centre, bool rotated = false, double twist_rad = 0.0,
                         Twist twist = Twist::root_sinks) {
   ElementPlanes element;
   element.centre_mm = centre;
   for (const std::size_t k : {0U, 1U}) {
     const double side = k == 0 ? -1.0 : 1.0;
     Vec2 slope(side, (twist == Twist::root_sinks ? 1.0 : side) * std::tan(twist_rad));
-    if (turned) std::swap(slope.x(), slope.y());
+    if (rotated) std::swap(slope.x(), slope.y());
     element.planes[k] = {-0.25, slope};
   }
   return element;
@@ -113,12 +113,12 @@ PartSpec cubes(const Element& element, Arrangement arrangement) {
 }
 
 /// Facet k of a cube corner with its apex at `centre`, told there.
-ElementPlanes cube_at(const Element& element, const Vec2& centre, bool turned = false) {
+ElementPlanes cube_at(const Element& element, const Vec2& centre, bool rotated = false) {
   ElementPlanes planes;
   planes.centre_mm = centre;
   planes.planes.clear();
   for (const CellFacet& facet : element_cell(element).facets)
-    planes.planes.push_back({-element_depth_mm(element), turned ? Vec2(-facet.plane.slope) : facet.plane.slope});
+    planes.planes.push_back({-element_depth_mm(element), rotated ? Vec2(-facet.plane.slope) : facet.plane.slope});
   return planes;
 }
 
@@ -135,12 +135,12 @@ TEST(FacetPlanes, NominalPlanesOfCubeCornersAreTheNominalPart) {
       for (int column = -4; column <= 4; ++column) {
         if ((row + column) % 2 != 0) continue;
         const Vec2 centre(2.0 + 0.75 * column, 2.0 + row_mm * row);
-        const auto add = [&](const Vec2& apex, bool turned) {
+        const auto add = [&](const Vec2& apex, bool rotated) {
           Polygon outline = element_cell(element).outline;
-          for (Vec2& p : outline) p = turned ? Vec2(apex - p) : Vec2(apex + p);
+          for (Vec2& p : outline) p = rotated ? Vec2(apex - p) : Vec2(apex + p);
           const Rectangle box = bounding_box(outline);
           if (box.lower.minCoeff() < 0.0 || box.upper.maxCoeff() > 4.0) return;
-          planes.push_back(cube_at(element, apex, turned));
+          planes.push_back(cube_at(element, apex, rotated));
         };
         add(centre, false);
         if (!is_hexagonal) add(centre - Vec2(0.5, 0.0), true);

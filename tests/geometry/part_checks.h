@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/check/boundary_check.h"
-#include "geometry/part.h"
+#include "geometry/part/part.h"
 
 namespace retrace::geometry {
 

@@ -1,4 +1,4 @@
-#include "geometry/part.h"
+#include "geometry/part/part.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 namespace retrace::geometry::part_test {
 namespace {
 
-PartSpec rtp_array(double base, double width, double length, Arrangement arrangement) {
+PartSpec rtp_array(double substrate, double width, double length, Arrangement arrangement) {
   PartSpec spec;
-  spec.element = RtpElement{base, width, 90.0};
+  spec.element = RtpElement{substrate, width, 90.0};
   spec.arrangement = arrangement;
   spec.x_length_mm = spec.y_length_mm = length;
   spec.thickness_mm = 0.5;
@@ -75,8 +75,8 @@ TEST(Part, CubeCornerArraysAreClosed) {
 // Counts printed in Hamilton et al. 2017, Table 1 (first row shifted) and Milliken 2017, section 2.7 (second row
 // shifted).
 TEST(Part, CountsOfThePapers) {
-  const auto full = [](double base, RowParity parity, double length = 10.0) {
-    PartSpec spec = rtp_array(base, base, length, Arrangement::offset);
+  const auto full = [](double substrate, RowParity parity, double length = 10.0) {
+    PartSpec spec = rtp_array(substrate, substrate, length, Arrangement::offset);
     spec.shifted_rows = parity;
     return build_part(spec).elements_full;
   };
@@ -92,8 +92,8 @@ TEST(Part, CountsOfThePapers) {
 }
 
 TEST(Part, TotalReflectiveFacetAreaOfTable1) {
-  for (const double base : {10.0, 5.0, 2.0, 1.0, 0.5}) {
-    PartSpec spec = rtp_array(base, base, 10.0, Arrangement::offset);
+  for (const double substrate : {10.0, 5.0, 2.0, 1.0, 0.5}) {
+    PartSpec spec = rtp_array(substrate, substrate, 10.0, Arrangement::offset);
     spec.shifted_rows = RowParity::odd;
     EXPECT_NEAR(build_part(spec).retro_facet_area_mm2, 141.42, 5e-3);
   }

@@ -4,9 +4,9 @@ retrace_test(raytrace_tests
   LIBRARIES retrace::geometry retrace::geometry_check)
 
 retrace_test(raytrace_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_part_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/substrate_part_test.cpp
   LIBRARIES retrace::geometry retrace::geometry_check)
 
 retrace_test(raytrace_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/front_mesh_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/entrance_mesh_test.cpp
   LIBRARIES retrace::geometry)

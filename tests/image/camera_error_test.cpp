@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "raytrace/farfield/photometric_geometry.h"
-#include "raytrace/image/camera.h"
+#include "raytrace/observers/camera.h"
+#include "raytrace/observers/photometric_geometry.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/facet_planes.h"
+#include "geometry/elements/facet_planes.h"
 #include "studies/image/camera_study.h"
 #include "studies/photometry/photometry.h"
 #include "tests/support/designs.h"

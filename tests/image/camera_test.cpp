@@ -1,5 +1,5 @@
 // What cameras see: uniform light, closed forms, coefficients of retroreflection, footprints, convergence.
-#include "raytrace/image/camera.h"
+#include "raytrace/observers/camera.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <numbers>
 #include <sstream>
 
-#include "raytrace/farfield/photometric_geometry.h"
-#include "raytrace/image/detector.h"
-#include "raytrace/threads.h"
+#include "raytrace/observers/detector.h"
+#include "raytrace/observers/photometric_geometry.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/image/camera_study.h"
 #include "studies/photometry/photometry.h"
 #include "tests/support/designs.h"

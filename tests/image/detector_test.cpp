@@ -1,13 +1,13 @@
 // Maps of a detector: closed forms, the ledger, engines against each other.
-#include "raytrace/image/detector.h"
+#include "raytrace/observers/detector.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/monte_carlo.h"
-#include "raytrace/threads.h"
+#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/image/detector_study.h"
 #include "studies/rre/rre.h"
 #include "tests/support/designs.h"

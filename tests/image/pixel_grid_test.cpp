@@ -1,5 +1,5 @@
 // Coverage of pixels by polygons.
-#include "raytrace/image/pixel_grid.h"
+#include "raytrace/observers/pixel_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "raytrace/farfield/photometric_geometry.h"
+#include "raytrace/observers/photometric_geometry.h"
 #include "studies/image/road_study.h"
 #include "studies/photometry/photometer.h"
 #include "tests/support/designs.h"

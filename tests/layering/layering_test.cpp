@@ -84,10 +84,10 @@ TEST_F(SyntheticTree, ChecksSeeNothingOfThePlannerAroundThem) {
 }
 
 TEST_F(SyntheticTree, InOrderPasses) {
-  add("geometry/part.h", "#include \"core/error.h\"\n#include <Eigen/Core>\n");
+  add("geometry/part/part.h", "#include \"core/error.h\"\n#include <Eigen/Core>\n");
   add("geometry/check/closed.cpp", "#include <CGAL/Surface_mesh.h>\n#include \"geometry/check/closed.h\"\n");
   add("core/io/toml_file.cpp", "#include <toml++/toml.h>\n");
-  add("raytrace/scene.cpp", "#include <embree3/rtcore.h>\n#include \"geometry/part.h\"\n");
+  add("raytrace/scene.cpp", "#include <embree3/rtcore.h>\n#include \"geometry/part/part.h\"\n");
   add("studies/design/reader.cpp", "#include \"studies/design/design.h\"\n");
   add("studies/rre/rre.cpp", "#include \"studies/design/design.h\"\n#include \"raytrace/scene.h\"\n");
   add("report/plot.cpp", "#include <cairo.h>\n");
@@ -98,12 +98,12 @@ TEST_F(SyntheticTree, InOrderPasses) {
 }
 
 TEST_F(SyntheticTree, UpwardIncludesAreNamedWithFileAndLine) {
-  add("core/number.cpp", "// text\n\n  #  include \"geometry/part.h\"\n");
-  add("materials/fresnel.cpp", "#include \"geometry/part.h\"\n");
-  add("report/plot.cpp", "#include \"raytrace/ledger.h\"\n");
-  EXPECT_EQ(found(), (Lines{"core/number.cpp:3: core/ may not include geometry/part.h",
-                            "materials/fresnel.cpp:1: materials/ may not include geometry/part.h",
-                            "report/plot.cpp:1: report/ may not include raytrace/ledger.h"}));
+  add("core/number.cpp", "// text\n\n  #  include \"geometry/part/part.h\"\n");
+  add("materials/fresnel.cpp", "#include \"geometry/part/part.h\"\n");
+  add("report/plot.cpp", "#include \"raytrace/light/ledger.h\"\n");
+  EXPECT_EQ(found(), (Lines{"core/number.cpp:3: core/ may not include geometry/part/part.h",
+                            "materials/fresnel.cpp:1: materials/ may not include geometry/part/part.h",
+                            "report/plot.cpp:1: report/ may not include raytrace/light/ledger.h"}));
 }
 
 TEST_F(SyntheticTree, RoomsSeeOnlyWhatTheyMay) {
@@ -116,12 +116,12 @@ TEST_F(SyntheticTree, RoomsSeeOnlyWhatTheyMay) {
 }
 
 TEST_F(SyntheticTree, LibrariesStayInTheirRooms) {
-  add("geometry/part.cpp", "#include <CGAL/Kernel.h>\n");
+  add("geometry/part/part.cpp", "#include <CGAL/Kernel.h>\n");
   add("raytrace/scene.h", "#include <embree3/rtcore.h>\n");
   add("raytrace/scene.cpp", "#include <toml++/toml.h>\n");
   add("studies/rre/rre.cpp", "#include <CLI/CLI.hpp>\n");
   add("report/canvas.h", "#include <cairo.h>\n");
-  EXPECT_EQ(found(), (Lines{"geometry/part.cpp:1: CGAL may be included only in geometry/check/ or an io/ room",
+  EXPECT_EQ(found(), (Lines{"geometry/part/part.cpp:1: CGAL may be included only in geometry/check/ or an io/ room",
                             "raytrace/scene.cpp:1: toml++ may be included only in core/io/",
                             "raytrace/scene.h:1: Embree may be included only in a .cpp file of raytrace/",
                             "report/canvas.h:1: cairo may be included only in a .cpp file of report/",

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "raytrace/beam_tracer.h"
+#include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/reference_tracer.h"
 #include "tests/support/statistics.h"

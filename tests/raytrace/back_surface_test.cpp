@@ -1,6 +1,6 @@
 // The search through Embree's boxes against one through all cells, and against the triangles that solids are exported
 // from.
-#include "raytrace/back_surface.h"
+#include "raytrace/faces/back_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -130,7 +130,7 @@ TEST(BackSurface, RoundedEdges) {
 
 TEST(BackSurface, EveryCellUnlikeTheOthers) {
   PartSpec spec = finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 10.0, 10.0, 0.5);
-  spec.base = Base{SphereBase{20.0}, Standing::normal};
+  spec.substrate = Substrate{SphereSubstrate{20.0}, ElementAxes::normal};
   compare_searches(spec, 2000);
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "raytrace/beads/ball_forms.h"
-#include "raytrace/beads/ball_tracer.h"
-#include "raytrace/beads/ball_walker.h"
+#include "raytrace/balls/ball_forms.h"
+#include "raytrace/balls/ball_tracer.h"
+#include "raytrace/balls/ball_walker.h"
 
 namespace retrace::raytrace::balls_test {
 namespace {

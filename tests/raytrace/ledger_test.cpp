@@ -1,5 +1,5 @@
 // Every bit of power ends in one account, for every kind of design.
-#include "raytrace/ledger.h"
+#include "raytrace/light/ledger.h"
 
 #include <gtest/gtest.h>
 

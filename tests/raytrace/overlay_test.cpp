@@ -1,4 +1,4 @@
-#include "raytrace/overlay.h"
+#include "raytrace/exact/overlay.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "raytrace/point_lookup.h"
+#include "raytrace/exact/point_lookup.h"
 
 namespace retrace::raytrace::overlay_test {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "raytrace/beam_tracer.h"
-#include "raytrace/monte_carlo.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/paths/monte_carlo.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 #include "tests/support/reference_tracer.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "materials/fresnel.h"
-#include "raytrace/beam_tracer.h"
+#include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "materials/fresnel.h"
-#include "raytrace/beam_tracer.h"
+#include "raytrace/exact/beam_tracer.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 

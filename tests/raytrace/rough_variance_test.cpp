@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "raytrace/monte_carlo.h"
+#include "raytrace/paths/monte_carlo.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "raytrace/beam_tracer.h"
+#include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
 
 namespace retrace::testing::round_edges_test {

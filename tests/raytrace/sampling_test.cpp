@@ -5,9 +5,9 @@
 #include <set>
 
 #include "core/random.h"
-#include "raytrace/beam_tracer.h"
-#include "raytrace/entrance_sampler.h"
-#include "raytrace/sobol.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/sampling/entrance_sampler.h"
+#include "raytrace/sampling/sobol.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 

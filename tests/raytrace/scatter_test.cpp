@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "raytrace/beam_tracer.h"
-#include "raytrace/monte_carlo.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/paths/monte_carlo.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "geometry/closed_boundary.h"
-#include "raytrace/beam_tracer.h"
+#include "geometry/part/closed_boundary.h"
+#include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
 

@@ -23,8 +23,8 @@ retrace_test(raytrace_tests
   LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers rapidcheck)
 
 retrace_test(raytrace_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/base_trace_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/substrate_trace_test.cpp
   LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers)
 retrace_test(raytrace_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/front_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/entrance_test.cpp
   LIBRARIES retrace::raytrace)

@@ -1,4 +1,4 @@
-#include "geometry/faceted_solid.h"
+#include "geometry/part/faceted_solid.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "geometry/check/boundary_check.h"
-#include "geometry/mould_boundary.h"
-#include "geometry/part.h"
-#include "geometry/welded_part.h"
+#include "geometry/part/mould_boundary.h"
+#include "geometry/part/part.h"
+#include "geometry/part/welded_part.h"
 #include "tests/solids/solid_specs.h"
 
 namespace retrace::geometry::faceted_solid_test {

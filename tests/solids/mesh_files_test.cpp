@@ -4,10 +4,10 @@
 #include <limits>
 
 #include "core/error.h"
-#include "geometry/faceted_solid.h"
 #include "geometry/io/obj_file.h"
 #include "geometry/io/stl_file.h"
-#include "geometry/part.h"
+#include "geometry/part/faceted_solid.h"
+#include "geometry/part/part.h"
 #include "tests/solids/solid_specs.h"
 
 namespace retrace::geometry::mesh_files_test {

@@ -1,4 +1,4 @@
-#include "geometry/mesh_part.h"
+#include "geometry/part/mesh_part.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "geometry/check/boundary_check.h"
-#include "geometry/faceted_solid.h"
 #include "geometry/io/stl_file.h"
+#include "geometry/part/faceted_solid.h"
 #include "tests/solids/solid_specs.h"
 
 namespace retrace::geometry::mesh_part_test {

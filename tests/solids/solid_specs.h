@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/part_spec.h"
+#include "geometry/elements/part_spec.h"
 
 namespace retrace::test {
 

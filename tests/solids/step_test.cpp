@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "geometry/io/step_file.h"
-#include "geometry/mould_boundary.h"
-#include "geometry/welded_part.h"
+#include "geometry/part/mould_boundary.h"
+#include "geometry/part/welded_part.h"
 #include "tests/solids/solid_specs.h"
 #include "tests/solids/step_reader.h"
 

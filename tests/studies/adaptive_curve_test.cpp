@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/design/design_reader.h"
 #include "studies/design/total_reflection.h"
 #include "studies/rre/adaptive_curve.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "raytrace/beads/ball_forms.h"
+#include "raytrace/balls/ball_forms.h"
 #include "studies/design/design_json.h"
 #include "studies/design/design_part.h"
 #include "studies/design/design_reader.h"

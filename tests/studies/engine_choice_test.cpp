@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/design/design_reader.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"

@@ -41,9 +41,9 @@ TEST(FacetPlanesReader, ReadsWhatItWrites) {
 }
 
 TEST(FacetPlanesReader, TurnedElementsOnlyInACheckers) {
-  const std::string turned = kHead + "0.75,0.25,1,-0.25,0,-1\n0.75,0.25,2,-0.25,0,1\n";
-  EXPECT_EQ(refused(turned, geometry::Arrangement::checker), "accepted");
-  EXPECT_EQ(refused(turned),
+  const std::string rotated = kHead + "0.75,0.25,1,-0.25,0,-1\n0.75,0.25,2,-0.25,0,1\n";
+  EXPECT_EQ(refused(rotated, geometry::Arrangement::checker), "accepted");
+  EXPECT_EQ(refused(rotated),
             "p.csv:3: x_slope: the plane must lie within 5 degrees of facet 1 of the design's element");
 }
 

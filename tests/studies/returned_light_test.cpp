@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "raytrace/threads.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 #include "tests/support/closed_forms.h"

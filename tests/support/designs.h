@@ -1,7 +1,7 @@
 #pragma once
 
-#include "geometry/part.h"
-#include "raytrace/monte_carlo.h"
+#include "geometry/part/part.h"
+#include "raytrace/paths/monte_carlo.h"
 
 namespace retrace::testing {
 

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "geometry/check/boundary_check.h"
-#include "geometry/closed_boundary.h"
-#include "raytrace/beam_tracer.h"
-#include "raytrace/monte_carlo.h"
+#include "geometry/part/closed_boundary.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/paths/monte_carlo.h"
 #include "tests/support/designs.h"
 
 namespace retrace::testing {

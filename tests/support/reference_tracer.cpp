@@ -136,7 +136,7 @@ class Reference {
       ray.field = {strength * first.cast<Complex>(), strength * ray.direction.cross(first).cast<Complex>()};
     }
     const Vec3 n = hit.normal.dot(ray.direction) > 0.0 ? Vec3(-hit.normal) : hit.normal;
-    const bool is_wall = hit.role == FacetRole::border_wall || hit.role == FacetRole::inner_gable;
+    const bool is_wall = hit.role == FacetRole::border_wall || hit.role == FacetRole::inner_wall;
     if (is_wall && optics_.absorbing_walls) {
       ledger_[Account::absorbed] += ray.power();
       return;

@@ -3,9 +3,9 @@
 #include <array>
 #include <cstdint>
 
-#include "geometry/closed_boundary.h"
-#include "raytrace/ledger.h"
-#include "raytrace/optics.h"
+#include "geometry/part/closed_boundary.h"
+#include "raytrace/light/ledger.h"
+#include "raytrace/light/optics.h"
 
 namespace retrace::testing {
 

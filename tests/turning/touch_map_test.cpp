@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/hollowness.h"
+#include "fabrication/turning/concavity_bound.h"
 #include "fabrication/turning/path.h"
 
 // What is proved of the surface's curvature against samples of it, and paths that rely on it against those that search
@@ -31,7 +31,7 @@ Sag sphere(double curvature_per_mm) {
 }
 
 /// The largest second derivative in any direction, from those in three.
-double hollowness(const std::function<Jet2(const Jet2&, const Jet2&)>& z, const Vec2& p) {
+double concavity_bound(const std::function<Jet2(const Jet2&, const Jet2&)>& z, const Vec2& p) {
   const auto along = [&](double c, double s) { return 2.0 * z(Jet2(p.x(), c, 0.0), Jet2(p.y(), s, 0.0)).b; };
   const double xx = along(1.0, 0.0);
   const double yy = along(0.0, 1.0);
@@ -100,8 +100,8 @@ std::pair<double, double> sampled(const TurnedSurface& surface, const Lenslet& l
       const double r = lenslet.inner.radius_mm.evaluate(angle);
       const double R = lenslet.outer.radius_mm.evaluate(angle);
       const double share = (k + 0.5) / kRadii;
-      inside = std::max(inside, hollowness(z, lenslet.inner.centre_mm + r * share * outward));
-      blend = std::max(blend, hollowness(z, lenslet.inner.centre_mm + (r + share * (R - r)) * outward));
+      inside = std::max(inside, concavity_bound(z, lenslet.inner.centre_mm + r * share * outward));
+      blend = std::max(blend, concavity_bound(z, lenslet.inner.centre_mm + (r + share * (R - r)) * outward));
     }
   return {inside, blend};
 }
@@ -114,11 +114,11 @@ TEST(Hollowness, WhatIsProvedHoldsAndIsNotFarFromTheTruth) {
       const Sag base = sphere(kind.base_curvature_per_mm);
       const TurnedSurface surface(base, std::nullopt, {lenslet}, kHere);
       const auto [inside, blend] = sampled(surface, lenslet);
-      EXPECT_FALSE(is_blend_proved_not_hollow(lenslet, base, 0.999 * blend));
-      EXPECT_TRUE(is_blend_proved_not_hollow(lenslet, base, 1.6 * blend)) << blend;
-      EXPECT_TRUE(is_proved_not_hollow(lenslet, std::max(0.1, 1.5 * inside))) << inside;
+      EXPECT_FALSE(is_blend_concavity_bounded(lenslet, base, 0.999 * blend));
+      EXPECT_TRUE(is_blend_concavity_bounded(lenslet, base, 1.6 * blend)) << blend;
+      EXPECT_TRUE(is_concavity_bounded(lenslet, std::max(0.1, 1.5 * inside))) << inside;
       if (inside > 0.0) {
-        EXPECT_FALSE(is_proved_not_hollow(lenslet, 0.999 * inside));
+        EXPECT_FALSE(is_concavity_bounded(lenslet, 0.999 * inside));
       }
     }
   }
@@ -129,7 +129,7 @@ TEST(Hollowness, OfABaseFailsWhereItIsHollowAndOnlyThere) {
   sag.polynomial = XyPolynomial{1.0, 4, std::vector<double>(XyPolynomial::count(4), 0.0)};
   sag.polynomial->coefficients[sag.polynomial->index(4, 0)] = 0.5;  // z'' = 6 x^2
   std::vector<PlanBox> failed;
-  prove_not_hollow(
+  bound_concavity(
       sag, {{-2.0, -2.0}, {2.0, 2.0}}, 6.0, [](const PlanBox&) { return true; },
       [&](const PlanBox& box) { failed.push_back(box); });
   ASSERT_FALSE(failed.empty());
@@ -148,13 +148,13 @@ TEST(Hollowness, OfAFormulaIsNotProved) {
   Sag sag;
   sag.formula = parse_formula("0*x", sag_variables(), kHere);
   int failed = 0;
-  prove_not_hollow(
+  bound_concavity(
       sag, {{-1.0, -1.0}, {1.0, 1.0}}, 1e9, [](const PlanBox&) { return true; }, [&](const PlanBox&) { ++failed; });
   EXPECT_EQ(failed, 1);
   Lenslet lenslet = lenslet_at({}, {0.0, 0.0});
   lenslet.sag.formula = sag.formula;
-  EXPECT_FALSE(is_proved_not_hollow(lenslet, 1e9));
-  EXPECT_FALSE(is_blend_proved_not_hollow(lenslet, sphere(-0.02), 1e9));
+  EXPECT_FALSE(is_concavity_bounded(lenslet, 1e9));
+  EXPECT_FALSE(is_blend_concavity_bounded(lenslet, sphere(-0.02), 1e9));
 }
 
 PathOptions spiral() {

@@ -12,12 +12,12 @@
 #include "core/schema/conditions.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
-#include "fabrication/job/base_cells.h"
 #include "fabrication/job/cube_cells.h"
 #include "fabrication/job/io/process_files.h"
+#include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
-#include "geometry/base_part.h"
-#include "geometry/io/base_rows.h"
+#include "geometry/io/substrate_rows.h"
+#include "geometry/part/substrate_part.h"
 
 namespace retrace::fabrication {
 namespace fs = std::filesystem;
@@ -182,9 +182,9 @@ constexpr Table kToolTables[] = {
 constexpr Child kItself = {[](const void*) -> std::size_t { return 1; },
                            [](const void* job, std::size_t) { return job; }, [](void* job) { return job; }};
 constexpr Child kBase = {
-    [](const void* job) -> std::size_t { return static_cast<const Job*>(job)->base ? 1 : 0; },
-    [](const void* job, std::size_t) -> const void* { return &*static_cast<const Job*>(job)->base; },
-    [](void* job) -> void* { return &static_cast<Job*>(job)->base.emplace(); }};
+    [](const void* job) -> std::size_t { return static_cast<const Job*>(job)->substrate ? 1 : 0; },
+    [](const void* job, std::size_t) -> const void* { return &*static_cast<const Job*>(job)->substrate; },
+    [](void* job) -> void* { return &static_cast<Job*>(job)->substrate.emplace(); }};
 
 const Table kJobTables[] = {
     {.name = "workpiece",
@@ -199,7 +199,7 @@ const Table kJobTables[] = {
      .child = child<&Job::array>},
     {.name = "base",
      .meaning = "What the elements stand on, in place of z = 0.",
-     .rows = geometry::base_rows().first(geometry::base_rows().size() - 1),
+     .rows = geometry::substrate_rows().first(geometry::substrate_rows().size() - 1),
      .child = kBase,
      .presence = Presence::optional},
     {.name = "tool", .meaning = "The diamond.", .rows = kToolRows, .tables = kToolTables, .child = child<&Job::tool>},
@@ -318,9 +318,9 @@ void check_square(const Job& job, const Refuse& refuse) {
 }
 
 /// Moulds of arrays without margins and patterns can stand on a base.
-void check_array_on_base(const Job& job, const Refuse& refuse) {
-  if (!job.base) return;
-  const std::string_view key = geometry::base_shape_key(*job.base);
+void check_array_on_substrate(const Job& job, const Refuse& refuse) {
+  if (!job.substrate) return;
+  const std::string_view key = geometry::substrate_shape_key(*job.substrate);
   const Array& array = job.array;
   if (job.workpiece.kind == WorkpieceKind::direct)
     refuse(key, "needs a mould: workpiece.kind must be \"mould\" where elements stand on a base, got \"direct\"");
@@ -331,15 +331,15 @@ void check_array_on_base(const Job& job, const Refuse& refuse) {
 }
 
 /// That the base carries the elements, and that a tool comes out of their cuts.
-void check_base(const Job& job, const Refuse& refuse) {
-  if (!job.base) return;
+void check_substrate(const Job& job, const Refuse& refuse) {
+  if (!job.substrate) return;
   try {
-    geometry::check_base(part_on_base(job));
+    geometry::check_substrate(part_on_substrate(job));
     const std::vector<CutElement> elements = cut_elements(job);
     if (elements.empty()) throw InputError("must carry one whole element within the part, it carries none");
     stock_mm(job, elements, job.process.clearance_mm);
   } catch (const InputError& error) {
-    refuse(geometry::base_shape_key(*job.base), error.what());
+    refuse(geometry::substrate_shape_key(*job.substrate), error.what());
   }
 }
 
@@ -363,19 +363,19 @@ void check_tool(const Job& job, const Refuse& refuse) {
 constexpr Words kMachineKeys = {"machine"};
 constexpr Words kWorkpieceKeys = {"workpiece.kind", "element.kind"};
 constexpr Words kChipKeys = {"tool.edge_chips", "tool.width_mm"};
-constexpr Words kArrayOnBaseKeys = {"base.kind",         "workpiece.kind",    "array.arrangement",
-                                    "array.x_offset_mm", "array.y_offset_mm", "array.pattern"};
+constexpr Words kArrayOnSubstrateKeys = {"base.kind",         "workpiece.kind",    "array.arrangement",
+                                         "array.x_offset_mm", "array.y_offset_mm", "array.pattern"};
 constexpr Words kArrayKeys = {"array.x_length_mm", "array.y_length_mm"};
 constexpr Words kPatternKeys = {"array.pattern"};
 constexpr Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr Words kToolKeys = {"tool.width_mm", "tool.wedge_deg", "tool.clearance_deg", "tool.side_clearance_deg"};
-constexpr Words kBaseKeys = {"base.kind"};
+constexpr Words kSubstrateKeys = {"base.kind"};
 constexpr Rule kJobRules[] = {
     Check{kMachineKeys, "It has a name.", check_by<check_machine>},
     Check{kWorkpieceKeys, "Cube corners are cut as moulds.", check_by<check_workpiece>},
     Check{kChipKeys, "Chips lie on the edge, at most 100 of them, clear of each other.", check_by<check_chips>},
-    Check{kArrayOnBaseKeys, "On a `[base]` stand moulds of arrays without margins and pattern, not `single`.",
-          check_by<check_array_on_base>},
+    Check{kArrayOnSubstrateKeys, "On a `[base]` stand moulds of arrays without margins and pattern, not `single`.",
+          check_by<check_array_on_substrate>},
     Check{kArrayKeys, "There is room for one element between the margins, and for at most 2,000,000.",
           check_by<check_room>},
     Check{kSquareKeys, "In a checker base and width are equal.", check_by<check_square>},
@@ -384,7 +384,8 @@ constexpr Rule kJobRules[] = {
           "The tool fits the element: a chisel's edge is no wider and its wedge leaves room for chips; a V reaches the "
           "apex and every place of the facets.",
           check_by<check_tool>},
-    Check{kBaseKeys, "The base carries the elements, and the tool comes out of their cuts.", check_by<check_base>}};
+    Check{kSubstrateKeys, "The base carries the elements, and the tool comes out of their cuts.",
+          check_by<check_substrate>}};
 
 const Format kJobFormat = {
     "job",

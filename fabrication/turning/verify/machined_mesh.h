@@ -2,7 +2,7 @@
 
 #include "fabrication/turning/surface.h"
 #include "fabrication/turning/verify/inspection.h"
-#include "geometry/closed_boundary.h"
+#include "geometry/part/closed_boundary.h"
 
 namespace retrace::fabrication::turning {
 

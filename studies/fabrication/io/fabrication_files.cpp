@@ -54,12 +54,12 @@ Json poses_json(const FabricationResult& result) {
   Json poses = Json::array();
   for (const fabrication::CuttingPose& pose : result.plan.poses) {
     poses.push_back({{"facet", pose.facet.facet},
-                     {"turned", pose.facet.turned},
+                     {"turned", pose.facet.rotated},
                      {tilt_key(result.machine), pose.rounded.a_deg},
                      {"c_deg", pose.rounded.c_deg},
                      {"root_tilt_arcmin", 60.0 * pose.root_tilt.deg()},
                      {"lift_nm", 1e6 * pose.section.lift_mm}});
-    if (result.job.base) poses.back()["tilt"] = pose.orientation + 1;
+    if (result.job.substrate) poses.back()["tilt"] = pose.orientation + 1;
   }
   return poses;
 }

@@ -14,8 +14,8 @@ namespace retrace::studies {
 namespace {
 
 std::string total_reflection(const Inspection& i) {
-  if (i.front) return "not stated: light comes from a curved front in many directions";
-  if (i.base) return "not stated: elements on a base stand at angles of their own";
+  if (i.entrance) return "not stated: light comes from a curved front in many directions";
+  if (i.substrate) return "not stated: elements on a base stand at angles of their own";
   if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
   if (!i.tir_limit_deg) return "none at normal incidence";
   const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part().element);
@@ -35,44 +35,44 @@ std::string light_text(const Inspection& i) {
                             fixed(last.optics.index, 5));
 }
 
-nlohmann::ordered_json base_json(const BaseReport& base) {
-  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = base.measures;
+nlohmann::ordered_json substrate_json(const SubstrateReport& substrate) {
+  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = substrate.measures;
   nlohmann::ordered_json json = {{"area_mm2", area_mm2},
                                  {"height_range_mm", highest_mm - lowest_mm},
                                  {"steepest_deg", steepest_deg},
-                                 {"element_mm", base.element_mm},
-                                 {"highest_step_mm", base.walls.highest_mm},
-                                 {"pocket_walls_mm2", base.walls.area_mm2},
-                                 {"pocket_projected_mm2", base.walls.projected_mm2}};
+                                 {"element_mm", substrate.element_mm},
+                                 {"highest_step_mm", substrate.walls.highest_mm},
+                                 {"pocket_walls_mm2", substrate.walls.area_mm2},
+                                 {"pocket_projected_mm2", substrate.walls.projected_mm2}};
   if (std::isfinite(least_radius_mm)) json["least_radius_mm"] = least_radius_mm;
   return json;
 }
 
-nlohmann::ordered_json front_json(const FrontReport& front) {
-  return {{"lowest_mm", front.range.lowest_mm},
-          {"highest_mm", front.range.highest_mm},
-          {"steepest_deg", front.steepest_deg}};
+nlohmann::ordered_json entrance_json(const EntranceReport& entrance) {
+  return {{"lowest_mm", entrance.range.lowest_mm},
+          {"highest_mm", entrance.range.highest_mm},
+          {"steepest_deg", entrance.steepest_deg}};
 }
 
-std::string front_text(const Inspection& i) {
-  if (!i.front) return {};
+std::string entrance_text(const Inspection& i) {
+  if (!i.entrance) return {};
   return fmt::format("  front               {}, z = {} to {} mm, up to {} degrees steep\n",
-                     printable(i.design.front->name), fixed(i.front->range.lowest_mm, 6),
-                     fixed(i.front->range.highest_mm, 6), fixed(i.front->steepest_deg, 2));
+                     printable(i.design.entrance->name), fixed(i.entrance->range.lowest_mm, 6),
+                     fixed(i.entrance->range.highest_mm, 6), fixed(i.entrance->steepest_deg, 2));
 }
 
-std::string base_text(const Inspection& i) {
-  if (!i.base) return {};
-  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = i.base->measures;
+std::string substrate_text(const Inspection& i) {
+  if (!i.substrate) return {};
+  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = i.substrate->measures;
   const std::string radius = std::isfinite(least_radius_mm) ? fixed(least_radius_mm, 4) + " mm" : "plane";
   return fmt::format("  base                {} mm2, {} mm high, up to {} degrees steep\n", fixed(area_mm2, 4),
                      fixed(highest_mm - lowest_mm, 4), fixed(steepest_deg, 2)) +
          fmt::format("  least radius        {}; an element measures {} mm across\n", radius,
-                     fixed(i.base->element_mm, 4)) +
+                     fixed(i.substrate->element_mm, 4)) +
          fmt::format(
              "  between elements    steps of up to {} mm, walls of {} mm2, {} mm2 seen along the base's normal\n",
-             fixed(i.base->walls.highest_mm, 6), fixed(i.base->walls.area_mm2, 4),
-             fixed(i.base->walls.projected_mm2, 4));
+             fixed(i.substrate->walls.highest_mm, 6), fixed(i.substrate->walls.area_mm2, 4),
+             fixed(i.substrate->walls.projected_mm2, 4));
 }
 
 }  // namespace
@@ -118,8 +118,8 @@ std::string inspect_json(const Inspection& i) {
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (i.design.elements()) json["dead_zone_share"] = i.dead_zone_share;
-  if (i.base) json["base"] = base_json(*i.base);
-  if (i.front) json["front"] = front_json(*i.front);
+  if (i.substrate) json["base"] = substrate_json(*i.substrate);
+  if (i.entrance) json["front"] = entrance_json(*i.entrance);
   json["boundary"] = i.boundary;
   return result_text("retrace.inspect/1", json, i.warnings);
 }
@@ -130,7 +130,7 @@ std::string mesh_text(const Inspection& i) {
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));
   text += fmt::format("  depth               {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  plate               {} mm\n", fixed(i.thickness_mm, 6));
-  text += front_text(i);
+  text += entrance_text(i);
   text += fmt::format("  entrance area       {} mm2\n", fixed(i.entrance_area_mm2, 4));
   text += fmt::format("  retro facet area    {} mm2\n", fixed(i.facet_area_mm2, 4));
   text += light_text(i);
@@ -167,8 +167,8 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
   text += fmt::format("  full elements       {} % of it\n", fixed(100.0 * i.full_element_share, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
-  text += base_text(i);
-  text += front_text(i);
+  text += substrate_text(i);
+  text += entrance_text(i);
   text += light_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
   text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_share, 3));

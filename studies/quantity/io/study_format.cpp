@@ -2,7 +2,7 @@
 
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
-#include "raytrace/ledger.h"
+#include "raytrace/light/ledger.h"
 #include "studies/quantity/machining.h"
 
 namespace retrace::studies {

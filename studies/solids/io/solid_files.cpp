@@ -11,10 +11,10 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/version.h"
-#include "geometry/faceted_solid.h"
 #include "geometry/io/obj_file.h"
 #include "geometry/io/step_file.h"
 #include "geometry/io/stl_file.h"
+#include "geometry/part/faceted_solid.h"
 #include "studies/design/design_json.h"
 
 namespace retrace::studies {

@@ -1,0 +1,82 @@
+// Whole paths through curved fronts over a plate with a mirror, beside those through a plane entrance face.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <memory>
+
+#include "geometry/entrance/entrance_mesh.h"
+#include "geometry/part/plate.h"
+#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/sampling/threads.h"
+
+namespace retrace::benchmarks::fronts_benchmark {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+constexpr double kSize = 2.0;
+constexpr double kThickness = 1.0;
+
+/// Bumps of 0.02 mm, ten along a side.
+class Bumps : public geometry::EntranceSurface {
+ public:
+  Place at(const Vec2& p) const override {
+    const double k = 10.0 * 3.14159265358979 / kSize;
+    const double a = 0.02;
+    const double sx = std::sin(k * p.x());
+    const double cx = std::cos(k * p.x());
+    const double sy = std::sin(k * p.y());
+    const double cy = std::cos(k * p.y());
+    return {kThickness + a * cx * cy, {-a * k * sx * cy, -a * k * cx * sy}};
+  }
+  double finest_mm() const override { return 0.1 * kSize; }
+};
+
+geometry::Entrance meshed(const geometry::EntranceSurface& surface, std::uint32_t cells,
+                          const geometry::Polygon& outline) {
+  geometry::TriangleMesh mesh;
+  for (std::uint32_t j = 0; j <= cells; ++j)
+    for (std::uint32_t i = 0; i <= cells; ++i) {
+      const Vec2 p(kSize * i / cells, kSize * j / cells);
+      mesh.vertices.emplace_back(p.x(), p.y(), surface.at(p).height_mm);
+    }
+  for (std::uint32_t j = 0; j < cells; ++j)
+    for (std::uint32_t i = 0; i < cells; ++i) {
+      const std::uint32_t a = j * (cells + 1) + i;
+      mesh.triangles.push_back({a, a + 1, a + cells + 2});
+      mesh.triangles.push_back({a, a + cells + 2, a + cells + 1});
+    }
+  return std::make_shared<const geometry::SurfacePatch>(
+      geometry::entrance_of_mesh(mesh, geometry::MeshSide::top, Vec3::Zero(), outline));
+}
+
+/// Args: 0 a plane entrance face, 1 an exact surface, 2 its mesh of 20,000 triangles.
+void entrance_paths(benchmark::State& state) {
+  const geometry::Part plate = geometry::build_plate({kSize, kSize}, kThickness);
+  const auto bumps = std::make_shared<const Bumps>();
+  const geometry::Entrance exact = bumps;
+  const geometry::Entrance mesh = meshed(*bumps, 100, plate.outline);
+  const geometry::Entrance* const entrances[] = {nullptr, &exact, &mesh};
+  const raytrace::MonteCarlo tracer(plate, raytrace::MonteCarlo::Engine::embree, entrances[state.range(0)]);
+  raytrace::Optics optics;
+  optics.index = 1.4917;
+  optics.mirror_facets = true;
+  raytrace::Sampling sampling;
+  sampling.rays = 1U << 16;
+  double paths = 0.0;
+  double segments = 0.0;
+  raytrace::run_with_threads(1, [&] {
+    for (auto _ : state) {
+      const auto result = tracer.trace(optics, {Angle::from_deg(10.0), {}}, {0.5}, sampling, {});
+      paths += static_cast<double>(result.rays);
+      segments += static_cast<double>(result.segments);
+    }
+  });
+  state.counters["Msegments/s"] = benchmark::Counter(1e-6 * segments, benchmark::Counter::kIsRate);
+  state.counters["Mpaths/s"] = benchmark::Counter(1e-6 * paths, benchmark::Counter::kIsRate);
+}
+BENCHMARK(entrance_paths)->Arg(0)->Arg(1)->Arg(2)->UseRealTime();
+
+}  // namespace
+}  // namespace retrace::benchmarks::fronts_benchmark

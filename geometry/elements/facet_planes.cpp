@@ -1,0 +1,139 @@
+#include "geometry/elements/facet_planes.h"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include "core/error.h"
+#include "geometry/plane_polygon.h"
+
+namespace retrace::geometry {
+
+FacetPlanes::FacetPlanes(std::vector<ElementPlanes> elements, double spacing_mm)
+    : elements_(std::move(elements)), spacing_mm_(spacing_mm) {
+  for (std::size_t i = 0; i < elements_.size(); ++i)
+    if (!places_.try_emplace(key_of(elements_[i].centre_mm), i).second)
+      throw InputError("two elements lie in one place");
+}
+
+FacetPlanes::Key FacetPlanes::key_of(const Vec2& centre_mm) const {
+  return {std::llround(2.0 * centre_mm.x() / spacing_mm_), std::llround(2.0 * centre_mm.y() / spacing_mm_)};
+}
+
+const ElementPlanes* FacetPlanes::at(const Vec2& centre_mm) const {
+  constexpr double kSameShare = 0.01;
+  const Key key = key_of(centre_mm);
+  for (std::int64_t dx = -1; dx <= 1; ++dx)
+    for (std::int64_t dy = -1; dy <= 1; ++dy) {
+      const auto found = places_.find({key.first + dx, key.second + dy});
+      if (found == places_.end()) continue;
+      const ElementPlanes& element = elements_[found->second];
+      if ((element.centre_mm - centre_mm).norm() < kSameShare * spacing_mm_) return &element;
+    }
+  return nullptr;
+}
+
+std::size_t FacetPlanes::element_count() const {
+  std::size_t count = 0;
+  for (const ElementPlanes& element : elements_)
+    if (!element.planes.empty()) ++count;
+  return count;
+}
+
+void add_flares(std::vector<ElementPlanes>& elements, double radius_mm) {
+  using Key = std::pair<std::int64_t, std::int64_t>;
+  // Middles of hexagons lie on multiples of these from the first.
+  const Vec2 step = radius_mm * Vec2(1.5, 0.5 * std::numbers::sqrt3);
+  const Vec2 first = elements.front().centre_mm;
+  const auto key_of = [&](const Vec2& at) {
+    return Key{std::llround((at - first).x() / step.x()), std::llround((at - first).y() / step.y())};
+  };
+  const auto corner = [&](std::size_t k) -> Vec2 {
+    const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k);
+    return radius_mm * Vec2(std::cos(angle), std::sin(angle));
+  };
+  std::set<Key> cut;
+  for (const ElementPlanes& element : elements) cut.insert(key_of(element.centre_mm));
+  std::map<Key, ElementPlanes> land;
+  for (const ElementPlanes& element : elements)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
+        const Vec2 centre_mm = element.centre_mm + corner(k) - corner(other);
+        if (cut.contains(key_of(centre_mm))) continue;
+        ElementPlanes& place = land[key_of(centre_mm)];
+        place.planes.clear();
+        place.centre_mm = centre_mm;
+        // The facet across the dihedral edge `other`, told over that place.
+        HeightPlane plane = element.planes[(other + 1) % 3];
+        plane.height_mm += plane.slope.dot(centre_mm - element.centre_mm);
+        if (!place.flares[other]) place.flares[other] = plane;
+      }
+  for (auto& [key, place] : land) elements.push_back(std::move(place));
+}
+
+double cube_spacing_mm(const Element& element) {
+  // Apexes of neighbouring triangles are half a radius apart along x, a third of their height.
+  constexpr double kNearest = 1.0 / 3.0;
+  return kNearest * bounding_box(aperture_outline(element)).size().minCoeff();
+}
+
+Vec2 place_of(const PartSpec& spec, const Cell& cell) {
+  if (!std::holds_alternative<RtpElement>(spec.element)) return cell.at_mm;
+  const Rectangle box = bounding_box(cell.outline);
+  return 0.5 * (box.lower + box.upper);
+}
+
+Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm) {
+  std::vector<HeightPlane> planes = element.planes;
+  for (HeightPlane& plane : planes) plane.height_mm -= plane.slope.dot(centre_mm);
+  std::vector<HeightPlane> caps;
+  for (const std::optional<HeightPlane>& cap : element.caps)
+    if (cap) caps.push_back({cap->height_mm - cap->slope.dot(centre_mm), cap->slope});
+  const bool has_caps = caps.size() == planes.size();
+  if (!has_caps) caps.clear();
+  Cell own = cell;
+  own.facets.clear();
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    CellFacet facet;
+    facet.plane = planes[k];
+    facet.outline = cell.outline;
+    for (std::size_t other = 0; other < planes.size() && !facet.outline.empty(); ++other)
+      if (other != k) facet.outline = where_higher(facet.outline, planes[k], planes[other]);
+    if (has_caps && !facet.outline.empty()) facet.outline = where_higher(facet.outline, planes[k], caps[k]);
+    if (!facet.outline.empty()) own.facets.push_back(std::move(facet));
+  }
+  for (std::size_t k = 0; k < caps.size(); ++k) {
+    CellFacet cap;
+    cap.plane = caps[k];
+    cap.outline = where_higher(cell.outline, caps[k], planes[k]);
+    for (std::size_t other = 0; other < caps.size() && !cap.outline.empty(); ++other)
+      if (other != k) cap.outline = where_higher(cap.outline, caps[other], caps[k]);
+    if (!cap.outline.empty()) own.facets.push_back(std::move(cap));
+  }
+  return own;
+}
+
+Cell flared_land(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm) {
+  Cell land = cell;
+  land.is_element = false;
+  land.facets = {CellFacet{}};
+  const Polygon& hexagon = cell.outline;
+  for (std::size_t k = 0; k < hexagon.size(); ++k) {
+    const bool is_flared = k % 2 == 0 && element.flares[k / 2].has_value();
+    if (!is_flared) {
+      land.facets.front().outline.push_back(hexagon[k]);
+      continue;
+    }
+    CellFacet flare;
+    flare.plane = *element.flares[k / 2];
+    flare.plane.height_mm -= flare.plane.slope.dot(centre_mm);
+    flare.outline = {hexagon[(k + 5) % 6], hexagon[k], hexagon[(k + 1) % 6]};
+    flare.is_edge = true;  // of a facet, though on land
+    land.facets.push_back(std::move(flare));
+  }
+  return land;
+}
+
+}  // namespace retrace::geometry

@@ -1,0 +1,97 @@
+#include "geometry/elements/lattice.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace retrace::geometry {
+namespace {
+
+void add_element(Lattice& lattice, Cell cell) {
+  lattice.cells.push_back(std::move(cell));
+  ++lattice.elements_per_period;
+}
+
+/// One prism and the land that separates it from the next in x and y. In a checker the next ones are turned.
+void add_prism_with_gaps(Lattice& lattice, const PartSpec& spec, const Vec2& corner, bool rotated) {
+  const auto& element = std::get<RtpElement>(spec.element);
+  const Vec2 gap(spec.x_gap_mm, spec.y_gap_mm);
+  const Vec2 size(element.base_mm, element.width_mm);
+  const bool next_turned = rotated != (spec.arrangement == Arrangement::checker);
+  const Vec2 end = corner + size;
+  add_element(lattice, rtp_cell(element, spec.angle_errors, corner, rotated));
+  if (gap.x() > 0.0)
+    lattice.cells.push_back(
+        land_cell({{end.x(), corner.y()}, {end.x() + gap.x(), end.y()}}, spec, 0, !rotated, !next_turned));
+  if (gap.y() <= 0.0) return;
+  const bool rims_face_it = spec.arrangement == Arrangement::checker && spec.edges.rounds_rims();
+  const double beside = rims_face_it ? end.x() : end.x() + gap.x();
+  lattice.cells.push_back(
+      land_cell({{corner.x(), end.y()}, {beside, end.y() + gap.y()}}, spec, 1, rotated, next_turned));
+  if (rims_face_it && gap.x() > 0.0) lattice.cells.push_back(land_cell({end, end + gap}, spec));
+}
+
+Lattice rtp_lattice(const PartSpec& spec, bool rows_are_shifted) {
+  const auto& element = std::get<RtpElement>(spec.element);
+  const Vec2 pitch(element.base_mm + spec.x_gap_mm, element.width_mm + spec.y_gap_mm);
+  Lattice lattice;
+  lattice.period_mm = pitch;
+  if (spec.arrangement == Arrangement::checker) {
+    lattice.period_mm = 2.0 * pitch;
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 2; ++i)
+        add_prism_with_gaps(lattice, spec, Vec2(i * pitch.x(), j * pitch.y()), (i + j) % 2 == 1);
+    return lattice;
+  }
+  if (spec.arrangement == Arrangement::offset && rows_are_shifted) {
+    lattice.period_mm.y() *= 2.0;
+    const double shift = 0.01 * spec.overlap_percent * element.base_mm;
+    for (int row = 1; row <= 2; ++row) {
+      const bool shifted = (row % 2 == 1) == (spec.shifted_rows == RowParity::odd);
+      add_prism_with_gaps(lattice, spec, Vec2(shifted ? shift : 0.0, (row - 1) * pitch.y()), false);
+    }
+    return lattice;
+  }
+  add_prism_with_gaps(lattice, spec, Vec2::Zero(), false);
+  return lattice;
+}
+
+// Hexagons with corners on +-x: rows of spacing sqrt(3) R along y, neighbouring columns 1.5 R apart and half a row up.
+Lattice honeycomb_lattice(const HexagonalCube& element, const AngleErrors& errors) {
+  const double radius = 0.5 * element.aperture_mm;
+  Lattice lattice;
+  lattice.period_mm = radius * Vec2(3.0, std::numbers::sqrt3);
+  add_element(lattice, hexagonal_cube_cell(element, errors, Vec2::Zero()));
+  add_element(lattice, hexagonal_cube_cell(element, errors, 0.5 * lattice.period_mm));
+  return lattice;
+}
+
+// Every triangle shares its sides with three turned ones; the centres of neighbours are R apart.
+Lattice triangular_lattice(const TriangularCube& element, const AngleErrors& errors) {
+  const double radius = 0.5 * element.aperture_mm;
+  Lattice lattice;
+  lattice.period_mm = radius * Vec2(3.0, std::numbers::sqrt3);
+  const Vec2 half = 0.5 * lattice.period_mm;
+  add_element(lattice, triangular_cube_cell(element, errors, Vec2::Zero()));
+  add_element(lattice, triangular_cube_cell(element, errors, half));
+  add_element(lattice, triangular_cube_cell(element, errors, Vec2(-radius, 0.0), true));
+  add_element(lattice, triangular_cube_cell(element, errors, half - Vec2(radius, 0.0), true));
+  return lattice;
+}
+
+Lattice sharp_lattice(const PartSpec& spec, bool rows_are_shifted) {
+  if (const auto* hexagonal = std::get_if<HexagonalCube>(&spec.element))
+    return honeycomb_lattice(*hexagonal, spec.angle_errors);
+  if (const auto* triangular = std::get_if<TriangularCube>(&spec.element))
+    return triangular_lattice(*triangular, spec.angle_errors);
+  return rtp_lattice(spec, rows_are_shifted);
+}
+
+}  // namespace
+
+Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted) {
+  Lattice lattice = sharp_lattice(spec, rows_are_shifted);
+  for (Cell& cell : lattice.cells) cell = finished_cell(cell, spec);
+  return lattice;
+}
+
+}  // namespace retrace::geometry

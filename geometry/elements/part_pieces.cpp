@@ -1,0 +1,48 @@
+#include "geometry/elements/part_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/random.h"
+
+namespace retrace::geometry {
+
+AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std::uint32_t number) {
+  constexpr std::uint32_t kTiltStream = 3;
+  const auto words = philox({spec.random_tilts.seed, kTiltStream}, static_cast<std::uint32_t>(i),
+                            static_cast<std::uint32_t>(j), number);
+  // Box and Muller; the shift keeps 0 out of the logarithm.
+  const auto radius = [&](std::size_t k) { return std::sqrt(-2.0 * std::log(unit_interval(words[k]) + 0x1p-33)); };
+  const auto angle = [&](std::size_t k) { return 2.0 * std::numbers::pi * unit_interval(words[k]); };
+  const std::array<double, 3> normal = {radius(0) * std::cos(angle(1)), radius(0) * std::sin(angle(1)),
+                                        radius(2) * std::cos(angle(3))};
+  AngleErrors errors = spec.angle_errors;
+  for (std::size_t k = 0; k < 3; ++k) errors.facet_tilt_arcmin[k] += spec.random_tilts.sigma_arcmin * normal[k];
+  return errors;
+}
+
+double whole_count(double length, double offset, double gap, double pitch) {
+  const double count = (length - 2.0 * offset + gap) / pitch;
+  return std::floor(count + kWholeTolerance * std::max(1.0, count));
+}
+
+std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block) {
+  return {Rectangle{extent.lower, {block.lower.x(), extent.upper.y()}},
+          Rectangle{{block.upper.x(), extent.lower.y()}, extent.upper},
+          Rectangle{{block.lower.x(), extent.lower.y()}, {block.upper.x(), block.lower.y()}},
+          Rectangle{{block.lower.x(), block.upper.y()}, {block.upper.x(), extent.upper.y()}}};
+}
+
+Polygon moved(const Polygon& polygon, const Vec2& by) {
+  Polygon result = polygon;
+  for (Vec2& p : result) p += by;
+  return result;
+}
+
+Vec2 middle_of(const Polygon& outline) {
+  const Rectangle box = bounding_box(outline);
+  return 0.5 * (box.lower + box.upper);
+}
+
+}  // namespace retrace::geometry

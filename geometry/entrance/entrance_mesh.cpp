@@ -1,0 +1,173 @@
+#include "geometry/entrance/entrance_mesh.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "geometry/entrance/mesh_tiling.h"
+
+namespace retrace::geometry {
+namespace {
+
+// Height of the unit normal below which a triangle stands upright.
+constexpr double kUpright = 1e-6;
+// Share of the outline that single precision may leave open along its border, or cover twice.
+constexpr double kSameArea = 1e-5;
+// Of the largest coordinate: what single precision and a few operations leave.
+constexpr double kSingleRounding = 1e-6;
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// What lies on the left of the line through a and b; corners need not lie in one level plane.
+std::vector<Vec3> cut(const std::vector<Vec3>& polygon, const Vec2& a, const Vec2& b) {
+  const Vec2 inward = Vec2(a.y() - b.y(), b.x() - a.x()).normalized();
+  const auto depth = [&](const Vec3& p) { return inward.dot(p.head<2>() - a); };
+  std::vector<Vec3> left;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3& p = polygon[k];
+    const Vec3& q = polygon[(k + 1) % polygon.size()];
+    const double dp = depth(p);
+    const double dq = depth(q);
+    if (dp >= 0.0) left.push_back(p);
+    if ((dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0)) left.push_back(p + dp / (dp - dq) * (q - p));
+  }
+  return left;
+}
+
+/// The part of a triangle over a convex outline.
+std::vector<Vec3> over(const Polygon& outline, const std::vector<Vec3>& vertices, const Triangle& t) {
+  std::vector<Vec3> polygon = {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+  for (std::size_t k = 0; k < outline.size() && !polygon.empty(); ++k)
+    polygon = cut(polygon, outline[k], outline[(k + 1) % outline.size()]);
+  return polygon;
+}
+
+double plan_area(const std::vector<Vec3>& polygon) {
+  double twice = 0.0;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3& p = polygon[k];
+    const Vec3& q = polygon[(k + 1) % polygon.size()];
+    twice += p.x() * q.y() - p.y() * q.x();
+  }
+  return 0.5 * twice;
+}
+
+Vec3 normal_of(const std::vector<Vec3>& vertices, const Triangle& t) {
+  const Vec3 twice = (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
+  const double length = twice.norm();
+  return length > 0.0 ? Vec3(twice / length) : Vec3(Vec3::Zero());
+}
+
+/// The mesh with the wanted side up.
+std::vector<Triangle> turned_up(const TriangleMesh& mesh, MeshSide side) {
+  std::vector<Triangle> triangles = mesh.triangles;
+  if (side == MeshSide::bottom)
+    for (Triangle& t : triangles) std::swap(t[1], t[2]);
+  return triangles;
+}
+
+/// How far single precision may have moved a corner.
+double rounding_mm(const TriangleMesh& mesh) {
+  double largest_mm = 0.0;
+  for (const Vec3& p : mesh.vertices) largest_mm = std::max(largest_mm, p.cwiseAbs().maxCoeff());
+  return kSingleRounding * largest_mm;
+}
+
+/// Those that look towards +z and meet the outline.
+std::vector<Triangle> wanted(const TriangleMesh& mesh, const std::vector<Vec3>& vertices, MeshSide side,
+                             const Vec3& move_mm, const Polygon& outline) {
+  const std::vector<Triangle> all = turned_up(mesh, side);
+  std::vector<Triangle> triangles;
+  double covered_mm2 = 0.0;
+  for (const Triangle& t : all) {
+    if (normal_of(vertices, t).z() < kUpright) continue;
+    const double area_mm2 = plan_area(over(outline, vertices, t));
+    if (!(area_mm2 > 0.0)) continue;
+    covered_mm2 += area_mm2;
+    triangles.push_back(t);
+  }
+  const double share = covered_mm2 / area(outline);
+  const auto gap = find_gap(vertices, triangles, all, outline, rounding_mm(mesh));
+  if (!gap && std::abs(share - 1.0) <= kSameArea) return triangles;
+  std::string text = fmt::format("the {} of the mesh must cover the part once, it covers {} % of it",
+                                 side == MeshSide::top ? "top" : "bottom",
+                                 fixed(100.0 * share, share > 0.999 && share < 1.001 ? 6 : 2));
+  if (gap)
+    text += fmt::format("; at x = {}, y = {} mm of its frame {}", fixed(gap->at_mm.x() - move_mm.x(), 4),
+                        fixed(gap->at_mm.y() - move_mm.y(), 4), gap->what);
+  throw InputError(text);
+}
+
+void add_facet(SurfacePatch& patch, PatchCell& cell, const Triangle& t) {
+  PatchFacet facet;
+  facet.normal = normal_of(patch.vertices, t);
+  facet.offset_mm = facet.normal.dot(patch.vertices[t[0]]);
+  facet.role = FacetRole::entrance;
+  facet.first_corner = static_cast<std::uint32_t>(patch.corners.size());
+  facet.corner_count = 3;
+  patch.corners.insert(patch.corners.end(), t.begin(), t.end());
+  patch.triangles.push_back(t);
+  patch.triangle_facet.push_back(static_cast<std::uint32_t>(patch.facets.size()));
+  patch.facets.push_back(facet);
+  for (const std::uint32_t v : t) {
+    cell.lower = cell.lower.cwiseMin(patch.vertices[v]);
+    cell.upper = cell.upper.cwiseMax(patch.vertices[v]);
+  }
+}
+
+}  // namespace
+
+SurfacePatch entrance_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline) {
+  SurfacePatch patch;
+  for (const Vec3& p : mesh.vertices) patch.vertices.push_back(p + move_mm);
+  const std::vector<Triangle> triangles = wanted(mesh, patch.vertices, side, move_mm, outline);
+  // Triangles that stand near each other make a cell: some sixteen.
+  const double cell_mm = 4.0 * std::sqrt(area(outline) / static_cast<double>(triangles.size()));
+  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Triangle>> bins;
+  for (const Triangle& t : triangles) {
+    const Vec3 middle = (patch.vertices[t[0]] + patch.vertices[t[1]] + patch.vertices[t[2]]) / 3.0;
+    bins[{static_cast<std::int64_t>(std::floor(middle.y() / cell_mm)),
+          static_cast<std::int64_t>(std::floor(middle.x() / cell_mm))}]
+        .push_back(t);
+  }
+  for (const auto& [bin, members] : bins) {
+    PatchCell cell;
+    cell.first_facet = static_cast<std::uint32_t>(patch.facets.size());
+    cell.facet_count = static_cast<std::uint32_t>(members.size());
+    cell.lower.setConstant(INFINITY);
+    cell.upper.setConstant(-INFINITY);
+    for (const Triangle& t : members) add_facet(patch, cell, t);
+    patch.cells.push_back(cell);
+  }
+  return patch;
+}
+
+EntranceRange range_of_entrance_mesh(const SurfacePatch& patch, const Polygon& outline) {
+  EntranceRange range;
+  range.lowest_mm = INFINITY;
+  range.highest_mm = -INFINITY;
+  for (std::size_t k = 0; k < patch.triangles.size(); ++k) {
+    const Vec3& normal = patch.facets[k].normal;
+    range.steepest_slope = std::max(range.steepest_slope, normal.head<2>().norm() / normal.z());
+    for (const Vec3& p : over(outline, patch.vertices, patch.triangles[k])) {
+      if (p.z() < range.lowest_mm) {
+        range.lowest_mm = p.z();
+        range.lowest_at_mm = p.head<2>();
+      }
+      if (p.z() > range.highest_mm) {
+        range.highest_mm = p.z();
+        range.highest_at_mm = p.head<2>();
+      }
+    }
+  }
+  return range;
+}
+
+}  // namespace retrace::geometry

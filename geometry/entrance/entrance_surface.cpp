@@ -1,0 +1,168 @@
+#include "geometry/entrance/entrance_surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "geometry/entrance/entrance_mesh.h"
+
+namespace retrace::geometry {
+namespace {
+
+constexpr int kCellsPerFeature = 8;
+constexpr int kFewestCells = 64;
+// Grids that see the same features agree in their mean bend to this ratio.
+constexpr double kSameBend = 1.3;
+// Slopes that change by less over the part are those of a plane but for rounding.
+constexpr double kFlat = 1e-9;
+// Of a cell: how near to a corner the bend there is measured.
+constexpr double kSmall = 1e-3;
+
+bool is_inside(const Polygon& outline, const Vec2& p) {
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2 along = outline[(k + 1) % outline.size()] - outline[k];
+    const Vec2 to = p - outline[k];
+    if (along.x() * to.y() - along.y() * to.x() < -1e-12 * along.squaredNorm()) return false;
+  }
+  return true;
+}
+
+/// Grid points over the outline, and points of its edges.
+std::vector<Vec2> sample_points(const Polygon& outline, int cells) {
+  const Rectangle box = bounding_box(outline);
+  std::vector<Vec2> points;
+  for (int j = 0; j <= cells; ++j)
+    for (int i = 0; i <= cells; ++i) {
+      const Vec2 share(static_cast<double>(i) / cells, static_cast<double>(j) / cells);
+      const Vec2 p = box.lower + share.cwiseProduct(box.size());
+      if (is_inside(outline, p)) points.push_back(p);
+      const Vec2 within = p + Vec2(kWithinEntranceCell[0], kWithinEntranceCell[1]).cwiseProduct(box.size()) / cells;
+      if (is_inside(outline, within)) points.push_back(within);
+    }
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    for (int i = 0; i < cells; ++i) {
+      const double share = static_cast<double>(i) / cells;
+      points.push_back(outline[k] + share * (outline[(k + 1) % outline.size()] - outline[k]));
+    }
+  return points;
+}
+
+/// The mean over a grid's cells of how much slopes change from their corners to places within, a mm.
+/// \param reach 1: as far within as the grid tells; less: nearer to the corners by so much
+double mean_bend(const EntranceSurface& surface, const Rectangle& box, int cells, double reach) {
+  const Vec2 cell_mm = box.size() / cells;
+  // Two, as what repeats just so often between a corner and one of them does not between it and the other.
+  const std::array<Vec2, 2> ways = {reach * Vec2(kWithinEntranceCell[0], kWithinEntranceCell[1]).cwiseProduct(cell_mm),
+                                    reach * Vec2(0.7548776662, 0.5698402910).cwiseProduct(cell_mm)};
+  double sum = 0.0;
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      const Vec2 corner = box.lower + Vec2(i, j).cwiseProduct(cell_mm);
+      const Vec2 slope = surface.at(corner).slope;
+      for (const Vec2& way : ways) {
+        const double bend = (surface.at(corner + way).slope - slope).norm() / way.norm();
+        if (std::isfinite(bend)) sum += bend;
+      }
+    }
+  return sum / (2.0 * cells * cells);
+}
+
+bool same_bend(double a, double b, double size_mm) {
+  return std::max(a, b) * size_mm < kFlat || (a <= kSameBend * b && b <= kSameBend * a);
+}
+
+/// Climbs from a point to the nearest place that is highest (sign 1) or lowest (-1) over the outline: a search in ever
+/// smaller steps along the axes, the diagonals and the outline's edges (R. Hooke, T. A. Jeeves, J. ACM 8 (1961), 212).
+Vec2 climb(const EntranceSurface& surface, const Polygon& outline, Vec2 from, double step_mm, double sign) {
+  std::vector<Vec2> directions = {Vec2(1, 0), Vec2(0, 1), Vec2(1, 1).normalized(), Vec2(1, -1).normalized()};
+  for (std::size_t k = 0; k < outline.size() && k < 8; ++k)
+    directions.push_back((outline[(k + 1) % outline.size()] - outline[k]).normalized());
+  double best = sign * surface.at(from).height_mm;
+  const double least_mm = 1e-9 * step_mm;
+  while (step_mm > least_mm) {
+    bool moved = false;
+    for (const Vec2& direction : directions)
+      for (const double way : {step_mm, -step_mm}) {
+        const Vec2 p = from + way * direction;
+        if (!is_inside(outline, p)) continue;
+        const double value = sign * surface.at(p).height_mm;
+        if (!(value > best)) continue;
+        best = value;
+        from = p;
+        moved = true;
+      }
+    if (!moved) step_mm *= 0.5;
+  }
+  return from;
+}
+
+EntranceRange range_of(const EntranceSurface& surface, const Polygon& outline) {
+  const Rectangle box = bounding_box(outline);
+  const int cells = cells_to_show(surface, outline);
+  EntranceRange range;
+  range.lowest_mm = INFINITY;
+  range.highest_mm = -INFINITY;
+  for (const Vec2& p : sample_points(outline, cells)) {
+    const EntranceSurface::Place place = surface.at(p);
+    if (!std::isfinite(place.height_mm) || !place.slope.allFinite())
+      throw InputError(fmt::format("must cover the part, has no finite height or slope at x = {}, y = {} mm",
+                                   fixed(p.x(), 4), fixed(p.y(), 4)));
+    range.steepest_slope = std::max(range.steepest_slope, place.slope.norm());
+    if (place.height_mm < range.lowest_mm) {
+      range.lowest_mm = place.height_mm;
+      range.lowest_at_mm = p;
+    }
+    if (place.height_mm > range.highest_mm) {
+      range.highest_mm = place.height_mm;
+      range.highest_at_mm = p;
+    }
+  }
+  const double step_mm = box.size().maxCoeff() / cells;
+  range.lowest_at_mm = climb(surface, outline, range.lowest_at_mm, step_mm, -1.0);
+  range.lowest_mm = surface.at(range.lowest_at_mm).height_mm;
+  range.highest_at_mm = climb(surface, outline, range.highest_at_mm, step_mm, 1.0);
+  range.highest_mm = surface.at(range.highest_at_mm).height_mm;
+  return range;
+}
+
+}  // namespace
+
+int cells_to_show(const EntranceSurface& surface, const Polygon& outline) {
+  const Rectangle box = bounding_box(outline);
+  const double size_mm = box.size().maxCoeff();
+  const auto refuse = [] {
+    throw InputError(fmt::format("must be smooth enough for {} places across the part to show it", kMostEntranceCells));
+  };
+  const double wanted = std::max(std::ceil(kCellsPerFeature * size_mm / surface.finest_mm()), double{kFewestCells});
+  if (wanted > kMostEntranceCells) refuse();
+  int cells = static_cast<int>(wanted);
+  const bool is_known = std::isfinite(surface.finest_mm());
+  double before = mean_bend(surface, box, cells, 1.0);
+  for (int same = 0; same < (is_known ? 1 : 2);) {
+    if (2 * cells > kMostEntranceCells) {
+      if (!is_known) refuse();
+      break;
+    }
+    cells *= 2;
+    const double bend = mean_bend(surface, box, cells, 1.0);
+    // What a grid does not see bends more in the small than from place to place of the grid.
+    const double in_the_small = mean_bend(surface, box, cells, kSmall);
+    const bool sees_all = in_the_small <= bend || same_bend(in_the_small, bend, size_mm);
+    same = sees_all && same_bend(before, bend, size_mm) ? same + 1 : 0;
+    before = bend;
+  }
+  return cells;
+}
+
+EntranceRange entrance_range(const Entrance& entrance, const Polygon& outline) {
+  if (const auto* const mesh = std::get_if<std::shared_ptr<const SurfacePatch>>(&entrance))
+    return range_of_entrance_mesh(**mesh, outline);
+  return range_of(*std::get<0>(entrance), outline);
+}
+
+}  // namespace retrace::geometry

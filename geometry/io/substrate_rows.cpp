@@ -1,0 +1,106 @@
+#include "geometry/io/substrate_rows.h"
+
+#include <array>
+
+#include "core/error.h"
+#include "core/overloaded.h"
+#include "core/schema/access.h"
+#include "core/schema/conditions.h"
+#include "geometry/substrate/sag_formula.h"
+
+namespace retrace::geometry {
+namespace {
+
+using namespace schema;
+
+/// In the order of the alternatives of SubstrateShape.
+constexpr Words kKinds = {"plane", "cylinder", "sphere", "formula"};
+constexpr Words kAxes = {"x", "y"};
+constexpr Words kElementAxesWords = {"normal", "parallel"};
+constexpr Words kPins = {"pins"};
+
+constexpr Condition kPlaneOnly[] = {is("kind", only(kKinds, "plane"))};
+constexpr Condition kCylinderOnly[] = {is("kind", only(kKinds, "cylinder"))};
+constexpr Condition kRoundOnly[] = {is("kind", only(kKinds, "cylinder", "sphere"))};
+constexpr Condition kFormulaOnly[] = {is("kind", only(kKinds, "formula"))};
+constexpr Condition kOfPins[] = {is("array.arrangement", kPins)};
+constexpr Condition kOfNoPins[] = {is_not("array.arrangement", kPins)};
+
+Value get_kind(const Substrate& substrate) {
+  return static_cast<double>(substrate.shape.index());
+}
+void set_kind(Substrate& substrate, const Value& value) {
+  const std::array<SubstrateShape, 4> shapes = {PlaneSubstrate(), CylinderSubstrate(), SphereSubstrate(),
+                                                FormulaSubstrate()};
+  substrate.shape = shapes[static_cast<std::size_t>(std::get<double>(value))];
+}
+
+Value get_radius(const Substrate& substrate) {
+  const auto* const cylinder = std::get_if<CylinderSubstrate>(&substrate.shape);
+  return cylinder != nullptr ? cylinder->radius_mm : std::get<SphereSubstrate>(substrate.shape).radius_mm;
+}
+void set_radius(Substrate& substrate, const Value& value) {
+  auto* const cylinder = std::get_if<CylinderSubstrate>(&substrate.shape);
+  double& radius_mm = cylinder != nullptr ? cylinder->radius_mm : std::get<SphereSubstrate>(substrate.shape).radius_mm;
+  radius_mm = std::get<double>(value);
+  if (radius_mm == 0.0) throw InputError("must not be 0; > 0 bulges towards the light, < 0 is hollow, got 0");
+}
+
+Value get_axis(const Substrate& substrate) {
+  return std::get<CylinderSubstrate>(substrate.shape).axis_is_x ? 0.0 : 1.0;
+}
+void set_axis(Substrate& substrate, const Value& value) {
+  std::get<CylinderSubstrate>(substrate.shape).axis_is_x = std::get<double>(value) == 0.0;
+}
+
+Value get_sag(const Substrate& substrate) {
+  return std::get<FormulaSubstrate>(substrate.shape).sag_mm->text();
+}
+void set_sag(Substrate& substrate, const Value& value) {
+  std::get<FormulaSubstrate>(substrate.shape).sag_mm = std::make_shared<const Formula>(std::get<std::string>(value));
+}
+
+void set_parallel(Substrate& substrate, const Value&) {
+  substrate.element_axes = ElementAxes::parallel;
+}
+
+constexpr Row kRows[] = {
+    {"kind", Word{kKinds}, kRequired, "The shape.", access_by<get_kind, set_kind>},
+    {"incline_deg", Number{{.low = 0.0, .high = 60.0}}, kRequired, "By how much it rises.",
+     access_in<&Substrate::shape, &PlaneSubstrate::incline_deg>, kPlaneOnly},
+    {"azimuth_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0, "Towards where it rises, from +x towards +y.",
+     access_in<&Substrate::shape, &PlaneSubstrate::azimuth_deg>, kPlaneOnly},
+    {"radius_mm", Number{{.low = -1e9, .high = 1e9}}, kRequired,
+     "Not 0; > 0 bulges towards the light, < 0 is hollow; the middle of the part is its highest or lowest place.",
+     access_by<get_radius, set_radius>, kRoundOnly},
+    {"axis", Word{kAxes}, "y", "Along which it does not bend.", access_by<get_axis, set_axis>, kCylinderOnly},
+    {"sag_mm", Text{"a formula of x and y in mm, such as \"-(x^2 + y^2) / 200\""}, kRequired,
+     "The height in mm, towards the light, as a formula of `x` and `y` in mm from the middle of the part: numbers, "
+     "`pi`, `+ - * / ^`, brackets, `sqrt exp log sin cos tan asin acos atan atan2 sinh cosh tanh abs`; at most 2000 "
+     "characters.",
+     access_by<get_sag, set_sag>, kFormulaOnly},
+    {"elements", Word{kElementAxesWords}, "normal",
+     "`\"normal\"`: each element stands along the base's normal at its middle, and sizes and gaps are arc lengths; "
+     "`\"parallel\"`: all stay upright and only move along z, and sizes and gaps are those in plan.",
+     access<&Substrate::element_axes>, kOfNoPins},
+    {"elements",
+     Word{only(kElementAxesWords, "parallel")},
+     "parallel",
+     "Pins share one axis.",
+     {nullptr, set_by<set_parallel>},
+     kOfPins}};
+
+}  // namespace
+
+std::span<const Row> substrate_rows() {
+  return kRows;
+}
+
+std::string_view substrate_shape_key(const Substrate& substrate) {
+  return std::visit(
+      Overloaded{[](const PlaneSubstrate&) { return "base.incline_deg"; },
+                 [](const FormulaSubstrate&) { return "base.sag_mm"; }, [](const auto&) { return "base.radius_mm"; }},
+      substrate.shape);
+}
+
+}  // namespace retrace::geometry

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/schema/schema.h"
+#include "geometry/substrate/substrate.h"
+
+namespace retrace::geometry {
+
+/// The keys of `[base]` in designs and jobs, whose object is a Base. The last row is that of pins.
+std::span<const schema::Row> substrate_rows();
+
+/// The key that gives a base its shape, to be blamed for it.
+std::string_view substrate_shape_key(const Substrate& substrate);
+
+}  // namespace retrace::geometry

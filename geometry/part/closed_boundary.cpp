@@ -1,0 +1,71 @@
+#include "geometry/part/closed_boundary.h"
+
+#include <map>
+#include <stdexcept>
+
+namespace retrace::geometry {
+namespace {
+
+/// Raises rim vertices to the entrance face, each once.
+class EntranceVertices {
+ public:
+  EntranceVertices(BoundaryMesh& mesh, double thickness_mm) : mesh_(mesh), thickness_mm_(thickness_mm) {}
+
+  std::uint32_t above(std::uint32_t rim_vertex) {
+    const auto [it, is_new] = raised_.try_emplace(rim_vertex, static_cast<std::uint32_t>(mesh_.vertices.size()));
+    if (is_new) {
+      const Vec3 p = mesh_.vertices[rim_vertex];
+      mesh_.vertices.emplace_back(p.x(), p.y(), thickness_mm_);
+    }
+    return it->second;
+  }
+
+ private:
+  BoundaryMesh& mesh_;
+  double thickness_mm_;
+  std::map<std::uint32_t, std::uint32_t> raised_;
+};
+
+void add_fan(BoundaryMesh& mesh, const std::vector<std::uint32_t>& ring, FacetRole role) {
+  Vec3 middle = Vec3::Zero();
+  for (const std::uint32_t v : ring) middle += mesh.vertices[v];
+  const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.push_back(middle / static_cast<double>(ring.size()));
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    mesh.triangles.push_back({hub, ring[i], ring[(i + 1) % ring.size()]});
+    mesh.roles.push_back(role);
+  }
+}
+
+}  // namespace
+
+BoundaryMesh closed_boundary(const Part& part) {
+  if (part.period_mm || part.placements.size() != 1)
+    throw std::logic_error("closed_boundary: the part must be finite and one patch");
+  const SurfacePatch& patch = part.patches[part.placements.front().patch];
+  const Vec2 offset = part.placements.front().offset_mm;
+
+  BoundaryMesh mesh;
+  mesh.triangles = patch.triangles;
+  mesh.vertices.reserve(patch.vertices.size());
+  for (const Vec3& p : patch.vertices) mesh.vertices.emplace_back(p.x() + offset.x(), p.y() + offset.y(), p.z());
+  for (const std::uint32_t facet : patch.triangle_facet) mesh.roles.push_back(patch.facets[facet].role);
+  for (const auto& ring : patch.border_walls) add_fan(mesh, ring, FacetRole::border_wall);
+
+  EntranceVertices entrance(mesh, part.thickness_mm);
+  const Vec2 middle = centroid(part.outline);
+  const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.emplace_back(middle.x(), middle.y(), part.thickness_mm);
+  for (const auto& rim : patch.border_rim) {
+    const std::uint32_t above_from = entrance.above(rim.front());
+    const std::uint32_t above_to = entrance.above(rim.back());
+    std::vector<std::uint32_t> side = rim;
+    side.insert(side.end(), {above_to, above_from});
+    add_fan(mesh, side, FacetRole::side);
+    mesh.triangles.push_back({hub, above_from, above_to});
+    mesh.roles.push_back(FacetRole::entrance);
+  }
+  return mesh;
+}
+
+}  // namespace retrace::geometry

@@ -1,0 +1,115 @@
+#include "geometry/part/mould_boundary.h"
+#include "geometry/part/triangle_mesh.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+namespace retrace::geometry {
+namespace {
+
+using Ring = std::vector<std::uint32_t>;
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// The directed edges of triangles that no neighbour passes the other way, in the order of the triangles.
+std::vector<Edge> open_edges(const BoundaryMesh& mesh) {
+  std::unordered_map<std::uint64_t, int> passed;
+  passed.reserve(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++passed[directed_edge(t[k], t[(k + 1) % 3])];
+  std::vector<Edge> open;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!passed.contains(directed_edge(t[(k + 1) % 3], t[k]))) open.emplace_back(t[k], t[(k + 1) % 3]);
+  return open;
+}
+
+/// The vertices of the surface's border over one place of the plan, by height, and the one at the bottom under them.
+struct Column {
+  std::vector<std::pair<double, std::uint32_t>> vertices;
+  std::uint32_t bottom = 0;
+};
+
+class MouldBuilder {
+ public:
+  MouldBuilder(const Part& part, double block_mm)
+      : bottom_z_(-part.element_depth_mm - block_mm), middle_(centroid(part.outline)) {
+    const SurfacePatch& patch = part.patches[part.placements.front().patch];
+    const Vec2 offset = part.placements.front().offset_mm;
+    for (const Vec3& p : patch.vertices) mesh_.vertices.emplace_back(p.x() + offset.x(), p.y() + offset.y(), p.z());
+    for (const auto& t : patch.triangles) mesh_.triangles.push_back({t[0], t[2], t[1]});
+    for (const std::uint32_t facet : patch.triangle_facet) mesh_.roles.push_back(patch.facets[facet].role);
+  }
+
+  BoundaryMesh build() {
+    const std::vector<Edge> border = open_edges(mesh_);
+    collect_columns(border);
+    const std::uint32_t hub = add_vertex({middle_.x(), middle_.y(), bottom_z_});
+    for (const auto& [a, b] : border) {
+      if (place(a) == place(b)) continue;  // the end of a wall: part of the column beside it
+      add_side(a, b);
+      add_triangle(hub, columns_.at(place(b)).bottom, columns_.at(place(a)).bottom, FacetRole::flat_back);
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  using Place = std::pair<double, double>;
+
+  /// Vertices over one another have the very same x and y.
+  Place place(std::uint32_t vertex) const { return {mesh_.vertices[vertex].x(), mesh_.vertices[vertex].y()}; }
+
+  std::uint32_t add_vertex(const Vec3& p) {
+    mesh_.vertices.push_back(p);
+    return static_cast<std::uint32_t>(mesh_.vertices.size() - 1);
+  }
+
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, FacetRole role) {
+    mesh_.triangles.push_back({a, b, c});
+    mesh_.roles.push_back(role);
+  }
+
+  void collect_columns(const std::vector<Edge>& border) {
+    for (const auto& [a, b] : border)
+      for (const std::uint32_t v : {a, b}) columns_[place(v)].vertices.emplace_back(mesh_.vertices[v].z(), v);
+    for (auto& [at, column] : columns_) {
+      std::sort(column.vertices.begin(), column.vertices.end());
+      column.vertices.erase(std::unique(column.vertices.begin(), column.vertices.end()), column.vertices.end());
+      column.bottom = add_vertex({at.first, at.second, bottom_z_});
+    }
+  }
+
+  /// The side of the block under the edge from a to b of the surface, with every vertex on its outline.
+  void add_side(std::uint32_t a, std::uint32_t b) {
+    const Column& under_a = columns_.at(place(a));
+    const Column& under_b = columns_.at(place(b));
+    Ring ring = {b, a};
+    for (auto it = under_a.vertices.rbegin(); it != under_a.vertices.rend(); ++it)
+      if (it->first < mesh_.vertices[a].z()) ring.push_back(it->second);
+    ring.insert(ring.end(), {under_a.bottom, under_b.bottom});
+    for (const auto& [z, v] : under_b.vertices)
+      if (z < mesh_.vertices[b].z()) ring.push_back(v);
+    Vec3 middle = 0.25 * (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[under_a.bottom] +
+                          mesh_.vertices[under_b.bottom]);
+    const std::uint32_t hub = add_vertex(middle);
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      add_triangle(hub, ring[i], ring[(i + 1) % ring.size()], FacetRole::side);
+  }
+
+  BoundaryMesh mesh_;
+  double bottom_z_;
+  Vec2 middle_;
+  std::map<Place, Column> columns_;
+};
+
+}  // namespace
+
+BoundaryMesh mould_boundary(const Part& part, double block_mm) {
+  if (part.period_mm || part.placements.size() != 1 || !(block_mm > 0.0))
+    throw std::logic_error("mould_boundary: the part must be finite and one patch, the block thicker than 0");
+  return MouldBuilder(part, block_mm).build();
+}
+
+}  // namespace retrace::geometry

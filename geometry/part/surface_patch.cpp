@@ -1,0 +1,324 @@
+#include "geometry/part/surface_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <unordered_map>
+
+#include "geometry/part/vertex_index.h"
+
+namespace retrace::geometry {
+namespace {
+
+using Ring = std::vector<std::uint32_t>;
+
+/// The tiles on the two sides of an elementary edge from vertex `from` < `to`.
+struct SharedEdge {
+  std::uint32_t from = 0;
+  std::uint32_t to = 0;
+  std::optional<std::uint32_t> left;
+  std::optional<std::uint32_t> right;
+};
+
+class PatchBuilder {
+ public:
+  PatchBuilder(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm)
+      : tiles_(tiles), block_(block), tolerance_mm_(1e-9 * size_mm), index_(tolerance_mm_, 0.25 * size_mm) {}
+
+  SurfacePatch build() {
+    weld_outlines();
+    find_edges();
+    if (add_crossings()) find_edges();
+    collect_heights();
+    sort_walls();
+    emit_facets();
+    emit_border();
+    shrink();
+    return std::move(patch_);
+  }
+
+ private:
+  struct Wall {
+    std::uint32_t from = 0;  ///< the solid lies on the left of from -> to
+    std::uint32_t to = 0;
+    std::uint32_t deep = 0;
+    std::uint32_t shallow = 0;
+  };
+
+  void weld_outlines() {
+    outlines_.reserve(tiles_.size());
+    for (const Tile& tile : tiles_) {
+      Ring ring;
+      for (const Vec2& p : tile.outline) {
+        const std::uint32_t vertex = index_.add(p);
+        if (ring.empty() || (ring.back() != vertex && ring.front() != vertex)) ring.push_back(vertex);
+      }
+      outlines_.push_back(without_straight_corners(ring));
+    }
+  }
+
+  /// A corner inside a straight side would make a flat triangle: subdivided() puts it back as a vertex of the side.
+  Ring without_straight_corners(const Ring& ring) const {
+    constexpr double rounding = 1e-3;  // of the tolerance within which vertices lie on a side
+    Ring kept;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vec2& before = index_[ring[(i + ring.size() - 1) % ring.size()]];
+      const Vec2 along = index_[ring[(i + 1) % ring.size()]] - before;
+      const Vec2 to = index_[ring[i]] - before;
+      if (std::abs(along.x() * to.y() - along.y() * to.x()) > rounding * tolerance_mm_ * along.norm())
+        kept.push_back(ring[i]);
+    }
+    return kept.size() < 3 ? ring : kept;
+  }
+
+  /// The outline with every vertex of another tile that lies on it.
+  Ring subdivided(const Ring& outline) const {
+    Ring ring;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const std::uint32_t a = outline[i];
+      const std::uint32_t b = outline[(i + 1) % outline.size()];
+      ring.push_back(a);
+      const Ring between = index_.on_segment(a, b);
+      ring.insert(ring.end(), between.begin(), between.end());
+    }
+    return ring;
+  }
+
+  void find_edges() {
+    rings_.clear();
+    edges_.clear();
+    std::unordered_map<std::uint64_t, std::uint32_t> edge_of;
+    for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
+      rings_.push_back(subdivided(outlines_[t]));
+      const Ring& ring = rings_.back();
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const std::uint32_t a = ring[i];
+        const std::uint32_t b = ring[(i + 1) % ring.size()];
+        const std::uint64_t key = (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
+        const auto [it, is_new] = edge_of.try_emplace(key, static_cast<std::uint32_t>(edges_.size()));
+        if (is_new) edges_.push_back({std::min(a, b), std::max(a, b), {}, {}});
+        (a < b ? edges_[it->second].left : edges_[it->second].right) = t;
+      }
+    }
+  }
+
+  double height(std::uint32_t tile, std::uint32_t vertex) const { return tiles_[tile].plane.at(index_[vertex]); }
+  /// Beyond the border stands what z = 0 is for the walls there.
+  double height(const std::optional<std::uint32_t>& tile, std::uint32_t vertex) const {
+    return tile ? height(*tile, vertex) : 0.0;
+  }
+
+  /// Where the profiles of two neighbours cross, the wall changes sides: a vertex belongs there.
+  bool add_crossings() {
+    bool added = false;
+    for (const SharedEdge& e : edges_) {
+      const double da = height(e.left, e.from) - height(e.right, e.from);
+      const double db = height(e.left, e.to) - height(e.right, e.to);
+      if (std::min(da, db) > -tolerance_mm_ || std::max(da, db) < tolerance_mm_) continue;
+      index_.add(index_[e.from] + (index_[e.to] - index_[e.from]) * (da / (da - db)));
+      added = true;
+    }
+    return added;
+  }
+
+  std::uint32_t vertex_at(std::uint32_t flat_vertex, double z) {
+    auto& column = columns_[flat_vertex];
+    for (const auto& [known_z, id] : column)
+      if (std::abs(known_z - z) <= tolerance_mm_) return id;
+    const auto id = static_cast<std::uint32_t>(patch_.vertices.size());
+    patch_.vertices.emplace_back(index_[flat_vertex].x(), index_[flat_vertex].y(), z);
+    column.emplace_back(z, id);
+    return id;
+  }
+
+  /// Where the plate's side begins over a tile on the border.
+  double rim_height(std::uint32_t tile, std::uint32_t vertex) const { return std::max(0.0, height(tile, vertex)); }
+
+  void collect_heights() {
+    columns_.resize(index_.size());
+    for (std::uint32_t t = 0; t < tiles_.size(); ++t)
+      for (const std::uint32_t v : rings_[t]) vertex_at(v, height(t, v));
+    for (const SharedEdge& e : edges_) {
+      if (e.left && e.right) continue;
+      for (const std::uint32_t v : {e.from, e.to}) vertex_at(v, rim_height(e.left ? *e.left : *e.right, v));
+    }
+    for (auto& column : columns_) std::sort(column.begin(), column.end());
+  }
+
+  void sort_walls() {
+    for (const SharedEdge& e : edges_) {
+      if (!e.left || !e.right) continue;
+      const double da = height(*e.left, e.from) - height(*e.right, e.from);
+      const double db = height(*e.left, e.to) - height(*e.right, e.to);
+      if (std::abs(da) <= tolerance_mm_ && std::abs(db) <= tolerance_mm_) continue;
+      const bool left_is_deep = da + db < 0.0;
+      const Wall wall = left_is_deep ? Wall{e.from, e.to, *e.left, *e.right} : Wall{e.to, e.from, *e.right, *e.left};
+      if (tiles_[wall.deep].owned) walls_of_[wall.deep].push_back(wall);
+    }
+  }
+
+  /// The face between heights bottom and top over the edge from -> to, the solid on the left; `ring` gets every vertex
+  /// on its outline, `corners` only the corners.
+  struct Strip {
+    Ring ring;
+    Ring corners;
+  };
+  Strip strip(std::uint32_t from, std::uint32_t to, double bottom_from, double bottom_to, double top_from,
+              double top_to) {
+    Strip s;
+    const auto add = [&](std::uint32_t id, bool corner) {
+      if (!s.ring.empty() && (s.ring.back() == id || s.ring.front() == id)) return;
+      s.ring.push_back(id);
+      if (corner) s.corners.push_back(id);
+    };
+    add(vertex_at(from, bottom_from), true);
+    add(vertex_at(to, bottom_to), true);
+    for (const auto& [z, id] : columns_[to])
+      if (z > bottom_to + tolerance_mm_ && z < top_to - tolerance_mm_) add(id, false);
+    add(vertex_at(to, top_to), true);
+    add(vertex_at(from, top_from), true);
+    const auto& column = columns_[from];
+    for (auto it = column.rbegin(); it != column.rend(); ++it)
+      if (it->first > bottom_from + tolerance_mm_ && it->first < top_from - tolerance_mm_) add(it->second, false);
+    return s;
+  }
+
+  FacetRole wall_role(const Wall& wall) const {
+    const Vec2& a = index_[wall.from];
+    const Vec2& b = index_[wall.to];
+    for (const Eigen::Index axis : {0, 1})
+      for (const double border : {block_.lower[axis], block_.upper[axis]})
+        if (std::abs(a[axis] - border) <= tolerance_mm_ && std::abs(b[axis] - border) <= tolerance_mm_)
+          return FacetRole::border_wall;
+    return FacetRole::inner_wall;
+  }
+
+  void emit_facets() {
+    for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
+      if (!tiles_[t].owned) continue;
+      const bool same_cell = t > 0 && tiles_[t - 1].owned && tiles_[t - 1].cell == tiles_[t].cell;
+      if (!same_cell || patch_.cells.empty())
+        patch_.cells.push_back({static_cast<std::uint32_t>(patch_.facets.size()), 0, Vec3::Zero(), Vec3::Zero()});
+      emit_tile(t);
+      for (const Wall& wall : walls_of_[t]) emit_wall(wall);
+      PatchCell& cell = patch_.cells.back();
+      cell.facet_count = static_cast<std::uint32_t>(patch_.facets.size()) - cell.first_facet;
+    }
+    for (PatchCell& cell : patch_.cells) bound(cell);
+  }
+
+  void emit_tile(std::uint32_t t) {
+    const Tile& tile = tiles_[t];
+    PatchFacet facet;
+    facet.role = tile.role;
+    const Vec3 downward(tile.plane.slope.x(), tile.plane.slope.y(), -1.0);
+    facet.normal = downward.normalized();
+    facet.offset_mm = -tile.plane.height_mm / downward.norm();
+    // Seen from outside, from below, the outline runs the other way round.
+    Ring ring;
+    Ring corners;
+    for (auto it = rings_[t].rbegin(); it != rings_[t].rend(); ++it) ring.push_back(vertex_at(*it, height(t, *it)));
+    for (auto it = outlines_[t].rbegin(); it != outlines_[t].rend(); ++it)
+      corners.push_back(vertex_at(*it, height(t, *it)));
+    emit(facet, ring, corners);
+  }
+
+  void emit_wall(const Wall& wall) {
+    const Strip s = strip(wall.from, wall.to, height(wall.deep, wall.from), height(wall.deep, wall.to),
+                          height(wall.shallow, wall.from), height(wall.shallow, wall.to));
+    if (s.corners.size() < 3) return;
+    const Vec2 along = index_[wall.to] - index_[wall.from];
+    PatchFacet facet;
+    facet.role = wall_role(wall);
+    facet.normal = Vec3(along.y(), -along.x(), 0.0).normalized();
+    facet.offset_mm = facet.normal.head<2>().dot(index_[wall.from]);
+    emit(facet, s.ring, s.corners);
+  }
+
+  void emit(PatchFacet facet, const Ring& ring, const Ring& corners) {
+    const auto number = static_cast<std::uint32_t>(patch_.facets.size());
+    facet.first_corner = static_cast<std::uint32_t>(patch_.corners.size());
+    facet.corner_count = static_cast<std::uint32_t>(corners.size());
+    patch_.corners.insert(patch_.corners.end(), corners.begin(), corners.end());
+    patch_.facets.push_back(facet);
+    const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      patch_.triangles.push_back({a, b, c});
+      patch_.triangle_facet.push_back(number);
+    };
+    if (ring.size() == corners.size()) {
+      for (std::size_t i = 1; i + 1 < ring.size(); ++i) triangle(ring[0], ring[i], ring[i + 1]);
+      return;
+    }
+    // Vertices inside an edge would make flat triangles in a fan from a corner; a fan from the middle has none.
+    Vec3 middle = Vec3::Zero();
+    for (const std::uint32_t c : corners) middle += patch_.vertices[c];
+    const auto hub = static_cast<std::uint32_t>(patch_.vertices.size());
+    patch_.vertices.push_back(middle / static_cast<double>(corners.size()));
+    for (std::size_t i = 0; i < ring.size(); ++i) triangle(hub, ring[i], ring[(i + 1) % ring.size()]);
+  }
+
+  void bound(PatchCell& cell) const {
+    cell.lower.setConstant(INFINITY);
+    cell.upper.setConstant(-INFINITY);
+    for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
+      const PatchFacet& facet = patch_.facets[f];
+      for (std::uint32_t c = facet.first_corner; c < facet.first_corner + facet.corner_count; ++c) {
+        const Vec3& p = patch_.vertices[patch_.corners[c]];
+        cell.lower = cell.lower.cwiseMin(p);
+        cell.upper = cell.upper.cwiseMax(p);
+      }
+    }
+  }
+
+  void emit_border() {
+    for (const SharedEdge& e : edges_) {
+      if (e.left.has_value() == e.right.has_value()) continue;
+      const std::uint32_t tile = e.left ? *e.left : *e.right;
+      if (!tiles_[tile].owned) continue;
+      const std::uint32_t from = e.left ? e.from : e.to;
+      const std::uint32_t to = e.left ? e.to : e.from;
+      const double rim_from = rim_height(tile, from);
+      const double rim_to = rim_height(tile, to);
+      Ring rim;
+      const auto& before = columns_[from];
+      for (auto it = before.rbegin(); it != before.rend() && it->first > rim_from + tolerance_mm_; ++it)
+        rim.push_back(it->second);
+      rim.insert(rim.end(), {vertex_at(from, rim_from), vertex_at(to, rim_to)});
+      for (const auto& [z, id] : columns_[to])
+        if (z > rim_to + tolerance_mm_) rim.push_back(id);
+      patch_.border_rim.push_back(std::move(rim));
+      Strip s = strip(from, to, height(tile, from), height(tile, to), rim_from, rim_to);
+      if (s.corners.size() >= 3) patch_.border_walls.push_back(std::move(s.ring));
+    }
+  }
+
+  /// Parts may have millions of these.
+  void shrink() {
+    patch_.vertices.shrink_to_fit();
+    patch_.facets.shrink_to_fit();
+    patch_.corners.shrink_to_fit();
+    patch_.cells.shrink_to_fit();
+    patch_.triangles.shrink_to_fit();
+    patch_.triangle_facet.shrink_to_fit();
+  }
+
+  const std::vector<Tile>& tiles_;
+  const Rectangle block_;
+  const double tolerance_mm_;
+  VertexIndex index_;
+  std::vector<Ring> outlines_;
+  std::vector<Ring> rings_;
+  std::vector<SharedEdge> edges_;
+  std::vector<std::vector<std::pair<double, std::uint32_t>>> columns_;  ///< heights over each flat vertex, rising
+  std::unordered_map<std::uint32_t, std::vector<Wall>> walls_of_;
+  SurfacePatch patch_;
+};
+
+}  // namespace
+
+SurfacePatch build_patch(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm) {
+  return PatchBuilder(tiles, block, size_mm).build();
+}
+
+}  // namespace retrace::geometry

@@ -1,0 +1,119 @@
+// Whether a base can carry its elements.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "geometry/elements/lattice.h"
+#include "geometry/part/substrate_part.h"
+
+namespace retrace::geometry {
+namespace {
+
+constexpr double kRadPerDegree = std::numbers::pi / 180.0;
+constexpr double kMostIncline = 60.0;
+constexpr double kSteepestFacet = 88.0;
+constexpr int kGridSteps = 64;  // of the grids on which facets and pins are tried
+
+template <class Visit>
+void visit_grid(const Vec2& half_mm, const Visit& visit) {
+  for (int j = 0; j <= kGridSteps; ++j)
+    for (int i = 0; i <= kGridSteps; ++i)
+      visit(Vec2(half_mm.cwiseProduct(Vec2(2.0 * i / kGridSteps - 1.0, 2.0 * j / kGridSteps - 1.0))));
+}
+
+/// On spheres and formulas no element is like another, and each takes some kilobytes.
+void check_count(const PartSpec& spec) {
+  constexpr double kMostUnlike = 2e6;
+  const bool repeats = std::holds_alternative<PlaneSubstrate>(spec.substrate->shape) ||
+                       std::holds_alternative<CylinderSubstrate>(spec.substrate->shape);
+  const double count = spec.x_length_mm * spec.y_length_mm / area(aperture_outline(spec.element));
+  if (!repeats && count > kMostUnlike)
+    throw InputError(
+        fmt::format("must carry at most {:.0f} elements, as no two of them are alike there; there are "
+                    "some {:.3g}",
+                    kMostUnlike, count));
+}
+
+/// Normals of the facets of an element, towards the light, and of its turned neighbour.
+std::vector<Vec3> facet_normals(const PartSpec& spec) {
+  std::vector<Vec3> normals;
+  for (const CellFacet& facet : element_cell(spec.element, spec.angle_errors).facets) {
+    const Vec3 normal = Vec3(-facet.plane.slope.x(), -facet.plane.slope.y(), 1.0).normalized();
+    normals.push_back(normal);
+    if (spec.arrangement == Arrangement::triangular) normals.emplace_back(-normal.x(), -normal.y(), normal.z());
+    if (spec.arrangement == Arrangement::checker) normals.emplace_back(-normal.y(), normal.x(), normal.z());
+  }
+  return normals;
+}
+
+void check_steepness(const PartSpec& spec, const SubstrateSurface& surface, const Vec2& half_mm) {
+  const std::vector<Vec3> normals = facet_normals(spec);
+  double least = 1.0;
+  visit_grid(half_mm, [&](const Vec2& p) {
+    const SubstrateFrame frame = surface.frame_over(p);
+    for (const Vec3& n : normals)
+      least = std::min(least, n.x() * frame.along_u.z() + n.y() * frame.along_v.z() + n.z() * frame.normal.z());
+  });
+  const double spare = 6.0 * spec.random_tilts.sigma_arcmin / 60.0;
+  const double steepest = std::acos(std::clamp(least, -1.0, 1.0)) / kRadPerDegree + spare;
+  if (steepest > kSteepestFacet)
+    throw InputError(fmt::format("must leave the facets of its elements at most {} degrees steep, one is {:.2f}",
+                                 kSteepestFacet, steepest));
+}
+
+/// Pins touch their neighbours along their sides. Where one stands out by more than its tip is deep, its rim is beyond
+/// all of the neighbour's tip and nothing of the two facets borders on each other.
+void check_contact(const PartSpec& spec, const SubstrateSurface& surface, const Vec2& half_mm) {
+  const double depth = element_depth_mm(spec.element, spec.angle_errors);
+  const double pitch = 0.5 * std::numbers::sqrt3 * std::get<HexagonalCube>(spec.element).aperture_mm;
+  double most = 0.0;
+  visit_grid(half_mm, [&](const Vec2& p) {
+    for (const double degrees : {30.0, 90.0, 150.0}) {
+      const Vec2 next = p + pitch * Vec2(std::cos(degrees * kRadPerDegree), std::sin(degrees * kRadPerDegree));
+      most = std::max(most, std::abs(surface.at(next).value - surface.at(p).value));
+    }
+  });
+  if (most >= depth)
+    throw InputError(
+        fmt::format("must keep pins in contact: neighbours differ by {:.4g} mm along their axis, which must "
+                    "be less than the depth of their tips, {:.4g} mm",
+                    most, depth));
+}
+
+}  // namespace
+
+SubstrateSurface substrate_surface_of(const PartSpec& spec) {
+  return {*spec.substrate, 0.5 * Vec2(spec.x_length_mm, spec.y_length_mm), width_across_mm(spec.element)};
+}
+
+double width_across_mm(const Element& element) {
+  if (const auto* rtp = std::get_if<RtpElement>(&element)) return std::hypot(rtp->base_mm, rtp->width_mm);
+  if (const auto* cube = std::get_if<HexagonalCube>(&element)) return cube->aperture_mm;
+  return std::get<TriangularCube>(element).aperture_mm;
+}
+
+SubstrateMeasures check_substrate(const PartSpec& spec) {
+  const Vec2 half_mm = 0.5 * Vec2(spec.x_length_mm, spec.y_length_mm);
+  check_count(spec);
+  const SubstrateSurface surface = substrate_surface_of(spec);
+  const SubstrateMeasures measures = measure_substrate(surface, half_mm);
+  const double across = width_across_mm(spec.element);
+  if (measures.least_radius_mm < across)
+    throw InputError(
+        fmt::format("must not bend more tightly than its elements: its radius of curvature falls to {:.4g} "
+                    "mm, an element measures {:.4g} mm across",
+                    measures.least_radius_mm, across));
+  if (measures.steepest_deg > kMostIncline + 1e-9)
+    throw InputError(fmt::format("must rise by at most {} degrees over the part, it rises by {:.2f}", kMostIncline,
+                                 measures.steepest_deg));
+  if (spec.is_pin_bundle) check_contact(spec, surface, half_mm);
+  if (!surface.is_upright()) check_steepness(spec, surface, half_mm);
+  return measures;
+}
+
+}  // namespace retrace::geometry

@@ -1,0 +1,350 @@
+#include "geometry/substrate/substrate_surface.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <unordered_map>
+#include <vector>
+
+#include "core/error.h"
+#include "core/overloaded.h"
+
+namespace retrace::geometry {
+namespace {
+
+constexpr double kDeg = std::numbers::pi / 180.0;
+// Of a radius: how far from the middle circles are followed; beyond, only what the border cuts away stands.
+constexpr double kMostSine = 0.999;
+
+Eigen::Matrix3d turn_of(const PlaneSubstrate& plane) {
+  const double azimuth = plane.azimuth_deg * kDeg;
+  // About the horizontal line across the azimuth, so that the plane rises towards it.
+  const Vec3 axis(std::sin(azimuth), -std::cos(azimuth), 0.0);
+  return Eigen::AngleAxisd(plane.incline_deg * kDeg, axis).toRotationMatrix();
+}
+
+Jet jet_of(const PlaneSubstrate& plane, const Vec2& p) {
+  const double rise = std::tan(plane.incline_deg * kDeg);
+  const double azimuth = plane.azimuth_deg * kDeg;
+  const Vec2 gradient(rise * std::cos(azimuth), rise * std::sin(azimuth));
+  return {gradient.dot(p), gradient.x(), gradient.y(), 0.0, 0.0, 0.0};
+}
+
+/// A circle's height at t from its pole, without the cancellation of R - sqrt(R^2 - t^2).
+double sag(double radius, double t2) {
+  const double r2 = radius * radius;
+  const double root = std::sqrt(r2 - std::min(t2, kMostSine * kMostSine * r2));
+  return -t2 / (radius + std::copysign(root, radius));
+}
+
+Jet jet_of(const CylinderSubstrate& cylinder, const Vec2& p) {
+  const double r = cylinder.radius_mm;
+  const double t = cylinder.axis_is_x ? p.y() : p.x();
+  const double root = std::sqrt(r * r - std::min(t * t, kMostSine * kMostSine * r * r));
+  const double slope = std::copysign(1.0, -r) * t / root;
+  const double bend = std::copysign(1.0, -r) * r * r / (root * root * root);
+  Jet jet;
+  jet.value = sag(r, t * t);
+  (cylinder.axis_is_x ? jet.y : jet.x) = slope;
+  (cylinder.axis_is_x ? jet.yy : jet.xx) = bend;
+  return jet;
+}
+
+Jet jet_of(const SphereSubstrate& sphere, const Vec2& p) {
+  const double r = sphere.radius_mm;
+  const double root = std::sqrt(r * r - std::min(p.squaredNorm(), kMostSine * kMostSine * r * r));
+  const double sign = std::copysign(1.0, -r);
+  const double cube = root * root * root;
+  return {sag(r, p.squaredNorm()),     sign * p.x() / root,
+          sign * p.y() / root,         sign * (root * root + p.x() * p.x()) / cube,
+          sign * p.x() * p.y() / cube, sign * (root * root + p.y() * p.y()) / cube};
+}
+
+/// Straight on beyond the part where a formula has no value or stands up; only cells that the border cuts reach there.
+Jet jet_of(const FormulaSubstrate& formula, const Vec2& p, const Vec2& half_mm) {
+  constexpr double kSteepBeyond = 4.0;
+  const Vec2 inside = p.cwiseMax(-half_mm).cwiseMin(half_mm);
+  Jet jet = formula.sag_mm->at(p.x(), p.y());
+  if (inside == p || (jet.is_finite() && std::hypot(jet.x, jet.y) < kSteepBeyond)) return jet;
+  jet = formula.sag_mm->at(inside.x(), inside.y());
+  jet.value += jet.x * (p.x() - inside.x()) + jet.y * (p.y() - inside.y());
+  return jet;
+}
+
+double arc_of_chord(double radius, double t) {
+  const double r = std::abs(radius);
+  return r * std::asin(std::clamp(t / r, -kMostSine, kMostSine));
+}
+
+double chord_of_arc(double radius, double s) {
+  const double r = std::abs(radius);
+  return r * std::sin(std::clamp(s / r, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
+}
+
+/// Arc length along a curve z(t) by its slope, from t = 0, and back.
+class ArcTable {
+ public:
+  template <class Slope>
+  ArcTable(double half_mm, double beyond_mm, double step_mm, const Slope& slope) {
+    // The border, beyond which a formula may be continued straight, is a node: nothing is integrated across a kink.
+    const double within = std::ceil(half_mm / step_mm);
+    step_ = half_mm / within;
+    const double count = within + std::ceil(beyond_mm / step_);
+    excess_.resize(2 * static_cast<std::size_t>(count) + 1, 0.0);
+    middle_ = static_cast<std::size_t>(count);
+    for (std::size_t k = 0; k < middle_; ++k) {
+      const double from = static_cast<double>(k) * step_;
+      excess_[middle_ + k + 1] = excess_[middle_ + k] + excess(from, from + step_, slope);
+      excess_[middle_ - k - 1] = excess_[middle_ - k] - excess(-from - step_, -from, slope);
+    }
+  }
+
+  template <class Slope>
+  double arc(double t, const Slope& slope) const {
+    const std::size_t k = node_below(t);
+    return t + excess_[k] + excess(place(k), t, slope);
+  }
+
+  /// The place whose arc length is `s`.
+  template <class Slope>
+  double place_at(double s, const Slope& slope) const {
+    std::size_t low = 0;
+    std::size_t high = excess_.size() - 1;
+    while (high - low > 1) {
+      const std::size_t middle = (low + high) / 2;
+      (place(middle) + excess_[middle] <= s ? low : high) = middle;
+    }
+    double t = place(low) + (s - place(low) - excess_[low]) / std::hypot(1.0, slope(place(low)));
+    constexpr int kMostSteps = 30;
+    for (int k = 0; k < kMostSteps; ++k) {
+      const double step = (s - t - excess_[low] - excess(place(low), t, slope)) / std::hypot(1.0, slope(t));
+      t += step;
+      if (std::abs(step) <= 1e-14 * (std::abs(t) + step_)) break;
+    }
+    return t;
+  }
+
+ private:
+  double place(std::size_t k) const { return (static_cast<double>(k) - static_cast<double>(middle_)) * step_; }
+  std::size_t node_below(double t) const {
+    const double k = std::floor(t / step_) + static_cast<double>(middle_);
+    return static_cast<std::size_t>(std::clamp(k, 0.0, static_cast<double>(excess_.size() - 1)));
+  }
+
+  /// Of the arc over its projection: exactly 0 where the curve is level. Gauss and Legendre, five points.
+  template <class Slope>
+  static double excess(double from, double to, const Slope& slope) {
+    constexpr std::array<double, 3> kPlaces = {0.0, 0.5384693101056831, 0.9061798459386640};
+    constexpr std::array<double, 3> kWeights = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+    const double middle = 0.5 * (from + to);
+    const double half = 0.5 * (to - from);
+    const auto more = [&](double t) {
+      const double d = slope(t);
+      return d * d / (1.0 + std::hypot(1.0, d));
+    };
+    double sum = kWeights[0] * more(middle);
+    for (const std::size_t k : {1U, 2U})
+      sum += kWeights[k] * (more(middle - kPlaces[k] * half) + more(middle + kPlaces[k] * half));
+    return half * sum;
+  }
+
+  double step_ = 1.0;
+  std::size_t middle_ = 0;
+  std::vector<double> excess_;  ///< of the arc from the middle to each place over its projection
+};
+
+}  // namespace
+
+/// Arc lengths of a formula: along x = 0, and along the rows that were asked for.
+struct SubstrateSurface::ArcTables {
+  ArcTables(const SubstrateSurface& surface, double size_mm)
+      : step_mm(std::max(0.5 * size_mm, surface.half_mm_.maxCoeff() / kMostSteps)),
+        beyond_mm(8.0 * size_mm),
+        along_y(surface.half_mm_.y(), beyond_mm, step_mm, [&surface](double y) {
+          return surface.at({0.0, y}).y;
+        }) {}
+
+  /// Tables of rows are kept: all elements of a row need the same.
+  const ArcTable& row(const SubstrateSurface& surface, double y) {
+    const auto key = static_cast<std::int64_t>(std::llround(y / (1e-9 * step_mm)));
+    if (const auto known = rows.find(key); known != rows.end()) return known->second;
+    if (rows.size() >= kMostRows) rows.clear();
+    return rows
+        .emplace(key, ArcTable(surface.half_mm_.x(), beyond_mm, step_mm,
+                               [&surface, y](double x) {
+                                 return surface.at({x, y}).x;
+                               }))
+        .first->second;
+  }
+
+  static constexpr double kMostSteps = 20000.0;
+  static constexpr std::size_t kMostRows = 512;
+  double step_mm;
+  double beyond_mm;
+  ArcTable along_y;
+  std::unordered_map<std::int64_t, ArcTable> rows;
+};
+
+SubstrateSurface::SubstrateSurface(const Substrate& substrate, const Vec2& half_mm, double size_mm)
+    : substrate_(substrate), half_mm_(half_mm), size_mm_(size_mm) {}
+
+SubstrateSurface::ArcTables& SubstrateSurface::tables() const {
+  if (tables_ == nullptr) tables_ = std::make_unique<ArcTables>(*this, size_mm_);
+  return *tables_;
+}
+
+SubstrateSurface::~SubstrateSurface() = default;
+SubstrateSurface::SubstrateSurface(SubstrateSurface&&) noexcept = default;
+
+Jet SubstrateSurface::at(const Vec2& plan) const {
+  return std::visit(Overloaded{[&](const FormulaSubstrate& f) { return jet_of(f, plan, half_mm_); },
+                               [&](const auto& closed) { return jet_of(closed, plan); }},
+                    substrate_.shape);
+}
+
+Vec3 SubstrateSurface::normal_at(const Vec2& plan) const {
+  const Jet jet = at(plan);
+  return Vec3(-jet.x, -jet.y, 1.0).normalized();
+}
+
+Vec2 SubstrateSurface::plan_of(const Vec2& arc) const {
+  if (is_upright()) return arc;
+  return std::visit(
+      Overloaded{[&](const PlaneSubstrate& plane) { return Vec2(turn_of(plane).topLeftCorner<2, 2>() * arc); },
+                 [&](const CylinderSubstrate& c) {
+                   return c.axis_is_x ? Vec2(arc.x(), chord_of_arc(c.radius_mm, arc.y()))
+                                      : Vec2(chord_of_arc(c.radius_mm, arc.x()), arc.y());
+                 },
+                 [&](const SphereSubstrate& s) {
+                   const double y = chord_of_arc(s.radius_mm, arc.y());
+                   const double row = std::sqrt(s.radius_mm * s.radius_mm - y * y);
+                   return Vec2(row > 0.0 ? chord_of_arc(row, arc.x()) : 0.0, y);
+                 },
+                 [&](const FormulaSubstrate&) {
+                   const double y = tables().along_y.place_at(arc.y(), [&](double t) { return at({0.0, t}).y; });
+                   const double x = tables().row(*this, y).place_at(arc.x(), [&](double t) { return at({t, y}).x; });
+                   return Vec2(x, y);
+                 }},
+      substrate_.shape);
+}
+
+Vec2 SubstrateSurface::arc_of(const Vec2& plan) const {
+  if (is_upright()) return plan;
+  return std::visit(
+      Overloaded{
+          [&](const PlaneSubstrate& plane) { return Vec2(turn_of(plane).topLeftCorner<2, 2>().inverse() * plan); },
+          [&](const CylinderSubstrate& c) {
+            return c.axis_is_x ? Vec2(plan.x(), arc_of_chord(c.radius_mm, plan.y()))
+                               : Vec2(arc_of_chord(c.radius_mm, plan.x()), plan.y());
+          },
+          [&](const SphereSubstrate& s) {
+            const double row = std::sqrt(std::max(0.0, s.radius_mm * s.radius_mm - plan.y() * plan.y()));
+            return Vec2(row > 0.0 ? arc_of_chord(row, plan.x()) : 0.0, arc_of_chord(s.radius_mm, plan.y()));
+          },
+          [&](const FormulaSubstrate&) {
+            return Vec2(tables()
+                            .row(*this, plan.y())
+                            .arc(plan.x(),
+                                 [&](double t) {
+                                   return at({t, plan.y()}).x;
+                                 }),
+                        tables().along_y.arc(plan.y(), [&](double t) {
+                          return at({0.0, t}).y;
+                        }));
+          }},
+      substrate_.shape);
+}
+
+Rectangle SubstrateSurface::arc_reach() const {
+  if (const auto* plane = std::get_if<PlaneSubstrate>(&substrate_.shape); plane != nullptr && !is_upright()) {
+    const Eigen::Matrix3d turn = turn_of(*plane);
+    const Vec2 reach(half_mm_.x() / turn(0, 0), half_mm_.y() / turn(1, 1));
+    return {-reach, reach};
+  }
+  const double left = arc_of({-half_mm_.x(), 0.0}).x();
+  const double right = arc_of({half_mm_.x(), 0.0}).x();
+  return {{left, arc_of({0.0, -half_mm_.y()}).y()}, {right, arc_of({0.0, half_mm_.y()}).y()}};
+}
+
+SubstrateFrame SubstrateSurface::frame_over(const Vec2& plan) const {
+  const Jet jet = at(plan);
+  SubstrateFrame frame;
+  frame.origin = {plan.x(), plan.y(), jet.value};
+  if (is_upright()) return frame;
+  if (const auto* plane = std::get_if<PlaneSubstrate>(&substrate_.shape)) {
+    const Eigen::Matrix3d turn = turn_of(*plane);
+    frame.along_u = turn.col(0);
+    frame.along_v = turn.col(1);
+    frame.normal = turn.col(2);
+    return frame;
+  }
+  frame.normal = Vec3(-jet.x, -jet.y, 1.0).normalized();
+  frame.along_u = Vec3(1.0, 0.0, jet.x).normalized();
+  frame.along_v = frame.normal.cross(frame.along_u);
+  return frame;
+}
+
+bool SubstrateSurface::repeats_along_u() const {
+  const auto* cylinder = std::get_if<CylinderSubstrate>(&substrate_.shape);
+  return std::holds_alternative<PlaneSubstrate>(substrate_.shape) || (cylinder != nullptr && cylinder->axis_is_x);
+}
+
+bool SubstrateSurface::repeats_along_v() const {
+  const auto* cylinder = std::get_if<CylinderSubstrate>(&substrate_.shape);
+  return std::holds_alternative<PlaneSubstrate>(substrate_.shape) || (cylinder != nullptr && !cylinder->axis_is_x);
+}
+
+namespace {
+
+/// The larger of the two principal curvatures' magnitudes (do Carmo, Differential Geometry, 3-3): the eigenvalues of
+/// the shape operator I^-1 II.
+double most_curvature(const Jet& jet) {
+  const double w2 = 1.0 + jet.x * jet.x + jet.y * jet.y;
+  const double w = std::sqrt(w2);
+  const double gauss = (jet.xx * jet.yy - jet.xy * jet.xy) / (w2 * w2);
+  const double mean =
+      ((1.0 + jet.y * jet.y) * jet.xx - 2.0 * jet.x * jet.y * jet.xy + (1.0 + jet.x * jet.x) * jet.yy) / (2.0 * w2 * w);
+  return std::abs(mean) + std::sqrt(std::max(0.0, mean * mean - gauss));
+}
+
+}  // namespace
+
+SubstrateMeasures measure_substrate(const SubstrateSurface& substrate, const Vec2& half_mm) {
+  constexpr int kSteps = 128;
+  SubstrateMeasures measures;
+  measures.lowest_mm = std::numeric_limits<double>::infinity();
+  measures.highest_mm = -std::numeric_limits<double>::infinity();
+  double curvature = 0.0;
+  double steepness = 0.0;
+  double area = 0.0;
+  for (int j = 0; j <= kSteps; ++j)
+    for (int i = 0; i <= kSteps; ++i) {
+      const Vec2 p = half_mm.cwiseProduct(Vec2(2.0 * i / kSteps - 1.0, 2.0 * j / kSteps - 1.0));
+      const Jet jet = substrate.at(p);
+      if (!jet.is_finite())
+        throw InputError(
+            fmt::format("is not finite, or has no finite slope or curvature, at x = {:.6g}, y = {:.6g} mm "
+                        "from the middle of the part",
+                        p.x(), p.y()));
+      measures.lowest_mm = std::min(measures.lowest_mm, jet.value);
+      measures.highest_mm = std::max(measures.highest_mm, jet.value);
+      const double rise = std::hypot(jet.x, jet.y);
+      steepness = std::max(steepness, rise);
+      curvature = std::max(curvature, most_curvature(jet));
+      // Simpson's rule along both axes.
+      const auto weight = [](int k) { return k == 0 || k == kSteps ? 1.0 : k % 2 == 1 ? 4.0 : 2.0; };
+      area += weight(i) * weight(j) * std::hypot(1.0, rise);
+    }
+  measures.area_mm2 = area * half_mm.prod() * 4.0 / (9.0 * kSteps * kSteps);
+  measures.steepest_deg = std::atan(steepness) / kDeg;
+  measures.least_radius_mm = curvature > 0.0 ? 1.0 / curvature : std::numeric_limits<double>::infinity();
+  return measures;
+}
+
+}  // namespace retrace::geometry

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/random.h"
+#include "raytrace/cells/cell_array.h"
+#include "raytrace/cells/cell_lanes.h"
+#include "raytrace/cells/ray_store.h"
+#include "raytrace/light/light_setup.h"
+#include "raytrace/light/path_policy.h"
+#include "raytrace/paths/textured_facet.h"
+
+namespace retrace::raytrace {
+
+/// Follows light through an endless array, column by column, many rays at once: all that are over one column, or under
+/// its surface, wait in one stream and are moved in SIMD lanes, the fullest stream first. Rays that leave the inner
+/// piece of a finite part are handed over to whoever traces its borders. One walker serves one thread.
+class CellWalker {
+ public:
+  /// A ray that the walker does not follow any more.
+  struct HandedOver {
+    Vec3 position = Vec3::Zero();  ///< relative to the centre of the entrance face
+    Ray ray;
+  };
+
+  /// \param centre_mm of the entrance face; finite parts
+  CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array, const Vec2& centre_mm);
+  CellWalker(const CellWalker&) = delete;
+  CellWalker(CellWalker&&) = default;
+
+  /// Traces light that enters at points `first`..`first + count - 1` of SobolSquare(key_x, key_y), spread over the
+  /// rectangle `entrance_mm` (relative to the centre; infinite parts: one period), each as power 1. Random choices
+  /// depend on `key`, `replicate` and `first` alone.
+  void trace(const geometry::Rectangle& entrance_mm, std::uint64_t key_x, std::uint64_t key_y, std::uint32_t first,
+             std::size_t count, RandomKey key, std::uint32_t replicate, Tally& tally);
+
+  /// What the last trace() has not followed to its end; none in infinite parts.
+  const std::vector<HandedOver>& handed_over() const { return handed_over_; }
+  /// Random choices made so far under the first point's number.
+  std::uint32_t choices() const { return choices_; }
+
+ private:
+  /// Where rays are. Over its own column a surface is convex: light that leaves it there does not come back before
+  /// another column.
+  enum class Place : std::uint8_t { inside, below, below_after_leaving };
+  static constexpr std::size_t kPlaces = 3;
+  static constexpr std::size_t kStreamsOfColumn = 2 * kPlaces;  ///< of light that has been scattered, and that has not
+
+  /// One way on across a border.
+  struct Crossing {
+    std::uint32_t column = 0;
+    Vec2 shift_mm = Vec2::Zero();
+    Vec3 wall_normal = Vec3::Zero();  ///< out of the part
+  };
+  /// A border that needs a closer look: its stretches are numbered from `to` on.
+  struct Refinement {
+    double number = 0.0;
+    double to = 0.0;
+    lanes::Border border;
+    std::size_t first_crossing = 0;
+  };
+  struct Stream {
+    std::uint32_t column = 0;
+    Place place = Place::inside;
+    bool scattered = false;
+    RayStore rays;
+    std::vector<std::optional<Crossing>> borders;  ///< those with one level neighbour
+    std::vector<Refinement> refinements;
+    std::vector<Crossing> crossings;  ///< of the refinements
+  };
+  struct Shape {
+    std::vector<lanes::Plane> facets;
+    std::vector<lanes::Plane> borders;
+    std::vector<lanes::LinearForm> heights;
+    geometry::FacetRole role = geometry::FacetRole::retro_facet;
+  };
+
+  static std::uint32_t stream_of(std::uint32_t column, Place place, bool scattered) {
+    return static_cast<std::uint32_t>(kStreamsOfColumn * column + (scattered ? kPlaces : 0) +
+                                      static_cast<std::size_t>(place));
+  }
+  void prepare(Stream& stream) const;
+  void advance(std::uint32_t number);
+  void move(const Stream& stream);
+  void meet_surface(const Stream& stream);
+  void meet_texture(const Stream& stream);
+  void meet_metal(const Stream& stream, std::complex<double> index);
+  void meet_wall(const Stream& stream, const Crossing& crossing, double number);
+  void meet_faces(double number, bool inside, std::uint32_t reflected_to, std::uint32_t transmitted_to,
+                  const Crossing* crossing);
+  void meet_entrance(bool scattered);
+  void cross(const Stream& stream, const Crossing& crossing, double number);
+  void fall(bool scattered);
+  void book(double number, Account account);
+  lanes::Met met();
+  lanes::Meeting meeting(double number, bool inside);
+  lanes::Rays end_of(std::uint32_t stream, std::size_t most);
+  void grow(std::uint32_t stream, std::size_t more);
+  void come_in(std::uint32_t stream, std::size_t more, const Vec2& shift);
+  void hand_over(const lanes::Rays& rays, std::size_t count, const std::vector<double>& which, double number,
+                 bool inside, bool scattered);
+  Ray ray_of(const lanes::Rays& rays, std::size_t k, bool inside, bool scattered) const;
+  void waits(std::uint32_t stream);
+  std::optional<std::uint32_t> fullest();
+  void truncate_weak();
+  void reserve(std::size_t count);
+  double random() { return unit_interval(philox(key_, replicate_, sample_, choices_++)[0]); }
+
+  const LightSetup& setup_;
+  const PathPolicy& policy_;
+  const CellArray& array_;
+  Tally* tally_ = nullptr;
+  geometry::Rectangle inner_;      ///< finite parts: where rays are followed, relative to the centre
+  geometry::Rectangle outline_;    ///< finite parts: of the entrance face
+  Vec2 anchor_mm_ = Vec2::Zero();  ///< finite parts: where the array starts
+  std::vector<HandedOver> handed_over_;
+  std::vector<Shape> shapes_;  ///< of the columns
+  std::vector<Stream> streams_;
+  std::vector<std::vector<std::uint32_t>> waiting_;  ///< streams by the binary logarithm of their rays
+  std::vector<lanes::LinearForm> pieces_;            ///< edges of the array's pieces
+  std::vector<std::uint32_t> piece_starts_;
+  RayStore moved_;                           ///< of the stream at hand
+  RayStore chosen_;                          ///< those of them that meet the same
+  RayStore left_{lanes::kNumbersOfEndless};  ///< what leaves through the entrance, if it is scored
+  std::vector<double> met_;                  ///< by `moved_`: number, normal
+  std::vector<double> branches_;             ///< marks of `chosen_`, or of weak rays
+  std::size_t capacity_ = 0;
+  std::uint64_t batches_ = 0;
+  RandomKey key_;
+  std::uint32_t replicate_ = 0;
+  std::uint32_t sample_ = 0;
+  std::uint32_t choices_ = 0;
+};
+
+}  // namespace retrace::raytrace

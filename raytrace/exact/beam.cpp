@@ -1,0 +1,91 @@
+#include "raytrace/exact/beam.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace retrace::raytrace {
+namespace {
+
+/// Mean of exp(-x) from a to b. \pre a <= b
+double mean_exp(double a, double b) {
+  const double width = b - a;
+  return width > 0.0 ? std::exp(-a) * -std::expm1(-width) / width : std::exp(-a);
+}
+
+/// Mean of exp(-x) over a triangle on which x is linear with the values given at its corners: twice the divided
+/// difference of exp(-x) (Hermite-Genocchi). Wide ones by the recursion of divided differences, which cancels little
+/// there; narrow ones as a series in complete homogeneous symmetric polynomials of the deviations from the mean.
+double mean_exp(double a, double b, double c) {
+  constexpr double kWide = 2.0;
+  std::array<double, 3> at = {a, b, c};
+  std::sort(at.begin(), at.end());
+  if (at[2] - at[0] > kWide) return 2.0 * (mean_exp(at[0], at[1]) - mean_exp(at[1], at[2])) / (at[2] - at[0]);
+  const double middle = (a + b + c) / 3.0;
+  const double x = a - middle;
+  const double y = b - middle;
+  const double z = c - middle;
+  const double e2 = x * y + y * z + z * x;
+  const double e3 = x * y * z;
+  double h[3] = {1.0, 0.0, -e2};  // h_k = e1 h_(k-1) - e2 h_(k-2) + e3 h_(k-3), e1 = 0
+  double factor = 1.0 / 12.0;     // 2 / (k+2)! at k = 2
+  double sum = 1.0 + factor * h[2];
+  for (int k = 3; k < 40; ++k) {
+    const double next = -e2 * h[1] + e3 * h[0];
+    h[0] = h[1];
+    h[1] = h[2];
+    h[2] = next;
+    factor /= -(k + 2.0);
+    sum += factor * next;
+  }
+  return std::exp(-middle) * sum;
+}
+
+}  // namespace
+
+FlatPolygon flattened(const Corners& corners, const Frame& frame, double merge_mm) {
+  FlatPolygon polygon;
+  for (const Vec3& p : corners) add_corner(polygon, frame.across(p), merge_mm);
+  close(polygon, merge_mm);
+  if (area(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
+  return polygon;
+}
+
+Corners lifted(const FlatPolygon& polygon, const Frame& frame, const Distance& distance) {
+  Corners corners;
+  for (const Vec2& p : polygon) corners.push_back(p.x() * frame.u + p.y() * frame.v + distance.at(p) * frame.w);
+  return corners;
+}
+
+Corners cut(const Corners& corners, const Plane& plane) {
+  Corners kept;
+  const std::size_t n = corners.size();
+  double before = n > 0 ? plane.height(corners[n - 1]) : 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3& p = corners[i];
+    const double here = plane.height(p);
+    if ((before < 0.0 && here > 0.0) || (before > 0.0 && here < 0.0)) {
+      const Vec3& q = corners[i == 0 ? n - 1 : i - 1];
+      kept.push_back(q + (p - q) * (before / (before - here)));
+    }
+    if (here >= 0.0) kept.push_back(p);
+    before = here;
+  }
+  if (kept.size() < 3) kept.clear();
+  return kept;
+}
+
+double mean_transmission(const Corners& corners, const PathLength& path_length, double absorption_per_mm) {
+  if (absorption_per_mm <= 0.0) return 1.0;
+  const auto depth = [&](std::size_t k) { return absorption_per_mm * path_length.at(corners[k]); };
+  double sum = 0.0;
+  double whole = 0.0;
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    const double weight = (corners[k - 1] - corners[0]).cross(corners[k] - corners[0]).norm();
+    sum += weight * mean_exp(depth(0), depth(k - 1), depth(k));
+    whole += weight;
+  }
+  return whole > 0.0 ? sum / whole : std::exp(-depth(0));
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,171 @@
+// What becomes of a beam where it meets a face: the members of BeamWalk that split, book and send on its light.
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "raytrace/exact/beam_walk.h"
+#include "raytrace/paths/textured_facet.h"
+
+namespace retrace::raytrace {
+
+using geometry::FacetRole;
+using surface_models::Lobe;
+
+/// A piece of a beam where the beam starts.
+Beam BeamWalk::at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) {
+  Beam beam = from;
+  beam.share = share;
+  const Plane start{from.start.normal, from.start.normal.dot(from.corners[0])};
+  beam.corners = lifted(piece, frame, Distance(frame, start));
+  return beam;
+}
+
+/// A piece of a beam where it meets a plane, with what the material took on the way booked.
+Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
+                       const Plane& plane) {
+  Beam beam = from;
+  beam.share = share;
+  beam.depth = from.depth + 1;
+  beam.level_steps = 0;
+  beam.corners = lifted(piece, frame, Distance(frame, plane));
+  if (from.inside && setup_.optics.absorption_per_mm > 0.0)
+    tally_.other[Account::absorbed] += power_of(at_start(from, frame, piece, share)) - power_of(beam);
+  return beam;
+}
+
+/// Sends light on from an interface. \param ahead the plane's normal on the side it goes to
+void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,
+                    bool inside) {
+  // Fields are continuous on the plane: their wave vectors differ only along its normal.
+  beam.phase_mm +=
+      (index_at(beam.inside) * beam.direction - index_at(inside) * direction).dot(plane.normal) * plane.offset_mm;
+  beam.path_length = beam.path_length.continued(plane, direction, inside ? 1.0 : 0.0);
+  beam.entry = beam.entry.continued(plane, direction);
+  beam.start = {ahead, ahead.dot(plane.normal) * plane.offset_mm};
+  beam.direction = direction;
+  beam.light = light;
+  beam.inside = inside;
+  pend(std::move(beam));
+}
+
+void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
+                          double share) {
+  Beam beam = arrived(from, frame, piece, share, candidate.plane);
+  const bool is_wall = candidate.role == FacetRole::inner_wall || candidate.role == FacetRole::border_wall;
+  if (is_wall && setup_.optics.absorbing_walls) {
+    tally_.other[Account::absorbed] += power_of(beam);
+    return;
+  }
+  const Vec3 against = from.inside ? Vec3(-candidate.plane.normal) : candidate.plane.normal;
+  const double ratio = setup_.optics.ratio_at_back(from.inside);
+  const double cos_incidence = -against.dot(from.direction);
+  const materials::FresnelCoefficients f = fresnel_at_back(setup_.optics, candidate.role, from.inside, cos_incidence);
+  beam.trail.meet(candidate.cell);
+  beam.light.turn_to(from.direction, against);
+  if (!f.total_reflection) {
+    Beam through = beam;
+    if (from.inside) through.left_through = candidate.role;
+    const CoherentLight left =
+        mean_field(beam.light.transmitted(f), beam, candidate.role, cos_incidence, Lobe::transmission);
+    send(std::move(through), candidate.plane, -against,
+         refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), left, !from.inside);
+  }
+  const CoherentLight reflected = beam.light.reflected(f);
+  if (setup_.optics.coating_index && candidate.role == FacetRole::retro_facet)
+    tally_.other[Account::absorbed] += transmission_of(beam) * (beam.light.power() - reflected.power());
+  const CoherentLight left = mean_field(reflected, beam, candidate.role, cos_incidence, Lobe::reflection);
+  send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), left, from.inside);
+}
+
+CoherentLight BeamWalk::mean_field(CoherentLight light, const Beam& beam, FacetRole role, double cos_incidence,
+                                   Lobe lobe) {
+  if (role != FacetRole::retro_facet || setup_.optics.is_smooth()) return light;
+  const double before = light.power();
+  light.scale(mean_field_share(setup_.optics, beam.inside, cos_incidence, lobe));
+  tally_.other[Account::truncated] += transmission_of(beam) * (before - light.power());
+  return light;
+}
+
+void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
+                         const Plane& plane, FacetRole role) {
+  Beam beam = arrived(from, frame, piece, share, plane);
+  if (role == FacetRole::border_wall && setup_.optics.absorbing_walls) {
+    tally_.other[Account::absorbed] += power_of(beam);
+    return;
+  }
+  const bool is_entrance = role == FacetRole::entrance;
+  const Vec3 against = -plane.normal;
+  const double cos_incidence = plane.normal.dot(from.direction);
+  const double ratio = role == FacetRole::border_wall ? setup_.optics.ratio_at_back(true) : setup_.optics.index;
+  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
+  const Vec3 out = refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted);
+  beam.light.turn_to(from.direction, against);
+  if (is_entrance && setup_.optics.lossless_entrance) {
+    if (f.total_reflection)
+      tally_.returned.back().i += power_of(beam);
+    else
+      leave_through_entrance(beam, beam.light, out);
+    return;
+  }
+  if (!f.total_reflection) {
+    const CoherentLight through = beam.light.transmitted(f);
+    if (is_entrance)
+      leave_through_entrance(beam, through, out);
+    else
+      tally_.other[account_of_exit(role)] += transmission_of(beam) * through.power();
+  }
+  const CoherentLight reflected = beam.light.reflected(f);
+  send(std::move(beam), plane, against, mirrored(from.direction, against), reflected, true);
+}
+
+/// \param direction in air
+void BeamWalk::leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction) {
+  const std::size_t cone = setup_.cone_of(direction);
+  const Stokes stokes = transmission_of(beam) * seen_from_above(light, direction);
+  tally_.returned[cone] += stokes;
+  if (!observer_) return;
+  ReturnedBeam returned = returned_beam(beam, light, direction);
+  returned.stokes = stokes;
+  returned.efficiency = stokes.i / beam.share;
+  returned.cone = cone;
+  observer_(returned);
+}
+
+/// Where it goes and came from, and its field.
+ReturnedBeam BeamWalk::returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const {
+  ReturnedBeam returned;
+  returned.direction = direction;
+  returned.depth = beam.depth;
+  for (const Vec3& p : beam.corners) {
+    returned.entered_mm.push_back(beam.entry.of(p));
+    returned.left_mm.push_back(p.head<2>() + centre_mm_);
+  }
+  // Light that is reflected an odd number of times sees its polygon turned over.
+  for (geometry::Polygon* polygon : {&returned.entered_mm, &returned.left_mm})
+    if (geometry::area(*polygon) < 0.0) std::reverse(polygon->begin(), polygon->end());
+  light.turn_to_axis(direction, source_axis(direction));
+  returned.jones = light.jones;
+  returned.transmission = transmission_of(beam);
+  // Continuous on the face, and counted in its plane.
+  returned.phase_mm = beam.phase_mm + setup_.optics.index * beam.direction.z() * setup_.thickness_mm;
+  returned.centre_mm = centre_mm_;
+  returned.trail = beam.trail;
+  return returned;
+}
+
+void BeamWalk::observe_front() const {
+  ReturnedBeam front;
+  front.direction = setup_.entry.front_direction;
+  front.stokes = setup_.entry.front;
+  front.efficiency = front.stokes.i;
+  front.cone = setup_.entry.front_cone;
+  observer_(front);
+}
+
+void BeamWalk::fail_on_budget() const {
+  throw BudgetError(
+      fmt::format("the budget of {} beams ran out with {:.3g} of the power not accounted for; a larger "
+                  "--cutoff follows fewer beams",
+                  policy_.max_beams, open_power()));
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,92 @@
+#include "raytrace/exact/beam_tracer.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "raytrace/exact/beam_walk.h"
+#include "raytrace/sampling/entrance_sampler.h"
+
+namespace retrace::raytrace {
+namespace {
+
+// The cut-off starts at this many times the power that may be left behind, between these limits, and falls.
+constexpr double kFirstCutoffOfGoal = 100.0;
+constexpr double kFirstCutoff = 1e-6;
+constexpr double kHighestFirstCutoff = 1e-3;
+// Power left behind falls at least about as the cut-off to this power.
+constexpr double kSlowestFall = 0.7;
+
+geometry::Polygon entrance_of(const geometry::Part& part) {
+  if (part.period_mm) return geometry::to_polygon({Vec2::Zero(), *part.period_mm});
+  return part.outline;
+}
+
+}  // namespace
+
+BeamTracer::BeamTracer(const geometry::Part& part)
+    : part_(part), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {}
+
+BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illumination,
+                             const std::vector<double>& cones_deg, const BeamPolicy& policy, const Cancellation* cancel,
+                             const BeamObserver& observer) const {
+  const auto traced = [&](const BeamPolicy& how, const BeamObserver& told) {
+    BeamTrace trace(*this, optics, illumination, cones_deg, how, told);
+    trace.advance(std::numeric_limits<std::uint64_t>::max(), cancel);
+    return trace.result();
+  };
+  if (policy.cutoff || !observer) return traced(policy, observer);
+  BeamPolicy found = policy;
+  const BeamResult first = traced(policy, {});
+  found.cutoff = first.cutoff;
+  return first.complete ? traced(found, observer) : first;
+}
+
+BeamTrace::BeamTrace(const BeamTracer& tracer, const Optics& optics, const Illumination& illumination,
+                     const std::vector<double>& cones_deg, const BeamPolicy& policy, BeamObserver observer)
+    : tracer_(tracer),
+      setup_(tracer.part_, tracer.centre_mm_, optics, illumination, cones_deg),
+      policy_(policy),
+      observer_(std::move(observer)),
+      cutoff_(policy.cutoff.value_or(
+          std::clamp(kFirstCutoffOfGoal * policy.truncated_goal, kFirstCutoff, kHighestFirstCutoff))) {
+  start();
+}
+
+BeamTrace::~BeamTrace() = default;
+
+void BeamTrace::start() {
+  walk_ = std::make_unique<BeamWalk>(tracer_.part_, tracer_.centre_mm_, tracer_.cells_, setup_, policy_, observer_);
+  walk_->enter(entrance_of(tracer_.part_), cutoff_,
+               policy_.cutoff ? BeamWalk::Approach::fixed : BeamWalk::Approach::falling);
+}
+
+bool BeamTrace::advance(std::uint64_t most_work, const Cancellation* cancel) {
+  while (!is_done_ && work() < static_cast<double>(most_work)) {
+    const auto end = walk_->run(most_work - static_cast<std::uint64_t>(work_before_), cancel);
+    is_done_ = end == BeamWalk::End::done;
+    if (end != BeamWalk::End::cutoff_too_high) return is_done_;
+    policy_.max_beams -= walk_->beams();
+    work_before_ = work();
+    const double fall = std::pow(policy_.truncated_goal / walk_->left_behind(), 1.0 / kSlowestFall);
+    cutoff_ = walk_->cutoff() * std::clamp(fall, 1e-4, 0.1);
+    start();
+  }
+  return is_done_;
+}
+
+double BeamTrace::work() const {
+  return work_before_ + static_cast<double>(walk_->work());
+}
+
+double BeamTrace::expected_work() const {
+  return work_before_ + std::max(walk_->expected_work(), work_before_);
+}
+
+BeamResult BeamTrace::result() const {
+  BeamResult result = walk_->result();
+  result.complete = is_done_;
+  return result;
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/progress.h"
+#include "geometry/part/part.h"
+#include "raytrace/exact/beam.h"
+#include "raytrace/faces/cell_index.h"
+#include "raytrace/light/light_setup.h"
+
+namespace retrace::raytrace {
+
+class BeamWalk;
+
+/// Power that the exact engine leaves behind where nothing else is asked: far below what anything else is known to.
+inline constexpr double kFinestGoal = 1e-10;
+
+/// How far beams are followed.
+struct BeamPolicy {
+  /// Least power of a beam that is followed. Without one it starts at 1e-6 and falls until less than `truncated_goal`
+  /// is left behind.
+  std::optional<double> cutoff;
+  double truncated_goal = kFinestGoal;
+  /// Work of BeamTrace within which beams are followed below the goal, down to `kFinestGoal`: what costs next to
+  /// nothing is not left behind.
+  std::uint64_t spare_work = 0;
+  std::uint64_t max_beams = 100'000'000;  ///< followed in all, while the cut-off is being found
+  /// Facets of neighbouring cells are kept apart even where they lie in one plane, so that every returned beam belongs
+  /// to its cell.
+  bool by_cell = false;
+};
+
+struct BeamResult {
+  std::vector<Ledger> ledgers;  ///< by cone, in the order given
+  std::vector<Stokes> stokes;   ///< of what is retroreflected, by cone, along source_axis()
+  std::uint64_t beams = 0;
+  std::uint32_t depth = 0;  ///< interfaces on the longest path
+  double cutoff = 0.0;      ///< that was used in the end
+  bool complete = true;     ///< false if it was cancelled or not taken to its end; the ledgers are then of no use
+};
+
+/// A beam that leaves the part through the entrance face, or is reflected there from outside.
+struct ReturnedBeam {
+  Vec3 direction = Vec3::UnitZ();
+  Stokes stokes;            ///< of the whole beam, along source_axis()
+  double efficiency = 0.0;  ///< its power as a share of what fell on the region where it entered
+  std::uint32_t depth = 0;  ///< interfaces inside; 0: never entered
+  std::size_t cone = 0;     ///< the narrowest cone that holds it; their number if none does
+  /// Where it entered and where it leaves, convex, counter-clockwise, on the entrance face in the part frame. An
+  /// infinite part's light enters within the central period. Empty if it never entered.
+  geometry::Polygon entered_mm;
+  geometry::Polygon left_mm;
+  /// Of the field: along source_axis() and the axis across it, of its own direction, for unit amplitudes along those
+  /// of the source.
+  JonesMatrix jones = JonesMatrix::Identity();
+  double transmission = 0.0;  ///< share of the incident power that a matrix of unit gain would bring here
+  /// The field on the face is that at left_mm times exp(2 pi i (phase_mm + direction . p) / wavelength), p in the plane
+  /// of the face, relative to the part's centre as the incident wave is: exp(-2 pi i to_source . p / wavelength).
+  double phase_mm = 0.0;
+  geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< that centre
+  CellTrail trail;
+};
+
+/// Called for every returned beam, as it is found. With a cut-off that has to be found first, that takes a run of its
+/// own.
+using BeamObserver = std::function<void(const ReturnedBeam&)>;
+
+/// Follows parallel beams of polygonal cross-section from facet to facet: plane smooth facets turn one beam into
+/// finitely many, so nothing is sampled. What is cut off or falls between polygons by rounding is booked in
+/// `truncated`. Of textured facets it follows the mean field alone (mean_field_share()): what scatters is booked there
+/// as well. A value shared by all threads.
+class BeamTracer {
+ public:
+  /// \pre `part` outlives the tracer
+  explicit BeamTracer(const geometry::Part& part);
+
+  /// \throw BudgetError if `max_beams` is reached; the message says what was accounted for
+  BeamResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
+                   const BeamPolicy& policy, const Cancellation* cancel = nullptr,
+                   const BeamObserver& observer = {}) const;
+
+ private:
+  friend class BeamTrace;
+
+  const geometry::Part& part_;
+  Vec2 centre_mm_;
+  CellIndex cells_;
+};
+
+/// One trace of a BeamTracer that can be paused: to be dropped if something else is quicker. For one thread at a time.
+class BeamTrace {
+ public:
+  /// \pre `tracer` outlives the trace
+  BeamTrace(const BeamTracer& tracer, const Optics& optics, const Illumination& illumination,
+            const std::vector<double>& cones_deg, const BeamPolicy& policy, BeamObserver observer = {});
+  ~BeamTrace();
+
+  /// Goes on until the goal is reached or `most_work` is done in all. \return true when the goal is reached; false as
+  /// well if it was cancelled \throw BudgetError as BeamTracer::trace()
+  bool advance(std::uint64_t most_work, const Cancellation* cancel);
+  /// Done so far and expected in all, in looks at a facet's bounding box: some 20 ns each, and the same number on every
+  /// machine.
+  double work() const;
+  double expected_work() const;
+  BeamResult result() const;
+
+ private:
+  void start();
+
+  const BeamTracer& tracer_;
+  const LightSetup setup_;
+  BeamPolicy policy_;
+  BeamObserver observer_;
+  double cutoff_;
+  double work_before_ = 0.0;  ///< of walks whose cut-off was too high
+  bool is_done_ = false;
+  std::unique_ptr<BeamWalk> walk_;
+};
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,454 @@
+#include "raytrace/exact/beam_walk.h"
+#include "core/infinity.h"
+
+#include <algorithm>
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::FacetRole;
+using geometry::PatchCell;
+using geometry::PatchFacet;
+using geometry::SurfacePatch;
+
+// Pieces of a cross-section smaller than this share of an element's area are rounding: booked, not followed.
+constexpr double kLeastAreaShare = 1e-15;
+// Pieces are joined if their union is convex but for this share of an element's area.
+constexpr double kJoinShare = 1e-13;
+// Corners of a cross-section nearer than this share of an element are one.
+constexpr double kMergeShare = 1e-11;
+// Planes seen at a flatter angle than this have no cross-section.
+constexpr double kGrazing = 1e-12;
+// A level beam is followed this many elements at a time, and so often.
+constexpr double kReachInElements = 4.0;
+// A beam that falls so flatly that its far side comes into the layer more than this many elements behind its near side
+// is followed in such steps as well. One that is level above the layer never meets anything.
+constexpr double kFarInElements = 64.0;
+constexpr std::uint32_t kMaxLevelSteps = 1000;
+constexpr double kLastCutoff = 1e-25;
+// Facets of an element above which its light is divided, each part for as many.
+constexpr double kFacetsOfPiece = 30.0;
+// The cut-off falls by this factor: gently where little is asked, as each pass may settle more than enough.
+constexpr double kFall = 0.1;
+constexpr double kGentleFall = 0.3;
+// Work in looks at a bounding box, as measured: cutting two polygons, and what every beam takes besides.
+constexpr std::uint64_t kWorkOfCut = 30;
+constexpr std::uint64_t kWorkOfBeam = 50;
+// Work grows as the power that is left behind falls, to this power, before two passes have told.
+constexpr double kUsualSlope = 0.5;
+// Beams that are kept for a lower cut-off: some 100 MB.
+constexpr std::size_t kMostDeferred = 200'000;
+
+}  // namespace
+
+BeamWalk::BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
+                   const BeamPolicy& policy, BeamObserver observer)
+    : part_(part),
+      centre_mm_(centre_mm),
+      cells_(cells),
+      setup_(setup),
+      policy_(policy),
+      observer_(std::move(observer)),
+      tally_(setup.cone_chord2.size()),
+      least_area_(kLeastAreaShare * part.size_mm * part.size_mm),
+      join_area_(kJoinShare * part.size_mm * part.size_mm),
+      merge_mm_(kMergeShare * part.size_mm) {}
+
+void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach approach) {
+  cutoff_ = cutoff;
+  approach_ = approach;
+  const LightSetup::Entry& entry = setup_.entry;
+  tally_.front[entry.front_cone] += entry.front;
+  if (observer_ && entry.front.i > 0.0) observe_front();
+  Beam whole;
+  whole.direction = entry.direction;
+  whole.light = entry.light;
+  // Continuous on the face with the incident wave, whose phase is 0 at the origin.
+  whole.phase_mm = (-setup_.to_source - setup_.optics.index * entry.direction).z() * setup_.thickness_mm;
+  whole.start = {-Vec3::UnitZ(), -setup_.thickness_mm};
+  whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
+  whole.entry.constant_mm = centre_mm_;
+  whole.entry.slope.leftCols<2>().setIdentity();
+  whole.entry = whole.entry.continued(whole.start, whole.direction);
+  for (const auto& p : entrance)
+    whole.corners.push_back({p.x() - centre_mm_.x(), p.y() - centre_mm_.y(), setup_.thickness_mm});
+  const double parts = parts_of_element();
+  if (setup_.infinite() && parts == 1.0)
+    pend(whole);
+  else
+    enter_in_pieces(whole, parts);
+  pass_ = {0.0, pending_power_};
+  // Where little is asked, the first pass is one of beams that are strong beside those that enter an element.
+  if (approach_ == Approach::falling && policy_.truncated_goal > kFinestGoal)
+    cutoff_ *= pending_power_ / static_cast<double>(pending_.size());
+}
+
+void BeamWalk::pend(Beam beam) {
+  beam.power = power_of(beam);
+  pending_power_ += beam.power;
+  pending_.push_back(std::move(beam));
+}
+
+/// Into how many parts along either axis light that falls on an element is divided: what facets hide of each other
+/// takes work as the square of their number, and rounded edges make dozens.
+double BeamWalk::parts_of_element() const {
+  double facets = 0.0;
+  for (const SurfacePatch& patch : part_.patches)
+    facets = std::max(facets, static_cast<double>(patch.facets.size()) / static_cast<double>(patch.cells.size()));
+  return std::max(1.0, std::ceil(std::sqrt(facets / kFacetsOfPiece)));
+}
+
+/// An entrance in pieces of an element or less, so that each meets few facets.
+void BeamWalk::enter_in_pieces(const Beam& whole, double parts) {
+  Vec2 step = Vec2::Constant(part_.size_mm);
+  if (const auto* rtp = std::get_if<geometry::RtpElement>(&part_.spec.element))
+    step = Vec2(rtp->base_mm + part_.spec.x_gap_mm, rtp->width_mm + part_.spec.y_gap_mm);
+  step /= parts;
+  const Frame from_above(-Vec3::UnitZ());
+  const double whole_area = area(flattened(whole.corners, from_above, merge_mm_));
+  PlanBox box;
+  for (const Vec3& p : whole.corners) box.include(p.head<2>());
+  double entered = 0.0;
+  for (double y = box.lower.y(); y < box.upper.y() - 1e-9 * step.y(); y += step.y()) {
+    const Corners row = cut(cut(whole.corners, {Vec3::UnitY(), y}), {-Vec3::UnitY(), -(y + step.y())});
+    for (double x = box.lower.x(); x < box.upper.x() - 1e-9 * step.x(); x += step.x()) {
+      Beam piece = whole;
+      piece.corners = cut(cut(row, {Vec3::UnitX(), x}), {-Vec3::UnitX(), -(x + step.x())});
+      if (piece.corners.empty()) continue;
+      piece.share = area(flattened(piece.corners, from_above, merge_mm_)) / whole_area;
+      if (piece.share <= 0.0) continue;
+      entered += piece.share;
+      pend(std::move(piece));
+    }
+  }
+  book_rest(whole, 1.0 - entered);
+}
+
+BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel) {
+  cancel_ = cancel;
+  for (;;) {
+    while (!pending_.empty() && !may_stop()) {
+      if (is_cancelled(cancel)) return End::cancelled;
+      if (work_ >= most_work) return End::paused;
+      const Beam beam = std::move(pending_.back());
+      pending_.pop_back();
+      pending_power_ -= beam.power;
+      if (beam.power < cutoff_) {
+        defer(beam);
+        continue;
+      }
+      if (++beams_ > policy_.max_beams) fail_on_budget();
+      advance(beam);
+    }
+    const bool is_enough = approach_ == Approach::fixed || open_power() <= policy_.truncated_goal;
+    if ((is_enough && (may_stop() || policy_.spare_work <= work_)) || cutoff_ < kLastCutoff) break;
+    if (deferred_.size() > kMostDeferred) {
+      if (is_enough) break;
+      return End::cutoff_too_high;
+    }
+    lower_cutoff();
+  }
+  close();
+  return End::done;
+}
+
+/// Enough is settled, and work on more of it would cost something. Power that is open only ever falls, so that this may
+/// be asked at any time; sums of it that are kept up to date are too coarse for the finest goals.
+bool BeamWalk::may_stop() const {
+  if (approach_ == Approach::fixed) return pending_.empty();
+  if (policy_.truncated_goal <= kFinestGoal) return pending_.empty() && deferred_power_ <= policy_.truncated_goal;
+  return open_power() <= (work_ < policy_.spare_work ? kFinestGoal : policy_.truncated_goal);
+}
+
+void BeamWalk::lower_cutoff() {
+  cutoff_ *= policy_.truncated_goal <= kFinestGoal ? kFall : kGentleFall;
+  pass_ = {static_cast<double>(work_), deferred_power_};
+  pending_.swap(deferred_);
+  pending_power_ = deferred_power_;
+  deferred_power_ = 0.0;
+}
+
+/// What is open stays behind.
+void BeamWalk::close() {
+  for (const Beam& beam : pending_) deferred_power_ += beam.power;
+  pending_.clear();
+  pending_power_ = 0.0;
+  tally_.other[Account::truncated] += deferred_power_;
+}
+
+/// Work and open power follow each other as powers do; within a pass both are taken in proportion to the power that it
+/// has been through.
+double BeamWalk::expected_work() const {
+  const auto work = static_cast<double>(work_);
+  const double settled = 1.0 - pending_power_ / pass_.power;
+  if (settled < 0.01) return 2.0 * work;
+  const Pass end{pass_.work + (work - pass_.work) / settled, std::max(deferred_power_ / settled, 1e-300)};
+  if (approach_ == Approach::fixed || end.power <= policy_.truncated_goal) return std::max(end.work, work);
+  const bool tells = pass_.work > 0.0 && end.power < 0.9 * pass_.power;
+  const double slope = tells ? std::log(end.work / pass_.work) / std::log(pass_.power / end.power) : kUsualSlope;
+  return end.work * std::pow(end.power / policy_.truncated_goal, std::clamp(slope, 0.2, 2.0));
+}
+
+BeamResult BeamWalk::result() const {
+  BeamResult result;
+  for (std::size_t cone = 0; cone < setup_.cone_chord2.size(); ++cone) {
+    result.ledgers.push_back(tally_.ledger(cone));
+    result.stokes.push_back(tally_.retroreflected(cone));
+  }
+  result.beams = beams_;
+  result.depth = depth_;
+  result.cutoff = cutoff_;
+  return result;
+}
+
+/// Beams below the cut-off are kept for a lower one, unless they are so many that they are better found again.
+void BeamWalk::defer(const Beam& beam) {
+  deferred_power_ += beam.power;
+  if (deferred_.size() <= kMostDeferred) deferred_.push_back(beam);
+}
+
+void BeamWalk::advance(const Beam& beam) {
+  depth_ = std::max(depth_, beam.depth);
+  work_ += kWorkOfBeam;
+  const Frame frame(beam.direction);
+  const FlatPolygon whole = flattened(beam.corners, frame, merge_mm_);
+  const double whole_area = area(whole);
+  if (whole_area <= least_area_) {
+    book_rest(beam, beam.share);
+    return;
+  }
+  const Horizon horizon = horizon_of(beam);
+  find_candidates(beam, frame, whole, horizon);
+  double used = 0.0;
+  const auto share_of = [&](const FlatPolygon& piece) {
+    const double share = beam.share * area(piece) / whole_area;
+    used += share;
+    return share;
+  };
+  FlatPolygons rest;
+  rest.push_back(whole);
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    if (is_cancelled(cancel_)) return;
+    for (const FlatPolygon& piece : visible_on_plane_of(k))
+      meet_facet(beam, frame, candidates_[k], piece, share_of(piece));
+    FlatPolygons left;
+    work_ += kWorkOfCut * rest.size();
+    for (const FlatPolygon& piece : rest) subtract(piece, candidates_[k].piece, least_area_, merge_mm_, left);
+    rest = std::move(left);
+  }
+  join_convex(rest, join_area_);
+  for (const FlatPolygon& piece : rest) pass_by(beam, frame, piece, share_of(piece), horizon);
+  book_rest(beam, beam.share - used);
+}
+
+/// To where the whole beam has left the layer of the elements, -depth <= z <= top.
+Horizon BeamWalk::horizon_of(const Beam& beam) const {
+  double low = kInfinity;
+  double high = -kInfinity;
+  for (const Vec3& p : beam.corners) {
+    low = std::min(low, p.z());
+    high = std::max(high, p.z());
+  }
+  const double dz = beam.direction.z();
+  const double slack = 1e-6 * part_.size_mm;
+  if (dz > -kGrazing && low >= setup_.top_mm - slack) return {};
+  double first = 0.0;  // when the last of the beam has come into the layer, or its first if that takes very long
+  double last = kInfinity;
+  if (dz > 0.0) last = (setup_.top_mm - low) / dz;
+  if (dz < 0.0) {
+    first = std::max(0.0, (high - setup_.top_mm) / -dz);
+    if (first > kFarInElements * part_.size_mm) first = std::max(0.0, (low - setup_.top_mm) / -dz);
+    last = (high + setup_.depth_mm + slack) / -dz;
+  }
+  const double reach = first + kReachInElements * part_.size_mm;
+  if (last <= reach) return {last, false};
+  if (setup_.infinite()) return {reach, true};
+  // A finite part ends: what leaves it within reach must be looked for to the end, for its exit is not a facet's.
+  const auto [first_exit, last_exit] = distances_to_hull(beam);
+  return reach < first_exit ? Horizon{reach, true} : Horizon{std::min(last, last_exit), false};
+}
+
+/// The least and the greatest way of a beam's corners to the sides and, if it rises, the entrance.
+std::pair<double, double> BeamWalk::distances_to_hull(const Beam& beam) const {
+  double least = kInfinity;
+  double greatest = 0.0;
+  for (const Vec3& p : beam.corners) {
+    double t = beam.direction.z() > 0.0 ? (setup_.thickness_mm - p.z()) / beam.direction.z() : kInfinity;
+    for (const auto& side : setup_.sides) {
+      const double towards = side.normal.dot(beam.direction);
+      if (towards > kGrazing) t = std::min(t, (side.offset_mm - side.normal.dot(p)) / towards);
+    }
+    least = std::min(least, t);
+    greatest = std::max(greatest, t);
+  }
+  return {least, greatest};
+}
+
+void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon) {
+  candidates_.clear();
+  if (horizon.t <= 0.0) return;
+  PlanBox plan;
+  double nearest = kInfinity;
+  for (const Vec3& p : beam.corners) {
+    const double above = p.z() - setup_.top_mm;
+    const bool falls_in = above > 0.0 && beam.direction.z() < 0.0;
+    const double from = falls_in ? std::min(horizon.t, above / -beam.direction.z()) : 0.0;
+    plan.include((p + from * beam.direction).head<2>());
+    plan.include((p + horizon.t * beam.direction).head<2>());
+    nearest = std::min(nearest, beam.direction.dot(p));
+  }
+  // Beyond the horizon facets may be hidden by others that were not looked for.
+  const Plane far{-beam.direction, -(nearest + horizon.t)};
+  const PlanBox box = box_of(whole);
+  cells_.visit(plan.lower, plan.upper,
+               [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset, double height_mm) {
+                 const CellPlace place{part_.number_of(patch, cell), offset, height_mm};
+                 for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
+                   consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f], place);
+               });
+}
+
+void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const PlanBox& box,
+                        const Plane* far, const SurfacePatch& patch, const PatchFacet& facet, const CellPlace& cell) {
+  ++work_;
+  const Vec3 shift(cell.offset_mm.x(), cell.offset_mm.y(), cell.height_mm);
+  const double towards = facet.normal.dot(beam.direction);
+  if (beam.inside ? towards <= kGrazing : towards >= -kGrazing) return;
+  Corners corners;
+  PlanBox own;
+  bool all_ahead = true;
+  for (std::uint32_t c = 0; c < facet.corner_count; ++c) {
+    corners.push_back(patch.vertices[patch.corners[facet.first_corner + c]] + shift);
+    own.include(frame.across(corners.back()));
+    all_ahead = all_ahead && beam.start.height(corners.back()) >= 0.0;
+  }
+  if (!own.overlaps(box)) return;
+  work_ += kWorkOfCut;
+  if (!all_ahead) corners = cut(corners, beam.start);
+  if (far != nullptr) corners = cut(corners, *far);
+  if (corners.empty()) return;
+  const Plane plane{facet.normal, facet.offset_mm + facet.normal.dot(shift)};
+  const FlatPolygon seen = flattened(corners, frame, merge_mm_);
+  if (seen.size() < 3) return;
+  FlatPolygon piece = intersection(whole, seen, merge_mm_);
+  if (piece.size() < 3 || area(piece) <= least_area_) return;
+  const PlanBox piece_box = box_of(piece);
+  candidates_.push_back({plane, facet.role, cell, Distance(frame, plane), std::move(piece), piece_box, false});
+}
+
+/// What of a candidate's piece no nearer candidate covers.
+FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
+  const Candidate& own = candidates_[k];
+  FlatPolygons visible;
+  visible.push_back(own.piece);
+  for (std::size_t j = 0; j < candidates_.size() && !visible.empty(); ++j) {
+    const Candidate& other = candidates_[j];
+    if (j == k || !own.box.overlaps(other.box)) continue;
+    work_ += kWorkOfCut;
+    const FlatPolygon common = intersection(own.piece, other.piece, merge_mm_);
+    if (common.size() < 3 || area(common) <= least_area_) continue;
+    const Vec2 at = middle(common);
+    const double behind = own.distance.at(at) - other.distance.at(at);
+    // Of two at the same distance the first counts.
+    if (behind < 0.0 || (behind == 0.0 && k < j)) continue;
+    FlatPolygons left;
+    work_ += kWorkOfCut * visible.size();
+    for (const FlatPolygon& piece : visible) subtract(piece, other.piece, least_area_, merge_mm_, left);
+    visible = std::move(left);
+  }
+  return visible;
+}
+
+/// The same for all candidates in one plane: facets of neighbouring elements that continue each other do not divide a
+/// beam. Empty if they have been met with an earlier one.
+FlatPolygons BeamWalk::visible_on_plane_of(std::size_t k) {
+  FlatPolygons visible;
+  if (candidates_[k].is_met) return visible;
+  const Plane plane = candidates_[k].plane;
+  const FacetRole role = candidates_[k].role;
+  const CellPlace cell = candidates_[k].cell;
+  for (std::size_t j = k; j < candidates_.size(); ++j) {
+    Candidate& other = candidates_[j];
+    const bool is_one_plane = other.role == role && other.plane.normal.isApprox(plane.normal, 1e-14) &&
+                              std::abs(other.plane.offset_mm - plane.offset_mm) <= merge_mm_ &&
+                              (!policy_.by_cell || other.cell == cell);
+    if (other.is_met || !is_one_plane) continue;
+    other.is_met = true;
+    for (FlatPolygon& piece : visible_pieces(j)) visible.push_back(std::move(piece));
+  }
+  join_convex(visible, join_area_);
+  return visible;
+}
+
+/// A piece of a beam that no facet within the horizon stands in the way of.
+void BeamWalk::pass_by(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
+                       const Horizon& horizon) {
+  if (horizon.limited) {
+    double nearest = kInfinity;
+    for (const Vec3& p : from.corners) nearest = std::min(nearest, frame.w.dot(p));
+    const Plane there{frame.w, nearest + horizon.t};
+    Beam beam = arrived(from, frame, piece, share, there);
+    beam.start = there;
+    beam.depth = from.depth;
+    beam.level_steps = from.level_steps + 1;
+    if (beam.level_steps < kMaxLevelSteps)
+      pend(std::move(beam));
+    else
+      tally_.other[Account::truncated] += power_of(beam);
+    return;
+  }
+  if (from.inside) {
+    leave_hull(from, frame, piece, share);
+    return;
+  }
+  const bool rises_through_plate = setup_.infinite() && from.direction.z() > 0.0;
+  const double power = power_of(at_start(from, frame, piece, share));
+  tally_.other[rises_through_plate ? Account::truncated : account_of_exit(from.left_through)] += power;
+}
+
+/// Out through the nearest of entrance and sides: each takes the part of the piece to which it is nearest.
+void BeamWalk::leave_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) {
+  struct Exit {
+    Plane plane;
+    Distance distance;
+    FacetRole role;
+  };
+  boost::container::small_vector<Exit, 8> exits;
+  const auto offer = [&](const Plane& plane, FacetRole role) {
+    if (plane.normal.dot(from.direction) > kGrazing) exits.push_back({plane, Distance(frame, plane), role});
+  };
+  offer({Vec3::UnitZ(), setup_.thickness_mm}, FacetRole::entrance);
+  for (const auto& side : setup_.sides) offer({side.normal, side.offset_mm}, FacetRole::side);
+
+  const double whole = area(piece);
+  double used = 0.0;
+  const auto meet = [&](const Exit& exit, FacetRole role, const FlatPolygon& own) {
+    if (own.empty() || area(own) <= least_area_) return;
+    const double part = share * area(own) / whole;
+    used += part;
+    meet_hull(from, frame, own, part, exit.plane, role);
+  };
+  for (std::size_t k = 0; k < exits.size(); ++k) {
+    FlatPolygon own = piece;
+    for (std::size_t j = 0; j < exits.size() && !own.empty(); ++j) {
+      if (j == k) continue;
+      const Vec2 slope = exits[k].distance.slope - exits[j].distance.slope;
+      own = clipped(own, {slope.x(), slope.y(), exits[j].distance.constant - exits[k].distance.constant}, merge_mm_);
+    }
+    if (exits[k].role == FacetRole::side && setup_.optics.border_walls_differ()) {
+      // Below z = 0 the plane is that of border walls: z = up . p + start there, over the coordinates across the beam.
+      const Distance& distance = exits[k].distance;
+      const Vec2 up = Vec2(frame.u.z(), frame.v.z()) + frame.w.z() * distance.slope;
+      const double start = frame.w.z() * distance.constant;
+      if (up.norm() > kGrazing) {
+        meet(exits[k], FacetRole::border_wall, clipped(own, {up.x(), up.y(), -start}, merge_mm_));
+        meet(exits[k], FacetRole::side, clipped(own, {-up.x(), -up.y(), start}, merge_mm_));
+        continue;
+      }
+    }
+    meet(exits[k], exits[k].role, own);
+  }
+  book_rest(from, share - used);
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,148 @@
+#pragma once
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "raytrace/exact/beam.h"
+#include "raytrace/exact/beam_tracer.h"
+
+namespace retrace::raytrace {
+
+/// A rectangle across a beam or in the plan of the part.
+struct PlanBox {
+  Vec2 lower = Vec2::Constant(INFINITY);
+  Vec2 upper = Vec2::Constant(-INFINITY);
+
+  void include(const Vec2& p) {
+    lower = lower.cwiseMin(p);
+    upper = upper.cwiseMax(p);
+  }
+  bool overlaps(const PlanBox& other) const {
+    return (lower.array() < other.upper.array()).all() && (other.lower.array() < upper.array()).all();
+  }
+};
+
+template <class Points>
+PlanBox box_of(const Points& points) {
+  PlanBox box;
+  for (const Vec2& p : points) box.include(p);
+  return box;
+}
+
+/// A facet that stands in a beam.
+struct Candidate {
+  Plane plane;
+  geometry::FacetRole role = geometry::FacetRole::retro_facet;
+  CellPlace cell;
+  Distance distance;
+  FlatPolygon piece;  ///< as far as it stands in the beam, hidden or not
+  PlanBox box;
+  bool is_met = false;  ///< its light has been sent on
+};
+
+/// How far ahead of a beam facets are looked for.
+struct Horizon {
+  double t = 0.0;        ///< from each corner of the cross-section
+  bool limited = false;  ///< the beam may meet facets beyond
+};
+
+/// Follows beams through a part until too little is left of them. Serves one trace() of BeamTracer.
+class BeamWalk {
+ public:
+  BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
+           const BeamPolicy& policy, BeamObserver observer);
+
+  enum class Approach { falling, fixed };
+  /// \param cutoff that is fixed, or the first of those that fall until little enough is left behind
+  void enter(const geometry::Polygon& entrance, double cutoff, Approach approach);
+  enum class End { done, paused, cancelled, cutoff_too_high };
+  /// Follows beams above the cut-off until the goal is reached, or as much work is done in all.
+  End run(std::uint64_t most_work, const Cancellation* cancel);
+
+  BeamResult result() const;
+  std::uint64_t beams() const { return beams_; }
+  double cutoff() const { return cutoff_; }
+  double left_behind() const { return deferred_power_; }
+  /// Done so far, in looks at a facet's bounding box: some 20 ns each. The same on every machine.
+  std::uint64_t work() const { return work_; }
+  /// Of all until the goal is reached, judged by what has been settled so far.
+  double expected_work() const;
+
+ private:
+  /// Share of the power of its light that a beam brings here: by its area, less what was absorbed.
+  double transmission_of(const Beam& beam) const {
+    return beam.share * mean_transmission(beam.corners, beam.path_length, setup_.optics.absorption_per_mm);
+  }
+  double power_of(const Beam& beam) const { return transmission_of(beam) * beam.light.power(); }
+  double parts_of_element() const;
+  void enter_in_pieces(const Beam& whole, double parts);
+  void pend(Beam beam);
+  void defer(const Beam& beam);
+  /// Power of beams that wait, in this pass or below its cut-off.
+  double open_power() const { return pending_power_ + deferred_power_; }
+  bool may_stop() const;
+  void lower_cutoff();
+  void close();
+  void advance(const Beam& beam);
+  Horizon horizon_of(const Beam& beam) const;
+  std::pair<double, double> distances_to_hull(const Beam& beam) const;
+  void find_candidates(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon);
+  void consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const PlanBox& box, const Plane* far,
+                const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet, const CellPlace& cell);
+  FlatPolygons visible_pieces(std::size_t k) const;
+  FlatPolygons visible_on_plane_of(std::size_t k);
+  void pass_by(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share, const Horizon& horizon);
+  void leave_hull(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share);
+  static Beam at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share);
+  Beam arrived(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane);
+  void meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
+                  double share);
+  /// What the texture of a retro facet leaves of a lobe's light; the rest is followed no further.
+  CoherentLight mean_field(CoherentLight light, const Beam& beam, geometry::FacetRole role, double cos_incidence,
+                           surface_models::Lobe lobe);
+  void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
+                 geometry::FacetRole role);
+  void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,
+            bool inside);
+  /// Light of a beam that found no facet for want of digits. Signed: pieces may overlap by rounding as well.
+  void book_rest(const Beam& beam, double share) {
+    tally_.other[Account::truncated] += share / beam.share * power_of(beam);
+  }
+  void leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction);
+  ReturnedBeam returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const;
+  /// Of where a beam travels behind the entrance face.
+  double index_at(bool inside) const { return inside ? setup_.optics.index : setup_.optics.back_index; }
+  void observe_front() const;
+  [[noreturn]] void fail_on_budget() const;
+
+  const geometry::Part& part_;
+  const Vec2& centre_mm_;
+  const CellIndex& cells_;
+  const LightSetup& setup_;
+  const BeamPolicy& policy_;
+  BeamObserver observer_;
+  const Cancellation* cancel_ = nullptr;
+  Tally tally_;
+  std::vector<Beam> pending_;
+  double pending_power_ = 0.0;
+  std::vector<Beam> deferred_;  ///< below the cut-off
+  double deferred_power_ = 0.0;
+  double cutoff_ = 0.0;
+  Approach approach_ = Approach::fixed;
+  /// Where the pass of a cut-off began.
+  struct Pass {
+    double work = 0.0;
+    double power = 1.0;  ///< that was open
+  };
+  Pass pass_;
+  std::vector<Candidate> candidates_;  ///< of the beam at hand
+  double least_area_;
+  double join_area_;
+  double merge_mm_;
+  std::uint64_t beams_ = 0;
+  mutable std::uint64_t work_ = 0;
+  std::uint32_t depth_ = 0;
+};
+
+}  // namespace retrace::raytrace

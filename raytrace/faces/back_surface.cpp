@@ -1,0 +1,226 @@
+#include "raytrace/faces/back_surface.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "raytrace/faces/facet_boxes.h"
+
+namespace retrace::raytrace {
+namespace {
+
+// Single-precision roundings that may add up in Embree's walk through boxes, relative to the coordinates.
+constexpr double kSinglePrecisionBand = 32.0 * 0x1p-24;
+void throw_on_error(void*, RTCError code, const char* text) {
+  if (code == RTC_ERROR_OUT_OF_MEMORY) throw BudgetError("out of memory while building the scene");
+  throw std::runtime_error(std::string("Embree: ") + (text != nullptr ? text : "unknown error"));
+}
+
+float below(double value) {
+  return std::nextafter(static_cast<float>(value), -INFINITY);
+}
+
+float above(double value) {
+  return std::nextafter(static_cast<float>(value), INFINITY);
+}
+
+/// Of the coordinates of the surface and of where rays to it start, in the plate above.
+double greatest_reach_mm(const geometry::Part& part, const std::vector<geometry::Placement>& placements) {
+  double reach = part.size_mm + part.element_depth_mm + part.thickness_mm;
+  for (const auto& placement : placements) {
+    for (const auto& cell : part.patches[placement.patch].cells) {
+      const Vec2 lower = cell.lower.head<2>() + placement.offset_mm;
+      const Vec2 upper = cell.upper.head<2>() + placement.offset_mm;
+      const double height = std::max(std::abs(cell.lower.z()), std::abs(cell.upper.z())) +
+                            std::abs(placement.height_mm) + part.thickness_mm;
+      reach = std::max({reach, lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff(), height});
+    }
+  }
+  return reach;
+}
+
+/// Passed through Embree to the facets: the ray in double precision, and what it has met.
+struct Query {
+  RTCIntersectContext substrate;
+  const SurfaceRay* ray = nullptr;
+  double tolerance_mm = 0.0;
+  SurfaceHit best;
+};
+
+RTCRayHit embree_ray(const SurfaceRay& ray) {
+  alignas(16) RTCRayHit query;
+  query.ray.org_x = static_cast<float>(ray.origin.x());
+  query.ray.org_y = static_cast<float>(ray.origin.y());
+  query.ray.org_z = static_cast<float>(ray.origin.z());
+  query.ray.dir_x = static_cast<float>(ray.direction.x());
+  query.ray.dir_y = static_cast<float>(ray.direction.y());
+  query.ray.dir_z = static_cast<float>(ray.direction.z());
+  query.ray.tnear = 0.0F;
+  query.ray.tfar = INFINITY;
+  query.ray.time = 0.0F;
+  query.ray.mask = UINT32_MAX;
+  query.ray.id = 0;
+  query.ray.flags = 0;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return query;
+}
+
+}  // namespace
+
+struct BackSurface::Boxes {
+  /// What a geometry of Embree's holds: the boxes of a patch, where a placement has it or, for instances, in its own
+  /// frame.
+  struct Group {
+    const Boxes* owner = nullptr;
+    std::uint32_t patch = 0;
+    Vec3 place = Vec3::Zero();
+  };
+
+  Boxes(const geometry::Part& its_part, const ExactSurface& its_surface)
+      : part(its_part),
+        surface(its_surface),
+        band_mm(kSinglePrecisionBand * greatest_reach_mm(part, surface.placements()) + surface.wide_tolerance_mm()) {
+    for (const auto& patch : part.patches) contents.push_back(box_contents(patch));
+    device = rtcNewDevice(nullptr);
+    if (device == nullptr) throw BudgetError("Embree cannot start: not enough memory or address space");
+    rtcSetDeviceErrorFunction(device, throw_on_error, nullptr);
+    scene = new_scene();
+    if (repeats_much())
+      attach_instances();
+    else
+      attach_all();
+    rtcCommitScene(scene);
+  }
+  Boxes(const Boxes&) = delete;
+  Boxes& operator=(const Boxes&) = delete;
+  ~Boxes() {
+    for (RTCScene s : patch_scenes) rtcReleaseScene(s);
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+
+  RTCScene new_scene() const {
+    RTCScene made = rtcNewScene(device);
+    rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+    return made;
+  }
+
+  /// Whether instances save most of the boxes. They are as fast, and faster in large arrays.
+  bool repeats_much() const {
+    std::size_t different = 0;
+    std::size_t all = 0;
+    for (const auto& patch : contents) different += patch.size();
+    for (const auto& placement : surface.placements()) all += contents[placement.patch].size();
+    return all > 4 * different;
+  }
+
+  void attach_all() {
+    const auto& placements = surface.placements();
+    groups.reserve(placements.size());
+    for (std::uint32_t k = 0; k < placements.size(); ++k) {
+      const geometry::Placement& at = placements[k];
+      attach(scene, groups.emplace_back(Group{this, at.patch, {at.offset_mm.x(), at.offset_mm.y(), at.height_mm}}), k);
+    }
+  }
+
+  void attach_instances() {
+    groups.reserve(contents.size());
+    for (std::uint32_t k = 0; k < contents.size(); ++k) {
+      patch_scenes.push_back(new_scene());
+      attach(patch_scenes.back(), groups.emplace_back(Group{this, k, Vec3::Zero()}), 0);
+      rtcCommitScene(patch_scenes.back());
+    }
+    for (std::uint32_t k = 0; k < surface.placements().size(); ++k) {
+      const geometry::Placement& at = surface.placements()[k];
+      RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(instance, patch_scenes[at.patch]);
+      std::array<float, 12> matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+      matrix[9] = static_cast<float>(at.offset_mm.x());
+      matrix[10] = static_cast<float>(at.offset_mm.y());
+      matrix[11] = static_cast<float>(at.height_mm);
+      rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
+      rtcCommitGeometry(instance);
+      rtcAttachGeometryByID(scene, instance, k);
+      rtcReleaseGeometry(instance);
+    }
+  }
+
+  void attach(RTCScene target, Group& group, std::uint32_t number) const {
+    RTCGeometry boxes = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(boxes, static_cast<unsigned>(contents[group.patch].size()));
+    rtcSetGeometryUserData(boxes, &group);
+    rtcSetGeometryBoundsFunction(boxes, bounds, nullptr);
+    rtcSetGeometryIntersectFunction(boxes, intersect);
+    rtcCommitGeometry(boxes);
+    rtcAttachGeometryByID(target, boxes, number);
+    rtcReleaseGeometry(boxes);
+  }
+
+  static void bounds(const RTCBoundsFunctionArguments* args) {
+    const auto& group = *static_cast<const Group*>(args->geometryUserPtr);
+    const Boxes& self = *group.owner;
+    const FacetBox box = box_round(self.part.patches[group.patch], self.contents[group.patch][args->primID]);
+    const Vec3 lower = box.lower + group.place - Vec3::Constant(self.band_mm);
+    const Vec3 upper = box.upper + group.place + Vec3::Constant(self.band_mm);
+    *args->bounds_o = {below(lower.x()), below(lower.y()), below(lower.z()), 0.0F,
+                       above(upper.x()), above(upper.y()), above(upper.z()), 0.0F};
+  }
+
+  static void intersect(const RTCIntersectFunctionNArguments* args) {
+    if (args->valid[0] == 0) return;
+    const auto& group = *static_cast<const Group*>(args->geometryUserPtr);
+    const Boxes& self = *group.owner;
+    auto& query = *reinterpret_cast<Query*>(args->context);
+    const double before = query.best.t;
+    const std::uint32_t instance = args->context->instID[0];
+    const std::uint32_t placement = instance == RTC_INVALID_GEOMETRY_ID ? args->geomID : instance;
+    self.surface.search(*query.ray, placement, self.contents[group.patch][args->primID].range, query.tolerance_mm,
+                        query.best);
+    if (query.best.t < before)
+      RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0) = above(query.best.t + self.band_mm);
+  }
+
+  std::optional<SurfaceHit> first_hit(const SurfaceRay& ray, double tolerance_mm) const {
+    Query query;
+    rtcInitIntersectContext(&query.substrate);
+    query.ray = &ray;
+    query.tolerance_mm = tolerance_mm;
+    query.best.t = ray.t_max;
+    RTCRayHit embree = embree_ray(ray);
+    if (std::isfinite(ray.t_max)) embree.ray.tfar = above(ray.t_max + band_mm);
+    rtcIntersect1(scene, &query.substrate, &embree);
+    return ExactSurface::settled(query.best);
+  }
+
+  const geometry::Part& part;
+  const ExactSurface& surface;
+  double band_mm;                                 ///< what single precision may put wrong of rays and boxes
+  std::vector<std::vector<BoxContent>> contents;  ///< by patch
+  std::vector<Group> groups;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<RTCScene> patch_scenes;  ///< instances
+};
+
+BackSurface::BackSurface(const geometry::Part& part, const Vec2& centre_mm)
+    : exact_(part, centre_mm), boxes_(std::make_unique<Boxes>(part, exact_)) {}
+
+BackSurface::~BackSurface() = default;
+
+std::optional<SurfaceHit> BackSurface::first_hit(const SurfaceRay& ray) const {
+  return boxes_->first_hit(ray, exact_.tolerance_mm());
+}
+
+std::optional<SurfaceHit> BackSurface::certain_first_hit(const SurfaceRay& ray) const {
+  const auto hit = first_hit(ray);
+  return hit ? hit : boxes_->first_hit(ray, exact_.wide_tolerance_mm());
+}
+
+}  // namespace retrace::raytrace

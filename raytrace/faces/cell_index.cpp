@@ -1,0 +1,45 @@
+#include "raytrace/faces/cell_index.h"
+
+#include <algorithm>
+
+namespace retrace::raytrace {
+
+using geometry::Vec2;
+
+CellIndex::CellIndex(const geometry::Part& part, const Vec2& centre_mm) : part_(part), centre_mm_(centre_mm) {
+  if (part.period_mm) {
+    infinite_ = true;
+    // The patch holds its periods row by row; the middle one stands for all.
+    const auto side = static_cast<std::uint32_t>(2 * part.periods_beyond + 1);
+    const auto each = static_cast<std::uint32_t>(part.patches[0].cells.size()) / (side * side);
+    const std::uint32_t first = (side * side / 2) * each;
+    for (std::uint32_t k = 0; k < each; ++k) central_.push_back({0, first + k});
+    return;
+  }
+  const geometry::Rectangle box = geometry::bounding_box(part.outline);
+  origin_ = box.lower - centre_mm;
+  bucket_mm_ = part.size_mm;
+  for (const Eigen::Index axis : {0, 1})
+    count_[axis] = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(box.size()[axis] / bucket_mm_)));
+
+  std::vector<std::vector<Entry>> buckets(static_cast<std::size_t>(count_[0] * count_[1]));
+  for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
+    const auto& cells = part.patches[part.placements[p].patch].cells;
+    for (std::uint32_t c = 0; c < cells.size(); ++c) {
+      const Vec2 offset = part.placements[p].offset_mm - centre_mm;
+      const Vec2 low = cells[c].lower.head<2>() + offset;
+      const Vec2 high = cells[c].upper.head<2>() + offset;
+      for (std::int64_t j = bucket(low.y(), 1); j <= bucket(high.y(), 1); ++j)
+        for (std::int64_t i = bucket(low.x(), 0); i <= bucket(high.x(), 0); ++i)
+          buckets[static_cast<std::size_t>(j * count_[0] + i)].push_back({p, c});
+    }
+  }
+  first_.reserve(buckets.size() + 1);
+  for (const auto& bucket_entries : buckets) {
+    first_.push_back(static_cast<std::uint32_t>(entries_.size()));
+    entries_.insert(entries_.end(), bucket_entries.begin(), bucket_entries.end());
+  }
+  first_.push_back(static_cast<std::uint32_t>(entries_.size()));
+}
+
+}  // namespace retrace::raytrace

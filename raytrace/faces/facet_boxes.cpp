@@ -1,0 +1,103 @@
+#include "raytrace/faces/facet_boxes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::raytrace {
+namespace {
+
+// Facets of a cell that are met one after another; cells of more have boxes for each.
+constexpr std::uint32_t kFewFacets = 16;
+// Boxes of a facet.
+constexpr double kMostPieces = 8.0;
+// Greatest component of directions whose boxes are tight as they are.
+constexpr double kAlongAnAxis = 0.98;
+
+std::vector<Vec3> corners_of(const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet) {
+  std::vector<Vec3> corners;
+  corners.reserve(facet.corner_count);
+  for (std::uint32_t c = 0; c < facet.corner_count; ++c)
+    corners.push_back(patch.vertices[patch.corners[facet.first_corner + c]]);
+  return corners;
+}
+
+/// From the first corner to the farthest.
+Vec3 length_of(const std::vector<Vec3>& corners) {
+  return *std::max_element(corners.begin(), corners.end(), [&](const Vec3& a, const Vec3& b) {
+    return (a - corners.front()).squaredNorm() < (b - corners.front()).squaredNorm();
+  }) - corners.front();
+}
+
+/// A box round a long strip that runs aslant is mostly empty: as many as make its pieces about as long as wide.
+std::uint16_t pieces_of(const std::vector<Vec3>& corners) {
+  const Vec3 along = length_of(corners).normalized();
+  if (along.cwiseAbs().maxCoeff() > kAlongAnAxis) return 1;
+  double length = 0.0;
+  double width = 0.0;
+  for (const Vec3& p : corners) {
+    const Vec3 from = p - corners.front();
+    length = std::max(length, from.norm());
+    width = std::max(width, (from - from.dot(along) * along).norm());
+  }
+  if (!(length > 0.0)) return 1;
+  return static_cast<std::uint16_t>(std::clamp(length / std::max(width, length / kMostPieces), 1.0, kMostPieces));
+}
+
+/// What a polygon has beyond a level of a height that rises along it.
+std::vector<Vec3> beyond(const std::vector<Vec3>& polygon, const Vec3& along, double level) {
+  std::vector<Vec3> left;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3& p = polygon[k];
+    const Vec3& q = polygon[(k + 1) % polygon.size()];
+    const double dp = along.dot(p) - level;
+    const double dq = along.dot(q) - level;
+    if (dp >= 0.0) left.push_back(p);
+    if ((dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0)) left.push_back(p + dp / (dp - dq) * (q - p));
+  }
+  return left;
+}
+
+std::vector<Vec3> piece_of(std::vector<Vec3> corners, const BoxContent& content) {
+  if (content.pieces == 1) return corners;
+  const Vec3 along = length_of(corners);
+  double low = INFINITY;
+  double high = -INFINITY;
+  for (const Vec3& p : corners) {
+    low = std::min(low, along.dot(p));
+    high = std::max(high, along.dot(p));
+  }
+  const double step = (high - low) / content.pieces;
+  if (content.piece > 0) corners = beyond(corners, along, low + content.piece * step);
+  if (content.piece + 1 < content.pieces) corners = beyond(corners, -along, -(low + (content.piece + 1) * step));
+  return corners;
+}
+
+}  // namespace
+
+std::vector<BoxContent> box_contents(const geometry::SurfacePatch& patch) {
+  std::vector<BoxContent> contents;
+  contents.reserve(patch.cells.size());
+  for (const auto& cell : patch.cells) {
+    if (cell.facet_count <= kFewFacets) {
+      contents.push_back({{cell.first_facet, cell.facet_count}, 0, 1});
+      continue;
+    }
+    for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
+      const std::uint16_t pieces = pieces_of(corners_of(patch, patch.facets[f]));
+      for (std::uint16_t k = 0; k < pieces; ++k) contents.push_back({{f, 1}, k, pieces});
+    }
+  }
+  return contents;
+}
+
+FacetBox box_round(const geometry::SurfacePatch& patch, const BoxContent& content) {
+  FacetBox box{Vec3::Constant(INFINITY), Vec3::Constant(-INFINITY)};
+  for (std::uint32_t f = content.range.first; f < content.range.first + content.range.count; ++f)
+    for (const Vec3& p : piece_of(corners_of(patch, patch.facets[f]), content)) {
+      box.lower = box.lower.cwiseMin(p);
+      box.upper = box.upper.cwiseMax(p);
+    }
+  return box;
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "raytrace/faces/entrance_face.h"
+
+namespace retrace::raytrace {
+
+/// A front that is an exact surface, in double precision: a grid of cells says between which heights it lies and how
+/// tightly it bends there; within a cell a ray is followed by steps that the bend cannot carry across the surface,
+/// which close in on it as Newton's do (docs/theory/fronts.md).
+class HeightField : public EntranceFace {
+ public:
+  HeightField(std::shared_ptr<const geometry::EntranceSurface> surface, const geometry::Polygon& outline,
+              const Vec2& centre_mm);
+
+  std::optional<EntranceHit> first_hit(const SurfaceRay& ray) const override;
+
+ private:
+  struct Cell {
+    double low_mm = 0.0;
+    double high_mm = 0.0;
+    double bend_per_mm = 0.0;  ///< bound of the second derivatives
+  };
+  struct Search;
+  struct Walk;
+
+  geometry::EntranceSurface::Place at(double x_mm, double y_mm) const { return surface_->at({x_mm + x0_, y_mm + y0_}); }
+  void make_cells(const geometry::Polygon& outline, int cells);
+  /// \param places at the corners of a cell, along x, then along y, and one within
+  Cell cell_between(const std::array<const geometry::EntranceSurface::Place*, 5>& places) const;
+  void widen_bends();
+  std::optional<std::array<double, 2>> span_of(const SurfaceRay& ray, double room_mm) const;
+  const Cell& cell(int i, int j) const {
+    return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
+  }
+
+  std::shared_ptr<const geometry::EntranceSurface> surface_;
+  double x0_ = 0.0;  ///< the centre, in the part's frame
+  double y0_ = 0.0;
+  Vec2 lower_ = Vec2::Zero();  ///< of the grid, from the centre
+  Vec2 cell_mm_ = Vec2::Ones();
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,44 @@
+#include "raytrace/faces/mesh_entrance.h"
+
+#include <cmath>
+
+namespace retrace::raytrace {
+namespace {
+
+/// The triangles as the back of a part, which is what rays are searched in.
+geometry::Part part_of(const geometry::SurfacePatch& patch, const geometry::EntranceRange& range,
+                       const geometry::Polygon& outline) {
+  geometry::Part part;
+  part.patches.push_back(patch);
+  part.placements.push_back({0, Vec2::Zero(), -range.lowest_mm});
+  part.outline = outline;
+  part.element_depth_mm = range.highest_mm - range.lowest_mm;
+  part.thickness_mm = part.element_depth_mm;
+  part.size_mm = std::sqrt(geometry::area(outline) / static_cast<double>(patch.triangles.size()));
+  return part;
+}
+
+}  // namespace
+
+MeshEntrance::MeshEntrance(const geometry::SurfacePatch& patch, const geometry::Polygon& outline, const Vec2& centre_mm)
+    : EntranceFace(geometry::range_of_entrance_mesh(patch, outline)),
+      part_(part_of(patch, {lowest_mm(), highest_mm(), {}, {}, 0.0}, outline)),
+      surface_(part_, centre_mm) {}
+
+bool MeshEntrance::crosses(const SurfaceRay& ray) const {
+  const double dz = ray.direction.z();
+  if (ray.inside ? dz <= 0.0 : dz >= 0.0) return false;
+  const double far_mm = ray.inside ? highest_mm() : lowest_mm();
+  return ray.t_max >= (far_mm - ray.origin.z()) / dz;
+}
+
+std::optional<EntranceHit> MeshEntrance::first_hit(const SurfaceRay& ray) const {
+  SurfaceRay local = ray;
+  local.origin.z() -= lowest_mm();
+  // Rounding may let a ray slip between two triangles.
+  const std::optional<SurfaceHit> hit = crosses(ray) ? surface_.certain_first_hit(local) : surface_.first_hit(local);
+  if (!hit || hit->t > ray.t_max) return std::nullopt;
+  return EntranceHit{*hit, surface_.facet(hit->facet).normal};
+}
+
+}  // namespace retrace::raytrace

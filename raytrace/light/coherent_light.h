@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <complex>
+
+#include "raytrace/light/light.h"
+
+namespace retrace::raytrace {
+
+/// Amplitudes that leave for unit amplitudes that come in: rows along the axes of what leaves, columns along those of
+/// what came in. Time dependence exp(-i w t), as materials::FresnelCoefficients.
+using JonesMatrix = Eigen::Matrix2cd;
+
+/// Light that remembers its field as well: what interfaces do to the Stokes parameters they do to the amplitudes. The
+/// rows of the matrix belong to s and p, the columns to the two axes of the source.
+struct CoherentLight : Light {
+  JonesMatrix jones = JonesMatrix::Identity();
+
+  void turn_to_axis(const Vec3& direction, const Vec3& axis) {
+    const double c = axis.dot(s_axis);
+    const double s = axis.dot(direction.cross(s_axis));
+    Eigen::Matrix2d turn;
+    turn << c, s, -s, c;
+    jones = turn * jones;
+    Light::turn_to_axis(direction, axis);
+  }
+
+  void turn_to(const Vec3& direction, const Vec3& normal) {
+    const Vec3 across = direction.cross(normal);
+    const double norm2 = across.squaredNorm();
+    if (norm2 < kNormalIncidence) return;
+    turn_to_axis(direction, across / std::sqrt(norm2));
+  }
+
+  /// \param share of the power that is left
+  void scale(double share) {
+    Light::scale(share);
+    jones *= std::sqrt(share);
+  }
+
+  CoherentLight reflected(const materials::FresnelCoefficients& f) const {
+    return passed(Light::reflected(f), f.r_s, f.r_p);
+  }
+  CoherentLight transmitted(const materials::FresnelCoefficients& f) const {
+    return passed(Light::transmitted(f), f.t_s, f.t_p);
+  }
+
+ private:
+  CoherentLight passed(const Light& light, std::complex<double> s, std::complex<double> p) const {
+    CoherentLight result;
+    static_cast<Light&>(result) = light;
+    result.jones.row(0) = s * jones.row(0);
+    result.jones.row(1) = p * jones.row(1);
+    return result;
+  }
+};
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,133 @@
+#include "raytrace/light/light_setup.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace retrace::raytrace {
+
+/// The direction after refraction at a plane whose unit normal `against` faces the ray.
+Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted) {
+  return (ratio * direction + (ratio * cos_incidence - cos_refracted) * against).normalized();
+}
+
+Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
+  return (direction - 2.0 * normal.dot(direction) * normal).normalized();
+}
+
+namespace {
+
+materials::FresnelCoefficients perfect_mirror() {
+  materials::FresnelCoefficients f;
+  f.r_s = -1.0;
+  f.r_p = 1.0;
+  f.total_reflection = true;
+  return f;
+}
+
+}  // namespace
+
+materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::FacetRole role, bool inside,
+                                               double cos_incidence) {
+  const bool is_retro = role == geometry::FacetRole::retro_facet;
+  if (is_retro && optics.mirror_facets) return perfect_mirror();
+  if (is_retro && optics.coating_index)
+    return materials::fresnel_metal((inside ? optics.index : optics.back_index) / *optics.coating_index, cos_incidence);
+  return materials::fresnel(optics.ratio_at_back(inside), cos_incidence);
+}
+
+Vec3 source_axis(const Vec3& direction) {
+  return direction.cross(Vec3::UnitX()).cross(direction).normalized();
+}
+
+Light light_of_beam(const Stokes& stokes, const Vec3& to_source) {
+  Light light{stokes, source_axis(to_source)};
+  light.stokes.u = -stokes.u;  // p = direction x s is the second axis of the source reversed
+  return light;
+}
+
+Stokes seen_from_above(Light light, const Vec3& direction) {
+  light.turn_to_axis(direction, source_axis(direction));
+  return light.stokes;
+}
+
+Account account_of_exit(geometry::FacetRole role) {
+  const bool is_side = role == geometry::FacetRole::side || role == geometry::FacetRole::border_wall;
+  return is_side ? Account::side_exit : Account::transmitted;
+}
+
+void Tally::add(const Tally& more) {
+  for (std::size_t k = 0; k < returned.size(); ++k) returned[k] += more.returned[k];
+  for (std::size_t k = 0; k < scattered.size(); ++k) scattered[k] += more.scattered[k];
+  for (std::size_t k = 0; k < front.size(); ++k) front[k] += more.front[k];
+  for (std::size_t k = 0; k < score.size(); ++k) score[k] += more.score[k];
+  for (std::size_t k = 0; k < kAccountCount; ++k) other.power[k] += more.other.power[k];
+  segments += more.segments;
+  misses += more.misses;
+}
+
+Ledger Tally::ledger(std::size_t cone) const {
+  Ledger ledger = other;
+  for (std::size_t k = 0; k < returned.size(); ++k) {
+    ledger[k <= cone ? Account::retroreflected : Account::returned_elsewhere] += returned[k].i;
+    ledger[k <= cone ? Account::retroreflected : Account::scattered_out] += scattered[k].i;
+    ledger[k <= cone ? Account::retroreflected : Account::front_specular] += front[k].i;
+  }
+  return ledger;
+}
+
+Stokes Tally::retroreflected(std::size_t cone) const {
+  Stokes sum;
+  for (std::size_t k = 0; k <= cone; ++k) {
+    sum += returned[k];
+    sum += scattered[k];
+    sum += front[k];
+  }
+  return sum;
+}
+
+LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const Optics& how,
+                       const Illumination& illumination, const std::vector<double>& cones_deg)
+    : optics(how), thickness_mm(part.thickness_mm), depth_mm(part.element_depth_mm), top_mm(part.top_mm) {
+  const double t = illumination.incidence.rad();
+  const double p = illumination.azimuth.rad();
+  to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+  for (const double half_angle_deg : cones_deg) {
+    const double chord = 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad());
+    cone_chord2.push_back(chord * chord * (1.0 + 1e-9));  // the cone's edge belongs to it, rounding or not
+  }
+  for (std::size_t k = 0; k < part.outline.size(); ++k) {
+    const Vec2 a = part.outline[k] - centre_mm;
+    const Vec2 along = (part.outline[(k + 1) % part.outline.size()] - part.outline[k]).normalized();
+    const Vec3 normal(along.y(), -along.x(), 0.0);
+    sides.push_back({normal, normal.head<2>().dot(a)});
+  }
+  entry = enter(illumination.stokes);
+}
+
+std::size_t LightSetup::cone_of(const Vec3& direction) const {
+  const double chord2 = (direction - to_source).squaredNorm();
+  std::size_t k = 0;
+  while (k < cone_chord2.size() && chord2 > cone_chord2[k]) ++k;
+  return k;
+}
+
+LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
+  const Vec3 incident = -to_source;
+  const double ratio = 1.0 / optics.index;
+  const materials::FresnelCoefficients f = materials::fresnel(ratio, to_source.z());
+  CoherentLight light;
+  light.stokes = stokes;
+  light.stokes.u = -stokes.u;  // p = direction x s is the second axis of the source reversed
+  light.jones(1, 1) = -1.0;
+  light.s_axis = source_axis(to_source);
+  light.turn_to(incident, Vec3::UnitZ());
+  Entry entered;
+  entered.direction = refracted(incident, Vec3::UnitZ(), ratio, to_source.z(), f.cos_refracted);
+  entered.front_direction = mirrored(incident, Vec3::UnitZ());
+  entered.front_cone = cone_of(entered.front_direction);
+  if (!optics.lossless_entrance) entered.front = seen_from_above(light.reflected(f), entered.front_direction);
+  entered.light = optics.lossless_entrance ? light : light.transmitted(f);
+  return entered;
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,99 @@
+#include "raytrace/observers/aperture_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace retrace::raytrace {
+namespace {
+
+using std::numbers::pi;
+
+// Below this ratio of radii the smaller disc is a point.
+constexpr double kPoint = 1e-9;
+// Steps of a rule to one detail, and the fewest and the most of them.
+constexpr double kStepsToADetail = 2.5;
+constexpr double kFewest = 6.0;
+constexpr double kMost = 96.0;
+
+double half_chord_angle(double cosine) {
+  return std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+std::size_t steps(double length_rad, double detail_rad) {
+  return static_cast<std::size_t>(std::clamp(kStepsToADetail * length_rad / detail_rad, kFewest, kMost));
+}
+
+}  // namespace
+
+GaussRule gauss_legendre(std::size_t count) {
+  GaussRule rule{std::vector<double>(count), std::vector<double>(count)};
+  const double n = static_cast<double>(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    // Newton's method from Tricomi's estimate of the root; Press et al., Numerical Recipes, 4.6.
+    double x = std::cos(pi * (static_cast<double>(k) + 0.75) / (n + 0.5));
+    double slope = 1.0;
+    for (int iteration = 0; iteration < 20; ++iteration) {
+      double before = 1.0;
+      double value = x;
+      for (std::size_t j = 2; j <= count; ++j) {
+        const double m = static_cast<double>(j);
+        const double next = ((2.0 * m - 1.0) * x * value - (m - 1.0) * before) / m;
+        before = value;
+        value = next;
+      }
+      slope = n * (x * value - before) / (x * x - 1.0);
+      const double step = value / slope;
+      x -= step;
+      if (std::abs(step) < 1e-15) break;
+    }
+    rule.nodes[count - 1 - k] = 0.5 * (1.0 + x);
+    rule.weights[count - 1 - k] = 1.0 / ((1.0 - x * x) * slope * slope);
+  }
+  return rule;
+}
+
+ApertureKernel::ApertureKernel(const PhotometricApertures& apertures)
+    : larger_rad_(0.5 * std::max(apertures.source.rad(), apertures.receiver.rad())),
+      smaller_rad_(0.5 * std::min(apertures.source.rad(), apertures.receiver.rad())) {
+  if (smaller_rad_ < kPoint * larger_rad_) smaller_rad_ = 0.0;
+}
+
+double ApertureKernel::per_sr(double separation_rad) const {
+  const double a = larger_rad_;
+  const double b = smaller_rad_;
+  const double d = std::abs(separation_rad);
+  if (d >= a + b) return d == a && b == 0.0 ? 1.0 / (pi * a * a) : 0.0;
+  if (d <= a - b) return 1.0 / (pi * a * a);
+  const double at_a = half_chord_angle((d * d + a * a - b * b) / (2.0 * d * a));
+  const double at_b = half_chord_angle((d * d + b * b - a * a) / (2.0 * d * b));
+  // Two circular segments.
+  const double common = a * a * (at_a - 0.5 * std::sin(2.0 * at_a)) + b * b * (at_b - 0.5 * std::sin(2.0 * at_b));
+  return common / (pi * a * a * pi * b * b);
+}
+
+std::vector<ApertureKernel::Node> ApertureKernel::nodes(double detail_rad) const {
+  std::vector<Node> nodes;
+  double sum = 0.0;
+  const double kink = larger_rad_ - smaller_rad_;
+  for (const auto& [from, to] : {std::pair{0.0, kink}, std::pair{kink, reach_rad()}}) {
+    if (!(to > from)) continue;
+    const GaussRule radial = gauss_legendre(steps(to - from, detail_rad));
+    const std::size_t round = steps(2.0 * pi * to, detail_rad);
+    for (std::size_t k = 0; k < radial.nodes.size(); ++k) {
+      const double r = std::lerp(from, to, radial.nodes[k]);
+      const double weight = radial.weights[k] * (to - from) * r * per_sr(r) * 2.0 * pi / static_cast<double>(round);
+      for (std::size_t j = 0; j < round; ++j) {
+        // Every ring is turned against the one before, so that no direction is preferred.
+        const double turn = 2.0 * pi * (static_cast<double>(j) + std::numbers::phi * static_cast<double>(k)) /
+                            static_cast<double>(round);
+        nodes.push_back({{r * std::cos(turn), r * std::sin(turn)}, weight});
+        sum += weight;
+      }
+    }
+  }
+  for (Node& node : nodes) node.weight /= sum;
+  return nodes;
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,444 @@
+#include "raytrace/observers/camera.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/infinity.h"
+#include "core/random.h"
+#include "raytrace/faces/back_surface.h"
+#include "raytrace/light/exit_observer.h"
+#include "raytrace/light/ledger.h"
+#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/paths/path_tracer.h"
+#include "raytrace/sampling/entrance_sampler.h"
+#include "raytrace/sampling/flush_denormals.h"
+#include "raytrace/sampling/sobol.h"
+#include "raytrace/sampling/threads.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using std::numbers::pi;
+
+// Philox streams: of the scrambles of points, of the choices on the way, and of wavelengths and points of the pupil.
+constexpr std::uint32_t kCameraScrambleStream = 11;
+constexpr std::uint32_t kCameraChoiceStream = 12;
+constexpr std::uint32_t kLensStream = 13;
+
+struct WorldRay {
+  Vec3 origin;
+  Vec3 direction;
+};
+
+/// Where a ray of the camera meets the part. Local: the frame in which light is followed.
+struct Contact {
+  enum class What { nothing, face, side, outside, dark };
+  What what = What::nothing;
+  Vec3 world = Vec3::Zero();
+  Vec3 local = Vec3::Zero();
+  Eigen::Matrix3d world_from_local = Eigen::Matrix3d::Identity();
+  std::size_t side = 0;
+};
+
+/// The camera's axes and its pixels.
+class Lens {
+ public:
+  explicit Lens(const CameraView& view)
+      : eye_(view.eye_mm),
+        target_(view.target_mm),
+        pixel_mm_(view.width_mm / static_cast<double>(view.columns)),
+        half_(0.5 * static_cast<double>(view.columns), 0.5 * static_cast<double>(view.rows)) {
+    const Vec3 forward = (view.target_mm - view.eye_mm).normalized();
+    right_ = forward.cross(view.up).normalized();
+    up_ = right_.cross(forward);
+    pupil_radius_mm_ = 0.5 * view.pupil.rad() * (view.target_mm - view.eye_mm).norm();
+  }
+
+  double pupil_radius_mm() const { return pupil_radius_mm_; }
+
+  /// The ray through a point of the picture, in pixels from its upper left corner. \param pupil point of the unit disc
+  WorldRay ray(const Vec2& at, const Vec2& pupil) const {
+    const Vec3 origin = eye_ + pupil_radius_mm_ * (pupil.x() * right_ + pupil.y() * up_);
+    const Vec3 focus = target_ + pixel_mm_ * ((at.x() - half_.x()) * right_ + (half_.y() - at.y()) * up_);
+    return {origin, (focus - origin).normalized()};
+  }
+
+ private:
+  Vec3 eye_;
+  Vec3 target_;
+  double pixel_mm_;
+  Vec2 half_;
+  Vec3 right_;
+  Vec3 up_;
+  double pupil_radius_mm_ = 0.0;
+};
+
+/// Luminance of the lamp as light that leaves the part finds it.
+class Luminaire {
+ public:
+  Luminaire(const LampDisc& lamp, const CameraView& view, DiscAverage discs)
+      : position_(lamp.position_mm), eye_(view.eye_mm), discs_(discs) {
+    const Vec3 to_lamp = lamp.position_mm - view.target_mm;
+    const double distance = to_lamp.norm();
+    axis_ = to_lamp / distance;
+    radius_mm_ = 0.5 * lamp.diameter.rad() * distance;
+    pupil_radius_mm_ = 0.5 * view.pupil.rad() * (view.eye_mm - view.target_mm).norm();
+    intensity_ = lamp.illuminance_lx * distance * distance;
+  }
+
+  /// What a ray brings from it, averaged over the discs. cd/m^2
+  double luminance(const Vec3& from, const Vec3& direction) const {
+    if (!(intensity_ > 0.0)) return 0.0;
+    return discs_ == DiscAverage::kernel ? averaged(from, direction) : met(from, direction);
+  }
+
+ private:
+  double averaged(const Vec3& from, const Vec3& direction) const {
+    const Vec3 way = position_ - from;
+    const double distance = way.norm();
+    const double lamp_rad = radius_mm_ / distance;
+    const double pupil_rad = pupil_radius_mm_ / (eye_ - from).norm();
+    const double chord = (direction - way / distance).norm();
+    if (chord > 1.01 * (lamp_rad + pupil_rad)) return 0.0;
+    const ApertureKernel kernel({Angle::from_rad(2.0 * lamp_rad), Angle::from_rad(2.0 * pupil_rad)});
+    // Illuminance at this place times the share of pairs of points, one in each disc, that the ray joins, per
+    // steradian.
+    return intensity_ / (distance * distance) * kernel.per_sr(2.0 * std::asin(0.5 * chord));
+  }
+
+  double met(const Vec3& from, const Vec3& direction) const {
+    const double towards = direction.dot(axis_);
+    if (!(towards > 0.0)) return 0.0;
+    const Vec3 at = from + (position_ - from).dot(axis_) / towards * direction;
+    if ((at - position_).norm() > radius_mm_) return 0.0;
+    return intensity_ / (pi * radius_mm_ * radius_mm_);
+  }
+
+  Vec3 position_;
+  Vec3 eye_;
+  Vec3 axis_;
+  DiscAverage discs_;
+  double radius_mm_ = 0.0;
+  double pupil_radius_mm_ = 0.0;
+  double intensity_ = 0.0;  ///< towards the target, lx mm^2
+};
+
+/// Adds up what a path sees where it leaves the entrance face.
+class Sight : public ExitObserver {
+ public:
+  Sight(const Luminaire& luminaire, double front) : luminaire_(luminaire), front_(front) {}
+
+  /// \param film exits count as where the path began
+  void begin(const Contact& contact, bool film) {
+    contact_ = contact;
+    film_ = film;
+    luminance_ = 0.0;
+  }
+  void leaves(const Vec3& position, const Vec3& direction, double power) override {
+    const Vec3& from = film_ ? contact_.world : position;
+    luminance_ += power * (front_ + luminaire_.luminance(from, contact_.world_from_local * direction));
+  }
+  double luminance() const { return luminance_; }
+
+ private:
+  const Luminaire& luminaire_;
+  double front_;
+  Contact contact_;
+  bool film_ = false;
+  double luminance_ = 0.0;
+};
+
+Vec2 in_unit_disc(double u, double v) {
+  const double r = std::sqrt(u);
+  return {r * std::cos(2.0 * pi * v), r * std::sin(2.0 * pi * v)};
+}
+
+/// Where a ray meets a bent or plane sheet first; its face is the plane z = thickness_mm where it touches the target.
+Contact contact_with(const Film& film, double thickness_mm, const WorldRay& ray) {
+  Contact contact;
+  const auto is_on_it = [&](double u, double v) {
+    return std::abs(u) <= 0.5 * film.width_mm && std::abs(v) <= 0.5 * film.height_mm;
+  };
+  const auto take = [&](double t, double u, const Vec3& normal) {
+    const Vec3 world = ray.origin + t * ray.direction;
+    if (!(t > 0.0) || !is_on_it(u, world.y())) return false;
+    contact.what = normal.dot(ray.direction) < 0.0 ? Contact::What::face : Contact::What::dark;
+    contact.world = world;
+    contact.local = {u, world.y(), thickness_mm};
+    contact.world_from_local.col(0) = Vec3::UnitY().cross(normal);
+    contact.world_from_local.col(1) = Vec3::UnitY();
+    contact.world_from_local.col(2) = normal;
+    return true;
+  };
+  if (!film.radius_mm) {
+    const double t = (thickness_mm - ray.origin.z()) / ray.direction.z();
+    if (std::isfinite(t)) take(t, ray.origin.x() + t * ray.direction.x(), Vec3::UnitZ());
+    return contact;
+  }
+  const double radius = *film.radius_mm;
+  // The axis runs through (0, thickness - radius).
+  const Vec2 o(ray.origin.x(), ray.origin.z() - thickness_mm + radius);
+  const Vec2 d(ray.direction.x(), ray.direction.z());
+  const double a = d.squaredNorm();
+  const double b = o.dot(d);
+  const double root2 = b * b - a * (o.squaredNorm() - radius * radius);
+  if (!(a > 0.0) || root2 < 0.0) return contact;
+  for (const double sign : {-1.0, 1.0}) {
+    const double t = (-b + sign * std::sqrt(root2)) / a;
+    const Vec2 at = (o + t * d) / radius;
+    if (take(t, radius * std::atan2(at.x(), at.y()), Vec3(at.x(), 0.0, at.y()).normalized())) break;
+  }
+  return contact;
+}
+
+}  // namespace
+
+double CameraImage::std_error(std::size_t pixel) const {
+  const double own = own_variance(pixel);
+  if (!(coverage[pixel] > 0.0)) return std::sqrt(own);
+  constexpr std::size_t kReach = 2;
+  const std::size_t row = pixel / columns;
+  const std::size_t column = pixel % columns;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t r = row - std::min(row, kReach); r <= std::min(row + kReach, rows - 1); ++r)
+    for (std::size_t c = column - std::min(column, kReach); c <= std::min(column + kReach, columns - 1); ++c) {
+      sum += own_variance(r * columns + c);
+      ++count;
+    }
+  return std::sqrt(std::max(own, sum / static_cast<double>(count)));
+}
+
+double CameraImage::part_mean() const {
+  double sum = 0.0;
+  for (const double mean : part_means) sum += mean;
+  return sum / static_cast<double>(part_means.size());
+}
+
+double CameraImage::part_error() const {
+  const double mean = part_mean();
+  const auto count = static_cast<double>(part_means.size());
+  double sum = 0.0;
+  for (const double m : part_means) sum += (m - mean) * (m - mean);
+  return std::sqrt(sum / (count - 1.0) / count);
+}
+
+double CameraImage::relative_noise() const {
+  double errors = 0.0;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < luminance.size(); ++k) {
+    if (coverage[k] < 1.0 - 1e-9) continue;
+    errors += std_error(k);
+    sum += luminance[k];
+  }
+  return sum > 0.0 ? errors / sum : 0.0;
+}
+
+struct CameraTracer::Hidden {
+  Hidden(const geometry::Part& p, const std::vector<WeighedOptics>& light, const CameraScene& s,
+         const PathPolicy& policy, std::uint32_t number)
+      : part(p),
+        scene(s),
+        seed(number),
+        centre_mm(EntranceSampler(p).centre_mm()),
+        surface(p, centre_mm),
+        lens(s.view),
+        luminaire(s.lamp, s.view, s.discs) {
+    double sum = 0.0;
+    for (const WeighedOptics& at : light) {
+      // The direction of incidence means nothing here: paths begin on the face with one of their own.
+      setups.emplace_back(p, surface, centre_mm, at.optics, Illumination{}, std::vector<double>{90.0}, policy);
+      sum += at.weight;
+      cumulative.push_back(sum);
+    }
+    const PathSetup& any = setups.front();
+    const double below = any.depth_mm + any.clearance_mm;
+    middle = {0.0, 0.0, 0.5 * (any.thickness_mm - below)};
+    double reach2 = 0.0;
+    for (const Vec2& corner : p.outline) reach2 = std::max(reach2, (corner - centre_mm).squaredNorm());
+    radius_mm = std::sqrt(reach2 + std::pow(0.5 * (any.thickness_mm + below), 2.0));
+  }
+
+  Contact contact_of(const WorldRay& ray) const;
+  std::optional<Contact> contact_with_plate(const WorldRay& ray) const;
+  double follow(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
+                PathWalker& walker, Tally& tally, Sight& sight, bool& shows_part) const;
+  void add_pixel(std::uint32_t pixel, std::uint32_t pass, std::vector<PathWalker>& walkers, Tally& tally, Sight& sight,
+                 double& luminance, double& on_part, double& coverage) const;
+
+  const geometry::Part& part;
+  CameraScene scene;
+  std::uint32_t seed;
+  Vec2 centre_mm;
+  BackSurface surface;
+  Lens lens;
+  Luminaire luminaire;
+  std::vector<PathSetup> setups;  ///< by wavelength
+  std::vector<double> cumulative;
+  Vec3 middle;  ///< of a sphere round the finite part
+  double radius_mm = 0.0;
+};
+
+/// Entrance face and sides of the plate of a finite part: the nearest of them that faces the ray.
+std::optional<Contact> CameraTracer::Hidden::contact_with_plate(const WorldRay& ray) const {
+  const PathSetup& setup = setups.front();
+  const auto is_within = [&](const Vec3& p, std::size_t except) {
+    for (std::size_t k = 0; k < setup.sides.size(); ++k)
+      if (k != except && setup.sides[k].normal.dot(p) > setup.sides[k].offset_mm) return false;
+    return true;
+  };
+  if (ray.direction.z() < 0.0) {
+    const double t = (setup.thickness_mm - ray.origin.z()) / ray.direction.z();
+    const Vec3 at = ray.origin + t * ray.direction;
+    if (t > 0.0 && is_within(at, setup.sides.size())) {
+      Contact contact{Contact::What::face, at, at, Eigen::Matrix3d::Identity(), 0};
+      contact.local.z() = setup.thickness_mm;
+      return contact;
+    }
+  }
+  for (std::size_t k = 0; k < setup.sides.size(); ++k) {
+    const double towards = setup.sides[k].normal.dot(ray.direction);
+    if (towards >= 0.0) continue;
+    const double t = (setup.sides[k].offset_mm - setup.sides[k].normal.dot(ray.origin)) / towards;
+    const Vec3 at = ray.origin + t * ray.direction;
+    if (t > 0.0 && at.z() < setup.thickness_mm && at.z() > setup.top_mm && is_within(at, k))
+      return Contact{Contact::What::side, at, at, Eigen::Matrix3d::Identity(), k};
+  }
+  return std::nullopt;
+}
+
+Contact CameraTracer::Hidden::contact_of(const WorldRay& ray) const {
+  if (scene.film) return contact_with(*scene.film, part.thickness_mm, ray);
+  const double nearest = (middle - ray.origin).dot(ray.direction);
+  if ((ray.origin + nearest * ray.direction - middle).norm() > radius_mm) return {};
+  if (const auto plate = contact_with_plate(ray)) return *plate;
+  // Single precision does not know places metres away.
+  const Vec3 at = ray.origin + std::max(0.0, nearest - 1.01 * radius_mm) * ray.direction;
+  return {Contact::What::outside, at, at, Eigen::Matrix3d::Identity(), 0};
+}
+
+/// What a ray of the camera sees, cd/m^2.
+double CameraTracer::Hidden::follow(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel,
+                                    std::uint32_t point, PathWalker& walker, Tally& tally, Sight& sight,
+                                    bool& shows_part) const {
+  const Contact contact = contact_of(ray);
+  shows_part = contact.what == Contact::What::face || contact.what == Contact::What::side;
+  if (contact.what == Contact::What::nothing) return scene.surroundings.behind;
+  if (contact.what == Contact::What::dark) return 0.0;
+  const Optics& optics = setups[wavelength].optics;
+  const Vec3 direction = contact.world_from_local.transpose() * ray.direction;
+  sight.begin(contact, scene.film.has_value());
+  Ray start{direction, {}, contact.what != Contact::What::outside, false};
+  start.light.s_axis = direction.unitOrthogonal();
+  const double elsewhere = tally.other[Account::transmitted] + tally.other[Account::side_exit];
+  double behind = 0.0;
+  if (shows_part) {
+    const bool is_side = contact.what == Contact::What::side;
+    const Vec3 normal = is_side ? setups[wavelength].sides[contact.side].normal : Vec3(Vec3::UnitZ());
+    const double cosine = -normal.dot(direction);
+    const materials::FresnelCoefficients f = materials::fresnel(1.0 / optics.index, cosine);
+    start.light.turn_to(direction, normal);
+    const Light front = start.light.reflected(f);
+    start.direction = refracted(direction, normal, 1.0 / optics.index, cosine, f.cos_refracted);
+    if (is_side || !optics.lossless_entrance) {
+      start.light = start.light.transmitted(f);
+      if (is_side)
+        behind += front.power();
+      else
+        sight.leaves(contact.local, mirrored(direction, normal), front.power());
+    }
+  }
+  std::uint32_t choices = 0;
+  walker.resume(contact.local, start, {seed, kCameraChoiceStream}, point, pixel, choices);
+  behind += tally.other[Account::transmitted] + tally.other[Account::side_exit] - elsewhere;
+  return sight.luminance() + scene.surroundings.behind * behind;
+}
+
+void CameraTracer::Hidden::add_pixel(std::uint32_t pixel, std::uint32_t pass, std::vector<PathWalker>& walkers,
+                                     Tally& tally, Sight& sight, double& luminance, double& on_part,
+                                     double& coverage) const {
+  const auto columns = static_cast<std::uint32_t>(scene.view.columns);
+  const auto words = philox({seed, kCameraScrambleStream}, pass, pixel);
+  const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
+  for (std::uint32_t k = 0; k < kPointsPerPass; ++k) {
+    const std::uint32_t point = pass * kPointsPerPass + k;
+    const std::array<double, 2> within = square(k);
+    const auto random = philox({seed, kLensStream}, point, pixel);
+    // Points of a pass take turns through the wavelengths.
+    const double chosen = (static_cast<double>(k) + unit_interval(random[0])) / kPointsPerPass;
+    const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, chosen * cumulative.back());
+    const auto wavelength = static_cast<std::size_t>(found - cumulative.begin());
+    const Vec2 pupil = scene.discs == DiscAverage::sampled
+                           ? in_unit_disc(unit_interval(random[1]), unit_interval(random[2]))
+                           : Vec2(Vec2::Zero());
+    const WorldRay ray = lens.ray(
+        {static_cast<double>(pixel % columns) + within[0], static_cast<double>(pixel / columns) + within[1]}, pupil);
+    bool shows_part = false;
+    const double value = follow(ray, wavelength, pixel, point, walkers[wavelength], tally, sight, shows_part);
+    luminance += value / kPointsPerPass;
+    if (shows_part) on_part += value / kPointsPerPass;
+    if (shows_part) coverage += 1.0 / kPointsPerPass;
+  }
+}
+
+CameraTracer::CameraTracer(const geometry::Part& part, const std::vector<WeighedOptics>& light,
+                           const CameraScene& scene, const PathPolicy& policy, std::uint32_t seed)
+    : hidden_(std::make_unique<Hidden>(part, light, scene, policy, seed)) {}
+CameraTracer::~CameraTracer() = default;
+
+CameraImage CameraTracer::empty_image() const {
+  CameraImage image;
+  image.columns = hidden_->scene.view.columns;
+  image.rows = hidden_->scene.view.rows;
+  image.luminance.assign(image.columns * image.rows, 0.0);
+  image.squares = image.luminance;
+  image.coverage = image.luminance;
+  return image;
+}
+
+bool CameraTracer::add_pass(CameraImage& image, const Cancellation* cancel) const {
+  const Hidden& h = *hidden_;
+  const std::size_t pixels = image.luminance.size();
+  std::vector<double> luminance(pixels, 0.0);
+  std::vector<double> on_part(pixels, 0.0);
+  std::vector<double> coverage(pixels, 0.0);
+  std::vector<double> lost(image.rows, 0.0);
+  for_each_in_parallel(image.rows, [&](std::size_t row) {
+    if (cancel != nullptr && cancel->requested()) return;
+    const FlushDenormals flush;
+    Tally tally(1);
+    Sight sight(h.luminaire, h.scene.surroundings.front);
+    std::vector<PathWalker> walkers;
+    for (const PathSetup& setup : h.setups) walkers.emplace_back(setup, tally, &sight);
+    for (std::size_t pixel = row * image.columns; pixel < (row + 1) * image.columns; ++pixel)
+      h.add_pixel(static_cast<std::uint32_t>(pixel), image.passes, walkers, tally, sight, luminance[pixel],
+                  on_part[pixel], coverage[pixel]);
+    lost[row] = tally.other[Account::lost];
+  });
+  if (cancel != nullptr && cancel->requested()) return false;
+  double lost_power = 0.0;
+  for (const double power : lost) lost_power += power;
+  if (lost_power > kLostLimit * static_cast<double>(pixels * kPointsPerPass))
+    throw BudgetError(
+        "rays missed every face from inside the part: this is a defect of retrace, please report the "
+        "design");
+  ++image.passes;
+  image.paths += pixels * kPointsPerPass;
+  double part_sum = 0.0;
+  double part_pixels = 0.0;
+  for (std::size_t k = 0; k < pixels; ++k) {
+    const double off = luminance[k] - image.luminance[k];
+    image.luminance[k] += off / image.passes;
+    image.squares[k] += off * (luminance[k] - image.luminance[k]);
+    image.coverage[k] += (coverage[k] - image.coverage[k]) / image.passes;
+    part_sum += on_part[k];
+    part_pixels += coverage[k];
+  }
+  if (part_pixels > 0.0) image.part_means.push_back(part_sum / part_pixels);
+  return true;
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,257 @@
+#include "raytrace/observers/detector.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "raytrace/faces/back_surface.h"
+#include "raytrace/light/exit_observer.h"
+#include "raytrace/light/ledger.h"
+#include "raytrace/paths/path_tracer.h"
+#include "raytrace/sampling/entrance_sampler.h"
+#include "raytrace/sampling/flush_denormals.h"
+#include "raytrace/sampling/replicates.h"
+#include "raytrace/sampling/sobol.h"
+#include "raytrace/sampling/threads.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::Polygon;
+
+constexpr std::uint32_t kReplicates = 32;
+constexpr std::uint32_t kRaysPerTask = 2048;
+
+Polygon moved(Polygon polygon, const Vec2& by) {
+  for (Vec2& p : polygon) p += by;
+  return polygon;
+}
+
+/// The entrance face, or one period of it.
+Polygon face_of(const geometry::Part& part) {
+  return part.period_mm ? geometry::to_polygon({Vec2::Zero(), *part.period_mm}) : part.outline;
+}
+
+/// Spreads the power of a beam evenly over a polygon. Of an infinite part every period sends back the same, so that
+/// what lies beyond one side of a period comes in at the other.
+void spread(const geometry::Part& part, const PixelGrid& grid, const Polygon& polygon, double power,
+            std::vector<double>& irradiance) {
+  const double area = geometry::area(polygon);
+  if (!(area > 0.0)) return;
+  const double to_irradiance = power / area * part.entrance_area_mm2 / grid.pixel_area_mm2();
+  const auto add = [&](std::size_t pixel, double covered_mm2) { irradiance[pixel] += to_irradiance * covered_mm2; };
+  if (!part.period_mm) {
+    grid.cover(polygon, add);
+    return;
+  }
+  const geometry::Rectangle box = geometry::bounding_box(polygon);
+  const Vec2 first = box.lower.cwiseQuotient(*part.period_mm).array().floor();
+  const Vec2 last = box.upper.cwiseQuotient(*part.period_mm).array().floor();
+  for (double j = first.y(); j <= last.y(); ++j)
+    for (double i = first.x(); i <= last.x(); ++i)
+      grid.cover(moved(polygon, -Vec2(i, j).cwiseProduct(*part.period_mm)), add);
+}
+
+void add_direction(const DetectorSetting& setting, const Vec3& direction, double power, DetectorMaps& maps) {
+  if (const auto bin = setting.angles.bin_of(setting.frame.angles_rad(direction)))
+    maps.per_sr.value[*bin] += power / setting.angles.solid_angle_sr(*bin);
+  else
+    maps.outside += power;
+}
+
+DetectorMaps empty_maps(const DetectorSetting& setting) {
+  DetectorMaps maps;
+  maps.leaving.value.assign(setting.face.size(), 0.0);
+  maps.entering.value.assign(setting.face.size(), 0.0);
+  maps.per_sr.value.assign(setting.angles.size(), 0.0);
+  return maps;
+}
+
+/// What one path put where: few entries, added up in the order of the paths.
+struct Deposit {
+  std::uint32_t pixel = 0;
+  double power = 0.0;
+};
+struct Deposits {
+  std::vector<Deposit> leaving;
+  std::vector<Deposit> entering;
+  std::vector<Deposit> angles;  ///< the bin after the last is what lies outside
+  double in_cone = 0.0;
+  double truncated = 0.0;
+  double lost = 0.0;
+};
+
+/// Books the light of one path after another.
+class Recorder : public ExitObserver {
+ public:
+  Recorder(const geometry::Part& part, const Vec2& centre_mm, const LightSetup& light, const DetectorSetting& setting,
+           Deposits& deposits)
+      : part_(part), centre_mm_(centre_mm), light_(light), setting_(setting), deposits_(deposits) {}
+
+  void enters(const Vec2& position_mm) {
+    entry_ = pixel_at(position_mm);
+    add(position_mm, light_.entry.front_direction, light_.entry.front.i);
+  }
+  void leaves(const Vec3& position, const Vec3& direction, double power) override {
+    add(position.head<2>(), direction, power);
+  }
+
+ private:
+  std::optional<std::size_t> pixel_at(Vec2 position_mm) const {
+    position_mm += centre_mm_;
+    if (part_.period_mm) {
+      const Vec2 periods = position_mm.cwiseQuotient(*part_.period_mm).array().floor();
+      position_mm -= periods.cwiseProduct(*part_.period_mm);
+    }
+    return setting_.face.pixel_at(position_mm);
+  }
+
+  void add(const Vec2& position_mm, const Vec3& direction, double power) {
+    const auto bin = setting_.angles.bin_of(setting_.frame.angles_rad(direction));
+    deposits_.angles.push_back({static_cast<std::uint32_t>(bin.value_or(setting_.angles.size())), power});
+    if (light_.cone_of(direction) >= light_.cone_chord2.size()) return;
+    deposits_.in_cone += power;
+    if (const auto pixel = pixel_at(position_mm))
+      deposits_.leaving.push_back({static_cast<std::uint32_t>(*pixel), power});
+    if (entry_) deposits_.entering.push_back({static_cast<std::uint32_t>(*entry_), power});
+  }
+
+  const geometry::Part& part_;
+  Vec2 centre_mm_;
+  const LightSetup& light_;
+  const DetectorSetting& setting_;
+  Deposits& deposits_;
+  std::optional<std::size_t> entry_;
+};
+
+/// Means and standard errors over replicates, one after the other (Welford 1962).
+class RunningMean {
+ public:
+  explicit RunningMean(std::size_t size) : sum_(size, 0.0), mean_(size, 0.0), squares_(size, 0.0) {}
+
+  std::vector<double>& replicate() { return sum_; }
+  /// Takes the replicate that has been filled, times `scale`.
+  void close(double scale) {
+    count_ += 1.0;
+    for (std::size_t k = 0; k < sum_.size(); ++k) {
+      const double value = scale * sum_[k];
+      const double off = value - mean_[k];
+      mean_[k] += off / count_;
+      squares_[k] += off * (value - mean_[k]);
+      sum_[k] = 0.0;
+    }
+  }
+  PixelValues values() const {
+    PixelValues values{mean_, squares_};
+    for (double& s : values.std_error) s = std::sqrt(s / (count_ - 1.0) / count_);
+    return values;
+  }
+
+ private:
+  std::vector<double> sum_;
+  std::vector<double> mean_;
+  std::vector<double> squares_;
+  double count_ = 0.0;
+};
+
+void add_to(std::vector<double>& sums, const std::vector<Deposit>& deposits) {
+  for (const Deposit& d : deposits) sums[d.pixel] += d.power;
+}
+
+}  // namespace
+
+DetectorMaps exact_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
+                                 const DetectorSetting& setting, const BeamPolicy& policy, const Cancellation* cancel) {
+  DetectorMaps maps = empty_maps(setting);
+  const Polygon face = face_of(part);
+  const auto record = [&](const ReturnedBeam& beam) {
+    add_direction(setting, beam.direction, beam.stokes.i, maps);
+    if (beam.cone > 0) return;
+    maps.rre += beam.stokes.i;
+    const bool entered = beam.depth > 0;
+    spread(part, setting.face, entered ? beam.left_mm : face, beam.stokes.i, maps.leaving.value);
+    spread(part, setting.face, entered ? beam.entered_mm : face, beam.stokes.i, maps.entering.value);
+  };
+  const BeamResult traced =
+      BeamTracer(part).trace(optics, illumination, {setting.acceptance_deg}, policy, cancel, record);
+  maps.complete = traced.complete;
+  maps.rays = traced.beams;
+  if (traced.complete) maps.truncated = traced.ledgers.front()[Account::truncated];
+  return maps;
+}
+
+DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
+                                   const DetectorSetting& setting, std::uint64_t rays, std::uint32_t seed,
+                                   const PathPolicy& policy, Progress* progress, const Cancellation* cancel) {
+  const EntranceSampler entrance(part);
+  const BackSurface surface(part, entrance.centre_mm());
+  const PathSetup setup(part, surface, entrance.centre_mm(), optics, illumination, {setting.acceptance_deg}, policy);
+  const auto per_replicate =
+      static_cast<std::uint32_t>(std::clamp<std::uint64_t>((rays + kReplicates - 1) / kReplicates, 1, UINT32_MAX / 2));
+  const std::size_t tasks = (per_replicate + kRaysPerTask - 1) / kRaysPerTask;
+  RunningMean leaving(setting.face.size());
+  RunningMean entering(setting.face.size());
+  RunningMean angles(setting.angles.size() + 1);
+  RunningMean rre(1);
+  DetectorMaps maps = empty_maps(setting);
+  for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate) {
+    const auto words = philox({seed, kScrambleStream}, replicate, 0);
+    const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
+    std::vector<Deposits> done(tasks);
+    for_each_in_parallel(tasks, [&](std::size_t task) {
+      if (cancel != nullptr && cancel->requested()) return;
+      const FlushDenormals flush;
+      Deposits& deposits = done[task];
+      Tally tally(1);
+      Recorder recorder(part, entrance.centre_mm(), setup, setting, deposits);
+      PathWalker walker(setup, tally, &recorder);
+      const auto first = static_cast<std::uint32_t>(task) * kRaysPerTask;
+      for (std::uint32_t ray = first; ray < std::min(first + kRaysPerTask, per_replicate); ++ray) {
+        const Vec2 entry = entrance(square(ray));
+        recorder.enters(entry);
+        walker.trace(entry, {seed, kChoiceStream}, replicate, ray);
+      }
+      deposits.truncated = tally.other[Account::truncated];
+      deposits.lost = tally.other[Account::lost];
+    });
+    if (cancel != nullptr && cancel->requested()) {
+      maps.complete = false;
+      return maps;
+    }
+    for (const Deposits& deposits : done) {
+      add_to(leaving.replicate(), deposits.leaving);
+      add_to(entering.replicate(), deposits.entering);
+      add_to(angles.replicate(), deposits.angles);
+      rre.replicate()[0] += deposits.in_cone;
+      maps.truncated += deposits.truncated / per_replicate / kReplicates;
+      if (deposits.lost > kLostLimit * per_replicate)
+        throw BudgetError(
+            "rays missed every face from inside the part: this is a defect of retrace, please report "
+            "the design");
+    }
+    const double share = 1.0 / per_replicate;
+    const double to_irradiance = share * part.entrance_area_mm2 / setting.face.pixel_area_mm2();
+    leaving.close(to_irradiance);
+    entering.close(to_irradiance);
+    angles.close(share);
+    rre.close(share);
+    if (progress != nullptr) progress->at((replicate + 1.0) / kReplicates);
+  }
+  maps.leaving = leaving.values();
+  maps.entering = entering.values();
+  maps.per_sr = angles.values();
+  maps.outside = maps.per_sr.value.back();
+  maps.per_sr.value.pop_back();
+  maps.per_sr.std_error.pop_back();
+  for (std::size_t bin = 0; bin < setting.angles.size(); ++bin) {
+    maps.per_sr.value[bin] /= setting.angles.solid_angle_sr(bin);
+    maps.per_sr.std_error[bin] /= setting.angles.solid_angle_sr(bin);
+  }
+  maps.rre = rre.values().value[0];
+  maps.std_error = rre.values().std_error[0];
+  maps.rays = std::uint64_t{per_replicate} * kReplicates;
+  return maps;
+}
+
+}  // namespace retrace::raytrace

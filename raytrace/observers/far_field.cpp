@@ -1,0 +1,397 @@
+#include "raytrace/observers/far_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "raytrace/exact/flat_polygon.h"
+#include "raytrace/light/light_setup.h"
+#include "raytrace/sampling/sobol.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::Vec2;
+using std::numbers::pi;
+
+// Directions nearer than this are one.
+constexpr double kOneDirection_rad = 1e-9;
+// Beams below this are not looked at one by one.
+constexpr double kFaint = 1e-10;
+// Steps by which fields of cells are compared: of lengths in elements, of cosines, of amplitudes, of paths in mm.
+constexpr double kLengthStep = 1e-7;
+constexpr double kCosineStep = 1e-8;
+constexpr double kAmplitudeStep = 1e-7;
+constexpr double kPathStep_mm = 1e-7;
+// Polygons are joined if their union is convex but for this share of an element's area.
+constexpr double kJoinShare = 1e-10;
+// Lattice points to the finest detail: the density is a band-limited function.
+constexpr double kPointsToADetail = 1.5;
+// And to the radius of a cone, whose edge the lattice draws in steps.
+constexpr double kPointsToARadius = 48.0;
+// Points by which the density outside a cone is integrated, and the key of their scramble.
+constexpr std::uint32_t kTailPoints = 1U << 15;
+// How far they reach.
+constexpr double kFarthestCosine = 20.0;
+constexpr std::uint64_t kTailKey = 0x2545f4914f6cdd1dU;
+
+std::int64_t step_of(double value, double step) {
+  return std::llround(value / step);
+}
+
+/// Coherency matrix of the incident light along the axes of the source. Its second axis is p of light that comes down
+/// reversed.
+Eigen::Matrix2cd coherency_of(const Stokes& s) {
+  Eigen::Matrix2cd c;
+  c << s.i + s.q, std::complex<double>(s.u, -s.v), std::complex<double>(s.u, s.v), s.i - s.q;
+  return 0.5 * c;
+}
+
+double power_of(const JonesMatrix& jones, const Eigen::Matrix2cd& coherency) {
+  return (jones * coherency * jones.adjoint()).trace().real();
+}
+
+Vec3 direction_to_source(const Illumination& illumination) {
+  const double t = illumination.incidence.rad();
+  const double p = illumination.azimuth.rad();
+  return Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+}
+
+double small_angle_between(const Vec3& a, const Vec3& b) {
+  return 2.0 * std::asin(std::min(1.0, 0.5 * (a - b).norm()));
+}
+
+/// What tells fields of two cells apart.
+using Signature = std::vector<std::int64_t>;
+
+Signature signature_of(const CoherentGroup& group, double size_mm) {
+  Signature all;
+  for (const FieldPolygon& p : group.polygons) {
+    const Vec2 centroid = geometry::centroid(p.transform.polygon());
+    for (const double length : {centroid.x(), centroid.y(), std::sqrt(p.transform.area_mm2())})
+      all.push_back(step_of(length, kLengthStep * size_mm));
+    all.push_back(step_of(p.cosines.x(), kCosineStep));
+    all.push_back(step_of(p.cosines.y(), kCosineStep));
+    const double scale = 1.0 / std::sqrt(std::max(p.power, std::numeric_limits<double>::min()));
+    for (const std::complex<double>& a : p.amplitude.reshaped()) {
+      const std::complex<double> unit = a * scale * size_mm;
+      all.push_back(step_of(unit.real(), 1e3 * kAmplitudeStep));
+      all.push_back(step_of(unit.imag(), 1e3 * kAmplitudeStep));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+double CoherentGroup::power() const {
+  double sum = 0.0;
+  for (const FieldPolygon& p : polygons) sum += p.power;
+  return copies * sum;
+}
+
+double FarField::diffracted_power() const {
+  double sum = 0.0;
+  for (const CoherentGroup& group : groups_) sum += group.power();
+  return sum;
+}
+
+double FarField::detail_rad() const {
+  double finest = std::numeric_limits<double>::infinity();
+  for (const CoherentGroup& group : groups_) finest = std::min(finest, wavelength_mm_ / group.extent_mm);
+  return finest;
+}
+
+/// Power by the cosines of directions. Defined beyond the horizon as well, where the theory leaves a little of cells
+/// that are not much larger than the wavelength.
+double FarField::per_cosines(const Vec2& cosines) const {
+  const double wave_number = 2.0 * pi / wavelength_mm_;
+  double sum = 0.0;
+  for (const CoherentGroup& group : groups_) {
+    if (is_cancelled(cancel_)) return 0.0;
+    JonesMatrix field = JonesMatrix::Zero();
+    for (const FieldPolygon& p : group.polygons)
+      field += p.transform.at(wave_number * (cosines - p.cosines)) * p.amplitude;
+    sum += group.copies * power_of(field, coherency_);
+  }
+  return sum / (wavelength_mm_ * wavelength_mm_);
+}
+
+double FarField::diffracted_per_sr(const Vec3& direction) const {
+  return direction.z() > 0.0 ? direction.z() * per_cosines(direction.head<2>()) : 0.0;
+}
+
+double FarField::intensity_per_sr(const Vec3& direction, const ApertureKernel& kernel) const {
+  double sum = 0.0;
+  for (const FarFieldRay& ray : rays_) sum += ray.power * kernel.per_sr(small_angle_between(ray.direction, direction));
+  if (groups_.empty()) return sum;
+  ReturnFrame frame;
+  frame.to_source = direction;
+  frame.right = source_axis(direction);
+  frame.up = direction.cross(frame.right);
+  for (const ApertureKernel::Node& node : kernel.nodes(detail_rad()))
+    sum += node.weight * diffracted_per_sr(frame.direction(node.offset_rad));
+  return sum;
+}
+
+std::vector<double> FarField::binned(const ReturnFrame& frame, const DirectionGrid& grid) const {
+  std::vector<double> sums(grid.size() + 1, 0.0);
+  for (const FarFieldRay& ray : rays_)
+    sums[grid.bin_of(frame.angles_rad(ray.direction)).value_or(grid.size())] += ray.power;
+  if (groups_.empty()) return sums;
+  double inside = 0.0;
+  for (std::size_t bin = 0; bin < grid.size(); ++bin) {
+    const double power = diffracted_per_sr(frame.direction(grid.middle_rad(bin))) * grid.solid_angle_sr(bin);
+    sums[bin] += power;
+    inside += power;
+  }
+  sums.back() += std::max(0.0, diffracted_power() - inside);
+  return sums;
+}
+
+FarField::Split FarField::split(const ReturnFrame& frame, double half_angle_rad) const {
+  Split split;
+  for (const FarFieldRay& ray : rays_)
+    (small_angle_between(ray.direction, frame.to_source) <= half_angle_rad ? split.inside : split.outside) += ray.power;
+  if (groups_.empty()) return split;
+  const double step = std::min(detail_rad() / kPointsToADetail, half_angle_rad / kPointsToARadius);
+  const auto reach = static_cast<std::int64_t>(std::ceil(half_angle_rad / step));
+  for (std::int64_t j = -reach; j <= reach; ++j)
+    for (std::int64_t i = -reach; i <= reach; ++i) {
+      const Vec2 at = step * Vec2(static_cast<double>(i), static_cast<double>(j));
+      const double angle = at.norm();
+      if (angle > half_angle_rad) continue;
+      const double shrink = angle > 0.0 ? std::sin(angle) / angle : 1.0;
+      split.inside += step * step * shrink * diffracted_per_sr(frame.direction(at));
+    }
+  split.outside += tail(frame, half_angle_rad);
+  return split;
+}
+
+/// The diffracted power outside of a cone, over the plane of cosines: even steps of the logarithm of the distance from
+/// its middle, as the density falls by powers of it.
+double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
+  const Vec2 middle = frame.to_source.head<2>();
+  // The cone's outline in the plane lies beyond this.
+  const double nearest = 0.9 * frame.to_source.z() * std::sin(half_angle_rad);
+  const double decades = std::log(kFarthestCosine / nearest);
+  const SobolSquare square(kTailKey, ~kTailKey);
+  double sum = 0.0;
+  for (std::uint32_t k = 0; k < kTailPoints; ++k) {
+    const auto [u, v] = square(k);
+    const double distance = nearest * std::exp(u * decades);
+    const Vec2 at = middle + distance * Vec2(std::cos(2.0 * pi * v), std::sin(2.0 * pi * v));
+    const double height2 = 1.0 - at.squaredNorm();
+    const bool is_inside =
+        height2 > 0.0 && small_angle_between({at.x(), at.y(), std::sqrt(height2)}, frame.to_source) <= half_angle_rad;
+    if (!is_inside) sum += per_cosines(at) * distance * distance;
+  }
+  return 2.0 * pi * decades * sum / kTailPoints;
+}
+
+FarFieldCollector::FarFieldCollector(const geometry::Part& part, const Illumination& illumination,
+                                     const FarFieldPolicy& policy)
+    : policy_(policy),
+      is_infinite_(part.period_mm.has_value()),
+      size_mm_(part.size_mm),
+      to_source_(direction_to_source(illumination)),
+      directions_(kOneDirection_rad) {
+  field_.wavelength_mm_ = 1e-6 * policy.wavelength_nm;
+  field_.coherency_ = coherency_of(illumination.stokes);
+  field_.cancel_ = policy.cancel;
+}
+
+void FarFieldCollector::add_ray(const Vec3& direction, double power) {
+  std::size_t index = field_.rays_.size();
+  directions_.visit(direction, [&](std::size_t known) { index = std::min(index, known); });
+  if (index == field_.rays_.size()) {
+    field_.rays_.push_back({direction, 0.0});
+    directions_.insert(direction, index);
+  }
+  field_.rays_[index].power += power;
+}
+
+void FarFieldCollector::add(const ReturnedBeam& beam) {
+  field_.total_power_ += beam.stokes.i;
+  const bool is_diffracted = policy_.diffraction && beam.trail.first && beam.left_mm.size() >= 3 &&
+                             beam.stokes.i > kFaint &&
+                             small_angle_between(beam.direction, to_source_) <= policy_.window_rad;
+  if (!is_diffracted) return add_ray(beam.direction, beam.stokes.i);
+  Place place{0, 0, 0, 0};
+  if (beam.trail.is_mixed) {
+    place.beam = ++mixed_;
+  } else {
+    place.cell = beam.trail.first->id;
+    if (!is_infinite_) {
+      place.x = step_of(beam.trail.first->offset_mm.x(), kLengthStep * size_mm_);
+      place.y = step_of(beam.trail.first->offset_mm.y(), kLengthStep * size_mm_);
+    }
+  }
+  cells_[place].push_back(moved_home(beam));
+}
+
+/// The part without errors repeats, and its fields with it: moved by T they are those of light that comes in with the
+/// phase that it has at T.
+FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam) const {
+  const Vec2 by = beam.trail.first->offset_mm;
+  Piece piece;
+  for (const Vec2& p : beam.left_mm) piece.outline_mm.push_back(p - beam.centre_mm - by);
+  piece.direction = beam.direction;
+  piece.jones = beam.jones;
+  piece.transmission = beam.transmission;
+  piece.phase_mm = beam.phase_mm + (beam.direction + to_source_).head<2>().dot(by);
+  piece.power = beam.stokes.i;
+  return piece;
+}
+
+/// Divides the light of a cell by the lengths of its paths.
+std::vector<CoherentGroup> FarFieldCollector::groups_of(const std::vector<Piece>& pieces) const {
+  Vec2 middle = Vec2::Zero();
+  double area = 0.0;
+  for (const Piece& piece : pieces) {
+    const double own = geometry::area(piece.outline_mm);
+    middle += own * geometry::centroid(piece.outline_mm);
+    area += own;
+  }
+  if (area > 0.0) middle /= area;
+  const auto path = [&](const Piece& p) { return p.phase_mm + p.direction.head<2>().dot(middle); };
+  std::vector<Piece> sorted = pieces;
+  std::stable_sort(sorted.begin(), sorted.end(), [&](const Piece& a, const Piece& b) { return path(a) < path(b); });
+  std::vector<CoherentGroup> groups;
+  std::vector<Piece> open;
+  for (const Piece& piece : sorted) {
+    if (!open.empty() && path(piece) - path(open.back()) > policy_.coherence_length_mm) {
+      groups.push_back(group_of(std::move(open), middle));
+      open.clear();
+    }
+    open.push_back(piece);
+  }
+  groups.push_back(group_of(std::move(open), middle));
+  return groups;
+}
+
+/// Joins what belongs to one wave again: a large entrance is traced in pieces that have nothing to do with its cells.
+void FarFieldCollector::join(std::vector<Piece>& pieces) const {
+  const auto wave_of = [](const Piece& p) {
+    std::array<std::int64_t, 11> key{};
+    key[0] = step_of(p.direction.x(), kCosineStep);
+    key[1] = step_of(p.direction.y(), kCosineStep);
+    key[2] = step_of(p.phase_mm, kPathStep_mm);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::complex<double> a = p.jones.reshaped()(static_cast<Eigen::Index>(k));
+      key[3 + 2 * k] = step_of(a.real(), kAmplitudeStep);
+      key[4 + 2 * k] = step_of(a.imag(), kAmplitudeStep);
+    }
+    return key;
+  };
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [&](const Piece& a, const Piece& b) { return wave_of(a) < wave_of(b); });
+  std::vector<Piece> joined;
+  for (std::size_t first = 0; first < pieces.size();) {
+    std::size_t last = first;
+    FlatPolygons outlines;
+    double area_before = 0.0;
+    double transmission = 0.0;
+    double power = 0.0;
+    for (; last < pieces.size() && wave_of(pieces[last]) == wave_of(pieces[first]); ++last) {
+      outlines.emplace_back(pieces[last].outline_mm.begin(), pieces[last].outline_mm.end());
+      area_before += geometry::area(pieces[last].outline_mm);
+      transmission += pieces[last].transmission;
+      power += pieces[last].power;
+    }
+    if (last - first > 1) join_convex(outlines, kJoinShare * size_mm_ * size_mm_);
+    for (const FlatPolygon& outline : outlines) {
+      Piece piece = pieces[first];
+      piece.outline_mm.assign(outline.begin(), outline.end());
+      const double share = raytrace::area(outline) / area_before;
+      piece.transmission = share * transmission;
+      piece.power = share * power;
+      joined.push_back(std::move(piece));
+    }
+    first = last;
+  }
+  pieces = std::move(joined);
+}
+
+CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2& middle_mm) const {
+  join(pieces);
+  const double wave_number = 2.0 * pi / field_.wavelength_mm_;
+  const auto path = [&](const Piece& p) { return p.phase_mm + p.direction.head<2>().dot(middle_mm); };
+  const auto key = [](const Piece& p) {
+    const Vec2 c = geometry::centroid(p.outline_mm);
+    return std::tuple(step_of(c.x(), 1e-6), step_of(c.y(), 1e-6), step_of(p.direction.x(), kCosineStep));
+  };
+  std::stable_sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) { return key(a) < key(b); });
+  CoherentGroup group;
+  const double first_path = pieces.empty() ? 0.0 : path(pieces.front());
+  for (const Piece& piece : pieces) {
+    geometry::Polygon outline;
+    for (const Vec2& p : piece.outline_mm) outline.push_back(p - middle_mm);
+    PolygonTransform transform(outline);
+    if (!(transform.area_mm2() > 0.0)) continue;
+    const double phase = wave_number * (path(piece) - first_path);
+    const std::complex<double> factor = std::polar(std::sqrt(piece.transmission / transform.area_mm2()), phase);
+    for (const Vec2& p : outline) group.extent_mm = std::max(group.extent_mm, 2.0 * p.norm());
+    group.polygons.push_back({std::move(transform), piece.direction.head<2>(), factor * piece.jones, piece.power});
+  }
+  return group;
+}
+
+/// Cells that send back the same field are one, counted.
+std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
+  std::vector<CoherentGroup> groups;
+  std::map<Signature, std::size_t> known;
+  for (const auto& [place, pieces] : cells_) {
+    if (is_cancelled(policy_.cancel)) break;
+    for (CoherentGroup& group : groups_of(pieces)) {
+      if (group.polygons.empty()) continue;
+      const auto [it, is_new] = known.try_emplace(signature_of(group, size_mm_), groups.size());
+      if (is_new)
+        groups.push_back(std::move(group));
+      else
+        groups[it->second].copies += 1.0;
+    }
+  }
+  return groups;
+}
+
+void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
+  double left = 0.0;
+  for (const CoherentGroup& group : groups) left += group.power();
+  const double least = policy_.undiffracted_share * left;
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const CoherentGroup& a, const CoherentGroup& b) { return a.power() > b.power(); });
+  std::size_t polygons = 0;
+  for (CoherentGroup& group : groups) {
+    const bool is_to_be_diffracted =
+        left > least && field_.wavelength_mm_ >= policy_.finest_detail_rad * group.extent_mm;
+    const bool is_within_budget = polygons + group.polygons.size() <= policy_.most_polygons;
+    left -= group.power();
+    if (is_to_be_diffracted && is_within_budget) {
+      polygons += group.polygons.size();
+      field_.groups_.push_back(std::move(group));
+      continue;
+    }
+    if (is_to_be_diffracted) field_.beyond_budget_power_ += group.power();
+    add_undiffracted(group);
+  }
+}
+
+void FarFieldCollector::add_undiffracted(const CoherentGroup& group) {
+  for (const FieldPolygon& p : group.polygons) {
+    const double height = std::sqrt(std::max(0.0, 1.0 - p.cosines.squaredNorm()));
+    add_ray({p.cosines.x(), p.cosines.y(), height}, group.copies * p.power);
+  }
+}
+
+FarField FarFieldCollector::finish() {
+  keep_strongest(distinct_groups());
+  cells_.clear();
+  return std::move(field_);
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,152 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/point_lookup.h"
+#include "raytrace/observers/direction_score.h"
+#include "raytrace/observers/polygon_transform.h"
+
+namespace retrace::raytrace {
+
+/// What a far field takes account of.
+struct FarFieldPolicy {
+  bool diffraction = true;
+  double wavelength_nm = 587.56;  ///< > 0
+  /// Beams within this angle of the direction back to the source are diffracted; the others stay where they go.
+  double window_rad = 0.035;
+  /// Light of one cell whose optical paths differ by more does not interfere: the coherence length of a lamp (a few um)
+  /// and what the errors of angle of a part make of equal paths.
+  double coherence_length_mm = 0.02;
+  /// Share of the power in the window that may be left undiffracted: the faintest of it.
+  double undiffracted_share = 1e-4;
+  std::size_t most_polygons = 20'000;  ///< that are diffracted; the faintest beyond are not
+  /// Cells so large that their pattern is finer than this are not diffracted: the discs of source and receiver hide it.
+  double finest_detail_rad = 0.0;
+  /// Asked between polygons; figures of a far field are of no use once it is set. Outlives the far field.
+  const Cancellation* cancel = nullptr;
+};
+
+/// A plane wave through a convex polygon of the entrance face: part of the field that a cell sends back.
+struct FieldPolygon {
+  PolygonTransform transform;
+  geometry::Vec2 cosines;  ///< of its direction along x and y
+  JonesMatrix amplitude;   ///< times the square root of the density of power, with the phase at the origin
+  double power = 0.0;      ///< for the polarisation of the incident light
+};
+
+/// All that interferes: the light of one cell by paths of about the same length.
+struct CoherentGroup {
+  std::vector<FieldPolygon> polygons;
+  double copies = 1.0;     ///< cells that send back the same
+  double extent_mm = 0.0;  ///< diameter of the circle round all polygons, about their common middle
+  double power() const;    ///< of all copies
+};
+
+/// Light in one direction, without a shape.
+struct FarFieldRay {
+  Vec3 direction;
+  double power = 0.0;
+};
+
+/// Light that leaves the entrance face for one direction of incidence and one wavelength, by direction. Powers are
+/// shares of the incident power.
+///
+/// Beams of one cell add their fields, cells add their intensities: cells of a mould differ in height by more than the
+/// light can tell, and a lamp's light is coherent over less than a cell. Fraunhofer diffraction on the entrance face:
+/// the far field of a beam is the Fourier transform of its polygon (docs/theory/photometry.md).
+class FarField {
+ public:
+  /// What the receivers of `frame` see at angles (right, up), per steradian. \param kernel of source and receiver
+  double intensity_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;
+  /// The diffracted part alone, for a point as source and as receiver.
+  double diffracted_per_sr(const Vec3& direction) const;
+
+  /// Power by the bins of a grid, and outside of it at the end. Undiffracted light goes where its direction is;
+  /// diffracted light by its density in the middle of a bin.
+  std::vector<double> binned(const ReturnFrame& frame, const DirectionGrid& grid) const;
+
+  /// Power inside and outside of the cone about the direction back to the source, each by an integration of its own.
+  /// Outside is also what the theory leaves beyond the horizon.
+  struct Split {
+    double inside = 0.0;
+    double outside = 0.0;
+  };
+  Split split(const ReturnFrame& frame, double half_angle_rad) const;
+
+  double total_power() const { return total_power_; }
+  double diffracted_power() const;
+  /// What would have been diffracted, were there not more polygons than `most_polygons`.
+  double beyond_budget_power() const { return beyond_budget_power_; }
+  /// Distance of the finest details of what is diffracted; infinite if nothing is.
+  double detail_rad() const;
+  const std::vector<CoherentGroup>& groups() const { return groups_; }
+  const std::vector<FarFieldRay>& rays() const { return rays_; }
+
+ private:
+  friend class FarFieldCollector;
+
+  double per_cosines(const geometry::Vec2& cosines) const;
+  double tail(const ReturnFrame& frame, double half_angle_rad) const;
+
+  double wavelength_mm_ = 0.0;
+  Eigen::Matrix2cd coherency_ = 0.5 * Eigen::Matrix2cd::Identity();
+  std::vector<CoherentGroup> groups_;
+  std::vector<FarFieldRay> rays_;
+  double total_power_ = 0.0;
+  double beyond_budget_power_ = 0.0;
+  const Cancellation* cancel_ = nullptr;
+};
+
+/// Makes a far field of the returned beams of one direction, which BeamPolicy::by_cell keeps apart.
+class FarFieldCollector {
+ public:
+  /// \param illumination whose Stokes parameters are of power 1
+  FarFieldCollector(const geometry::Part& part, const Illumination& illumination, const FarFieldPolicy& policy);
+
+  void add(const ReturnedBeam& beam);
+  FarField finish();
+
+ private:
+  /// A beam in the window, moved with its cell to where the first copy of the cell stands.
+  struct Piece {
+    geometry::Polygon outline_mm;
+    Vec3 direction;
+    JonesMatrix jones;
+    double transmission = 0.0;
+    double phase_mm = 0.0;
+    double power = 0.0;
+  };
+  /// One cell; of a beam that met several, the beam itself.
+  struct Place {
+    std::uint64_t cell = 0;
+    std::int64_t x = 0;
+    std::int64_t y = 0;
+    std::uint64_t beam = 0;
+    auto operator<=>(const Place&) const = default;
+  };
+
+  void add_ray(const Vec3& direction, double power);
+  Piece moved_home(const ReturnedBeam& beam) const;
+  std::vector<CoherentGroup> groups_of(const std::vector<Piece>& pieces) const;
+  CoherentGroup group_of(std::vector<Piece> pieces, const geometry::Vec2& middle_mm) const;
+  void join(std::vector<Piece>& pieces) const;
+  std::vector<CoherentGroup> distinct_groups() const;
+  void keep_strongest(std::vector<CoherentGroup> groups);
+  void add_undiffracted(const CoherentGroup& group);
+
+  FarFieldPolicy policy_;
+  bool is_infinite_ = false;
+  double size_mm_ = 0.0;
+  Vec3 to_source_;
+  FarField field_;
+  std::map<Place, std::vector<Piece>> cells_;
+  std::uint64_t mixed_ = 0;
+  PointLookup<std::size_t> directions_;  ///< indices into the rays
+};
+
+}  // namespace retrace::raytrace

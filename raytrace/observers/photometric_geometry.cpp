@@ -1,0 +1,146 @@
+#include "raytrace/observers/photometric_geometry.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+using std::numbers::pi;
+
+// Sines below this are those of parallel directions.
+constexpr double kParallel = 1e-14;
+
+Eigen::Matrix3d turn(double angle_rad, const Vec3& axis) {
+  return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
+}
+
+/// Turns vectors of the part frame into the laboratory's: x the first axis, y from the source towards the observer, z
+/// to the source.
+Eigen::Matrix3d lab_from_part(const PhotometricGeometry& g) {
+  return turn(-g.beta1.rad(), Vec3::UnitX()) * turn(g.beta2.rad(), Vec3::UnitY()) *
+         turn(g.epsilon.rad(), Vec3::UnitZ());
+}
+
+/// Into (-pi, pi]; rounding does not choose between the ends.
+Angle wrapped(double angle_rad) {
+  double turned = std::remainder(angle_rad, 2.0 * pi);
+  if (turned < 1e-12 - pi) turned += 2.0 * pi;
+  return Angle::from_rad(turned);
+}
+
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// From the plane through `axis` and `from` to that through `axis` and `to`, counter-clockwise as seen from its end.
+double turn_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
+  return std::atan2(axis.dot(from.cross(to)), from.dot(to) - axis.dot(from) * axis.dot(to));
+}
+
+}  // namespace
+
+PhotometricGeometry geometry_from(const EntranceAngles& entrance, Angle alpha, Angle epsilon) {
+  return {alpha, Angle::from_rad(-entrance.v.rad()), Angle::from_rad(-entrance.h.rad()), epsilon};
+}
+
+EntranceAngles entrance_angles(const PhotometricGeometry& geometry) {
+  return {Angle::from_rad(-geometry.beta1.rad()), Angle::from_rad(-geometry.beta2.rad())};
+}
+
+PhotometricDirections directions_of(const PhotometricGeometry& geometry) {
+  const Eigen::Matrix3d part_from_lab = lab_from_part(geometry).transpose();
+  const double alpha = geometry.alpha.rad();
+  return {(part_from_lab * Vec3::UnitZ()).normalized(),
+          (part_from_lab * Vec3(0.0, std::sin(alpha), std::cos(alpha))).normalized()};
+}
+
+PhotometricGeometry geometry_of(const PhotometricDirections& directions) {
+  const Vec3& s = directions.to_source;
+  Vec3 up = directions.to_observer - directions.to_observer.dot(s) * s;
+  if (up.norm() < kParallel) up = Vec3::UnitY() - s.y() * s;
+  if (up.norm() < kParallel) up = Vec3::UnitX() - s.x() * s;
+  up.normalize();
+  const Vec3 first = up.cross(s);
+  const Vec3 normal(first.z(), up.z(), s.z());  // the part's, in the laboratory
+  PhotometricGeometry geometry;
+  geometry.alpha = Angle::from_rad(angle_between(s, directions.to_observer));
+  geometry.beta2 = Angle::from_rad(std::atan2(normal.x(), std::hypot(normal.y(), normal.z())));
+  geometry.beta1 = wrapped(std::atan2(normal.y(), normal.z()));
+  // The second axis lies across the normal and the first axis; the datum mark has turned away from it by epsilon.
+  const Vec3 second = Vec3::UnitZ().cross(first);
+  geometry.epsilon = wrapped(std::atan2(second.x(), second.y()));
+  return geometry;
+}
+
+IntrinsicGeometry intrinsic_of(const PhotometricGeometry& geometry) {
+  const PhotometricDirections d = directions_of(geometry);
+  const Vec3 normal = Vec3::UnitZ();
+  IntrinsicGeometry intrinsic;
+  intrinsic.alpha = geometry.alpha;
+  intrinsic.beta = Angle::from_rad(angle_between(normal, d.to_source));
+  Vec3 entrance_half_plane = normal;  // beyond the illumination axis
+  if (normal.cross(d.to_source).norm() < kParallel) {
+    // Without an entrance half plane its trace is taken through the observer: gamma = 0.
+    const Vec3 observer = lab_from_part(geometry).transpose() * Vec3::UnitY();
+    entrance_half_plane = d.to_source + observer;
+  }
+  const Vec3 up = lab_from_part(geometry).transpose() * Vec3::UnitY();
+  intrinsic.gamma = wrapped(turn_about(d.to_source, entrance_half_plane, d.to_source + up));
+  const Vec3 trace = entrance_half_plane - d.to_source;  // points away from the source
+  const Vec3 away = normal.cross(d.to_source).norm() < kParallel ? trace : Vec3(-d.to_source);
+  intrinsic.omega_s = wrapped(turn_about(normal, away, Vec3::UnitY()));
+  return intrinsic;
+}
+
+PhotometricGeometry geometry_from(const IntrinsicGeometry& intrinsic) {
+  const double beta = intrinsic.beta.rad();
+  const double gamma = intrinsic.gamma.rad();
+  // Laboratory: z to the source, y towards the observer. The normal lies in the half plane that reaches the observer's
+  // by a turn of gamma about z.
+  const Vec3 in_plane(std::sin(gamma), std::cos(gamma), 0.0);
+  const Vec3 normal = std::cos(beta) * Vec3::UnitZ() + std::sin(beta) * in_plane;
+  // Across the normal, away from the source.
+  const Vec3 away = std::cos(beta) * in_plane - std::sin(beta) * Vec3::UnitZ();
+  const Vec3 datum = turn(intrinsic.omega_s.rad(), normal) * away;
+  Eigen::Matrix3d part_from_lab;
+  part_from_lab << datum.cross(normal).transpose(), datum.transpose(), normal.transpose();
+  const double alpha = intrinsic.alpha.rad();
+  const Vec3 up = part_from_lab * Vec3::UnitY();
+  const Vec3 s = part_from_lab * Vec3::UnitZ();
+  // From the observation half plane itself, which is there even where alpha is 0.
+  PhotometricGeometry geometry = geometry_of({s, (s + up).normalized()});
+  geometry.alpha = Angle::from_rad(alpha);
+  return geometry;
+}
+
+SourceAngles source_angles(const Vec3& to_source) {
+  const double across = to_source.head<2>().norm();
+  return {Angle::from_rad(std::atan2(across, to_source.z())),
+          Angle::from_rad(across > kParallel ? std::atan2(to_source.y(), to_source.x()) : 0.0)};
+}
+
+Vec3 direction_from(const SourceAngles& angles) {
+  const double t = angles.incidence.rad();
+  const double p = angles.azimuth.rad();
+  return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
+}
+
+ReturnFrame return_frame(const PhotometricGeometry& geometry) {
+  const Eigen::Matrix3d part_from_lab = lab_from_part(geometry).transpose();
+  return {part_from_lab * Vec3::UnitZ(), part_from_lab * Vec3::UnitX(), part_from_lab * Vec3::UnitY()};
+}
+
+Angle viewing_angle(const PhotometricGeometry& geometry) {
+  return Angle::from_rad(angle_between(Vec3::UnitZ(), directions_of(geometry).to_observer));
+}
+
+Angle entrance_angle(const PhotometricGeometry& geometry) {
+  return Angle::from_rad(angle_between(Vec3::UnitZ(), directions_of(geometry).to_source));
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,153 @@
+#include "raytrace/paths/light_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/angle.h"
+#include "raytrace/light/light_setup.h"
+
+namespace retrace::raytrace {
+namespace {
+
+constexpr std::size_t kMostSteps = 16;
+constexpr double kFaintest = 1e-3;
+
+class Follower {
+ public:
+  Follower(const geometry::Part& part, const ExactSurface& surface, const Vec2& centre_mm, const LightSetup& setup)
+      : surface_(surface), setup_(setup), centre_mm_(centre_mm), air_mm_(0.4 * (part.thickness_mm + part.size_mm)) {}
+
+  LightPath follow(const Vec2& entry_mm) {
+    position_ = {entry_mm.x() - centre_mm_.x(), entry_mm.y() - centre_mm_.y(), setup_.thickness_mm};
+    path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * setup_.to_source));
+    direction_ = setup_.entry.direction;
+    light_ = setup_.entry.light;
+    add({PathEvent::enters, geometry::FacetRole::entrance, position_, deg(setup_.to_source.z()), light_.power()});
+    while (path_.steps.size() < kMostSteps && light_.power() > kFaintest && advance()) {
+    }
+    if (!is_done_) add({PathEvent::ends, geometry::FacetRole::entrance, position_, 0.0, light_.power()});
+    path_.power = light_.power();
+    return std::move(path_);
+  }
+
+ private:
+  static double deg(double cosine) { return Angle::from_rad(std::acos(std::clamp(cosine, -1.0, 1.0))).deg(); }
+  Vec3 in_part_frame(const Vec3& p) const { return {p.x() + centre_mm_.x(), p.y() + centre_mm_.y(), p.z()}; }
+
+  void add(PathStep step) {
+    step.at_mm = in_part_frame(step.at_mm);
+    path_.points_mm.push_back(step.at_mm);
+    path_.steps.push_back(step);
+  }
+
+  bool end(PathEvent event, geometry::FacetRole role, double incidence_deg) {
+    add({event, role, position_, incidence_deg, light_.power()});
+    path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * direction_));
+    is_done_ = true;
+    return false;
+  }
+
+  bool advance() { return inside_ ? advance_inside() : advance_outside(); }
+
+  bool advance_inside() {
+    double limit = std::numeric_limits<double>::infinity();
+    const LightSetup::Side* side = nullptr;
+    if (direction_.z() > 0.0) limit = (setup_.thickness_mm - position_.z()) / direction_.z();
+    for (const LightSetup::Side& candidate : setup_.sides) {
+      const double towards = candidate.normal.dot(direction_);
+      if (towards <= 0.0) continue;
+      const double t = std::max(0.0, (candidate.offset_mm - candidate.normal.dot(position_)) / towards);
+      if (t >= limit) continue;
+      limit = t;
+      side = &candidate;
+    }
+    const auto hit = surface_.first_hit({position_, direction_, source_, true, limit});
+    if (hit) return meet_facet(*hit);
+    if (!std::isfinite(limit)) return false;
+    absorb(limit);
+    position_ += limit * direction_;
+    source_ = {};
+    if (side != nullptr) return meet(side->normal, geometry::FacetRole::side, setup_.optics.index);
+    return meet(Vec3::UnitZ(), geometry::FacetRole::entrance, setup_.optics.index);
+  }
+
+  bool advance_outside() {
+    const auto hit =
+        surface_.first_hit({position_, direction_, source_, false, std::numeric_limits<double>::infinity()});
+    if (!hit) {
+      path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * direction_));
+      path_.steps.push_back(
+          {PathEvent::escapes, geometry::FacetRole::flat_back, in_part_frame(position_), 0.0, light_.power()});
+      is_done_ = true;
+      return false;
+    }
+    return meet_facet(*hit);
+  }
+
+  void absorb(double length_mm) { light_.scale(std::exp(-setup_.optics.absorption_per_mm * length_mm)); }
+
+  bool meet_facet(const SurfaceHit& hit) {
+    const ExactSurface::Facet& facet = surface_.facet(hit.facet);
+    if (inside_) absorb(hit.t);
+    position_ += hit.t * direction_;
+    source_ = hit.facet;
+    const Vec3 out = inside_ ? facet.normal : Vec3(-facet.normal);
+    const auto f = fresnel_at_back(setup_.optics, facet.role, inside_, out.dot(direction_));
+    return split(out, facet.role, f, setup_.optics.ratio_at_back(inside_));
+  }
+
+  bool meet(const Vec3& out, geometry::FacetRole role, double ratio) {
+    return split(out, role, materials::fresnel(ratio, out.dot(direction_)), ratio);
+  }
+
+  /// \param out normal of the face on the far side
+  bool split(const Vec3& out, geometry::FacetRole role, const materials::FresnelCoefficients& f, double ratio) {
+    const double cosine = out.dot(direction_);
+    light_.turn_to(direction_, out);
+    const CoherentLight reflected = light_.reflected(f);
+    const CoherentLight transmitted = light_.transmitted(f);
+    if (f.total_reflection || reflected.power() >= transmitted.power()) {
+      light_ = reflected;
+      direction_ = mirrored(direction_, out);
+      const bool is_total = f.total_reflection && !setup_.optics.coating_index && !setup_.optics.mirror_facets;
+      add({is_total ? PathEvent::total_reflection : PathEvent::reflection, role, position_, deg(cosine),
+           light_.power()});
+      return true;
+    }
+    light_ = transmitted;
+    direction_ = refracted(direction_, -out, ratio, cosine, f.cos_refracted);
+    if (role == geometry::FacetRole::side) return end(PathEvent::leaves_side, role, deg(cosine));
+    if (role == geometry::FacetRole::entrance) {
+      path_.deviation_deg = deg(direction_.dot(setup_.to_source));
+      path_.is_returned = setup_.cone_of(direction_) == 0;
+      return end(PathEvent::leaves, role, deg(cosine));
+    }
+    add({inside_ ? PathEvent::exits : PathEvent::enters_again, role, position_, deg(cosine), light_.power()});
+    inside_ = !inside_;
+    return true;
+  }
+
+  const ExactSurface& surface_;
+  const LightSetup& setup_;
+  Vec2 centre_mm_;
+  double air_mm_;
+  LightPath path_;
+  Vec3 position_ = Vec3::Zero();
+  Vec3 direction_ = -Vec3::UnitZ();
+  CoherentLight light_;
+  FacetRef source_;
+  bool inside_ = true;
+  bool is_done_ = false;
+};
+
+}  // namespace
+
+LightPath strongest_path(const geometry::Part& part, const ExactSurface& surface, const Vec2& centre_mm,
+                         const Optics& optics, const Illumination& illumination, double cone_deg,
+                         const Vec2& entry_mm) {
+  const LightSetup setup(part, centre_mm, optics, illumination, {cone_deg});
+  return Follower(part, surface, centre_mm, setup).follow(entry_mm);
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,401 @@
+#include "raytrace/paths/path_tracer.h"
+#include "core/infinity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::FacetRole;
+
+// Pieces of an infinite surface that one straight line may cross before it counts as trapped.
+constexpr int kMaxWraps = 1000;
+
+}  // namespace
+
+PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const Vec2& centre_mm, const Optics& how,
+                     const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& paths,
+                     const EntranceFace* curved)
+    : LightSetup(part, centre_mm, how, illumination, cones_deg),
+      surface(back),
+      entrance_face(curved),
+      policy(paths),
+      clearance_mm(part.top_mm + std::min(0.01 * part.element_depth_mm, 0.5 * (part.thickness_mm - part.top_mm))) {
+  if (part.period_mm) {
+    period_mm = *part.period_mm;
+    // The cells of the outermost periods do not fill them to the edge.
+    tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
+  }
+  if (entrance_face != nullptr) incident = light_of_beam(illumination.stokes, to_source);
+}
+
+void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample) {
+  key_ = key;
+  replicate_ = replicate;
+  sample_ = sample;
+  choices_ = 0;
+  enter(entry_mm);
+  follow_pending();
+}
+
+void PathWalker::resume(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate,
+                        std::uint32_t sample, std::uint32_t& choices) {
+  key_ = key;
+  replicate_ = replicate;
+  sample_ = sample;
+  choices_ = choices;
+  State state;
+  state.position = position;
+  state.direction = ray.direction;
+  state.light = ray.light;
+  state.inside = ray.inside;
+  state.scattered = ray.scattered;
+  pending_.push_back(state);
+  follow_pending();
+  choices = choices_;
+}
+
+void PathWalker::follow_pending() {
+  while (!pending_.empty()) {
+    State state = pending_.back();
+    pending_.pop_back();
+    while (advance(state)) {
+    }
+  }
+}
+
+void PathWalker::enter(const Vec2& entry_mm) {
+  if (setup_.entrance_face != nullptr) return enter_entrance_face(entry_mm);
+  const LightSetup::Entry& entry = setup_.entry;
+  tally_.front[entry.front_cone] += entry.front;
+  if (setup_.score != nullptr) setup_.score->add(entry.front_direction, entry.front.i, tally_.score);
+  State state;
+  state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
+  state.direction = entry.direction;
+  state.light = entry.light;
+  pending_.push_back(state);
+}
+
+/// Takes a path to the next interface and past it. False when the path has ended.
+bool PathWalker::advance(State& state) {
+  const double power = state.light.power();
+  if (power < setup_.policy.cutoff || state.events++ >= setup_.policy.max_events)
+    return finish(state, Account::truncated);
+  ++tally_.segments;
+  if (state.above) return advance_above(state);
+  const Step step = state.inside ? (setup_.infinite() ? step_inside_periodic(state) : step_inside(state))
+                                 : (setup_.infinite() ? step_outside_periodic(state) : step_outside(state));
+  if (state.inside && setup_.optics.absorption_per_mm > 0.0 && step.end != End::miss) {
+    const double kept = std::exp(-setup_.optics.absorption_per_mm * step.length_mm);
+    tally_.other[Account::absorbed] += power * (1.0 - kept);
+    state.light.scale(kept);
+  }
+  switch (step.end) {
+    case End::facet:
+      return meet_facet(state, step.hit);
+    case End::entrance:
+      return setup_.entrance_face == nullptr ? meet_entrance(state)
+                                             : meet_entrance_face(state, step.hit, step.entrance_normal);
+    case End::side:
+      return meet_side(state, setup_.sides[step.side].normal);
+    case End::escape:
+      return escape(state);
+    case End::trapped:
+      return finish(state, Account::truncated);
+    case End::miss:
+      break;
+  }
+  ++tally_.misses;
+  return finish(state, Account::lost);
+}
+
+std::optional<SurfaceHit> PathWalker::search(const State& state, double t_max) const {
+  return setup_.surface.first_hit({state.position, state.direction, state.source, state.inside, t_max});
+}
+
+/// For a ray that must meet the surface: it would leave the part's bounds otherwise.
+std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const {
+  return setup_.surface.certain_first_hit({state.position, state.direction, state.source, state.inside, kInfinity});
+}
+
+/// Inside a finite part: the nearest of entrance, sides and back surface.
+PathWalker::Step PathWalker::step_inside(State& state) const {
+  Step step;
+  double limit = kInfinity;
+  if (state.direction.z() > 0.0 && setup_.entrance_face == nullptr) {
+    limit = (setup_.thickness_mm - state.position.z()) / state.direction.z();
+    step.end = End::entrance;
+  }
+  for (std::size_t k = 0; k < setup_.sides.size(); ++k) {
+    const double towards = setup_.sides[k].normal.dot(state.direction);
+    if (towards <= 0.0) continue;
+    const double t = (setup_.sides[k].offset_mm - setup_.sides[k].normal.dot(state.position)) / towards;
+    if (t >= limit) continue;
+    limit = std::max(t, 0.0);
+    step.end = End::side;
+    step.side = k;
+  }
+  if (setup_.entrance_face != nullptr) limit = reach_entrance_face(state, limit, step);
+  // Above the clearance only falling rays can meet the back surface, and not before they are down there.
+  double skipped = 0.0;
+  if (state.position.z() > setup_.clearance_mm) {
+    skipped = state.direction.z() < 0.0 ? (state.position.z() - setup_.clearance_mm) / -state.direction.z() : kInfinity;
+    if (skipped < limit) {
+      state.position += skipped * state.direction;
+      state.source = {};
+    }
+  }
+  if (skipped < limit) {
+    auto hit = search(state, limit - skipped);
+    const double end_z = state.position.z() + (limit - skipped) * state.direction.z();
+    if (!hit && (step.end == End::miss || end_z < -setup_.depth_mm - setup_.clearance_mm)) {
+      step.end = End::miss;
+      hit = search_certainly(state);
+    }
+    if (hit) {
+      step.end = End::facet;
+      step.hit = *hit;
+      limit = skipped + hit->t;
+    }
+  } else {
+    skipped = 0.0;
+  }
+  if (step.end != End::miss) state.position += (limit - skipped) * state.direction;
+  step.length_mm = limit;
+  return step;
+}
+
+/// Inside an infinite part: the surface near the central period stands for all of it.
+PathWalker::Step PathWalker::step_inside_periodic(State& state) const {
+  Step step;
+  const double dz = state.direction.z();
+  const auto move = [&](double t) {
+    state.position += t * state.direction;
+    step.length_mm += t;
+  };
+  for (int wraps = 0; wraps < kMaxWraps; ++wraps) {
+    if (state.position.z() >= setup_.clearance_mm * (1.0 - 1e-9)) {
+      if (dz > 0.0) {
+        move((setup_.thickness_mm - state.position.z()) / dz);
+        wrap(state);
+        step.end = End::entrance;
+        return step;
+      }
+      if (dz == 0.0) break;  // along the plate for ever
+      if (state.position.z() > setup_.clearance_mm) {
+        move((state.position.z() - setup_.clearance_mm) / -dz);
+        wrap(state);
+      }
+    }
+    const double up = dz > 0.0 ? (setup_.clearance_mm - state.position.z()) / dz : kInfinity;
+    const double limit = std::min(up, distance_to_tile_border(state));
+    auto hit = search(state, limit);
+    const bool falls_through = state.position.z() + limit * dz < -setup_.depth_mm - setup_.clearance_mm;
+    if (!hit && falls_through) hit = search_certainly(state);
+    if (hit) {
+      move(hit->t);
+      step.end = End::facet;
+      step.hit = *hit;
+      return step;
+    }
+    if (falls_through) return step;
+    move(limit);
+    if (up > limit) wrap(state);
+  }
+  step.end = End::trapped;
+  return step;
+}
+
+/// In the air below a finite part: a facet, or away.
+PathWalker::Step PathWalker::step_outside(State& state) const {
+  Step step;
+  auto hit = search(state, kInfinity);
+  if (!hit && state.direction.z() > 0.0 &&
+      is_over_part(state.position + (setup_.top_mm - state.position.z()) / state.direction.z() * state.direction)) {
+    // It would rise through the plate: no such ray can have missed the surface.
+    hit = search_certainly(state);
+    if (!hit) return step;
+  }
+  step.end = hit ? End::facet : End::escape;
+  if (!hit) return step;
+  step.hit = *hit;
+  state.position += hit->t * state.direction;
+  return step;
+}
+
+PathWalker::Step PathWalker::step_outside_periodic(State& state) const {
+  Step step;
+  const double dz = state.direction.z();
+  for (int wraps = 0; wraps < kMaxWraps; ++wraps) {
+    const double down =
+        dz < 0.0 ? std::max(0.0, (state.position.z() + setup_.depth_mm + setup_.clearance_mm) / -dz) : kInfinity;
+    const double up = dz > 0.0 ? std::max(0.0, (setup_.clearance_mm - state.position.z()) / dz) : kInfinity;
+    const double border = distance_to_tile_border(state);
+    const double limit = std::min({down, up, border});
+    auto hit = search(state, limit);
+    if (!hit && limit == up) hit = search_certainly(state);
+    if (hit) {
+      state.position += hit->t * state.direction;
+      step.end = End::facet;
+      step.hit = *hit;
+      return step;
+    }
+    if (limit == up) return step;
+    if (limit == down) {
+      step.end = End::escape;
+      return step;
+    }
+    state.position += limit * state.direction;
+    wrap(state);
+  }
+  step.end = End::trapped;
+  return step;
+}
+
+double PathWalker::distance_to_tile_border(const State& state) const {
+  double least = kInfinity;
+  for (const Eigen::Index axis : {0, 1}) {
+    const double d = state.direction[axis];
+    if (d != 0.0)
+      least = std::min(least, ((d > 0.0 ? 1.0 : -1.0) * setup_.tile_half_mm[axis] - state.position[axis]) / d);
+  }
+  return std::max(least, 0.0);
+}
+
+/// Brings a position back into the central period; nothing near it is the facet it came from any more.
+void PathWalker::wrap(State& state) const {
+  for (const Eigen::Index axis : {0, 1})
+    state.position[axis] -= setup_.period_mm[axis] * std::floor(state.position[axis] / setup_.period_mm[axis] + 0.5);
+  state.source = {};
+}
+
+bool PathWalker::is_over_part(const Vec3& position) const {
+  return std::all_of(setup_.sides.begin(), setup_.sides.end(), [&](const PathSetup::Side& side) {
+    return side.normal.dot(position) < side.offset_mm - setup_.clearance_mm;
+  });
+}
+
+bool PathWalker::meet_entrance(State& state) {
+  state.position.z() = setup_.thickness_mm;
+  const Vec3 down = -Vec3::UnitZ();
+  const double cos_incidence = state.direction.z();
+  const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, cos_incidence);
+  const Vec3 out = refracted(state.direction, down, setup_.optics.index, cos_incidence, f.cos_refracted);
+  state.light.turn_to(state.direction, down);
+  if (setup_.optics.lossless_entrance) {
+    if (f.total_reflection)
+      (state.scattered ? tally_.scattered : tally_.returned).back().i += state.light.power();
+    else
+      leave(state, state.light, out);
+    return false;
+  }
+  Light reflected = state.light.reflected(f);
+  Light transmitted = state.light.transmitted(f);
+  const Branch branch = choose(reflected, transmitted);
+  if (branch != Branch::reflected) leave(state, transmitted, out);
+  state.light = reflected;
+  state.direction = mirrored(state.direction, down);
+  state.source = {};
+  return branch != Branch::transmitted;
+}
+
+/// Books light that leaves through the entrance face. \param state where it does \param direction in air
+void PathWalker::leave(const State& state, const Light& light, const Vec3& direction) {
+  std::vector<Stokes>& returned = state.scattered ? tally_.scattered : tally_.returned;
+  returned[setup_.cone_of(direction)] += seen_from_above(light, direction);
+  if (observer_ != nullptr) observer_->leaves(state.position, direction, light.power());
+  if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
+}
+
+bool PathWalker::meet_side(State& state, const Vec3& normal) {
+  const Optics& optics = setup_.optics;
+  const bool is_border_wall = state.position.z() < 0.0;
+  if (is_border_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
+  const materials::FresnelCoefficients f =
+      materials::fresnel(is_border_wall ? optics.ratio_at_back(true) : optics.index, normal.dot(state.direction));
+  state.light.turn_to(state.direction, normal);
+  Light reflected = state.light.reflected(f);
+  Light transmitted = state.light.transmitted(f);
+  const Branch branch = choose(reflected, transmitted);
+  // The part is the prism over a convex outline: what leaves through a side does not come back.
+  if (branch != Branch::reflected) tally_.other[Account::side_exit] += transmitted.power();
+  state.light = reflected;
+  state.direction = mirrored(state.direction, normal);
+  state.source = {};
+  state.entrance_source = {};
+  return branch != Branch::transmitted;
+}
+
+bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
+  const ExactSurface::Facet& facet = setup_.surface.facet(hit.facet);
+  const Optics& optics = setup_.optics;
+  const bool is_wall = facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
+  if (is_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
+  const bool is_retro = facet.role == FacetRole::retro_facet;
+  state.source = hit.facet;
+  state.entrance_source = {};
+  if (is_retro && !optics.is_smooth()) return meet_textured(state, facet.normal);
+  const Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
+  const double cos_incidence = -against.dot(state.direction);
+  const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, state.inside, cos_incidence);
+
+  state.light.turn_to(state.direction, against);
+  Light reflected = state.light.reflected(f);
+  if (is_retro && optics.coating_index) tally_.other[Account::absorbed] += state.light.power() - reflected.power();
+  Light transmitted = state.light.transmitted(f);
+  const Branch branch = choose(reflected, transmitted);
+  if (branch != Branch::reflected) {
+    State through = state;
+    through.light = transmitted;
+    through.direction =
+        refracted(state.direction, against, optics.ratio_at_back(state.inside), cos_incidence, f.cos_refracted);
+    through.inside = !state.inside;
+    if (state.inside) through.left_through = facet.role;
+    if (branch == Branch::transmitted) {
+      state = through;
+      return true;
+    }
+    pending_.push_back(through);
+  }
+  state.light = reflected;
+  state.direction = mirrored(state.direction, against);
+  return true;
+}
+
+bool PathWalker::meet_textured(State& state, const Vec3& normal) {
+  surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
+  const TexturedReturn back =
+      meet_textured_facet(setup_.optics, normal, {state.direction, state.light, state.inside, state.scattered},
+                          setup_.policy.split_power, random);
+  tally_.other[Account::truncated] += back.truncated;
+  tally_.other[Account::absorbed] += back.absorbed;
+  const State before = state;
+  for (std::size_t k = 0; k < back.count; ++k) {
+    const Ray& ray = back.rays[k];
+    state = before;
+    state.direction = ray.direction;
+    state.light = ray.light;
+    state.inside = ray.inside;
+    state.scattered = ray.scattered;
+    if (before.inside && !ray.inside) state.left_through = FacetRole::retro_facet;
+    if (k + 1 < back.count) pending_.push_back(state);
+  }
+  return back.count > 0;
+}
+
+Branch PathWalker::choose(Light& reflected, Light& transmitted) {
+  return choose_branch(reflected, transmitted, setup_.policy.split_power,
+                       [this] { return unit_interval(philox(key_, replicate_, sample_, choices_++)[0]); });
+}
+
+bool PathWalker::finish(const State& state, Account account) {
+  tally_.other[account] += state.light.power();
+  return false;
+}
+
+bool PathWalker::escape(const State& state) {
+  return finish(state, account_of_exit(state.left_through));
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "raytrace/light/light_setup.h"
+#include "surface_models/scatter/random_stream.h"
+
+namespace retrace::raytrace {
+
+/// Light on its way in one direction.
+struct Ray {
+  Vec3 direction = Vec3::UnitZ();
+  Light light;
+  bool inside = true;      ///< in the part's material
+  bool scattered = false;  ///< a non-specular event lies behind it
+};
+
+/// The branches that are followed.
+enum class Branch { reflected, transmitted, both };
+
+/// Both branches of light at an interface while each has at least `split_power`, else one by its share of the power,
+/// which it gets whole: nothing is lost or made. \param uniform gives a number in [0, 1), asked for if there is a
+/// choice
+template <class Uniform>
+Branch choose_branch(Light& reflected, Light& transmitted, double split_power, const Uniform& uniform) {
+  const double r = reflected.power();
+  const double t = transmitted.power();
+  if (t <= 0.0) return Branch::reflected;
+  if (r <= 0.0) return Branch::transmitted;
+  if (std::min(r, t) >= split_power) return Branch::both;
+  const bool take_reflected = uniform() * (r + t) < r;
+  (take_reflected ? reflected : transmitted).scale((r + t) / (take_reflected ? r : t));
+  return take_reflected ? Branch::reflected : Branch::transmitted;
+}
+
+/// What a textured facet makes of a ray.
+struct TexturedReturn {
+  std::array<Ray, 4> rays;  ///< the first `count` of them
+  std::size_t count = 0;
+  double truncated = 0.0;  ///< power that the texture keeps, or gives (negative)
+  double absorbed = 0.0;   ///< power that a coating takes
+};
+
+/// Fresnel's branches at a piece of the texture, each scattered by Optics::facet_scatter. What stays specular and what
+/// does not are followed both while each has at least `split_power`, as the branches are.
+/// \param normal of the facet, unit, out of the part
+TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
+                                   surface_models::RandomStream& random);
+
+/// Share of a lobe's power that the texture of a retro facet leaves in its mean field.
+double mean_field_share(const Optics& optics, bool inside, double cos_incidence, surface_models::Lobe lobe);
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,157 @@
+#include "raytrace/sampling/replicates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "raytrace/light/ledger.h"
+#include "raytrace/sampling/threads.h"
+
+namespace retrace::raytrace {
+namespace {
+
+constexpr std::uint32_t kReplicates = MonteCarlo::kReplicates;
+// Rays of a replicate that one task traces: small enough to share out, large enough to hide the cost of a task.
+constexpr std::uint32_t kRaysPerTask = 2048;
+// Rays of a replicate between two collections of the tasks' tallies: bounds their memory.
+constexpr std::uint32_t kRaysPerSlice = 64 * kRaysPerTask;
+// The Sobol sequence has 2^32 points; one is kept back so that counters do not wrap.
+constexpr std::uint32_t kMostRaysPerReplicate = UINT32_MAX - kRaysPerSlice;
+// Rays of a replicate before its error is looked at for the first time.
+constexpr std::uint32_t kFirstRound = 256;
+// The error falls about as rays to this power: 0.5 by chance, 1 where all is smooth.
+constexpr double kConvergence = 0.75;
+
+ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double half_angle_deg, std::size_t cone) {
+  ConeResult result;
+  result.half_angle_deg = half_angle_deg;
+  std::vector<double> rre;
+  for (const Tally& tally : replicates) {
+    const Ledger ledger = tally.ledger(cone);
+    rre.push_back(ledger[Account::retroreflected] / rays);
+    result.stokes += 1.0 / (rays * kReplicates) * tally.retroreflected(cone);
+    for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays / kReplicates;
+  }
+  result.rre = result.ledger[Account::retroreflected];
+  double squares = 0.0;
+  for (const double r : rre) squares += (r - result.rre) * (r - result.rre);
+  result.std_error = std::sqrt(squares / (kReplicates - 1.0) / kReplicates);
+  // Replicates that agree to rounding say the same.
+  if (result.std_error < 1e-15) result.std_error = 0.0;
+  return result;
+}
+
+/// Means and standard errors of what was scored.
+void add_score(const std::vector<Tally>& replicates, double rays, MonteCarloResult& result) {
+  const std::size_t size = replicates.front().score.size();
+  result.score.assign(size, 0.0);
+  result.score_error.assign(size, 0.0);
+  for (std::size_t k = 0; k < size; ++k) {
+    for (const Tally& tally : replicates) result.score[k] += tally.score[k] / rays / kReplicates;
+    double squares = 0.0;
+    for (const Tally& tally : replicates) {
+      const double off = tally.score[k] / rays - result.score[k];
+      squares += off * off;
+    }
+    result.score_error[k] = std::sqrt(squares / (kReplicates - 1.0) / kReplicates);
+  }
+}
+
+MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t rays_per_replicate,
+                           const std::vector<double>& cones_deg) {
+  MonteCarloResult result;
+  result.rays = std::uint64_t{rays_per_replicate} * kReplicates;
+  for (const Tally& tally : replicates) {
+    result.segments += tally.segments;
+    result.misses += tally.misses;
+  }
+  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone)
+    result.cones.push_back(cone_result(replicates, rays_per_replicate, cones_deg[cone], cone));
+  add_score(replicates, rays_per_replicate, result);
+  return result;
+}
+
+double largest_error(const MonteCarloResult& result) {
+  double largest = 0.0;
+  for (const ConeResult& cone : result.cones) largest = std::max(largest, cone.std_error);
+  return largest;
+}
+
+void check_lost(const MonteCarloResult& result) {
+  for (const ConeResult& cone : result.cones)
+    if (cone.ledger[Account::lost] > kLostLimit)
+      throw BudgetError(
+          fmt::format("{} of {} rays missed every face from inside the part ({} of the power): this is a defect "
+                      "of retrace, please report the design",
+                      result.misses, result.rays, cone.ledger[Account::lost]));
+}
+
+}  // namespace
+
+/// Of the scrambles of a replicate's entry points.
+std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t replicate) {
+  const auto words = philox({seed, kScrambleStream}, replicate, 0);
+  return {(std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]};
+}
+
+bool trace_replicates(std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates,
+                      const ReplicateTask& trace) {
+  struct Task {
+    std::uint32_t replicate, first, last;
+  };
+  for (std::uint32_t slice = from; slice < until;) {
+    const std::uint32_t slice_end = until - slice > kRaysPerSlice ? slice + kRaysPerSlice : until;
+    std::vector<Task> tasks;
+    for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate)
+      for (std::uint32_t first = slice; first < slice_end; first += kRaysPerTask)
+        tasks.push_back({replicate, first, std::min(slice_end, first + kRaysPerTask)});
+    std::vector<std::optional<Tally>> tallies(tasks.size());
+    for_each_in_parallel(tasks.size(),
+                         [&](std::size_t k) { tallies[k] = trace(tasks[k].replicate, tasks[k].first, tasks[k].last); });
+    if (std::any_of(tallies.begin(), tallies.end(), [](const auto& t) { return !t.has_value(); })) return false;
+    // Added up in the order of the tasks, whichever thread did them.
+    for (std::size_t k = 0; k < tasks.size(); ++k) replicates[tasks[k].replicate].add(*tallies[k]);
+    slice = slice_end;
+  }
+  return true;
+}
+
+Rounds::Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::size_t score_size, TraceRange trace_range)
+    : sampling_(sampling),
+      cones_deg_(std::move(cones_deg)),
+      trace_range_(std::move(trace_range)),
+      goal_(static_cast<std::uint32_t>(std::min<std::uint64_t>(
+          (sampling.rays.value_or(sampling.max_rays) + kReplicates - 1) / kReplicates, kMostRaysPerReplicate))),
+      replicates_(kReplicates, Tally(cones_deg_.size(), score_size)) {}
+
+/// Doubling keeps every round's points the first 2^k of their sequence, where they are best stratified.
+std::uint32_t Rounds::next_end() const {
+  if (done_ == 0) return std::min(goal_, kFirstRound);
+  return done_ > goal_ / 2 ? goal_ : 2 * done_;
+}
+
+bool Rounds::advance() {
+  const std::uint32_t end = next_end();
+  if (!trace_range_(done_, end, replicates_)) {
+    result_.complete = false;  // with what the rounds before gave
+    return true;
+  }
+  done_ = end;
+  result_ = result_of(replicates_, done_, cones_deg_);
+  check_lost(result_);
+  result_.reached_target = sampling_.rays || largest_error(result_) <= sampling_.target_error;
+  return done_ >= goal_ || (!sampling_.rays && result_.reached_target);
+}
+
+double Rounds::expected_segments() const {
+  const double miss = largest_error(result_) / sampling_.target_error;
+  const auto segments = static_cast<double>(result_.segments);
+  if (sampling_.rays || miss <= 1.0) return segments;
+  return segments * std::exp2(std::ceil(std::log2(miss) / kConvergence));
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "raytrace/paths/monte_carlo.h"
+
+namespace retrace::raytrace {
+
+/// How Monte-Carlo tracers share out rays: MonteCarlo::kReplicates independent scrambles of the same points, whose mean
+/// is the estimate and whose spread its error.
+
+/// Philox streams: of the scrambles of entry points, and of choices on the way.
+inline constexpr std::uint32_t kScrambleStream = 1;
+inline constexpr std::uint32_t kChoiceStream = 2;
+
+/// Of the scrambles of a replicate's entry points.
+std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t replicate);
+
+/// Traces rays first..last-1 of a replicate; nothing if it was cancelled.
+using ReplicateTask =
+    std::function<std::optional<Tally>(std::uint32_t replicate, std::uint32_t first, std::uint32_t last)>;
+
+/// Adds rays from..until-1 of every replicate to its tally, on the threads at hand; sums do not depend on their number.
+/// False if cancelled: the tallies are then of no use.
+bool trace_replicates(std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates,
+                      const ReplicateTask& trace);
+
+/// Adds rays from..until-1 of every replicate. False if cancelled.
+using TraceRange = std::function<bool(std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates)>;
+
+/// Doubles the rays round by round until the target error is reached, or as many are traced as are asked for.
+class Rounds {
+ public:
+  Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::size_t score_size, TraceRange trace_range);
+
+  /// One more round. \return whether that was the last one that is needed; if it was cancelled, it is the last as well
+  /// \throw BudgetError if power is lost: a ray missed every face from inside
+  bool advance();
+  /// Of the rounds so far.
+  const MonteCarloResult& result() const { return result_; }
+  /// Straight pieces traced in all until the target error is reached, judged by the rounds so far. \pre there was one
+  double expected_segments() const;
+
+ private:
+  std::uint32_t next_end() const;
+
+  Sampling sampling_;
+  std::vector<double> cones_deg_;
+  TraceRange trace_range_;
+  std::uint32_t goal_;
+  std::uint32_t done_ = 0;  ///< rays of a replicate
+  std::vector<Tally> replicates_;
+  MonteCarloResult result_;
+};
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,43 @@
+#include "raytrace/sampling/threads.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+namespace retrace::raytrace {
+
+void run_with_threads(unsigned threads, const std::function<void()>& work) {
+  if (threads == 0) {
+    work();
+    return;
+  }
+  const unsigned useful = std::min(threads, std::max(8U, 4 * std::thread::hardware_concurrency()));
+  // TBB's own limit is the number of cores; asking for more is allowed.
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, useful);
+  tbb::task_arena arena(static_cast<int>(useful));
+  arena.execute(work);
+}
+
+void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
+  // ThreadSanitizer cannot see how TBB, which is built without it, hands work out and back. Two atomics say it in our
+  // own code, so that it finds what is really shared.
+  std::atomic<unsigned> handed_out{0};
+  std::atomic<unsigned> handed_back{0};
+  handed_out.fetch_add(1, std::memory_order_release);
+  // A thread that waits for the others helps with this work alone: not with that of a caller, who may share out as
+  // well.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+      static_cast<void>(handed_out.load(std::memory_order_acquire));
+      work(k);
+      handed_back.fetch_add(1, std::memory_order_release);
+    });
+  });
+  static_cast<void>(handed_back.load(std::memory_order_acquire));
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,50 @@
+#include "studies/inspect/entrance_report.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/angle.h"
+#include "raytrace/faces/entrance_face.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+constexpr int kPoints = 400;
+
+/// By rays from above, which serves surfaces and meshes alike.
+EntranceReport::Profile profile_along(Eigen::Index axis, const raytrace::EntranceFace& face, const geometry::Part& part,
+                                      const Vec2& centre) {
+  const geometry::Rectangle box = geometry::bounding_box(part.outline);
+  EntranceReport::Profile profile;
+  for (int k = 0; k <= kPoints; ++k) {
+    Vec2 place = centre;
+    place[axis] = box.lower[axis] + (1e-9 + (1.0 - 2e-9) * k / kPoints) * box.size()[axis];
+    raytrace::SurfaceRay ray;
+    ray.origin = Vec3(place.x() - centre.x(), place.y() - centre.y(), face.highest_mm() + 1.0);
+    ray.direction = -Vec3::UnitZ();
+    ray.inside = false;
+    const auto hit = face.first_hit(ray);
+    profile.place_mm.push_back(place[axis]);
+    profile.height_mm.push_back(hit ? ray.origin.z() - hit->hit.t : std::numeric_limits<double>::quiet_NaN());
+  }
+  return profile;
+}
+
+}  // namespace
+
+EntranceReport report_entrance(const geometry::Entrance& entrance, const geometry::Part& part) {
+  const geometry::Rectangle box = geometry::bounding_box(part.outline);
+  const Vec2 centre = 0.5 * (box.lower + box.upper);
+  const auto face = raytrace::make_entrance_face(entrance, part, centre);
+  EntranceReport report;
+  report.range = geometry::entrance_range(entrance, part.outline);
+  report.steepest_deg = Angle::from_rad(std::atan(report.range.steepest_slope)).deg();
+  report.along_x = profile_along(0, *face, part, centre);
+  report.along_y = profile_along(1, *face, part, centre);
+  return report;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,337 @@
+// Curved fronts as users meet them: turned parts and meshes in front of plates and prisms, what refuses them, and files
+// that make no sense.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "tests/app/program.h"
+
+namespace retrace::test::front_test {
+namespace {
+
+const std::string kTool = "[tool]\nnose_radius_mm = 0.05\nclearance_deg = 40\n";
+const std::string kBody = "[body]\nthickness_mm = 1.2\nrefractive_index = 1.4917\n";
+const std::string kPlate = "[part]\nplate_mm = [1, 0.8]\n";
+const std::string kFront = "[front]\nturned = \"lens.toml\"\n";
+
+std::string turned(const std::string& substrate, const std::string& more = {}, double radius_mm = 0.7,
+                   const std::string& path = "feed_um = 10\nspindle_rpm = 60\n") {
+  return "schema = \"retrace.turned_part/1\"\n[base]\n" + substrate + more + kTool +
+         "[path]\nradius_mm = " + std::to_string(radius_mm) + "\n" + path;
+}
+
+const std::string kFlat = "kind = \"plane\"\n";
+const std::string kCap = "kind = \"conic\"\nradius_mm = -3\n";
+
+class Entrance : public ::testing::Test {
+ protected:
+  TemporaryFolder folder_;
+
+  Json rre(const std::string& design, Arguments more) {
+    folder_.write("design.toml", design);
+    Arguments all = {"rre", "design.toml"};
+    all.insert(all.end(), more.begin(), more.end());
+    return retrace_json(folder_, all);
+  }
+
+  /// The one line that refuses a design, without "retrace: ".
+  std::string refusal(const std::string& design, Arguments command = {"rre", "design.toml", "-o", "out"}) {
+    folder_.write("design.toml", design);
+    const auto before = folder_.names();
+    const Outcome outcome = retrace(folder_, command);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_EQ(folder_.names(), before);
+    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+    return outcome.err.starts_with("retrace: ") ? outcome.err.substr(9, outcome.err.size() - 10) : outcome.err;
+  }
+};
+
+double total(const Json& point) {
+  double sum = 0.0;
+  for (const auto& [account, power] : point["ledger"].items()) sum += power.get<double>();
+  return sum;
+}
+
+TEST_F(Entrance, FlatTurnedFrontIsThePlaneEntranceFace) {
+  folder_.write("lens.toml", turned(kFlat));
+  const std::string prisms =
+      "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
+  const std::string light = "[light]\npolarisation = \"right_circular\"\n";
+  for (const std::string& back : {kPlate, prisms}) {
+    const Arguments how = {"--engine", "embree", "--samples", "4096", "--incidence=0,25", "--azimuth=20"};
+    const Json plane = rre(back + kBody + light, how);
+    const Json front = rre(back + kFront + kBody + light, how);
+    EXPECT_EQ(front["engine"], "embree");
+    for (std::size_t k = 0; k < 2; ++k)
+      for (const auto& [account, power] : plane["points"][k]["ledger"].items())
+        EXPECT_NEAR(front["points"][k]["ledger"][account].get<double>(), power.get<double>(), 1e-9) << account;
+  }
+}
+
+// -r^2 / 6 has no derivative by formula at its centre, where a grid of samples has a point; the conic is the same
+// paraboloid.
+TEST_F(Entrance, FormulaOfTheRadiusIsItsConic) {
+  const std::string body = kBody + "[detector]\nacceptance_half_angle_deg = 10\n[idealisation]\nfacets = \"mirror\"\n";
+  const Arguments how = {"--samples", "2048", "--incidence=0,5"};
+  folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -3\nconic = -1\n"));
+  const Json conic = rre(kPlate + kFront + body, how);
+  folder_.write("lens.toml", turned("kind = \"formula\"\nformula = \"-r^2/6\"\n"));
+  const Json formula = rre(kPlate + kFront + body, how);
+  for (std::size_t k = 0; k < 2; ++k)
+    for (const auto& [account, power] : conic["points"][k]["ledger"].items())
+      EXPECT_NEAR(formula["points"][k]["ledger"][account].get<double>(), power.get<double>(), 1e-9) << account;
+}
+
+using Vector = std::array<double, 3>;
+
+double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Along a + s b.
+Vector along(const Vector& a, double s, const Vector& b) {
+  return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]};
+}
+
+Vector refracted(const Vector& d, const Vector& n, double ratio) {
+  const double c = -dot(d, n);
+  return along({ratio * d[0], ratio * d[1], ratio * d[2]}, ratio * c - std::sqrt(1.0 - ratio * ratio * (1.0 - c * c)),
+               n);
+}
+
+/// By how many degrees light along -z, in at (x, y) from the vertex of a cap over a mirror, misses its way back; the
+/// cap is 1 mm by 0.8 mm.
+double miss_deg(double radius, double thickness, double n, double x, double y) {
+  const double r = std::abs(radius);
+  const Vector in = {x, y, thickness - r + std::sqrt(r * r - x * x - y * y)};
+  const auto normal = [&](const Vector& p) { return Vector{p[0] / r, p[1] / r, (p[2] - thickness + r) / r}; };
+  Vector d = refracted({0.0, 0.0, -1.0}, normal(in), 1.0 / n);
+  const Vector foot = along(in, -in[2] / d[2], d);
+  d[2] = -d[2];
+  const Vector q = {foot[0], foot[1], foot[2] - thickness + r};
+  const double b = dot(q, d);
+  const Vector out = along(foot, -b + std::sqrt(b * b - dot(q, q) + r * r), d);
+  const Vector m = normal(out);
+  if (std::abs(out[0]) > 0.5 || std::abs(out[1]) > 0.4) return 180.0;  // through a side
+  d = refracted(d, {-m[0], -m[1], -m[2]}, n);
+  return std::acos(std::min(1.0, d[2])) * 180.0 / std::numbers::pi;
+}
+
+// The share of a cap over a mirror that returns light within a cone, by rays that the test follows itself.
+TEST_F(Entrance, CapOverAMirrorReturnsWhatRaysByHandReturn) {
+  folder_.write("lens.toml", turned(kCap));
+  const double n = 1.4917;
+  const double focus = n / (n - 1.0) * 3.0;
+  for (const double thickness : {focus, 0.985 * focus}) {
+    const double cone_deg = 0.04;
+    constexpr int kCells = 1000;
+    int kept = 0;
+    for (int j = 0; j < kCells; ++j)
+      for (int i = 0; i < kCells; ++i)
+        if (miss_deg(3.0, thickness, n, (i + 0.5) / kCells - 0.5, 0.8 * ((j + 0.5) / kCells - 0.5)) <= cone_deg) ++kept;
+    const double share = static_cast<double>(kept) / (kCells * kCells);
+    EXPECT_GT(share, 0.05);
+    EXPECT_LT(share, 0.95);
+    const Json json =
+        rre(kPlate + kFront + "[body]\nrefractive_index = 1.4917\nthickness_mm = " + std::to_string(thickness) +
+                "\n[detector]\nacceptance_half_angle_deg = " + std::to_string(cone_deg) +
+                "\n[idealisation]\nfacets = \"mirror\"\nentrance = \"lossless\"\n",
+            {"--samples", "32768"});
+    EXPECT_NEAR(json["points"][0]["rre"].get<double>(), share, 1.5e-3) << thickness;
+    EXPECT_NEAR(total(json["points"][0]), 1.0, 1e-9);
+  }
+}
+
+// What the tool leaves, as the mesh that retrace turn writes, is the design to within its cusps and triangles.
+TEST_F(Entrance, MachinedMeshActsAsTheDesign) {
+  folder_.write("lens.toml", turned(kCap, {}, 0.7, "feed_um = 4\nspindle_rpm = 60\npoints_per_turn = 720\n") +
+                                 "[inspect]\nmesh_thickness_mm = 0.3\nmesh_rings = 100\n");
+  ASSERT_EQ(retrace(folder_, {"turn", "lens.toml", "-o", "out"}).code, 0);
+  const std::string body =
+      "[body]\nthickness_mm = 8\nrefractive_index = 1.4917\n[detector]\nacceptance_half_angle_deg = 2\n"
+      "[idealisation]\nfacets = \"mirror\"\n";
+  const Arguments how = {"--samples", "16384", "--incidence=0,1"};
+  const Json exact = rre(kPlate + kFront + body, how);
+  const Json mesh = rre(kPlate + "[front]\nmesh = \"out/machined.stl\"\nmesh_side = \"bottom\"\n" + body, how);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Json& a = exact["points"][k];
+    const Json& b = mesh["points"][k];
+    const double error = std::hypot(a["std_error"].get<double>(), b["std_error"].get<double>());
+    EXPECT_GT(a["rre"].get<double>(), 0.2);
+    EXPECT_NEAR(a["rre"].get<double>(), b["rre"].get<double>(), 4.0 * error + 2e-3) << k;
+    EXPECT_NEAR(total(b), 1.0, 1e-9);
+    EXPECT_LT(b["ledger"]["lost"].get<double>(), 1e-9);
+  }
+}
+
+// The example: lenslets in a hexagonal lattice on a square, which half a turn leaves alike; and a cat's eye.
+TEST_F(Entrance, LensletsAreACatsEye) {
+  const Json json = retrace_json(folder_, {"rre", example("fronts/cats_eye_lenslets.toml"), "--samples", "16384",
+                                           "--incidence=0,2", "--azimuth=40,220", "--set", "body.absorption_per_mm=0"});
+  EXPECT_EQ(json["engine"], "embree");
+  EXPECT_EQ(json["designs"][0]["front"]["turned"], "../turning/cats_eye_lenslets.toml");
+  for (const Json& point : json["points"]) {
+    EXPECT_NEAR(total(point), 1.0, 1e-9);
+    EXPECT_EQ(point["ledger"]["lost"], 0.0);
+  }
+  // By azimuth, incidence and cone: 1 degree.
+  const Json& one = json["points"][4];
+  const Json& other = json["points"][10];
+  EXPECT_EQ(one["incidence_deg"], 2.0);
+  EXPECT_EQ(other["azimuth_deg"], 220.0);
+  EXPECT_NEAR(one["rre"].get<double>(), other["rre"].get<double>(),
+              5.0 * std::hypot(one["std_error"].get<double>(), other["std_error"].get<double>()));
+  const Json defocused = retrace_json(folder_, {"rre", example("fronts/cats_eye_lenslets.toml"), "--samples", "16384",
+                                                "--set", "body.thickness_mm=2.2"});
+  EXPECT_GT(json["points"][1]["rre"].get<double>(), 2.0 * defocused["points"][1]["rre"].get<double>());
+}
+
+TEST_F(Entrance, InspectTellsAndDrawsIt) {
+  folder_.write("lens.toml", turned(kCap));
+  folder_.write("design.toml", kPlate + kFront + kBody);
+  const Outcome outcome = retrace(folder_, {"inspect", "design.toml", "-o", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("front               lens.toml, z = "), std::string::npos) << outcome.out;
+  const Json json = folder_.json("out/inspect.json");
+  EXPECT_NEAR(json["front"]["highest_mm"].get<double>(), 1.2, 1e-12);
+  EXPECT_NEAR(json["front"]["lowest_mm"].get<double>(), 1.2 - 3.0 + std::sqrt(9.0 - 0.25 - 0.16), 1e-12);
+  const double steepest = std::asin(std::hypot(0.5, 0.4) / 3.0) * 180.0 / std::numbers::pi;
+  EXPECT_NEAR(json["front"]["steepest_deg"].get<double>(), steepest, 1e-6);
+  EXPECT_EQ(json["design"]["part"]["plate_mm"], Json::array({1.0, 0.8}));
+  EXPECT_NE(folder_.read("out/front.svg").find("<svg"), std::string::npos);
+  EXPECT_EQ(folder_.names(),
+            (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/front.svg", "out/inspect.json"}));
+}
+
+// A report draws no part with a plane entrance face in place of the one that was traced.
+TEST_F(Entrance, ReportSaysThatItIsNotShown) {
+  folder_.write("lens.toml", turned(kCap));
+  rre(kPlate + kFront + kBody, {"--samples", "64", "-o", "out"});
+  const Outcome outcome = retrace(folder_, {"report", "out"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("no view in three dimensions"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("a [front] is taken by retrace rre, photometry and inspect alone"), std::string::npos);
+}
+
+// The freeform lenslets of turning's example, steep blends and all, over prisms.
+TEST_F(Entrance, FreeformLensletsOverPrismsKeepAllLight) {
+  const Json json =
+      rre("[element]\nkind = \"rtp\"\nbase_mm = 0.05\nwidth_mm = 0.05\n[array]\nx_length_mm = 0.5\ny_length_mm = 0.4\n"
+          "[front]\nturned = \"" +
+              example("turning/lenslet_array.toml") +
+              "\"\n[body]\nthickness_mm = 0.1\nrefractive_index = 1.4917\nabsorption_per_mm = 0.1\n",
+          {"--samples", "8192", "--incidence=0,30,70", "--azimuth=25"});
+  for (const Json& point : json["points"]) {
+    EXPECT_NEAR(total(point), 1.0, 1e-9);
+    EXPECT_EQ(point["ledger"]["lost"], 0.0);
+    EXPECT_GT(point["ledger"]["absorbed"].get<double>(), 0.001);
+    EXPECT_GT(point["ledger"]["front_specular"].get<double>(), 0.01);
+  }
+}
+
+TEST_F(Entrance, PhotometryTakesIt) {
+  folder_.write("lens.toml", turned(kFlat));
+  const Arguments plain = {"photometry", "design.toml", "--standard", "r150", "--class",    "IA",
+                           "--colour",   "white",       "--area-cm2", "10",   "--json",     "-",
+                           "--engine",   "montecarlo",  "--samples",  "8192", "--no-advice"};
+  const std::string body = kBody + "facet_coating = \"aluminium\"\n";
+  folder_.write("design.toml", kPlate + body);
+  const Outcome plane = retrace(folder_, plain);
+  folder_.write("design.toml", kPlate + kFront + body);
+  const Outcome front = retrace(folder_, plain);
+  ASSERT_LT(front.code, 2) << front.err;
+  const Json a = Json::parse(plane.out);
+  const Json b = Json::parse(front.out);
+  ASSERT_EQ(a["points"].size(), b["points"].size());
+  for (std::size_t k = 0; k < a["points"].size(); ++k) {
+    const double value = a["points"][k]["value_mcd_per_lx"].get<double>();
+    EXPECT_NEAR(b["points"][k]["value_mcd_per_lx"].get<double>(), value, 1e-9 * (1.0 + value)) << k;
+  }
+}
+
+TEST_F(Entrance, OthersRefuseItByName) {
+  folder_.write("lens.toml", turned(kFlat));
+  const std::string prisms =
+      "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
+  const std::string design = prisms + kFront + kBody;
+  const std::string where = "design.toml:9: front.turned: ";
+  EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=exact"}),
+            "--engine: exact takes a plane entrance face alone, design.toml has a [front]: use --engine embree");
+  EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=cell"}),
+            "--engine: cell takes a plane entrance face alone, design.toml has a [front]: use --engine embree");
+  for (const char* option : {"--footprint", "--far-field", "--derivatives"})
+    EXPECT_EQ(refusal(design, {"rre", "design.toml", option, "-o", "out"}),
+              where + option + " takes no [front], only a plane entrance face");
+  for (const std::string kind : {"--detector", "--camera"})
+    EXPECT_EQ(refusal(design, {"image", "design.toml", kind, "-o", "out"}),
+              where + "a [front] is taken by retrace rre, photometry and inspect alone");
+  EXPECT_EQ(refusal(design, {"image", "design.toml", "--road", "-o", "out"}),
+            where + "retrace image takes no [front], only a plane entrance face");
+  EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl"}),
+            where + "retrace export takes no [front], only a plane entrance face");
+  EXPECT_EQ(refusal(design, {"job", "design.toml", "--tool-width-mm=0.2", "-o", "job.toml"}),
+            where + "retrace job takes no [front], only a plane entrance face");
+  EXPECT_EQ(refusal(design, {"roughness", "design.toml", "-o", "out"}),
+            where + "retrace roughness takes no [front], only a plane entrance face");
+}
+
+TEST_F(Entrance, FilesThatMakeNoSenseAreRefused) {
+  const std::string design = kPlate + kFront + kBody;
+  const std::string where = "design.toml:4: front.turned: ";
+  EXPECT_EQ(refusal(design), where + "lens.toml: cannot be read: No such file or directory");
+  folder_.write("lens.toml", turned(kFlat, {}, 0.6));
+  EXPECT_EQ(refusal(design), where +
+                                 "lens.toml: must be turned all over the part, its path has a radius of 0.6 mm, "
+                                 "x = -0.5000, y = -0.4000 mm of its frame lies outside");
+  folder_.write("lens.toml", turned(kFlat, "[boundary]\nkind = \"circle\"\nradius_mm = 0.55\n"));
+  EXPECT_EQ(refusal(design), where +
+                                 "lens.toml: must have a boundary round the whole part, x = -0.5000, y = -0.4000 mm "
+                                 "of its frame lies outside");
+  folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -0.9\n"));
+  EXPECT_EQ(refusal(kPlate + kFront + "centre_mm = [0.45, 0.38]\n[body]\nthickness_mm = 0.2\n"),
+            where +
+                "lens.toml: must lie above the part's back, whose highest place is z = 0.0000, it comes down to "
+                "-0.1246 mm at x = 1.0000, y = 0.8000 mm: give more body.thickness_mm");
+  folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = 0\n"));
+  EXPECT_TRUE(refusal(design).starts_with(where + "lens.toml:4: base.radius_mm: ")) << refusal(design);
+  folder_.write("lens.toml", "solid\nendsolid\n");
+  EXPECT_TRUE(
+      refusal(kPlate + "[front]\nmesh = \"lens.toml\"\n" + kBody).starts_with("design.toml:4: front.mesh: lens.toml"));
+}
+
+TEST_F(Entrance, KeysThatMakeNoSenseAreRefused) {
+  folder_.write("lens.toml", turned(kFlat));
+  const std::string plate_body = kPlate + kBody;
+  EXPECT_EQ(refusal(plate_body + "[front]\n"),
+            "design.toml:6: front.turned: missing, must name the file of a turned part, or front.mesh an STL file");
+  EXPECT_EQ(refusal(plate_body + kFront + "mesh = \"a.stl\"\n"),
+            "design.toml:7: front.turned: not allowed beside mesh: a part has one front, got \"lens.toml\"");
+  EXPECT_EQ(refusal(plate_body + kFront + "mesh_side = \"top\"\n"),
+            "design.toml:8: front.mesh_side: only allowed with mesh, got \"top\"");
+  EXPECT_EQ(refusal(plate_body + "[front]\nmesh = \"a.stl\"\nmesh_side = \"left\"\n"),
+            "design.toml:8: front.mesh_side: must be \"top\" or \"bottom\", got \"left\"");
+  EXPECT_EQ(refusal(plate_body + kFront + "centre_mm = [1]\n"),
+            "design.toml:8: front.centre_mm: must be a list of 2 places, x and y, got 1 of them");
+  EXPECT_EQ(refusal("[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n" + kFront +
+                    kBody),
+            "design.toml:8: front.turned: not allowed for extent = \"infinite\": give lengths");
+  EXPECT_EQ(refusal("[element]\nkind = \"ball\"\ndiameter_mm = 1\n[body]\nrefractive_index = 1.9\n" + kFront),
+            "design.toml:6: front: not allowed for kind = \"ball\"");
+  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1, 1]\n" + kBody),
+            "design.toml:2: part.plate_mm: must be a list of 2 lengths, along x and y, got 3 of them");
+  EXPECT_EQ(refusal("[part]\nplate_mm = 1\n" + kBody),
+            "design.toml:2: part.plate_mm: must be a list of 2 lengths, along x and y, got 1");
+  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\nmesh = \"a.stl\"\n" + kBody),
+            "design.toml:3: part.mesh: not allowed beside plate_mm, got \"a.stl\"");
+  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[element]\nkind = \"rtp\"\n" + kBody),
+            "design.toml:3: element: not allowed beside part.plate_mm, which is the whole part");
+  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[body]\nrefractive_index = 1.5\n"),
+            "design.toml:3: body.thickness_mm: missing, must be > 0");
+}
+
+}  // namespace
+}  // namespace retrace::test::front_test

@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/app/program.h"
+
+// Elements on bases from a design to NC text and back, as users do it.
+
+namespace retrace::test::substrate_job_test {
+namespace {
+
+const char* const kExample = "fabrication/prisms_on_cylinder.toml";
+
+class SubstrateJob : public ::testing::Test {
+ protected:
+  /// A refusal: exit code 2, one line, nothing written.
+  void expect_refused(const Arguments& arguments, const std::string& what) {
+    const auto before = folder_.names();
+    const Outcome refused = retrace(folder_, arguments);
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    EXPECT_NE(refused.err.find(what), std::string::npos) << refused.err;
+    EXPECT_EQ(refused.err.find('\n'), refused.err.size() - 1) << refused.err;
+    EXPECT_EQ(folder_.names(), before);
+  }
+  Json verified(const std::string& dialect) {
+    const Outcome made = retrace(folder_, {"fabricate", "job.toml", "--dialect", dialect, "-o", dialect, "--quiet"});
+    EXPECT_EQ(made.code, 0) << made.err;
+    const Json plan = folder_.json(dialect + "/fabrication.json");
+    const std::string file = dialect + "/" + plan["programs"][0].get<std::string>();
+    const Json json = retrace_json(folder_, {"verify", "job.toml", file});
+    EXPECT_NEAR(json["time_s"].get<double>(), plan["time_s"].get<double>(), 0.01 * plan["time_s"].get<double>());
+    return json;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SubstrateJob, OfTheExampleVerifiesInEveryDialect) {
+  const Outcome job =
+      retrace(folder_, {"job", example(kExample), "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet"});
+  ASSERT_EQ(job.code, 0) << job.err;
+  for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"}) {
+    const Json json = verified(dialect);
+    EXPECT_EQ(json["verdict"], "pass") << json.dump().substr(0, 1000);
+    EXPECT_EQ(json["elements"], json["elements_cut"]);
+    EXPECT_EQ(json["elements"], 60);
+    EXPECT_LT(json["facet_distance_nm_max"].get<double>(), 1.0);
+    // Ten rows of roofs, each with its own A for either facet.
+    EXPECT_EQ(json["poses"].size(), 20U);
+  }
+  expect_refused({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}, "base: no map is drawn");
+}
+
+/// What is left returns what the design does, but for the texture of its facets.
+TEST_F(SubstrateJob, AsMachinedReturnsWhatTheDesignDoes) {
+  std::string design = read_text(example(kExample));
+  design.replace(design.find("x_length_mm = 5"), 15, "x_length_mm = 2");
+  design.replace(design.find("y_length_mm = 3"), 15, "y_length_mm = 1");
+  folder_.write("design.toml", design);
+  ASSERT_EQ(retrace(folder_, {"job", "design.toml", "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet"}).code, 0);
+  EXPECT_EQ(verified("rs274ngc")["verdict"], "pass");
+  const Arguments verify = {"verify", "job.toml", "rs274ngc/program.ngc", "--as-machined", "part.toml", "--quiet"};
+  ASSERT_EQ(retrace(folder_, verify).code, 0);
+  std::string part = folder_.read("part.toml");
+  EXPECT_NE(part.find("[base]\nkind = \"cylinder\"\nradius_mm = 20\n"), std::string::npos) << part;
+  part = without_texture(part);
+  folder_.write("smooth.toml", part);
+  const auto rre = [&](const std::string& name) {
+    return retrace_json(folder_, {"rre", name, "--engine", "exact", "--incidence=0,3", "--set",
+                                  "detector.acceptance_half_angle_deg=0.5"})["points"];
+  };
+  const Json designed = rre("design.toml");
+  const Json machined = rre("smooth.toml");
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_NEAR(machined[k]["rre"].get<double>(), designed[k]["rre"].get<double>(), 1e-6);
+  // Without its last element there is no such design.
+  const std::string text = folder_.read("rs274ngc/program.ngc");
+  std::string cut;
+  bool skips = false;
+  for (const std::string& line : lines_of(text)) {
+    if (line.starts_with("(element ")) skips = line == "(element 7)";
+    if (!(skips && line.find("call") != std::string::npos)) cut += line + "\n";
+  }
+  folder_.write("cut.ngc", cut);
+  expect_refused({"verify", "job.toml", "cut.ngc", "--as-machined", "other.toml"}, "must be cut all, 1 are not");
+}
+
+TEST_F(SubstrateJob, OfCubeCornersOnASphere) {
+  folder_.write("design.toml",
+                "[element]\nkind = \"triangular_icc\"\naperture_mm = 0.3\n[array]\nx_length_mm = 0.76\n"
+                "y_length_mm = 0.53\npartial_elements = \"omit\"\n[base]\nkind = \"sphere\"\nradius_mm = 8\n"
+                "[body]\nthickness_mm = 1\nrefractive_index = 1.49\n");
+  ASSERT_EQ(retrace(folder_,
+                    {"job", "design.toml", "--strategy", "dmc", "--tool-width-mm", "0.6", "-o", "job.toml", "--quiet"})
+                .code,
+            0);
+  const Json json = verified("rs274ngc");
+  EXPECT_EQ(json["verdict"], "pass") << json.dump().substr(0, 1000);
+  EXPECT_LT(json["facet_distance_nm_max"].get<double>(), 1.0);
+  expect_refused(
+      {"job", "design.toml", "--strategy", "dmc", "--tool-width-mm", "0.6", "--workpiece", "direct", "-o", "d.toml"},
+      "--workpiece: must be mould for a design with [base], got \"direct\"");
+}
+
+TEST_F(SubstrateJob, OfWhatCannotBeCutIsRefused) {
+  expect_refused({"job", example("pin_bundle.toml"), "--strategy", "dmc", "--tool-width-mm", "9", "-o", "pins.toml"},
+                 "pins are ground one by one and bundled, not cut");
+  ASSERT_EQ(retrace(folder_, {"job", example(kExample), "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet", "--set",
+                              "base.axis=x"})
+                .code,
+            0);
+  expect_refused({"fabricate", "job.toml", "-o", "program"}, "which A and C cannot turn in the facet");
+}
+
+}  // namespace
+}  // namespace retrace::test::substrate_job_test

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "core/atomic_file.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/plan/plan.h"
+#include "fabrication/post/post.h"
+#include "fabrication/verify/verify.h"
+#include "tests/fabrication/substrate_jobs.h"
+
+namespace retrace::fabrication::test {
+
+inline Machine machine(const std::string& name) {
+  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
+}
+inline Machine machine_of(const Job& job) {
+  return machine(job.strategy == Strategy::dmc ? "ideal-dmc" : "ideal");
+}
+
+inline std::string text_of(const Job& job, std::string_view dialect = "rs274ngc") {
+  return nc_text(make_plan(job, machine_of(job)).programs.front(), dialect);
+}
+
+inline Verification verified(const Job& job, const std::string& text, NcDialect dialect = NcDialect::rs274ngc) {
+  return verify_programs(job, machine_of(job), {parse_nc(text, "p", dialect)}, {}, {});
+}
+
+inline std::string listed(const Verification& v) {
+  std::string text;
+  for (const Finding& f : v.findings)
+    text += fmt::format("{}:{} {} [{}] {} ({} > {}) x{}\n", f.program, f.line, f.kind, f.element, f.message, f.value,
+                        f.limit, f.count);
+  return text.substr(0, 2000);
+}
+
+inline std::string kinds_of(const Verification& v) {
+  std::set<std::string> kinds;
+  for (const Finding& finding : v.findings) kinds.insert(finding.kind);
+  return fmt::format("{}", fmt::join(kinds, " "));
+}
+
+}  // namespace retrace::fabrication::test

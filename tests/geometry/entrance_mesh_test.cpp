@@ -1,0 +1,244 @@
+// Meshes as fronts: sheets at random pass; holes, overlaps, corners on sides, steps, upright, overhanging and turned
+// triangles are refused where they are, those too whose areas add up to the outline's.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+
+#include "core/error.h"
+#include "geometry/entrance/entrance_mesh.h"
+#include "geometry/part/mesh_part.h"
+#include "geometry/part/plate.h"
+
+namespace retrace::geometry::front_mesh_test {
+namespace {
+
+using Corners = std::array<std::uint32_t, 3>;
+
+/// A sheet of 2 n^2 triangles over the square of side n about the place (n / 2, n / 2), with bumps and crooked sides.
+class Sheet {
+ public:
+  Sheet(std::uint32_t cells, std::mt19937& random) : cells_(cells) {
+    std::uniform_real_distribution<double> shift(-0.2, 0.2);
+    for (std::uint32_t j = 0; j <= cells; ++j)
+      for (std::uint32_t i = 0; i <= cells; ++i) add(Vec3(i + shift(random), j + shift(random), shift(random)));
+    for (std::uint32_t j = 0; j < cells; ++j)
+      for (std::uint32_t i = 0; i < cells; ++i) {
+        const std::uint32_t a = j * (cells + 1) + i;
+        mesh.triangles.push_back({a, a + 1, a + cells + 2});
+        mesh.triangles.push_back({a, a + cells + 2, a + cells + 1});
+      }
+    std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
+  }
+
+  /// As a file has them: in single precision.
+  std::uint32_t add(const Vec3& p) {
+    mesh.vertices.push_back(p.cast<float>().cast<double>());
+    return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  }
+  Vec3 middle(const Corners& t) const {
+    return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
+  }
+  /// The number of one at least two cells inside.
+  std::size_t inner(std::mt19937& random) const {
+    for (;;) {
+      const std::size_t k = random() % mesh.triangles.size();
+      const Vec3 p = middle(mesh.triangles[k]);
+      if (p.head<2>().minCoeff() > 2.0 && p.head<2>().maxCoeff() < cells_ - 2.0) return k;
+    }
+  }
+  TriangleMesh mesh;
+
+ private:
+  std::uint32_t cells_;
+};
+
+constexpr std::uint32_t kCells = 8;
+const Polygon kOutline = to_polygon({Vec2(0.9, 0.8), Vec2(7.1, 7.2)});
+
+std::string message(const TriangleMesh& mesh, const Polygon& outline = kOutline, MeshSide side = MeshSide::top,
+                    const Vec3& move_mm = Vec3::Zero()) {
+  try {
+    entrance_of_mesh(mesh, side, move_mm, outline);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The place of "at x = 1.2, y = 3.4 mm".
+Vec2 place_in(const std::string& text) {
+  Vec2 place(INFINITY, INFINITY);
+  const std::size_t at = text.find("at x = ");
+  if (at != std::string::npos) std::sscanf(text.c_str() + at, "at x = %lf, y = %lf", &place.x(), &place.y());
+  return place;
+}
+
+/// \param what any of which it may be called
+void expect_refused(const std::string& text, const std::vector<std::string>& what, const Vec2& near,
+                    double within_mm = 2.0) {
+  EXPECT_TRUE(std::any_of(what.begin(), what.end(), [&](const std::string& w) { return text.ends_with(" " + w); }))
+      << text;
+  EXPECT_LT((place_in(text) - near).norm(), within_mm) << text << " is far from " << near.transpose();
+}
+
+TEST(EntranceMesh, SheetsAtRandomPass) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int k = 0; k < 200; ++k) {
+    const Sheet sheet(kCells, random);
+    const Vec3 move(20.0 * uniform(random) - 10.0, uniform(random), 3.0);
+    Polygon outline;
+    const int corners = 3 + static_cast<int>(random() % 6);
+    const double radius = 0.3 + 3.0 * uniform(random);
+    const double turn = uniform(random);
+    for (int c = 0; c < corners; ++c) {
+      const double angle = turn + 2.0 * 3.14159265358979 * c / corners;
+      outline.push_back(move.head<2>() + Vec2(4.0, 4.0) + radius * Vec2(std::cos(angle), std::sin(angle)));
+    }
+    EXPECT_EQ(message(sheet.mesh, outline, MeshSide::top, move), "") << k;
+    EXPECT_EQ(message(turned_over(sheet.mesh), outline, MeshSide::bottom, move), "") << k;
+  }
+}
+
+TEST(EntranceMesh, ClosedBodiesPassThoughTheirSidesStandUpright) {
+  const Polygon outline = to_polygon({Vec2(0.0, 0.0), Vec2(1.1, 0.7)});
+  for (const MeshSide side : {MeshSide::top, MeshSide::bottom})
+    EXPECT_EQ(message(box_mesh({1.1, 0.7}, 0.5), outline, side), "");
+}
+
+TEST(EntranceMesh, HolesAreRefused) {
+  std::mt19937 random(2);
+  for (int k = 0; k < 50; ++k) {
+    Sheet sheet(kCells, random);
+    const std::size_t hole = sheet.inner(random);
+    const Vec2 place = sheet.middle(sheet.mesh.triangles[hole]).head<2>();
+    sheet.mesh.triangles.erase(sheet.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(hole));
+    expect_refused(message(sheet.mesh), {"there is a hole"}, place);
+  }
+}
+
+// The area is right: what is missing here lies twice there.
+TEST(EntranceMesh, HolesBesideOverlapsOfTheSameAreaAreRefused) {
+  std::mt19937 random(3);
+  for (int k = 0; k < 50; ++k) {
+    Sheet sheet(kCells, random);
+    Corners& t = sheet.mesh.triangles[sheet.inner(random)];
+    const Vec2 place = sheet.middle(t).head<2>();
+    const Vec3 along = sheet.mesh.vertices[t[1]] - sheet.mesh.vertices[t[0]];
+    // One corner of one triangle, along the side that it faces: the area in plan stays.
+    t[2] = sheet.add(sheet.mesh.vertices[t[2]] + 0.3 * along);
+    expect_refused(message(sheet.mesh), {"there is a hole", "triangles overlap"}, place);
+  }
+}
+
+TEST(EntranceMesh, TwiceTheSameTriangleBesideAHoleIsRefused) {
+  const Polygon square = to_polygon({Vec2(0.0, 0.0), Vec2(2.0, 2.0)});
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_EQ(message(mesh, square), "");
+  mesh.triangles[1] = mesh.triangles[0];
+  const std::string text = message(mesh, square);
+  EXPECT_TRUE(text.starts_with("the top of the mesh must cover the part once, it covers 100.000000 % of it; at x = "))
+      << text;
+  expect_refused(text, {"triangles overlap"}, {1.0, 1.0}, 1e-3);
+}
+
+TEST(EntranceMesh, WholeSheetsTwiceAreRefused) {
+  const Polygon square = to_polygon({Vec2(0.0, 0.0), Vec2(2.0, 2.0)});
+  TriangleMesh mesh;
+  mesh.vertices = {{-1, -1, 0}, {3, -1, 0}, {3, 3, 0}, {-1, 3, 0}, {-1, -1, 1}, {3, -1, 1}, {3, 3, 1}, {-1, 3, 1}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  EXPECT_EQ(message(mesh, square), "the top of the mesh must cover the part once, it covers 200.00 % of it");
+}
+
+TEST(EntranceMesh, CornersOnSidesAreRefused) {
+  std::mt19937 random(4);
+  for (int k = 0; k < 50; ++k) {
+    Sheet sheet(kCells, random);
+    const std::size_t at = sheet.inner(random);
+    const Corners t = sheet.mesh.triangles[at];
+    const Vec3 place = 0.5 * (sheet.mesh.vertices[t[0]] + sheet.mesh.vertices[t[1]]);
+    const std::uint32_t m = sheet.add(place);
+    sheet.mesh.triangles[at] = {t[0], m, t[2]};
+    sheet.mesh.triangles.push_back({m, t[1], t[2]});
+    expect_refused(message(sheet.mesh), {"a corner lies on the side of a triangle"}, place.head<2>());
+  }
+}
+
+TEST(EntranceMesh, TrianglesTurnedOverAreRefused) {
+  std::mt19937 random(5);
+  for (int k = 0; k < 50; ++k) {
+    Sheet sheet(kCells, random);
+    Corners& t = sheet.mesh.triangles[sheet.inner(random)];
+    std::swap(t[0], t[1]);
+    expect_refused(message(sheet.mesh), {"a triangle is turned over"}, sheet.middle(t).head<2>());
+  }
+}
+
+/// Two levels that meet at x = 1, with or without a wall between.
+TriangleMesh stepped(double overhang_mm, bool with_wall) {
+  TriangleMesh mesh;
+  const double upper = 1.0 - overhang_mm;
+  mesh.vertices = {{0, 0, 0},       {1, 0, 0},   {1, 2, 0},   {0, 2, 0},
+                   {upper, 0, 0.5}, {2, 0, 0.5}, {2, 2, 0.5}, {upper, 2, 0.5}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  if (with_wall) {
+    mesh.triangles.push_back({1, 4, 7});
+    mesh.triangles.push_back({1, 7, 2});
+  }
+  return mesh;
+}
+
+TEST(EntranceMesh, StepsAreRefused) {
+  const Polygon outline = to_polygon({Vec2(0.0, 0.0), Vec2(2.0, 2.0)});
+  expect_refused(message(stepped(0.0, true), outline), {"a triangle stands upright"}, {1.0, 1.0}, 1e-3);
+  expect_refused(message(stepped(0.0, false), outline), {"the height jumps"}, {1.0, 1.0}, 1e-3);
+  expect_refused(message(stepped(0.2, true), outline), {"a triangle hangs over"}, {0.9, 1.0}, 0.2);
+  EXPECT_EQ(message(stepped(-0.2, true), outline), "") << "a slope";
+  // Of the side that is no front nothing is asked: a level lid over the steps.
+  TriangleMesh body = turned_over(stepped(0.0, true));
+  for (const Vec2& p : outline) body.vertices.emplace_back(p.x(), p.y(), 2.0);
+  body.triangles.insert(body.triangles.end(), {{8, 9, 10}, {8, 10, 11}});
+  EXPECT_EQ(message(body, outline), "");
+}
+
+// The place is told in the frame of the file.
+TEST(EntranceMesh, ThePlaceIsThatOfTheFile) {
+  const Vec3 move(5.0, -3.0, 1.0);
+  const Polygon outline = to_polygon({Vec2(5.0, -3.0), Vec2(7.0, -1.0)});
+  expect_refused(message(stepped(0.0, true), outline, MeshSide::top, move), {"a triangle stands upright"}, {1.0, 1.0},
+                 1e-3);
+  const std::string below = message(turned_over(stepped(0.0, true)), outline, MeshSide::bottom, move);
+  expect_refused(below, {"a triangle stands upright"}, {1.0, 1.0}, 1e-3);
+  EXPECT_TRUE(below.starts_with("the bottom of the mesh must cover the part once, it covers 100.000000 % of it; "));
+}
+
+TEST(EntranceMesh, TrianglesWithoutAreaAreRefused) {
+  const Polygon outline = to_polygon({Vec2(0.0, 0.0), Vec2(2.0, 2.0)});
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 4, 3}, {4, 2, 3}, {0, 2, 4}};
+  expect_refused(message(mesh, outline), {"a triangle has no area"}, {1.0, 1.0}, 1.0);
+}
+
+// What lies beside the outline is nobody's front.
+TEST(EntranceMesh, FaultsOutsideTheOutlineDoNotMatter) {
+  std::mt19937 random(6);
+  const Polygon outline = to_polygon({Vec2(3.0, 3.0), Vec2(5.0, 5.0)});
+  for (int k = 0; k < 50; ++k) {
+    Sheet sheet(kCells, random);
+    std::erase_if(sheet.mesh.triangles, [&](const Corners& t) {
+      const Vec3 p = sheet.middle(t);
+      return (p.head<2>() - Vec2(4.0, 4.0)).cwiseAbs().maxCoeff() > 2.5;
+    });
+    EXPECT_EQ(message(sheet.mesh, outline), "") << k;
+  }
+}
+
+}  // namespace
+}  // namespace retrace::geometry::front_mesh_test

@@ -1,0 +1,440 @@
+// Curved fronts: planes against the plane entrance face, lenses and wedges against rays by hand, closed forms of slabs
+// and of light that passes beside, exact surfaces against fine meshes of them, conservation.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "core/error.h"
+#include "geometry/entrance/entrance_mesh.h"
+#include "geometry/part/plate.h"
+#include "raytrace/faces/entrance_face.h"
+#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/paths/path_tracer.h"
+#include "tests/support/designs.h"
+#include "tests/support/entrance_surfaces.h"
+
+namespace retrace::testing::front_test {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+Optics mirrored_pmma() {
+  Optics optics = pmma();
+  optics.mirror_facets = true;
+  return optics;
+}
+
+/// Follows every branch down to the cut-off: no random choice.
+PathPolicy every_branch(double cutoff = 1e-13) {
+  PathPolicy policy;
+  policy.cutoff = cutoff;
+  policy.split_power = 0.0;
+  return policy;
+}
+
+MonteCarloResult traced(const Part& part, const Entrance* front, const Optics& optics, const Illumination& light,
+                        std::uint64_t count, const PathPolicy& policy = {}, double cone_deg = 0.5) {
+  return MonteCarlo(part, MonteCarlo::Engine::embree, front).trace(optics, light, {cone_deg}, rays(count), policy);
+}
+
+void expect_same(const ConeResult& a, const ConeResult& b, double tolerance) {
+  for (std::size_t k = 0; k < kAccountCount; ++k)
+    EXPECT_NEAR(a.ledger.power[k], b.ledger.power[k], tolerance) << kAccountNames[k];
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(a.stokes.values()[k], b.stokes.values()[k], tolerance) << k;
+}
+
+/// Light that leaves through the front.
+struct Exits : ExitObserver {
+  struct Exit {
+    Vec3 position;
+    Vec3 direction;
+    double power;
+  };
+  std::vector<Exit> all;
+  void leaves(const Vec3& position, const Vec3& direction, double power) override {
+    all.push_back({position, direction, power});
+  }
+  const Exit& strongest() const {
+    return *std::max_element(all.begin(), all.end(), [](const Exit& a, const Exit& b) { return a.power < b.power; });
+  }
+};
+
+/// Where the light of one ray goes.
+struct OneRay {
+  OneRay(const Part& part, const Entrance& front, const Vec2& centre)
+      : part_(part), centre_(centre), back_(part, centre), face_(make_entrance_face(front, part, centre)) {}
+
+  /// \param entry_mm in the plane that touches the front from above, from the centre
+  Exits follow(const Optics& optics, const Illumination& light, const Vec2& entry_mm) const {
+    const PathSetup setup(part_, back_, centre_, optics, light, {0.5}, every_branch(1e-3), face_.get());
+    Tally tally(1);
+    Exits exits;
+    PathWalker walker(setup, tally, &exits);
+    walker.trace(entry_mm, {1, 2}, 0, 0);
+    return exits;
+  }
+  const EntranceFace& face() const { return *face_; }
+
+ private:
+  const Part& part_;
+  Vec2 centre_;
+  BackSurface back_;
+  std::unique_ptr<const EntranceFace> face_;
+};
+
+Vec3 snell(const Vec3& d, const Vec3& n_out, double n1, double n2) {
+  const Vec3 n = n_out.dot(d) < 0.0 ? n_out : Vec3(-n_out);
+  const Vec3 tangential = n1 / n2 * (d - d.dot(n) * n);
+  return tangential - std::sqrt(1.0 - tangential.squaredNorm()) * n;
+}
+
+Vec3 towards_part(double incidence_deg, double azimuth_deg) {
+  const double t = incidence_deg * kDeg;
+  const double p = azimuth_deg * kDeg;
+  return -Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
+}
+
+// A plane, whether given as a surface or as two triangles, is the plane entrance face: the same rays, choices and sums.
+TEST(Entrance, PlaneIsTheEntranceFace) {
+  PartSpec spec = finite(RtpElement{0.5, 0.4, 88.0}, Arrangement::offset, 2.3, 1.9, 0.7);
+  const Part part = build_part(spec);
+  const Entrance surface = plane_entrance(0.7);
+  TriangleMesh sheet;
+  sheet.vertices = {{-1, -1, 0}, {4, -1, 0}, {4, 4, 0}, {-1, 4, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const Entrance mesh =
+      std::make_shared<const SurfacePatch>(entrance_of_mesh(sheet, MeshSide::top, Vec3(0, 0, 0.7), part.outline));
+  Illumination light = from(27.0, 30.0);
+  light.stokes = {1.0, 0.3, -0.5, -0.4};
+  Optics optics = pmma();
+  optics.absorption_per_mm = 0.02;
+  for (const bool lossless : {false, true}) {
+    optics.lossless_entrance = lossless;
+    const ConeResult flat = traced(part, nullptr, optics, light, 4096, {}, 8.0).cones[0];
+    expect_same(flat, traced(part, &surface, optics, light, 4096, {}, 8.0).cones[0], 1e-12);
+    expect_same(flat, traced(part, &mesh, optics, light, 4096, {}, 8.0).cones[0], 1e-12);
+  }
+}
+
+// A wedge over a mirror: refraction in, reflection, refraction out, with the power of both polarisations by hand.
+TEST(Entrance, WedgeRefractsBothPolarisationsAsByHand) {
+  const Part plate = build_plate({2.0, 2.0}, 1.0);
+  for (const double slope : {0.1, -0.3}) {
+    const OneRay tracer(plate, plane_entrance(1.0 - slope, slope), {1.0, 1.0});
+    const Vec3 n = Vec3(-slope, 0.0, 1.0).normalized();
+    for (const double incidence : {0.0, 12.0, -20.0}) {
+      const Vec3 d0 = towards_part(incidence, 0.0);
+      const Vec3 d1 = snell(d0, n, 1.0, kPmma);
+      const Vec3 d2 = Vec3(d1.x(), d1.y(), -d1.z());
+      const Vec3 d3 = snell(d2, n, kPmma, 1.0);
+      for (const bool s_polarised : {true, false}) {
+        // Powers by Fresnel's formulas of angles (Born and Wolf, 1.5.2): the plane of incidence is that of x and z.
+        const auto transmitted = [&](const Vec3& before, const Vec3& after) {
+          const double a = std::acos(std::abs(n.dot(before)));
+          const double b = std::acos(std::abs(n.dot(after)));
+          if (a < 1e-9) return 4.0 * kPmma / ((1.0 + kPmma) * (1.0 + kPmma));
+          const double r = s_polarised ? std::sin(a - b) / std::sin(a + b) : std::tan(a - b) / std::tan(a + b);
+          return 1.0 - r * r;
+        };
+        Illumination light = from(incidence);
+        light.stokes = {1.0, s_polarised ? -1.0 : 1.0, 0.0, 0.0};  // the first axis lies in the plane of incidence
+        const Exits::Exit exit = tracer.follow(mirrored_pmma(), light, {0.05, 0.1}).strongest();
+        EXPECT_LT((exit.direction - d3).norm(), 1e-13) << slope << " " << incidence;
+        EXPECT_NEAR(exit.power, transmitted(d0, d1) * transmitted(d2, d3), 1e-11) << slope << " " << incidence;
+      }
+    }
+  }
+}
+
+/// A ray through a cap of a sphere to a mirror at z = 0 and out again, in closed forms; z from the mirror.
+struct ByHand {
+  Vec3 at;
+  Vec3 direction;
+};
+
+ByHand through_sphere(double radius, double thickness, double n, const Vec3& from, const Vec3& d0) {
+  const Vec3 centre(0.0, 0.0, thickness - radius);
+  const auto meet = [&](const Vec3& p, const Vec3& d, double side) {
+    const Vec3 q = p - centre;
+    const double b = q.dot(d);
+    return Vec3(p + (-b + side * std::sqrt(b * b - q.squaredNorm() + radius * radius)) * d);
+  };
+  const Vec3 in = meet(from, d0, -1.0);
+  const Vec3 d1 = snell(d0, (in - centre) / radius, 1.0, n);
+  const Vec3 bottom = in - in.z() / d1.z() * d1;
+  const Vec3 d2(d1.x(), d1.y(), -d1.z());
+  const Vec3 out = meet(bottom, d2, 1.0);
+  return {out, snell(d2, (out - centre) / radius, n, 1.0)};
+}
+
+TEST(Entrance, LensOverAMirrorFollowsRaysByHand) {
+  const double radius = 3.0;
+  const Vec2 size(2.4, 2.0);
+  for (const double thickness : {4.0, kPmma / (kPmma - 1.0) * radius}) {
+    const Part plate = build_plate(size, 0.5 * thickness);
+    const OneRay tracer(plate, sphere_entrance(radius, thickness, 0.5 * size), 0.5 * size);
+    EXPECT_NEAR(tracer.face().highest_mm(), thickness, 1e-15);
+    EXPECT_NEAR(tracer.face().lowest_mm(), thickness - radius + std::sqrt(9.0 - 1.44 - 1.0), 1e-14);
+    int compared = 0;
+    for (const double incidence : {0.0, 3.0, 8.0})
+      for (const Vec2& entry : {Vec2(0.0, 0.0), Vec2(0.3, 0.2), Vec2(-0.7, 0.4), Vec2(0.9, -0.8)}) {
+        const Vec3 d0 = towards_part(incidence, 20.0);
+        const ByHand hand = through_sphere(radius, thickness, kPmma, {entry.x(), entry.y(), thickness}, d0);
+        if (std::abs(hand.at.x()) > 1.19 || std::abs(hand.at.y()) > 0.99) continue;  // it leaves through a side
+        const Exits::Exit exit = tracer.follow(mirrored_pmma(), from(incidence, 20.0), entry).strongest();
+        EXPECT_LT((exit.direction - hand.direction).norm(), 1e-13) << incidence << " " << entry.transpose();
+        EXPECT_LT((exit.position - hand.at).norm(), 1e-12) << incidence << " " << entry.transpose();
+        ++compared;
+      }
+    EXPECT_GE(compared, 8);
+  }
+}
+
+// The focus of a cap lies n R / (n - 1) below it: a mirror there sends light back parallel, but for the spherical
+// aberration, whose angle grows with the cube of the height, halved heights eighth it; out of focus it grows with the
+// height: the matrix of the cap, the way to the mirror and back, and the cap again (Hecht, Optics, 6.2.1).
+TEST(Entrance, CatsEyeSendsLightBackInParallel) {
+  const double radius = 2.0;
+  const double focus = kPmma / (kPmma - 1.0) * radius;
+  const Vec2 size(1.0, 1.0);
+  const auto error = [&](double thickness, double height) {
+    const Part plate = build_plate(size, 0.5 * thickness);
+    const OneRay tracer(plate, sphere_entrance(radius, thickness, 0.5 * size), 0.5 * size);
+    const Exits::Exit exit = tracer.follow(mirrored_pmma(), from(0.0), {height, 0.0}).strongest();
+    return exit.direction.x() / exit.direction.z();
+  };
+  const double at_tenth = error(focus, 0.1);
+  EXPECT_LT(std::abs(at_tenth), 1e-4);
+  EXPECT_GT(std::abs(at_tenth), 1e-7);
+  EXPECT_NEAR(error(focus, 0.1) / error(focus, 0.05), 8.0, 0.05);
+  const double thickness = 0.8 * focus;
+  const double height = 1e-3;
+  const double in = -(kPmma - 1.0) / (kPmma * radius) * height;  // angle behind the cap, paraxial
+  const double arrives = height + in * 2.0 * thickness;
+  const double out = kPmma * in - (kPmma - 1.0) / radius * arrives;
+  EXPECT_NEAR(error(thickness, height), out, 1e-6 * std::abs(out));
+}
+
+// At normal incidence a slab reflects 2 R / (1 + R) and passes the rest, summed over all ways: an even power of R each.
+TEST(Entrance, SlabAtNormalIncidence) {
+  const Part plate = build_plate({1.0, 0.7}, 0.5);
+  const Entrance front = plane_entrance(0.5);
+  const double r = std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0);
+  const ConeResult slab = traced(plate, &front, pmma(), from(0.0), 32, every_branch()).cones[0];
+  EXPECT_NEAR(slab.rre, 2.0 * r / (1.0 + r), 1e-12);
+  EXPECT_NEAR(slab.ledger[Account::transmitted], (1.0 - r) / (1.0 + r), 1e-12);
+  EXPECT_NEAR(slab.ledger.total(), 1.0, 1e-12);
+}
+
+// Over a wedge that rises by s towards the light's side, the beam crosses the plane through its upper edge. Rays within
+// L s tan t of the lower edge have passed it before they come down to the wedge.
+TEST(Entrance, WhatPassesBesideIsTransmitted) {
+  const double slope = 0.25;
+  const Part plate = build_plate({2.0, 1.0}, 1.0);
+  const Entrance front = plane_entrance(1.0, slope);
+  Optics optics = mirrored_pmma();
+  optics.lossless_entrance = true;
+  for (const double incidence : {10.0, 40.0}) {
+    const ConeResult result = traced(plate, &front, optics, from(incidence), 1U << 15).cones[0];
+    EXPECT_NEAR(result.ledger[Account::transmitted], slope * std::tan(incidence * kDeg),
+                4.0 / std::sqrt(static_cast<double>(1U << 15)) * 0.05)
+        << incidence;
+    EXPECT_NEAR(result.ledger.total(), 1.0, 1e-12);
+    EXPECT_EQ(result.ledger[Account::lost], 0.0);
+  }
+  EXPECT_EQ(traced(plate, &front, optics, from(0.0), 1024).cones[0].ledger[Account::transmitted], 0.0);
+}
+
+/// The first place where a ray crosses a surface, by small steps and bisection; infinity if it does not.
+double crossing_by_steps(const EntranceSurface& surface, const Vec3& from, const Vec3& direction, double until,
+                         bool inside) {
+  const auto gap = [&](double t) {
+    const Vec3 p = from + t * direction;
+    return (inside ? -1.0 : 1.0) * (p.z() - surface.at(p.head<2>()).height_mm);
+  };
+  constexpr int kSteps = 20000;
+  double before = 1e-9;
+  for (int k = 1; k <= kSteps; ++k) {
+    double t = until * k / kSteps;
+    if (gap(t) > 0.0) {
+      before = t;
+      continue;
+    }
+    for (int i = 0; i < 80; ++i) (gap(0.5 * (before + t)) > 0.0 ? before : t) = 0.5 * (before + t);
+    return t;
+  }
+  return kInfinity;
+}
+
+// Rays from anywhere above and below an egg box, and from its surface, at all slants.
+TEST(Entrance, FindsTheFirstCrossing) {
+  const Part plate = build_plate({2.0, 2.0}, 0.5);
+  const Entrance front = egg_box_entrance(1.0, 0.1, 9.0);
+  const EntranceSurface& surface = *std::get<0>(front);
+  const auto face = make_entrance_face(front, plate, Vec2::Zero());
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int met = 0;
+  int found_again = 0;
+  for (int k = 0; k < 600; ++k) {
+    const bool inside = k % 2 == 0;
+    const bool starts_on = k % 3 == 0;
+    Vec3 from(1.0 + 0.9 * uniform(random), 1.0 + 0.9 * uniform(random), 0.0);
+    // On the borders of cells too, whatever their number.
+    if (k % 5 == 0) from.x() = std::round(32.0 * from.x()) / 32.0;
+    if (k % 7 == 0) from.y() = std::round(32.0 * from.y()) / 32.0;
+    const EntranceSurface::Place place = surface.at(from.head<2>());
+    from.z() = starts_on ? place.height_mm : place.height_mm + (inside ? -0.3 : 0.3) * std::abs(uniform(random));
+    Vec3 direction = Vec3(uniform(random), uniform(random), 0.4 * uniform(random)).normalized();
+    const Vec3 out = Vec3(-place.slope.x(), -place.slope.y(), 1.0);
+    if (starts_on && (out.dot(direction) < 0.0) != inside) direction = -direction;
+    double until = kInfinity;
+    for (int axis = 0; axis < 2; ++axis)
+      until = std::min(until, (direction[axis] > 0.0 ? 2.0 - from[axis] : -from[axis]) / direction[axis]);
+    const double t = crossing_by_steps(surface, from, direction, until, inside);
+    SurfaceRay ray{from, direction, starts_on ? FacetRef{0, 0} : FacetRef{}, inside, until};
+    const auto hit = face->first_hit(ray);
+    ASSERT_EQ(hit.has_value(), std::isfinite(t)) << k << " " << t << " of " << until;
+    if (!hit) continue;
+    ++met;
+    if (starts_on) ++found_again;
+    EXPECT_NEAR(hit->hit.t, t, 1e-9) << k;
+    const Vec3 at = from + hit->hit.t * direction;
+    const EntranceSurface::Place there = surface.at(at.head<2>());
+    EXPECT_NEAR(at.z(), there.height_mm, 1e-14) << k;
+    EXPECT_NEAR(hit->normal.dot(Vec3(1.0, 0.0, there.slope.x())), 0.0, 1e-12);
+  }
+  EXPECT_GT(met, 150);
+  EXPECT_GT(found_again, 20);
+}
+
+// Waves of a size that the first grids see nothing of: refused, or met everywhere.
+TEST(Entrance, WavesFinerThanTheFirstGridAreNotPassedBy) {
+  const Part plate = build_plate({2.0, 2.0}, 0.5);
+  for (const double waves : {31.7, 32.0, 64.0}) {
+    const double k = 2.0 * std::numbers::pi * waves / 2.0;
+    const Entrance front = entrance_of(
+        [=](double x, double y) {
+          return EntranceSurface::Place{
+              1.0 + 0.005 * std::cos(k * x) * std::cos(k * y),
+              {-0.005 * k * std::sin(k * x) * std::cos(k * y), -0.005 * k * std::cos(k * x) * std::sin(k * y)}};
+        },
+        INFINITY);
+    const EntranceSurface& surface = *std::get<0>(front);
+    const auto face = make_entrance_face(front, plate, Vec2::Zero());
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(0.1, 1.9);
+    for (int i = 0; i < 100; ++i) {
+      const Vec3 from(uniform(random), uniform(random), 1.006);
+      const Vec3 direction = Vec3(0.2, 0.1, -1.0).normalized();
+      const double t = crossing_by_steps(surface, from, direction, 0.05, false);
+      const auto hit = face->first_hit({from, direction, {}, false, 0.05});
+      ASSERT_TRUE(hit.has_value()) << waves << " " << i;
+      EXPECT_NEAR(hit->hit.t, t, 1e-9) << waves << " " << i;
+    }
+  }
+  const auto fine = [](double x, double) {
+    return EntranceSurface::Place{1.0 + 1e-3 * std::cos(9e3 * x), {-9.0 * std::sin(9e3 * x), 0.0}};
+  };
+  EXPECT_THROW(make_entrance_face(entrance_of(fine, INFINITY), plate, Vec2::Zero()), InputError);
+}
+
+/// A surface as triangles on a grid over a square.
+TriangleMesh meshed(const EntranceSurface& surface, double size_mm, std::uint32_t cells) {
+  TriangleMesh mesh;
+  for (std::uint32_t j = 0; j <= cells; ++j)
+    for (std::uint32_t i = 0; i <= cells; ++i) {
+      const Vec2 p(size_mm * i / cells, size_mm * j / cells);
+      mesh.vertices.emplace_back(p.x(), p.y(), surface.at(p).height_mm);
+    }
+  for (std::uint32_t j = 0; j < cells; ++j)
+    for (std::uint32_t i = 0; i < cells; ++i) {
+      const std::uint32_t a = j * (cells + 1) + i;
+      mesh.triangles.push_back({a, a + 1, a + cells + 2});
+      mesh.triangles.push_back({a, a + cells + 2, a + cells + 1});
+    }
+  return mesh;
+}
+
+// Steep lenslets in front of prisms: light goes from lenslet to lenslet and in again. All of it is booked, none is
+// lost, and a fine mesh of the same surface, met triangle by triangle, sends it to the same accounts.
+TEST(Entrance, SurfaceAndItsMeshAgreeOverPrisms) {
+  const Part part = build_part(finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0, 1.0, 0.6));
+  const Entrance surface = egg_box_entrance(0.6, 0.08, 2.0 * std::numbers::pi / 0.4);
+  const Entrance mesh = std::make_shared<const SurfacePatch>(
+      entrance_of_mesh(meshed(*std::get<0>(surface), 1.0, 320), MeshSide::top, Vec3::Zero(), part.outline));
+  PathPolicy policy;
+  policy.split_power = 1e-3;  // the same rays but for little that is left to chance
+  for (const double incidence : {0.0, 35.0, 70.0}) {
+    const MonteCarloResult exact = traced(part, &surface, pmma(), from(incidence, 15.0), 1U << 13, policy, 20.0);
+    EXPECT_NEAR(exact.cones[0].ledger.total(), 1.0, 1e-9);
+    EXPECT_EQ(exact.misses, 0U);
+    const MonteCarloResult by_mesh = traced(part, &mesh, pmma(), from(incidence, 15.0), 1U << 13, policy, 20.0);
+    EXPECT_EQ(by_mesh.misses, 0U);
+    // Both are estimates; of the facets of the mesh 1e-3 is left.
+    const double bound = 4.0 * std::hypot(exact.cones[0].std_error, by_mesh.cones[0].std_error) + 1e-3;
+    EXPECT_LT(bound, 0.02);
+    for (std::size_t k = 0; k < kAccountCount; ++k)
+      EXPECT_NEAR(exact.cones[0].ledger.power[k], by_mesh.cones[0].ledger.power[k], bound) << kAccountNames[k];
+  }
+}
+
+// An egg box over a plate looks alike from all four sides.
+TEST(Entrance, SymmetricFrontsGiveSymmetricAnswers) {
+  const Part plate = build_plate({1.2, 1.2}, 0.5);
+  const Entrance front = egg_box_entrance(0.6, 0.05, 2.0 * std::numbers::pi / 0.4);
+  const MonteCarloResult first = traced(plate, &front, mirrored_pmma(), from(25.0, 0.0), 1U << 15, {}, 10.0);
+  for (const double azimuth : {90.0, 180.0, 270.0}) {
+    const MonteCarloResult turned = traced(plate, &front, mirrored_pmma(), from(25.0, azimuth), 1U << 15, {}, 10.0);
+    EXPECT_NEAR(turned.cones[0].rre, first.cones[0].rre,
+                5.0 * std::hypot(first.cones[0].std_error, turned.cones[0].std_error));
+    EXPECT_NEAR(turned.cones[0].ledger.total(), 1.0, 1e-9);
+  }
+}
+
+TEST(Entrance, RangesAreThoseOfTheOutline) {
+  const Polygon outline = to_polygon({Vec2(-0.3, -0.2), Vec2(1.1, 0.9)});
+  const EntranceRange range = entrance_range(egg_box_entrance(1.0, 0.1, std::numbers::pi / 0.5), outline);
+  EXPECT_NEAR(range.highest_mm, 1.1, 1e-15);
+  EXPECT_NEAR(range.lowest_mm, 0.9, 1e-15);
+  const EntranceRange slope = entrance_range(plane_entrance(2.0, 0.5, -0.25), outline);
+  EXPECT_NEAR(slope.highest_mm, 2.0 + 0.55 + 0.05, 1e-12);
+  EXPECT_NEAR(slope.lowest_mm, 2.0 - 0.15 - 0.225, 1e-12);
+  EXPECT_NEAR(slope.steepest_slope, std::hypot(0.5, 0.25), 1e-15);
+  EXPECT_THROW(entrance_range(sphere_entrance(1.0, 1.0, {0.0, 0.0}), outline), InputError);
+}
+
+TEST(Entrance, MeshesMustCoverTheOutlineOnce) {
+  const Polygon outline = to_polygon({Vec2(0.0, 0.0), Vec2(1.0, 1.0)});
+  const auto message = [&](const TriangleMesh& mesh, MeshSide side) -> std::string {
+    try {
+      entrance_of_mesh(mesh, side, Vec3::Zero(), outline);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::top), "");
+  EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::bottom), "");
+  EXPECT_EQ(
+      message(box_mesh({1.0, 0.5}, 0.5), MeshSide::top),
+      "the top of the mesh must cover the part once, it covers 50.00 % of it; at x = 0.5000, y = 0.5000 mm of its "
+      "frame a triangle stands upright");
+  TriangleMesh twice = box_mesh({1.0, 1.0}, 0.5);
+  twice.triangles.push_back(twice.triangles[2]);
+  EXPECT_EQ(
+      message(twice, MeshSide::top),
+      "the top of the mesh must cover the part once, it covers 150.00 % of it; at x = 0.5000, y = 0.5000 mm of its "
+      "frame triangles overlap");
+}
+
+}  // namespace
+}  // namespace retrace::testing::front_test

@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/error.h"
+#include "geometry/substrate/sag_formula.h"
+#include "studies/design/design_json.h"
+#include "studies/design/design_reader.h"
+
+// `[base]`: what it may say, and that what cannot carry the elements is refused at the key that says so.
+
+namespace retrace::studies::substrate_reader_test {
+namespace {
+
+std::string design(const std::string& element, const std::string& substrate) {
+  return element + "x_length_mm = 6\ny_length_mm = 6\n[base]\n" + substrate + "\n[body]\nthickness_mm = 3\n";
+}
+
+const std::string kPrisms = "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\n";
+const std::string kPins = "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 2\n[array]\narrangement = \"pins\"\n";
+
+Design read(const std::string& text) {
+  return parse_design(text, "d.toml", {});
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    read(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(SubstrateReader, ReadsEveryKind) {
+  const geometry::Substrate plane =
+      *read(design(kPrisms, "kind = \"plane\"\nincline_deg = 12\nazimuth_deg = -30")).part().substrate;
+  EXPECT_EQ(std::get<geometry::PlaneSubstrate>(plane.shape).incline_deg, 12.0);
+  EXPECT_EQ(std::get<geometry::PlaneSubstrate>(plane.shape).azimuth_deg, -30.0);
+  EXPECT_EQ(plane.element_axes, geometry::ElementAxes::normal);
+  const geometry::Substrate cylinder =
+      *read(design(kPrisms, "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelements = \"parallel\""))
+           .part()
+           .substrate;
+  EXPECT_EQ(std::get<geometry::CylinderSubstrate>(cylinder.shape).radius_mm, -20.0);
+  EXPECT_TRUE(std::get<geometry::CylinderSubstrate>(cylinder.shape).axis_is_x);
+  EXPECT_EQ(cylinder.element_axes, geometry::ElementAxes::parallel);
+  const geometry::Substrate sphere = *read(design(kPrisms, "kind = \"sphere\"\nradius_mm = 25")).part().substrate;
+  EXPECT_EQ(std::get<geometry::SphereSubstrate>(sphere.shape).radius_mm, 25.0);
+  const Design formula = read(design(kPrisms, "kind = \"formula\"\nsag_mm = \"-x^2 / 50\""));
+  EXPECT_EQ(to_json(formula)["base"]["sag_mm"], "-x^2 / 50");
+  EXPECT_EQ(to_json(formula)["base"]["elements"], "normal");
+}
+
+TEST(SubstrateReader, PinsShareOneAxis) {
+  const Design pins = read(design(kPins, "kind = \"plane\"\nincline_deg = 10"));
+  EXPECT_TRUE(pins.part().is_pin_bundle);
+  EXPECT_EQ(pins.part().arrangement, geometry::Arrangement::honeycomb);
+  EXPECT_EQ(pins.part().substrate->element_axes, geometry::ElementAxes::parallel);
+  EXPECT_EQ(to_json(pins)["array"]["arrangement"], "pins");
+  EXPECT_EQ(complaint(design(kPins, "kind = \"plane\"\nincline_deg = 10\nelements = \"normal\"")),
+            "d.toml:11: base.elements: must be \"parallel\" for arrangement = \"pins\", got \"normal\"");
+  EXPECT_FALSE(read(kPins + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n").part().substrate);
+}
+
+struct Bad {
+  std::string array;
+  std::string substrate;
+  std::string says;
+};
+
+TEST(SubstrateReader, SaysWhatIsWrongAndWhere) {
+  const std::vector<Bad> bad = {
+      {kPrisms, "incline_deg = 3", "d.toml:8: base.kind: missing"},
+      {kPrisms, "kind = \"cone\"", "d.toml:9: base.kind: must be \"plane\", \"cylinder\", \"sphere\" or \"f"},
+      {kPrisms, "kind = \"plane\"", "d.toml:8: base.incline_deg: missing"},
+      {kPrisms, "kind = \"plane\"\nincline_deg = 75", "d.toml:10: base.incline_deg: must be >= 0 and <= 60, got 75"},
+      {kPrisms, "kind = \"plane\"\nincline_deg = 50",
+       "d.toml:10: base.incline_deg: must leave the facets of its elements at most 88 degrees steep, one is 95.00"},
+      {kPrisms, "kind = \"plane\"\nincline_deg = 5\nradius_mm = 9", "d.toml:11: base.radius_mm: only allowed for kind"},
+      {kPrisms, "kind = \"sphere\"\nradius_mm = 0", "d.toml:10: base.radius_mm: must not be 0"},
+      {kPrisms, "kind = \"sphere\"\nradius_mm = 5\naxis = \"x\"", "d.toml:11: base.axis: only allowed for kind"},
+      {kPrisms, "kind = \"cylinder\"\nradius_mm = 0.6",
+       "d.toml:10: base.radius_mm: must not bend more tightly than its elements"},
+      {kPrisms, "kind = \"sphere\"\nradius_mm = 3.5", "d.toml:10: base.radius_mm: must rise by at most 60 degrees"},
+      {kPrisms, "kind = \"formula\"", "d.toml:8: base.sag_mm: missing, must be a formula"},
+      {kPrisms, "kind = \"formula\"\nsag_mm = \"x +\"", "d.toml:10: base.sag_mm: does not parse at character 4: "},
+      {kPrisms, "kind = \"formula\"\nsag_mm = \"log(x)\"",
+       "d.toml:10: base.sag_mm: is not finite, or has no finite slope or curvature, at x = -3, y = -3 mm"},
+      {kPrisms, "kind = \"formula\"\nsag_mm = \"0.2*sin(9*x)\"", "d.toml:10: base.sag_mm: must not bend more tightly"},
+      {kPrisms, "kind = \"plane\"\nincline_deg = 5\nwidth = 1", "d.toml:11: base.width: unknown key"},
+      {kPrisms + "x_offset_mm = 1\n", "kind = \"plane\"\nincline_deg = 5",
+       "d.toml:10: base.kind: not allowed together"},
+      {kPins, "kind = \"plane\"\nincline_deg = 45", "d.toml:10: base.incline_deg: must keep pins in contact"},
+  };
+  for (const Bad& b : bad) {
+    const std::string said = complaint(design(b.array, b.substrate));
+    EXPECT_EQ(said.substr(0, b.says.size()), b.says) << b.substrate;
+    EXPECT_EQ(said.find('\n'), std::string::npos);
+  }
+  const std::string endless =
+      "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n"
+      "[base]\nkind = \"plane\"\nincline_deg = 5\n[body]\nthickness_mm = 2\n";
+  EXPECT_EQ(complaint(endless), "d.toml:8: base.kind: not allowed for extent = \"infinite\": give lengths");
+}
+
+TEST(SubstrateReader, RefusesWhatASubstrateCannotHave) {
+  const std::string balls = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[base]\nkind = \"plane\"\nincline_deg = 5\n";
+  EXPECT_EQ(complaint(balls).substr(0, 12), "d.toml:4: ba") << complaint(balls);
+  EXPECT_NE(complaint(balls).find("not allowed for kind = \"ball\""), std::string::npos) << complaint(balls);
+  const std::string rounded = design(kPrisms, "kind = \"sphere\"\nradius_mm = 30") + "[surface]\nrim_radius_um = 20\n";
+  EXPECT_NE(complaint(rounded).find("rounded or chamfered rims need elements"), std::string::npos)
+      << complaint(rounded);
+  const Design inclined = read(design(kPrisms, "kind = \"plane\"\nincline_deg = 5"));
+  EXPECT_THROW(check_taken(inclined, {.what = "x", .substrates = false}), InputError);
+  EXPECT_NO_THROW(check_taken(read(kPrisms + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n"),
+                              {.what = "x", .substrates = false}));
+}
+
+}  // namespace
+}  // namespace retrace::studies::substrate_reader_test
