@@ -23,8 +23,8 @@ using raytrace::SurfaceRay;
 Scene brick_scene(int n) {
   geometry::PartSpec spec;
   spec.element = geometry::RtpElement{0.5, 0.5, 90.0};
-  spec.arrangement = Arrangement::offset;
-  spec.x_length_mm = spec.y_length_mm = 0.5 * n;
+  spec.array.arrangement = Arrangement::offset;
+  spec.array.x_length_mm = spec.array.y_length_mm = 0.5 * n;
   spec.thickness_mm = 0.5;
   Scene scene{std::to_string(n * n) + " prisms", geometry::build_part(spec), Vec2::Constant(0.25 * n)};
   return scene;
@@ -32,13 +32,13 @@ Scene brick_scene(int n) {
 
 std::vector<Scene> endless_scenes() {
   geometry::PartSpec spec;
-  spec.extent = geometry::Extent::infinite;
+  spec.array.extent = geometry::Extent::infinite;
   spec.thickness_mm = 1.0;
   const double aperture = 2.0 * std::sqrt(2.0 / 3.0);
   std::vector<Scene> scenes;
   const auto add = [&](std::string name, const geometry::Element& element, Arrangement arrangement) {
     spec.element = element;
-    spec.arrangement = arrangement;
+    spec.array.arrangement = arrangement;
     geometry::Part part = geometry::build_part(spec);
     const Vec2 centre = 0.5 * *part.period_mm;
     scenes.push_back({std::move(name), std::move(part), centre});

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/polygon.h"
 
 namespace retrace::geometry {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/number_format.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "report/result_plots.h"
 #include "studies/fabrication/fabricate.h"
 

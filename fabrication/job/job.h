@@ -80,32 +80,14 @@ struct Process {
   double finishing_plunge_sa_nm = 48.9;
 };
 
-/// Where the elements are, in the part's frame and size.
-struct Array {
-  /// single, aligned, offset or checker; of cube corners single, honeycomb or triangular
-  geometry::Arrangement arrangement = geometry::Arrangement::single;
-  geometry::RowParity shifted_rows = geometry::RowParity::even;
-  double overlap_percent = 50.0;
-  double x_length_mm = 0.0;  ///< of the extent; for `single`: that of the element's aperture
-  double y_length_mm = 0.0;
-  double x_gap_mm = 0.0;
-  double y_gap_mm = 0.0;
-  double x_offset_mm = 0.0;
-  double y_offset_mm = 0.0;
-  /// Which cells are cut: one text a row, the row of largest y first, '#' for a cell that is cut and '-' for one that
-  /// is not, x rising. Empty: all are. The last column of a shifted row lies beyond the border and counts for nothing.
-  /// Of cube corners a row has as many cells as lie wholly within the array at its height.
-  std::vector<std::string> pattern;
-};
-
 /// A fabrication job: all that a planner or a verifier needs to know, and nothing about light.
 struct Job {
   std::string source;  ///< the job file as given; empty if it was made
   std::string title;
   std::string design;  ///< file that the job was made from, for people
   Workpiece workpiece;
-  geometry::Element element;  ///< of the part, without cant
-  Array array;
+  geometry::Element element;    ///< of the part, without cant
+  geometry::ArrayLayout array;  ///< finite; x and y lengths of `single` are those of the element's aperture
   /// What the elements stand on, of moulds and of arrays without offsets and patterns; its highest place over the part
   /// is z = 0, and the blank's face has its shape. None: the plane z = 0.
   std::optional<geometry::Substrate> substrate;
@@ -131,18 +113,9 @@ struct CutElement {
   std::int32_t orientation = 0;  ///< elements with the same `turn` have the same
 };
 
-/// Columns and rows of an array's cells.
-struct CellCounts {
-  std::int64_t columns = 0;
-  std::int64_t rows = 0;
-};
-
 /// The prism that a job cuts. \throw InputError if it cuts cube corners
 const geometry::RtpElement& prism_of(const Job& job);
 geometry::RtpElement& prism_of(Job& job);
-
-/// How many cells the extent of an array of prisms holds. \pre lengths and sizes > 0
-CellCounts cell_counts(const Array& array, const geometry::RtpElement& element);
 
 /// The elements of the job, row by row from y = 0, x rising, in the frame of the blank (a direct workpiece's is
 /// mirrored). Partial elements are left out. Their place in the list is their number everywhere. Sizes are the

@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/part/substrate_part.h"
 
 namespace retrace::fabrication {
@@ -76,7 +76,7 @@ class Placer {
   explicit Placer(const Job& job)
       : job_(job),
         spec_(part_on_substrate(job)),
-        half_mm_(0.5 * Vec2(spec_.x_length_mm, spec_.y_length_mm)),
+        half_mm_(0.5 * Vec2(spec_.array.x_length_mm, spec_.array.y_length_mm)),
         surface_(geometry::substrate_surface_of(spec_)),
         top_mm_(geometry::measure_substrate(surface_, half_mm_).highest_mm),
         rim_(rim_of(job.element)) {}
@@ -216,14 +216,8 @@ Opening opening_of(const geometry::Element& element, bool rotated) {
 geometry::PartSpec part_on_substrate(const Job& job) {
   geometry::PartSpec spec;
   spec.element = job.element;
-  spec.arrangement = job.array.arrangement;
-  spec.shifted_rows = job.array.shifted_rows;
-  spec.partial_elements = geometry::PartialElements::omit;
-  spec.overlap_percent = job.array.overlap_percent;
-  spec.x_length_mm = job.array.x_length_mm;
-  spec.y_length_mm = job.array.y_length_mm;
-  spec.x_gap_mm = job.array.x_gap_mm;
-  spec.y_gap_mm = job.array.y_gap_mm;
+  spec.array = job.array;
+  spec.array.partial_elements = geometry::PartialElements::omit;
   spec.substrate = job.substrate;
   return spec;
 }
@@ -296,7 +290,7 @@ std::string substrate_description(const Job& job) {
 BlankFace::BlankFace(const Job& job) {
   if (!job.substrate) return;
   const geometry::PartSpec spec = part_on_substrate(job);
-  half_mm_ = 0.5 * Vec2(spec.x_length_mm, spec.y_length_mm);
+  half_mm_ = 0.5 * Vec2(spec.array.x_length_mm, spec.array.y_length_mm);
   scale_ = blank_scale(job.workpiece);
   surface_.emplace(geometry::substrate_surface_of(spec));
   top_mm_ = geometry::measure_substrate(*surface_, half_mm_).highest_mm;

@@ -7,7 +7,7 @@
 
 #include "core/angle.h"
 #include "core/number_format.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
 namespace {

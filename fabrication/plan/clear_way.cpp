@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
 namespace {

@@ -18,7 +18,7 @@
 #include "fabrication/plan/order.h"
 #include "fabrication/plan/routines.h"
 #include "fabrication/plan/stages.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
 namespace {

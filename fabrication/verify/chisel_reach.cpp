@@ -13,7 +13,7 @@
 #include "core/number_format.h"
 #include "fabrication/verify/groove.h"
 #include "fabrication/verify/swept_volume.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/angle.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/edges.h"
 #include "geometry/plane_polygon.h"
 
 namespace retrace::geometry {
@@ -248,7 +248,7 @@ EdgeShape without_negligible(EdgeShape edges, double size_mm) {
 
 /// Where land keeps the rims of a prism apart from its neighbours.
 Beyond beyond_rims(const PartSpec& spec, bool rotated) {
-  return (rotated ? spec.y_gap_mm : spec.x_gap_mm) > 0.0 ? Beyond::land : Beyond::mirror_image;
+  return (rotated ? spec.array.y_gap_mm : spec.array.x_gap_mm) > 0.0 ? Beyond::land : Beyond::mirror_image;
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/part/part.h"
 
 namespace retrace::geometry {
@@ -70,7 +70,7 @@ Cell flared_land(const Cell& cell, const ElementPlanes& element, const Vec2& cen
 
 /// A finite part like build_part() makes it, each element with its own facets; flat land stands where an element is
 /// not given. Outlines stay nominal, and vertical walls close what differs between neighbours.
-/// \pre spec.extent is finite, facets slope as nominal ones do
+/// \pre spec.array.extent is finite, facets slope as nominal ones do
 /// \throw InputError as build_part(), and for planes that belong to no whole element of the array
 Part build_part(const PartSpec& spec, const FacetPlanes& planes);
 

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/elements/edges.h"
+#include "geometry/elements/scratches.h"
+
 namespace retrace::geometry {
 namespace {
 
@@ -14,16 +17,16 @@ void add_element(Lattice& lattice, Cell cell) {
 /// One prism and the land that separates it from the next in x and y. In a checker the next ones are turned.
 void add_prism_with_gaps(Lattice& lattice, const PartSpec& spec, const Vec2& corner, bool rotated) {
   const auto& element = std::get<RtpElement>(spec.element);
-  const Vec2 gap(spec.x_gap_mm, spec.y_gap_mm);
+  const Vec2 gap(spec.array.x_gap_mm, spec.array.y_gap_mm);
   const Vec2 size(element.base_mm, element.width_mm);
-  const bool next_turned = rotated != (spec.arrangement == Arrangement::checker);
+  const bool next_turned = rotated != (spec.array.arrangement == Arrangement::checker);
   const Vec2 end = corner + size;
   add_element(lattice, rtp_cell(element, spec.angle_errors, corner, rotated));
   if (gap.x() > 0.0)
     lattice.cells.push_back(
         land_cell({{end.x(), corner.y()}, {end.x() + gap.x(), end.y()}}, spec, 0, !rotated, !next_turned));
   if (gap.y() <= 0.0) return;
-  const bool rims_face_it = spec.arrangement == Arrangement::checker && spec.edges.rounds_rims();
+  const bool rims_face_it = spec.array.arrangement == Arrangement::checker && spec.edges.rounds_rims();
   const double beside = rims_face_it ? end.x() : end.x() + gap.x();
   lattice.cells.push_back(
       land_cell({{corner.x(), end.y()}, {beside, end.y() + gap.y()}}, spec, 1, rotated, next_turned));
@@ -32,21 +35,21 @@ void add_prism_with_gaps(Lattice& lattice, const PartSpec& spec, const Vec2& cor
 
 Lattice rtp_lattice(const PartSpec& spec, bool rows_are_shifted) {
   const auto& element = std::get<RtpElement>(spec.element);
-  const Vec2 pitch(element.base_mm + spec.x_gap_mm, element.width_mm + spec.y_gap_mm);
+  const Vec2 pitch(element.base_mm + spec.array.x_gap_mm, element.width_mm + spec.array.y_gap_mm);
   Lattice lattice;
   lattice.period_mm = pitch;
-  if (spec.arrangement == Arrangement::checker) {
+  if (spec.array.arrangement == Arrangement::checker) {
     lattice.period_mm = 2.0 * pitch;
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i)
         add_prism_with_gaps(lattice, spec, Vec2(i * pitch.x(), j * pitch.y()), (i + j) % 2 == 1);
     return lattice;
   }
-  if (spec.arrangement == Arrangement::offset && rows_are_shifted) {
+  if (spec.array.arrangement == Arrangement::offset && rows_are_shifted) {
     lattice.period_mm.y() *= 2.0;
-    const double shift = 0.01 * spec.overlap_percent * element.base_mm;
+    const double shift = 0.01 * spec.array.overlap_percent * element.base_mm;
     for (int row = 1; row <= 2; ++row) {
-      const bool shifted = (row % 2 == 1) == (spec.shifted_rows == RowParity::odd);
+      const bool shifted = (row % 2 == 1) == (spec.array.shifted_rows == RowParity::odd);
       add_prism_with_gaps(lattice, spec, Vec2(shifted ? shift : 0.0, (row - 1) * pitch.y()), false);
     }
     return lattice;
@@ -87,6 +90,10 @@ Lattice sharp_lattice(const PartSpec& spec, bool rows_are_shifted) {
 }
 
 }  // namespace
+
+Cell finished_cell(const Cell& cell, const PartSpec& spec) {
+  return with_scratches(with_edges(cell, spec), spec);
+}
 
 Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted) {
   Lattice lattice = sharp_lattice(spec, rows_are_shifted);

@@ -22,11 +22,6 @@ AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std:
   return errors;
 }
 
-double whole_count(double length, double offset, double gap, double pitch) {
-  const double count = (length - 2.0 * offset + gap) / pitch;
-  return std::floor(count + kWholeTolerance * std::max(1.0, count));
-}
-
 std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block) {
   return {Rectangle{extent.lower, {block.lower.x(), extent.upper.y()}},
           Rectangle{{block.upper.x(), extent.lower.y()}, extent.upper},

@@ -24,9 +24,6 @@ struct IndexRange {
 /// The errors of the element at (i, j), the `number`th of the period: those of all, and its own random tilts.
 AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std::uint32_t number);
 
-/// How many elements have room on a length.
-double whole_count(double length, double offset, double gap, double pitch);
-
 /// The four strips of the extent that the block leaves free; any of them may be empty.
 std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block);
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/elements/array_layout.h"
 #include "geometry/substrate/substrate.h"
 
 namespace retrace::geometry {
@@ -81,13 +82,6 @@ struct Scratch {
   double depth_mm = 0.0;     ///< normal to the facet, into the part's material; < 0: a ridge out of it
 };
 
-enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
-enum class Extent { finite, infinite };
-/// Which rows of an offset array are shifted; rows count from 1 at y = 0. A single row is never shifted.
-enum class RowParity { even, odd };
-/// What becomes of an element that the border crosses.
-enum class PartialElements { cut, omit };
-
 /// What a designer says of a part: one element kind, how it is repeated, and the plate it stands on.
 /// Lengths in mm in the part frame (z up to the light, nominal rims on z = 0).
 struct PartSpec {
@@ -96,17 +90,7 @@ struct PartSpec {
   RandomTilts random_tilts;  ///< finite parts only
   EdgeShape edges;
   std::vector<Scratch> scratches;  ///< of every prism; on one facet they do not overlap
-  Arrangement arrangement = Arrangement::aligned;
-  Extent extent = Extent::finite;
-  RowParity shifted_rows = RowParity::even;
-  PartialElements partial_elements = PartialElements::cut;
-  double x_length_mm = 0.0;  ///< finite arrays that are not `single`
-  double y_length_mm = 0.0;
-  double x_gap_mm = 0.0;  ///< flat land between elements; RTP only
-  double y_gap_mm = 0.0;
-  double x_offset_mm = 0.0;  ///< flat margin kept free on both borders
-  double y_offset_mm = 0.0;
-  double overlap_percent = 50.0;  ///< shift of alternate rows of `offset`, in percent of the base
+  ArrayLayout array;
   /// What elements stand on, of finite arrays that are not `single`; none: the plane z = 0. Offsets are then 0.
   std::optional<Substrate> substrate;
   bool is_pin_bundle = false;  ///< a honeycomb whose cubes are the ends of pins

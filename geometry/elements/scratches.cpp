@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/scratches.h"
 
 namespace retrace::geometry {
 namespace {
@@ -110,10 +110,6 @@ Cell with_scratches(const Cell& cell, const PartSpec& spec) {
     }
   }
   return scratched;
-}
-
-Cell finished_cell(const Cell& cell, const PartSpec& spec) {
-  return with_scratches(with_edges(cell, spec), spec);
 }
 
 }  // namespace retrace::geometry

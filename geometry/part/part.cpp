@@ -1,4 +1,5 @@
 #include "geometry/part/part.h"
+#include "geometry/elements/whole_elements.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 
 #include "core/error.h"
 #include "geometry/elements/facet_planes.h"
+#include "geometry/elements/lattice.h"
 #include "geometry/elements/part_pieces.h"
 #include "geometry/part/substrate_part.h"
 #include "geometry/part/welded_part.h"
@@ -41,23 +43,17 @@ void snap(double& extent_bound, double block_bound, double scale) {
 
 Layout finite_layout(const PartSpec& spec, double size_mm) {
   Layout layout;
-  layout.partial = spec.partial_elements;
+  layout.partial = spec.array.partial_elements;
   layout.tolerance_mm = kWholeTolerance * size_mm;
-  const Vec2 length(spec.x_length_mm, spec.y_length_mm);
-  const Vec2 margin(spec.x_offset_mm, spec.y_offset_mm);
+  const Vec2 length(spec.array.x_length_mm, spec.array.y_length_mm);
+  const Vec2 margin(spec.array.x_offset_mm, spec.array.y_offset_mm);
   layout.extent = {Vec2::Zero(), length};
   if (const auto* rtp = std::get_if<RtpElement>(&spec.element)) {
-    const Vec2 gap(spec.x_gap_mm, spec.y_gap_mm);
-    const Vec2 size(rtp->base_mm, rtp->width_mm);
-    Vec2 count;
-    for (const Eigen::Index axis : {0, 1})
-      count[axis] = whole_count(length[axis], margin[axis], gap[axis], size[axis] + gap[axis]);
-    if (count.minCoeff() < 1.0) throw InputError("the array is smaller than one element");
-    const Vec2 filled = count.cwiseProduct(size + gap) - gap;
-    layout.block.lower = 0.5 * (length - filled);
-    layout.block.upper = layout.block.lower + filled;
+    const PrismBlock block = prism_block(spec.array, *rtp);
+    if (block.counts.columns < 1 || block.counts.rows < 1) throw InputError("the array is smaller than one element");
+    layout.block = block.filled;
     layout.anchor = layout.block.lower;
-    layout.lattice = make_lattice(spec, count.y() > 1.0);
+    layout.lattice = make_lattice(spec, block.counts.rows > 1);
   } else {
     layout.block = {margin, length - margin};
     layout.anchor = 0.5 * length;
@@ -365,12 +361,12 @@ Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* plane
   part.element_depth_mm = element_depth_mm(spec.element, spec.angle_errors);
   part.top_mm = element_top_mm(spec.element, spec.angle_errors);
   part.size_mm = element_size(spec.element);
-  if (spec.arrangement == Arrangement::single) {
+  if (spec.array.arrangement == Arrangement::single) {
     build_single(part, origin_mm, planes);
-  } else if (spec.extent == Extent::infinite) {
+  } else if (spec.array.extent == Extent::infinite) {
     build_infinite(part);
   } else if (spec.substrate) {
-    part.outline = moved(to_polygon({Vec2::Zero(), {spec.x_length_mm, spec.y_length_mm}}), origin_mm);
+    part.outline = moved(to_polygon({Vec2::Zero(), {spec.array.x_length_mm, spec.array.y_length_mm}}), origin_mm);
     add_surface_on_substrate(part, origin_mm, elements_per_patch);
     if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   } else {
@@ -383,7 +379,7 @@ Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* plane
     count_elements(part, layout);
     if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   }
-  if (spec.substrate && spec.arrangement != Arrangement::single && spec.extent == Extent::finite)
+  if (spec.substrate && spec.array.arrangement != Arrangement::single && spec.array.extent == Extent::finite)
     measure_layer_on_substrate(part);
   else if (planes != nullptr || spec.random_tilts.sigma_arcmin > 0.0 || !spec.edges.is_sharp() ||
            !spec.scratches.empty())

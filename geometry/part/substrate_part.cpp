@@ -1,4 +1,5 @@
 #include "geometry/part/substrate_part.h"
+#include "geometry/elements/whole_elements.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "core/error.h"
+#include "geometry/elements/edges.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/elements/lattice.h"
 #include "geometry/elements/part_pieces.h"
 #include "geometry/plane_polygon.h"
@@ -76,7 +79,7 @@ class Builder {
   Builder(Part& part, const Vec2& origin_mm)
       : part_(part),
         spec_(part.spec),
-        half_mm_(0.5 * Vec2(spec_.x_length_mm, spec_.y_length_mm)),
+        half_mm_(0.5 * Vec2(spec_.array.x_length_mm, spec_.array.y_length_mm)),
         middle_mm_(origin_mm + half_mm_),
         extent_{-half_mm_, half_mm_},
         surface_(substrate_surface_of(spec_)),
@@ -122,7 +125,7 @@ class Builder {
       block_ = {arc_extent_.lower - endless, arc_extent_.upper + endless};
       return;
     }
-    const Vec2 gap(spec_.x_gap_mm, spec_.y_gap_mm);
+    const Vec2 gap(spec_.array.x_gap_mm, spec_.array.y_gap_mm);
     const Vec2 size(rtp->base_mm, rtp->width_mm);
     const Rectangle reach = surface_.arc_reach();
     Vec2 count;
@@ -384,7 +387,7 @@ class Builder {
       else if (!inner.empty() && !clip(inner, extent_, tolerance_mm_).empty())
         ++count->partial;
     }
-    if (!whole && cell.is_element && spec_.partial_elements == PartialElements::omit) {
+    if (!whole && cell.is_element && spec_.array.partial_elements == PartialElements::omit) {
       add_tile(tiles, cell.outline, cell.land, FacetRole::flat_back);
       return;
     }

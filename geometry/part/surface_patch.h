@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/vec.h"
 
 namespace retrace::geometry {

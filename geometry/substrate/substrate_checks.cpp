@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/part/substrate_part.h"
 
 namespace retrace::geometry {
@@ -31,7 +31,7 @@ void check_count(const PartSpec& spec) {
   constexpr double kMostUnlike = 2e6;
   const bool repeats = std::holds_alternative<PlaneSubstrate>(spec.substrate->shape) ||
                        std::holds_alternative<CylinderSubstrate>(spec.substrate->shape);
-  const double count = spec.x_length_mm * spec.y_length_mm / area(aperture_outline(spec.element));
+  const double count = spec.array.x_length_mm * spec.array.y_length_mm / area(aperture_outline(spec.element));
   if (!repeats && count > kMostUnlike)
     throw InputError(
         fmt::format("must carry at most {:.0f} elements, as no two of them are alike there; there are "
@@ -45,8 +45,8 @@ std::vector<Vec3> facet_normals(const PartSpec& spec) {
   for (const CellFacet& facet : element_cell(spec.element, spec.angle_errors).facets) {
     const Vec3 normal = Vec3(-facet.plane.slope.x(), -facet.plane.slope.y(), 1.0).normalized();
     normals.push_back(normal);
-    if (spec.arrangement == Arrangement::triangular) normals.emplace_back(-normal.x(), -normal.y(), normal.z());
-    if (spec.arrangement == Arrangement::checker) normals.emplace_back(-normal.y(), normal.x(), normal.z());
+    if (spec.array.arrangement == Arrangement::triangular) normals.emplace_back(-normal.x(), -normal.y(), normal.z());
+    if (spec.array.arrangement == Arrangement::checker) normals.emplace_back(-normal.y(), normal.x(), normal.z());
   }
   return normals;
 }
@@ -88,7 +88,7 @@ void check_contact(const PartSpec& spec, const SubstrateSurface& surface, const 
 }  // namespace
 
 SubstrateSurface substrate_surface_of(const PartSpec& spec) {
-  return {*spec.substrate, 0.5 * Vec2(spec.x_length_mm, spec.y_length_mm), width_across_mm(spec.element)};
+  return {*spec.substrate, 0.5 * Vec2(spec.array.x_length_mm, spec.array.y_length_mm), width_across_mm(spec.element)};
 }
 
 double width_across_mm(const Element& element) {
@@ -98,7 +98,7 @@ double width_across_mm(const Element& element) {
 }
 
 SubstrateMeasures check_substrate(const PartSpec& spec) {
-  const Vec2 half_mm = 0.5 * Vec2(spec.x_length_mm, spec.y_length_mm);
+  const Vec2 half_mm = 0.5 * Vec2(spec.array.x_length_mm, spec.array.y_length_mm);
   check_count(spec);
   const SubstrateSurface surface = substrate_surface_of(spec);
   const SubstrateMeasures measures = measure_substrate(surface, half_mm);

@@ -1,4 +1,5 @@
 #include "raytrace/cells/cell_array.h"
+#include "geometry/elements/lattice.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

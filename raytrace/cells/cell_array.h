@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/elements/element_cells.h"
 #include "geometry/elements/lattice.h"
 #include "geometry/part/part.h"
 #include "geometry/vec.h"

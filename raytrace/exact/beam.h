@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "raytrace/exact/flat_polygon.h"
 #include "raytrace/light/coherent_light.h"
 

@@ -102,7 +102,7 @@ double BeamWalk::parts_of_element() const {
 void BeamWalk::enter_in_pieces(const Beam& whole, double parts) {
   Vec2 step = Vec2::Constant(part_.size_mm);
   if (const auto* rtp = std::get_if<geometry::RtpElement>(&part_.spec.element))
-    step = Vec2(rtp->base_mm + part_.spec.x_gap_mm, rtp->width_mm + part_.spec.y_gap_mm);
+    step = Vec2(rtp->base_mm + part_.spec.array.x_gap_mm, rtp->width_mm + part_.spec.array.y_gap_mm);
   step /= parts;
   const Frame from_above(-Vec3::UnitZ());
   const double whole_area = area(flattened(whole.corners, from_above, merge_mm_));

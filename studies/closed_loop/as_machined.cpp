@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "fabrication/job/substrate_cells.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "studies/design/design_document.h"
 #include "studies/design/design_reader.h"
 
@@ -73,11 +73,11 @@ geometry::PartSpec elements_of(const Job& job, bool has_planes) {
   geometry::PartSpec part = part_on_substrate(job);
   // Flares reach into margins: which elements there are, the table of planes says.
   if (!has_planes || is_prism(job)) {
-    part.x_offset_mm = job.array.x_offset_mm;
-    part.y_offset_mm = job.array.y_offset_mm;
+    part.array.x_offset_mm = job.array.x_offset_mm;
+    part.array.y_offset_mm = job.array.y_offset_mm;
   }
-  if (is_prism(job) && !job.substrate && part.arrangement != geometry::Arrangement::offset)
-    part.partial_elements = geometry::PartialElements::cut;
+  if (is_prism(job) && !job.substrate && part.array.arrangement != geometry::Arrangement::offset)
+    part.array.partial_elements = geometry::PartialElements::cut;
   return part;
 }
 

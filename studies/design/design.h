@@ -195,7 +195,7 @@ struct Design {
   const geometry::PartSpec& part() const { return std::get<ElementArray>(shape).part; }
   geometry::PartSpec& part() { return std::get<ElementArray>(shape).part; }
   /// Whether it goes on for ever. Balls are asked by their pitch.
-  bool is_endless() const { return elements() != nullptr && part().extent == geometry::Extent::infinite; }
+  bool is_endless() const { return elements() != nullptr && part().array.extent == geometry::Extent::infinite; }
   /// Of its plate, as the design gives it; 0 if it does not.
   double thickness_mm() const;
 

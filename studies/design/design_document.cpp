@@ -62,7 +62,7 @@ class Keys {
 
 std::string_view word_of(const PartSpec& part) {
   constexpr std::string_view words[] = {"single", "aligned", "offset", "checker", "honeycomb", "triangular"};
-  return part.is_pin_bundle ? "pins" : words[static_cast<std::size_t>(part.arrangement)];
+  return part.is_pin_bundle ? "pins" : words[static_cast<std::size_t>(part.array.arrangement)];
 }
 
 void set_cube(Keys& keys, std::string_view kind, double aperture_mm, const Cant& cant) {
@@ -91,22 +91,22 @@ void set_array(Document& document, const ElementArray& elements) {
   const PartSpec& part = elements.part;
   Keys keys(document, "array");
   keys.set_word("arrangement", word_of(part));
-  if (part.arrangement == Arrangement::single) return;
-  keys.set_choice("extent", part.extent);
-  if (part.extent == Extent::finite) {
-    keys.set("x_length_mm", part.x_length_mm);
-    keys.set("y_length_mm", part.y_length_mm);
-    keys.set("x_offset_mm", part.x_offset_mm);
-    keys.set("y_offset_mm", part.y_offset_mm);
-    keys.set_choice("partial_elements", part.partial_elements);
+  if (part.array.arrangement == Arrangement::single) return;
+  keys.set_choice("extent", part.array.extent);
+  if (part.array.extent == Extent::finite) {
+    keys.set("x_length_mm", part.array.x_length_mm);
+    keys.set("y_length_mm", part.array.y_length_mm);
+    keys.set("x_offset_mm", part.array.x_offset_mm);
+    keys.set("y_offset_mm", part.array.y_offset_mm);
+    keys.set_choice("partial_elements", part.array.partial_elements);
   }
   if (std::holds_alternative<RtpElement>(part.element)) {
-    keys.set("x_gap_mm", part.x_gap_mm);
-    keys.set("y_gap_mm", part.y_gap_mm);
+    keys.set("x_gap_mm", part.array.x_gap_mm);
+    keys.set("y_gap_mm", part.array.y_gap_mm);
   }
-  if (part.arrangement == Arrangement::offset) {
-    keys.set("overlap_percent", part.overlap_percent);
-    keys.set_choice("shifted_rows", part.shifted_rows);
+  if (part.array.arrangement == Arrangement::offset) {
+    keys.set("overlap_percent", part.array.overlap_percent);
+    keys.set_choice("shifted_rows", part.array.shifted_rows);
   }
   if (!elements.mask) return;
   keys.set_word("mask", elements.mask->name);

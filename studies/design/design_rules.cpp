@@ -13,7 +13,8 @@
 #include "core/number_format.h"
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/edges.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/io/substrate_rows.h"
 #include "geometry/part/substrate_part.h"
 #include "studies/design/part_reader.h"
@@ -62,7 +63,7 @@ void of_array(const Document& document) {
 }
 
 void check_square(const Document& document, const PartSpec& part) {
-  if (part.arrangement != Arrangement::checker) return;
+  if (part.array.arrangement != Arrangement::checker) return;
   const auto& rtp = std::get<RtpElement>(part.element);
   if (std::abs(rtp.base_mm - rtp.width_mm) <= kRelativeTolerance * rtp.base_mm) return;
   document.fail("element.width_mm", fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
@@ -80,7 +81,7 @@ struct FootprintOf {
   const PartSpec& part;
 
   Footprint operator()(const RtpElement& rtp) const {
-    return {rtp.base_mm, rtp.width_mm, (rtp.base_mm + part.x_gap_mm) * (rtp.width_mm + part.y_gap_mm)};
+    return {rtp.base_mm, rtp.width_mm, (rtp.base_mm + part.array.x_gap_mm) * (rtp.width_mm + part.array.y_gap_mm)};
   }
   /// Vertices on +-x.
   Footprint operator()(const HexagonalCube& cube) const {
@@ -105,12 +106,12 @@ void check_length(const Document& document, std::string_view key, double length_
 }
 
 void check_room(const Document& document, const PartSpec& part) {
-  if (part.extent == Extent::infinite || part.arrangement == Arrangement::single) return;
+  if (part.array.extent == Extent::infinite || part.array.arrangement == Arrangement::single) return;
   const Footprint footprint = std::visit(FootprintOf{part}, part.element);
-  check_length(document, "array.x_length_mm", part.x_length_mm, part.x_offset_mm, footprint.x_mm);
-  check_length(document, "array.y_length_mm", part.y_length_mm, part.y_offset_mm, footprint.y_mm);
-  const double x_free_mm = part.x_length_mm - 2.0 * part.x_offset_mm + part.x_gap_mm;
-  const double y_free_mm = part.y_length_mm - 2.0 * part.y_offset_mm + part.y_gap_mm;
+  check_length(document, "array.x_length_mm", part.array.x_length_mm, part.array.x_offset_mm, footprint.x_mm);
+  check_length(document, "array.y_length_mm", part.array.y_length_mm, part.array.y_offset_mm, footprint.y_mm);
+  const double x_free_mm = part.array.x_length_mm - 2.0 * part.array.x_offset_mm + part.array.x_gap_mm;
+  const double y_free_mm = part.array.y_length_mm - 2.0 * part.array.y_offset_mm + part.array.y_gap_mm;
   const double count = x_free_mm * y_free_mm / footprint.cell_area_mm2;
   if (!(count <= kMostElements * (1.0 + kRelativeTolerance)))
     document.fail("array.x_length_mm",
@@ -122,9 +123,9 @@ void check_room(const Document& document, const PartSpec& part) {
 void check_array_on_substrate(const Document& document, const PartSpec& part) {
   constexpr std::string_view key = "base.kind";
   if (!document.has("base")) return;
-  if (part.extent == Extent::infinite) document.fail(key, "not allowed for extent = \"infinite\": give lengths");
-  if (part.arrangement == Arrangement::single) document.fail(key, "not allowed for arrangement = \"single\"");
-  if (part.x_offset_mm > 0.0 || part.y_offset_mm > 0.0)
+  if (part.array.extent == Extent::infinite) document.fail(key, "not allowed for extent = \"infinite\": give lengths");
+  if (part.array.arrangement == Arrangement::single) document.fail(key, "not allowed for arrangement = \"single\"");
+  if (part.array.x_offset_mm > 0.0 || part.array.y_offset_mm > 0.0)
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
 }
 
@@ -150,7 +151,7 @@ void check_facet_tilts(const Document& document, const PartSpec& part) {
 }
 
 void check_random_tilts(const Document& document, const PartSpec& part) {
-  if (part.random_tilts.sigma_arcmin > 0.0 && part.extent == Extent::infinite)
+  if (part.random_tilts.sigma_arcmin > 0.0 && part.array.extent == Extent::infinite)
     document.fail(kRandomTilt,
                   "must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
 }
@@ -187,7 +188,7 @@ void check_one_shape(const Document& document, const PartSpec& part) {
 /// Rims that land keeps apart are rounded against it, so that it must be wide enough.
 void check_land(const Document& document, const PartSpec& part) {
   if (!part.edges.rounds_rims() || !is_prism(part)) return;
-  const bool is_checker = part.arrangement == Arrangement::checker;
+  const bool is_checker = part.array.arrangement == Arrangement::checker;
   const double reach_mm = geometry::rim_reach_over_land_mm(part);
   const double needed_mm = is_checker ? reach_mm : 2.0 * reach_mm;  // in a checker one of two neighbours is turned
   const auto check = [&](std::string_view gap, double gap_mm) {
@@ -196,8 +197,8 @@ void check_land(const Document& document, const PartSpec& part) {
                   fmt::format("rims of that shape need an array.{} of 0 or >= {} mm, got {}", gap, shortest(needed_mm),
                               shortest(gap_mm)));
   };
-  check("x_gap_mm", part.x_gap_mm);
-  if (is_checker) check("y_gap_mm", part.y_gap_mm);
+  check("x_gap_mm", part.array.x_gap_mm);
+  if (is_checker) check("y_gap_mm", part.array.y_gap_mm);
 }
 
 constexpr std::string_view kScratches = "surface.scratches";
@@ -267,7 +268,7 @@ void check_mask(const Document& document, const PartSpec& part) {
 void check_facet_planes(const Document& document, const PartSpec& part) {
   constexpr std::string_view key = "part.facets";
   if (!document.has(key)) return;
-  if (part.extent == Extent::infinite) document.fail(key, "only allowed for finite arrays");
+  if (part.array.extent == Extent::infinite) document.fail(key, "only allowed for finite arrays");
   if (part.substrate) document.fail(key, "not allowed together with [base]");
   if (!(part.angle_errors == AngleErrors{}) || part.random_tilts.sigma_arcmin > 0.0)
     document.fail(key, "not allowed together with errors of angle, which its planes hold");
@@ -276,7 +277,7 @@ void check_facet_planes(const Document& document, const PartSpec& part) {
 void check_substrate_of_part(const Document& document, const PartSpec& part) {
   if (!part.substrate) return;
   const std::string_view key = geometry::substrate_shape_key(*part.substrate);
-  const bool has_gaps = part.x_gap_mm > 0.0 || part.y_gap_mm > 0.0;
+  const bool has_gaps = part.array.x_gap_mm > 0.0 || part.array.y_gap_mm > 0.0;
   const bool is_plane = std::holds_alternative<PlaneSubstrate>(part.substrate->shape);
   if (part.edges.rounds_rims() && part.substrate->element_axes == ElementAxes::normal && (has_gaps || !is_plane))
     document.fail(key, "rounded or chamfered rims need elements = \"parallel\", or a plane base and no gaps");

@@ -123,8 +123,8 @@ class Reader {
 
   void check(const FacetRow& row) const {
     if (row.facet >= kCaps) return check_cap(row);
-    const bool may_be_turned =
-        spec_.arrangement == geometry::Arrangement::checker || spec_.arrangement == geometry::Arrangement::triangular;
+    const bool may_be_turned = spec_.array.arrangement == geometry::Arrangement::checker ||
+                               spec_.array.arrangement == geometry::Arrangement::triangular;
     if (!resembles(row, false) && !(may_be_turned && resembles(row, true)))
       fail(row.line, "x_slope",
            fmt::format("the plane must lie within {} degrees of facet {} of the design's element",

@@ -72,20 +72,21 @@ PartSpec read_array(const Document& document) {
   PartSpec part;
   part.element = element_of(document);
   const std::string arrangement = document.text("array.arrangement");
-  part.arrangement = arrangement_of(arrangement);
+  part.array.arrangement = arrangement_of(arrangement);
   part.is_pin_bundle = arrangement == "pins";
-  part.extent = document.text("array.extent") == "infinite" ? geometry::Extent::infinite : geometry::Extent::finite;
+  part.array.extent =
+      document.text("array.extent") == "infinite" ? geometry::Extent::infinite : geometry::Extent::finite;
   const auto read = [&](std::string_view key, double& value) { value = document.number_if(key).value_or(value); };
-  read("array.x_length_mm", part.x_length_mm);
-  read("array.y_length_mm", part.y_length_mm);
-  read("array.x_offset_mm", part.x_offset_mm);
-  read("array.y_offset_mm", part.y_offset_mm);
-  read("array.x_gap_mm", part.x_gap_mm);
-  read("array.y_gap_mm", part.y_gap_mm);
-  part.partial_elements = document.choice<geometry::PartialElements>("array.partial_elements");
-  if (part.arrangement != Arrangement::offset) return part;
-  part.shifted_rows = document.choice<geometry::RowParity>("array.shifted_rows");
-  part.overlap_percent = document.number("array.overlap_percent");
+  read("array.x_length_mm", part.array.x_length_mm);
+  read("array.y_length_mm", part.array.y_length_mm);
+  read("array.x_offset_mm", part.array.x_offset_mm);
+  read("array.y_offset_mm", part.array.y_offset_mm);
+  read("array.x_gap_mm", part.array.x_gap_mm);
+  read("array.y_gap_mm", part.array.y_gap_mm);
+  part.array.partial_elements = document.choice<geometry::PartialElements>("array.partial_elements");
+  if (part.array.arrangement != Arrangement::offset) return part;
+  part.array.shifted_rows = document.choice<geometry::RowParity>("array.shifted_rows");
+  part.array.overlap_percent = document.number("array.overlap_percent");
   return part;
 }
 

@@ -1,4 +1,5 @@
 #include "studies/drawing/array_figures.h"
+#include "geometry/elements/whole_elements.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +15,6 @@ using geometry::PartSpec;
 using geometry::Rectangle;
 using geometry::RtpElement;
 using geometry::Vec2;
-
-// Lengths this close (relative) to a whole number of elements are whole, as in a design.
-constexpr double kWhole = 1e-9;
 
 Rectangle extent_of(const Part& part) {
   if (part.period_mm) return {Vec2::Zero(), *part.period_mm};
@@ -44,27 +42,22 @@ std::optional<Vec2> first_element_there(const Part& part, const Vec2& size) {
 void measure_prisms(ArrayFigures& a, const Design& design, const Part& part) {
   const PartSpec& spec = part.spec;
   const auto& element = std::get<RtpElement>(spec.element);
+  const geometry::PrismBlock block = geometry::prism_block(spec.array, element);
   a.size_mm = {element.base_mm, element.width_mm};
-  a.pitch_mm = a.size_mm + Vec2(spec.x_gap_mm, spec.y_gap_mm);
+  a.pitch_mm = block.pitch_mm;
   a.block_mm = a.extent_mm;
-  if (spec.arrangement != Arrangement::single && spec.extent == Extent::finite) {
-    const Vec2 gap(spec.x_gap_mm, spec.y_gap_mm);
-    const Vec2 room = a.extent_mm.size() - 2.0 * Vec2(spec.x_offset_mm, spec.y_offset_mm) + gap;
-    for (const Eigen::Index k : {0, 1}) {
-      const double count = room[k] / a.pitch_mm[k];
-      a.count[k] = std::floor(count + kWhole * std::max(1.0, count));
-    }
-    const Vec2 filled = a.count.cwiseProduct(a.pitch_mm) - gap;
-    a.block_mm.lower = a.extent_mm.lower + 0.5 * (a.extent_mm.size() - filled);
-    a.block_mm.upper = a.block_mm.lower + filled;
-  } else if (spec.extent == Extent::infinite) {
+  if (spec.array.extent == Extent::infinite) {
     a.count = {INFINITY, INFINITY};
+    a.shift_mm =
+        spec.array.arrangement == Arrangement::offset ? 0.01 * spec.array.overlap_percent * element.base_mm : 0.0;
+  } else if (spec.array.arrangement != Arrangement::single) {
+    a.count = {static_cast<double>(block.counts.columns), static_cast<double>(block.counts.rows)};
+    a.block_mm = {a.extent_mm.lower + block.filled.lower, a.extent_mm.lower + block.filled.upper};
+    a.shift_mm = block.shift_mm;
   }
-  if (spec.arrangement == Arrangement::offset && a.count.y() > 1.0)
-    a.shift_mm = 0.01 * spec.overlap_percent * element.base_mm;
   const auto is_shifted = [&](double row) {
     return a.shift_mm > 0.0 &&
-           (std::fmod(std::round(row), 2.0) == 0.0) == (spec.shifted_rows == geometry::RowParity::odd);
+           (std::fmod(std::round(row), 2.0) == 0.0) == (spec.array.shifted_rows == geometry::RowParity::odd);
   };
   a.element_is_shifted = is_shifted(0.0);
   a.element_mm = a.block_mm.lower + Vec2(a.element_is_shifted ? a.shift_mm : 0.0, 0.0);
@@ -85,11 +78,11 @@ void measure_cubes(ArrayFigures& a, const Part& part) {
   a.size_mm = box.size();
   a.pitch_mm = 0.5 * a.aperture_mm * Vec2(3.0, std::sqrt(3.0));
   a.block_mm = a.extent_mm;
-  const Vec2 margin(spec.x_offset_mm, spec.y_offset_mm);
+  const Vec2 margin(spec.array.x_offset_mm, spec.array.y_offset_mm);
   a.has_neighbours = true;
-  if (spec.arrangement == Arrangement::single) {
+  if (spec.array.arrangement == Arrangement::single) {
     a.element_mm = a.extent_mm.lower - box.lower;
-  } else if (spec.extent == Extent::finite) {
+  } else if (spec.array.extent == Extent::finite) {
     a.block_mm = {a.extent_mm.lower + margin, a.extent_mm.upper - margin};
     a.element_mm = 0.5 * (a.extent_mm.lower + a.extent_mm.upper);
     a.count = a.block_mm.size().cwiseQuotient(a.size_mm);

@@ -40,9 +40,9 @@ void add_prism(std::vector<Dimension>& dimensions, const PartSpec& spec, const A
   const Vec2 end = corner + Vec2(element.base_mm, element.width_mm);
   dimensions.push_back({Side::below, corner, {end.x(), corner.y()}, "base", element.base_mm});
   dimensions.push_back({Side::left, corner, {corner.x(), end.y()}, "width", element.width_mm});
-  if (spec.arrangement == Arrangement::single) return;
-  const double x_gap = spec.x_gap_mm;
-  const double y_gap = spec.y_gap_mm;
+  if (spec.array.arrangement == Arrangement::single) return;
+  const double x_gap = spec.array.x_gap_mm;
+  const double y_gap = spec.array.y_gap_mm;
   if (x_gap > 0.0 && a.count.x() > 1.0)
     dimensions.push_back({Side::below, {end.x(), corner.y()}, {end.x() + x_gap, corner.y()}, "x gap", x_gap});
   if (y_gap > 0.0 && a.count.y() > 1.0)
@@ -75,7 +75,7 @@ void add_cube(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
     add(panel.dimensions, Side::left, apex + Vec2(-0.5 * radius, -half_side), apex + Vec2(-0.5 * radius, half_side),
         "side");
   }
-  if (spec.arrangement != Arrangement::single && a.has_neighbours)
+  if (spec.array.arrangement != Arrangement::single && a.has_neighbours)
     add(panel.dimensions, Side::above, apex, apex + 0.5 * a.pitch_mm, "column pitch");
 }
 
@@ -89,19 +89,19 @@ void add_element(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) 
 /// Margins and lengths of a finite array, or the period of an endless one.
 void add_extent(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
   const Rectangle& e = a.extent_mm;
-  if (spec.extent == geometry::Extent::infinite) {
+  if (spec.array.extent == geometry::Extent::infinite) {
     panel.period_mm = e;
     add(panel.dimensions, Side::above, {e.lower.x(), e.upper.y()}, e.upper, "x period");
     add(panel.dimensions, Side::right, {e.upper.x(), e.lower.y()}, e.upper, "y period");
     return;
   }
-  if (spec.arrangement == Arrangement::single) return;
+  if (spec.array.arrangement == Arrangement::single) return;
   const Vec2 margin = a.block_mm.lower - e.lower;
   const double least = kSmallest * e.size().maxCoeff();
   if (margin.x() > least) add(panel.dimensions, Side::below, e.lower, {a.block_mm.lower.x(), e.lower.y()}, "x margin");
   if (margin.y() > least) add(panel.dimensions, Side::left, e.lower, {e.lower.x(), a.block_mm.lower.y()}, "y margin");
-  panel.dimensions.push_back({Side::below, e.lower, {e.upper.x(), e.lower.y()}, "x length", spec.x_length_mm});
-  panel.dimensions.push_back({Side::left, e.lower, {e.lower.x(), e.upper.y()}, "y length", spec.y_length_mm});
+  panel.dimensions.push_back({Side::below, e.lower, {e.upper.x(), e.lower.y()}, "x length", spec.array.x_length_mm});
+  panel.dimensions.push_back({Side::left, e.lower, {e.lower.x(), e.upper.y()}, "y length", spec.array.y_length_mm});
 }
 
 PlanPanel panel_of(const Part& part, const Rectangle& window, const char* title) {
@@ -133,7 +133,7 @@ Rectangle detail_window(const PartSpec& spec, const ArrayFigures& a) {
 
 void add_plan(DesignDrawing& drawing, const Part& part, const ArrayFigures& a) {
   const PartSpec& spec = part.spec;
-  if (spec.extent == geometry::Extent::infinite) {
+  if (spec.array.extent == geometry::Extent::infinite) {
     const Vec2 beyond = 0.75 * a.size_mm;
     const Rectangle window{a.extent_mm.lower - beyond, a.extent_mm.upper.cwiseMax(a.element_mm + a.pitch_mm) + beyond};
     drawing.plan.push_back(panel_of(part, window, "One period and its surroundings"));
@@ -142,7 +142,7 @@ void add_plan(DesignDrawing& drawing, const Part& part, const ArrayFigures& a) {
     drawing.plan.back().section_y_mm = a.section_y_mm;
     return;
   }
-  const bool has_detail = spec.arrangement != Arrangement::single && a.count.maxCoeff() > kFewElements;
+  const bool has_detail = spec.array.arrangement != Arrangement::single && a.count.maxCoeff() > kFewElements;
   drawing.plan.push_back(panel_of(part, a.extent_mm, "Seen from the light"));
   if (has_detail) {
     const Rectangle window = detail_window(spec, a);
@@ -171,11 +171,11 @@ AngleDimension apex_angle(const PartSpec& spec, const Vec2& root) {
 }
 
 void add_section(DesignDrawing& drawing, const Design& design, const Part& part, const ArrayFigures& a) {
-  const bool whole = part.spec.arrangement == Arrangement::single || !design.elements();
+  const bool whole = part.spec.array.arrangement == Arrangement::single || !design.elements();
   double from = a.extent_mm.lower.x();
   double to = a.extent_mm.upper.x();
   if (!whole) {
-    const bool infinite = part.spec.extent == geometry::Extent::infinite;
+    const bool infinite = part.spec.array.extent == geometry::Extent::infinite;
     const double left = a.root_mm.x() - 0.85 * a.size_mm.x();
     const double right = a.root_mm.x() + 2.2 * a.size_mm.x();
     from = infinite ? left : std::max(from, left);
@@ -210,15 +210,15 @@ void add_section(DesignDrawing& drawing, const Design& design, const Part& part,
 
 std::string arrangement_text(const Part& part) {
   const PartSpec& spec = part.spec;
-  if (spec.arrangement == Arrangement::single) return "one element";
-  if (spec.extent == geometry::Extent::infinite)
+  if (spec.array.arrangement == Arrangement::single) return "one element";
+  if (spec.array.extent == geometry::Extent::infinite)
     return fmt::format("endless array, {} elements a period", part.elements_full);
   std::string text = fmt::format("{} full elements", part.elements_full);
   if (part.elements_partial > 0) text += fmt::format(", {} cut by the border", part.elements_partial);
-  if (spec.arrangement == Arrangement::offset)
+  if (spec.array.arrangement == Arrangement::offset)
     text += fmt::format("; {} rows shifted, rows count from below",
-                        spec.shifted_rows == geometry::RowParity::even ? "even" : "odd");
-  if (spec.arrangement == Arrangement::checker) text += "; every second element turned";
+                        spec.array.shifted_rows == geometry::RowParity::even ? "even" : "odd");
+  if (spec.array.arrangement == Arrangement::checker) text += "; every second element turned";
   return text;
 }
 

@@ -82,17 +82,17 @@ Design piece_of(const Design& design, std::vector<std::string>& remarks) {
   Design piece = design;
   if (!design.elements() || design.mask() || design.facet_planes()) return piece;
   geometry::PartSpec& spec = piece.part();
-  if (spec.arrangement == geometry::Arrangement::single) return piece;
+  if (spec.array.arrangement == geometry::Arrangement::single) return piece;
   const Vec2 size = geometry::bounding_box(geometry::aperture_outline(spec.element)).size();
-  const Vec2 pitch = size + Vec2(spec.x_gap_mm, spec.y_gap_mm);
-  const bool infinite = spec.extent == geometry::Extent::infinite;
-  const Vec2 count = Vec2(spec.x_length_mm, spec.y_length_mm).cwiseQuotient(pitch);
+  const Vec2 pitch = size + Vec2(spec.array.x_gap_mm, spec.array.y_gap_mm);
+  const bool infinite = spec.array.extent == geometry::Extent::infinite;
+  const Vec2 count = Vec2(spec.array.x_length_mm, spec.array.y_length_mm).cwiseQuotient(pitch);
   if (!infinite && count.maxCoeff() <= kMostElementsAcross) return piece;
   const Vec2 wanted = kPieceElements * pitch;
-  spec.extent = geometry::Extent::finite;
-  spec.x_length_mm = infinite ? wanted.x() : std::min(spec.x_length_mm, wanted.x());
-  spec.y_length_mm = infinite ? wanted.y() : std::min(spec.y_length_mm, wanted.y());
-  spec.x_offset_mm = spec.y_offset_mm = 0.0;
+  spec.array.extent = geometry::Extent::finite;
+  spec.array.x_length_mm = infinite ? wanted.x() : std::min(spec.array.x_length_mm, wanted.x());
+  spec.array.y_length_mm = infinite ? wanted.y() : std::min(spec.array.y_length_mm, wanted.y());
+  spec.array.x_offset_mm = spec.array.y_offset_mm = 0.0;
   remarks.emplace_back("a piece of the array");
   if (spec.thickness_mm > wanted.minCoeff() && !spec.substrate) {
     const double top_mm = geometry::element_top_mm(spec.element, spec.angle_errors);

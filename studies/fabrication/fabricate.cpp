@@ -9,7 +9,7 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/plan/chiseling.h"
 #include "fabrication/post/post.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::studies {
 namespace {

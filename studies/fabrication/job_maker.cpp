@@ -13,6 +13,7 @@
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
+#include "geometry/elements/whole_elements.h"
 #include "geometry/part/part.h"
 #include "studies/fabrication/reachable.h"
 
@@ -54,7 +55,7 @@ geometry::Element upright(const Cube& cube, const Design& design) {
 /// The element of the design, its dihedral error included if it is a prism.
 /// \throw InputError for one that the strategy does not cut
 geometry::Element element_of(const Design& design, const JobRequest& request) {
-  if (design.part().extent == geometry::Extent::infinite)
+  if (design.part().array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
   if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part().element)) {
     if (is_dmc(request))
@@ -76,21 +77,6 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
   return upright(std::get<geometry::TriangularCube>(design.part().element), design);
 }
 
-fabrication::Array array_of(const Design& design) {
-  const PartSpec& part = design.part();
-  fabrication::Array array;
-  array.arrangement = part.arrangement;
-  array.shifted_rows = part.shifted_rows;
-  array.overlap_percent = part.overlap_percent;
-  array.x_length_mm = part.x_length_mm;
-  array.y_length_mm = part.y_length_mm;
-  array.x_gap_mm = part.x_gap_mm;
-  array.y_gap_mm = part.y_gap_mm;
-  array.x_offset_mm = part.x_offset_mm;
-  array.y_offset_mm = part.y_offset_mm;
-  return array;
-}
-
 /// Whether the design has tilts or edges that a job does not know.
 bool has_errors(const PartSpec& part) {
   const std::array<double, 3> none{};
@@ -102,8 +88,8 @@ bool has_errors(const PartSpec& part) {
 
 /// Partial elements of the array, whether or not a mask is to leave out others.
 std::int64_t partial_elements(const PartSpec& part) {
-  if (!part.substrate && part.arrangement != Arrangement::offset && part.arrangement != Arrangement::honeycomb &&
-      part.arrangement != Arrangement::triangular)
+  if (!part.substrate && part.array.arrangement != Arrangement::offset &&
+      part.array.arrangement != Arrangement::honeycomb && part.array.arrangement != Arrangement::triangular)
     return 0;
   PartSpec nominal = part;
   nominal.angle_errors = {};
@@ -118,7 +104,7 @@ void add_warnings(const Design& design, MadeJob& made) {
   made.partial_elements = partial_elements(design.part());
   if (made.partial_elements > 0) {
     made.job.notes.push_back(fmt::format("{} partial elements are left out", made.partial_elements));
-    if (design.part().partial_elements == geometry::PartialElements::cut)
+    if (design.part().array.partial_elements == geometry::PartialElements::cut)
       made.warnings.push_back(
           fmt::format("{}: array.partial_elements is \"cut\", but a job leaves partial elements out: {}", name,
                       made.partial_elements));
@@ -127,7 +113,7 @@ void add_warnings(const Design& design, MadeJob& made) {
     made.warnings.push_back(
         fmt::format("{}: {}facet tilts, random errors, edges and scratches of [surface] are not cut", name,
                     std::holds_alternative<geometry::RtpElement>(design.part().element) ? "" : "dihedral errors, "));
-  if (design.part().arrangement == Arrangement::honeycomb)
+  if (design.part().array.arrangement == Arrangement::honeycomb)
     made.job.notes.push_back("cavities are triangular: those at the border reach beyond the elements' outlines");
 }
 
@@ -204,7 +190,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.design = design.source == "-" ? "" : std::filesystem::path(design.source).filename().string();
   job.strategy = strategy_of(request.strategy);
   job.element = element_of(design, request);
-  job.array = array_of(design);
+  job.array = design.part().array;
   job.substrate = design.part().substrate;
   check_making(request);
   job.workpiece.kind = static_cast<fabrication::WorkpieceKind>(
@@ -215,7 +201,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.process = fabrication::load_process(request.process, {"", 0, "--process"});
   if (design.mask())
     job.array.pattern = fabrication::mask_pattern(design.mask()->file, design.mask()->threshold,
-                                                  fabrication::cell_counts(job.array, fabrication::prism_of(job)),
+                                                  geometry::prism_block(job.array, fabrication::prism_of(job)).counts,
                                                   design.where("array.mask"));
   fabrication::check_job(job, {design.source_name(), 0, ""});
   made.elements = static_cast<std::int64_t>(fabrication::cut_elements(job).size());

@@ -8,9 +8,9 @@
 
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "fabrication/job/cube_cells.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/elements/facet_planes.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/whole_elements.h"
 #include "studies/design/design_document.h"
 #include "studies/design/facet_planes_reader.h"
 
@@ -41,22 +41,6 @@ geometry::ElementPlanes element_at(const geometry::Element& element, const fabri
   return planes;
 }
 
-fabrication::Array array_of(const geometry::PartSpec& part) {
-  fabrication::Array array;
-  array.arrangement = part.arrangement;
-  array.x_length_mm = part.x_length_mm;
-  array.y_length_mm = part.y_length_mm;
-  array.x_offset_mm = part.x_offset_mm;
-  array.y_offset_mm = part.y_offset_mm;
-  return array;
-}
-
-/// Middle of the extent, in the part's frame.
-Vec2 middle_of(const geometry::PartSpec& part) {
-  if (part.arrangement != geometry::Arrangement::single) return 0.5 * Vec2(part.x_length_mm, part.y_length_mm);
-  return 0.5 * geometry::bounding_box(geometry::aperture_outline(part.element)).size();
-}
-
 /// What the design is as far as a chisel reaches: whole elements of the same body, with planes from a table.
 Design reached(const Design& design, const std::string& facets_file) {
   const geometry::PartSpec& part = design.part();
@@ -64,10 +48,10 @@ Design reached(const Design& design, const std::string& facets_file) {
   reached.title = (design.title.empty() ? "Part" : design.title) + ", as far as a chisel with a straight edge reaches";
   ElementArray array;
   array.part.element = part.element;
-  array.part.arrangement = part.arrangement;
-  array.part.partial_elements = geometry::PartialElements::omit;
-  array.part.x_length_mm = part.x_length_mm;
-  array.part.y_length_mm = part.y_length_mm;
+  array.part.array.arrangement = part.array.arrangement;
+  array.part.array.partial_elements = geometry::PartialElements::omit;
+  array.part.array.x_length_mm = part.array.x_length_mm;
+  array.part.array.y_length_mm = part.array.y_length_mm;
   array.part.thickness_mm = part.thickness_mm;
   array.facet_planes = FacetPlanesFile{facets_file, facets_file};
   reached.shape = std::move(array);
@@ -84,7 +68,7 @@ void check_design(const Design& design, const JobRequest& request) {
     throw InputError({"", 0, "--reachable"}, "is for cube corners: a chisel reaches all of a prism");
   if (request.strategy == "dmc")
     throw InputError({"", 0, "--reachable"}, "is for strategies with a chisel: dmc reaches all of a cube corner");
-  if (part.extent == geometry::Extent::infinite)
+  if (part.array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
   if (geometry::cant_of(part.element).deg != 0.0)
     throw InputError({design.source_name(), 0, "element.cant_deg"},
@@ -113,13 +97,13 @@ ReachablePart reachable_part(const Design& design, const JobRequest& request, co
   ReachablePart result;
   result.reach = fabrication::chisel_reach(part.element, tool);
   std::vector<geometry::ElementPlanes> planes;
-  for (const fabrication::CubeCell& cell : fabrication::cube_cells(array_of(part), part.element))
-    planes.push_back(element_at(part.element, result.reach, middle_of(part) + cell.centre_mm, cell.rotated));
+  for (const geometry::WholeElement& whole : geometry::whole_elements(part.array, part.element))
+    planes.push_back(element_at(part.element, result.reach, whole.centre_mm, whole.is_rotated));
   if (planes.empty())
     throw InputError({design.source_name(), 0, "array.x_length_mm"}, "the array holds no whole element");
   result.elements = static_cast<std::int64_t>(planes.size());
   const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&part.element);
-  if (hexagonal != nullptr && part.arrangement != geometry::Arrangement::single)
+  if (hexagonal != nullptr && part.array.arrangement != geometry::Arrangement::single)
     geometry::add_flares(planes, 0.5 * hexagonal->aperture_mm);
   result.facets = facet_planes_text({std::move(planes), geometry::cube_spacing_mm(part.element)});
   result.design = design_text(reached(design, facets_file));

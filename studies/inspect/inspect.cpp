@@ -9,6 +9,8 @@
 #include "core/angle.h"
 #include "core/number_format.h"
 #include "geometry/check/boundary_check.h"
+#include "geometry/elements/edges.h"
+#include "geometry/elements/lattice.h"
 #include "raytrace/balls/ball_forms.h"
 #include "studies/design/design_part.h"
 #include "studies/design/optical_model.h"
@@ -22,22 +24,22 @@ constexpr double kElementsToCheck = 1000.0;
 /// A finite part of the same elements that CGAL checks quickly: the design itself if it is small.
 geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_mm, bool& is_whole) {
   geometry::PartSpec small = spec;
-  is_whole = spec.arrangement == geometry::Arrangement::single;
+  is_whole = spec.array.arrangement == geometry::Arrangement::single;
   if (is_whole) return small;
-  if (spec.extent == geometry::Extent::finite &&
-      spec.x_length_mm * spec.y_length_mm < kElementsToCheck * element_mm * element_mm) {
+  if (spec.array.extent == geometry::Extent::finite &&
+      spec.array.x_length_mm * spec.array.y_length_mm < kElementsToCheck * element_mm * element_mm) {
     is_whole = true;
     return small;
   }
-  const double gap = std::max(spec.x_gap_mm, spec.y_gap_mm);
+  const double gap = std::max(spec.array.x_gap_mm, spec.array.y_gap_mm);
   double side = 0.0;
   if (const auto* rtp = std::get_if<geometry::RtpElement>(&spec.element))
     side = std::max(rtp->base_mm, rtp->width_mm);
   else
     side = 2.0 * element_mm;
-  small.extent = geometry::Extent::finite;
-  small.x_length_mm = 6.0 * (side + gap) + 2.0 * spec.x_offset_mm;
-  small.y_length_mm = 6.0 * (side + gap) + 2.0 * spec.y_offset_mm;
+  small.array.extent = geometry::Extent::finite;
+  small.array.x_length_mm = 6.0 * (side + gap) + 2.0 * spec.array.x_offset_mm;
+  small.array.y_length_mm = 6.0 * (side + gap) + 2.0 * spec.array.y_offset_mm;
   return small;
 }
 
@@ -89,7 +91,8 @@ std::string where_it_begins(const Inspection& result) {
 }
 
 std::string of_turned_elements(const geometry::PartSpec& part) {
-  return part.arrangement == geometry::Arrangement::triangular ? "; of turned elements, 180 degrees from there" : "";
+  return part.array.arrangement == geometry::Arrangement::triangular ? "; of turned elements, 180 degrees from there"
+                                                                     : "";
 }
 
 /// Says where total reflection ends in cube corners that do worse than upright ones in air.
@@ -143,7 +146,7 @@ void add_base(Inspection& result, const geometry::Part& part) {
 
 void add_warnings(Inspection& result, const geometry::Part& part) {
   if (!part.spec.substrate) warn_of_lost_reflection(result);
-  if (part.elements_partial > 0 && part.spec.partial_elements == geometry::PartialElements::cut)
+  if (part.elements_partial > 0 && part.spec.array.partial_elements == geometry::PartialElements::cut)
     result.warnings.push_back(
         fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
                     result.design.source_name(), part.elements_partial));

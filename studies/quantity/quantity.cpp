@@ -6,7 +6,7 @@
 
 #include "core/angle.h"
 #include "core/error.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "studies/design/optical_model.h"
 #include "studies/inspect/inspect.h"
 
@@ -131,10 +131,10 @@ double full_element_area_mm2(const geometry::PartSpec& spec) {
 /// Area of the facets of one whole element.
 double facets_of_element_mm2(const geometry::PartSpec& spec) {
   geometry::PartSpec single = spec;
-  single.arrangement = geometry::Arrangement::single;
-  single.extent = geometry::Extent::finite;
-  single.x_gap_mm = single.y_gap_mm = single.x_offset_mm = single.y_offset_mm = 0.0;
-  single.x_length_mm = single.y_length_mm = 0.0;
+  single.array.arrangement = geometry::Arrangement::single;
+  single.array.extent = geometry::Extent::finite;
+  single.array.x_gap_mm = single.array.y_gap_mm = single.array.x_offset_mm = single.array.y_offset_mm = 0.0;
+  single.array.x_length_mm = single.array.y_length_mm = 0.0;
   return geometry::build_part(single).retro_facet_area_mm2;
 }
 

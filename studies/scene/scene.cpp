@@ -10,7 +10,7 @@
 
 #include "core/number_format.h"
 #include "core/schema/json.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/part/faceted_solid.h"
 #include "studies/design/design_format.h"
 #include "studies/design/design_reader.h"
@@ -38,15 +38,15 @@ Design few_elements(const Design& design, std::vector<std::string>& remarks) {
   small.shape = ElementArray{design.part(), {}, {}};
   geometry::PartSpec& spec = small.part();
   const geometry::Vec2 size = element_box(spec.element).size();
-  if (spec.arrangement != geometry::Arrangement::single) {
-    const geometry::Vec2 wanted = kSceneElements * (size + geometry::Vec2(spec.x_gap_mm, spec.y_gap_mm));
-    const bool is_larger = spec.extent == geometry::Extent::infinite || spec.x_length_mm > 1.01 * wanted.x() ||
-                           spec.y_length_mm > 1.01 * wanted.y();
+  if (spec.array.arrangement != geometry::Arrangement::single) {
+    const geometry::Vec2 wanted = kSceneElements * (size + geometry::Vec2(spec.array.x_gap_mm, spec.array.y_gap_mm));
+    const bool is_larger = spec.array.extent == geometry::Extent::infinite ||
+                           spec.array.x_length_mm > 1.01 * wanted.x() || spec.array.y_length_mm > 1.01 * wanted.y();
     if (is_larger) {
-      spec.extent = geometry::Extent::finite;
-      spec.x_length_mm = spec.x_length_mm > 0.0 ? std::min(spec.x_length_mm, wanted.x()) : wanted.x();
-      spec.y_length_mm = spec.y_length_mm > 0.0 ? std::min(spec.y_length_mm, wanted.y()) : wanted.y();
-      spec.x_offset_mm = spec.y_offset_mm = 0.0;
+      spec.array.extent = geometry::Extent::finite;
+      spec.array.x_length_mm = spec.array.x_length_mm > 0.0 ? std::min(spec.array.x_length_mm, wanted.x()) : wanted.x();
+      spec.array.y_length_mm = spec.array.y_length_mm > 0.0 ? std::min(spec.array.y_length_mm, wanted.y()) : wanted.y();
+      spec.array.x_offset_mm = spec.array.y_offset_mm = 0.0;
       remarks.push_back("a piece of the array is shown");
     }
   }

@@ -21,22 +21,22 @@ constexpr std::array<std::string_view, 3> kKinds = {"element", "array", "mould"}
 
 /// About how many elements a finite array has, before any is built.
 double estimated_elements(const geometry::PartSpec& spec) {
-  if (spec.arrangement == geometry::Arrangement::single) return 1.0;
+  if (spec.array.arrangement == geometry::Arrangement::single) return 1.0;
   const double cell_mm2 = geometry::area(geometry::aperture_outline(spec.element));
   const auto* const rtp = std::get_if<geometry::RtpElement>(&spec.element);
   const double with_gaps_mm2 =
-      rtp != nullptr ? (rtp->base_mm + spec.x_gap_mm) * (rtp->width_mm + spec.y_gap_mm) : cell_mm2;
-  return spec.x_length_mm * spec.y_length_mm / with_gaps_mm2;
+      rtp != nullptr ? (rtp->base_mm + spec.array.x_gap_mm) * (rtp->width_mm + spec.array.y_gap_mm) : cell_mm2;
+  return spec.array.x_length_mm * spec.array.y_length_mm / with_gaps_mm2;
 }
 
 geometry::PartSpec spec_of(const Design& design, SolidKind what) {
   geometry::PartSpec spec = design.part();
   if (what == SolidKind::element) {
-    spec.arrangement = geometry::Arrangement::single;
-    spec.extent = geometry::Extent::finite;
+    spec.array.arrangement = geometry::Arrangement::single;
+    spec.array.extent = geometry::Extent::finite;
     return spec;
   }
-  if (spec.extent == geometry::Extent::infinite)
+  if (spec.array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"},
                      fmt::format("must be \"finite\" for --what {}, got \"infinite\"; --what element has one element",
                                  name_of(what)));

@@ -15,7 +15,6 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "fabrication/job/cube_cells.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
@@ -25,7 +24,7 @@
 #include "fabrication/verify/dexel.h"
 #include "fabrication/verify/error_field.h"
 #include "fabrication/verify/verify.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/part/part.h"
 #include "tests/fabrication/chiseling_jobs.h"
 #include "tests/fabrication/swept_volume_sink.h"
@@ -493,11 +492,11 @@ TEST(ChiselingJobs, HaveAsManyElementsAsThePartHasWholeOnes) {
         job.array.x_offset_mm = 0.07;
         geometry::PartSpec spec;
         spec.element = job.element;
-        spec.arrangement = job.array.arrangement;
-        spec.partial_elements = geometry::PartialElements::omit;
-        spec.x_length_mm = x_mm;
-        spec.y_length_mm = y_mm;
-        spec.x_offset_mm = 0.07;
+        spec.array.arrangement = job.array.arrangement;
+        spec.array.partial_elements = geometry::PartialElements::omit;
+        spec.array.x_length_mm = x_mm;
+        spec.array.y_length_mm = y_mm;
+        spec.array.x_offset_mm = 0.07;
         spec.thickness_mm = 1.0;
         EXPECT_EQ(static_cast<std::int64_t>(cut_elements(job).size()), geometry::build_part(spec).elements_full);
       }

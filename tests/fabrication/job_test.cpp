@@ -40,13 +40,13 @@ TEST(Job, HasAsManyElementsAsThePartHasWholeOnes) {
         job.array.x_offset_mm = 0.1;
         geometry::PartSpec spec;
         spec.element = prism_of(job);
-        spec.arrangement = arrangement;
-        spec.shifted_rows = parity;
-        spec.partial_elements = geometry::PartialElements::omit;
-        spec.x_length_mm = job.array.x_length_mm;
-        spec.y_length_mm = y_length_mm;
-        spec.x_gap_mm = 0.02;
-        spec.x_offset_mm = 0.1;
+        spec.array.arrangement = arrangement;
+        spec.array.shifted_rows = parity;
+        spec.array.partial_elements = geometry::PartialElements::omit;
+        spec.array.x_length_mm = job.array.x_length_mm;
+        spec.array.y_length_mm = y_length_mm;
+        spec.array.x_gap_mm = 0.02;
+        spec.array.x_offset_mm = 0.1;
         spec.thickness_mm = 1.0;
         EXPECT_EQ(static_cast<std::int64_t>(cut_elements(job).size()), geometry::build_part(spec).elements_full);
       }

@@ -21,7 +21,7 @@
 #include "fabrication/post/post.h"
 #include "fabrication/verify/dexel.h"
 #include "fabrication/verify/verify.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/part/closed_boundary.h"
 #include "geometry/part/part.h"
 #include "geometry/part/substrate_part.h"
@@ -92,7 +92,7 @@ TEST(OnSubstrate, ElementsStandWhereThePartHasThem) {
       std::array<Vec3, 3> corners;
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& p = mesh.vertices[mesh.triangles[t][k]];
-        corners[k] = {p.y() - 0.5 * spec.y_length_mm, 0.5 * spec.x_length_mm - p.x(), p.z()};
+        corners[k] = {p.y() - 0.5 * spec.array.y_length_mm, 0.5 * spec.array.x_length_mm - p.x(), p.z()};
       }
       const Vec3 across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
       if (across.norm() < 1e-9) continue;

@@ -21,8 +21,8 @@ bool is_control(char c) {
 retrace::geometry::PartSpec checker() {
   retrace::geometry::PartSpec spec;
   spec.element = retrace::geometry::RtpElement{0.5, 0.5, 90.0};
-  spec.arrangement = retrace::geometry::Arrangement::checker;
-  spec.x_length_mm = spec.y_length_mm = 1.0;
+  spec.array.arrangement = retrace::geometry::Arrangement::checker;
+  spec.array.x_length_mm = spec.array.y_length_mm = 1.0;
   spec.thickness_mm = 1.0;
   return spec;
 }

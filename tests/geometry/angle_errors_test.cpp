@@ -25,7 +25,7 @@ PartSpec single(const Element& element, const AngleErrors& errors) {
   PartSpec spec;
   spec.element = element;
   spec.angle_errors = errors;
-  spec.arrangement = Arrangement::single;
+  spec.array.arrangement = Arrangement::single;
   spec.thickness_mm = 0.5;
   return spec;
 }
@@ -196,16 +196,16 @@ TEST(AngleErrors, RtpArraysAreClosed) {
   for (const AngleErrors& errors : kErrors) {
     for (const Arrangement arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
       PartSpec spec = single(RtpElement{0.5, 0.5, 90.0}, errors);
-      spec.arrangement = arrangement;
-      spec.x_length_mm = spec.y_length_mm = 2.5;
+      spec.array.arrangement = arrangement;
+      spec.array.x_length_mm = spec.array.y_length_mm = 2.5;
       expect_valid(spec);
-      spec.x_gap_mm = 0.05;
+      spec.array.x_gap_mm = 0.05;
       expect_valid(spec);
-      spec.y_gap_mm = 0.1;
-      spec.x_offset_mm = 0.2;
-      spec.overlap_percent = 30.0;
+      spec.array.y_gap_mm = 0.1;
+      spec.array.x_offset_mm = 0.2;
+      spec.array.overlap_percent = 30.0;
       expect_valid(spec);
-      spec.partial_elements = PartialElements::omit;
+      spec.array.partial_elements = PartialElements::omit;
       expect_valid(spec);
     }
   }
@@ -217,9 +217,10 @@ bool alike(const std::array<double, 3>& values) {
 
 PartSpec cube_array(const Element& element, const AngleErrors& errors) {
   PartSpec spec = single(element, errors);
-  spec.arrangement = std::holds_alternative<HexagonalCube>(element) ? Arrangement::honeycomb : Arrangement::triangular;
-  spec.x_length_mm = 4.3;
-  spec.y_length_mm = 3.4;
+  spec.array.arrangement =
+      std::holds_alternative<HexagonalCube>(element) ? Arrangement::honeycomb : Arrangement::triangular;
+  spec.array.x_length_mm = 4.3;
+  spec.array.y_length_mm = 3.4;
   return spec;
 }
 
@@ -231,9 +232,9 @@ TEST(AngleErrors, CubeCornerArraysAreClosed) {
                                !(alike(errors.dihedral_error_arcmin) && alike(errors.facet_tilt_arcmin));
         if (may_touch) continue;
         PartSpec spec = cube_array(element, errors);
-        spec.partial_elements = partial;
+        spec.array.partial_elements = partial;
         expect_valid(spec);
-        spec.x_offset_mm = 0.3;
+        spec.array.x_offset_mm = 0.3;
         expect_valid(spec);
       }
     }
@@ -283,8 +284,8 @@ TEST(AngleErrors, InfiniteSurfacesHaveNoGaps) {
       PartSpec spec = single(RtpElement{0.5, 0.5, 90.0}, errors);
       if (arrangement == Arrangement::honeycomb) spec.element = HexagonalCube{1.0};
       if (arrangement == Arrangement::triangular) spec.element = TriangularCube{1.0};
-      spec.arrangement = arrangement;
-      spec.extent = Extent::infinite;
+      spec.array.arrangement = arrangement;
+      spec.array.extent = Extent::infinite;
       const Part part = build_part(spec);
       const SurfacePatch& patch = part.patches[0];
       const Vec2 middle = (part.periods_beyond + 0.5) * *part.period_mm;
@@ -311,7 +312,7 @@ std::vector<double> tilts_of(const Part& part) {
 PartSpec random_prisms(double sigma_arcmin, std::uint32_t seed) {
   PartSpec spec;
   spec.element = RtpElement{0.5, 0.5, 90.0};
-  spec.x_length_mm = spec.y_length_mm = 10.0;
+  spec.array.x_length_mm = spec.array.y_length_mm = 10.0;
   spec.thickness_mm = 1.0;
   spec.random_tilts = {sigma_arcmin, seed};
   return spec;
@@ -341,14 +342,14 @@ TEST(RandomTilts, DependOnTheSeedAlone) {
 // Where four cells meet, opposite ones may be the lower: the part may touch itself there.
 TEST(RandomTilts, ArraysAreClosed) {
   std::vector<PartSpec> specs(4, random_prisms(5.0, 3));
-  specs[1].arrangement = Arrangement::offset;
-  specs[2].arrangement = Arrangement::checker;
+  specs[1].array.arrangement = Arrangement::offset;
+  specs[2].array.arrangement = Arrangement::checker;
   specs[3].element = HexagonalCube{0.7};
-  specs[3].arrangement = Arrangement::honeycomb;
+  specs[3].array.arrangement = Arrangement::honeycomb;
   for (PartSpec& spec : specs) {
-    spec.x_length_mm = spec.y_length_mm = 2.0;
+    spec.array.x_length_mm = spec.array.y_length_mm = 2.0;
     for (const double gap_mm : {0.0, 0.1}) {
-      if (spec.arrangement != Arrangement::honeycomb) spec.x_gap_mm = spec.y_gap_mm = gap_mm;
+      if (spec.array.arrangement != Arrangement::honeycomb) spec.array.x_gap_mm = spec.array.y_gap_mm = gap_mm;
       const Part part = build_part(spec);
       const BoundaryMesh mesh = closed_boundary(part);
       EXPECT_TRUE(check_boundary(mesh).is_closed);
@@ -356,7 +357,7 @@ TEST(RandomTilts, ArraysAreClosed) {
     }
   }
   PartSpec one = random_prisms(5.0, 3);
-  one.arrangement = Arrangement::single;
+  one.array.arrangement = Arrangement::single;
   expect_valid(one);
 }
 

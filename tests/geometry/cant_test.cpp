@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/part/part.h"
 #include "tests/geometry/part_checks.h"
 
@@ -86,7 +86,7 @@ TEST(Cant, TopIsTheHighestRimOfThePart) {
   for (const Cant& cant : cants()) {
     PartSpec spec;
     spec.element = TriangularCube{1.0, cant};
-    spec.arrangement = Arrangement::single;
+    spec.array.arrangement = Arrangement::single;
     spec.thickness_mm = 10.0;
     EXPECT_NEAR(build_part(spec).top_mm, element_top_mm(spec.element, {}), 1e-9) << cant.deg;
     EXPECT_GT(element_top_mm(spec.element, {}), 0.0);
@@ -99,9 +99,9 @@ TEST(Cant, RimsMayNotReachTheEntranceFace) {
   spec.element = HexagonalCube{1.0, {20.0, 35.0}};
   const double top_mm = element_top_mm(spec.element, {});
   for (const Extent extent : {Extent::finite, Extent::infinite}) {
-    spec.arrangement = Arrangement::honeycomb;
-    spec.extent = extent;
-    spec.x_length_mm = spec.y_length_mm = 3.0;
+    spec.array.arrangement = Arrangement::honeycomb;
+    spec.array.extent = extent;
+    spec.array.x_length_mm = spec.array.y_length_mm = 3.0;
     for (const double thickness_mm : {1e-3, 0.5 * top_mm, top_mm}) {
       spec.thickness_mm = thickness_mm;
       try {
@@ -126,17 +126,17 @@ TEST(Cant, PartsAreSolids) {
   for (const Cant& cant : cants()) {
     PartSpec spec;
     spec.thickness_mm = 10.0;
-    spec.arrangement = Arrangement::single;
+    spec.array.arrangement = Arrangement::single;
     for (const Element& element : {Element(HexagonalCube{1.0, cant}), Element(TriangularCube{1.0, cant})}) {
       spec.element = element;
       expect_valid(spec);
     }
     spec.element = HexagonalCube{1.0, cant};
-    spec.arrangement = Arrangement::honeycomb;
-    spec.x_length_mm = 2.3;
-    spec.y_length_mm = 2.1;
+    spec.array.arrangement = Arrangement::honeycomb;
+    spec.array.x_length_mm = 2.3;
+    spec.array.y_length_mm = 2.1;
     expect_valid(spec);
-    spec.partial_elements = PartialElements::omit;
+    spec.array.partial_elements = PartialElements::omit;
     expect_valid(spec);
   }
 }
@@ -147,9 +147,9 @@ TEST(Cant, TriangularArraysAreClosed) {
     PartSpec spec;
     spec.thickness_mm = 10.0;
     spec.element = TriangularCube{1.0, cant};
-    spec.arrangement = Arrangement::triangular;
-    spec.x_length_mm = 2.3;
-    spec.y_length_mm = 2.1;
+    spec.array.arrangement = Arrangement::triangular;
+    spec.array.x_length_mm = 2.3;
+    spec.array.y_length_mm = 2.1;
     const Part part = build_part(spec);
     const BoundaryReport report = check_boundary(closed_boundary(part));
     EXPECT_TRUE(report.is_closed) << cant.deg << " " << cant.azimuth_deg;

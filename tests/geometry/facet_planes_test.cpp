@@ -21,9 +21,9 @@ constexpr double kArcmin = std::numbers::pi / 180.0 / 60.0;
 PartSpec prisms(Arrangement arrangement) {
   PartSpec spec;
   spec.element = RtpElement{0.5, 0.5, 90.0};
-  spec.arrangement = arrangement;
-  spec.x_length_mm = spec.y_length_mm = 2.0;
-  spec.partial_elements = PartialElements::omit;
+  spec.array.arrangement = arrangement;
+  spec.array.x_length_mm = spec.array.y_length_mm = 2.0;
+  spec.array.partial_elements = PartialElements::omit;
   spec.thickness_mm = 0.5;
   return spec;
 }
@@ -85,7 +85,7 @@ TEST(FacetPlanes, TurnedFacetsStayClosedAndMeetWhereTheirPlanesDo) {
 
 TEST(FacetPlanes, OneElementAndMissingOnes) {
   PartSpec single = prisms(Arrangement::single);
-  single.x_length_mm = single.y_length_mm = 0.0;
+  single.array.x_length_mm = single.array.y_length_mm = 0.0;
   const Part one = build_part(single, FacetPlanes({planes_at({0.25, 0.25}, false, 3.0 * kArcmin)}, 0.5));
   EXPECT_TRUE(check_boundary(closed_boundary(one)).is_closed);
   EXPECT_GT(one.element_depth_mm, 0.25);
@@ -104,10 +104,10 @@ TEST(FacetPlanes, OneElementAndMissingOnes) {
 PartSpec cubes(const Element& element, Arrangement arrangement) {
   PartSpec spec;
   spec.element = element;
-  spec.arrangement = arrangement;
-  spec.x_length_mm = 4.0;
-  spec.y_length_mm = 4.0;
-  spec.partial_elements = PartialElements::omit;
+  spec.array.arrangement = arrangement;
+  spec.array.x_length_mm = 4.0;
+  spec.array.y_length_mm = 4.0;
+  spec.array.partial_elements = PartialElements::omit;
   spec.thickness_mm = 0.5;
   return spec;
 }
@@ -193,7 +193,7 @@ TEST(FacetPlanes, CapsLeaveACoreOverTheApex) {
   for (const Element& element : {Element(HexagonalCube{1.0, {}}), Element(TriangularCube{1.0, {}})}) {
     PartSpec spec;
     spec.element = element;
-    spec.arrangement = Arrangement::single;
+    spec.array.arrangement = Arrangement::single;
     spec.thickness_mm = 0.5;
     const Vec2 centre = -bounding_box(element_cell(element).outline).lower;
     ElementPlanes planes = cube_at(element, centre);

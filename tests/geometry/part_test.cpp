@@ -14,8 +14,8 @@ namespace {
 PartSpec rtp_array(double substrate, double width, double length, Arrangement arrangement) {
   PartSpec spec;
   spec.element = RtpElement{substrate, width, 90.0};
-  spec.arrangement = arrangement;
-  spec.x_length_mm = spec.y_length_mm = length;
+  spec.array.arrangement = arrangement;
+  spec.array.x_length_mm = spec.array.y_length_mm = length;
   spec.thickness_mm = 0.5;
   return spec;
 }
@@ -23,16 +23,16 @@ PartSpec rtp_array(double substrate, double width, double length, Arrangement ar
 PartSpec cube_array(Element element, Arrangement arrangement, double length) {
   PartSpec spec;
   spec.element = element;
-  spec.arrangement = arrangement;
-  spec.x_length_mm = length;
-  spec.y_length_mm = 0.8 * length;
+  spec.array.arrangement = arrangement;
+  spec.array.x_length_mm = length;
+  spec.array.y_length_mm = 0.8 * length;
   spec.thickness_mm = 0.5;
   return spec;
 }
 
 TEST(Part, SingleElementsAreClosed) {
   PartSpec spec;
-  spec.arrangement = Arrangement::single;
+  spec.array.arrangement = Arrangement::single;
   spec.thickness_mm = 0.5;
   for (const Element element :
        {Element(RtpElement{0.45, 0.45, 90.0}), Element(HexagonalCube{1.6}), Element(TriangularCube{1.6})}) {
@@ -45,16 +45,16 @@ TEST(Part, RtpArraysAreClosed) {
   for (const Arrangement arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
     PartSpec spec = rtp_array(0.5, 0.5, 2.5, arrangement);
     expect_valid(spec);
-    spec.x_gap_mm = 0.05;
-    spec.y_gap_mm = 0.1;
+    spec.array.x_gap_mm = 0.05;
+    spec.array.y_gap_mm = 0.1;
     expect_valid(spec);
-    spec.x_offset_mm = 0.2;
-    spec.y_offset_mm = 0.1;
+    spec.array.x_offset_mm = 0.2;
+    spec.array.y_offset_mm = 0.1;
     expect_valid(spec);
-    spec.shifted_rows = RowParity::odd;
-    spec.overlap_percent = 30.0;
+    spec.array.shifted_rows = RowParity::odd;
+    spec.array.overlap_percent = 30.0;
     expect_valid(spec);
-    spec.partial_elements = PartialElements::omit;
+    spec.array.partial_elements = PartialElements::omit;
     expect_valid(spec);
   }
 }
@@ -63,10 +63,10 @@ TEST(Part, CubeCornerArraysAreClosed) {
   for (const PartialElements partial : {PartialElements::cut, PartialElements::omit}) {
     PartSpec hexagonal = cube_array(HexagonalCube{1.0}, Arrangement::honeycomb, 4.3);
     PartSpec triangular = cube_array(TriangularCube{1.0}, Arrangement::triangular, 4.3);
-    hexagonal.partial_elements = triangular.partial_elements = partial;
+    hexagonal.array.partial_elements = triangular.array.partial_elements = partial;
     expect_valid(hexagonal);
     expect_valid(triangular);
-    hexagonal.x_offset_mm = triangular.y_offset_mm = 0.3;
+    hexagonal.array.x_offset_mm = triangular.array.y_offset_mm = 0.3;
     expect_valid(hexagonal);
     expect_valid(triangular);
   }
@@ -77,7 +77,7 @@ TEST(Part, CubeCornerArraysAreClosed) {
 TEST(Part, CountsOfThePapers) {
   const auto full = [](double substrate, RowParity parity, double length = 10.0) {
     PartSpec spec = rtp_array(substrate, substrate, length, Arrangement::offset);
-    spec.shifted_rows = parity;
+    spec.array.shifted_rows = parity;
     return build_part(spec).elements_full;
   };
   EXPECT_EQ(full(10, RowParity::odd), 1);
@@ -94,7 +94,7 @@ TEST(Part, CountsOfThePapers) {
 TEST(Part, TotalReflectiveFacetAreaOfTable1) {
   for (const double substrate : {10.0, 5.0, 2.0, 1.0, 0.5}) {
     PartSpec spec = rtp_array(substrate, substrate, 10.0, Arrangement::offset);
-    spec.shifted_rows = RowParity::odd;
+    spec.array.shifted_rows = RowParity::odd;
     EXPECT_NEAR(build_part(spec).retro_facet_area_mm2, 141.42, 5e-3);
   }
 }
@@ -103,7 +103,7 @@ TEST(Part, FacetsAreAtTheRightAngles) {
   for (const Element element : {Element(HexagonalCube{1.3}), Element(TriangularCube{1.3})}) {
     PartSpec spec;
     spec.element = element;
-    spec.arrangement = Arrangement::single;
+    spec.array.arrangement = Arrangement::single;
     spec.thickness_mm = 1.0;
     const Part part = build_part(spec);
     const auto& facets = part.patches[0].facets;
@@ -126,7 +126,7 @@ TEST(Part, DepthsOfTheContract) {
 TEST(Part, CubeCornerOrientation) {
   PartSpec spec;
   spec.element = TriangularCube{1.0};
-  spec.arrangement = Arrangement::single;
+  spec.array.arrangement = Arrangement::single;
   spec.thickness_mm = 1.0;
   const Part part = build_part(spec);
   const Vec3 opposite = part.patches[0].facets[1].normal;
@@ -148,7 +148,7 @@ TEST(Part, LargeArraysShareTheirPieces) {
 
 TEST(Part, InfiniteCellCoversItsPeriod) {
   PartSpec spec = rtp_array(0.5, 0.4, 0.0, Arrangement::offset);
-  spec.extent = Extent::infinite;
+  spec.array.extent = Extent::infinite;
   const Part part = build_part(spec);
   EXPECT_NEAR(part.period_mm->x(), 0.5, 1e-15);
   EXPECT_NEAR(part.period_mm->y(), 0.8, 1e-15);
@@ -162,8 +162,8 @@ TEST(Part, WholeNumbersUpToRoundingAreWhole) {
 
 TEST(Part, OneRowIsNeverShifted) {
   PartSpec spec = rtp_array(1.0, 1.0, 3.0, Arrangement::offset);
-  spec.y_length_mm = 1.0;
-  spec.shifted_rows = RowParity::odd;
+  spec.array.y_length_mm = 1.0;
+  spec.array.shifted_rows = RowParity::odd;
   const Part part = build_part(spec);
   EXPECT_EQ(part.elements_full, 3);
   EXPECT_EQ(part.elements_partial, 0);

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/part/faceted_solid.h"
 #include "tests/geometry/part_checks.h"
 
@@ -30,9 +30,9 @@ Substrate formula(const std::string& text, ElementAxes element_axes = ElementAxe
 PartSpec spec_of(const Element& element, Arrangement arrangement, double x_length_mm, double y_length_mm) {
   PartSpec spec;
   spec.element = element;
-  spec.arrangement = arrangement;
-  spec.x_length_mm = x_length_mm;
-  spec.y_length_mm = y_length_mm;
+  spec.array.arrangement = arrangement;
+  spec.array.x_length_mm = x_length_mm;
+  spec.array.y_length_mm = y_length_mm;
   spec.thickness_mm = 3.0;
   return spec;
 }
@@ -44,9 +44,9 @@ std::vector<PartSpec> arrays() {
                                  spec_of(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 3.0, 2.6),
                                  spec_of(HexagonalCube{0.8}, Arrangement::honeycomb, 3.3, 2.9),
                                  spec_of(TriangularCube{0.8}, Arrangement::triangular, 3.3, 2.9)};
-  specs[0].x_gap_mm = 0.05;
-  specs[0].y_gap_mm = 0.03;
-  specs[1].partial_elements = PartialElements::omit;
+  specs[0].array.x_gap_mm = 0.05;
+  specs[0].array.y_gap_mm = 0.03;
+  specs[1].array.partial_elements = PartialElements::omit;
   return specs;
 }
 
@@ -109,8 +109,8 @@ void expect_same_surface(const Part& a, const Part& b, double tolerance) {
   EXPECT_NEAR(a.retro_facet_area_mm2, b.retro_facet_area_mm2, tolerance * a.retro_facet_area_mm2);
   for (int k = 1; k < 200; ++k) {
     // Places that no symmetry of the arrays singles out.
-    const Vec2 p(a.spec.x_length_mm * std::fmod(0.618033988749895 * k, 1.0),
-                 a.spec.y_length_mm * std::fmod(0.754877666246693 * k, 1.0));
+    const Vec2 p(a.spec.array.x_length_mm * std::fmod(0.618033988749895 * k, 1.0),
+                 a.spec.array.y_length_mm * std::fmod(0.754877666246693 * k, 1.0));
     const HeightPlane of_a = surface_at(a, p);
     const HeightPlane of_b = surface_at(b, p);
     EXPECT_NEAR(of_a.height_mm, of_b.height_mm, tolerance) << p.transpose();
@@ -124,7 +124,7 @@ TEST(SubstratePart, OnEverySubstrateAndOfEveryKindIsAClosedSolid) {
       spec.substrate = substrate;
       SCOPED_TRACE("base " + std::to_string(substrate.shape.index()) +
                    (substrate.element_axes == ElementAxes::normal ? " n" : " p") + " arrangement " +
-                   std::to_string(static_cast<int>(spec.arrangement)));
+                   std::to_string(static_cast<int>(spec.array.arrangement)));
       expect_solid(spec);
     }
 }
@@ -174,7 +174,7 @@ TEST(SubstratePart, AFormulaIsTheShapeThatItDescribes) {
 /// The normals of an inclined part's facets are those of the planar one, turned.
 TEST(SubstratePart, AnInclinedArrayIsThePlanarOneTurnedAsOne) {
   for (PartSpec spec : arrays()) {
-    spec.x_gap_mm = spec.y_gap_mm = 0.0;
+    spec.array.x_gap_mm = spec.array.y_gap_mm = 0.0;
     spec.substrate = Substrate{PlaneSubstrate{21.0, 35.0}, ElementAxes::normal};
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(21.0 * kDeg, Vec3(std::sin(35.0 * kDeg), -std::cos(35.0 * kDeg), 0.0)).toRotationMatrix();
@@ -194,7 +194,7 @@ TEST(SubstratePart, AnInclinedArrayIsThePlanarOneTurnedAsOne) {
       EXPECT_LT(nearest, 1e-12);
     }
     // The base rises by tan 21 degrees towards 35 degrees; the part is as deep as it and an element.
-    EXPECT_GT(inclined.element_depth_mm, std::tan(21.0 * kDeg) * spec.x_length_mm * std::cos(35.0 * kDeg));
+    EXPECT_GT(inclined.element_depth_mm, std::tan(21.0 * kDeg) * spec.array.x_length_mm * std::cos(35.0 * kDeg));
   }
 }
 

@@ -149,7 +149,7 @@ TEST(DetectorMaps, AreTheSameWithAnyNumberOfThreads) {
 TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
   studies::Design design;
   design.part() = finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0);
-  design.part().shifted_rows = RowParity::odd;
+  design.part().array.shifted_rows = RowParity::odd;
   design.substance.refractive_index = kPmma;
   studies::RreRequest asked;
   asked.engine = studies::Engine::exact;

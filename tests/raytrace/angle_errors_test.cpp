@@ -36,10 +36,10 @@ struct Case {
 std::vector<Case> cases() {
   const RtpElement prism{0.5, 0.5, 90.0};
   PartSpec spaced = finite(prism, Arrangement::checker, 2.2, 2.0, 0.3);
-  spaced.x_gap_mm = spaced.y_gap_mm = 0.1;
-  spaced.x_offset_mm = 0.1;
+  spaced.array.x_gap_mm = spaced.array.y_gap_mm = 0.1;
+  spaced.array.x_offset_mm = 0.1;
   PartSpec omitted = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 3.1, 2.7, 0.3);
-  omitted.partial_elements = PartialElements::omit;
+  omitted.array.partial_elements = PartialElements::omit;
   const AngleErrors twist{{}, {-300.0, 300.0, 0.0}};
   const AngleErrors unlike{{60.0, -90.0, 20.0}, {50.0, 0.0, -70.0}};
   const AngleErrors closed{{-80.0, -80.0, -80.0}, {}};

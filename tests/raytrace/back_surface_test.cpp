@@ -99,7 +99,7 @@ TEST(BackSurface, BrickRows) {
 }
 TEST(BackSurface, Checker) {
   PartSpec spec = finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 3.3, 3.3, 0.5);
-  spec.x_gap_mm = 0.1;
+  spec.array.x_gap_mm = 0.1;
   compare_searches(spec, 20000);
 }
 TEST(BackSurface, Honeycomb) {

@@ -35,7 +35,7 @@ TEST(BeamTracer, ArraySizeStudyExactly) {
   const double fresnel = materials::reflectance(1.0 / kPmma, 1.0);
   for (const double substrate : {10.0, 5.0, 2.0, 1.0, 0.5}) {
     PartSpec spec = finite(RtpElement{substrate, substrate, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
-    spec.shifted_rows = RowParity::odd;
+    spec.array.shifted_rows = RowParity::odd;
     const Part part = build_part(spec);
     const double full = static_cast<double>(part.elements_full) * substrate * substrate / 100.0;
     const Ledger ledger = beams(part, pmma(), from(0.0), 0.5);
@@ -93,7 +93,7 @@ TEST(BeamTracer, TotalReflectionLimitOfCubeCorners) {
     policy.cutoff = 1e-9;  // what wanders from cell to cell does not return to the source
     for (const PartSpec& spec : {infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7),
                                  infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7)}) {
-      const bool is_honeycomb = spec.arrangement == Arrangement::honeycomb;
+      const bool is_honeycomb = spec.array.arrangement == Arrangement::honeycomb;
       const Part part = build_part(spec);
       const BeamTracer tracer(part);
       const auto missing = [&](double t, double p) {
@@ -145,14 +145,14 @@ rc::Gen<PartSpec> element_and_arrangement() {
     const int kind = *rc::gen::inRange(0, 3);
     if (kind == 0) {
       spec.element = RtpElement{size, *between(0.4, 1.4), *between(88.0, 92.0)};
-      spec.arrangement = *rc::gen::element(Arrangement::aligned, Arrangement::offset);
-      spec.x_gap_mm = *chance(0.3) ? 0.1 : 0.0;
+      spec.array.arrangement = *rc::gen::element(Arrangement::aligned, Arrangement::offset);
+      spec.array.x_gap_mm = *chance(0.3) ? 0.1 : 0.0;
     } else if (kind == 1) {
       spec.element = HexagonalCube{size};
-      spec.arrangement = Arrangement::honeycomb;
+      spec.array.arrangement = Arrangement::honeycomb;
     } else {
       spec.element = TriangularCube{size};
-      spec.arrangement = Arrangement::triangular;
+      spec.array.arrangement = Arrangement::triangular;
     }
     return spec;
   });
@@ -164,16 +164,16 @@ rc::Gen<RandomCase> random_case() {
     c.spec = *element_and_arrangement();
     c.spec.thickness_mm = *between(0.1, 1.1);
     if (*chance(0.2)) {
-      c.spec.arrangement = Arrangement::single;
-      c.spec.x_gap_mm = 0.0;
+      c.spec.array.arrangement = Arrangement::single;
+      c.spec.array.x_gap_mm = 0.0;
     } else if (*chance(0.5)) {
-      c.spec.extent = Extent::infinite;
+      c.spec.array.extent = Extent::infinite;
     } else {
       // Few elements, to be quick; in one array of eight so many that the cell engine has an inner piece.
       const Vec2 size = bounding_box(element_cell(c.spec.element).outline).size();
-      c.spec.x_length_mm = *between(2.9, 4.9) * (size.x() + c.spec.x_gap_mm);
-      c.spec.y_length_mm = *between(3.1, 5.1) * size.y();
-      if (*chance(0.3)) c.spec.partial_elements = PartialElements::omit;
+      c.spec.array.x_length_mm = *between(2.9, 4.9) * (size.x() + c.spec.array.x_gap_mm);
+      c.spec.array.y_length_mm = *between(3.1, 5.1) * size.y();
+      if (*chance(0.3)) c.spec.array.partial_elements = PartialElements::omit;
     }
     c.optics.index = *between(1.3, 1.9);
     if (*chance(0.3)) c.optics.absorption_per_mm = *between(0.0, 0.3);

@@ -34,7 +34,7 @@ std::vector<Case> cases() {
   const HexagonalCube steep{1.0, {30.0, 0.0}};
   const TriangularCube triangle{1.0, {12.0, -70.0}};
   PartSpec omitted = finite(hexagon, Arrangement::honeycomb, 3.1, 2.7, 1.0);
-  omitted.partial_elements = PartialElements::omit;
+  omitted.array.partial_elements = PartialElements::omit;
   PartSpec with_errors = finite(triangle, Arrangement::triangular, 2.1, 1.9, 1.0);
   with_errors.angle_errors = {{30.0, -20.0, 10.0}, {15.0, 0.0, -40.0}};
   with_errors.random_tilts = {5.0, 3};

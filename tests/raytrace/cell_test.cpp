@@ -30,8 +30,8 @@ PartSpec with(PartSpec spec, const AngleErrors& errors) {
 }
 
 PartSpec gapped(PartSpec spec, double x_mm, double y_mm) {
-  spec.x_gap_mm = x_mm;
-  spec.y_gap_mm = y_mm;
+  spec.array.x_gap_mm = x_mm;
+  spec.array.y_gap_mm = y_mm;
   return spec;
 }
 
@@ -42,7 +42,7 @@ PartSpec rounded(PartSpec spec, double root_radius_mm, double rim_radius_mm = 0.
 }
 
 PartSpec omitting(PartSpec spec) {
-  spec.partial_elements = PartialElements::omit;
+  spec.array.partial_elements = PartialElements::omit;
   return spec;
 }
 
@@ -66,7 +66,7 @@ std::vector<Case> cases() {
   const PartSpec aligned = infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 0.5);
   const PartSpec bricks = infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5);
   PartSpec thirds = bricks;
-  thirds.overlap_percent = 30.0;
+  thirds.array.overlap_percent = 30.0;
   const PartSpec checker = infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 0.7);
   const PartSpec honeycomb = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
   const PartSpec triangles = infinite(TriangularCube{1.0}, Arrangement::triangular, 1.0);

@@ -40,7 +40,7 @@ TEST(ClosedForms, ArraySizeStudy) {
     cells >> substrate >> comma >> width >> comma >> full >> comma >> facets >> comma >> printed;
     ASSERT_FALSE(cells.fail()) << line;
     PartSpec spec = finite(RtpElement{substrate, width, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
-    spec.shifted_rows = RowParity::odd;
+    spec.array.shifted_rows = RowParity::odd;
     const Part part = build_part(spec);
     EXPECT_EQ(part.elements_full, static_cast<std::int64_t>(full));
     EXPECT_NEAR(part.retro_facet_area_mm2, facets, 5e-3);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "geometry/elements/edges.h"
 #include "materials/fresnel.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/paths/monte_carlo.h"
@@ -63,7 +64,7 @@ TEST(Edges, RimsBesideLandTakeTheirWidth) {
   const double substrate = 0.5;
   const double gap = 0.1;
   PartSpec sharp = infinite(RtpElement{substrate, 0.5, 90.0}, Arrangement::aligned, 1.0);
-  sharp.x_gap_mm = gap;
+  sharp.array.x_gap_mm = gap;
   Optics lossless = pmma();
   lossless.lossless_entrance = true;
   const double fresnel = materials::reflectance(1.0 / kPmma, 1.0);
@@ -125,8 +126,8 @@ TEST(Edges, RoundedEdgesOfCubesTakeTheirWidth) {
 std::vector<PartSpec> all_kinds(const EdgeShape& edges) {
   PartSpec apart = finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.5, 1.3, 0.5);
   PartSpec checker = finite(RtpElement{0.5, 0.5, 84.0}, Arrangement::checker, 1.5, 1.6, 0.5);
-  apart.x_gap_mm = 0.06;
-  checker.y_gap_mm = 0.04;
+  apart.array.x_gap_mm = 0.06;
+  checker.array.y_gap_mm = 0.04;
   PartSpec wrong = single(HexagonalCube{0.8, {6.0, 20.0}}, 0.7);
   wrong.angle_errors = {{20.0, -10.0, 5.0}, {10.0, 0.0, -15.0}};
   return {with_edges(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5), edges),
@@ -173,7 +174,7 @@ TEST(Edges, EffectGrowsFromNothing) {
 TEST(Edges, PartsStayClosed) {
   for (const EdgeShape& edges : {EdgeShape{0.02, 0.0, 0.01}, EdgeShape{0.0, 0.03, 0.0, 0.02}})
     for (const PartSpec& spec : all_kinds(edges)) {
-      if (spec.extent == Extent::finite) expect_closed_part(spec);
+      if (spec.array.extent == Extent::finite) expect_closed_part(spec);
     }
 }
 

@@ -32,10 +32,10 @@ std::vector<Case> cases() {
   const RtpElement prism{0.5, 0.4, 90.0};
   PartSpec bricks = finite(prism, Arrangement::offset, 1.0, 0.8, 0.3);
   PartSpec spaced = finite(RtpElement{0.5, 0.5, 84.0}, Arrangement::checker, 1.4, 1.4, 0.3);
-  spaced.x_gap_mm = spaced.y_gap_mm = 0.1;
-  spaced.x_offset_mm = 0.1;
+  spaced.array.x_gap_mm = spaced.array.y_gap_mm = 0.1;
+  spaced.array.x_offset_mm = 0.1;
   PartSpec omitted = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.9, 1.7, 0.3);
-  omitted.partial_elements = PartialElements::omit;
+  omitted.array.partial_elements = PartialElements::omit;
   return {
       {"single prism across", single(prism, 0.3), 3.0, 0.0, 1.4917, 0.0},
       {"single prism askew", single(prism, 0.3), 33.0, 25.0, 1.4917, 0.1},

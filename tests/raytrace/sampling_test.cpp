@@ -94,7 +94,7 @@ struct Truth {
 TEST(StandardError, IsTrue) {
   const double r = std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0);
   PartSpec bricks = finite(RtpElement{2.0, 2.0, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
-  bricks.shifted_rows = RowParity::odd;
+  bricks.array.shifted_rows = RowParity::odd;
   const double share = 22.0 * 4.0 / 100.0;
   // The exact engine settles what has no closed form.
   const Part hexagon = build_part(single(HexagonalCube{1.0}, 0.5));

@@ -73,7 +73,7 @@ TEST(Scratches, TakeTheirVolume) {
 
 std::vector<PartSpec> all_arrangements(const std::vector<Scratch>& scratches) {
   PartSpec apart = finite(RtpElement{kBase, kBase, 90.0}, Arrangement::aligned, 1.5, 1.3, 0.5);
-  apart.x_gap_mm = 0.06;
+  apart.array.x_gap_mm = 0.06;
   PartSpec worn = single(RtpElement{kBase, kBase, 88.0}, 0.5);
   worn.edges.root_radius_mm = 0.01;
   worn.edges.chords = 4;
@@ -87,7 +87,7 @@ const std::vector<Scratch> kTwo = {{0, 0.08, 0.03, 0.006}, {1, -0.1, 0.02, -0.00
 
 TEST(Scratches, PartsStayClosed) {
   for (const PartSpec& spec : all_arrangements(kTwo)) {
-    if (spec.extent == Extent::finite) expect_closed_part(spec);
+    if (spec.array.extent == Extent::finite) expect_closed_part(spec);
   }
 }
 

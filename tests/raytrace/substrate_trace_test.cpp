@@ -45,8 +45,8 @@ struct Case {
 std::vector<Case> cases() {
   PartSpec prisms = finite(kPrism, Arrangement::offset, 2.5, 2.5, 1.5);
   PartSpec gaps = finite(kPrism, Arrangement::aligned, 2.6, 2.7, 1.5);
-  gaps.x_gap_mm = 0.05;
-  gaps.partial_elements = PartialElements::omit;
+  gaps.array.x_gap_mm = 0.05;
+  gaps.array.partial_elements = PartialElements::omit;
   PartSpec cubes = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 3.1, 2.9, 2.0);
   PartSpec pins = cubes;
   pins.is_pin_bundle = true;
@@ -150,7 +150,7 @@ TEST(HugeCylinder, SendsBackWhatThePlanarArrayDoes) {
 TEST(PinBundle, SendsBackLightAlongThePinsWhateverTheIncline) {
   PartSpec pins = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 6.2, 5.3, 2.0);
   pins.is_pin_bundle = true;
-  pins.partial_elements = PartialElements::omit;
+  pins.array.partial_elements = PartialElements::omit;
   BeamPolicy policy;
   policy.cutoff = 1e-9;
   const double level =
@@ -229,7 +229,7 @@ TEST(Placements, AtDifferentHeightsAreOneSurface) {
   EXPECT_NEAR(result.cones[0].ledger.total(), 1.0, 1e-9);
   // A part of one patch has four times the border; inside both are alike: what falls between is the border's.
   PartSpec small = spec;
-  small.x_length_mm = small.y_length_mm = 15.0;
+  small.array.x_length_mm = small.array.y_length_mm = 15.0;
   const Part one = build_part(small);
   ASSERT_EQ(one.placements.size(), 1U);
   const double of_one = MonteCarlo(one).trace(pmma(), from(8.0, 20.0), {0.5}, rays(1U << 16), {}).cones[0].rre;

@@ -77,8 +77,8 @@ TEST(FacetedSolid, MergedFacesEncloseWhatTrianglesDo) {
                         array_part(HexagonalCube{1.0}, Arrangement::honeycomb, 5.0, 4.0),
                         array_part(TriangularCube{1.0}, Arrangement::triangular, 5.0, 4.0)}) {
     for (const PartialElements partial : {PartialElements::cut, PartialElements::omit}) {
-      spec.partial_elements = partial;
-      if (std::holds_alternative<RtpElement>(spec.element)) spec.x_gap_mm = spec.y_gap_mm = 0.04;
+      spec.array.partial_elements = partial;
+      if (std::holds_alternative<RtpElement>(spec.element)) spec.array.x_gap_mm = spec.array.y_gap_mm = 0.04;
       const Part part = build_part(spec);
       for (const BoundaryMesh& mesh : {closed_boundary(part), mould_boundary(part, 0.3)}) {
         ASSERT_TRUE(is_closed_manifold(mesh));

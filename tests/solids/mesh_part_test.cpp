@@ -36,7 +36,7 @@ double level(const Part& part, FacetRole role) {
 /// What was exported is the part again: areas, depth, roles.
 TEST(MeshPart, ExportedPartsComeBack) {
   PartSpec prisms = test::array_part(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 3.0, 2.0);
-  prisms.x_gap_mm = 0.05;
+  prisms.array.x_gap_mm = 0.05;
   for (const PartSpec& spec : {prisms, test::single_part(HexagonalCube{1.6}), test::single_part(TriangularCube{1.6}),
                                test::array_part(TriangularCube{1.0}, Arrangement::triangular, 4.0, 3.0)}) {
     const Part direct = build_part(spec);

@@ -10,7 +10,7 @@ namespace retrace::test {
 inline geometry::PartSpec single_part(const geometry::Element& element) {
   geometry::PartSpec spec;
   spec.element = element;
-  spec.arrangement = geometry::Arrangement::single;
+  spec.array.arrangement = geometry::Arrangement::single;
   spec.thickness_mm = 0.7;
   return spec;
 }
@@ -19,9 +19,9 @@ inline geometry::PartSpec array_part(const geometry::Element& element, geometry:
                                      double y_mm) {
   geometry::PartSpec spec;
   spec.element = element;
-  spec.arrangement = arrangement;
-  spec.x_length_mm = x_mm;
-  spec.y_length_mm = y_mm;
+  spec.array.arrangement = arrangement;
+  spec.array.x_length_mm = x_mm;
+  spec.array.y_length_mm = y_mm;
   spec.thickness_mm = 0.7;
   return spec;
 }

@@ -51,9 +51,9 @@ TEST(Step, SingleElementsHaveTheirVolume) {
 
 TEST(Step, PrismArraysWithGapsMarginsAndMouldsHaveTheirVolume) {
   PartSpec spec = array_part(RtpElement{0.5, 0.4, 90.0}, Arrangement::aligned, 3.0, 2.0);
-  spec.x_gap_mm = 0.1;
-  spec.y_gap_mm = 0.05;
-  spec.x_offset_mm = 0.05;
+  spec.array.x_gap_mm = 0.1;
+  spec.array.y_gap_mm = 0.05;
+  spec.array.x_offset_mm = 0.05;
   const Part part = build_part(spec);
   ASSERT_EQ(part.elements_full, 20);
   const double below_mm3 = 20.0 * test::prism_volume_mm3(0.5, 0.4);

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "core/error.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "studies/rre/rre.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
@@ -69,7 +69,7 @@ double slope(const std::function<double(double)>& f, double x, double step = 2e-
 
 PartSpec brick(double base_mm) {
   PartSpec spec = finite(RtpElement{base_mm, base_mm, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
-  spec.shifted_rows = RowParity::odd;
+  spec.array.shifted_rows = RowParity::odd;
   return spec;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "geometry/elements/lattice.h"
+#include "geometry/elements/element_cells.h"
 #include "tests/studies/design_texts.h"
 
 namespace retrace::studies::design_surface_test {

@@ -12,8 +12,8 @@ namespace {
 geometry::PartSpec prisms(geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
   geometry::PartSpec spec;
   spec.element = geometry::RtpElement{0.5, 0.5, 90.0};
-  spec.arrangement = arrangement;
-  spec.x_length_mm = spec.y_length_mm = 1.0;
+  spec.array.arrangement = arrangement;
+  spec.array.x_length_mm = spec.array.y_length_mm = 1.0;
   spec.thickness_mm = 1.0;
   return spec;
 }
@@ -70,8 +70,8 @@ TEST(FacetPlanesReader, SaysWhereAndWhatIsAllowed) {
 geometry::PartSpec cubes(const geometry::Element& element) {
   geometry::PartSpec spec;
   spec.element = element;
-  spec.arrangement = geometry::Arrangement::honeycomb;
-  spec.x_length_mm = spec.y_length_mm = 4.0;
+  spec.array.arrangement = geometry::Arrangement::honeycomb;
+  spec.array.x_length_mm = spec.array.y_length_mm = 4.0;
   spec.thickness_mm = 1.0;
   return spec;
 }

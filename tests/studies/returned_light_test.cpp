@@ -50,7 +50,7 @@ geometry::PartSpec honeycomb() {
 
 geometry::PartSpec bricks() {
   geometry::PartSpec spec = finite(geometry::RtpElement{2.0, 2.0, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
-  spec.shifted_rows = geometry::RowParity::odd;
+  spec.array.shifted_rows = geometry::RowParity::odd;
   return spec;
 }
 

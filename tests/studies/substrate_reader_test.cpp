@@ -59,7 +59,7 @@ TEST(SubstrateReader, ReadsEveryKind) {
 TEST(SubstrateReader, PinsShareOneAxis) {
   const Design pins = read(design(kPins, "kind = \"plane\"\nincline_deg = 10"));
   EXPECT_TRUE(pins.part().is_pin_bundle);
-  EXPECT_EQ(pins.part().arrangement, geometry::Arrangement::honeycomb);
+  EXPECT_EQ(pins.part().array.arrangement, geometry::Arrangement::honeycomb);
   EXPECT_EQ(pins.part().substrate->element_axes, geometry::ElementAxes::parallel);
   EXPECT_EQ(to_json(pins)["array"]["arrangement"], "pins");
   EXPECT_EQ(complaint(design(kPins, "kind = \"plane\"\nincline_deg = 10\nelements = \"normal\"")),

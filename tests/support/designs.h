@@ -14,9 +14,9 @@ inline geometry::PartSpec finite(geometry::Element element, geometry::Arrangemen
                                  double thickness_mm) {
   geometry::PartSpec spec;
   spec.element = element;
-  spec.arrangement = arrangement;
-  spec.x_length_mm = x_mm;
-  spec.y_length_mm = y_mm;
+  spec.array.arrangement = arrangement;
+  spec.array.x_length_mm = x_mm;
+  spec.array.y_length_mm = y_mm;
   spec.thickness_mm = thickness_mm;
   return spec;
 }
@@ -24,8 +24,8 @@ inline geometry::PartSpec finite(geometry::Element element, geometry::Arrangemen
 inline geometry::PartSpec infinite(geometry::Element element, geometry::Arrangement arrangement, double thickness_mm) {
   geometry::PartSpec spec;
   spec.element = element;
-  spec.arrangement = arrangement;
-  spec.extent = geometry::Extent::infinite;
+  spec.array.arrangement = arrangement;
+  spec.array.extent = geometry::Extent::infinite;
   spec.thickness_mm = thickness_mm;
   return spec;
 }
@@ -33,7 +33,7 @@ inline geometry::PartSpec infinite(geometry::Element element, geometry::Arrangem
 inline geometry::PartSpec single(geometry::Element element, double thickness_mm) {
   geometry::PartSpec spec;
   spec.element = element;
-  spec.arrangement = geometry::Arrangement::single;
+  spec.array.arrangement = geometry::Arrangement::single;
   spec.thickness_mm = thickness_mm;
   return spec;
 }

@@ -12,10 +12,10 @@
 #include "core/schema/conditions.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
-#include "fabrication/job/cube_cells.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
+#include "geometry/elements/whole_elements.h"
 #include "geometry/io/substrate_rows.h"
 #include "geometry/part/substrate_part.h"
 
@@ -25,6 +25,7 @@ namespace {
 
 using namespace schema;
 using geometry::Arrangement;
+using geometry::ArrayLayout;
 using geometry::RtpElement;
 
 constexpr Words kArrangements = {"single", "aligned", "offset", "checker"};
@@ -73,11 +74,11 @@ void set_aperture(Job& job, const Value& value) {
   aperture_mm = std::get<double>(value);
 }
 
-Value get_tiled(const Array& array) {
+Value get_tiled(const ArrayLayout& array) {
   return array.arrangement == Arrangement::single ? 0.0 : 1.0;
 }
 template <Arrangement tiled>
-void set_tiled(Array& array, const Value& value) {
+void set_tiled(ArrayLayout& array, const Value& value) {
   array.arrangement = std::get<double>(value) == 0.0 ? Arrangement::single : tiled;
 }
 
@@ -121,26 +122,26 @@ constexpr Row kElementRows[] = {
      access_by<get_aperture, set_aperture>, kOfCubes}};
 constexpr Row kArrayRows[] = {
     {"arrangement", Word{kArrangements}, kRequired, "Of prisms, as in a [design](design_file.md).",
-     access<&Array::arrangement>, kOfPrisms},
+     access<&ArrayLayout::arrangement>, kOfPrisms},
     {"arrangement", Word{kHexagonalArrangements}, kRequired, "Likewise.",
      access_by<get_tiled, set_tiled<Arrangement::honeycomb>>, kOfHexagons},
     {"arrangement", Word{kTriangularArrangements}, kRequired, "Likewise.",
      access_by<get_tiled, set_tiled<Arrangement::triangular>>, kOfTriangles},
-    {"shifted_rows", Word{kRowParities}, "even", "As in a design.", access<&Array::shifted_rows>, kOfPrisms},
+    {"shifted_rows", Word{kRowParities}, "even", "As in a design.", access<&ArrayLayout::shifted_rows>, kOfPrisms},
     {"overlap_percent", Number{{.low = 0.0, .high = 100.0, .high_included = false}}, 50.0, "As in a design.",
-     access<&Array::overlap_percent>, kOfPrisms},
-    {"x_length_mm", kSize, kRequired, "Of the extent; none of `single`.", access<&Array::x_length_mm>, kOfArrays},
-    {"y_length_mm", kSize, kRequired, "Of the extent; none of `single`.", access<&Array::y_length_mm>, kOfArrays},
-    {"x_gap_mm", kGap, 0.0, "Flat land between elements.", access<&Array::x_gap_mm>, kOfPrisms},
-    {"y_gap_mm", kGap, 0.0, "Flat land between elements.", access<&Array::y_gap_mm>, kOfPrisms},
-    {"x_offset_mm", kGap, 0.0, "Margin on both borders.", access<&Array::x_offset_mm>},
-    {"y_offset_mm", kGap, 0.0, "Margin on both borders.", access<&Array::y_offset_mm>},
+     access<&ArrayLayout::overlap_percent>, kOfPrisms},
+    {"x_length_mm", kSize, kRequired, "Of the extent; none of `single`.", access<&ArrayLayout::x_length_mm>, kOfArrays},
+    {"y_length_mm", kSize, kRequired, "Of the extent; none of `single`.", access<&ArrayLayout::y_length_mm>, kOfArrays},
+    {"x_gap_mm", kGap, 0.0, "Flat land between elements.", access<&ArrayLayout::x_gap_mm>, kOfPrisms},
+    {"y_gap_mm", kGap, 0.0, "Flat land between elements.", access<&ArrayLayout::y_gap_mm>, kOfPrisms},
+    {"x_offset_mm", kGap, 0.0, "Margin on both borders.", access<&ArrayLayout::x_offset_mm>},
+    {"y_offset_mm", kGap, 0.0, "Margin on both borders.", access<&ArrayLayout::y_offset_mm>},
     {"pattern", Texts{}, kNone,
      "Which cells are cut: a text for each row, that of largest y first, `#` for a cell that is cut and `-` for one "
      "that is not. Of a shifted row the last cell lies beyond the border and is never cut. Of cube corners a row has "
      "the "
      "cells of one y that lie wholly within the margins.",
-     access<&Array::pattern>, kOfArrays}};
+     access<&ArrayLayout::pattern>, kOfArrays}};
 constexpr Row kChipRows[] = {
     {"position_um", Number{}, kRequired, "Of its middle, from the edge's middle towards +X of the machine.",
      access<&EdgeChip::position_um>},
@@ -265,17 +266,10 @@ void check_row(const std::string& row, std::size_t k, std::int64_t columns, cons
                                         in_quotes(std::string_view(row).substr(wrong, 1)), k));
 }
 
-/// Cells of each row, from that of least y. Without a pattern the first unshifted row has elements.
-std::vector<std::int64_t> row_lengths(const Job& job) {
-  if (!is_prism(job)) return cube_row_lengths(job.array, job.element);
-  const CellCounts counts = cell_counts(job.array, prism_of(job));
-  return std::vector<std::int64_t>(static_cast<std::size_t>(counts.rows), counts.columns);
-}
-
 void check_pattern(const Job& job, const Refuse& refuse) {
   const std::vector<std::string>& pattern = job.array.pattern;
   if (pattern.empty()) return;
-  const std::vector<std::int64_t> lengths = row_lengths(job);
+  const std::vector<std::int64_t> lengths = geometry::row_lengths(job.array, job.element);
   if (pattern.size() != lengths.size())
     refuse("array.pattern",
            fmt::format("must have {} rows, as many as the array, got {}", lengths.size(), pattern.size()));
@@ -283,26 +277,18 @@ void check_pattern(const Job& job, const Refuse& refuse) {
   if (cut_elements(job).empty()) refuse("array.pattern", "leaves no element to cut");
 }
 
-double element_estimate(const Job& job) {
-  const Array& array = job.array;
-  if (!is_prism(job)) return cube_cell_estimate(array, job.element);
-  const RtpElement& prism = prism_of(job);
-  return (array.x_length_mm + array.x_gap_mm) / (prism.base_mm + array.x_gap_mm) *
-         ((array.y_length_mm + array.y_gap_mm) / (prism.width_mm + array.y_gap_mm));
-}
-
 void check_room(const Job& job, const Refuse& refuse) {
-  const Array& array = job.array;
+  const ArrayLayout& array = job.array;
   if (array.arrangement == Arrangement::single) return;
-  if (const double elements = element_estimate(job); elements > kMostElements)
+  if (const double elements = geometry::element_estimate(array, job.element); elements > kMostElements)
     refuse("array.x_length_mm",
            fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed", elements, kMostElements));
   if (is_prism(job)) {
-    const CellCounts counts = cell_counts(array, prism_of(job));
+    const geometry::CellCounts counts = geometry::prism_block(array, prism_of(job)).counts;
     for (const auto& [count, key, length_mm] : {std::tuple(counts.columns, "array.x_length_mm", array.x_length_mm),
                                                 {counts.rows, "array.y_length_mm", array.y_length_mm}})
       if (count < 1) refuse(key, "must hold one element between the margins, got " + shortest(length_mm));
-  } else if (cube_row_lengths(array, job.element).empty()) {
+  } else if (geometry::row_lengths(array, job.element).empty()) {
     refuse("array.x_length_mm",
            fmt::format("with y_length_mm must hold one whole element round the middle, got {} and {}",
                        shortest(array.x_length_mm), shortest(array.y_length_mm)));
@@ -321,7 +307,7 @@ void check_square(const Job& job, const Refuse& refuse) {
 void check_array_on_substrate(const Job& job, const Refuse& refuse) {
   if (!job.substrate) return;
   const std::string_view key = geometry::substrate_shape_key(*job.substrate);
-  const Array& array = job.array;
+  const ArrayLayout& array = job.array;
   if (job.workpiece.kind == WorkpieceKind::direct)
     refuse(key, "needs a mould: workpiece.kind must be \"mould\" where elements stand on a base, got \"direct\"");
   if (array.arrangement == Arrangement::single) refuse(key, "not allowed for arrangement = \"single\"");

@@ -10,6 +10,7 @@
 #include "core/atomic_file.h"
 #include "core/message_text.h"
 #include "core/pictures.h"
+#include "geometry/elements/whole_elements.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -25,8 +26,8 @@ long grey_of(const std::uint8_t* pixel, std::size_t channels, int alpha_channel)
 
 }  // namespace
 
-std::vector<std::string> mask_pattern(const std::filesystem::path& file, double threshold, const CellCounts& cells,
-                                      const InputLocation& where) {
+std::vector<std::string> mask_pattern(const std::filesystem::path& file, double threshold,
+                                      const geometry::CellCounts& cells, const InputLocation& where) {
   const std::string name = printable(file.string(), std::string::npos);
   const auto unreadable = [&](const std::string& why) -> InputError {
     return {where, fmt::format("{}: cannot be read as a picture: {}", name, printable(why, 200))};

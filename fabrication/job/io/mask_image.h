@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "fabrication/job/job.h"
+#include "geometry/elements/whole_elements.h"
 
 namespace retrace::fabrication {
 
@@ -16,7 +16,7 @@ namespace retrace::fabrication {
 /// \throw InputError for a file that cannot be read as a picture, a picture that has not one pixel for each cell, or
 /// one that leaves nothing to cut
 /// \throw OutputError if pictures cannot be read at all (picture_files())
-std::vector<std::string> mask_pattern(const std::filesystem::path& file, double threshold, const CellCounts& cells,
-                                      const InputLocation& where);
+std::vector<std::string> mask_pattern(const std::filesystem::path& file, double threshold,
+                                      const geometry::CellCounts& cells, const InputLocation& where);
 
 }  // namespace retrace::fabrication

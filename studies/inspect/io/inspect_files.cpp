@@ -159,7 +159,7 @@ std::string ball_text(const Inspection& i) {
 std::string inspect_text(const Inspection& i) {
   if (i.balls) return ball_text(i);
   if (!i.design.elements()) return mesh_text(i);
-  const bool infinite = i.design.part().extent == geometry::Extent::infinite;
+  const bool infinite = i.design.part().array.extent == geometry::Extent::infinite;
   const char* per_period = infinite ? " per period" : "";
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));
   text += fmt::format("  elements            {} full, {} partial{}\n", i.elements_full, i.elements_partial, per_period);
