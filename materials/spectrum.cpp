@@ -80,6 +80,11 @@ void append(Spectrum& rule, const Spectrum& nodes, double share) {
   }
 }
 
+/// The power of two that brings the largest power near to 1, so that sums of any unit stay finite.
+double exact_scale(double largest) {
+  return largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
+}
+
 }  // namespace
 
 double SpectralCurve::at(double wavelength_nm) const {
@@ -102,10 +107,11 @@ Spectrum monochromatic(double wavelength_nm) {
 
 Spectrum resolved_spectrum(const SpectralCurve& power, const SpectralCurve* efficiency) {
   const std::vector<double> w = refined(power.wavelengths_nm);
+  const double scale = exact_scale(*std::ranges::max_element(power.values));
   std::vector<double> fluxes(w.size());
   for (std::size_t k = 0; k < w.size(); ++k) {
     const double width_nm = 0.5 * (w[std::min(k + 1, w.size() - 1)] - w[k > 0 ? k - 1 : 0]);
-    fluxes[k] = width_nm * power.at(w[k]) * efficiency_at(efficiency, w[k]);
+    fluxes[k] = width_nm * (scale * power.at(w[k])) * efficiency_at(efficiency, w[k]);
   }
   return normalised(w, fluxes, efficiency != nullptr);
 }
@@ -113,9 +119,10 @@ Spectrum resolved_spectrum(const SpectralCurve& power, const SpectralCurve* effi
 Spectrum line_spectrum(const std::vector<SpectralLine>& lines, const SpectralCurve* efficiency) {
   std::vector<double> wavelengths_nm;
   std::vector<double> fluxes;
+  const double scale = exact_scale(std::ranges::max_element(lines, {}, &SpectralLine::power)->power);
   for (const SpectralLine& line : lines) {
     wavelengths_nm.push_back(line.wavelength_nm);
-    fluxes.push_back(line.power * efficiency_at(efficiency, line.wavelength_nm));
+    fluxes.push_back(scale * line.power * efficiency_at(efficiency, line.wavelength_nm));
   }
   return normalised(wavelengths_nm, fluxes, efficiency != nullptr);
 }

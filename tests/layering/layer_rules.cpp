@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace retrace::layering {
 namespace fs = std::filesystem;
@@ -301,6 +302,26 @@ std::string to_string(const Violation& violation) {
 
 std::vector<Violation> check_tree(const fs::path& root) {
   return Checker(root).run();
+}
+
+std::string layer_picture() {
+  // Above all that it may include.
+  const std::function<int(const std::string&)> floor_of = [&](const std::string& folder) {
+    int floor = 0;
+    for (const std::string& below : folders().at(folder)) floor = std::max(floor, floor_of(below) + 1);
+    return floor;
+  };
+  std::vector<std::pair<int, std::string>> order;
+  for (const auto& [folder, below] : folders()) order.emplace_back(-floor_of(folder), folder);
+  std::sort(order.begin(), order.end());
+  std::string picture;
+  for (const auto& [floor, folder] : order) {
+    std::string names;
+    for (const std::string& below : folders().at(folder)) names += (names.empty() ? "" : ", ") + below;
+    picture += std::to_string(-floor) + "  " + folder + std::string(16 - folder.size(), ' ') +
+               (names.empty() ? "-" : names) + "\n";
+  }
+  return picture;
 }
 
 }  // namespace retrace::layering

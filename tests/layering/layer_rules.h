@@ -21,4 +21,7 @@ std::string to_string(const Violation& violation);
 /// check).
 std::vector<Violation> check_tree(const std::filesystem::path& root);
 
+/// A line for each folder, the highest first: its floor, its name and what it may include.
+std::string layer_picture();
+
 }  // namespace retrace::layering

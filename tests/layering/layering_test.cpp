@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,12 @@ using Lines = std::vector<std::string>;
 
 TEST(Layering, HoldsInTheSourceTree) {
   for (const Violation& violation : check_tree(RETRACE_SOURCE_DIR)) ADD_FAILURE() << to_string(violation);
+}
+
+TEST(Layering, IsDrawnInTheDocumentation) {
+  std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/docs/architecture.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(page.find("<!-- layers -->\n```text\n" + layer_picture() + "```\n"), std::string::npos) << layer_picture();
 }
 
 TEST(Layering, RefusesAMissingTree) {

@@ -211,6 +211,15 @@ TEST(Spectrum, FewSamplesDescribeASmoothLamp) {
       1e-3);
 }
 
+TEST(Spectrum, UnitsOfPowerDoNotMatter) {
+  const SpectralCurve lamp{{400.0, 584.2, 700.0}, {1e200, 1e308, 5e307}};
+  SpectralCurve small = lamp;
+  for (double& power : small.values) power = std::ldexp(power, -1000);
+  EXPECT_EQ(resolved_spectrum(lamp, nullptr).weights, resolved_spectrum(small, nullptr).weights);
+  const Spectrum lines = line_spectrum({{500.0, 1e308}, {600.0, 1e308}}, nullptr);
+  EXPECT_EQ(lines.weights, (std::vector<double>{0.5, 0.5}));
+}
+
 TEST(Spectrum, NoFluxIsAnError) {
   const CieTable table = cie();
   const std::string unseen = complaint([&] { line_spectrum({{1064.0, 1.0}}, &table.photopic_efficiency); });

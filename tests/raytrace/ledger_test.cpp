@@ -40,20 +40,20 @@ std::vector<Named> all_designs() {
     change(spec);
     designs.push_back({std::move(name), spec});
   };
-  vary("rtp offset omit", designs[4].spec, [](PartSpec& s) { s.partial_elements = PartialElements::omit; });
+  vary("rtp offset omit", designs[4].spec, [](PartSpec& s) { s.array.partial_elements = PartialElements::omit; });
   vary("rtp offset odd gaps margins", designs[4].spec, [](PartSpec& s) {
-    s.shifted_rows = RowParity::odd;
-    s.x_gap_mm = 0.05;
-    s.y_gap_mm = 0.08;
-    s.x_offset_mm = s.y_offset_mm = 0.15;
-    s.overlap_percent = 30.0;
+    s.array.shifted_rows = RowParity::odd;
+    s.array.x_gap_mm = 0.05;
+    s.array.y_gap_mm = 0.08;
+    s.array.x_offset_mm = s.array.y_offset_mm = 0.15;
+    s.array.overlap_percent = 30.0;
   });
   vary("honeycomb omit margins", designs[6].spec, [](PartSpec& s) {
-    s.partial_elements = PartialElements::omit;
-    s.x_offset_mm = 0.2;
+    s.array.partial_elements = PartialElements::omit;
+    s.array.x_offset_mm = 0.2;
   });
-  vary("triangular omit", designs[7].spec, [](PartSpec& s) { s.partial_elements = PartialElements::omit; });
-  vary("rtp checker infinite gaps", designs[10].spec, [](PartSpec& s) { s.x_gap_mm = s.y_gap_mm = 0.1; });
+  vary("triangular omit", designs[7].spec, [](PartSpec& s) { s.array.partial_elements = PartialElements::omit; });
+  vary("rtp checker infinite gaps", designs[10].spec, [](PartSpec& s) { s.array.x_gap_mm = s.array.y_gap_mm = 0.1; });
   vary("rtp wide apex", designs[4].spec, [](PartSpec& s) { s.element = RtpElement{0.5, 0.5, 118.0}; });
   vary("rtp narrow apex", designs[9].spec, [](PartSpec& s) { s.element = RtpElement{0.5, 0.5, 61.0}; });
   return designs;

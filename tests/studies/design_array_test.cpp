@@ -14,9 +14,9 @@ using geometry::Arrangement;
 
 TEST(DesignReader, ArrangementDefaultsToTheOneOfItsKind) {
   const std::string lengths = "x_length_mm = 10; y_length_mm = 10";
-  EXPECT_EQ(parse_design(design_of(kRtp, lengths), "d", {}).part().arrangement, Arrangement::aligned);
-  EXPECT_EQ(parse_design(design_of(kHexagonal, lengths), "d", {}).part().arrangement, Arrangement::honeycomb);
-  EXPECT_EQ(parse_design(design_of(kTriangular, lengths), "d", {}).part().arrangement, Arrangement::triangular);
+  EXPECT_EQ(parse_design(design_of(kRtp, lengths), "d", {}).part().array.arrangement, Arrangement::aligned);
+  EXPECT_EQ(parse_design(design_of(kHexagonal, lengths), "d", {}).part().array.arrangement, Arrangement::honeycomb);
+  EXPECT_EQ(parse_design(design_of(kTriangular, lengths), "d", {}).part().array.arrangement, Arrangement::triangular);
 }
 
 TEST(DesignReader, ArrangementMustFitTheKind) {
@@ -72,7 +72,7 @@ TEST(DesignReader, GapsRowsAndOverlapOnlyWhereTheyMeanSomething) {
             "--set array.y_offset_mm=-0.1: array.y_offset_mm: must be >= 0 and <= 1e+06, got -0.1");
   EXPECT_EQ(set_complaint({"array.overlap_percent=100"}),
             "--set array.overlap_percent=100: array.overlap_percent: must be >= 0 and < 100, got 100");
-  EXPECT_EQ(set({"array.overlap_percent=0"}).part().overlap_percent, 0.0);
+  EXPECT_EQ(set({"array.overlap_percent=0"}).part().array.overlap_percent, 0.0);
 }
 
 TEST(DesignReader, CheckerNeedsSquareCells) {
