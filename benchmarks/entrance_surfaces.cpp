@@ -1,4 +1,4 @@
-// Whole paths through curved fronts over a plate with a mirror, beside those through a plane entrance face.
+// Whole paths through curved entrance surfaces over a plate with a mirror, beside those through a plane entrance face.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

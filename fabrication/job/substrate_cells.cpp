@@ -90,7 +90,7 @@ class Placer {
   }
 
  private:
-  /// The elements of a flat array that is as large as the base is, rolled out.
+  /// The elements of a flat array that is as large as the substrate is, rolled out.
   std::vector<CutElement> on_sheet() {
     Job sheet = job_;
     sheet.substrate.reset();

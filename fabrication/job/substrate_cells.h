@@ -10,24 +10,24 @@
 
 namespace retrace::fabrication {
 
-/// What a design would say of the job's part. \pre job.base
+/// What a design would say of the job's part. \pre job.substrate
 geometry::PartSpec part_on_substrate(const Job& job);
 
-/// The elements of the job where they stand on its base, in the frame of the blank: those that lie wholly within the
-/// part in plan, row by row from least y, x rising (docs/theory/cutting.md).
-/// \pre job.base, a mould, lengths of the part > 0
+/// The elements of the job where they stand on its substrate, in the frame of the blank: those that lie wholly within
+/// the part in plan, row by row from least y, x rising (docs/theory/cutting.md). \pre job.substrate, a mould, lengths
+/// of the part > 0
 std::vector<CutElement> elements_on_substrate(const Job& job);
 
 /// By how much the blank stands over the plane of an element's rims at most, anywhere over what its cut opens; 0 on a
 /// flat blank, on an inclined one with elements along its normal, and on one that bulges.
 /// \param clearance_mm above 0: how much higher a tool starts that keeps that distance from the blank
-/// \throw InputError, whose text begins with "must", if the base rises so steeply that no cut comes out of it
+/// \throw InputError, whose text begins with "must", if the substrate rises so steeply that no cut comes out of it
 double stock_mm(const Job& job, const std::vector<CutElement>& elements, double clearance_mm = 0.0);
 
-/// One line for people: what the blank's face is like, and where its zero is. \pre job.base
+/// One line for people: what the blank's face is like, and where its zero is. \pre job.substrate
 std::string substrate_description(const Job& job);
 
-/// The face of the blank before anything is cut: its plane, or the job's base.
+/// The face of the blank before anything is cut: its plane, or the job's substrate.
 class BlankFace {
  public:
   explicit BlankFace(const Job& job);

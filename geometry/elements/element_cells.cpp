@@ -46,7 +46,7 @@ double rise_of_dihedral_edge(double aperture_mm) {
   return 0.5 * aperture_mm / std::numbers::sqrt2;
 }
 
-/// Slopes of the facets' planes of an unturned cube corner that is not canted, each between the dihedral edges k and
+/// Slopes of the facets' planes of an unrotated cube corner that is not canted, each between the dihedral edges k and
 /// k + 1.
 std::array<Vec2, 3> upright_cube_slopes(const AngleErrors& errors) {
   std::array<Vec2, 3> slopes;

@@ -44,7 +44,7 @@ struct Cell {
   bool rotated = false;
 };
 
-/// A right triangular prism with its lower left corner at `corner_mm`; `turned` by 90 degrees about z it has its roof
+/// A right triangular prism with its lower left corner at `corner_mm`; `rotated` by 90 degrees about z it has its roof
 /// edge along x (base = width then).
 Cell rtp_cell(const RtpElement& element, const AngleErrors& errors, const Vec2& corner_mm, bool rotated = false);
 
@@ -52,12 +52,12 @@ Cell rtp_cell(const RtpElement& element, const AngleErrors& errors, const Vec2& 
 /// 0.
 Cell hexagonal_cube_cell(const HexagonalCube& element, const AngleErrors& errors, const Vec2& centre_mm);
 
-/// A triangular cube corner with its apex over `centre_mm` and, without errors and cant, its rim on z = 0; `turned` by
+/// A triangular cube corner with its apex over `centre_mm` and, without errors and cant, its rim on z = 0; `rotated` by
 /// 180 degrees about z, errors and cant included.
 Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& errors, const Vec2& centre_mm,
                           bool rotated = false);
 
-/// One element, unturned, with its lower left corner (RTP) or its apex (cube corners) at the origin.
+/// One element, unrotated, with its lower left corner (RTP) or its apex (cube corners) at the origin.
 Cell element_cell(const Element& element, const AngleErrors& errors = {});
 
 /// The element that stands in the place of `cell`, with its own errors. \pre cell.is_element

@@ -19,17 +19,17 @@ void add_prism_with_gaps(Lattice& lattice, const PartSpec& spec, const Vec2& cor
   const auto& element = std::get<RtpElement>(spec.element);
   const Vec2 gap(spec.array.x_gap_mm, spec.array.y_gap_mm);
   const Vec2 size(element.base_mm, element.width_mm);
-  const bool next_turned = rotated != (spec.array.arrangement == Arrangement::checker);
+  const bool next_rotated = rotated != (spec.array.arrangement == Arrangement::checker);
   const Vec2 end = corner + size;
   add_element(lattice, rtp_cell(element, spec.angle_errors, corner, rotated));
   if (gap.x() > 0.0)
     lattice.cells.push_back(
-        land_cell({{end.x(), corner.y()}, {end.x() + gap.x(), end.y()}}, spec, 0, !rotated, !next_turned));
+        land_cell({{end.x(), corner.y()}, {end.x() + gap.x(), end.y()}}, spec, 0, !rotated, !next_rotated));
   if (gap.y() <= 0.0) return;
   const bool rims_face_it = spec.array.arrangement == Arrangement::checker && spec.edges.rounds_rims();
   const double beside = rims_face_it ? end.x() : end.x() + gap.x();
   lattice.cells.push_back(
-      land_cell({{corner.x(), end.y()}, {beside, end.y() + gap.y()}}, spec, 1, rotated, next_turned));
+      land_cell({{corner.x(), end.y()}, {beside, end.y() + gap.y()}}, spec, 1, rotated, next_rotated));
   if (rims_face_it && gap.x() > 0.0) lattice.cells.push_back(land_cell({end, end + gap}, spec));
 }
 

@@ -19,7 +19,7 @@ struct Lattice {
 Cell finished_cell(const Cell& cell, const PartSpec& spec);
 
 /// The periodic tiling that an arrangement repeats. For RTP arrays the lower left corner of an element in row 1,
-/// unshifted, is at the origin; for cube corners the apex of an unturned cell is. `rows_are_shifted` is false for a
+/// unshifted, is at the origin; for cube corners the apex of an unrotated cell is. `rows_are_shifted` is false for a
 /// single row. \pre the arrangement fits the element and is not `single`.
 Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted);
 

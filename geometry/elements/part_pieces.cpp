@@ -22,6 +22,25 @@ AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std:
   return errors;
 }
 
+IndexRange indices_over(const Lattice& lattice, const Rectangle& extent, const Vec2& anchor) {
+  Rectangle reach = bounding_box(lattice.cells.front().outline);
+  for (const Cell& cell : lattice.cells) {
+    const Rectangle box = bounding_box(cell.outline);
+    reach.lower = reach.lower.cwiseMin(box.lower);
+    reach.upper = reach.upper.cwiseMax(box.upper);
+  }
+  IndexRange range;
+  for (const Eigen::Index axis : {0, 1}) {
+    const auto k = static_cast<std::size_t>(axis);
+    const double period = lattice.period_mm[axis];
+    const double low = (extent.lower[axis] - anchor[axis] - reach.upper[axis]) / period;
+    const double high = (extent.upper[axis] - anchor[axis] - reach.lower[axis]) / period;
+    range.lower[k] = static_cast<std::int64_t>(std::floor(low));
+    range.upper[k] = static_cast<std::int64_t>(std::ceil(high)) + 1;
+  }
+  return range;
+}
+
 std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block) {
   return {Rectangle{extent.lower, {block.lower.x(), extent.upper.y()}},
           Rectangle{{block.upper.x(), extent.lower.y()}, extent.upper},

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "geometry/elements/part_spec.h"
+#include "geometry/elements/lattice.h"
 #include "geometry/polygon.h"
 
 namespace retrace::geometry {
@@ -20,6 +20,9 @@ struct IndexRange {
   std::array<std::int64_t, 2> lower{};
   std::array<std::int64_t, 2> upper{};
 };
+
+/// The indices of all cells of the lattice, its origin at `anchor`, that may reach into the extent.
+IndexRange indices_over(const Lattice& lattice, const Rectangle& extent, const Vec2& anchor);
 
 /// The errors of the element at (i, j), the `number`th of the period: those of all, and its own random tilts.
 AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std::uint32_t number);

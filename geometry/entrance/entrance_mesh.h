@@ -5,7 +5,7 @@
 
 namespace retrace::geometry {
 
-/// Which triangles of a mesh are the front.
+/// Which triangles of a mesh are the entrance surface.
 enum class MeshSide {
   top,    ///< those that look towards +z
   bottom  ///< those that look towards -z, turned over: the mesh is the counterpart of the part

@@ -32,7 +32,7 @@ class EntranceSurface {
 /// The front of a part: an exact surface, or the triangles of a mesh that all look towards +z.
 using Entrance = std::variant<std::shared_ptr<const EntranceSurface>, std::shared_ptr<const SurfacePatch>>;
 
-/// What a front is like over the outline of a part.
+/// What an entrance surface is like over the outline of a part.
 struct EntranceRange {
   double lowest_mm = 0.0;
   double highest_mm = 0.0;
@@ -41,8 +41,8 @@ struct EntranceRange {
   double steepest_slope = 0.0;  ///< sampled
 };
 
-/// Lowest and highest place of a front, to rounding, found from samples as near as its finest features ask for.
-/// \throw InputError for a surface that has no finite height somewhere over the outline
+/// Lowest and highest place of an entrance surface, to rounding, found from samples as near as its finest features ask
+/// for. \throw InputError for a surface that has no finite height somewhere over the outline
 EntranceRange entrance_range(const Entrance& entrance, const Polygon& outline);
 
 /// How many cells across the longer side of an outline's box show all features of a surface: where none is known, so

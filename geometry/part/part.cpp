@@ -1,5 +1,4 @@
 #include "geometry/part/part.h"
-#include "geometry/elements/whole_elements.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -12,6 +11,7 @@
 #include "geometry/elements/facet_planes.h"
 #include "geometry/elements/lattice.h"
 #include "geometry/elements/part_pieces.h"
+#include "geometry/elements/whole_elements.h"
 #include "geometry/part/substrate_part.h"
 #include "geometry/part/welded_part.h"
 
@@ -64,27 +64,6 @@ Layout finite_layout(const PartSpec& spec, double size_mm) {
     snap(layout.extent.upper[axis], layout.block.upper[axis], length[axis]);
   }
   return layout;
-}
-
-/// The indices of all cells that may reach into the extent.
-IndexRange indices_over(const Layout& layout) {
-  Rectangle reach = bounding_box(layout.lattice.cells.front().outline);
-  for (const Cell& cell : layout.lattice.cells) {
-    const Rectangle box = bounding_box(cell.outline);
-    reach.lower = reach.lower.cwiseMin(box.lower);
-    reach.upper = reach.upper.cwiseMax(box.upper);
-  }
-  IndexRange range;
-  for (const Eigen::Index axis : {0, 1}) {
-    const auto k = static_cast<std::size_t>(axis);
-    const double period = layout.lattice.period_mm[axis];
-    range.lower[k] = static_cast<std::int64_t>(
-        std::floor((layout.extent.lower[axis] - layout.anchor[axis] - reach.upper[axis]) / period));
-    range.upper[k] = static_cast<std::int64_t>(
-                         std::ceil((layout.extent.upper[axis] - layout.anchor[axis] - reach.lower[axis]) / period)) +
-                     1;
-  }
-  return range;
 }
 
 /// Appends what the borders leave of one cell moved by `shift`.
@@ -188,7 +167,7 @@ PieceKey piece_key(const Layout& layout, const Rectangle& extent, const Rectangl
 }
 
 void add_surface(Part& part, const Layout& layout, const Vec2& origin, double elements_per_patch) {
-  const IndexRange all = indices_over(layout);
+  const IndexRange all = indices_over(layout.lattice, layout.extent, layout.anchor);
   const double periods = std::max(1.0, elements_per_patch / std::max(1, layout.lattice.elements_per_period));
   const Vec2 span = layout.extent.size().cwiseQuotient(layout.lattice.period_mm);
   const bool one_patch = span.x() * span.y() <= periods;
@@ -232,7 +211,7 @@ void find_lattice_region(Part& part, const Layout& layout, const Vec2& origin) {
 }
 
 void count_elements(Part& part, const Layout& layout) {
-  const IndexRange all = indices_over(layout);
+  const IndexRange all = indices_over(layout.lattice, layout.extent, layout.anchor);
   for (std::int64_t j = all.lower[1]; j < all.upper[1]; ++j) {
     for (std::int64_t i = all.lower[0]; i < all.upper[0]; ++i) {
       const Vec2 shift =

@@ -1,5 +1,4 @@
 #include "geometry/part/substrate_part.h"
-#include "geometry/elements/whole_elements.h"
 
 #include <fmt/format.h>
 
@@ -15,12 +14,13 @@
 #include "geometry/elements/element_cells.h"
 #include "geometry/elements/lattice.h"
 #include "geometry/elements/part_pieces.h"
+#include "geometry/elements/whole_elements.h"
 #include "geometry/plane_polygon.h"
 
 namespace retrace::geometry {
 namespace {
 
-// Where a base repeats along one axis alone, patches are kept short along the other.
+// Where a substrate repeats along one axis alone, patches are kept short along the other.
 constexpr double kElementsPerColumnPatch = 256.0;
 // Of an area: how much the cells of a part may miss it by rounding.
 constexpr double kAreaRounding = 1e-7;
@@ -50,7 +50,7 @@ bool is_convex(const Polygon& polygon, double tolerance_mm) {
 }
 
 /// A plane of an element, told in its own frame, as it stands in the part.
-HeightPlane element_axes(const HeightPlane& own, const SubstrateFrame& frame) {
+HeightPlane placed_plane(const HeightPlane& own, const SubstrateFrame& frame) {
   const Vec3 normal = own.slope.x() * frame.along_u + own.slope.y() * frame.along_v - frame.normal;
   const Vec3 point = frame.origin + own.height_mm * frame.normal;
   HeightPlane plane;
@@ -59,7 +59,7 @@ HeightPlane element_axes(const HeightPlane& own, const SubstrateFrame& frame) {
   return plane;
 }
 
-/// A cell of the lattice where it stands, from the middle of the part; heights are the base's own.
+/// A cell of the lattice where it stands, from the middle of the part; heights are the substrate's own.
 struct PlacedCell {
   Polygon arc_outline;
   Polygon outline;
@@ -89,7 +89,7 @@ class Builder {
   }
 
   void build(double elements_per_patch) {
-    const IndexRange all = indices();
+    const IndexRange all = indices_over(lattice_, arc_extent_, anchor_);
     const std::array<std::int64_t, 2> step = patch_size(all, elements_per_patch);
     const bool is_one = step[0] >= all.upper[0] - all.lower[0] && step[1] >= all.upper[1] - all.lower[1];
     for (std::int64_t j = all.lower[1]; j < all.upper[1]; j += step[1])
@@ -105,7 +105,7 @@ class Builder {
   }
 
  private:
-  /// Where patches have their origin: the base at their first cell's corner.
+  /// Where patches have their origin: the substrate at their first cell's corner.
   struct Corner {
     Vec2 plan = Vec2::Zero();
     double height_mm = 0.0;
@@ -125,18 +125,16 @@ class Builder {
       block_ = {arc_extent_.lower - endless, arc_extent_.upper + endless};
       return;
     }
-    const Vec2 gap(spec_.array.x_gap_mm, spec_.array.y_gap_mm);
-    const Vec2 size(rtp->base_mm, rtp->width_mm);
+    // As a flat array that is as large as the substrate is, rolled out.
     const Rectangle reach = surface_.arc_reach();
-    Vec2 count;
-    for (const Eigen::Index axis : {0, 1})
-      count[axis] = whole_count(reach.size()[axis], 0.0, gap[axis], size[axis] + gap[axis]);
-    if (count.minCoeff() < 1.0) throw InputError("the array is smaller than one element");
-    const Vec2 filled = count.cwiseProduct(size + gap) - gap;
-    block_.lower = 0.5 * (reach.lower + reach.upper - filled);
-    block_.upper = block_.lower + filled;
+    ArrayLayout sheet = spec_.array;
+    sheet.x_length_mm = reach.size().x();
+    sheet.y_length_mm = reach.size().y();
+    const PrismBlock block = prism_block(sheet, *rtp);
+    if (block.counts.columns < 1 || block.counts.rows < 1) throw InputError("the array is smaller than one element");
+    block_ = {reach.lower + block.filled.lower, reach.lower + block.filled.upper};
     anchor_ = block_.lower;
-    lattice_ = make_lattice(spec_, count.y() > 1.0);
+    lattice_ = make_lattice(spec_, block.counts.rows > 1);
   }
 
   /// Round the arc coordinates of the part, with an element's room to spare.
@@ -154,25 +152,6 @@ class Builder {
     }
     const Vec2 room = Vec2::Constant(1.5 * width_across_mm(spec_.element));
     return {box.lower - room, box.upper + room};
-  }
-
-  IndexRange indices() const {
-    Rectangle reach = bounding_box(lattice_.cells.front().outline);
-    for (const Cell& cell : lattice_.cells) {
-      const Rectangle box = bounding_box(cell.outline);
-      reach.lower = reach.lower.cwiseMin(box.lower);
-      reach.upper = reach.upper.cwiseMax(box.upper);
-    }
-    IndexRange range;
-    for (const Eigen::Index axis : {0, 1}) {
-      const auto k = static_cast<std::size_t>(axis);
-      const double period = lattice_.period_mm[axis];
-      const double low = (arc_extent_.lower[axis] - anchor_[axis] - reach.upper[axis]) / period;
-      const double high = (arc_extent_.upper[axis] - anchor_[axis] - reach.lower[axis]) / period;
-      range.lower[k] = static_cast<std::int64_t>(std::floor(low));
-      range.upper[k] = static_cast<std::int64_t>(std::ceil(high)) + 1;
-    }
-    return range;
   }
 
   std::array<std::int64_t, 2> patch_size(const IndexRange& all, double elements_per_patch) const {
@@ -196,7 +175,7 @@ class Builder {
     return {plan, surface_.at(plan).value};
   }
 
-  /// Tells pieces apart by what the base does there and by where borders cross them.
+  /// Tells pieces apart by what the substrate does there and by where borders cross them.
   Key key_of(const IndexRange& range, const Corner& corner) const {
     const double quantum = 1e-7 * lattice_.period_mm.minCoeff();
     const Vec2 room = lattice_.period_mm;
@@ -279,7 +258,7 @@ class Builder {
     tile.plane.height_mm += tile.plane.slope.dot(corner.plan) - corner.height_mm;
   }
 
-  /// How far a corner of a cell lies from the base: rims of full cubes are not level.
+  /// How far a corner of a cell lies from the substrate: rims of full cubes are not level.
   double rim_height(const Cell& nominal, const Vec2& p) const {
     double height = -part_.element_depth_mm;
     for (const CellFacet& facet : nominal.facets) height = std::max(height, facet.plane.at(p));
@@ -307,7 +286,7 @@ class Builder {
     PlacedCell placed;
     placed.is_element = cell.is_element;
     placed.arc_outline = moved(cell.outline, shift);
-    placed.land = element_axes(HeightPlane{}, frame);
+    placed.land = placed_plane(HeightPlane{}, frame);
     const bool is_random = cell.is_element && spec_.random_tilts.sigma_arcmin > 0.0;
     const AngleErrors errors = is_random ? errors_of(spec_, i, j, c) : spec_.angle_errors;
     if (surface_.is_upright())
@@ -327,7 +306,7 @@ class Builder {
     }
   }
 
-  /// The element as a rigid body along the base's normal, cut by the vertical walls over its corners.
+  /// The element as a rigid body along the substrate's normal, cut by the vertical walls over its corners.
   void place_normal(PlacedCell& placed, const Cell& cell, const AngleErrors& errors, const Vec2& shift,
                     const Vec2& middle, const SubstrateFrame& frame) const {
     if (!cell.is_element) {
@@ -346,7 +325,7 @@ class Builder {
     Cell placed_cell = element_in_place_of(cell, spec_.element, errors);
     for (CellFacet& facet : placed_cell.facets) {
       facet.plane.height_mm += facet.plane.slope.dot(middle);
-      facet.plane = element_axes(facet.plane, frame);
+      facet.plane = placed_plane(facet.plane, frame);
     }
     placed_cell.outline = placed.outline;
     cut_by_each_other(placed_cell);
@@ -419,7 +398,7 @@ class Builder {
   Vec2 middle_mm_;  ///< of the part, in its own coordinates
   Rectangle extent_;
   SubstrateSurface surface_;
-  double top_mm_;  ///< height of the base that is z = 0
+  double top_mm_;  ///< height of the substrate that is z = 0
   double tolerance_mm_;
   Lattice lattice_;
   Vec2 anchor_ = Vec2::Zero();

@@ -5,17 +5,17 @@
 
 namespace retrace::geometry {
 
-/// Adds the patches, placements and counts of the elements that stand on spec.base to a part that knows its
+/// Adds the patches, placements and counts of the elements that stand on spec.substrate to a part that knows its
 /// specification, size and outline. Seen along z the surface is still one height at every place: cells end where the
 /// plan of their corners does, and vertical walls close what differs between neighbours.
-/// \pre part.spec.base, a finite array without offsets
+/// \pre part.spec.substrate, a finite array without offsets
 /// \throw InputError if the elements' cells do not cover the part
 void add_surface_on_substrate(Part& part, const Vec2& origin_mm, double elements_per_patch);
 
-/// The base of a design as it lies under its part. \pre spec.base
+/// The substrate of a design as it lies under its part. \pre spec.substrate
 SubstrateSurface substrate_surface_of(const PartSpec& spec);
 
-/// Measures the base and checks that it can carry the elements. \pre spec.base, a finite array
+/// Measures the substrate and checks that it can carry the elements. \pre spec.substrate, a finite array
 /// \throw InputError, whose text begins with "must" or "is not", where it is not finite, rises by more than 60 degrees,
 /// bends more tightly than an element is wide, makes a facet stand upright, or pulls pins apart
 SubstrateMeasures check_substrate(const PartSpec& spec);
@@ -27,7 +27,7 @@ double width_across_mm(const Element& element);
 struct InnerWalls {
   double area_mm2 = 0.0;
   double highest_mm = 0.0;  ///< largest step in height from an element to the next
-  /// Of their area: as seen along the base's mean normal, which they hide from light that comes that way.
+  /// Of their area: as seen along the substrate's mean normal, which they hide from light that comes that way.
   double projected_mm2 = 0.0;
 };
 

@@ -31,9 +31,9 @@ struct FormulaSubstrate {
 
 using SubstrateShape = std::variant<PlaneSubstrate, CylinderSubstrate, SphereSubstrate, FormulaSubstrate>;
 
-/// How elements stand on a base.
+/// How elements stand on a substrate.
 enum class ElementAxes {
-  normal,   ///< each along the base's normal under its middle; sizes and gaps are arc lengths
+  normal,   ///< each along the substrate's normal under its middle; sizes and gaps are arc lengths
   parallel  ///< all upright, moved along z alone; sizes and gaps are those in plan
 };
 

@@ -1,4 +1,4 @@
-// Whether a base can carry its elements.
+// Whether a substrate can carry its elements.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>

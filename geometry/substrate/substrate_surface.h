@@ -10,7 +10,7 @@
 
 namespace retrace::geometry {
 
-/// Where something stands on a base: three unit axes, the third along the base's normal towards the light.
+/// Where something stands on a substrate: three unit axes, the third along the substrate's normal towards the light.
 struct SubstrateFrame {
   Vec3 origin = Vec3::Zero();
   Vec3 along_u = Vec3::UnitX();
@@ -18,9 +18,10 @@ struct SubstrateFrame {
   Vec3 normal = Vec3::UnitZ();
 };
 
-/// A base with the part's size: heights, normals and arc lengths. Coordinates are in mm from the middle of the part.
+/// A substrate with the part's size: heights, normals and arc lengths. Coordinates are in mm from the middle of the
+/// part.
 ///
-/// Arc coordinates (u, v) lie on the base as a sheet does that was laid on it. On planes and cylinders lengths are
+/// Arc coordinates (u, v) lie on the substrate as a sheet does that was laid on it. On planes and cylinders lengths are
 /// true. On others v is the arc length along x = 0, and u that along the line y = const through that place: rows have
 /// true lengths, and are as far apart as they should be along x = 0. Lines of equal v are straight in plan.
 class SubstrateSurface {
@@ -44,7 +45,7 @@ class SubstrateSurface {
   SubstrateFrame frame_at(const Vec2& arc) const { return frame_over(plan_of(arc)); }
   SubstrateFrame frame_over(const Vec2& plan) const;
 
-  /// Whether the base is the same, but for its height, at every u and at every v.
+  /// Whether the substrate is the same, but for its height, at every u and at every v.
   bool repeats_along_u() const;
   bool repeats_along_v() const;
   bool is_upright() const { return substrate_.element_axes == ElementAxes::parallel; }
@@ -59,16 +60,16 @@ class SubstrateSurface {
   mutable std::unique_ptr<ArcTables> tables_;  ///< of formulas, from when they are needed: not to be shared by threads
 };
 
-/// What a base is like over a part.
+/// What a substrate is like over a part.
 struct SubstrateMeasures {
   double area_mm2 = 0.0;
-  double lowest_mm = 0.0;  ///< heights as the base itself has them
+  double lowest_mm = 0.0;  ///< heights as the substrate itself has them
   double highest_mm = 0.0;
   double steepest_deg = 0.0;
   double least_radius_mm = 0.0;  ///< of curvature; infinite of a plane
 };
 
-/// Measured on a grid of 129 x 129 places. \throw InputError where the base is not finite
+/// Measured on a grid of 129 x 129 places. \throw InputError where the substrate is not finite
 SubstrateMeasures measure_substrate(const SubstrateSurface& substrate, const Vec2& half_mm);
 
 }  // namespace retrace::geometry

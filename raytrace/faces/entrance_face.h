@@ -9,7 +9,7 @@
 
 namespace retrace::raytrace {
 
-/// Where a ray meets the front.
+/// Where a ray meets the entrance surface.
 struct EntranceHit {
   SurfaceHit hit;
   Vec3 normal = Vec3::UnitZ();  ///< unit, out of the part
@@ -23,7 +23,8 @@ class EntranceFace {
   EntranceFace& operator=(const EntranceFace&) = delete;
   virtual ~EntranceFace() = default;
 
-  /// The first place where the ray meets the front from its own side, up to `t_max`. \pre it does so over the outline
+  /// The first place where the ray meets the entrance surface from its own side, up to `t_max`. \pre it does so over
+  /// the outline
   virtual std::optional<EntranceHit> first_hit(const SurfaceRay& ray) const = 0;
 
   /// Over the outline.

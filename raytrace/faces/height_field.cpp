@@ -221,13 +221,13 @@ struct HeightField::Walk {
   }
 };
 
-/// Where the ray is between the front's lowest and highest place: nowhere else is there anything to meet.
+/// Where the ray is between the entrance surface's lowest and highest place: nowhere else is there anything to meet.
 std::optional<std::array<double, 2>> HeightField::span_of(const SurfaceRay& ray, double room_mm) const {
   const double dz = ray.direction.z();
   const double z = ray.origin.z();
   const double near_mm = ray.inside ? lowest_mm() - room_mm : highest_mm() + room_mm;
   const double far_mm = ray.inside ? highest_mm() + room_mm : lowest_mm() - room_mm;
-  const double way = ray.inside ? 1.0 : -1.0;  // towards the front, along z
+  const double way = ray.inside ? 1.0 : -1.0;  // towards the entrance surface, along z
   if (way * dz > 0.0) {
     const bool starts_on = ray.source.placement != FacetRef::kNone;
     const double from = starts_on ? 0.0 : std::max(0.0, (near_mm - z) / dz);

@@ -9,9 +9,9 @@
 
 namespace retrace::raytrace {
 
-/// A front that is an exact surface, in double precision: a grid of cells says between which heights it lies and how
-/// tightly it bends there; within a cell a ray is followed by steps that the bend cannot carry across the surface,
-/// which close in on it as Newton's do (docs/theory/fronts.md).
+/// An entrance surface that is an exact surface, in double precision: a grid of cells says between which heights it
+/// lies and how tightly it bends there; within a cell a ray is followed by steps that the bend cannot carry across the
+/// surface, which close in on it as Newton's do (docs/theory/fronts.md).
 class HeightField : public EntranceFace {
  public:
   HeightField(std::shared_ptr<const geometry::EntranceSurface> surface, const geometry::Polygon& outline,

@@ -6,7 +6,7 @@
 
 namespace retrace::raytrace {
 
-/// A front of plane triangles, searched as the back of a part is.
+/// An entrance surface of plane triangles, searched as the back of a part is.
 class MeshEntrance : public EntranceFace {
  public:
   MeshEntrance(const geometry::SurfacePatch& patch, const geometry::Polygon& outline, const Vec2& centre_mm);
@@ -14,7 +14,8 @@ class MeshEntrance : public EntranceFace {
   std::optional<EntranceHit> first_hit(const SurfaceRay& ray) const override;
 
  private:
-  /// Whether the ray comes to the heights of the front from the side that it is on, and has time to cross them.
+  /// Whether the ray comes to the heights of the entrance surface from the side that it is on, and has time to cross
+  /// them.
   bool crosses(const SurfaceRay& ray) const;
 
   geometry::Part part_;  ///< in heights above the lowest place

@@ -15,12 +15,6 @@ inline double coefficient_of_retroreflection(double intensity_per_sr, Angle entr
   return intensity_per_sr * std::cos(entrance_angle.rad());
 }
 
-/// R_I, coefficient of luminous intensity, in mcd/lx: intensity over that illuminance. \param area_cm2 of the part
-inline double coefficient_of_intensity_mcd_per_lx(double coefficient_of_retroreflection, double area_cm2) {
-  constexpr double kSquareMetresPerSquareCentimetre = 1e-4;
-  return 1e3 * kSquareMetresPerSquareCentimetre * area_cm2 * coefficient_of_retroreflection;
-}
-
 /// R_L, coefficient of retroreflected luminance, in cd/(lx m^2): luminance in the direction of the receiver over that
 /// illuminance. \param viewing_angle between the normal and that direction
 inline double coefficient_of_luminance(double coefficient_of_retroreflection, Angle viewing_angle) {

@@ -67,8 +67,8 @@ class MonteCarlo {
   static constexpr std::uint32_t kReplicates = 32;
 
   /// \param part is kept by reference: it must outlive the tracer
-  /// \param front in place of the plane entrance face, above the part's back; null: that plane
-  /// \pre with a front: a finite part and Engine::embree
+  /// \param entrance_face in place of the plane entrance face, above the part's back; null: that plane
+  /// \pre with an entrance surface: a finite part and Engine::embree
   explicit MonteCarlo(const geometry::Part& part, Engine engine = Engine::embree,
                       const geometry::Entrance* entrance_face = nullptr);
   explicit MonteCarlo(geometry::Part&& part, Engine engine = Engine::embree,

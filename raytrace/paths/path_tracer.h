@@ -23,7 +23,7 @@ struct PathSetup : LightSetup {
 
   const BackSurface& surface;
   const EntranceFace* entrance_face = nullptr;  ///< in place of the plane z = thickness_mm; null: that plane
-  Light incident;                               ///< on a front: the light of the beam
+  Light incident;                               ///< on an entrance surface: the light of the beam
   PathPolicy policy;
   double clearance_mm = 0.0;         ///< height above z = 0 from which the back surface is looked for
   Vec2 period_mm = Vec2::Zero();     ///< infinite part
@@ -53,10 +53,10 @@ class PathWalker {
     Vec3 direction = Vec3::UnitZ();
     Light light;
     FacetRef source;           ///< facet that the path has just left
-    FacetRef entrance_source;  ///< the same, of a front
+    FacetRef entrance_source;  ///< the same, of an entrance surface
     bool inside = true;
-    bool above = false;                                                   ///< in the air on the front's side
-    bool entered = false;                                                 ///< it has passed a front
+    bool above = false;                                                   ///< in the air on the entrance surface's side
+    bool entered = false;                                                 ///< it has passed an entrance surface
     bool scattered = false;                                               ///< a non-specular event lies behind it
     geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through
     std::uint32_t events = 0;
@@ -65,7 +65,7 @@ class PathWalker {
   struct Step {
     End end = End::miss;
     SurfaceHit hit;
-    Vec3 entrance_normal = Vec3::UnitZ();  ///< where `hit` is on a front
+    Vec3 entrance_normal = Vec3::UnitZ();  ///< where `hit` is on an entrance surface
     std::size_t side = 0;
     double length_mm = 0.0;
   };

@@ -7,7 +7,7 @@
 
 namespace retrace::studies {
 
-/// What a curved front is like.
+/// What a curved entrance surface is like.
 struct EntranceReport {
   geometry::EntranceRange range;  ///< heights in the part's frame
   double steepest_deg = 0.0;      ///< sampled
@@ -20,7 +20,7 @@ struct EntranceReport {
   Profile along_y;
 };
 
-/// \pre the front covers the part (entrance_of_design())
+/// \pre the entrance surface covers the part (entrance_of_design())
 EntranceReport report_entrance(const geometry::Entrance& entrance, const geometry::Part& part);
 
 }  // namespace retrace::studies

@@ -33,7 +33,6 @@ class TolerancePlan final : public PointPlan {
   PointValues values(std::uint64_t point) const override;
 
   std::uint64_t rows() const { return rows_; }
-  std::uint64_t points_of_row() const { return points_of_row_; }
 
  private:
   Study study_;

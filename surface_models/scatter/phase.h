@@ -12,12 +12,6 @@ inline double reflection_phase_rad(double sq_nm, double index, double cos_incide
   return 4.0 * std::numbers::pi * index * sq_nm * cos_incidence / wavelength_nm;
 }
 
-/// The same on transmitted light: 2 pi s (n1 cos t1 - n2 cos t2) / w. May be negative.
-inline double transmission_phase_rad(double sq_nm, double index_from, double cos_incidence, double index_to,
-                                     double cos_refracted, double wavelength_nm) {
-  return 2.0 * std::numbers::pi * sq_nm * (index_from * cos_incidence - index_to * cos_refracted) / wavelength_nm;
-}
-
 /// Share of a lobe's power that stays specular when heights are Gaussian.
 inline double specular_share_of_phase(double phase_rad) {
   return std::exp(-phase_rad * phase_rad);

@@ -4,7 +4,7 @@
 
 #include "tests/app/program.h"
 
-// Elements on bases from a design to NC text and back, as users do it.
+// Elements on substrates from a design to NC text and back, as users do it.
 
 namespace retrace::test::substrate_job_test {
 namespace {

@@ -1,4 +1,4 @@
-// Faults that are planted in programs for elements on bases.
+// Faults that are planted in programs for elements on substrates.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

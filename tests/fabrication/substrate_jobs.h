@@ -1,6 +1,6 @@
 #pragma once
 
-// Small jobs on bases for tests.
+// Small jobs on substrates for tests.
 
 #include <memory>
 #include <string>
@@ -27,7 +27,7 @@ inline Substrate formula_substrate(const std::string& text, geometry::ElementAxe
   return {geometry::FormulaSubstrate{std::make_shared<const geometry::Formula>(text)}, element_axes};
 }
 
-/// n x n prisms side by side on a base, with room for elements that lean.
+/// n x n prisms side by side on a substrate, with room for elements that lean.
 inline Job prisms_on(const Substrate& substrate, int n = 3,
                      geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
   Job job = square_job(n, arrangement);
@@ -37,7 +37,7 @@ inline Job prisms_on(const Substrate& substrate, int n = 3,
   return job;
 }
 
-/// Cube corners on a base, by a tool with room for blanks that stand over the rims.
+/// Cube corners on a substrate, by a tool with room for blanks that stand over the rims.
 inline Job cubes_on(const Substrate& substrate, bool is_hexagonal, double aperture_mm = 0.15) {
   Job job = cube_job(is_hexagonal, aperture_mm);
   job.array.pattern.clear();

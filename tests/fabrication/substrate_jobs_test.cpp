@@ -28,8 +28,8 @@
 #include "tests/fabrication/substrate_programs.h"
 #include "tests/fabrication/swept_volume_sink.h"
 
-// Jobs of elements on inclined, curved and freeform bases: where they stand, against the part that light is traced in;
-// and their programs, read back and cut again.
+// Jobs of elements on inclined, curved and freeform substrates: where they stand, against the part that light is traced
+// in; and their programs, read back and cut again.
 
 namespace retrace::fabrication::test::substrate_jobs_test {
 namespace {
@@ -43,7 +43,7 @@ struct Named {
   Job job;
 };
 
-/// Bases of every kind that prisms can be cut into, and cube corners.
+/// Substrates of every kind that prisms can be cut into, and cube corners.
 std::vector<Named> jobs() {
   const ElementAxes normal = ElementAxes::normal;
   const ElementAxes parallel = ElementAxes::parallel;

@@ -1,5 +1,5 @@
-// Meshes as fronts: sheets at random pass; holes, overlaps, corners on sides, steps, upright, overhanging and turned
-// triangles are refused where they are, those too whose areas add up to the outline's.
+// Meshes as entrance surfaces: sheets at random pass; holes, overlaps, corners on sides, steps, upright, overhanging
+// and turned triangles are refused where they are, those too whose areas add up to the outline's.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -200,7 +200,7 @@ TEST(EntranceMesh, StepsAreRefused) {
   expect_refused(message(stepped(0.0, false), outline), {"the height jumps"}, {1.0, 1.0}, 1e-3);
   expect_refused(message(stepped(0.2, true), outline), {"a triangle hangs over"}, {0.9, 1.0}, 0.2);
   EXPECT_EQ(message(stepped(-0.2, true), outline), "") << "a slope";
-  // Of the side that is no front nothing is asked: a level lid over the steps.
+  // Of the side that is no entrance surface nothing is asked: a level lid over the steps.
   TriangleMesh body = turned_over(stepped(0.0, true));
   for (const Vec2& p : outline) body.vertices.emplace_back(p.x(), p.y(), 2.0);
   body.triangles.insert(body.triangles.end(), {{8, 9, 10}, {8, 10, 11}});
@@ -226,7 +226,7 @@ TEST(EntranceMesh, TrianglesWithoutAreaAreRefused) {
   expect_refused(message(mesh, outline), {"a triangle has no area"}, {1.0, 1.0}, 1.0);
 }
 
-// What lies beside the outline is nobody's front.
+// What lies beside the outline is nobody's entrance surface.
 TEST(EntranceMesh, FaultsOutsideTheOutlineDoNotMatter) {
   std::mt19937 random(6);
   const Polygon outline = to_polygon({Vec2(3.0, 3.0), Vec2(5.0, 5.0)});

@@ -16,7 +16,7 @@
 #include "geometry/part/faceted_solid.h"
 #include "tests/geometry/part_checks.h"
 
-// Elements on inclined, curved and freeform bases: where they stand, and that the part stays a solid.
+// Elements on inclined, curved and freeform substrates: where they stand, and that the part stays a solid.
 
 namespace retrace::geometry::substrate_part_test {
 namespace {
@@ -89,8 +89,8 @@ HeightPlane surface_at(const Part& part, const Vec2& p) {
   return {};
 }
 
-/// Closed, with the volume that its surface encloses, and free of crossings. Where four cells meet on a curved base
-/// they may stand high and low by turns, so that the part touches itself along the line over their corner.
+/// Closed, with the volume that its surface encloses, and free of crossings. Where four cells meet on a curved
+/// substrate they may stand high and low by turns, so that the part touches itself along the line over their corner.
 void expect_solid(const PartSpec& spec) {
   const Part part = build_part(spec);
   const BoundaryMesh mesh = closed_boundary(part);
@@ -193,12 +193,12 @@ TEST(SubstratePart, AnInclinedArrayIsThePlanarOneTurnedAsOne) {
       for (const Vec3& n : nominal) nearest = std::min(nearest, (n - facet.normal).norm());
       EXPECT_LT(nearest, 1e-12);
     }
-    // The base rises by tan 21 degrees towards 35 degrees; the part is as deep as it and an element.
+    // The substrate rises by tan 21 degrees towards 35 degrees; the part is as deep as it and an element.
     EXPECT_GT(inclined.element_depth_mm, std::tan(21.0 * kDeg) * spec.array.x_length_mm * std::cos(35.0 * kDeg));
   }
 }
 
-// Where neighbours stand at one angle and their rims meet on the base, nothing stands open between them.
+// Where neighbours stand at one angle and their rims meet on the substrate, nothing stands open between them.
 TEST(SubstratePart, CubesOnAnInclineLeaveNoWalls) {
   for (PartSpec spec : {spec_of(HexagonalCube{0.8}, Arrangement::honeycomb, 3.3, 2.9),
                         spec_of(TriangularCube{0.8}, Arrangement::triangular, 3.3, 2.9),
@@ -325,7 +325,7 @@ TEST(SubstratePart, RepeatsPatchesWhereTheSubstrateRepeats) {
   std::size_t facets = 0;
   for (const SurfacePatch& patch : cylinder.patches) facets += patch.facets.size();
   EXPECT_LT(facets, 16 * 3 * 200 * 10U);  // three bands of 16 rows at most, 200 columns
-  // Symmetry of the base: left and right.
+  // Symmetry of the substrate: left and right.
   for (int k = 0; k < 10; ++k) {
     const Vec2 p(7.13 + 4.3 * k, 40.1);
     const HeightPlane left = surface_at(cylinder, p);

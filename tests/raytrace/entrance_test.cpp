@@ -1,5 +1,5 @@
-// Curved fronts: planes against the plane entrance face, lenses and wedges against rays by hand, closed forms of slabs
-// and of light that passes beside, exact surfaces against fine meshes of them, conservation.
+// Curved entrance surfaces: planes against the plane entrance face, lenses and wedges against rays by hand, closed
+// forms of slabs and of light that passes beside, exact surfaces against fine meshes of them, conservation.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -51,7 +51,7 @@ void expect_same(const ConeResult& a, const ConeResult& b, double tolerance) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(a.stokes.values()[k], b.stokes.values()[k], tolerance) << k;
 }
 
-/// Light that leaves through the front.
+/// Light that leaves through the entrance surface.
 struct Exits : ExitObserver {
   struct Exit {
     Vec3 position;
@@ -72,7 +72,7 @@ struct OneRay {
   OneRay(const Part& part, const Entrance& front, const Vec2& centre)
       : part_(part), centre_(centre), back_(part, centre), face_(make_entrance_face(front, part, centre)) {}
 
-  /// \param entry_mm in the plane that touches the front from above, from the centre
+  /// \param entry_mm in the plane that touches the entrance surface from above, from the centre
   Exits follow(const Optics& optics, const Illumination& light, const Vec2& entry_mm) const {
     const PathSetup setup(part_, back_, centre_, optics, light, {0.5}, every_branch(1e-3), face_.get());
     Tally tally(1);

@@ -1,5 +1,5 @@
-// Light in parts whose elements stand on bases: nothing is lost, the engines agree, and what theory says of planes,
-// turned cubes and pins holds.
+// Light in parts whose elements stand on substrates: nothing is lost, the engines agree, and what theory says of
+// planes, turned cubes and pins holds.
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 
 namespace retrace::testing {
 
-/// A front from functions.
+/// An entrance surface from functions.
 class FormulaEntrance : public geometry::EntranceSurface {
  public:
   using Function = std::function<Place(double, double)>;

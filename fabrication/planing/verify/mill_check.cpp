@@ -111,12 +111,12 @@ void MillCheck::measure_at(double x_mm, double left_mm, const PhaseProfile& prof
   // Within a step of the grid of an upright wall either side of it may be meant.
   const double near_mm = part_.mill->grid_mm;
   const double design_mm = profile.depth_mm(x_mm);
-  double element_axes = std::max(0.0, design_mm - left_mm);
+  double standing = std::max(0.0, design_mm - left_mm);
   double gouge = std::max(0.0, left_mm - design_mm);
   for (const Wall& wall : profile.walls())
-    if (std::abs(x_mm - wall.x_mm) <= near_mm) element_axes = gouge = 0.0;
-  if (x_mm > part_.lens.half_width_mm - near_mm) element_axes = 0.0;
-  result_.standing_mm_max = std::max(result_.standing_mm_max, element_axes);
+    if (std::abs(x_mm - wall.x_mm) <= near_mm) standing = gouge = 0.0;
+  if (x_mm > part_.lens.half_width_mm - near_mm) standing = 0.0;
+  result_.standing_mm_max = std::max(result_.standing_mm_max, standing);
   result_.gouge_mm_max = std::max(result_.gouge_mm_max, gouge);
   result_.profile.push_back({x_mm, design_mm, left_mm});
 }
