@@ -15,6 +15,8 @@
 #include "raytrace/balls/ball_layer.h"
 #include "raytrace/light/stokes.h"
 
+// What is designed: shape, substance, surface, light and detector, checked, with its defaults filled in.
+
 namespace retrace::studies {
 
 /// The optical idealisations a design may ask for, to be checked against theory.

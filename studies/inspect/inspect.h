@@ -12,6 +12,8 @@
 #include "studies/design/total_reflection.h"
 #include "studies/inspect/entrance_report.h"
 
+// What a design is like before it is traced: sizes, areas, counts, angles, and where total reflection ends.
+
 namespace retrace::studies {
 
 /// What a layer of balls, or a single one, is to light along its axis: closed forms (docs/theory/beads.md).

@@ -15,6 +15,8 @@
 #include "surface_models/spectrum.h"
 #include "surface_models/texture_model.h"
 
+// Measured height maps: roughness, waviness and edge radii as a design has them.
+
 namespace retrace::studies {
 
 /// What to measure, and how.

@@ -12,6 +12,8 @@
 #include "studies/quantity/study.h"
 #include "studies/store/store.h"
 
+// Searches the parameters of a study for the best candidate, and how far each may go from there.
+
 namespace retrace::studies {
 
 /// What is to be as large as it can be: a weighted sum of quantities, negative weights for what is to be small.

@@ -13,6 +13,8 @@
 #include "studies/photometry/limits.h"
 #include "studies/rre/rre.h"
 
+// Coefficients of retroreflection at the test points of a standard, and the verdict.
+
 namespace retrace::studies {
 
 /// What is asked: the coefficients of retroreflection of a part at the test points of a standard.

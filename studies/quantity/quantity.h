@@ -8,6 +8,8 @@
 #include "core/progress.h"
 #include "studies/quantity/candidate.h"
 
+// What a study computes of each candidate design.
+
 namespace retrace::studies {
 
 /// What a quantity of a candidate came to.

@@ -9,6 +9,8 @@
 #include "core/progress.h"
 #include "studies/design/design.h"
 
+// Retroreflective efficiency of a design over the roughness and waviness of its facets.
+
 namespace retrace::studies {
 
 /// Measured facets of one process, or one facet, by their means.

@@ -17,6 +17,8 @@
 #include "studies/rre/far_field.h"
 #include "studies/rre/footprint.h"
 
+// Retroreflective efficiency of designs over directions of the light, and where all other power goes.
+
 namespace retrace::studies {
 
 /// Which tracer is asked for. `automatic` is exact where beams are expected to reach the error that is asked for before

@@ -9,6 +9,8 @@
 #include "raytrace/paths/light_path.h"
 #include "studies/design/optical_model.h"
 
+// A part with paths of light through it, to be shown in three dimensions.
+
 namespace retrace::studies {
 
 /// A path and what share of the light that falls on one element goes such a way.

@@ -8,6 +8,8 @@
 #include "geometry/part/closed_boundary.h"
 #include "studies/design/design.h"
 
+// Elements, parts and moulds as solids that other programs read.
+
 namespace retrace::studies {
 
 /// Which solid of a design.

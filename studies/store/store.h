@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+// Results of a study point by point in a database, so that it goes on where it was cut off.
+
 namespace retrace::studies {
 
 /// A value of a parameter as it is stored: a number, or the text of anything else.

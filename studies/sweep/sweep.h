@@ -11,6 +11,8 @@
 #include "studies/store/store.h"
 #include "studies/sweep/sampling.h"
 
+// Quantities of a study at every point of a grid or a sample, on one machine or many.
+
 namespace retrace::studies {
 
 /// How the values of several parameters make points.

@@ -10,6 +10,8 @@
 #include "studies/sweep/sweep.h"
 #include "studies/tolerance/indices.h"
 
+// How quantities spread where parameters do, and which of these it hangs on.
+
 namespace retrace::studies {
 
 /// What is asked of a tolerance study.
