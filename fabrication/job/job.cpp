@@ -54,12 +54,9 @@ namespace {
 std::vector<CutElement> cut_flat(const Job& job) {
   const bool is_mirrored = job.workpiece.kind == WorkpieceKind::direct;
   const double scale = blank_scale(job.workpiece);
-  const geometry::Vec2 extent_mm = blank_extent_mm(job);
   const auto cut = [&](const geometry::WholeElement& at, std::int32_t column) {
     CutElement element;
-    const geometry::Vec2 centre_mm(scale * at.centre_mm.y() - 0.5 * extent_mm.x(),
-                                   scale * at.centre_mm.x() - 0.5 * extent_mm.y());
-    element.centre_mm = {centre_mm.x(), is_mirrored ? centre_mm.y() : -centre_mm.y()};
+    element.centre_mm = scale * geometry::Vec2(at.centre_mm.y(), is_mirrored ? at.centre_mm.x() : -at.centre_mm.x());
     element.row = at.row;
     element.column = column;
     element.rotated = at.is_rotated;

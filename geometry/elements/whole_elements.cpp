@@ -26,8 +26,7 @@ class CubeFinder {
         radius_mm_(0.5 * aperture_mm(element)),
         box_(bounding_box(element_cell(element).outline)),
         half_period_mm_(0.5 * radius_mm_ * Vec2(3.0, std::numbers::sqrt3)),
-        middle_mm_(0.5 * Vec2(array.x_length_mm, array.y_length_mm)),
-        half_block_mm_(middle_mm_ - Vec2(array.x_offset_mm, array.y_offset_mm) +
+        half_block_mm_(0.5 * Vec2(array.x_length_mm, array.y_length_mm) - Vec2(array.x_offset_mm, array.y_offset_mm) +
                        Vec2::Constant(2.0 * kWholeShare * radius_mm_)) {}
 
   std::vector<WholeElement> run() {
@@ -52,7 +51,7 @@ class CubeFinder {
     const Vec2 low = is_rotated ? Vec2(apex - box_.upper) : Vec2(apex + box_.lower);
     const Vec2 high = is_rotated ? Vec2(apex - box_.lower) : Vec2(apex + box_.upper);
     if ((low.array() < -half_block_mm_.array()).any() || (high.array() > half_block_mm_.array()).any()) return;
-    elements_.push_back({middle_mm_ + apex, rows_, 0, is_rotated, true});
+    elements_.push_back({apex, rows_, 0, is_rotated, true});
   }
 
   void number_row(std::size_t first) {
@@ -65,7 +64,6 @@ class CubeFinder {
   double radius_mm_;
   Rectangle box_;  ///< of an aperture round its apex, not rotated
   Vec2 half_period_mm_;
-  Vec2 middle_mm_;
   Vec2 half_block_mm_;
   std::vector<WholeElement> elements_;
   std::int32_t rows_ = 0;
@@ -73,20 +71,19 @@ class CubeFinder {
 
 std::vector<WholeElement> whole_prisms(const ArrayLayout& array, const RtpElement& prism) {
   const PrismBlock block = prism_block(array, prism);
-  const Vec2 half(0.5 * prism.base_mm, 0.5 * prism.width_mm);
   std::vector<WholeElement> elements;
   elements.reserve(static_cast<std::size_t>(block.counts.columns * block.counts.rows));
   for (std::int64_t row = 0; row < block.counts.rows; ++row)
     for (std::int64_t column = 0; column < block.columns_of(row); ++column)
-      elements.push_back({block.corner_mm(row, column) + half, static_cast<std::int32_t>(row),
+      elements.push_back({block.centre_mm(row, column), static_cast<std::int32_t>(row),
                           static_cast<std::int32_t>(column), block.is_rotated(row, column), true});
   return elements;
 }
 
 std::vector<WholeElement> whole_cubes(const ArrayLayout& array, const Element& element) {
-  if (array.arrangement == Arrangement::single)
-    return {WholeElement{-bounding_box(element_cell(element).outline).lower, 0, 0, false, true}};
-  return CubeFinder(array, element).run();
+  if (array.arrangement != Arrangement::single) return CubeFinder(array, element).run();
+  const Rectangle box = bounding_box(element_cell(element).outline);
+  return {WholeElement{-0.5 * (box.lower + box.upper), 0, 0, false, true}};
 }
 
 }  // namespace
@@ -103,6 +100,13 @@ bool PrismBlock::is_shifted(std::int64_t row) const {
 
 Vec2 PrismBlock::corner_mm(std::int64_t row, std::int64_t column) const {
   return filled.lower + Vec2(is_shifted(row) ? shift_mm : 0.0, 0.0) +
+         pitch_mm.cwiseProduct(Vec2(static_cast<double>(column), static_cast<double>(row)));
+}
+
+Vec2 PrismBlock::centre_mm(std::int64_t row, std::int64_t column) const {
+  const Vec2 first =
+      -0.5 * pitch_mm.cwiseProduct(Vec2(static_cast<double>(counts.columns - 1), static_cast<double>(counts.rows - 1)));
+  return first + Vec2(is_shifted(row) ? shift_mm : 0.0, 0.0) +
          pitch_mm.cwiseProduct(Vec2(static_cast<double>(column), static_cast<double>(row)));
 }
 

@@ -34,8 +34,10 @@ struct PrismBlock {
   bool is_shifted(std::int64_t row) const;
   /// How many whole elements a row has.
   std::int64_t columns_of(std::int64_t row) const { return counts.columns - (is_shifted(row) ? 1 : 0); }
-  /// Lower left corner of an element.
+  /// Lower left corner of an element, in the part's frame.
   Vec2 corner_mm(std::int64_t row, std::int64_t column) const;
+  /// Centre of an element, from the middle of the extent.
+  Vec2 centre_mm(std::int64_t row, std::int64_t column) const;
   bool is_rotated(std::int64_t row, std::int64_t column) const { return is_checker && (row + column) % 2 == 1; }
 };
 /// \pre lengths and sizes > 0, the array is finite
@@ -43,7 +45,7 @@ PrismBlock prism_block(const ArrayLayout& array, const RtpElement& element);
 
 /// An element that lies wholly within the array.
 struct WholeElement {
-  Vec2 centre_mm = Vec2::Zero();  ///< of a prism's aperture, of a cube corner's apex; in the part's frame
+  Vec2 centre_mm = Vec2::Zero();  ///< of a prism's aperture, of a cube corner's apex; from the middle of the extent
   std::int32_t row = 0;           ///< from 0, the row of least y
   std::int32_t column = 0;        ///< from 0, x rising
   bool is_rotated = false;        ///< a prism by 90 degrees about z, a cube corner by 180

@@ -41,6 +41,13 @@ geometry::ElementPlanes element_at(const geometry::Element& element, const fabri
   return planes;
 }
 
+/// Middle of the extent, in the part's frame.
+Vec2 middle_of(const geometry::PartSpec& part) {
+  if (part.array.arrangement != geometry::Arrangement::single)
+    return 0.5 * Vec2(part.array.x_length_mm, part.array.y_length_mm);
+  return 0.5 * geometry::bounding_box(geometry::aperture_outline(part.element)).size();
+}
+
 /// What the design is as far as a chisel reaches: whole elements of the same body, with planes from a table.
 Design reached(const Design& design, const std::string& facets_file) {
   const geometry::PartSpec& part = design.part();
@@ -98,7 +105,7 @@ ReachablePart reachable_part(const Design& design, const JobRequest& request, co
   result.reach = fabrication::chisel_reach(part.element, tool);
   std::vector<geometry::ElementPlanes> planes;
   for (const geometry::WholeElement& whole : geometry::whole_elements(part.array, part.element))
-    planes.push_back(element_at(part.element, result.reach, whole.centre_mm, whole.is_rotated));
+    planes.push_back(element_at(part.element, result.reach, middle_of(part) + whole.centre_mm, whole.is_rotated));
   if (planes.empty())
     throw InputError({design.source_name(), 0, "array.x_length_mm"}, "the array holds no whole element");
   result.elements = static_cast<std::int64_t>(planes.size());
