@@ -81,7 +81,7 @@ Json kind_json(const Kind& kind) {
                                 {"items", {number_json(pairs.first), number_json(pairs.second)}},
                                 {"minItems", 2},
                                 {"maxItems", 2}};
-                   return Json{{"type", "array"}, {"items", std::move(pair)}, {"minItems", 1}};
+                   return Json{{"type", "array"}, {"items", std::move(pair)}, {"minItems", pairs.least}};
                  },
                  [](const Numbers& list) { return list_json(number_json(list.range), list.count, list.count); },
                  [](const Terms& terms) {
@@ -112,8 +112,11 @@ Json default_json(const Default& otherwise) {
 }
 
 std::string description(std::string_view meaning, std::string_view name) {
+  std::string text(meaning);
+  // What is escaped for tables in Markdown.
+  for (std::size_t at = 0; (at = text.find("\\|", at)) != std::string::npos;) text.erase(at, 1);
   const std::string_view unit = unit_of(name);
-  return unit.empty() ? std::string(meaning) : fmt::format("{} In {}.", meaning, unit);
+  return unit.empty() ? text : fmt::format("{} In {}.", text, unit);
 }
 
 Json row_json(const Row& row) {

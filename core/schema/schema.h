@@ -86,6 +86,7 @@ struct Pairs {
   NumberRange first;
   NumberRange second;
   std::string_view shape;  ///< of a pair, such as "[wavelength_nm, power]"
+  std::size_t least = 1;   ///< pairs, for JSON Schema: readers may say more of a list that is too short
 };
 /// A list of one or more texts.
 struct Texts {};

@@ -339,9 +339,12 @@ void check_heights(const Document& document) {
 
 constexpr std::string_view kAbsorption = "body.absorption_per_mm";
 
-void check_body(const Document& document) {
+void check_material(const Document& document) {
   if (document.text("body.material").empty())
     document.fail("body.material", "must name a material, such as \"PMMA\", got \"\"");
+}
+
+void check_absorption(const Document& document) {
   if (!document.is_list(kAbsorption)) return;
   const std::vector<std::vector<double>> curve = document.rows(kAbsorption);
   for (std::size_t k = 1; k < curve.size(); ++k)
@@ -414,7 +417,8 @@ constexpr schema::Words kThicknessKeys = {"body.thickness_mm"};
 constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap_mm"};
 constexpr schema::Words kHeightKeys = {kRoughness, kRoughnessLength, kWaviness, kWavinessLength};
 constexpr schema::Words kModelKeys = {"surface.model", kRoughness, kWaviness};
-constexpr schema::Words kBodyKeys = {"body.material", kAbsorption};
+constexpr schema::Words kMaterialKeys = {"body.material"};
+constexpr schema::Words kAbsorptionKeys = {kAbsorption};
 constexpr schema::Words kSpectrumKeys = {"light.spectrum"};
 constexpr schema::Words kStokesKeys = {"light.polarisation"};
 constexpr schema::Words kMirrorKeys = {"element.mirror_offset_mm", "body.facet_coating", "idealisation.facets"};
@@ -422,45 +426,57 @@ constexpr schema::Words kEntranceKeys = {"front.turned", "front.mesh", "array.ex
 
 using schema::check_by;
 constexpr schema::Rule kRules[] = {
-    schema::Check{kSquareKeys, "In a checker base and width are equal.", check_by<of_array<check_square>>},
-    schema::Check{kRoomKeys, "There is room for one element between the margins, and for at most 1e8 in all.",
+    schema::Check{kSquareKeys, "Elements of a checker are square: base = width.", check_by<of_array<check_square>>},
+    schema::Check{kRoomKeys, "A finite array has room for one element between its margins, and for at most 1e8.",
                   check_by<of_array<check_room>>},
-    schema::Check{kArrayOnSubstrateKeys, "On a `[base]` stand finite arrays without margins, not `single`.",
+    schema::Check{kArrayOnSubstrateKeys, "A `[base]` is for finite arrays without margins, not `single`.",
                   check_by<of_array<check_array_on_substrate>>},
-    schema::Check{kDihedralKeys, "One number, or three for cube corners.", check_by<of_part<check_dihedral_errors>>},
-    schema::Check{kTiltKeys, "One number for each facet: two for prisms, three for cube corners.",
+    schema::Check{kDihedralKeys, "Prisms have one error of angle, cube corners one for all dihedral edges or three.",
+                  check_by<of_part<check_dihedral_errors>>},
+    schema::Check{kTiltKeys,
+                  "A list of tilts has one for each facet: two for prisms, three for cube corners; 0 is none.",
                   check_by<of_part<check_facet_tilts>>},
-    schema::Check{kRandomKeys, "Random tilts are those of finite parts.", check_by<of_part<check_random_tilts>>},
+    schema::Check{kRandomKeys, "Random tilts are for finite parts.", check_by<of_part<check_random_tilts>>},
     schema::Check{kEdges, "Edges leave some of a facet: at most a quarter of the base, or a tenth of the aperture.",
                   check_by<of_part<check_widths>>},
-    schema::Check{kChordKeys, "The number is even.", check_by<of_part<check_chords>>},
-    schema::Check{kEdges, "An edge has a radius or a chamfer.", check_by<of_part<check_one_shape>>},
-    schema::Check{kRimKeys, "Land between prisms is none, or as wide as rims of that shape reach.",
-                  check_by<of_part<check_land>>},
+    schema::Check{kChordKeys, "The number of chords is even.", check_by<of_part<check_chords>>},
+    schema::Check{kEdges, "Roots, and rims, have a radius or a chamfer, not both.", check_by<of_part<check_one_shape>>},
+    schema::Check{
+        kRimKeys,
+        "The gap across roof edges, in a checker both gaps, is 0 or as wide as rounded or chamfered rims reach.",
+        check_by<of_part<check_land>>},
     schema::Check{kScratchKeys, "At most 200 scratches, within the facet and clear of each other; none on a `[base]`.",
                   check_by<of_part<check_scratches>>},
     schema::Check{kAngleKeys,
-                  "With errors, apex angles of prisms are 60 to 120 degrees, and facets of canted cubes (with six "
-                  "deviations of random tilts) at most 88 degrees steep.",
+                  "Apex angles of prisms with `dihedral_error_arcmin` and `facet_tilt_arcmin` are 60 to 120 degrees; "
+                  "facets of canted cubes, with these and six deviations of random tilts, at most 88 degrees steep.",
                   check_by<of_part<check_angles>>},
     schema::Check{kMaskKeys, "No mask on a `[base]`.", check_by<of_part<check_mask>>},
-    schema::Check{kFacetsKeys, "Planes of facets are those of finite arrays without `[base]` and errors of angle.",
-                  check_by<of_part<check_facet_planes>>},
+    schema::Check{
+        kFacetsKeys,
+        "Tables of planes (`[part]` `facets`) are for finite arrays with neither `[base]` nor errors of angle.",
+        check_by<of_part<check_facet_planes>>},
     schema::Check{kSubstrateKeys,
-                  "The base carries the elements; rounded or chamfered rims need elements that stand parallel, or a "
-                  "plane base and no gaps.",
+                  "A `[base]` bends less tightly than an element is wide and leaves facets at most 88 degrees steep; "
+                  "rounded or chamfered rims need elements that stand parallel, or a plane base and no gaps.",
                   check_by<of_part<check_substrate_of_part>>},
-    schema::Check{kThicknessKeys, "The plate covers rims that errors of angle or cant lift.",
+    schema::Check{kThicknessKeys, "The plate of an array covers rims that errors of angle or cant lift.",
                   check_by<of_part<check_thickness>>},
-    schema::Check{kBowlKeys, "A mirror behind balls ends where the bowls of neighbours meet.", check_by<check_bowl>},
-    schema::Check{kHeightKeys, "A height has a length.", check_by<check_lengths>},
+    schema::Check{kBowlKeys, "Bowls behind balls reach no further than where those of neighbours meet.",
+                  check_by<check_bowl>},
+    schema::Check{kHeightKeys,
+                  "A height of roughness above 0 needs its correlation length, one of waviness its period.",
+                  check_by<check_lengths>},
     schema::Check{kModelKeys,
                   "Heights are 0 but for `\"harvey_shack\"`, which has both, and `\"microfacet\"`, which has waviness.",
                   check_by<check_heights>},
-    schema::Check{kBodyKeys, "A material has a name; wavelengths of a curve ascend.", check_by<check_body>},
-    schema::Check{kSpectrumKeys, "Lines have each wavelength once.", check_by<check_lines>},
-    schema::Check{kStokesKeys, "Light is polarised to 1 at most.", check_by<check_stokes>},
-    schema::Check{kMirrorKeys, "A bowl behind balls is a mirror: aluminium or ideal.", check_by<check_ball_mirror>},
+    schema::Check{kMaterialKeys, "A material has a name.", check_by<check_material>},
+    schema::Check{kAbsorptionKeys, "Wavelengths of a curve ascend.", check_by<check_absorption>},
+    schema::Check{kSpectrumKeys, "A list of lines has each wavelength once.", check_by<check_lines>},
+    schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",
+                  check_by<check_stokes>},
+    schema::Check{kMirrorKeys, "A bowl behind balls (`mirror_offset_mm` > 0) needs a mirror: aluminium or ideal.",
+                  check_by<check_ball_mirror>},
     schema::Check{kEntranceKeys, "A `[front]` has one file and a finite part.", check_by<check_entrance>}};
 
 }  // namespace

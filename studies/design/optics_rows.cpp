@@ -42,7 +42,7 @@ constexpr Row kBodyRows[] = {
     {"absorption_per_mm", Number{kAtLeastZero}, Computed{"the material's"},
      "Napierian, for power; wins over the material. A list of two or more `[wavelength_nm, absorption_per_mm]`, linear "
      "between, tells it by wavelength (coloured lenses) and must reach all wavelengths of the light."},
-    {"absorption_per_mm", Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]"}, kNone,
+    {"absorption_per_mm", Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]", 2}, kNone,
      "By wavelength."},
     {"facet_coating", Word{kCoatings}, "none",
      "`\"aluminium\"`: an opaque film on the retro facets; what it does not reflect is absorbed."},
@@ -119,9 +119,9 @@ constexpr Row kSurfaceRows[] = {
     {"slope_distribution", Word{kSlopeDistributions}, "beckmann", "Of the microfacets.", kMicrofacetOnly},
     {"roughness_sq_nm", Number{kHeight}, 0.0, "Of `harvey_shack`: rms height."},
     {"correlation_length_um", Number{kLength}, 0.0,
-     "Where the Gaussian autocorrelation of the roughness is 1/e; required together with it."},
+     "Where the Gaussian autocorrelation of the roughness is 1/e; required together with `roughness_sq_nm`."},
     {"waviness_sq_nm", Number{kHeight}, 0.0, "Of `harvey_shack` and `microfacet`: rms height of the waviness."},
-    {"waviness_length_um", Number{kLength}, 0.0, "Period of the waviness; required together with it."},
+    {"waviness_length_um", Number{kLength}, 0.0, "Period of the waviness; required together with `waviness_sq_nm`."},
     {"root_radius_um", kEdgeUm, 0.0,
      "Radius of the roots, where facets of one element meet; to a quarter of the base, or a tenth of the aperture.",
      kErrors, kZeroIsNone},
@@ -131,8 +131,8 @@ constexpr Row kSurfaceRows[] = {
      kZeroIsNone},
     {"rim_chamfer_um", kEdgeUm, 0.0, "Width of a flat in their place, across it; not together with a radius.", kErrors,
      kZeroIsNone},
-    {"edge_chords", Whole{{.low = 4.0, .high = 64.0}}, 16.0,
-     "Even; plane strips that stand for an arc from facet to facet.", kErrors}};
+    {"edge_chords", Whole{{.low = 4.0, .high = 64.0}}, 16.0, "Plane strips that stand for an arc from facet to facet.",
+     kErrors}};
 
 constexpr Row kScratchRows[] = {
     {"facet", Word{kFacets}, kRequired, "Which facet it lies on: by the side it faces."},
