@@ -82,9 +82,9 @@ std::string job_json(const MadeJob& made) {
 std::string job_table(const MadeJob& made) {
   const fabrication::Job& job = made.job;
   std::string text;
-  text += fmt::format(
-      "  elements            {}{}\n", made.elements,
-      made.partial_elements > 0 ? fmt::format(", {} partial ones left out", made.partial_elements) : "");
+  text +=
+      fmt::format("  elements            {}{}\n", made.elements,
+                  made.partial_elements > 0 ? fmt::format(", {} partial ones left out", made.partial_elements) : "");
   text += fmt::format("  machine, strategy   {}, {}\n", printable(job.machine), word_of(job.strategy));
   text +=
       fmt::format("  process             {} ({})\n", printable(job.process.name), printable(job.process.source, 200));
