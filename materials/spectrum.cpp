@@ -82,7 +82,8 @@ void append(Spectrum& rule, const Spectrum& nodes, double share) {
 
 /// The power of two that brings the largest power near to 1, so that sums of any unit stay finite.
 double exact_scale(double largest) {
-  return largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
+  constexpr int most = 1000;  // of numbers so small that the power of two would not be finite
+  return largest > 0.0 ? std::ldexp(1.0, std::min(most, -std::ilogb(largest))) : 1.0;
 }
 
 }  // namespace

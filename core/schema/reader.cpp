@@ -319,7 +319,8 @@ class Values {
   }
 
   void refuse(const std::string& path, const Row& row, TomlTable& source) {
-    if (row.zero_is_none && source.number(row.key) == 0.0) return document_.drop(path);
+    if (row.zero_is_none && source.shape_of(row.key) == Shape::number && source.number(row.key) == 0.0)
+      return document_.drop(path);
     document_.fail(path,
                    fmt::format("{}, got {}", refusal(*document_.refused_by(row.when, path)), source.shown(row.key)));
   }

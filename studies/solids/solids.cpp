@@ -85,8 +85,7 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
 /// What was read, mended where it had to be.
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
-    throw InputError(solid.design.where(solid.design.mesh() ? "part.mesh" : "part.plate_mm"),
-                     fmt::format("--what {} takes no mesh, only [element] and [array]", name_of(solid.what)));
+    check_taken(solid.design, {.what = fmt::format("--what {}", name_of(solid.what))});
   solid.mesh = geometry::boundary_of(mesh_of_design(solid.design, &solid.warnings));
   measure(solid);
   add_warnings(solid);

@@ -327,6 +327,9 @@ TEST_F(Entrance, KeysThatMakeNoSenseAreRefused) {
             "design.toml:2: part.plate_mm: must be a list of 2 lengths, along x and y, got 1");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\nmesh = \"a.stl\"\n" + kBody),
             "design.toml:3: part.mesh: not allowed beside plate_mm, got \"a.stl\"");
+  EXPECT_NE(refusal("[part]\nplate_mm = [1, 1]\n" + kBody + "[surface]\nfacet_tilt_arcmin = [1, 1]\n")
+                .find("surface.facet_tilt_arcmin: not allowed with [part]"),
+            std::string::npos);
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[element]\nkind = \"rtp\"\n" + kBody),
             "design.toml:3: element: not allowed beside part.plate_mm, which is the whole part");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[body]\nrefractive_index = 1.5\n"),

@@ -193,6 +193,7 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
       {"retract_feed_mm_per_min = 200", "retract_feed_mm_per_min = 0",
        "process.retract_feed_mm_per_min: must be >= 5e-04 and <= 1e+05, got 0"},
       {"machine = \"ideal\"", "machine = \"\"", "machine: must name a machine"},
+      {"machine = \"ideal\"", "machine = \"a\\u0000.toml\"", "machine: must name a machine"},
       {"base_mm = 0.451", "base_mm = nan", "element.base_mm: must be a finite number, got nan"},
   };
   for (const Wrong& wrong : cases) {

@@ -218,6 +218,7 @@ TEST(Spectrum, UnitsOfPowerDoNotMatter) {
   EXPECT_EQ(resolved_spectrum(lamp, nullptr).weights, resolved_spectrum(small, nullptr).weights);
   const Spectrum lines = line_spectrum({{500.0, 1e308}, {600.0, 1e308}}, nullptr);
   EXPECT_EQ(lines.weights, (std::vector<double>{0.5, 0.5}));
+  EXPECT_EQ(line_spectrum({{500.0, 1e-310}}, nullptr).weights, std::vector<double>{1.0}) << "subnormal";
 }
 
 TEST(Spectrum, NoFluxIsAnError) {

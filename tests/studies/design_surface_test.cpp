@@ -166,6 +166,10 @@ TEST(DesignReader, TexturesOfFacetsAreRead) {
 
 TEST(DesignReader, TexturesThatSayTooLittleOrTooMuchAreRefused) {
   const auto refused = [](const std::vector<std::string>& overrides) { return set_complaint(overrides); };
+  EXPECT_EQ(refused({"surface.model=abg", "surface.abg_a=1e300", "surface.abg_b=1e-4", "surface.abg_g=2"}),
+            "--set surface.abg_a=1e300: surface.abg_a: must be > 0 and <= 1e+06, got 1e+300");
+  EXPECT_EQ(refused({"surface.model=abg", "surface.abg_a=1", "surface.abg_b=1e-4", "surface.abg_g=1e-300"}),
+            "--set surface.abg_g=1e-300: surface.abg_g: must be >= 0.001 and <= 100, got 1e-300");
   EXPECT_EQ(refused({"surface.roughness_sq_nm=5"}),
             "d.toml: surface.correlation_length_um: must be > 0 where roughness_sq_nm is given, got 0");
   EXPECT_EQ(refused({"surface.waviness_sq_nm=5"}),

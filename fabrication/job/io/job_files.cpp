@@ -330,7 +330,9 @@ void check_substrate(const Job& job, const Refuse& refuse) {
 }
 
 void check_machine(const Job& job, const Refuse& refuse) {
-  if (job.machine.empty()) refuse("machine", "must name a machine or a file, got \"\"");
+  // A byte 0 would end the name for the system alone.
+  if (job.machine.empty() || job.machine.find('\0') != std::string::npos)
+    refuse("machine", "must name a machine or a file, got " + in_quotes(job.machine));
 }
 
 void check_workpiece(const Job& job, const Refuse& refuse) {
