@@ -131,7 +131,7 @@ class Placer {
 
   bool is_within(const Vec2& arc, bool rotated) const {
     const double tolerance_mm = kInsideTolerance * 2.0 * half_mm_.maxCoeff();
-    const double side = rotated ? -1.0 : 1.0;  // prisms that are turned are square
+    const double side = rotated ? -1.0 : 1.0;  // prisms that are rotated are square
     return std::all_of(rim_.begin(), rim_.end(), [&](const RimCorner& corner) {
       Vec2 plan = surface_.plan_of(arc + side * corner.at_mm);
       if (corner.height_mm != 0.0 && !surface_.is_upright())

@@ -14,7 +14,7 @@ void add_element(Lattice& lattice, Cell cell) {
   ++lattice.elements_per_period;
 }
 
-/// One prism and the land that separates it from the next in x and y. In a checker the next ones are turned.
+/// One prism and the land that separates it from the next in x and y. In a checker the next ones are rotated.
 void add_prism_with_gaps(Lattice& lattice, const PartSpec& spec, const Vec2& corner, bool rotated) {
   const auto& element = std::get<RtpElement>(spec.element);
   const Vec2 gap(spec.array.x_gap_mm, spec.array.y_gap_mm);
@@ -68,7 +68,7 @@ Lattice honeycomb_lattice(const HexagonalCube& element, const AngleErrors& error
   return lattice;
 }
 
-// Every triangle shares its sides with three turned ones; the centres of neighbours are R apart.
+// Every triangle shares its sides with three rotated ones; the centres of neighbours are R apart.
 Lattice triangular_lattice(const TriangularCube& element, const AngleErrors& errors) {
   const double radius = 0.5 * element.aperture_mm;
   Lattice lattice;

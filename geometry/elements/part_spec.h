@@ -23,7 +23,7 @@ struct RtpElement {
 /// one, about the apex; the outline in plan stays.
 struct Cant {
   double deg = 0.0;          ///< 0..30
-  double azimuth_deg = 0.0;  ///< towards which it leans, from +x towards +y; of a rotated cell: turned with it
+  double azimuth_deg = 0.0;  ///< towards which it leans, from +x towards +y; of a rotated cell: rotated with it
 };
 
 /// Full cube corner with a hexagonal aperture, apex down, one dihedral edge over +x.
@@ -76,7 +76,7 @@ struct EdgeShape {
 
 /// A groove of V section that runs up one facet of a prism from root to rim: what a chip in the cutting edge leaves.
 struct Scratch {
-  std::size_t facet = 0;     ///< 0: towards -x, 1: towards +x (of a rotated prism: turned with it)
+  std::size_t facet = 0;     ///< 0: towards -x, 1: towards +x (of a rotated prism: rotated with it)
   double position_mm = 0.0;  ///< of its middle along the roof edge, from the prism's middle towards +y
   double width_mm = 0.0;     ///< along the roof edge; > 0
   double depth_mm = 0.0;     ///< normal to the facet, into the part's material; < 0: a ridge out of it

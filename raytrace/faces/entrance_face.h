@@ -7,6 +7,8 @@
 #include "geometry/part/part.h"
 #include "raytrace/faces/surface_ray.h"
 
+// A curved face through which light enters, as rays meet it.
+
 namespace retrace::raytrace {
 
 /// Where a ray meets the entrance surface.

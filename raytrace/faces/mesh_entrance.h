@@ -4,6 +4,8 @@
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/faces/entrance_face.h"
 
+// Entrance surfaces of triangles.
+
 namespace retrace::raytrace {
 
 /// An entrance surface of plane triangles, searched as the back of a part is.

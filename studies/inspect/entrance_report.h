@@ -5,6 +5,8 @@
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
 
+// Figures of a curved entrance surface for retrace inspect.
+
 namespace retrace::studies {
 
 /// What a curved entrance surface is like.
