@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/schema/reader.h"
-#include "studies/design/design_format.h"
+#include "studies/design/io/design_format.h"
 
 namespace retrace::app {
 

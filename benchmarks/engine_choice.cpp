@@ -18,7 +18,7 @@
 
 #include "core/error.h"
 #include "raytrace/sampling/threads.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::benchmarks {

@@ -4,9 +4,9 @@
 
 #include <numbers>
 
-#include "core/formula.h"
-#include "core/jets.h"
-#include "core/second_order.h"
+#include "core/math/formula.h"
+#include "core/math/jets.h"
+#include "core/math/second_order.h"
 
 namespace retrace::fabrication::turning {
 

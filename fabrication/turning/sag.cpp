@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/formula_evaluation.h"
+#include "core/math/formula_evaluation.h"
 #include "fabrication/turning/interval.h"
 
 namespace retrace::fabrication::turning {

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "core/error.h"
-#include "core/formula_evaluation.h"
+#include "core/math/formula_evaluation.h"
 
 namespace retrace::geometry {
 

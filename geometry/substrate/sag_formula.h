@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/formula.h"
-#include "core/second_order.h"
+#include "core/math/formula.h"
+#include "core/math/second_order.h"
 
 namespace retrace::geometry {
 

@@ -12,8 +12,8 @@
 #include "core/number_format.h"
 #include "fabrication/job/substrate_cells.h"
 #include "geometry/elements/element_cells.h"
-#include "studies/design/design_document.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_document.h"
+#include "studies/design/io/design_reader.h"
 
 namespace retrace::studies {
 namespace {

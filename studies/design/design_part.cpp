@@ -1,7 +1,7 @@
 #include "studies/design/design_part.h"
 
 #include "core/atomic_file.h"
-#include "studies/design/facet_planes_reader.h"
+#include "studies/design/io/facet_planes_reader.h"
 #include "studies/design/mask_part.h"
 
 namespace retrace::studies {

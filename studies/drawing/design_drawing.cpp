@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "studies/design/design_json.h"
+#include "studies/design/io/design_json.h"
 #include "studies/drawing/array_figures.h"
 
 namespace retrace::studies {

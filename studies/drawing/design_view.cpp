@@ -6,7 +6,7 @@
 #include <map>
 
 #include "geometry/part/mesh_part.h"
-#include "studies/design/design_json.h"
+#include "studies/design/io/design_json.h"
 #include "studies/design/part_of_design.h"
 
 namespace retrace::studies {

@@ -11,8 +11,8 @@
 #include "geometry/elements/element_cells.h"
 #include "geometry/elements/facet_planes.h"
 #include "geometry/elements/whole_elements.h"
-#include "studies/design/design_document.h"
-#include "studies/design/facet_planes_reader.h"
+#include "studies/design/io/design_document.h"
+#include "studies/design/io/facet_planes_reader.h"
 
 namespace retrace::studies {
 namespace {

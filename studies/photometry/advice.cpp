@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/schema/writer.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/rre/derivatives.h"
 
 namespace retrace::studies {

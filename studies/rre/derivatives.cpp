@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/schema/writer.h"
 #include "raytrace/sampling/threads.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 
 namespace retrace::studies {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/derivative.h"
+#include "core/math/derivative.h"
 #include "core/progress.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "studies/design/design.h"

@@ -12,8 +12,8 @@
 #include "core/schema/json.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/faceted_solid.h"
-#include "studies/design/design_format.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_format.h"
+#include "studies/design/io/design_reader.h"
 
 namespace retrace::studies {
 namespace {

@@ -1,5 +1,5 @@
 // Numerical differentiation: the error it reports bounds the error it makes, and what has no derivative gets none.
-#include "core/derivative.h"
+#include "core/math/derivative.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/formula.h"
+#include "core/math/formula.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/formula_evaluation.h"
+#include "core/math/formula_evaluation.h"
 
 // Formulas: their values, their exact derivatives, and what is none.
 

@@ -1,10 +1,10 @@
-#include "core/jets.h"
+#include "core/math/jets.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/second_order.h"
+#include "core/math/second_order.h"
 
 // Automatic differentiation against identities and against each other.
 

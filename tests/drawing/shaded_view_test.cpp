@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "report/drawing/design_picture.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "tests/support/designs.h"
 
 namespace retrace::testing::shaded_view_test {

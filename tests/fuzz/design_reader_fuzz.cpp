@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 
 namespace {
 

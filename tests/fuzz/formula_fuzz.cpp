@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/formula_evaluation.h"
+#include "core/math/formula_evaluation.h"
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include "fabrication/planing/plan.h"
 #include "fabrication/planing/verify/check.h"
 #include "fabrication/post/post.h"
-#include "studies/design/init_templates.h"
+#include "studies/design/io/init_templates.h"
 #include "studies/planing/io/planing_files.h"
 #include "studies/planing/planing_study.h"
 #include "tests/planing/findings.h"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "report/result_plots.h"
+#include "report/results/result_plots.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::report::map_plot_test {

@@ -7,7 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "report/result_plots.h"
+#include "report/results/result_plots.h"
 #include "studies/fabrication/fabricate.h"
 
 namespace retrace::report::path_plot_test {

@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "report/result_plots.h"
+#include "report/results/result_plots.h"
 #include "studies/photometry/photometry.h"
 
 namespace retrace::report::polar_plot_test {

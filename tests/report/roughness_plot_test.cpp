@@ -1,4 +1,4 @@
-#include "report/result_plots.h"
+#include "report/results/result_plots.h"
 
 #include <gtest/gtest.h>
 

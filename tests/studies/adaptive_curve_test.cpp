@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "raytrace/sampling/threads.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/design/total_reflection.h"
 #include "studies/rre/adaptive_curve.h"
 #include "studies/rre/io/rre_files.h"

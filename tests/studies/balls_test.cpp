@@ -8,9 +8,9 @@
 
 #include "core/error.h"
 #include "raytrace/balls/ball_forms.h"
-#include "studies/design/design_json.h"
 #include "studies/design/design_part.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_json.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/photometry/photometry.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/schema/key_table.h"
-#include "studies/design/design_format.h"
+#include "studies/design/io/design_format.h"
 #include "tests/support/documents.h"
 
 // Design files by their rows: what is written reads back the same, and the documentation says what the rows say.

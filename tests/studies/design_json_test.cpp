@@ -1,4 +1,4 @@
-#include "studies/design/design_json.h"
+#include "studies/design/io/design_json.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "studies/design/design_reader.h"
-#include "studies/design/init_templates.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/design/io/init_templates.h"
 
 namespace retrace::studies::design_json_test {
 namespace {

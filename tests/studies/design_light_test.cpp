@@ -1,5 +1,5 @@
 // What designs say of light and of what absorbs it.
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "studies/design/init_templates.h"
+#include "studies/design/io/init_templates.h"
 #include "tests/studies/design_texts.h"
 
 namespace retrace::studies::design_reader_test {

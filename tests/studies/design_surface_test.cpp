@@ -1,5 +1,5 @@
 // What designs say of facets: errors, textures, edges, scratches.
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 
 #include <gtest/gtest.h>
 

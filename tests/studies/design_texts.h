@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 
 namespace retrace::studies {
 

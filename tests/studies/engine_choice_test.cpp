@@ -5,7 +5,7 @@
 #include <string>
 
 #include "raytrace/sampling/threads.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 

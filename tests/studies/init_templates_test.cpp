@@ -1,5 +1,5 @@
 // The designs that `retrace init` writes.
-#include "studies/design/init_templates.h"
+#include "studies/design/io/init_templates.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/design/optical_model.h"
 #include "studies/roughness/io/facet_table_reader.h"
 #include "studies/rre/rre.h"

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "materials/io/spectrum_reader.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/inspect/inspect.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"

@@ -8,8 +8,8 @@
 
 #include "core/error.h"
 #include "geometry/substrate/sag_formula.h"
-#include "studies/design/design_json.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_json.h"
+#include "studies/design/io/design_reader.h"
 
 // `[base]`: what it may say, and that what cannot carry the elements is refused at the key that says so.
 

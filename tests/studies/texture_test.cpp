@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/number_format.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/design/optical_model.h"
 #include "studies/rre/rre.h"
 #include "surface_models/form.h"

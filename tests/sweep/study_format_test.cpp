@@ -11,9 +11,9 @@
 #include "core/schema/key_table.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
-#include "studies/design/design_document.h"
-#include "studies/design/design_format.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_document.h"
+#include "studies/design/io/design_format.h"
+#include "studies/design/io/design_reader.h"
 #include "tests/support/documents.h"
 
 namespace retrace::studies::study_format_test {

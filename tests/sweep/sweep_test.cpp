@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "core/error.h"
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/optimise.h"
 #include "studies/photometry/io/standard_reader.h"

@@ -6,7 +6,7 @@
 
 #include "core/message_text.h"
 #include "core/schema/reader.h"
-#include "studies/design/design_format.h"
+#include "studies/design/io/design_format.h"
 #include "studies/quantity/io/constraint_reader.h"
 
 namespace retrace::studies {

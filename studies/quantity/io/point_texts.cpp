@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "studies/design/design_reader.h"
+#include "studies/design/io/design_reader.h"
 
 namespace retrace::studies {
 namespace {

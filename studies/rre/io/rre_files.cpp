@@ -11,7 +11,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/design_json.h"
+#include "studies/design/io/design_json.h"
 
 namespace retrace::studies {
 namespace {

@@ -15,7 +15,7 @@
 #include "geometry/io/step_file.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/part/faceted_solid.h"
-#include "studies/design/design_json.h"
+#include "studies/design/io/design_json.h"
 
 namespace retrace::studies {
 namespace {

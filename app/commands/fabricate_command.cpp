@@ -1,0 +1,85 @@
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/output.h"
+#include "app/shared_arguments.h"
+#include "fabrication/post/post.h"
+#include "report/results/result_plots.h"
+#include "studies/fabrication/fabricate.h"
+#include "studies/fabrication/io/fabrication_files.h"
+
+namespace retrace::app {
+namespace {
+
+struct FabricateOptions {
+  std::string job;
+  std::string dialect = "rs274ngc";
+  std::string phase = "all";
+  std::optional<std::uint64_t> from_element;
+  std::optional<std::uint64_t> stop_every;
+  std::optional<double> split_hours;
+};
+
+std::vector<Argument> arguments(FabricateOptions& options) {
+  constexpr std::uint64_t most = std::numeric_limits<std::int32_t>::max();
+  const Words phases = {"all", "roughing", "finishing"};
+  return {
+      job_argument(options.job, "job file, as retrace job writes it"),
+      dialect_argument(options.dialect),
+      {"--phase PHASE",
+       "roughing, finishing, one stage such as finishing-1-facet-2, or that stage and all after it with a +",
+       &options.phase, one_of(phases)},
+      {"--from-element N", "start at that element's first visit [the first]", &options.from_element, whole(0, most)},
+      {"--stop-every N", "optional stop after every N visits [none]", &options.stop_every, whole(1, most)},
+      {"--split-hours H", "programs of at most so many hours [one program]", &options.split_hours}};
+}
+
+bool has_stage(const studies::FabricationResult& result, bool roughing) {
+  for (const auto& stage : result.plan.stages)
+    if (stage.roughs == roughing) return true;
+  return false;
+}
+
+ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
+  studies::FabricationRequest request;
+  request.job_file = options.job;
+  request.dialect = options.dialect;
+  request.options.phase = options.phase;
+  request.options.from_element = options.from_element;
+  request.options.stop_every = options.stop_every;
+  request.options.split_hours = options.split_hours;
+  const studies::FabricationResult result = studies::fabricate(request);
+
+  std::vector<std::string> inputs = {options.job};
+  if (std::filesystem::path(result.job.machine).has_extension()) inputs.push_back(result.job.machine);
+  ResultFiles files(common, inputs, "fabrication.json");
+  files.add("stages.csv", [&] { return studies::stages_csv(result); });
+  for (const bool roughing : {true, false})
+    if (has_stage(result, roughing))
+      files.add_drawing(roughing ? "roughing" : "finishing",
+                        [&result, roughing] { return report::tool_path_plot(result, roughing); });
+  files.add_drawing("arrangement", [&] { return report::arrangement_plot(result); });
+  for (std::size_t k = 0; k < result.plan.programs.size(); ++k)
+    files.add(result.program_file(k),
+              [&result, k] { return fabrication::nc_text(result.plan.programs[k], result.dialect); });
+  files.prepare();
+  files.write(studies::fabrication_json(result), studies::fabrication_table(result));
+  print_warnings(common, result.warnings);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Command fabricate_command() {
+  return {.name = "fabricate",
+          .summary = "NC programs, tool path and time of a fabrication job",
+          .manual =
+              "Plans a job and writes it as NC programs, with drawings of the tool path and the time it takes. "
+              "Long jobs can be split, and begun again at an element or a stage.",
+          .reads = {"retrace.job/1", "retrace.machine/1"},
+          .writes = {"retrace.fabrication/1"},
+          .refuses_set = "fabricate reads no design; change the job file, or make it anew",
+          .begin = begins<FabricateOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app

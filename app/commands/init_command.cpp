@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/output.h"
+#include "core/data_directory.h"
+#include "fabrication/planing/io/part_files.h"
+#include "studies/design/io/design_format.h"
+#include "studies/design/io/init_templates.h"
+
+namespace retrace::app {
+namespace {
+
+struct InitOptions {
+  std::string kind;
+  bool editor = false;
+};
+
+std::vector<Argument> arguments(InitOptions& options) {
+  const auto kinds = [] {
+    Words words = words_of(studies::design_kinds())();
+    words.emplace_back("round_zone_lens");
+    return words;
+  };
+  return {{"KIND", "rtp, hexagonal_icc, triangular_icc or round_zone_lens", &options.kind, one_of(kinds)},
+          {"--editor", "begin with a line that tells editors the schema of the file, by its place on this machine",
+           &options.editor}};
+}
+
+/// A file as a URL (RFC 3986): other bytes than letters, digits and "/-._~" as %XX.
+std::string url_of(const std::filesystem::path& file) {
+  std::string url = "file://";
+  for (const char c : file.string()) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                          std::string_view("/-._~").find(c) != std::string_view::npos;
+    url += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return url;
+}
+
+/// What Taplo and editors that use it read, such as Even Better TOML.
+std::string schema_line(const std::string& kind) {
+  const schema::Format& format =
+      kind == "round_zone_lens" ? fabrication::planed_part_format() : studies::design_format();
+  return fmt::format("#:schema {}\n", url_of(schema_file(format.name)));
+}
+
+ExitCode run(const InitOptions& options, const CommonOptions& common) {
+  std::string text = studies::design_template(options.kind);
+  if (options.editor) text = schema_line(options.kind) + text;
+  // Somebody's design may be there: starting afresh is not worth losing it.
+  if (!common.out.empty() &&
+      std::filesystem::symlink_status(common.out).type() != std::filesystem::file_type::not_found)
+    throw OutputError(common.out + ": is there already; not overwritten");
+  return write_text(common, "retrace.template/1", {{"kind", options.kind}}, text);
+}
+
+}  // namespace
+
+Command init_command() {
+  return {
+      .name = "init",
+      .summary = "a commented design or part file to start from",
+      .manual =
+          "Prints a commented design that works as it is, or of kind `round_zone_lens` a part for `plane`. "
+          "With `--out FILE` it goes to that file, which must not exist yet. With `--editor` its first line names the "
+          "JSON Schema of the file, so that editors complete and check its keys; the line holds for this machine "
+          "alone.",
+      .writes = {"retrace.template/1"},
+      .refuses_set = "init writes its template as it is; edit the file",
+      .begin = begins<InitOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app

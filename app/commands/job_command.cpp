@@ -1,0 +1,83 @@
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/job_output.h"
+#include "app/output.h"
+#include "app/shared_arguments.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/fabrication/io/fabrication_files.h"
+#include "studies/fabrication/reachable.h"
+
+namespace retrace::app {
+namespace fs = std::filesystem;
+namespace {
+
+struct JobOptions : MakingOptions {
+  std::string design;
+  std::string reachable;  ///< design file of what a chisel makes of cube corners; empty: none
+};
+
+std::vector<Argument> arguments(JobOptions& options) {
+  std::vector<Argument> all = making_arguments(options, "");
+  all.insert(all.begin(), design_argument(options.design));
+  all.push_back({"--reachable FILE",
+                 "write what a chisel with a straight edge makes of cube corners, as a design, instead of a job",
+                 &options.reachable, files(".toml")});
+  return all;
+}
+
+/// Every file that is read.
+std::vector<std::string> inputs_of(const JobOptions& options, const studies::Design& design) {
+  std::vector<std::string> inputs = files_read({design});
+  for (const std::string& file : files_of_making(options)) inputs.push_back(file);
+  return inputs;
+}
+
+/// What a chisel makes of cube corners: a design and the table of its planes, part.toml and part_facets.csv.
+ExitCode write_reachable(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
+  if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --reachable");
+  const fs::path file = options.reachable;
+  const fs::path facets_file = file.parent_path() / (file.stem().string() + "_facets.csv");
+  const studies::JobRequest request = job_request(options, *options.tool_width_mm);
+  const studies::ReachablePart part = studies::reachable_part(design, request, facets_file.filename().string());
+  ResultFiles files(common, inputs_of(options, design));
+  files.add_named("--reachable", file, [&] { return part.design; });
+  files.add_named("--reachable", facets_file, [&] { return part.facets; });
+  files.prepare();
+  files.write(studies::reach_json(part, request), studies::reach_table(part));
+  return ExitCode::done;
+}
+
+ExitCode run(const JobOptions& options, const CommonOptions& common) {
+  const studies::Design design = studies::read_design(options.design, common.overrides);
+  if (!options.reachable.empty()) return write_reachable(options, common, design);
+  studies::MadeJob made = studies::make_job(design, job_request(options, *options.tool_width_mm));
+  const std::string text = job_text_at(made, common.out);
+  CommonOptions outputs = without_folder(common);
+  // Without --out the job is the result itself, which --quiet does not take away.
+  outputs.quiet = common.quiet && !common.out.empty();
+  ResultFiles files(outputs, inputs_of(options, design));
+  files.add_named("--out", common.out, [&] { return text; });
+  files.prepare();
+  files.write(studies::job_json(made), common.out.empty() ? text : studies::job_table(made));
+  print_warnings(common, made.warnings);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Command job_command() {
+  return {.name = "job",
+          .summary = "a fabrication job from a design",
+          .manual =
+              "Makes a fabrication job of a design: blank, tool, machine, strategy and process. Elements on a base "
+              "are cut in place; pins are not. With `--reachable FILE` writes the part that a chisel can make of "
+              "cube corners instead.",
+          .reads = {"retrace.design/1", "retrace.machine/1", "retrace.process/1"},
+          .writes = {"retrace.job_summary/1", "retrace.job/1", "retrace.reach/1"},
+          .begin = begins<JobOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app

@@ -1,0 +1,179 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/number_list.h"
+#include "app/output.h"
+#include "app/progress_bar.h"
+#include "app/shared_arguments.h"
+#include "core/data_directory.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "report/results/result_plots.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/photometry/io/limits_reader.h"
+#include "studies/photometry/io/photometry_files.h"
+#include "studies/photometry/io/standard_reader.h"
+#include "studies/photometry/standards.h"
+
+namespace retrace::app {
+namespace {
+
+constexpr double kMostRotations = 720;
+
+struct PhotometryOptions {
+  std::string design;
+  std::string standard;
+  std::optional<std::string> part_class;
+  std::optional<std::string> colour;
+  double area_cm2 = 0.0;
+  std::optional<std::string> rotation;
+  std::optional<std::string> dye;
+  std::optional<double> source_arcmin;
+  std::optional<double> receiver_arcmin;
+  double window_deg = 2.0;
+  std::string light = "a";
+  std::string engine = "auto";
+  std::uint64_t samples = 1U << 20;
+  std::optional<double> cutoff;
+  bool no_diffraction = false;
+  bool no_advice = false;
+};
+
+Words standards() {
+  Words words;
+  for (const studies::ShippedStandard& standard : studies::shipped_standards()) words.emplace_back(standard.name);
+  return words;
+}
+
+/// What the shipped limits know, each once. \param of classes or colours of a row
+template <class Of>
+Words in_limits(const Of& of) {
+  std::set<std::string> words;
+  const studies::LimitTable table = studies::read_limits(data_directory() / "photometry_limits.csv");
+  for (const auto& row : table.rows) words.merge(of(row));
+  for (const auto& factor : table.factors) words.merge(of(factor));
+  return {words.begin(), words.end()};
+}
+
+Words classes() {
+  return in_limits([](const auto& row) { return std::set<std::string>(row.classes.begin(), row.classes.end()); });
+}
+
+Words colours() {
+  return in_limits([](const auto& row) { return std::set<std::string>{row.colour == "clear" ? "white" : row.colour}; });
+}
+
+std::vector<Argument> arguments(PhotometryOptions& options) {
+  return {
+      design_argument(options.design),
+      {"--standard NAME|FILE",
+       "r150, j594, bicycle, or a limits file",
+       &options.standard,
+       {.words = standards, .files = ".csv", .required = true}},
+      {"--class CLASS", "class of the part, such as IA [the only one there is]", &options.part_class, one_of(classes)},
+      {"--colour COLOUR", "white, amber, red, ... [the only one there is]", &options.colour, one_of(colours)},
+      {"--area-cm2 A", "area of the part that the design shows the make of", &options.area_cm2, {.required = true}},
+      {"--rotation LIST", "turns of the part about its normal in degrees; the least value counts [the standard's]",
+       &options.rotation},
+      dye_argument(
+          options.dye,
+          "none, red, amber (illustrative) or a file [by the colour, unless the design's absorption is spectral]"),
+      {"--source-arcmin D", "diameter of the source [the standard's]", &options.source_arcmin},
+      {"--receiver-arcmin D", "diameter of the receiver [the standard's]", &options.receiver_arcmin},
+      {"--window-deg W", "half angle of the far field that is computed", &options.window_deg},
+      {"--light LIGHT", "a: CIE A as the eye sees it; design: what the design says", &options.light,
+       one_of(Words{"a", "design"})},
+      engine_argument(options.engine, "exact, montecarlo (embree), or auto: exact where it serves"),
+      {"--samples N", "rays for each direction, by Monte Carlo", &options.samples, whole(1)},
+      {"--cutoff W", "exact: least power that is followed, as a share of what falls on an element [1e-6]",
+       &options.cutoff},
+      {"--no-diffraction", "geometric far field alone", &options.no_diffraction},
+      {"--no-advice", "do not look for what to change if a point fails", &options.no_advice}};
+}
+
+/// \param request with what the standard asks
+studies::PhotometryRequest with_options(studies::PhotometryRequest request, const PhotometryOptions& options,
+                                        const CommonOptions& common) {
+  request.area_cm2 = options.area_cm2;
+  if (options.rotation) {
+    request.rotation_deg = read_number_list(*options.rotation, "--rotation");
+    if (static_cast<double>(request.rotation_deg.size()) > kMostRotations)
+      throw InputError({"", 0, "--rotation"},
+                       fmt::format("must be at most {} turns, got {}", kMostRotations, request.rotation_deg.size()));
+  }
+  if (options.source_arcmin) request.apertures.source = Angle::from_deg(*options.source_arcmin / 60.0);
+  if (options.receiver_arcmin) request.apertures.receiver = Angle::from_deg(*options.receiver_arcmin / 60.0);
+  request.window_deg = options.window_deg;
+  if (options.light != "a" && options.light != "design")
+    throw InputError({"", 0, "--light"}, fmt::format("must be a or design, got {}", in_quotes(options.light)));
+  request.own_light = options.light == "design";
+  request.diffraction = !options.no_diffraction;
+  request.advice = !options.no_advice;
+  request.engine = studies::engine_from_name(options.engine);
+  if (options.cutoff && !(*options.cutoff > 0.0 && *options.cutoff < 1.0))
+    throw InputError({"", 0, "--cutoff"}, fmt::format("must lie between 0 and 1, got {}", *options.cutoff));
+  request.cutoff = options.cutoff;
+  request.rays = options.samples;
+  request.seed = common.seed;
+  request.pictures = !common.out.empty();
+  return request;
+}
+
+/// \param result what is there when they are made
+void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
+  files.add("photometry.csv", [&] { return studies::photometry_csv(result); });
+  files.add("far_field.csv", [&] { return studies::far_field_map_csv(result); });
+  files.add_drawing("far_field", [&] { return report::far_field_plot(result); });
+  files.add_drawing("r_a", [&] { return report::observation_plot(result); });
+}
+
+ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
+  const studies::Design design = studies::read_design(options.design, common.overrides);
+  std::vector<std::string> inputs = files_read({design});
+  inputs.push_back(studies::limits_file_of(options.standard).string());
+  studies::PhotometryRequest request =
+      studies::photometry_request({options.standard, options.part_class, options.colour});
+  const std::filesystem::path dye =
+      studies::dye_file_of(options.dye, design.substance.is_coloured(), request.programme.colour);
+  if (!dye.empty()) inputs.push_back(dye.string());
+  request = with_options(std::move(request), options, common);
+  studies::set_dye(request, options.dye, dye);
+  const studies::PhotometryStudy study(design, std::move(request));
+  const OrderlyInterrupt interrupt;
+  studies::PhotometryResult result;
+  ResultFiles files(common, inputs, "photometry.json");
+  add_files(files, result);
+  files.prepare();
+  {
+    ProgressBar bar("tracing", !common.quiet);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
+  }
+  files.write(studies::photometry_json(result), studies::photometry_table(result));
+  print_warnings(common, result.warnings);
+  if (!result.complete) {
+    say("retrace: interrupted; what is finished is in the result");
+    return ExitCode::interrupted;
+  }
+  return result.passes() ? ExitCode::done : ExitCode::answer_is_no;
+}
+
+}  // namespace
+
+Command photometry_command() {
+  return {.name = "photometry",
+          .summary = "coefficients of retroreflection against a standard",
+          .manual =
+              "Coefficients of retroreflection at the test points of a standard, their limits, a verdict, and what "
+              "to change if a point fails. `--class` and `--colour` are needed where the standard has several. "
+              "Exits with 1 if a limit is missed or a verdict is undetermined.",
+          .reads = {"retrace.design/1", "limits (CSV)", "absorption of a dye (CSV)"},
+          .writes = {"retrace.photometry/1"},
+          .begin = begins<PhotometryOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app

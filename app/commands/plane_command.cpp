@@ -1,0 +1,51 @@
+#include "app/commands.h"
+#include "app/output.h"
+#include "app/shared_arguments.h"
+#include "report/results/result_plots.h"
+#include "studies/planing/io/planing_files.h"
+#include "studies/planing/planing_study.h"
+
+namespace retrace::app {
+namespace {
+
+struct PlaneOptions {
+  std::string part;
+  std::string dialect = "rs274ngc";
+};
+
+std::vector<Argument> arguments(PlaneOptions& options) {
+  return {part_argument(options.part), dialect_argument(options.dialect)};
+}
+
+ExitCode run(const PlaneOptions& options, const CommonOptions& common) {
+  const studies::PlaningResult result = studies::plane(options.part, options.dialect);
+  ResultFiles files(common, {options.part}, "planing.json");
+  files.add_drawing("profile", [&] { return report::planing_profile_plot(result); });
+  files.add_drawing("zones", [&] { return report::planing_zones_plot(result); });
+  if (result.part.mill) {
+    files.add("profile.csv", [&] { return studies::planing_csv(result); });
+    files.add_drawing("form_error", [&] { return report::planing_error_plot(result); });
+  }
+  for (const fabrication::PlaningText& program : result.programs) files.add(program.name, [&] { return program.text; });
+  files.prepare();
+  files.write(studies::planing_json(result), studies::planing_table(result));
+  print_warnings(common, result.warnings);
+  return result.check.passes() ? ExitCode::done : ExitCode::answer_is_no;
+}
+
+}  // namespace
+
+Command plane_command() {
+  return {.name = "plane",
+          .summary = "NC programs of a flat lens of zones, planed or turned",
+          .manual =
+              "NC programs of a flat lens of zones, planed on a mill that moves one axis at a time or turned on a "
+              "lathe, with frames and hours, checked from their text against the profile and, on a lathe, for "
+              "the spindle that the part's file asks for. Exits with 1 if anything was found.",
+          .reads = {"retrace.planed_part/1"},
+          .writes = {"retrace.planing/1"},
+          .refuses_set = "plane reads no design: change the part file",
+          .begin = begins<PlaneOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app

@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/number_list.h"
+#include "app/output.h"
+#include "app/progress_bar.h"
+#include "app/shared_arguments.h"
+#include "report/results/result_plots.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/rre/io/rre_files.h"
+
+namespace retrace::app {
+namespace {
+
+struct RreOptions {
+  std::vector<std::string> designs;
+  std::string incidence = "0";
+  std::string azimuth = "0";
+  std::string engine = "auto";
+  std::string sampling = "stratified";
+  std::optional<std::uint64_t> samples;
+  std::optional<double> target_error;
+  std::optional<double> cutoff;
+  bool derivatives = false;
+  bool footprint = false;
+  bool far_field = false;
+};
+
+std::vector<Argument> arguments(RreOptions& options) {
+  return {{"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
+          {"--incidence LIST", "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
+           &options.incidence},
+          {"--azimuth LIST", "azimuths of the source in degrees: a,b,c and start:stop:step", &options.azimuth},
+          {"--engine ENGINE", "exact, montecarlo (cell or embree), or auto: the faster one for each direction",
+           &options.engine, one_of([] { return engine_words(true); })},
+          {"--samples N", "rays for each point [until the target error is reached]", &options.samples, whole(1)},
+          {"--sampling KIND", "stratified, or plain: random points and no splitting, to compare with",
+           &options.sampling, one_of(Words{"stratified", "plain"})},
+          {"--target-error E",
+           "standard error of RRE to reach, and most that exact may leave truncated, as a fraction "
+           "[0.0001; --engine exact: 1e-10]",
+           &options.target_error, not_with("--samples")},
+          {"--cutoff W",
+           "least power that is followed, as a share of the incident power [1e-10; exact: as the target error asks]",
+           &options.cutoff},
+          {"--derivatives", "of RRE by the parameters of the design (--engine exact)", &options.derivatives},
+          {"--footprint", "which regions of the entrance face send light back, as polygons (--engine exact, --out)",
+           &options.footprint},
+          {"--far-field", "the directions in which light leaves the entrance face (--engine exact, --out)",
+           &options.far_field}};
+}
+
+void check_share(double value, bool zero_allowed, const char* option) {
+  if (!(value > 0.0 && value < 1.0) && !(zero_allowed && value == 0.0))
+    throw InputError({"", 0, option},
+                     fmt::format("must lie between 0 {}and 1, got {}", zero_allowed ? "(included) " : "", value));
+}
+
+void check_has_folder(const CommonOptions& common, bool asked, const char* option) {
+  if (asked && common.out.empty()) throw InputError({"", 0, option}, "needs --out DIR for its files");
+}
+
+studies::RreRequest request_of(const RreOptions& options, const CommonOptions& common) {
+  studies::RreRequest request;
+  const CurveList incidence = read_curve_list(options.incidence, "--incidence");
+  request.incidence_deg = incidence.values;
+  for (const NumberRange& range : incidence.chosen) request.incidence_spans.push_back({range.low, range.high});
+  request.azimuth_deg = read_number_list(options.azimuth, "--azimuth");
+  request.engine = studies::engine_from_name(options.engine);
+  request.sampling = studies::sampling_from_name(options.sampling);
+  request.rays = options.samples;
+  if (options.target_error) check_share(*options.target_error, false, "--target-error");
+  if (options.cutoff) check_share(*options.cutoff, true, "--cutoff");
+  request.target_error = options.target_error;
+  request.cutoff = options.cutoff;
+  request.seed = common.seed;
+  request.derivatives = options.derivatives;
+  request.footprint = options.footprint;
+  request.far_field = options.far_field;
+  check_has_folder(common, request.footprint, "--footprint");
+  check_has_folder(common, request.far_field, "--far-field");
+  return request;
+}
+
+std::vector<studies::Design> designs_of(const RreOptions& options, const CommonOptions& common) {
+  if (std::count(options.designs.begin(), options.designs.end(), "-") > 1)
+    throw InputError("standard input can be read as one design only");
+  std::vector<studies::Design> designs;
+  for (const std::string& file : options.designs) designs.push_back(studies::read_design(file, common.overrides));
+  return designs;
+}
+
+/// Says so if not every footprint is drawn.
+void warn_of_panels(studies::RreResult& result) {
+  if (result.faces.empty() || result.returned.size() <= report::kMostFootprintPanels) return;
+  result.warnings.push_back(fmt::format("footprint.svg and footprint.png show the first {} of {} directions",
+                                        report::kMostFootprintPanels, result.returned.size()));
+}
+
+/// \param result what is there when they are made
+void add_files(ResultFiles& files, const RreOptions& asked, const studies::RreResult& result) {
+  files.add("rre.csv", [&] { return studies::rre_csv(result); });
+  files.add_drawing("rre", [&] { return report::rre_plot(result); });
+  if (asked.footprint) {
+    files.add("footprint.json", [&] { return studies::footprint_json(result); });
+    files.add_drawing("footprint", [&] { return report::footprint_plot(result); });
+  }
+  if (asked.far_field) {
+    files.add("far_field.json", [&] { return studies::far_field_json(result); });
+    files.add("far_field.csv", [&] { return studies::far_field_csv(result); });
+  }
+}
+
+ExitCode run(const RreOptions& options, const CommonOptions& common) {
+  studies::RreRequest request = request_of(options, common);
+  std::vector<studies::Design> designs = designs_of(options, common);
+  studies::RreResult result;
+  ResultFiles files(common, files_read(designs), "rre.json");
+  add_files(files, options, result);
+  const studies::RreStudy study(std::move(designs), std::move(request));
+  const OrderlyInterrupt interrupt;
+  files.prepare();
+  {
+    ProgressBar bar("tracing", !common.quiet);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
+  }
+  warn_of_panels(result);
+  files.write(studies::rre_json(result), studies::rre_table(result) + studies::derivative_table(result));
+  print_warnings(common, result.warnings);
+  if (!result.complete) {
+    say(fmt::format("retrace: interrupted; finished points: {}", result.points.size()));
+    return ExitCode::interrupted;
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Command rre_command() {
+  return {
+      .name = "rre",
+      .summary = "retroreflective efficiency against angle",
+      .manual =
+          R"(Retroreflective efficiency (RRE) over angles of incidence and azimuths, with its standard error and a ledger of where all other light went.
+
+`exact` follows beams and has no noise. `cell` is Monte Carlo in SIMD lanes, for endless arrays and those of equal elements that reach more than two elements from every border, which it leaves to Embree; `embree` is Monte Carlo for every design; `montecarlo` is the first of them that can. `auto` takes, for each direction and wavelength, the exact engine or Monte Carlo, whichever is expected to reach the target error first.
+
+A LIST mixes `a,b,c` and `start:stop:step`, stop included, such as `--incidence=-40:40:5`. With `start:stop:auto` `--incidence` chooses points itself: the ends, 0, where total reflection begins or ends, and so many between that straight lines miss RRE by no more than the target error, or 1e-3 if that is more.
+
+`--derivatives` gives the change of RRE by size, angle of the facets, index, thickness and incidence, with an estimate of its error; left out, with the reason, where RRE has a kink or a jump. `--footprint` and `--far-field` write files of those names to the folder of `--out`.)",
+      .reads = {"retrace.design/1"},
+      .writes = {"retrace.rre/1", "retrace.footprint/1", "retrace.far_field/1"},
+      .begin = begins<RreOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app

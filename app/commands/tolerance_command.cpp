@@ -1,0 +1,58 @@
+#include "app/commands.h"
+#include "app/points_run.h"
+#include "report/results/result_plots.h"
+#include "studies/quantity/io/study_reader.h"
+#include "studies/sweep/io/sweep_files.h"
+#include "studies/tolerance/io/tolerance_files.h"
+#include "studies/tolerance/io/tolerance_reader.h"
+
+namespace retrace::app {
+namespace {
+
+struct ToleranceOptions : StudyOptions {};
+
+std::vector<Argument> arguments(ToleranceOptions& options) {
+  return study_arguments(options);
+}
+
+ExitCode run(const ToleranceOptions& options, const CommonOptions& common) {
+  PointsCommand command;
+  command.doing = "making parts";
+  command.store = "tolerance.sqlite";
+  command.document = "tolerance.json";
+  studies::ToleranceRequest request;
+  studies::ToleranceResult found;
+  command.add_files = [&](ResultFiles& files, const auto& result) {
+    files.add("parts.csv", [&] { return studies::sweep_csv(*result); });
+    files.add_drawing("tolerance", [&] { return report::tolerance_plot(result->sweep.study(), request, found); });
+  };
+  command.read = [&] {
+    studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
+    request = studies::read_tolerance(study);
+    return studies::tolerance_sweep(std::move(study), request);
+  };
+  command.write = [&](studies::SweepResult& result, const ResultFiles& files) {
+    found = studies::analyse(result.sweep, request, result.points);
+    result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
+    files.write(studies::tolerance_json(result, request, found),
+                studies::tolerance_text(result.sweep.study(), request, found));
+    return found.is_enough ? ExitCode::done : ExitCode::answer_is_no;
+  };
+  return run_points(options, common, command);
+}
+
+}  // namespace
+
+Command tolerance_command() {
+  return {.name = "tolerance",
+          .summary = "what becomes of a design in manufacture, as a study file says",
+          .manual =
+              "Makes parts with the errors of manufacture that a study gives its parameters: how quantities are "
+              "spread, the yield, and the main contributors. Points are kept in `tolerance.sqlite` in the output "
+              "folder. Exits with 1 if the yield is below what the study asks for or every point failed.",
+          .reads = {"retrace.study/1", "retrace.design/1"},
+          .writes = {"retrace.tolerance/1"},
+          .begin = begins<ToleranceOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app

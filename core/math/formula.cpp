@@ -1,0 +1,185 @@
+#include "core/math/formula.h"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <numbers>
+
+#include "core/math/formula_evaluation.h"
+#include "core/message_text.h"
+
+namespace retrace {
+namespace {
+
+using Step = Formula::Step;
+
+/// muParser reads, and this writes down what it would compute: its values are indices of nodes. Thus the grammar is
+/// the library's and the derivatives, which it has none of, are ours.
+struct Recorder {
+  std::vector<Formula::Node> nodes;
+
+  double add(Step step, double a = 0.0, double b = 0.0, double number = 0.0) {
+    nodes.push_back({step, static_cast<int>(a), static_cast<int>(b), number});
+    return static_cast<double>(nodes.size() - 1);
+  }
+};
+
+/// Callbacks of the library's operators take no data of ours.
+thread_local Recorder* recorder = nullptr;
+
+template <Step step>
+double unary(double a) {
+  return recorder->add(step, a);
+}
+template <Step step>
+double binary(double a, double b) {
+  return recorder->add(step, a, b);
+}
+double same(double a) {
+  return a;
+}
+
+/// A number at the front of `text`: recorded, and skipped.
+int number_at(const char* text, int* position, double* value) {
+  if (*text != '.' && std::isdigit(static_cast<unsigned char>(*text)) == 0) return 0;
+  const std::string_view rest(text);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  // Left to the library's own reader it would become a number that is taken for a step.
+  if (error != std::errc{}) throw mu::Parser::exception_type("a number too large or too small");
+  *position += static_cast<int>(end - rest.data());
+  *value = recorder->add(Step::constant, 0.0, 0.0, number);
+  return 1;
+}
+
+void set_grammar(mu::Parser& parser) {
+  parser.EnableBuiltInOprt(false);
+  parser.EnableOptimizer(false);
+  parser.ClearConst();
+  parser.ClearFun();
+  parser.ClearInfixOprt();
+  parser.AddValIdent(number_at);
+  parser.DefineOprt("+", binary<Step::add>, mu::prADD_SUB, mu::oaLEFT, false);
+  parser.DefineOprt("-", binary<Step::subtract>, mu::prADD_SUB, mu::oaLEFT, false);
+  parser.DefineOprt("*", binary<Step::multiply>, mu::prMUL_DIV, mu::oaLEFT, false);
+  parser.DefineOprt("/", binary<Step::divide>, mu::prMUL_DIV, mu::oaLEFT, false);
+  parser.DefineOprt("^", binary<Step::power>, mu::prPOW, mu::oaRIGHT, false);
+  // -x^2 is -(x^2): the sign binds as a product does.
+  parser.DefineInfixOprt("-", unary<Step::negate>, mu::prMUL_DIV, false);
+  parser.DefineInfixOprt("+", same, mu::prMUL_DIV, false);
+  parser.DefineFun("sqrt", unary<Step::sqrt>, false);
+  parser.DefineFun("exp", unary<Step::exp>, false);
+  parser.DefineFun("log", unary<Step::log>, false);
+  parser.DefineFun("sin", unary<Step::sin>, false);
+  parser.DefineFun("cos", unary<Step::cos>, false);
+  parser.DefineFun("tan", unary<Step::tan>, false);
+  parser.DefineFun("asin", unary<Step::asin>, false);
+  parser.DefineFun("acos", unary<Step::acos>, false);
+  parser.DefineFun("atan", unary<Step::atan>, false);
+  parser.DefineFun("sinh", unary<Step::sinh>, false);
+  parser.DefineFun("cosh", unary<Step::cosh>, false);
+  parser.DefineFun("tanh", unary<Step::tanh>, false);
+  parser.DefineFun("abs", unary<Step::abs>, false);
+  parser.DefineFun("atan2", binary<Step::atan2>, false);
+}
+
+/// Works out what is constant, and leaves out what the value does not need.
+std::vector<Formula::Node> simplified(std::vector<Formula::Node> nodes, std::size_t result) {
+  const auto index = [](int i) { return static_cast<std::size_t>(i); };
+  const auto is_leaf = [](const Formula::Node& n) { return n.step == Step::constant || n.step == Step::variable; };
+  std::vector<bool> is_needed(nodes.size(), false);
+  for (Formula::Node& node : nodes) {
+    if (is_leaf(node)) continue;
+    const Formula::Node& a = nodes[index(node.a)];
+    const Formula::Node& b = is_binary(node.step) ? nodes[index(node.b)] : a;
+    if (a.step != Step::constant || b.step != Step::constant) continue;
+    const Formula alone{"", {a, b, {node.step, 0, 1, 0.0}}};
+    const double none = 0.0;
+    node = {Step::constant, 0, 0, alone.evaluate(&none)};
+  }
+  is_needed[result] = true;
+  for (std::size_t i = result + 1; i-- > 0;) {
+    if (!is_needed[i] || is_leaf(nodes[i])) continue;
+    is_needed[index(nodes[i].a)] = true;
+    if (is_binary(nodes[i].step)) is_needed[index(nodes[i].b)] = true;
+  }
+  std::vector<Formula::Node> kept;
+  std::vector<int> place(nodes.size(), 0);
+  for (std::size_t i = 0; i <= result; ++i) {
+    if (!is_needed[i]) continue;
+    place[i] = static_cast<int>(kept.size());
+    Formula::Node node = nodes[i];
+    if (!is_leaf(node)) {
+      node.a = place[index(node.a)];
+      node.b = is_binary(node.step) ? place[index(node.b)] : 0;
+    }
+    kept.push_back(node);
+  }
+  return kept;
+}
+
+}  // namespace
+
+bool is_binary(Formula::Step step) {
+  switch (step) {
+    case Step::add:
+    case Step::subtract:
+    case Step::multiply:
+    case Step::divide:
+    case Step::power:
+    case Step::atan2:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool Formula::uses(int variable) const {
+  for (const Node& node : nodes)
+    if (node.step == Step::variable && node.a == variable) return true;
+  return false;
+}
+
+Formula parse_formula(const std::string& text, const std::vector<std::string>& variables, const InputLocation& where) {
+  if (text.size() > kLongestFormula)
+    throw InputError(where, fmt::format("must have at most {} characters, got {}", kLongestFormula, text.size()));
+  if (const auto at =
+          std::find_if(text.begin(), text.end(),
+                       [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0 && c != '\t'; });
+      at != text.end())
+    throw InputError(where, fmt::format("does not parse at character {}: it is none that shows, got {}",
+                                        at - text.begin() + 1, in_quotes(text)));
+  // The library takes conditions whatever its operators are; they would have no derivatives.
+  if (const std::size_t at = text.find_first_of("?:"); at != std::string::npos)
+    throw InputError(where, fmt::format("does not parse at character {}: conditions are not allowed, got {}", at + 1,
+                                        in_quotes(text)));
+  Recorder record;
+  recorder = &record;
+  std::vector<double> handles;
+  for (std::size_t i = 0; i < variables.size(); ++i)
+    handles.push_back(record.add(Step::variable, static_cast<double>(i)));
+  double pi = record.add(Step::constant, 0.0, 0.0, std::numbers::pi);
+  std::size_t result = 0;
+  try {
+    mu::Parser parser;
+    set_grammar(parser);
+    for (std::size_t i = 0; i < variables.size(); ++i) parser.DefineVar(variables[i], &handles[i]);
+    parser.DefineVar("pi", &pi);
+    parser.SetExpr(text);
+    int results = 0;
+    const double* const values = parser.Eval(results);
+    if (results != 1) throw InputError(where, "must be one formula, got several: " + in_quotes(text));
+    result = static_cast<std::size_t>(values[0]);
+  } catch (const mu::Parser::exception_type& error) {
+    // At the end of the text the library counts one more.
+    const std::size_t place = std::min(static_cast<std::size_t>(error.GetPos()), text.size()) + 1;
+    throw InputError(where, fmt::format("does not parse at character {}: {}, got {}", place,
+                                        printable(error.GetMsg(), 120), in_quotes(text)));
+  }
+  return {text, simplified(std::move(record.nodes), result)};
+}
+
+}  // namespace retrace

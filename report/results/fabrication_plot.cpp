@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <utility>
+
+#include "core/number_format.h"
+#include "geometry/elements/element_cells.h"
+#include "report/results/result_plots.h"
+#include "studies/fabrication/fabricate.h"
+
+namespace retrace::report {
+namespace {
+
+using geometry::Polygon;
+using geometry::Vec2;
+
+/// Of more elements neighbours in a row are drawn as one.
+constexpr std::size_t kMostElementsDrawn = 4000;
+
+std::string name_of(const studies::FabricationResult& result) {
+  return std::filesystem::path(result.job.source).filename().string();
+}
+
+Polygon rectangle(const Vec2& low, const Vec2& high) {
+  return {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+}
+
+/// Half the width at the blank's face, and the height of it, of what the path is drawn in.
+std::pair<double, double> section_of(const fabrication::Job& job) {
+  if (job.strategy != fabrication::Strategy::dmc) {
+    const geometry::RtpElement prism = fabrication::blank_prism(job);
+    return {0.5 * prism.base_mm, fabrication::root_depth_mm(prism)};
+  }
+  // The dihedral edges rise by 1 in sqrt(3) and lie at 45 degrees to the facet's slope.
+  const double edge_mm = std::numbers::sqrt3 * geometry::element_depth_mm(fabrication::blank_element(job));
+  const double up_mm = edge_mm / std::numbers::sqrt2;
+  return {up_mm, up_mm};
+}
+
+/// Outline of an element that is cut, in plan.
+Polygon outline_of(const geometry::Element& element, const Vec2& centre, bool rotated) {
+  if (const auto* const prism = std::get_if<geometry::RtpElement>(&element)) {
+    const Vec2 half =
+        rotated ? 0.5 * Vec2(prism->width_mm, prism->base_mm) : 0.5 * Vec2(prism->base_mm, prism->width_mm);
+    return rectangle(centre - half, centre + half);
+  }
+  Polygon outline = geometry::element_cell(element).outline;
+  for (Vec2& p : outline) p = rotated ? Vec2(centre - p) : Vec2(centre + p);
+  return outline;
+}
+
+std::string sizes_of(const geometry::Element& element) {
+  if (const auto* const prism = std::get_if<geometry::RtpElement>(&element))
+    return fmt::format("base {} mm, width {} mm", shortest(prism->base_mm), shortest(prism->width_mm));
+  const Vec2 size = geometry::bounding_box(geometry::element_cell(element).outline).size();
+  return fmt::format("cube corners of {} x {} mm", fixed(size.x(), 3), fixed(size.y(), 3));
+}
+
+}  // namespace
+
+PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing) {
+  const auto [half_mm, depth_mm] = section_of(result.job);
+  const bool is_dmc = result.job.strategy == fabrication::Strategy::dmc;
+  PathPlot plot;
+  plot.title = fmt::format("{}: {}", name_of(result),
+                           roughing                                                      ? "roughing"
+                           : result.job.strategy == fabrication::Strategy::bidirectional ? "layers"
+                                                                                         : "finishing");
+  plot.remarks = {fmt::format("one element of {}, {}; machine {}", result.plan.elements.size(),
+                              is_dmc ? "in the plane of one of its three facets" : "in the section across its root",
+                              result.machine.name)};
+  plot.x_label = is_dmc ? "along the facet's level line (mm)" : "across the root (mm)";
+  plot.y_label = is_dmc ? "up the facet from the apex (mm)" : "above the root (mm)";
+  plot.material = {{-2.0 * half_mm, -0.25 * depth_mm},
+                   {2.0 * half_mm, -0.25 * depth_mm},
+                   {2.0 * half_mm, depth_mm},
+                   {half_mm, depth_mm},
+                   {0.0, 0.0},
+                   {-half_mm, depth_mm},
+                   {-2.0 * half_mm, depth_mm},
+                   {-2.0 * half_mm, -0.25 * depth_mm}};
+  plot.kinds = {{"plunge", false, {}}, {"plough", false, {}}, {"retract", false, {}}, {"to the next cut", true, {}}};
+  for (const studies::SectionMove& move : studies::section_moves(result, roughing))
+    plot.kinds[static_cast<std::size_t>(move.motion)].moves.push_back(
+        {{move.from_u_mm, move.from_z_mm}, {move.to_u_mm, move.to_z_mm}});
+  return plot;
+}
+
+MapPlot arrangement_plot(const studies::FabricationResult& result) {
+  const std::vector<fabrication::CutElement>& elements = result.plan.elements;
+  const geometry::Element element = fabrication::blank_element(result.job);
+  const bool is_of_prisms = std::holds_alternative<geometry::RtpElement>(element);
+  const std::vector<std::int64_t> places = studies::cutting_places(result);
+  const Vec2 extent(fabrication::blank_extent_mm(result.job).y(), fabrication::blank_extent_mm(result.job).x());
+  MapPlot plot;
+  plot.title = fmt::format("{}: {} elements", name_of(result), elements.size());
+  plot.axis_unit = "mm";
+  plot.value_label = "Place in the order of cutting (%)";
+  plot.rest_label = "not cut";
+  plot.full_value = 100.0;
+  MapPanel panel;
+  panel.title = sizes_of(element);
+  panel.remarks = {"the blank seen from the tool, in the frame of the part that is moulded in it"};
+  if (result.job.workpiece.kind == fabrication::WorkpieceKind::direct)
+    panel.remarks = {"the optic's back seen from the tool: mirrored against the design"};
+  panel.outline = rectangle(Vec2::Zero(), extent);
+  // x_part = -y_w and y_part = x_w, from a corner of the extent.
+  const auto in_plan = [&](const Vec2& w) -> Vec2 { return Vec2(-w.y(), w.x()) + 0.5 * extent; };
+  for (std::size_t k = 0; k < elements.size();) {
+    const Vec2 centre = in_plan(elements[k].centre_mm);
+    Polygon outline = outline_of(element, centre, elements[k].rotated);
+    std::int64_t sum = places[k];
+    std::int64_t count = 1;
+    std::size_t next = k + 1;
+    while (is_of_prisms && elements.size() > kMostElementsDrawn && next < elements.size() &&
+           elements[next].row == elements[k].row && elements[next].column == elements[next - 1].column + 1) {
+      const geometry::Rectangle box = geometry::bounding_box(outline);
+      const geometry::Rectangle more =
+          geometry::bounding_box(outline_of(element, in_plan(elements[next].centre_mm), elements[next].rotated));
+      outline = rectangle(box.lower.cwiseMin(more.lower), box.upper.cwiseMax(more.upper));
+      sum += places[next];
+      ++count;
+      ++next;
+    }
+    const double mean = static_cast<double>(sum) / static_cast<double>(count);
+    const Vec2 half = 0.5 * geometry::bounding_box(outline).size();
+    panel.regions.push_back({outline, 100.0 * mean / static_cast<double>(elements.size())});
+    if (count == 1 && is_of_prisms) {
+      const Vec2 along = elements[k].rotated ? Vec2(half.x(), 0.0) : Vec2(0.0, half.y());
+      panel.fine_lines.push_back({centre - along, centre + along});
+    }
+    k = next;
+  }
+  plot.panels.push_back(std::move(panel));
+  return plot;
+}
+
+}  // namespace retrace::report

@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/number_format.h"
+#include "report/results/result_plots.h"
+#include "studies/design/io/design_json.h"
+#include "studies/photometry/photometry.h"
+
+namespace retrace::report {
+namespace {
+
+PolarMark::Kind mark_of(studies::Verdict verdict) {
+  switch (verdict) {
+    case studies::Verdict::pass:
+    case studies::Verdict::unconfirmed:
+      return PolarMark::Kind::holds;
+    case studies::Verdict::undetermined:
+      return PolarMark::Kind::open;
+    case studies::Verdict::fail:
+      return PolarMark::Kind::fails;
+  }
+  return PolarMark::Kind::open;
+}
+
+}  // namespace
+
+PolarPlot far_field_plot(const studies::PhotometryResult& result) {
+  PolarPlot plot;
+  plot.title = fmt::format("{}: far field and test points", short_name(result.design));
+  plot.value_label = "R_A (cd/lx/m²)";
+  for (const studies::FarFieldMap& map : result.maps) {
+    PolarPanel panel;
+    panel.title = fmt::format("V {}°, H {}°", shortest(map.v_deg), shortest(map.h_deg));
+    panel.radius_deg = map.half_width_deg;
+    panel.columns = map.columns;
+    panel.values = map.r_a;
+    for (const studies::PhotometricPoint& p : result.points)
+      if (p.asked.v_deg == map.v_deg && p.asked.h_deg == map.h_deg)
+        panel.marks.push_back({0.0, p.asked.observation_deg,
+                               fmt::format("{} mcd/lx", fixed(p.r_i_mcd_per_lx, p.r_i_mcd_per_lx < 10.0 ? 1 : 0)),
+                               mark_of(p.verdict())});
+    plot.panels.push_back(std::move(panel));
+  }
+  return plot;
+}
+
+LinePlot observation_plot(const studies::PhotometryResult& result) {
+  LinePlot plot;
+  plot.title = fmt::format("{}: coefficient of retroreflection", short_name(result.design));
+  plot.x_label = "Observation angle α (°)";
+  plot.y_label = "log₁₀ of R_A (cd/lx/m²)";
+  for (const studies::ObservationCurve& curve : result.curves) {
+    Series series{fmt::format("entrance angle β = {}°", shortest(curve.entrance_deg)), curve.observation_deg, {}, {}};
+    for (const double r_a : curve.r_a) series.y.push_back(std::log10(r_a));  // 0 interrupts the line
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+}  // namespace retrace::report

@@ -1,0 +1,314 @@
+#include "studies/design/io/design_document.h"
+
+#include "core/overloaded.h"
+#include "core/schema/writer.h"
+#include "geometry/substrate/sag_formula.h"
+#include "studies/design/io/design_format.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Arrangement;
+using geometry::Cant;
+using geometry::CylinderSubstrate;
+using geometry::EdgeShape;
+using geometry::Element;
+using geometry::ElementAxes;
+using geometry::Extent;
+using geometry::FormulaSubstrate;
+using geometry::HexagonalCube;
+using geometry::PartSpec;
+using geometry::PlaneSubstrate;
+using geometry::RtpElement;
+using geometry::Scratch;
+using geometry::SphereSubstrate;
+using geometry::Substrate;
+using geometry::TriangularCube;
+using schema::Document;
+using schema::Value;
+
+constexpr double kUmPerMm = 1e3;
+
+Value list_of(std::span<const double> values) {
+  return std::vector<double>(values.begin(), values.end());
+}
+
+Value text_of(std::string_view word) {
+  return std::string(word);
+}
+
+/// Gives the keys of a table one after another; where a key depends on others, these come first.
+class Keys {
+ public:
+  Keys(Document& document, std::string table) : document_(document), table_(std::move(table)) {
+    document_.set(table_, {});
+  }
+  void set(std::string_view key, Value value) { document_.set(schema::path_in(table_, key), std::move(value)); }
+  void set_word(std::string_view key, std::string_view word) { set(key, text_of(word)); }
+  /// \param index of the word among those that the key has here
+  template <class Enum>
+  void set_choice(std::string_view key, Enum index) {
+    const schema::Row* const row = document_.row(schema::path_in(table_, key));
+    set_word(key, std::get<schema::Word>(row->kind).words[static_cast<std::size_t>(index)]);
+  }
+  void set_positive(std::string_view key, double value) {
+    if (value > 0.0) set(key, value);
+  }
+
+ private:
+  Document& document_;
+  std::string table_;
+};
+
+std::string_view word_of(const PartSpec& part) {
+  constexpr std::string_view words[] = {"single", "aligned", "offset", "checker", "honeycomb", "triangular"};
+  return part.is_pin_bundle ? "pins" : words[static_cast<std::size_t>(part.array.arrangement)];
+}
+
+void set_cube(Keys& keys, std::string_view kind, double aperture_mm, const Cant& cant) {
+  keys.set_word("kind", kind);
+  keys.set("aperture_mm", aperture_mm);
+  if (cant.deg == 0.0) return;
+  keys.set("cant_deg", cant.deg);
+  keys.set("cant_azimuth_deg", cant.azimuth_deg);
+}
+
+void set_element(Document& document, const Element& element) {
+  Keys keys(document, "element");
+  std::visit(
+      Overloaded{[&](const RtpElement& prism) {
+                   keys.set_word("kind", "rtp");
+                   keys.set("base_mm", prism.base_mm);
+                   keys.set("width_mm", prism.width_mm);
+                   keys.set("apex_angle_deg", prism.apex_angle_deg);
+                 },
+                 [&](const HexagonalCube& cube) { set_cube(keys, "hexagonal_icc", cube.aperture_mm, cube.cant); },
+                 [&](const TriangularCube& cube) { set_cube(keys, "triangular_icc", cube.aperture_mm, cube.cant); }},
+      element);
+}
+
+void set_array(Document& document, const ElementArray& elements) {
+  const PartSpec& part = elements.part;
+  Keys keys(document, "array");
+  keys.set_word("arrangement", word_of(part));
+  if (part.array.arrangement == Arrangement::single) return;
+  keys.set_choice("extent", part.array.extent);
+  if (part.array.extent == Extent::finite) {
+    keys.set("x_length_mm", part.array.x_length_mm);
+    keys.set("y_length_mm", part.array.y_length_mm);
+    keys.set("x_offset_mm", part.array.x_offset_mm);
+    keys.set("y_offset_mm", part.array.y_offset_mm);
+    keys.set_choice("partial_elements", part.array.partial_elements);
+  }
+  if (std::holds_alternative<RtpElement>(part.element)) {
+    keys.set("x_gap_mm", part.array.x_gap_mm);
+    keys.set("y_gap_mm", part.array.y_gap_mm);
+  }
+  if (part.array.arrangement == Arrangement::offset) {
+    keys.set("overlap_percent", part.array.overlap_percent);
+    keys.set_choice("shifted_rows", part.array.shifted_rows);
+  }
+  if (!elements.mask) return;
+  keys.set_word("mask", elements.mask->name);
+  keys.set("mask_threshold", elements.mask->threshold);
+}
+
+void set_substrate(Document& document, const Substrate& substrate) {
+  Keys keys(document, "base");
+  keys.set_choice("kind", substrate.shape.index());
+  std::visit(Overloaded{[&](const PlaneSubstrate& plane) {
+                          keys.set("incline_deg", plane.incline_deg);
+                          keys.set("azimuth_deg", plane.azimuth_deg);
+                        },
+                        [&](const CylinderSubstrate& cylinder) {
+                          keys.set("radius_mm", cylinder.radius_mm);
+                          keys.set_word("axis", cylinder.axis_is_x ? "x" : "y");
+                        },
+                        [&](const SphereSubstrate& sphere) { keys.set("radius_mm", sphere.radius_mm); },
+                        [&](const FormulaSubstrate& formula) { keys.set_word("sag_mm", formula.sag_mm->text()); }},
+             substrate.shape);
+  keys.set_word("elements", substrate.element_axes == ElementAxes::normal ? "normal" : "parallel");
+}
+
+void set_balls(Document& document, const raytrace::BallLayer& balls) {
+  Keys element(document, "element");
+  element.set_word("kind", "ball");
+  element.set("diameter_mm", balls.diameter_mm);
+  element.set("mirror_offset_mm", balls.mirror_offset_mm);
+  element.set("mirror_half_angle_deg", balls.mirror_half_angle_deg);
+  Keys array(document, "array");
+  array.set_word("arrangement", balls.pitch_mm ? "packed" : "single");
+  if (!balls.pitch_mm) return;
+  array.set_word("extent", "infinite");
+  array.set("gap_mm", *balls.pitch_mm - balls.diameter_mm);
+}
+
+/// The tables that say what is designed.
+void set_shape(Document& document, const Shape& shape) {
+  std::visit(Overloaded{[&](const ElementArray& array) {
+                          set_element(document, array.part.element);
+                          set_array(document, array);
+                          if (array.part.substrate) set_substrate(document, *array.part.substrate);
+                          if (array.facet_planes) Keys(document, "part").set_word("facets", array.facet_planes->name);
+                        },
+                        [&](const PartMesh& mesh) {
+                          Keys part(document, "part");
+                          part.set_word("mesh", mesh.name);
+                          part.set("allow_open", mesh.allow_open);
+                        },
+                        [&](const Plate& plate) { Keys(document, "part").set("plate_mm", list_of(plate.size_mm)); },
+                        [&](const raytrace::BallLayer& balls) { set_balls(document, balls); }},
+             shape);
+}
+
+void set_entrance(Document& document, const EntranceFile& entrance) {
+  Keys keys(document, "front");
+  keys.set_word(entrance.is_mesh ? "mesh" : "turned", entrance.name);
+  if (entrance.is_mesh) keys.set_choice("mesh_side", entrance.mesh_bottom);
+  if (entrance.centre_mm) keys.set("centre_mm", list_of(*entrance.centre_mm));
+}
+
+Value absorption_value(const Absorption& absorption) {
+  return std::visit(Overloaded{[](std::monostate) { return Value(); }, [](double per_mm) { return Value(per_mm); },
+                               [](const std::vector<SpectralAbsorption>& curve) {
+                                 std::vector<std::vector<double>> pairs;
+                                 for (const auto& [wavelength_nm, per_mm] : curve)
+                                   pairs.push_back({wavelength_nm, per_mm});
+                                 return Value(pairs);
+                               }},
+                    absorption);
+}
+
+void set_body(Document& document, const Design& design) {
+  Keys keys(document, "body");
+  keys.set_positive("thickness_mm", design.thickness_mm());
+  keys.set_word("material", design.substance.material);
+  if (design.substance.refractive_index) keys.set("refractive_index", *design.substance.refractive_index);
+  if (const Value absorption = absorption_value(design.substance.absorption_per_mm); absorption.index() != 0)
+    keys.set("absorption_per_mm", absorption);
+  if (design.surface.aluminised_facets) keys.set_word("facet_coating", "aluminium");
+  if (design.substance.back_index != 1.0) keys.set("back_index", design.substance.back_index);
+}
+
+/// As the design file has it.
+Value spectrum_value(const LightSpectrum& spectrum) {
+  if (spectrum.kind == LightSpectrum::Kind::illuminant_a) return text_of("A");
+  if (spectrum.kind == LightSpectrum::Kind::illuminant_d65) return text_of("D65");
+  if (spectrum.kind == LightSpectrum::Kind::file) return spectrum.name;
+  std::vector<std::vector<double>> lines;
+  for (const LightSpectrum::Line& line : spectrum.lines) lines.push_back({line.wavelength_nm, line.power});
+  return lines;
+}
+
+/// The word that the design file has for it, or [i, q, u, v].
+Value polarisation_value(const raytrace::Stokes& stokes) {
+  const std::array<double, 4> values = stokes.values();
+  if (values == raytrace::kUnpolarised.values()) return text_of("unpolarised");
+  if (values == std::array{1.0, 0.0, 0.0, 1.0}) return text_of("right_circular");
+  if (values == std::array{1.0, 0.0, 0.0, -1.0}) return text_of("left_circular");
+  return list_of(values);
+}
+
+void set_light(Document& document, const Design& design) {
+  Keys keys(document, "light");
+  if (const LightSpectrum* const spectrum = design.light.spectrum()) {
+    keys.set("spectrum", spectrum_value(*spectrum));
+    keys.set_word("weighting", spectrum->photopic ? "photopic" : "radiant");
+  } else {
+    keys.set("wavelength_nm", design.light.wavelength_nm());
+  }
+  keys.set("polarisation", polarisation_value(design.light.polarisation));
+}
+
+void set_angle_errors(Keys& keys, const PartSpec& part) {
+  const auto& [dihedral, tilt] = part.angle_errors;
+  const bool is_prism = std::holds_alternative<RtpElement>(part.element);
+  keys.set("dihedral_error_arcmin", is_prism ? Value(dihedral[0]) : list_of(dihedral));
+  keys.set("facet_tilt_arcmin", list_of(std::span(tilt).first(is_prism ? 2 : 3)));
+  if (!(part.random_tilts.sigma_arcmin > 0.0)) return;
+  keys.set("angle_error_sigma_arcmin", part.random_tilts.sigma_arcmin);
+  keys.set("angle_error_seed", static_cast<double>(part.random_tilts.seed));
+}
+
+void set_height(Keys& keys, std::string_view height, double sq_nm, std::string_view length, double length_um) {
+  if (!(sq_nm > 0.0)) return;
+  keys.set(height, sq_nm);
+  keys.set(length, length_um);
+}
+
+void set_texture(Keys& keys, const Surface& surface) {
+  if (surface.absorbing_walls) keys.set_word("walls", "absorbing");
+  if (surface.is_smooth()) return;
+  keys.set_choice("model", surface.texture.index());
+  std::visit(
+      Overloaded{[](const SmoothTexture&) {},
+                 [&](const HarveyShackTexture& t) {
+                   set_height(keys, "roughness_sq_nm", t.roughness_sq_nm, "correlation_length_um",
+                              t.correlation_length_um);
+                   set_height(keys, "waviness_sq_nm", t.waviness_sq_nm, "waviness_length_um", t.waviness_length_um);
+                 },
+                 [&](const AbgTexture& t) {
+                   keys.set("abg_a", t.a);
+                   keys.set("abg_b", t.b);
+                   keys.set("abg_g", t.g);
+                 },
+                 [&](const MicrofacetTexture& t) {
+                   keys.set_choice("slope_distribution", t.ggx);
+                   set_height(keys, "waviness_sq_nm", t.waviness_sq_nm, "waviness_length_um", t.waviness_length_um);
+                 },
+                 [&](const HeightMapTexture& t) {
+                   keys.set_word("height_map", t.name);
+                   keys.set_choice("height_map_level_axis", t.level_axis);
+                   keys.set_choice("height_map_form", t.form_degree - 1);
+                 }},
+      surface.texture);
+}
+
+void set_edges(Keys& keys, const EdgeShape& edges) {
+  keys.set_positive("root_radius_um", kUmPerMm * edges.root_radius_mm);
+  keys.set_positive("root_chamfer_um", kUmPerMm * edges.root_chamfer_mm);
+  keys.set_positive("rim_radius_um", kUmPerMm * edges.rim_radius_mm);
+  keys.set_positive("rim_chamfer_um", kUmPerMm * edges.rim_chamfer_mm);
+  if (!edges.is_sharp()) keys.set("edge_chords", static_cast<double>(edges.chords));
+}
+
+void set_surface(Document& document, const Design& design) {
+  Keys keys(document, "surface");
+  const ElementArray* const elements = design.elements();
+  if (elements != nullptr) set_angle_errors(keys, elements->part);
+  set_texture(keys, design.surface);
+  if (elements == nullptr) return;
+  set_edges(keys, elements->part.edges);
+  std::size_t index = 0;
+  for (const Scratch& scratch : elements->part.scratches) {
+    document.set("surface.scratches", {});
+    Keys entry(document, schema::path_of_entry("surface.scratches", index++));
+    entry.set_choice("facet", scratch.facet);
+    entry.set("position_um", kUmPerMm * scratch.position_mm);
+    entry.set("width_um", kUmPerMm * scratch.width_mm);
+    entry.set("depth_um", kUmPerMm * scratch.depth_mm);
+  }
+}
+
+}  // namespace
+
+Document document_of(const Design& design) {
+  Document document(design_format().root);
+  if (!design.title.empty()) document.set("title", design.title);
+  set_shape(document, design.shape);
+  if (design.entrance) set_entrance(document, *design.entrance);
+  set_body(document, design);
+  set_light(document, design);
+  Keys(document, "detector").set("acceptance_half_angle_deg", design.detector.acceptance_half_angle_deg);
+  if (!design.balls()) set_surface(document, design);
+  Keys idealisation(document, "idealisation");
+  idealisation.set_choice("facets", design.idealisation.mirror_facets);
+  idealisation.set_choice("entrance", design.idealisation.lossless_entrance);
+  return document;
+}
+
+std::string design_text(const Design& design, const std::string& comment) {
+  return comment + schema::document_text(design_format(), schema::without_defaults(document_of(design)));
+}
+
+}  // namespace retrace::studies

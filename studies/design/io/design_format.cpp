@@ -1,0 +1,92 @@
+#include "studies/design/io/design_format.h"
+
+#include "geometry/io/substrate_rows.h"
+#include "studies/design/io/design_rows.h"
+#include "studies/design/io/design_rules.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace schema;
+
+constexpr Condition kTableOfNoBall = is_not(kKind, kBall);
+constexpr Condition kNoMesh = without("part.mesh", "not allowed beside part.mesh, which is the whole part");
+constexpr Condition kNoPlate = without("part.plate_mm", "not allowed beside part.plate_mm, which is the whole part");
+
+constexpr Condition kWithElements[] = {kNoMesh, kNoPlate};
+constexpr Condition kWithPlanes[] = {kNoMesh, kNoPlate, kTableOfNoBall};
+constexpr Condition kPartTable[] = {kTableOfNoBall};
+constexpr Condition kEntranceTable[] = {kTableOfNoBall};
+constexpr Condition kSurfaceTable[] = {
+    is_not(kKind, kBall, "not allowed for kind = \"ball\", whose surfaces are smooth")};
+constexpr Condition kScratchesOnly[] = {without("part.mesh", kOfAMesh), without("part.plate_mm", kOfAMesh),
+                                        is(kKind, kRtp)};
+
+const Table kSurfaceTables[] = {
+    {.name = "scratches",
+     .meaning = "Grooves of V section that run up a facet of prisms from root to rim, at most 200. Those of a facet "
+                "keep clear of each other; none on a `[base]`. They turn with the elements of a checker.",
+     .rows = scratch_rows(),
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = "a list of tables with facet, position_um, width_um and depth_um",
+     .when = kScratchesOnly}};
+
+constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Names curves in plots."}};
+const Table kTables[] = {
+    {.name = "element",
+     .meaning = "What one element is.",
+     .rows = element_rows(),
+     .presence = Presence::implied,
+     .when = kWithElements},
+    {.name = "array",
+     .meaning = "How elements are laid out over the part.",
+     .rows = array_rows(),
+     .presence = Presence::implied,
+     .when = kWithElements},
+    {.name = "base",
+     .meaning = "What the elements of a finite array stand on, in place of z = 0.",
+     .rows = geometry::substrate_rows(),
+     .presence = Presence::optional,
+     .when = kWithPlanes},
+    {.name = "part",
+     .meaning = "A mesh or a plate in place of elements, or planes of single facets.",
+     .rows = part_rows(),
+     .presence = Presence::optional,
+     .when = kPartTable},
+    {.name = "front",
+     .meaning = "A curved face through which light enters, in place of the plane z = thickness_mm.",
+     .rows = entrance_rows(),
+     .presence = Presence::optional,
+     .when = kEntranceTable},
+    {.name = "body", .meaning = "What the part is made of.", .rows = body_rows(), .presence = Presence::implied},
+    {.name = "light", .meaning = "The light that falls on it.", .rows = light_rows(), .presence = Presence::implied},
+    {.name = "detector", .meaning = "What counts as returned.", .rows = detector_rows(), .presence = Presence::implied},
+    {.name = "surface",
+     .meaning = "What the retro facets and edges are like.",
+     .rows = surface_rows(),
+     .tables = kSurfaceTables,
+     .presence = Presence::implied,
+     .when = kSurfaceTable},
+    {.name = "idealisation",
+     .meaning = "Idealisations, to be checked against theory.",
+     .rows = idealisation_rows(),
+     .presence = Presence::implied}};
+
+const Format kFormat = {"design",
+                        "retrace.design/1",
+                        "Design of a retroreflector array",
+                        {.name = "",
+                         .meaning = "A part and the light on it.",
+                         .rows = kRootRows,
+                         .tables = kTables,
+                         .rules = design_rules()},
+                        true};
+
+}  // namespace
+
+const Format& design_format() {
+  return kFormat;
+}
+
+}  // namespace retrace::studies

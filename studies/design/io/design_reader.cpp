@@ -1,0 +1,280 @@
+#include "studies/design/io/design_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/angle.h"
+#include "core/atomic_file.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "core/overloaded.h"
+#include "core/schema/reader.h"
+#include "geometry/io/substrate_rows.h"
+#include "studies/design/io/design_document.h"
+#include "studies/design/io/design_format.h"
+#include "studies/design/io/part_reader.h"
+
+namespace retrace::studies {
+namespace fs = std::filesystem;
+namespace {
+
+using schema::Document;
+
+std::array<double, 2> pair_of(const Document& document, std::string_view key) {
+  const std::vector<double> given = document.numbers(key);
+  return {given[0], given[1]};
+}
+
+PartMesh read_mesh(const Document& document) {
+  return {document.text("part.mesh"), document.file("part.mesh"), document.flag("part.allow_open"),
+          document.number_if("body.thickness_mm")};
+}
+
+ElementArray read_elements(const Document& document) {
+  ElementArray array = {read_part(document), {}, {}};
+  if (constexpr std::string_view mask = "array.mask"; document.has(mask))
+    array.mask = {document.text(mask), document.file(mask), document.number("array.mask_threshold")};
+  if (constexpr std::string_view facets = "part.facets"; document.has(facets))
+    array.facet_planes = {document.text(facets), document.file(facets)};
+  return array;
+}
+
+Shape read_shape(const Document& document) {
+  if (document.has("part.plate_mm"))
+    return Plate{pair_of(document, "part.plate_mm"), document.number("body.thickness_mm")};
+  if (document.has("part.mesh")) return read_mesh(document);
+  if (has_elements(document)) return read_elements(document);
+  return read_balls(document);
+}
+
+Absorption read_absorption(const Document& document) {
+  constexpr std::string_view key = "body.absorption_per_mm";
+  if (!document.is_list(key)) {
+    const std::optional<double> per_mm = document.number_if(key);
+    return per_mm ? Absorption(*per_mm) : Absorption();
+  }
+  std::vector<SpectralAbsorption> curve;
+  for (const std::vector<double>& pair : document.rows(key)) curve.push_back({pair[0], pair[1]});
+  return curve;
+}
+
+/// Heights of 0 are no texture.
+FacetTexture read_heights(const Document& document, std::string_view model) {
+  const double waviness_sq_nm = document.number("surface.waviness_sq_nm");
+  const double waviness_length_um = document.number("surface.waviness_length_um");
+  const double roughness_sq_nm = document.number("surface.roughness_sq_nm");
+  if (model == "smooth" || !(roughness_sq_nm > 0.0 || waviness_sq_nm > 0.0)) return SmoothTexture();
+  if (model == "microfacet")
+    return MicrofacetTexture{waviness_sq_nm, waviness_length_um, document.text("surface.slope_distribution") == "ggx"};
+  return HarveyShackTexture{roughness_sq_nm, document.number("surface.correlation_length_um"), waviness_sq_nm,
+                            waviness_length_um};
+}
+
+FacetTexture read_texture(const Document& document) {
+  const std::string model = document.text_if("surface.model");
+  if (model == "abg")
+    return AbgTexture{document.number("surface.abg_a"), document.number("surface.abg_b"),
+                      document.number("surface.abg_g")};
+  if (model == "height_map")
+    return HeightMapTexture{document.text("surface.height_map"), document.file("surface.height_map"),
+                            document.choice<HeightMapAxis>("surface.height_map_level_axis"),
+                            static_cast<int>(document.index("surface.height_map_form")) + 1};
+  return read_heights(document, model);
+}
+
+Surface read_surface(const Document& document) {
+  return {document.text("body.facet_coating") == "aluminium", document.text("surface.walls") == "absorbing",
+          read_texture(document)};
+}
+
+std::variant<double, LightSpectrum> read_colour(const Document& document) {
+  constexpr std::string_view key = "light.spectrum";
+  if (!document.has(key)) return document.number("light.wavelength_nm");
+  LightSpectrum spectrum;
+  spectrum.photopic = document.text("light.weighting") == "photopic";
+  if (document.is_list(key)) {
+    spectrum.kind = LightSpectrum::Kind::lines;
+    for (const std::vector<double>& line : document.rows(key)) spectrum.lines.push_back({line[0], line[1]});
+    std::ranges::sort(spectrum.lines, {}, &LightSpectrum::Line::wavelength_nm);
+    return spectrum;
+  }
+  const std::string word = document.text(key);
+  spectrum.kind = word == "A"     ? LightSpectrum::Kind::illuminant_a
+                  : word == "D65" ? LightSpectrum::Kind::illuminant_d65
+                                  : LightSpectrum::Kind::file;
+  if (spectrum.kind != LightSpectrum::Kind::file) return spectrum;
+  spectrum.name = word;
+  spectrum.file = document.file(key);
+  return spectrum;
+}
+
+raytrace::Stokes read_polarisation(const Document& document) {
+  constexpr std::string_view key = "light.polarisation";
+  if (document.is_list(key)) {  // in the unit of i
+    const std::vector<double> given = document.numbers(key);
+    return {1.0, given[1] / given[0], given[2] / given[0], given[3] / given[0]};
+  }
+  const std::string word = document.text(key);
+  if (word == "right_circular") return {1.0, 0.0, 0.0, 1.0};
+  if (word == "left_circular") return {1.0, 0.0, 0.0, -1.0};
+  if (word != "linear") return raytrace::kUnpolarised;
+  const double angle = Angle::from_deg(document.number("light.polarisation_angle_deg")).rad();
+  return {1.0, std::cos(2.0 * angle), std::sin(2.0 * angle), 0.0};
+}
+
+std::vector<double> read_acceptance(const Document& document) {
+  std::vector<double> angles_deg = document.numbers("detector.acceptance_half_angle_deg");
+  std::sort(angles_deg.begin(), angles_deg.end());
+  angles_deg.erase(std::unique(angles_deg.begin(), angles_deg.end()), angles_deg.end());
+  return angles_deg;
+}
+
+/// The face through which light enters; none without such a table.
+std::optional<EntranceFile> read_entrance(const Document& document) {
+  if (!document.has("front")) return std::nullopt;
+  EntranceFile entrance;
+  entrance.is_mesh = document.has("front.mesh");
+  const std::string_view key = entrance.is_mesh ? "front.mesh" : "front.turned";
+  entrance.file = document.file(key);
+  entrance.name = document.text(key);
+  entrance.mesh_bottom = entrance.is_mesh && document.text("front.mesh_side") == "bottom";
+  if (document.has("front.centre_mm")) entrance.centre_mm = pair_of(document, "front.centre_mm");
+  return entrance;
+}
+
+/// What a document says, without the files that it names.
+Design resolved(std::shared_ptr<const Document> given) {
+  const Document& document = *given;
+  schema::check(document, design_format().root, "", &document);
+  Design design;
+  design.source = document.source();
+  design.title = document.text_if("title");
+  design.shape = read_shape(document);
+  design.entrance = read_entrance(document);
+  design.substance = {document.text("body.material"), document.number_if("body.refractive_index"),
+                      read_absorption(document), document.number("body.back_index")};
+  design.surface = read_surface(document);
+  design.light = {read_colour(document), read_polarisation(document)};
+  design.detector.acceptance_half_angle_deg = read_acceptance(document);
+  design.idealisation = {document.text("idealisation.facets") == "mirror",
+                         document.text("idealisation.entrance") == "lossless"};
+  design.document = std::move(given);
+  return design;
+}
+
+}  // namespace
+
+std::vector<fs::path> Design::files() const {
+  return document ? document->files() : std::vector<fs::path>();
+}
+
+void Design::set_where(const std::string& key, InputLocation place) {
+  auto changed = document ? std::make_shared<Document>(*document) : std::make_shared<Document>(design_format().root);
+  changed->set(key, {}, std::move(place));
+  document = std::move(changed);
+}
+
+InputLocation Design::where(std::string_view key) const {
+  return document ? document->where(key) : InputLocation{source, 0, std::string(key)};
+}
+
+InputLocation Design::where_texture() const {
+  for (const std::string_view key : {"surface.height_map", "surface.model", "surface.roughness_sq_nm"})
+    if (document && document->has(key)) return where(key);
+  return where("surface.waviness_sq_nm");
+}
+
+std::string_view Design::entrance_key() const {
+  return entrance && entrance->is_mesh ? "front.mesh" : "front.turned";
+}
+
+const ArrayMask* Design::mask() const {
+  return elements() != nullptr && elements()->mask ? &*elements()->mask : nullptr;
+}
+
+const FacetPlanesFile* Design::facet_planes() const {
+  return elements() != nullptr && elements()->facet_planes ? &*elements()->facet_planes : nullptr;
+}
+
+double Design::thickness_mm() const {
+  return std::visit(
+      Overloaded{[](const ElementArray& array) { return array.part.thickness_mm; },
+                 [](const PartMesh& mesh) { return mesh.thickness_mm.value_or(0.0); },
+                 [](const Plate& plate) { return plate.thickness_mm; }, [](const raytrace::BallLayer&) { return 0.0; }},
+      shape);
+}
+
+void check_taken(const Design& design, const Takes& takes) {
+  const std::string what(takes.what);
+  const auto refuse_solid = [&](std::string_view key, std::string_view solid) {
+    if (!takes.solids)
+      throw InputError(design.where(key), fmt::format("{} takes no {}, only [element] and [array]", what, solid));
+  };
+  std::visit(Overloaded{[&](const ElementArray& array) {
+                          if (array.part.substrate && !takes.substrates)
+                            throw InputError(design.where(geometry::substrate_shape_key(*array.part.substrate)),
+                                             what + " takes no [base], only elements on a plane");
+                        },
+                        [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
+                        [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
+                        [&](const raytrace::BallLayer&) {
+                          if (!takes.balls)
+                            throw InputError(design.where("element.kind"),
+                                             "balls are taken by retrace rre, photometry and inspect alone");
+                        }},
+             design.shape);
+  if (design.entrance && !takes.entrances)
+    throw InputError(design.where(design.entrance_key()), what + " takes no [front], only a plane entrance face");
+}
+
+Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
+  return resolved(std::make_shared<const Document>(
+      schema::read_document(design_format(), text, source_name, kShortTomlBytes, overrides)));
+}
+
+Design with(const Design& design, std::span<const std::string> overrides) {
+  const bool is_of_file = design.document && !design.document->origin().text.empty();
+  if (!is_of_file) return parse_design(design_text(design), design.source, overrides);
+  Design changed =
+      resolved(std::make_shared<const Document>(schema::with(design_format(), *design.document, overrides)));
+  changed.source = design.source;
+  return changed;
+}
+
+/// The order in which stores of studies have the files of a design: it is part of what a study is. New keys come
+/// behind.
+constexpr std::array<std::string_view, 7> kFilesOfStores = {
+    "part.mesh", "array.mask", "surface.height_map", "part.facets", "light.spectrum", "front.turned", "front.mesh"};
+
+std::vector<fs::path> files_named(std::string_view text, const std::string& source_name,
+                                  std::span<const std::string> overrides) {
+  const Document document = schema::unchecked_names(design_format(), text, source_name, kShortTomlBytes, overrides);
+  const std::vector<fs::path> all = document.files();
+  std::vector<fs::path> files;
+  const auto add = [&](const fs::path& file) {
+    if (std::ranges::count(all, file) > std::ranges::count(files, file)) files.push_back(file);
+  };
+  for (const std::string_view key : kFilesOfStores)
+    if (!document.text_if(key).empty()) add(document.file(key));
+  for (const fs::path& file : all) add(file);
+  return files;
+}
+
+std::string read_toml_text(const fs::path& file) {
+  return file == "-" ? read_standard_input(kShortTomlBytes) : read_file(file, kShortTomlBytes);
+}
+
+Design read_design(const fs::path& file, std::span<const std::string> overrides) {
+  if (file != "-") return parse_design(read_toml_text(file), file.string(), overrides);
+  Design design = parse_design(read_toml_text(file), "standard input", overrides);
+  design.source = file.string();
+  return design;
+}
+
+}  // namespace retrace::studies

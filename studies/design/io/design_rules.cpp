@@ -1,0 +1,488 @@
+#include "studies/design/io/design_rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <numbers>
+#include <variant>
+#include <vector>
+
+#include "core/angle.h"
+#include "core/number_format.h"
+#include "core/schema/access.h"
+#include "core/schema/conditions.h"
+#include "geometry/elements/edges.h"
+#include "geometry/elements/element_cells.h"
+#include "geometry/io/substrate_rows.h"
+#include "geometry/part/substrate_part.h"
+#include "studies/design/io/part_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::AngleErrors;
+using geometry::Arrangement;
+using geometry::Cell;
+using geometry::EdgeShape;
+using geometry::ElementAxes;
+using geometry::Extent;
+using geometry::HexagonalCube;
+using geometry::PartSpec;
+using geometry::PlaneSubstrate;
+using geometry::RtpElement;
+using geometry::Scratch;
+using geometry::TriangularCube;
+using schema::Document;
+
+/// Most elements that one design may have; keeps element numbers within 32 bits and memory within reason.
+constexpr double kMostElements = 1e8;
+constexpr std::size_t kMostScratches = 200;
+/// Lengths this close (relative) to a whole number of elements count as whole; also for "equal" sizes.
+constexpr double kRelativeTolerance = 1e-9;
+constexpr NumberRange kApexAngle{.low = 60.0, .high = 120.0};
+
+bool is_prism(const PartSpec& part) {
+  return std::holds_alternative<RtpElement>(part.element);
+}
+
+std::string of_range(const NumberRange& range, double given) {
+  return fmt::format("must be {}, got {}", range.text(), shortest(given));
+}
+
+/// A rule of parts that are elements.
+template <void (*check)(const Document&, const PartSpec&)>
+void of_part(const Document& document) {
+  if (has_elements(document)) check(document, read_part(document));
+}
+/// The same of what is known before errors, edges and base.
+template <void (*check)(const Document&, const PartSpec&)>
+void of_array(const Document& document) {
+  if (has_elements(document)) check(document, read_array(document));
+}
+
+void check_square(const Document& document, const PartSpec& part) {
+  if (part.array.arrangement != Arrangement::checker) return;
+  const auto& rtp = std::get<RtpElement>(part.element);
+  if (std::abs(rtp.base_mm - rtp.width_mm) <= kRelativeTolerance * rtp.base_mm) return;
+  document.fail("element.width_mm", fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
+                                                shortest(rtp.base_mm), shortest(rtp.width_mm)));
+}
+
+/// Bounding box of an element's aperture and the area of the cell it repeats in; mm, mm^2.
+struct Footprint {
+  double x_mm;
+  double y_mm;
+  double cell_area_mm2;
+};
+
+struct FootprintOf {
+  const PartSpec& part;
+
+  Footprint operator()(const RtpElement& rtp) const {
+    return {rtp.base_mm, rtp.width_mm, (rtp.base_mm + part.array.x_gap_mm) * (rtp.width_mm + part.array.y_gap_mm)};
+  }
+  /// Vertices on +-x.
+  Footprint operator()(const HexagonalCube& cube) const {
+    const double radius = cube.aperture_mm / 2.0;
+    return {2.0 * radius, std::numbers::sqrt3 * radius, 1.5 * std::numbers::sqrt3 * radius * radius};
+  }
+  /// The apex is at the extent's centre, so the vertex on +x at one radius asks for as much room on the other side.
+  Footprint operator()(const TriangularCube& cube) const {
+    const double radius = cube.aperture_mm / 2.0;
+    return {2.0 * radius, std::numbers::sqrt3 * radius, 0.75 * std::numbers::sqrt3 * radius * radius};
+  }
+};
+
+void check_length(const Document& document, std::string_view key, double length_mm, double margin_mm,
+                  double element_mm) {
+  const double free_mm = length_mm - 2.0 * margin_mm;
+  if (free_mm >= element_mm * (1.0 - kRelativeTolerance)) return;
+  const std::string margins = margin_mm > 0.0 ? fmt::format(" and two margins of {} mm", shortest(margin_mm)) : "";
+  document.fail(
+      key, fmt::format("must be >= {} to hold one element of {} mm{}, got {}", shortest(element_mm + 2.0 * margin_mm),
+                       shortest(element_mm), margins, shortest(length_mm)));
+}
+
+void check_room(const Document& document, const PartSpec& part) {
+  if (part.array.extent == Extent::infinite || part.array.arrangement == Arrangement::single) return;
+  const Footprint footprint = std::visit(FootprintOf{part}, part.element);
+  check_length(document, "array.x_length_mm", part.array.x_length_mm, part.array.x_offset_mm, footprint.x_mm);
+  check_length(document, "array.y_length_mm", part.array.y_length_mm, part.array.y_offset_mm, footprint.y_mm);
+  const double x_free_mm = part.array.x_length_mm - 2.0 * part.array.x_offset_mm + part.array.x_gap_mm;
+  const double y_free_mm = part.array.y_length_mm - 2.0 * part.array.y_offset_mm + part.array.y_gap_mm;
+  const double count = x_free_mm * y_free_mm / footprint.cell_area_mm2;
+  if (!(count <= kMostElements * (1.0 + kRelativeTolerance)))
+    document.fail("array.x_length_mm",
+                  fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed; make it "
+                              "smaller or its elements larger",
+                              count, kMostElements));
+}
+
+void check_array_on_substrate(const Document& document, const PartSpec& part) {
+  constexpr std::string_view key = "base.kind";
+  if (!document.has("base")) return;
+  if (part.array.extent == Extent::infinite) document.fail(key, "not allowed for extent = \"infinite\": give lengths");
+  if (part.array.arrangement == Arrangement::single) document.fail(key, "not allowed for arrangement = \"single\"");
+  if (part.array.x_offset_mm > 0.0 || part.array.y_offset_mm > 0.0)
+    document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
+}
+
+constexpr std::string_view kDihedralError = "surface.dihedral_error_arcmin";
+constexpr std::string_view kFacetTilt = "surface.facet_tilt_arcmin";
+constexpr std::string_view kRandomTilt = "surface.angle_error_sigma_arcmin";
+
+void check_dihedral_errors(const Document& document, const PartSpec& part) {
+  const std::size_t count = document.numbers(kDihedralError).size();
+  if (!is_prism(part) && count != 1 && count != 3)
+    document.fail(
+        kDihedralError,
+        fmt::format("must be a number or a list of three, one for each dihedral edge, got a list of {}", count));
+}
+
+void check_facet_tilts(const Document& document, const PartSpec& part) {
+  const std::size_t facets = is_prism(part) ? 2 : 3;
+  const std::vector<double> given = document.numbers(kFacetTilt);
+  const bool is_list = document.is_list(kFacetTilt);
+  if (is_list ? given.size() != facets : given[0] != 0.0)
+    document.fail(kFacetTilt, fmt::format("must be a list of {}, one for each facet, or 0, got {}", facets,
+                                          is_list ? fmt::format("a list of {}", given.size()) : shortest(given[0])));
+}
+
+void check_random_tilts(const Document& document, const PartSpec& part) {
+  if (part.random_tilts.sigma_arcmin > 0.0 && part.array.extent == Extent::infinite)
+    document.fail(kRandomTilt,
+                  "must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
+}
+
+constexpr std::string_view kEdges[] = {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um",
+                                       "surface.rim_chamfer_um"};
+
+/// What an edge takes of a facet must leave some of it.
+void check_widths(const Document& document, const PartSpec& part) {
+  const auto* const rtp = std::get_if<RtpElement>(&part.element);
+  const Cell cell = geometry::element_cell(part.element, part.angle_errors);
+  const double widest_mm =
+      rtp != nullptr ? 0.25 * rtp->base_mm : 0.1 * geometry::bounding_box(cell.outline).size().minCoeff();
+  const NumberRange range{.low = 0.0, .high = 1e3 * widest_mm};
+  for (const std::string_view key : kEdges)
+    if (!range.contains(document.number(key))) document.fail(key, of_range(range, document.number(key)));
+}
+
+void check_chords(const Document& document, const PartSpec&) {
+  constexpr std::string_view key = "surface.edge_chords";
+  const double chords = document.number(key);
+  if (std::fmod(chords, 2.0) != 0.0)
+    document.fail(key, fmt::format("must be an even number, got {}", shortest(chords)));
+}
+
+void check_one_shape(const Document& document, const PartSpec& part) {
+  const EdgeShape& edges = part.edges;
+  if (edges.root_radius_mm > 0.0 && edges.root_chamfer_mm > 0.0)
+    document.fail("surface.root_chamfer_um", "must be 0 where root_radius_um is given");
+  if (edges.rim_radius_mm > 0.0 && edges.rim_chamfer_mm > 0.0)
+    document.fail("surface.rim_chamfer_um", "must be 0 where rim_radius_um is given");
+}
+
+/// Rims that land keeps apart are rounded against it, so that it must be wide enough.
+void check_land(const Document& document, const PartSpec& part) {
+  if (!part.edges.rounds_rims() || !is_prism(part)) return;
+  const bool is_checker = part.array.arrangement == Arrangement::checker;
+  const double reach_mm = geometry::rim_reach_over_land_mm(part);
+  const double needed_mm = is_checker ? reach_mm : 2.0 * reach_mm;  // in a checker one of two neighbours is turned
+  const auto check = [&](std::string_view gap, double gap_mm) {
+    if (gap_mm <= 0.0 || gap_mm >= needed_mm) return;
+    document.fail(part.edges.rim_radius_mm > 0.0 ? "surface.rim_radius_um" : "surface.rim_chamfer_um",
+                  fmt::format("rims of that shape need an array.{} of 0 or >= {} mm, got {}", gap, shortest(needed_mm),
+                              shortest(gap_mm)));
+  };
+  check("x_gap_mm", part.array.x_gap_mm);
+  if (is_checker) check("y_gap_mm", part.array.y_gap_mm);
+}
+
+constexpr std::string_view kScratches = "surface.scratches";
+
+void check_scratch(const Document& document, const PartSpec& part, std::size_t i) {
+  const std::string entry = schema::path_of_entry(kScratches, i);
+  const double element_um = 1e3 * std::get<RtpElement>(part.element).width_mm;
+  const double width_um = document.number(entry + ".width_um");
+  const double reach_um = 0.5 * (element_um - width_um);
+  if (reach_um <= 0.0)
+    document.fail(entry + ".width_um",
+                  fmt::format("must be < {}, the element's width, got {}", shortest(element_um), shortest(width_um)));
+  const auto check = [&](const std::string& key, double reach) {
+    const NumberRange range{.low = -reach, .high = reach};
+    if (!range.contains(document.number(key))) document.fail(key, of_range(range, document.number(key)));
+  };
+  check(entry + ".position_um", reach_um);
+  check(entry + ".depth_um", 0.5 * width_um);
+  const Scratch& scratch = part.scratches[i];
+  for (const Scratch& other : std::span(part.scratches).first(i))
+    if (other.facet == scratch.facet && std::abs(other.position_mm - scratch.position_mm) <
+                                            0.5 * (other.width_mm + scratch.width_mm) * (1.0 - kRelativeTolerance))
+      document.fail(entry + ".position_um", fmt::format("must keep clear of the other scratches of its facet, got {}",
+                                                        shortest(1e3 * scratch.position_mm)));
+}
+
+void check_scratches(const Document& document, const PartSpec& part) {
+  if (!document.has(kScratches)) return;
+  if (part.substrate) document.fail(kScratches, "not allowed with [base]");
+  if (part.scratches.size() > kMostScratches)
+    document.fail(kScratches, fmt::format("must be at most {}, got {}", kMostScratches, part.scratches.size()));
+  for (std::size_t i = 0; i < part.scratches.size(); ++i) check_scratch(document, part, i);
+}
+
+/// The key of an error of angle that was given, to be blamed for all of them.
+std::string_view blamed_error(const Document& document, std::string_view otherwise) {
+  for (const std::string_view key : {kDihedralError, kFacetTilt})
+    if (document.has(key)) return key;
+  return otherwise;
+}
+
+/// Errors of angle must not let a facet of a canted cube stand upright, nor leave a prism none of its own.
+void check_angles(const Document& document, const PartSpec& part) {
+  if (const auto* const rtp = std::get_if<RtpElement>(&part.element)) {
+    const auto& [dihedral, tilt] = part.angle_errors;
+    const double apex_deg = rtp->apex_angle_deg + (dihedral[0] + tilt[0] + tilt[1]) / 60.0;
+    if (!kApexAngle.contains(apex_deg))
+      document.fail(blamed_error(document, kFacetTilt), fmt::format("the apex angle with its errors must be {}, got {}",
+                                                                    kApexAngle.text(), shortest(apex_deg)));
+    return;
+  }
+  constexpr double steepest_deg = 88.0;
+  constexpr double deviations = 6.0;  // of random tilts; none in 10^8 facets goes beyond
+  const double deg = geometry::steepest_facet_deg(part.element, part.angle_errors) +
+                     deviations * part.random_tilts.sigma_arcmin / 60.0;
+  if (deg > steepest_deg)
+    document.fail(blamed_error(document, kRandomTilt),
+                  fmt::format("the steepest facet of the canted cube with its errors must be <= {} degrees, got {}",
+                              steepest_deg, fixed(deg, 2)));
+}
+
+void check_mask(const Document& document, const PartSpec& part) {
+  if (document.has("array.mask") && part.substrate) document.fail("array.mask", "not allowed together with [base]");
+}
+
+/// What else turns or shapes all facets alike has no place beside planes of single ones.
+void check_facet_planes(const Document& document, const PartSpec& part) {
+  constexpr std::string_view key = "part.facets";
+  if (!document.has(key)) return;
+  if (part.array.extent == Extent::infinite) document.fail(key, "only allowed for finite arrays");
+  if (part.substrate) document.fail(key, "not allowed together with [base]");
+  if (!(part.angle_errors == AngleErrors{}) || part.random_tilts.sigma_arcmin > 0.0)
+    document.fail(key, "not allowed together with errors of angle, which its planes hold");
+}
+
+void check_substrate_of_part(const Document& document, const PartSpec& part) {
+  if (!part.substrate) return;
+  const std::string_view key = geometry::substrate_shape_key(*part.substrate);
+  const bool has_gaps = part.array.x_gap_mm > 0.0 || part.array.y_gap_mm > 0.0;
+  const bool is_plane = std::holds_alternative<PlaneSubstrate>(part.substrate->shape);
+  if (part.edges.rounds_rims() && part.substrate->element_axes == ElementAxes::normal && (has_gaps || !is_plane))
+    document.fail(key, "rounded or chamfered rims need elements = \"parallel\", or a plane base and no gaps");
+  try {
+    geometry::check_substrate(part);
+  } catch (const InputError& error) {
+    document.fail(key, error.what());
+  }
+}
+
+/// The plate covers all rims.
+void check_thickness(const Document& document, const PartSpec& part) {
+  const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
+  const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;
+  if (part.thickness_mm < least_mm)
+    document.fail("body.thickness_mm",
+                  fmt::format("must be >= {} to cover rims that errors of angle or cant lift to {}, got {}",
+                              shortest(least_mm), shortest(top_mm), shortest(part.thickness_mm)));
+}
+
+void check_bowl(const Document& document) {
+  if (document.has("part.mesh") || document.has("part.plate_mm") || has_elements(document)) return;
+  const double most_deg = read_balls(document).most_mirror_half_angle_deg();
+  const auto given_deg = document.number_if("element.mirror_half_angle_deg");
+  if (given_deg && *given_deg > most_deg + 1e-9)
+    document.fail("element.mirror_half_angle_deg",
+                  fmt::format("must be <= {} where the bowls of neighbours meet, got {}", fixed(most_deg, 6),
+                              shortest(*given_deg)));
+}
+
+constexpr std::string_view kRoughness = "surface.roughness_sq_nm";
+constexpr std::string_view kRoughnessLength = "surface.correlation_length_um";
+constexpr std::string_view kWaviness = "surface.waviness_sq_nm";
+constexpr std::string_view kWavinessLength = "surface.waviness_length_um";
+
+/// A height without the length that belongs to it says nothing.
+void check_lengths(const Document& document) {
+  for (const auto& [height, length] : {std::pair(kRoughness, kRoughnessLength), {kWaviness, kWavinessLength}})
+    if (document.number(height) > 0.0 && !(document.number(length) > 0.0))
+      document.fail(length, fmt::format("must be > 0 where {} is given, got {}", height.substr(height.find('.') + 1),
+                                        document.number(length)));
+}
+
+void refuse_heights(const Document& document, std::initializer_list<std::string_view> keys, std::string_view why) {
+  for (const std::string_view key : keys)
+    if (document.number(key) != 0.0) document.fail(key, fmt::format("{}, got {}", why, shortest(document.number(key))));
+}
+
+void check_heights(const Document& document) {
+  const std::string model = document.text_if("surface.model");
+  if (model == "height_map")
+    refuse_heights(document, {kRoughness, kWaviness}, "must be 0 for model = \"height_map\", whose map holds both");
+  if (model == "smooth" || model == "abg")
+    refuse_heights(document, {kRoughness, kWaviness},
+                   "must be 0 for this model; leave the model out or use \"harvey_shack\"");
+  if (model == "microfacet")
+    refuse_heights(document, {kRoughness}, "must be 0 for model = \"microfacet\", which has waviness only");
+}
+
+constexpr std::string_view kAbsorption = "body.absorption_per_mm";
+
+void check_material(const Document& document) {
+  if (document.text("body.material").empty())
+    document.fail("body.material", "must name a material, such as \"PMMA\", got \"\"");
+}
+
+void check_absorption(const Document& document) {
+  if (!document.is_list(kAbsorption)) return;
+  const std::vector<std::vector<double>> curve = document.rows(kAbsorption);
+  for (std::size_t k = 1; k < curve.size(); ++k)
+    if (!(curve[k][0] > curve[k - 1][0]))
+      document.fail(kAbsorption, fmt::format("wavelengths must ascend, got {} after {}", shortest(curve[k][0]),
+                                             shortest(curve[k - 1][0])));
+  if (curve.size() < 2)
+    document.fail(kAbsorption, "must be a number or a list of two or more pairs, got a list of one");
+}
+
+void check_lines(const Document& document) {
+  constexpr std::string_view key = "light.spectrum";
+  if (!document.is_list(key)) return;
+  std::vector<double> wavelengths_nm;
+  for (const std::vector<double>& line : document.rows(key)) wavelengths_nm.push_back(line[0]);
+  std::ranges::sort(wavelengths_nm);
+  const auto twice = std::ranges::adjacent_find(wavelengths_nm);
+  if (twice != wavelengths_nm.end())
+    document.fail(key, fmt::format("must name each wavelength once, got {} twice", shortest(*twice)));
+}
+
+void check_stokes(const Document& document) {
+  constexpr std::string_view key = "light.polarisation";
+  if (!document.is_list(key)) return;
+  const std::vector<double> given = document.numbers(key);
+  constexpr double rounding = 1e-12;
+  double degree2 = 0.0;
+  for (std::size_t k = 1; k < given.size(); ++k) degree2 += given[k] / given[0] * (given[k] / given[0]);
+  if (!(given[0] > 0.0 && degree2 <= 1.0 + rounding))
+    document.fail(key, fmt::format("must be [i, q, u, v] with i > 0 and q^2 + u^2 + v^2 <= i^2, got [{}, {}, {}, {}]",
+                                   shortest(given[0]), shortest(given[1]), shortest(given[2]), shortest(given[3])));
+}
+
+/// A bowl behind balls is nothing but its mirror.
+void check_ball_mirror(const Document& document) {
+  constexpr std::string_view key = "element.mirror_offset_mm";
+  if (!document.has(key) || document.number(key) == 0.0) return;
+  if (document.text("body.facet_coating") == "aluminium" || document.text("idealisation.facets") == "mirror") return;
+  document.fail(key, "needs a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = \"mirror\"");
+}
+
+void check_entrance(const Document& document) {
+  if (!document.has("front")) return;
+  const std::string_view key = document.has("front.mesh") ? "front.mesh" : "front.turned";
+  if (!document.has(key)) document.fail(key, "missing, must name the file of a turned part, or front.mesh an STL file");
+  if (has_elements(document) && document.text("array.extent") == "infinite")
+    document.fail(key, "not allowed for extent = \"infinite\": give lengths");
+}
+
+constexpr schema::Words kSquareKeys = {"element.base_mm", "element.width_mm"};
+constexpr schema::Words kRoomKeys = {"array.x_length_mm", "array.y_length_mm", "array.x_offset_mm",
+                                     "array.y_offset_mm"};
+constexpr schema::Words kArrayOnSubstrateKeys = {"base.kind", "array.extent", "array.arrangement", "array.x_offset_mm",
+                                                 "array.y_offset_mm"};
+constexpr schema::Words kDihedralKeys = {kDihedralError};
+constexpr schema::Words kTiltKeys = {kFacetTilt};
+constexpr schema::Words kRandomKeys = {kRandomTilt, "array.extent"};
+constexpr schema::Words kChordKeys = {"surface.edge_chords"};
+constexpr schema::Words kRimKeys = {"surface.rim_radius_um", "surface.rim_chamfer_um", "array.x_gap_mm",
+                                    "array.y_gap_mm"};
+constexpr schema::Words kScratchKeys = {kScratches, "element.width_mm"};
+constexpr schema::Words kAngleKeys = {"element.apex_angle_deg", "element.cant_deg", kDihedralError, kFacetTilt,
+                                      kRandomTilt};
+constexpr schema::Words kMaskKeys = {"array.mask", "base.kind"};
+constexpr schema::Words kFacetsKeys = {"part.facets",  "array.extent", "base.kind",
+                                       kDihedralError, kFacetTilt,     kRandomTilt};
+constexpr schema::Words kSubstrateKeys = {"base.kind", "base.elements", "surface.rim_radius_um",
+                                          "surface.rim_chamfer_um"};
+constexpr schema::Words kThicknessKeys = {"body.thickness_mm"};
+constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap_mm"};
+constexpr schema::Words kHeightKeys = {kRoughness, kRoughnessLength, kWaviness, kWavinessLength};
+constexpr schema::Words kModelKeys = {"surface.model", kRoughness, kWaviness};
+constexpr schema::Words kMaterialKeys = {"body.material"};
+constexpr schema::Words kAbsorptionKeys = {kAbsorption};
+constexpr schema::Words kSpectrumKeys = {"light.spectrum"};
+constexpr schema::Words kStokesKeys = {"light.polarisation"};
+constexpr schema::Words kMirrorKeys = {"element.mirror_offset_mm", "body.facet_coating", "idealisation.facets"};
+constexpr schema::Words kEntranceKeys = {"front.turned", "front.mesh", "array.extent"};
+
+using schema::check_by;
+constexpr schema::Rule kRules[] = {
+    schema::Check{kSquareKeys, "Elements of a checker are square: base = width.", check_by<of_array<check_square>>},
+    schema::Check{kRoomKeys, "A finite array has room for one element between its margins, and for at most 1e8.",
+                  check_by<of_array<check_room>>},
+    schema::Check{kArrayOnSubstrateKeys, "A `[base]` is for finite arrays without margins, not `single`.",
+                  check_by<of_array<check_array_on_substrate>>},
+    schema::Check{kDihedralKeys, "Prisms have one error of angle, cube corners one for all dihedral edges or three.",
+                  check_by<of_part<check_dihedral_errors>>},
+    schema::Check{kTiltKeys,
+                  "A list of tilts has one for each facet: two for prisms, three for cube corners; 0 is none.",
+                  check_by<of_part<check_facet_tilts>>},
+    schema::Check{kRandomKeys, "Random tilts are for finite parts.", check_by<of_part<check_random_tilts>>},
+    schema::Check{kEdges, "Edges leave some of a facet: at most a quarter of the base, or a tenth of the aperture.",
+                  check_by<of_part<check_widths>>},
+    schema::Check{kChordKeys, "The number of chords is even.", check_by<of_part<check_chords>>},
+    schema::Check{kEdges, "Roots, and rims, have a radius or a chamfer, not both.", check_by<of_part<check_one_shape>>},
+    schema::Check{
+        kRimKeys,
+        "The gap across roof edges, in a checker both gaps, is 0 or as wide as rounded or chamfered rims reach.",
+        check_by<of_part<check_land>>},
+    schema::Check{kScratchKeys, "At most 200 scratches, within the facet and clear of each other; none on a `[base]`.",
+                  check_by<of_part<check_scratches>>},
+    schema::Check{kAngleKeys,
+                  "Apex angles of prisms with `dihedral_error_arcmin` and `facet_tilt_arcmin` are 60 to 120 degrees; "
+                  "facets of canted cubes, with these and six deviations of random tilts, at most 88 degrees steep.",
+                  check_by<of_part<check_angles>>},
+    schema::Check{kMaskKeys, "No mask on a `[base]`.", check_by<of_part<check_mask>>},
+    schema::Check{
+        kFacetsKeys,
+        "Tables of planes (`[part]` `facets`) are for finite arrays with neither `[base]` nor errors of angle.",
+        check_by<of_part<check_facet_planes>>},
+    schema::Check{kSubstrateKeys,
+                  "A `[base]` bends less tightly than an element is wide and leaves facets at most 88 degrees steep; "
+                  "rounded or chamfered rims need elements that stand parallel, or a plane base and no gaps.",
+                  check_by<of_part<check_substrate_of_part>>},
+    schema::Check{kThicknessKeys, "The plate of an array covers rims that errors of angle or cant lift.",
+                  check_by<of_part<check_thickness>>},
+    schema::Check{kBowlKeys, "Bowls behind balls reach no further than where those of neighbours meet.",
+                  check_by<check_bowl>},
+    schema::Check{kHeightKeys,
+                  "A height of roughness above 0 needs its correlation length, one of waviness its period.",
+                  check_by<check_lengths>},
+    schema::Check{kModelKeys,
+                  "Heights are 0 but for `\"harvey_shack\"`, which has both, and `\"microfacet\"`, which has waviness.",
+                  check_by<check_heights>},
+    schema::Check{kMaterialKeys, "A material has a name.", check_by<check_material>},
+    schema::Check{kAbsorptionKeys, "Wavelengths of a curve ascend.", check_by<check_absorption>},
+    schema::Check{kSpectrumKeys, "A list of lines has each wavelength once.", check_by<check_lines>},
+    schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",
+                  check_by<check_stokes>},
+    schema::Check{kMirrorKeys, "A bowl behind balls (`mirror_offset_mm` > 0) needs a mirror: aluminium or ideal.",
+                  check_by<check_ball_mirror>},
+    schema::Check{kEntranceKeys, "A `[front]` has one file and a finite part.", check_by<check_entrance>}};
+
+}  // namespace
+
+std::span<const schema::Rule> design_rules() {
+  return kRules;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,164 @@
+#include "studies/design/io/design_rows.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace schema;
+
+constexpr NumberRange kGap{.low = 0.0, .high = 1e6};
+constexpr NumberRange kPlace{.low = -1e6, .high = 1e6};
+
+constexpr Words kKinds = {"rtp", "hexagonal_icc", "triangular_icc", "ball"};
+constexpr Words kHexagonal = {"hexagonal_icc"};
+constexpr Words kTriangular = {"triangular_icc"};
+constexpr Words kRtpArrangements = {"aligned", "offset", "checker", "single"};
+constexpr Words kHexagonalArrangements = {"honeycomb", "pins", "single"};
+constexpr Words kTriangularArrangements = {"triangular", "single"};
+constexpr Words kBallArrangements = {"packed", "single"};
+constexpr Words kSingle = {"single"};
+constexpr Words kPacked = {"packed"};
+constexpr Words kOffset = {"offset"};
+constexpr Words kPins = {"pins"};
+constexpr Words kSingleOrPacked = {"single", "packed"};
+constexpr Words kExtents = {"finite", "infinite"};
+constexpr Words kFinite = {"finite"};
+constexpr Words kInfinite = {"infinite"};
+constexpr Words kRowParities = {"even", "odd"};
+constexpr Words kPartialElements = {"cut", "omit"};
+constexpr Words kSides = {"top", "bottom"};
+
+constexpr Condition kElementOfNoBall = is_not(kKind, kBall, "not allowed for kind = \"ball\", which has diameter_mm");
+constexpr Condition kArrayOfNoBall =
+    is_not(kKind, kBall, "not allowed for kind = \"ball\", whose layers are endless, with gap_mm between the balls");
+
+constexpr Condition kPrismOnly[] = {kElementOfNoBall,
+                                    is(kKind, kRtp, "only allowed for kind = \"rtp\", others have aperture_mm")};
+constexpr Condition kCubeOnly[] = {kElementOfNoBall,
+                                   is(kKind, kCubes, "not allowed for kind = \"rtp\", which has base_mm and width_mm")};
+constexpr Condition kCantOnly[] = {kElementOfNoBall, is(kKind, kCubes, "only allowed for cube corners")};
+constexpr Condition kBallOnly[] = {is(kKind, kBall)};
+
+constexpr Row kElementRows[] = {
+    {"kind", Word{kKinds}, kRequired, "What the elements are."},
+    {"base_mm", kSize, kRequired, "Length across the roof edge.", kPrismOnly},
+    {"width_mm", kSize, kRequired, "Length along the roof edge.", kPrismOnly},
+    {"apex_angle_deg", Number{{.low = 60.0, .high = 120.0}}, 90.0, "Included angle of the two facets.", kPrismOnly},
+    {"aperture_mm", kSize, kRequired, "Diameter of the circle round the aperture.", kCubeOnly},
+    // Beyond 35.26 degrees a facet can stand upright.
+    {"cant_deg", Number{{.low = 0.0, .high = 30.0}}, 0.0,
+     "Angle between the cube's axis, from the apex into the part, and +z.", kCantOnly, kZeroIsNone},
+    {"cant_azimuth_deg", Number{kAzimuth}, 0.0, "Azimuth towards which the axis leans, from +x towards +y.", kCantOnly,
+     kZeroIsNone},
+    {"diameter_mm", kSize, kRequired, "Diameter of a ball.", kBallOnly},
+    {"mirror_offset_mm", Number{kGap}, Computed{"0: the ball's own back is coated"},
+     "From the ball to a mirror that is a bowl about the same centre; it needs a mirror, of aluminium or ideal.",
+     kBallOnly},
+    {"mirror_half_angle_deg", Number{{.low = 0.0, .low_included = false, .high = 90.0}},
+     Computed{"90, or as far as the bowls of neighbours leave room"},
+     "How far the mirror reaches from -z, seen from the ball's centre; at most to where the bowls of neighbours meet.",
+     kBallOnly}};
+
+constexpr Condition kOfPrisms[] = {is(kKind, kRtp)};
+constexpr Condition kOfHexagons[] = {is(kKind, kHexagonal)};
+constexpr Condition kOfTriangles[] = {is(kKind, kTriangular)};
+constexpr Condition kOfBalls[] = {is(kKind, kBall)};
+constexpr Condition kOfSingle[] = {is(kArrangement, kSingle)};
+constexpr Condition kOfPacked[] = {is(kArrangement, kPacked)};
+constexpr Condition kOfOthers[] = {is_not(kArrangement, kSingleOrPacked)};
+constexpr Condition kFiniteOnly[] = {
+    kArrayOfNoBall,
+    is_not(kArrangement, kSingle, "not allowed for arrangement = \"single\", whose extent is the element's aperture"),
+    is_not(kExtent, kInfinite, "not allowed for extent = \"infinite\", which is one periodic cell")};
+constexpr Condition kGapOnly[] = {kArrayOfNoBall, is(kKind, kRtp), is_not(kArrangement, kSingle)};
+constexpr Condition kOffsetOnly[] = {kArrayOfNoBall, is(kArrangement, kOffset)};
+constexpr Condition kNoBallArray[] = {kArrayOfNoBall};
+constexpr Condition kMaskOnly[] = {
+    kArrayOfNoBall, is(kKind, kRtp),
+    is_not(kArrangement, kSingle, "only allowed for finite arrays that are not \"single\""),
+    is_not(kExtent, kInfinite, "only allowed for finite arrays that are not \"single\"")};
+constexpr Condition kThresholdOnly[] = {kArrayOfNoBall, beside("array.mask")};
+constexpr Condition kBallGapOnly[] = {is(kKind, kBall), is_not(kArrangement, kSingle)};
+
+constexpr std::string_view kHowLaid = "How the elements are laid out.";
+constexpr Row kArrayRows[] = {
+    {"arrangement", Word{kRtpArrangements}, "aligned",
+     "How the elements are laid out; `\"checker\"` wants base = width.", kOfPrisms},
+    {"arrangement", Word{kHexagonalArrangements}, "honeycomb",
+     "How the elements are laid out; `\"pins\"` is a honeycomb of the ends of pins, see [base].", kOfHexagons},
+    {"arrangement", Word{kTriangularArrangements}, "triangular", kHowLaid, kOfTriangles},
+    {"arrangement", Word{kBallArrangements}, "packed", "How the balls are laid out; `\"packed\"` is an endless layer.",
+     kOfBalls},
+    {"extent", Word{kFinite}, "finite", "A single element is finite.", kOfSingle},
+    {"extent", Word{kInfinite}, "infinite", "A layer of balls is endless.", kOfPacked},
+    {"extent", Word{kExtents}, "finite", "`\"infinite\"`: one periodic cell.", kOfOthers},
+    {"x_length_mm", kSize, kRequired, "Length of a finite part, with room for at least one element.", kFiniteOnly},
+    {"y_length_mm", kSize, kRequired, "Length of a finite part, with room for at least one element.", kFiniteOnly},
+    {"x_offset_mm", Number{kGap}, 0.0, "Of finite parts: flat margin kept free on both borders.", kFiniteOnly,
+     kZeroIsNone},
+    {"y_offset_mm", Number{kGap}, 0.0, "Of finite parts: flat margin kept free on both borders.", kFiniteOnly,
+     kZeroIsNone},
+    {"partial_elements", Word{kPartialElements}, "cut", "What becomes of elements across the border.", kNoBallArray},
+    {"x_gap_mm", Number{kGap}, 0.0, "Flat land between elements.", kGapOnly, kZeroIsNone},
+    {"y_gap_mm", Number{kGap}, 0.0, "Flat land between elements.", kGapOnly, kZeroIsNone},
+    {"overlap_percent", Number{{.low = 0.0, .high = 100.0, .high_included = false}}, 50.0,
+     "The shift in percent of the base.", kOffsetOnly},
+    {"shifted_rows", Word{kRowParities}, "even", "Which rows are shifted, counted from 1.", kOffsetOnly},
+    {"mask", File{"a picture"}, kNone,
+     "A picture with one pixel for each element, whose dark pixels are elements; row 0 is the row of largest y. The "
+     "others, and partial elements, are left out: there is flat back. Not together with `angle_error_sigma_arcmin` "
+     "(but for `retrace job`) or `[part]` `facets`.",
+     kMaskOnly},
+    {"mask_threshold", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 0.7,
+     "Pixels with grey < threshold * 255 are elements (0.7: 178 and below).", kThresholdOnly},
+    {"gap_mm", Number{kGap}, 0.0, "Between neighbouring balls.", kBallGapOnly}};
+
+constexpr std::string_view kBesidePlate = "not allowed beside plate_mm";
+constexpr Condition kMeshOnly[] = {without("plate_mm", kBesidePlate)};
+constexpr Condition kWithMesh[] = {without("plate_mm", kBesidePlate), beside("mesh")};
+constexpr Condition kFacetsOnly[] = {without("plate_mm", kBesidePlate),
+                                     without("mesh", "not allowed beside mesh, which has the facets that it has")};
+
+constexpr Row kPartRows[] = {
+    {"mesh", File{"an STL file"}, kNone,
+     "An STL file, binary or ASCII, in mm of the part frame, in place of elements; at most 10 million triangles.",
+     kMeshOnly},
+    {"allow_open", Flag{}, false,
+     "Whether a mesh is traced that is not closed, or crosses itself. Openings are closed by flat pieces; a warning "
+     "says how many, and results are those of the part with them.",
+     kWithMesh},
+    {"plate_mm", Numbers{2, kSaneSize, "lengths, along x and y"}, kNone,
+     "Lengths along x and y of a plate whose flat back on z = 0 is its one retro facet, in place of elements."},
+    {"facets", File{"a table of planes"}, kNone,
+     "Of finite parts: a table of the planes in which their facets lie, in place of the nominal ones.", kFacetsOnly}};
+
+constexpr Condition kTurnedOnly[] = {without("mesh", "not allowed beside mesh: a part has one front")};
+constexpr Condition kSideOnly[] = {beside("mesh")};
+
+constexpr Row kEntranceRows[] = {
+    {"turned", File{"a turned part"}, kNone,
+     "The file of a turned part (turning_file.md): its exact surface, material below.", kTurnedOnly},
+    {"mesh", File{"an STL file"}, kNone, "An STL file, binary or ASCII, in mm, whose triangles are the front."},
+    {"mesh_side", Word{kSides}, "top",
+     "`\"top\"`: the front are its triangles that look towards +z; `\"bottom\"`: those that look towards -z, turned "
+     "over, which is what `machined.stl` of `retrace turn` needs: it is the counterpart, moulded in the turned "
+     "surface.",
+     kSideOnly},
+    {"centre_mm", Numbers{2, kPlace, "places, x and y"}, Computed{"the part's middle"},
+     "`[x, y]`: where in the part's plane the file's origin lies."}};
+
+}  // namespace
+
+std::span<const Row> element_rows() {
+  return kElementRows;
+}
+std::span<const Row> array_rows() {
+  return kArrayRows;
+}
+std::span<const Row> part_rows() {
+  return kPartRows;
+}
+std::span<const Row> entrance_rows() {
+  return kEntranceRows;
+}
+
+}  // namespace retrace::studies
