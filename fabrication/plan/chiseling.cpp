@@ -86,9 +86,8 @@ CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetCh
   const RotaryPose near{machine.a.sign.value * tilt_deg, -machine.c.sign.value * azimuth_deg};
   const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
   pose.root_tilt = solved.root_tilt;
-  pose.a = std::llround(solved.pose.a_deg * kRotaryUnitsPerDeg);
-  pose.c =
-      std::llround(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()) * kRotaryUnitsPerDeg);
+  pose.a = rotary_units(solved.pose.a_deg);
+  pose.c = rotary_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()));
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
   check_tilt(machine, pose.rounded.a_deg, where, stance.who());
   pose.section.depth_mm = cavity_depth_mm(blank_element(job));
@@ -113,21 +112,16 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
   const auto rounded = [&](const Vec3& from_apex) {
     return rounded_words(words_of(machine, from_apex, pose.rounded) - zero, pose.rounded_along);
   };
-  const std::array<Nanometres, 3> start = rounded(tip + to_go_mm * down);
-  const std::array<Nanometres, 3> middle = rounded(tip);
-  const std::array<Nanometres, 3> end = rounded(tip + to_go_mm * up);
-  const auto move = [&](Motion motion, const std::array<Nanometres, 3>& from, const std::array<Nanometres, 3>& to) {
-    return Increment{motion, to[1] - from[1], to[2] - from[2], feed_mm_per_min, to[0] - from[0]};
-  };
+  const Place start = rounded(tip + to_go_mm * down);
+  const Place middle = rounded(tip);
+  const Place end = rounded(tip + to_go_mm * up);
   Routine routine;
-  routine.x_start_nm = start[0];
-  routine.y_start_nm = start[1];
-  routine.z_start_nm = start[2];
+  routine.start = start;
   std::vector<Step>& steps = routine.subroutine.steps;
-  steps.emplace_back(move(Motion::plunge, start, middle));
+  steps.emplace_back(increment(Motion::plunge, middle - start, feed_mm_per_min));
   const auto dwell_ms = static_cast<std::int32_t>(std::lround(1e3 * job.process.dwell_s));
   if (dwell_ms > 0) steps.emplace_back(Dwell{dwell_ms});
-  steps.emplace_back(move(Motion::retract, middle, end));
+  steps.emplace_back(increment(Motion::retract, end - middle, feed_mm_per_min));
   return routine;
 }
 
@@ -191,7 +185,7 @@ std::vector<std::string> chiseling_description(const Job& job, std::size_t eleme
                       shortest(job.tool.clearance_deg))};
 }
 
-std::array<Nanometres, 3> rounded_words(const Vec3& words_mm, const Vec3& along) {
+Place rounded_words(const Vec3& words_mm, const Vec3& along) {
   const Vec3 exact = words_mm * kNanometresPerMm;
   if (along == Vec3::Zero()) return {std::llround(exact.x()), std::llround(exact.y()), std::llround(exact.z())};
   const Vec3 low = exact.array().floor();

@@ -42,6 +42,6 @@ std::vector<std::string> chiseling_description(const Job& job, std::size_t eleme
 
 /// Words in whole nanometres: each rounded by itself where `along` is 0, else that of the eight neighbours with the
 /// least error along it.
-std::array<Nanometres, 3> rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along);
+Place rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along);
 
 }  // namespace retrace::fabrication

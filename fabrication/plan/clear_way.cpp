@@ -26,7 +26,7 @@ ClearWay::ClearWay(const Job& job, const Machine& machine)
   step_mm_ = kStepShare * size.minCoeff();
 }
 
-double ClearWay::least_height_mm(const Words& at, const CuttingPose& pose) const {
+double ClearWay::least_height_mm(const Place& at, const CuttingPose& pose) const {
   AxisPositions axes{millimetres(at[0]), millimetres(at[1]), millimetres(at[2]), 0.0, pose.rounded.c_deg};
   (machine_.tilt == Tilt::table ? axes.a_deg : axes.b_deg) = pose.rounded.a_deg;
   const ToolPose tool = forward(machine_, axes);
@@ -37,30 +37,27 @@ double ClearWay::least_height_mm(const Words& at, const CuttingPose& pose) const
   return least;
 }
 
-bool ClearWay::is_clear_along(const Words& from, const Words& to, const CuttingPose& pose) const {
-  const Vec3 by(millimetres(to[0] - from[0]), millimetres(to[1] - from[1]), millimetres(to[2] - from[2]));
+bool ClearWay::is_clear_along(const Place& from, const Place& to, const CuttingPose& pose) const {
+  const Vec3 by = millimetres(Place(to - from));
   const int steps = std::clamp(static_cast<int>(std::ceil(by.norm() / step_mm_)), 1, kMostSteps);
   for (int i = 0; i <= steps; ++i) {
-    Words at{};
-    for (std::size_t k = 0; k < 3; ++k)
-      at[k] = from[k] + static_cast<Nanometres>(std::llround(static_cast<double>(to[k] - from[k]) * i / steps));
+    Place at = from;
+    for (Eigen::Index k = 0; k < 3; ++k) at[k] += std::llround(static_cast<double>(to[k] - from[k]) * i / steps);
     if (least_height_mm(at, pose) < clearance_mm_) return false;
   }
   return true;
 }
 
-bool ClearWay::is_clear(const Position& from, const Visit& visit, const CuttingPose& pose) const {
+bool ClearWay::is_clear(const Words& from, const Visit& visit, const CuttingPose& pose) const {
   if (face_.is_flat()) return true;
-  Position at = from;
-  for (const Rapid& rapid : approach(from, visit)) {
-    Position to = at;
-    if (rapid.x_nm) to.x_nm = rapid.x_nm;
-    if (rapid.y_nm) to.y_nm = rapid.y_nm;
-    if (rapid.z_nm) to.z_nm = rapid.z_nm;
+  Words at = from;
+  for (const Move& move : approach(from, visit)) {
+    Words to = at;
+    go_to(to, move.to);
     // Before X and Y are known the tool stands at the safe height.
-    if (to.x_nm && to.y_nm && to.z_nm) {
-      const Words last{*to.x_nm, *to.y_nm, *to.z_nm};
-      const Words first{at.x_nm.value_or(last[0]), at.y_nm.value_or(last[1]), at.z_nm.value_or(last[2])};
+    if (to[kX] && to[kY] && to[kZ]) {
+      const Place last(*to[kX], *to[kY], *to[kZ]);
+      const Place first(at[kX].value_or(last.x()), at[kY].value_or(last.y()), at[kZ].value_or(last.z()));
       if (!is_clear_along(first, last, pose)) return false;
     }
     at = to;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/plan/section.h"
@@ -16,13 +14,11 @@ class ClearWay {
   ClearWay(const Job& job, const Machine& machine);
 
   /// Whether all rapid moves from there to the start of a visit keep the process's clearance.
-  bool is_clear(const Position& from, const Visit& visit, const CuttingPose& pose) const;
+  bool is_clear(const Words& from, const Visit& visit, const CuttingPose& pose) const;
 
  private:
-  using Words = std::array<Nanometres, 3>;
-
-  bool is_clear_along(const Words& from, const Words& to, const CuttingPose& pose) const;
-  double least_height_mm(const Words& at, const CuttingPose& pose) const;
+  bool is_clear_along(const Place& from, const Place& to, const CuttingPose& pose) const;
+  double least_height_mm(const Place& at, const CuttingPose& pose) const;
 
   const Machine& machine_;
   BlankFace face_;

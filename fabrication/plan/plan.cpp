@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -26,16 +27,6 @@ namespace {
 using geometry::Vec3;
 
 constexpr double kSecondsPerHour = 3600.0;
-
-Nanometres nanometres(double mm) {
-  return std::llround(mm * kNanometresPerMm);
-}
-double millimetres(Nanometres nm) {
-  return static_cast<double>(nm) / kNanometresPerMm;
-}
-double degrees(RotaryUnits units) {
-  return static_cast<double>(units) / kRotaryUnitsPerDeg;
-}
 
 /// `text` as every dialect takes it within a comment.
 std::string plain(std::string_view text) {
@@ -81,9 +72,9 @@ TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
       time.dwell_s += 1e-3 * dwell->ms;
       continue;
     }
-    const auto& move = std::get<Increment>(step);
-    const double seconds = linear_move_s(
-        machine, Vec3(millimetres(move.x_nm), millimetres(move.y_nm), millimetres(move.z_nm)), move.feed_mm_per_min);
+    const auto& move = std::get<Move>(step);
+    const Place by(move.to[kX].value_or(0), move.to[kY].value_or(0), move.to[kZ].value_or(0));
+    const double seconds = linear_move_s(machine, millimetres(by), move.feed_mm_per_min);
     const bool cuts = move.motion == Motion::plunge || move.motion == Motion::plough;
     (cuts ? time.cutting_s : time.retract_s) += seconds;
   }
@@ -150,29 +141,35 @@ class ProgramMaker {
     program_seconds_ = 0.0;
     if (!job_.substrate) program_.subroutines = plan_.subroutines;
     program_.tilt_letter = machine_.tilt_letter();
-    at_ = {};
+    at_ = {std::nullopt, std::nullopt, std::nullopt, 0, 0};
     raise();
   }
 
   void raise() {
-    if (at_.z_nm != safe_z_nm_) {
-      const double up_mm = at_.z_nm ? millimetres(safe_z_nm_ - *at_.z_nm) : 0.0;
+    if (at_[kZ] != safe_z_nm_) {
+      const double up_mm = at_[kZ] ? millimetres(safe_z_nm_ - *at_[kZ]) : 0.0;
       spend(nullptr, &TimeShares::fixed_s, linear_move_s(machine_, Vec3(0.0, 0.0, up_mm), std::nullopt));
-      program_.items.emplace_back(Raise{safe_z_nm_});
+      Move up;
+      up.to[kZ] = safe_z_nm_;
+      program_.items.emplace_back(up);
     }
-    at_.z_nm = safe_z_nm_;
+    at_[kZ] = safe_z_nm_;
     just_turned_ = true;
   }
 
   void turn(RotaryUnits a, RotaryUnits c) {
-    if (a == at_.a && c == at_.c) return;
+    const RotaryUnits by_a = a - *at_[kTilt];
+    const RotaryUnits by_c = c - *at_[kC];
+    if (by_a == 0 && by_c == 0) return;
     raise();
     constexpr double kRotationDeg = 45.0;
-    if (std::abs(degrees(c - at_.c)) > kRotationDeg) ++plan_.c_rotations;
-    spend(nullptr, &TimeShares::fixed_s, rotary_move_s(machine_, degrees(a - at_.a), degrees(c - at_.c)));
-    program_.items.emplace_back(Turn{a, c});
-    at_.a = a;
-    at_.c = c;
+    if (std::abs(degrees(by_c)) > kRotationDeg) ++plan_.c_rotations;
+    spend(nullptr, &TimeShares::fixed_s, rotary_move_s(machine_, degrees(by_a), degrees(by_c)));
+    Move turn;
+    turn.to[kTilt] = a;
+    turn.to[kC] = c;
+    program_.items.emplace_back(turn);
+    go_to(at_, turn.to);
   }
 
   /// The operator is told where the work stands before a stage starts.
@@ -202,12 +199,12 @@ class ProgramMaker {
     for (std::size_t k = 0; k < offsets.size(); ++k) {
       const double offset_mm = offsets[forth_ ? k : offsets.size() - 1 - k];
       const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
-      const RoutineStart& start = starts_[stage.subroutine];
-      const auto [x_nm, y_nm, z_nm] = rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along);
-      const Visit visit{element, stage.subroutine, x_nm + start.x_nm, y_nm + start.y_nm, z_nm + start.z_nm};
-      check_limits(visit, start.reach);
+      const auto& [start, reach] = starts_[stage.subroutine];
+      const Visit visit{element, stage.subroutine,
+                        rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along) + start};
+      check_limits(visit, reach);
       clear_way(visit, pose);
-      add(stage, visit, start.reach);
+      add(stage, visit, reach);
     }
     ++stage.visits;
     ++visits_;
@@ -237,27 +234,20 @@ class ProgramMaker {
   }
 
   void add(Stage& stage, const Visit& visit, const Reach& reach) {
-    Position at = at_;
-    for (const Rapid& rapid : approach(at_, visit)) {
+    for (const Move& move : approach(at_, visit)) {
       Vec3 by = Vec3::Zero();
-      if (rapid.x_nm && at.x_nm) by.x() = millimetres(*rapid.x_nm - *at.x_nm);
-      if (rapid.y_nm && at.y_nm) by.y() = millimetres(*rapid.y_nm - *at.y_nm);
-      if (rapid.z_nm && at.z_nm) by.z() = millimetres(*rapid.z_nm - *at.z_nm);
-      if (rapid.x_nm) at.x_nm = rapid.x_nm;
-      if (rapid.y_nm) at.y_nm = rapid.y_nm;
-      if (rapid.z_nm) at.z_nm = rapid.z_nm;
+      for (const Axis axis : {kX, kY, kZ})
+        if (move.to[axis] && at_[axis]) by[axis] = millimetres(*move.to[axis] - *at_[axis]);
+      go_to(at_, move.to);
       spend(&stage, just_turned_ ? &TimeShares::fixed_s : &TimeShares::rapid_s,
             linear_move_s(machine_, by, std::nullopt));
     }
     just_turned_ = false;
-    at_ = at;
     const TimeShares& routine = routine_times_[stage.subroutine];
     spend(&stage, &TimeShares::cutting_s, routine.cutting_s);
     spend(&stage, &TimeShares::dwell_s, routine.dwell_s);
     spend(&stage, &TimeShares::retract_s, routine.retract_s);
-    *at_.x_nm += reach.x_end_nm;
-    *at_.y_nm += reach.y_end_nm;
-    *at_.z_nm += reach.z_end_nm;
+    go_to(at_, linear_words(visit.start + reach.end));
     program_.items.emplace_back(visit);
     if (job_.substrate) used_.insert(visit.subroutine);
   }
@@ -310,12 +300,10 @@ class ProgramMaker {
   }
 
   void check_limits(const Visit& visit, const Reach& reach) const {
-    check_axis('X', visit.x_nm + reach.x_low_nm, visit.x_nm + reach.x_high_nm, machine_.x.limits_mm.value,
-               visit.element);
-    check_axis('Y', visit.y_nm + reach.y_low_nm, visit.y_nm + reach.y_high_nm, machine_.y.limits_mm.value,
-               visit.element);
-    check_axis('Z', visit.z_nm + reach.z_low_nm, visit.z_nm + reach.z_high_nm, machine_.z.limits_mm.value,
-               visit.element);
+    const std::array<const LinearAxis*, 3> axes = {&machine_.x, &machine_.y, &machine_.z};
+    for (const Axis axis : {kX, kY, kZ})
+      check_axis("XYZ"[axis], visit.start[axis] + reach.low[axis], visit.start[axis] + reach.high[axis],
+                 axes[axis]->limits_mm.value, visit.element);
   }
 
   void finish_program() {
@@ -389,7 +377,7 @@ class ProgramMaker {
   std::vector<TimeShares> routine_times_;
   Program program_;
   double program_seconds_ = 0.0;
-  Position at_;
+  Words at_{};
   Nanometres safe_z_nm_ = 0;
   bool just_turned_ = true;
   ClearWay way_;

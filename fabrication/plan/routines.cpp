@@ -17,20 +17,17 @@ constexpr int kMostCuts = 100'000;
 constexpr double kFitToleranceMm = 1e-6;
 
 /// Puts points in whole nanometres in a row, as moves between them.
-class Path {
+class SectionPath {
  public:
-  Path(Routine& routine, const Vec2& start_mm) : routine_(routine) {
-    y_nm_ = routine.y_start_nm = nanometres(start_mm.x());
-    z_nm_ = routine.z_start_nm = nanometres(start_mm.y());
+  SectionPath(Routine& routine, const Vec2& start_mm) : routine_(routine), at_(place_of(start_mm)) {
+    routine.start = at_;
   }
 
   void to(const Vec2& point_mm, Motion motion, double feed_mm_per_min) {
-    const Nanometres y_nm = nanometres(point_mm.x());
-    const Nanometres z_nm = nanometres(point_mm.y());
-    if (y_nm == y_nm_ && z_nm == z_nm_) return;
-    routine_.subroutine.steps.push_back(Increment{motion, y_nm - y_nm_, z_nm - z_nm_, feed_mm_per_min});
-    y_nm_ = y_nm;
-    z_nm_ = z_nm;
+    const Place to = place_of(point_mm);
+    if (to == at_) return;
+    routine_.subroutine.steps.push_back(increment(motion, to - at_, feed_mm_per_min));
+    at_ = to;
   }
 
   void dwell(double seconds) {
@@ -39,11 +36,10 @@ class Path {
   }
 
  private:
-  static Nanometres nanometres(double mm) { return std::llround(mm * kNanometresPerMm); }
+  static Place place_of(const Vec2& point_mm) { return {0, nanometres(point_mm.x()), nanometres(point_mm.y())}; }
 
   Routine& routine_;
-  Nanometres y_nm_ = 0;
-  Nanometres z_nm_ = 0;
+  Place at_;
 };
 
 Vec2 start_of_cut(const Section& section, double y, double clearance_mm) {
@@ -57,7 +53,7 @@ Vec2 on_clearance_plane(const Section& section, const Vec2& point, const Vec2& d
 }
 
 /// From the root along the floor, in one move or leaving the floor once the chip is free.
-Vec2 plough(Path& path, const Job& job, const Section& section, const Vec2& root) {
+Vec2 plough(SectionPath& path, const Job& job, const Section& section, const Vec2& root) {
   const Process& process = job.process;
   const double freed_mm = shortest_plough_mm(job, section);
   const double length_mm = process.shortest_plough ? freed_mm : std::max(process.plough_length_mm, freed_mm);
@@ -106,7 +102,7 @@ Routine unidirectional_routine(const Job& job, const Section& section) {
     return section.wall_y * (left_mm + 1e-3 * process.roughing_depth_um * (cuts - cut));
   };
   Routine routine;
-  Path path(routine, start_of_cut(section, wall_y(1), process.clearance_mm));
+  SectionPath path(routine, start_of_cut(section, wall_y(1), process.clearance_mm));
   for (int cut = 1; cut <= cuts; ++cut) {
     const double y = wall_y(cut);
     const Vec2 root(y, section.floor_z(y, left_mm));
@@ -123,7 +119,7 @@ Routine plunge_routine(const Job& job, const Section& section, double left_mm, d
   const Process& process = job.process;
   const double y = section.wall_y * left_mm;
   Routine routine;
-  Path path(routine, start_of_cut(section, y, process.clearance_mm));
+  SectionPath path(routine, start_of_cut(section, y, process.clearance_mm));
   Vec2 at(y, section.floor_z(y, left_mm));
   path.to(at, Motion::plunge, feed_mm_per_min);
   path.dwell(process.dwell_s);

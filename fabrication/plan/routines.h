@@ -8,9 +8,7 @@ namespace retrace::fabrication {
 /// A subroutine with the place where it starts, relative to the root's middle or the apex.
 struct Routine {
   Subroutine subroutine;
-  Nanometres y_start_nm = 0;
-  Nanometres z_start_nm = 0;
-  Nanometres x_start_nm = 0;
+  Place start = Place::Zero();
 };
 
 /// How many cuts a facet takes (roughing; layers of a bidirectional strategy). Unidirectional cuts are slices of

@@ -155,7 +155,7 @@ class StageMaker {
     stage.pose = pose;
     stage.subroutine = static_cast<std::uint32_t>(plan_.subroutines.size());
     routine.subroutine.number = kFirstSubroutine + static_cast<int>(plan_.subroutines.size());
-    starts_.push_back({routine.x_start_nm, routine.y_start_nm, routine.z_start_nm, reach_of(routine.subroutine)});
+    starts_.push_back({routine.start, reach_of(routine.subroutine)});
     plan_.subroutines.push_back(std::move(routine.subroutine));
     plan_.stages.push_back(std::move(stage));
   }

@@ -11,9 +11,7 @@ namespace retrace::fabrication {
 
 /// Where a routine starts, relative to the root's middle or the apex, and how far it reaches.
 struct RoutineStart {
-  Nanometres x_nm = 0;
-  Nanometres y_nm = 0;
-  Nanometres z_nm = 0;
+  Place start = Place::Zero();
   Reach reach;
 };
 

@@ -37,11 +37,12 @@ void MillMoves::begin() {
   state_.at.program.header = {"one half of the lens: turn the part by 180 degrees and run it again",
                               "begins where the axes stand at its first three words"};
   // These words tell the positions that the machine was zeroed at: nothing moves.
-  LinearMove z, x, y;
-  z.z_nm = std::llround(static_cast<double>(home_[kZ]) * nm);
-  x.x_nm = std::llround(static_cast<double>(home_[kX]) * nm);
-  y.y_nm = std::llround(static_cast<double>(home_[kY]) * nm);
-  state_.at.program.items = {z, x, y};
+  state_.at.program.has_mist = false;
+  for (const Axis axis : {kZ, kX, kY}) {
+    Move here;
+    here.to[axis] = std::llround(static_cast<double>(home_[axis]) * nm);
+    state_.at.program.items.emplace_back(here);
+  }
 }
 
 MillMoves::Mark MillMoves::mark() const {
@@ -80,9 +81,8 @@ void MillMoves::require_in_time() const {
 }
 
 void MillMoves::single(Axis axis, std::int64_t to) {
-  LinearMove move;
-  const Nanometres nm = std::llround(static_cast<double>(to) * part_.mill->grid_mm * kNanometresPerMm);
-  (axis == kX ? move.x_nm : axis == kY ? move.y_nm : move.z_nm) = nm;
+  Move move;
+  move.to[axis] = std::llround(static_cast<double>(to) * part_.mill->grid_mm * kNanometresPerMm);
   state_.at.program.items.emplace_back(move);
   state_.at.time_s += time_of(to - state_.place[axis]);
   ++state_.at.frames;

@@ -39,7 +39,6 @@ class MillMoves {
   std::vector<PlannedProgram> finish();
 
  private:
-  enum Axis : std::size_t { kX, kY, kZ };
   /// What one program is so far.
   struct State {
     PlannedProgram at;

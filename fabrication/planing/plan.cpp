@@ -95,13 +95,12 @@ void check_travel(const PlanedPart& part, const PlaningPlan& plan) {
   std::array<double, 3> high = {-kLargest, -kLargest, -kLargest};
   for (const PlannedProgram& planned : plan.programs)
     for (const auto& item : planned.program.items) {
-      const auto* const move = std::get_if<LinearMove>(&item);
+      const auto* const move = std::get_if<Move>(&item);
       if (move == nullptr) continue;
-      const std::array words = {move->x_nm, move->y_nm, move->z_nm};
-      for (std::size_t k = 0; k < words.size(); ++k) {
-        if (!words[k]) continue;
-        low[k] = std::min(low[k], static_cast<double>(*words[k]) / kNanometresPerMm);
-        high[k] = std::max(high[k], static_cast<double>(*words[k]) / kNanometresPerMm);
+      for (const Axis k : {kX, kY, kZ}) {
+        if (!move->to[k]) continue;
+        low[k] = std::min(low[k], millimetres(*move->to[k]));
+        high[k] = std::max(high[k], millimetres(*move->to[k]));
       }
     }
   const std::array travel = {part.mill->travel_x_mm, part.mill->travel_y_mm, part.mill->travel_z_mm};
@@ -132,19 +131,17 @@ PlaningPlan plan_mill(const PlanedPart& part) {
 /// One pass: along the chords, raised by what the passes below it will take.
 void add_pass(const PlanedPart& part, const PlaningPlan& plan, double raised_mm, PlannedProgram& planned) {
   const PlaningLathe& lathe = *part.lathe;
-  const auto nm = [](double mm) -> Nanometres { return std::llround(kNanometresPerMm * mm); };
-  LinearMove out, in, down;
-  out.z_nm = nm(lathe.clear_mm);
-  in.x_nm = nm(plan.points.front().x_mm);
+  Move out, in;
+  out.to[kZ] = nanometres(lathe.clear_mm);
+  in.to[kX] = nanometres(plan.points.front().x_mm);
   planned.program.items.emplace_back(out);
   planned.program.items.emplace_back(in);
   ProfilePoint at = plan.points.front();
   for (const std::size_t k : plan.chords) {
     const ProfilePoint& to = plan.points[k];
-    LinearMove cut;
-    cut.x_nm = nm(to.x_mm);
-    cut.z_nm = nm(std::min(to.z_mm + raised_mm, lathe.clear_mm));
-    cut.feed_mm_per_min = lathe.feed_mm_per_min;
+    Move cut{Motion::plough, {}, lathe.feed_mm_per_min, 0.0};
+    cut.to[kX] = nanometres(to.x_mm);
+    cut.to[kZ] = nanometres(std::min(to.z_mm + raised_mm, lathe.clear_mm));
     planned.program.items.emplace_back(cut);
     planned.time_s += std::hypot(to.x_mm - at.x_mm, to.z_mm - at.z_mm) / lathe.feed_mm_per_min * 60.0;
     ++planned.frames;
@@ -171,6 +168,7 @@ PlaningPlan plan_lathe(const PlanedPart& part) {
   plan.passes = static_cast<std::int64_t>(std::ceil(profile.step_mm() / part.lathe->depth_of_cut_mm));
   PlannedProgram planned;
   planned.set = "passes";
+  planned.program.has_mist = false;
   planned.program.spindle = spindle_of(*part.lathe);
   planned.program.header = {"X is the radius"};
   if (part.lathe->nose_radius_mm > 0.0)

@@ -7,13 +7,13 @@
 #include "fabrication/planing/chords.h"
 #include "fabrication/planing/part.h"
 #include "fabrication/planing/zone_cuts.h"
-#include "fabrication/program/move_program.h"
+#include "fabrication/program/program.h"
 
 namespace retrace::fabrication {
 
 /// A program that a machine runs without a break.
 struct PlannedProgram {
-  MoveProgram program;
+  Program program;
   std::string set;          ///< "odd zones", "even zones", "inner zones"; "passes" of a lathe
   std::int64_t frames = 0;  ///< moves
   std::int64_t cuts = 0;    ///< strokes, or chords

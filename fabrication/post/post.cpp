@@ -8,270 +8,162 @@
 
 #include "core/error.h"
 #include "core/message_text.h"
-#include "fabrication/post/dialect_writer.h"
+#include "fabrication/post/dialects.h"
 
 namespace retrace::fabrication {
 namespace {
 
-struct Entry {
-  Dialect dialect;
-  std::unique_ptr<DialectWriter> (*make)();
-};
-
-const std::array<Entry, 4> kEntries = {
-    Entry{{"rs274ngc", ".ngc", "RS274/NGC as LinuxCNC reads it: the reference"}, make_rs274ngc},
-    Entry{{"sinumerik", ".mpf", "Siemens Sinumerik 840D"}, make_sinumerik},
-    Entry{{"fanuc", ".nc", "Fanuc, 30i series"}, make_fanuc},
-    Entry{{"pmac", ".pmc", "Omron (Delta Tau) Power PMAC"}, make_pmac}};
-
+/// Writes one file. Numbers of positions are written from integers, digit by digit.
 class FileWriter {
  public:
-  FileWriter(const DialectWriter& dialect, const Program& program) : dialect_(dialect), program_(program) {}
+  FileWriter(const DialectWords& dialect, const Program& program) : dialect_(dialect), program_(program) {
+    for (const Subroutine& subroutine : program.subroutines) reach_.push_back(reach_of(subroutine).end);
+  }
 
   std::string run() {
-    dialect_.begin_file(out_);
-    if (dialect_.subroutines_first()) {
+    text_ += dialect_.file_ends;
+    if (dialect_.subroutines_first) {
       header();
       subroutines();
-      dialect_.begin_main(out_);
+      text_ += dialect_.main_begin;
     } else {
-      dialect_.begin_main(out_);
+      text_ += dialect_.main_begin;
       header();
     }
-    dialect_.prepare(out_);
+    text_ += dialect_.prepare;
+    if (const auto& spindle = program_.spindle)
+      add(dialect_.spindle_start, spindle->rpm, spindle->is_clockwise ? "M3" : "M4", spindle->start_text);
     for (const Item& item : program_.items) std::visit(*this, item);
-    if (mist_on_) dialect_.mist(out_, false);
-    dialect_.end_main(out_);
-    if (!dialect_.subroutines_first()) subroutines();
-    dialect_.end_file(out_);
-    return out_.take();
+    mist(false);
+    if (program_.spindle) add(dialect_.spindle_stop, program_.spindle->stop_text);
+    text_ += dialect_.main_end;
+    if (!dialect_.subroutines_first) subroutines();
+    text_ += dialect_.file_ends;
+    return std::move(text_);
   }
 
-  void operator()(const Comment& comment) { dialect_.comment(out_, comment.text); }
-  void operator()(const Message& message) { dialect_.message(out_, message.text); }
+  void operator()(const Comment& comment) { add(dialect_.comment, comment.text); }
+  void operator()(const Message& message) { add(dialect_.message, message.text); }
   void operator()(const OptionalStop&) {
     // The chips stay where they fell while somebody looks.
-    if (mist_on_) dialect_.mist(out_, false);
-    dialect_.optional_stop(out_);
-    if (mist_on_) dialect_.mist(out_, true);
+    const bool had_mist = mist_on_;
+    mist(false);
+    text_ += "M1\n";
+    mist(had_mist);
   }
-  void operator()(const Raise& raise) {
-    if (mist_on_) dialect_.mist(out_, false);
-    mist_on_ = false;
-    at_.z_nm = raise.z_nm;
-    Words words;
-    words.z_nm = raise.z_nm;
-    dialect_.rapid(out_, words);
+  void operator()(const Move& move) {
+    const bool is_rapid = move.motion == Motion::rapid;
+    if (!is_rapid) mist(true);
+    if (is_rapid && move.to[kZ] && !move.to[kX] && !move.to[kY]) mist(false);
+    write(move);
+    go_to(at_, move.to);
   }
-  void operator()(const Turn& turn) {
-    Words words;
-    words.a = turn.a;
-    words.c = turn.c;
-    words.tilt_letter = program_.tilt_letter;
-    dialect_.rapid(out_, words);
-  }
-  void operator()(const Trace& trace) {
-    const TracePoint& first = trace.points.front();
-    Words start;
-    start.x_nm = first.x_nm;
-    start.y_nm = first.y_nm;
-    start.c = first.c;
-    dialect_.rapid(out_, start);
-    if (!mist_on_) dialect_.mist(out_, true);
-    mist_on_ = true;
-    Words down;
-    down.z_nm = first.z_nm;
-    dialect_.feed(out_, down, trace.approach_feed_mm_per_min);
-    dialect_.begin_trace(out_);
-    const TracePoint* last = &first;
-    for (const TracePoint& p : std::span(trace.points).subspan(1)) {
-      Words words;
-      words.x_nm = p.x_nm;
-      if (p.y_nm != last->y_nm) words.y_nm = p.y_nm;
-      words.z_nm = p.z_nm;
-      if (p.c != last->c) words.c = p.c;
-      dialect_.trace_point(out_, words, p.seconds);
-      last = &p;
+  void operator()(const Path& path) {
+    text_ += dialect_.path_begin;
+    for (const Move& move : path.moves) {
+      write(move);
+      go_to(at_, move.to);
     }
-    dialect_.end_trace(out_);
-    at_ = {last->x_nm, last->y_nm, last->z_nm, at_.a, last->c};
+    text_ += dialect_.path_end;
   }
   void operator()(const Visit& visit) {
-    dialect_.comment(out_, fmt::format("element {}", visit.element));
-    for (const Rapid& rapid : approach(at_, visit)) {
-      Words words;
-      words.x_nm = rapid.x_nm;
-      words.y_nm = rapid.y_nm;
-      words.z_nm = rapid.z_nm;
-      dialect_.rapid(out_, words);
-    }
-    if (!mist_on_) dialect_.mist(out_, true);
-    mist_on_ = true;
-    const Subroutine& subroutine = program_.subroutines[visit.subroutine];
-    dialect_.call(out_, subroutine.number);
-    const Reach& reach = reaches_[visit.subroutine];
-    at_.x_nm = visit.x_nm + reach.x_end_nm;
-    at_.y_nm = visit.y_nm + reach.y_end_nm;
-    at_.z_nm = visit.z_nm + reach.z_end_nm;
+    add(dialect_.comment, fmt::format("element {}", visit.element));
+    for (const Move& move : approach(at_, visit)) write(move);
+    mist(true);
+    add(dialect_.call, program_.subroutines[visit.subroutine].number);
+    go_to(at_, linear_words(visit.start + reach_[visit.subroutine]));
   }
 
  private:
+  /// A format of the dialect, filled in.
+  template <class... Values>
+  void add(std::string_view format, const Values&... values) {
+    fmt::format_to(std::back_inserter(text_), fmt::runtime(format), values...);
+  }
+
   void header() {
-    for (const std::string& line : program_.header) dialect_.comment(out_, line);
+    for (const std::string& line : program_.header) add(dialect_.comment, line);
+  }
+
+  void mist(bool on) {
+    if (on == mist_on_ || !program_.has_mist) return;
+    text_ += on ? "M7\n" : "M9\n";
+    mist_on_ = on;
   }
 
   void subroutines() {
     for (const Subroutine& subroutine : program_.subroutines) {
-      dialect_.begin_subroutine(out_, subroutine);
-      for (const Step& step : subroutine.steps) {
-        if (const auto* dwell = std::get_if<Dwell>(&step)) {
-          dialect_.dwell(out_, dwell->ms);
-          continue;
-        }
-        const auto& move = std::get<Increment>(step);
-        Words words;
-        if (move.x_nm != 0) words.x_nm = move.x_nm;
-        if (move.y_nm != 0) words.y_nm = move.y_nm;
-        if (move.z_nm != 0) words.z_nm = move.z_nm;
-        dialect_.feed(out_, words, move.feed_mm_per_min);
-      }
-      dialect_.end_subroutine(out_, subroutine);
+      add(dialect_.subroutine_begin, subroutine.number, subroutine.title);
+      for (const Step& step : subroutine.steps)
+        if (const auto* const dwell = std::get_if<Dwell>(&step))
+          add(dialect_.dwell, 1e-3 * dwell->ms, dwell->ms);
+        else
+          write(std::get<Move>(step));
+      add(dialect_.subroutine_end, subroutine.number);
     }
   }
 
-  static std::vector<Reach> reaches(const Program& program) {
-    std::vector<Reach> result;
-    for (const Subroutine& subroutine : program.subroutines) result.push_back(reach_of(subroutine));
-    return result;
+  void write(const Move& move) {
+    text_ += move.motion == Motion::rapid ? dialect_.rapid : dialect_.linear;
+    const std::array letters = {'X', 'Y', 'Z', program_.tilt_letter, 'C'};
+    for (std::size_t axis = 0; axis < kAxes; ++axis)
+      if (move.to[axis]) word(letters[axis], *move.to[axis], axis < kTilt ? 6 : 7);
+    if (move.seconds > 0.0)
+      add(dialect_.path_time, 60.0 / move.seconds, 1e3 * move.seconds);
+    else if (move.motion != Motion::rapid)
+      feed(move.feed_mm_per_min);
+    text_ += '\n';
   }
 
-  const DialectWriter& dialect_;
+  /// " X1.000000": six decimals of a mm, seven of a degree.
+  void word(char letter, std::int64_t value, int decimals) {
+    std::uint64_t unit = 1;
+    for (int k = 0; k < decimals; ++k) unit *= 10;
+    const auto bits = static_cast<std::uint64_t>(value);
+    const std::uint64_t size = value < 0 ? 0 - bits : bits;
+    fmt::format_to(std::back_inserter(text_), " {}{}{}.{:0{}}", letter, value < 0 ? "-" : "", size / unit, size % unit,
+                   decimals);
+  }
+
+  void feed(double mm_per_min) {
+    const long long thousandths = std::llround(mm_per_min * 1e3);
+    fmt::format_to(std::back_inserter(text_), " F{}.{:03}", thousandths / 1000, thousandths % 1000);
+  }
+
+  const DialectWords& dialect_;
   const Program& program_;
-  std::vector<Reach> reaches_ = reaches(program_);
-  NcText out_;
-  Position at_;
+  std::vector<Place> reach_;  ///< end of each subroutine from its start
+  std::string text_;
+  Words at_{};
   bool mist_on_ = false;
 };
 
+const DialectWords& words_of(std::string_view dialect) {
+  std::vector<std::string_view> names;
+  for (const DialectWords& words : dialect_words()) {
+    if (words.dialect.name == dialect) return words;
+    names.push_back(words.dialect.name);
+  }
+  throw InputError({"", 0, "--dialect"}, fmt::format("must be {}, got {}", alternatives(names), in_quotes(dialect)));
+}
+
 }  // namespace
 
-NcText& NcText::add(std::string_view text) {
-  text_ += text;
-  return *this;
-}
-
-NcText& NcText::number(long long value) {
-  fmt::format_to(std::back_inserter(text_), "{}", value);
-  return *this;
-}
-
-NcText& NcText::end_line() {
-  text_ += '\n';
-  return *this;
-}
-
-NcText& NcText::decimal(double value, int decimals) {
-  fmt::format_to(std::back_inserter(text_), "{:.{}f}", value, decimals);
-  return *this;
-}
-
-NcText& NcText::decimal(double value) {
-  const long long thousandths = std::llround(value * 1e3);
-  fmt::format_to(std::back_inserter(text_), "{}.{:03}", thousandths / 1000, thousandths % 1000);
-  return *this;
-}
-
-void NcText::fixed_point(char letter, long long value, int decimals) {
-  long long one = 1;
-  for (int k = 0; k < decimals; ++k) one *= 10;
-  const unsigned long long size =
-      value < 0 ? 0ULL - static_cast<unsigned long long>(value) : static_cast<unsigned long long>(value);
-  const auto unit = static_cast<unsigned long long>(one);
-  fmt::format_to(std::back_inserter(text_), " {}{}{}.{:0{}}", letter, value < 0 ? "-" : "", size / unit, size % unit,
-                 decimals);
-}
-
-NcText& NcText::words(const Words& words) {
-  constexpr int kLinearDecimals = 6;
-  constexpr int kRotaryDecimals = 7;
-  if (words.x_nm) fixed_point('X', *words.x_nm, kLinearDecimals);
-  if (words.y_nm) fixed_point('Y', *words.y_nm, kLinearDecimals);
-  if (words.z_nm) fixed_point('Z', *words.z_nm, kLinearDecimals);
-  if (words.a) fixed_point(words.tilt_letter, *words.a, kRotaryDecimals);
-  if (words.c) fixed_point('C', *words.c, kRotaryDecimals);
-  return *this;
-}
-
-void DialectWriter::start_spindle(NcText& out, const Spindle& spindle) const {
-  out.add("S").number(spindle.rpm).line(spindle.is_clockwise ? " M3" : " M4");
-}
-
-void DialectWriter::stop_spindle(NcText& out, const Spindle&) const {
-  out.line("M5");
-}
-
 std::span<const Dialect> dialects() {
-  static const std::array<Dialect, kEntries.size()> all = [] {
-    std::array<Dialect, kEntries.size()> result;
-    for (std::size_t k = 0; k < kEntries.size(); ++k) result[k] = kEntries[k].dialect;
+  static const std::vector<Dialect> all = [] {
+    std::vector<Dialect> result;
+    for (const DialectWords& words : dialect_words()) result.push_back(words.dialect);
     return result;
   }();
   return all;
 }
 
-namespace {
-
-const Entry& entry_of(std::string_view dialect) {
-  std::vector<std::string_view> names;
-  for (const Entry& entry : kEntries) {
-    if (entry.dialect.name == dialect) return entry;
-    names.push_back(entry.dialect.name);
-  }
-  throw InputError({"", 0, "--dialect"}, fmt::format("must be {}, got {}", alternatives(names), in_quotes(dialect)));
-}
-
-/// Writes the items of a program of moves.
-struct MoveWriter {
-  const DialectWriter& dialect;
-  NcText& out;
-
-  void operator()(const Comment& comment) const { dialect.comment(out, comment.text); }
-  void operator()(const Message& message) const { dialect.message(out, message.text); }
-  void operator()(const LinearMove& move) const {
-    Words words;
-    words.x_nm = move.x_nm;
-    words.y_nm = move.y_nm;
-    words.z_nm = move.z_nm;
-    if (move.feed_mm_per_min > 0.0)
-      dialect.feed(out, words, move.feed_mm_per_min);
-    else
-      dialect.rapid(out, words);
-  }
-};
-
-}  // namespace
-
 std::string nc_text(const Program& program, std::string_view dialect) {
-  return FileWriter(*entry_of(dialect).make(), program).run();
-}
-
-std::string nc_text(const MoveProgram& program, std::string_view dialect) {
-  const std::unique_ptr<DialectWriter> writer = entry_of(dialect).make();
-  NcText out;
-  writer->begin_file(out);
-  writer->begin_main(out);
-  for (const std::string& line : program.header) writer->comment(out, line);
-  writer->prepare(out);
-  if (program.spindle) writer->start_spindle(out, *program.spindle);
-  for (const auto& item : program.items) std::visit(MoveWriter{*writer, out}, item);
-  if (program.spindle) writer->stop_spindle(out, *program.spindle);
-  writer->end_main(out);
-  writer->end_file(out);
-  return out.take();
+  return FileWriter(words_of(dialect), program).run();
 }
 
 std::string_view ending_of(std::string_view dialect) {
-  return entry_of(dialect).dialect.ending;
+  return words_of(dialect).dialect.ending;
 }
 
 }  // namespace retrace::fabrication

@@ -1,10 +1,11 @@
 #pragma once
 
+// Writers of NC text: a program as one complete file of a dialect.
+
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "fabrication/program/move_program.h"
 #include "fabrication/program/program.h"
 
 namespace retrace::fabrication {
@@ -20,11 +21,9 @@ struct Dialect {
 std::span<const Dialect> dialects();
 
 /// The program as one complete file of that dialect: header, preparation, subroutines, moves, end.
+/// \pre a spindle has its texts where the dialect has no words for it
 /// \throw InputError for a dialect that is not known
 std::string nc_text(const Program& program, std::string_view dialect);
-
-/// The same of a program that is nothing but moves.
-std::string nc_text(const MoveProgram& program, std::string_view dialect);
 
 /// The ending of a dialect's files. \throw InputError likewise
 std::string_view ending_of(std::string_view dialect);

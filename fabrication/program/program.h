@@ -1,6 +1,8 @@
 #pragma once
 
-#include <cstddef>
+// A program between planner and writers, free of any dialect: what is done in which order, in whole units.
+
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -8,39 +10,66 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/vec.h"
+
 namespace retrace::fabrication {
 
 /// Positions of linear axes in whole nanometres: sums of them do not drift.
 using Nanometres = std::int64_t;
-/// Positions of rotary axes in units of 1e-7 degrees. The axis that tilts is called `a` here, whether it is A or B.
+/// Positions of rotary axes in units of 1e-7 degrees.
 using RotaryUnits = std::int64_t;
 
 inline constexpr double kNanometresPerMm = 1e6;
+inline constexpr double kRotaryUnitsPerDeg = 1e7;
 
 inline double millimetres(Nanometres nm) {
   return static_cast<double>(nm) / kNanometresPerMm;
 }
-inline constexpr double kRotaryUnitsPerDeg = 1e7;
+Nanometres nanometres(double mm);
+inline double degrees(RotaryUnits units) {
+  return static_cast<double>(units) / kRotaryUnitsPerDeg;
+}
+RotaryUnits rotary_units(double deg);
 
-/// What a move of a subroutine is for.
-enum class Motion { plunge, plough, retract, translate };
+/// X, Y and Z in whole nanometres.
+using Place = Eigen::Matrix<Nanometres, 3, 1>;
+inline geometry::Vec3 millimetres(const Place& place) {
+  return {millimetres(place.x()), millimetres(place.y()), millimetres(place.z())};
+}
 
-/// One straight incremental move at a feed. A chisel never moves along X while it cuts.
-struct Increment {
-  Motion motion = Motion::plunge;
-  Nanometres y_nm = 0;
-  Nanometres z_nm = 0;
-  double feed_mm_per_min = 0.0;
-  Nanometres x_nm = 0;
+/// Axes of a program. The one that tilts is A or B, as the machine has it.
+enum Axis : std::size_t { kX, kY, kZ, kTilt, kC };
+inline constexpr std::size_t kAxes = 5;
+
+/// Words of a move by axis: nanometres of X, Y and Z, rotary units of the others. Nothing: the axis stays.
+using Words = std::array<std::optional<std::int64_t>, kAxes>;
+
+/// A word for each of X, Y and Z.
+Words linear_words(const Place& place);
+/// Axes with a word go there, the others stay.
+void go_to(Words& at, const Words& to);
+
+/// What a move is for. A rapid one is as fast as the axes go.
+enum class Motion : std::uint8_t { rapid, plunge, plough, retract, translate };
+
+/// One straight move: to positions, in subroutines by increments.
+struct Move {
+  Motion motion = Motion::rapid;
+  Words to{};
+  double feed_mm_per_min = 0.0;  ///< of a move that is neither rapid nor timed
+  double seconds = 0.0;          ///< > 0: the move takes that time
 };
 
 struct Dwell {
   std::int32_t ms = 0;
 };
 
-using Step = std::variant<Increment, Dwell>;
+using Step = std::variant<Move, Dwell>;
 
-/// A routine of cutting moves, called where it starts.
+/// A move of a subroutine: words for the axes that it moves.
+Move increment(Motion motion, const Place& by, double feed_mm_per_min);
+
+/// A routine of cutting moves by increments of X, Y and Z, called where it starts.
 struct Subroutine {
   int number = 0;     ///< 101 and up
   std::string title;  ///< one line for people
@@ -49,15 +78,9 @@ struct Subroutine {
 
 /// Where a subroutine ends and how far it reaches, relative to its start.
 struct Reach {
-  Nanometres y_end_nm = 0;
-  Nanometres z_end_nm = 0;
-  Nanometres y_low_nm = 0;
-  Nanometres y_high_nm = 0;
-  Nanometres z_low_nm = 0;
-  Nanometres z_high_nm = 0;
-  Nanometres x_end_nm = 0;
-  Nanometres x_low_nm = 0;
-  Nanometres x_high_nm = 0;
+  Place end = Place::Zero();
+  Place low = Place::Zero();
+  Place high = Place::Zero();
 };
 Reach reach_of(const Subroutine& subroutine);
 
@@ -69,85 +92,57 @@ struct Comment {
 struct Message {
   std::string text;
 };
-/// Rapid move of Z alone.
-struct Raise {
-  Nanometres z_nm = 0;
-};
-/// Rapid move of the rotary axes alone.
-struct Turn {
-  RotaryUnits a = 0;
-  RotaryUnits c = 0;
-};
 /// One element is visited: rapid moves to the start of a subroutine, and the call.
 struct Visit {
   std::int32_t element = 0;
   std::uint32_t subroutine = 0;  ///< index in Program::subroutines
-  Nanometres x_nm = 0;
-  Nanometres y_nm = 0;
-  Nanometres z_nm = 0;
+  Place start = Place::Zero();
 };
-/// A point of a continuous path.
-struct TracePoint {
-  Nanometres x_nm = 0;
-  Nanometres y_nm = 0;
-  Nanometres z_nm = 0;
-  RotaryUnits c = 0;
-  double seconds = 0.0;  ///< since the point before it; > 0
-};
-/// A path of X, Y, Z and C that is followed without stopping, each point reached at its time: rapid moves to its first
-/// point without Z, down to it at the feed, then the others.
-struct Trace {
-  std::vector<TracePoint> points;  ///< 2 or more
-  double approach_feed_mm_per_min = 0.0;
+/// Timed moves that follow each other without stopping.
+struct Path {
+  std::vector<Move> moves;
 };
 /// The operator may stop here.
 struct OptionalStop {};
 
-using Item = std::variant<Comment, Message, Raise, Turn, Visit, Trace, OptionalStop>;
+using Item = std::variant<Comment, Message, OptionalStop, Move, Visit, Path>;
 
-/// A program that runs alone, free of any dialect: preparation, `items` in their order, end. Texts are one line of
-/// ASCII without brackets, quotes, semicolons and percent signs.
+/// How the spindle turns while a program cuts.
+struct Spindle {
+  std::int32_t rpm = 0;
+  bool is_clockwise = true;  ///< M3 of ISO 6983-1, otherwise M4
+  std::string start_text;    ///< lines for a dialect that has no words of its own for it; empty: none
+  std::string stop_text;
+};
+
+/// A program that runs alone: preparation, `items` in their order, end. Texts are one line of ASCII without brackets,
+/// quotes, semicolons and percent signs.
 struct Program {
   std::string name;  ///< of the file, without its ending
   std::vector<std::string> header;
+  std::optional<Spindle> spindle;  ///< turns from before the first item to behind the last; nothing: stands still
+  bool has_mist = true;            ///< from the first cut to the next rapid move of Z alone
   std::vector<Subroutine> subroutines;
   std::vector<Item> items;
   char tilt_letter = 'A';  ///< of the axis that tilts
 };
 
-/// Positions of all axes.
-struct Position {
-  std::optional<Nanometres> x_nm;  ///< nothing: not known yet
-  std::optional<Nanometres> y_nm;
-  std::optional<Nanometres> z_nm;
-  RotaryUnits a = 0;
-  RotaryUnits c = 0;
-};
-
-/// A rapid move of linear axes: only the words that change. Z never goes down together with another axis.
-struct Rapid {
-  std::optional<Nanometres> x_nm;
-  std::optional<Nanometres> y_nm;
-  std::optional<Nanometres> z_nm;
-};
-
 /// The rapid moves that bring the tool to the start of a visit: Z alone first where it rises, last where it falls.
-/// At most two, so that the path stays above a blank that rises towards +Y or falls.
-std::vector<Rapid> approach(const Position& from, const Visit& visit);
+/// At most two, so that the path stays above a blank that rises towards +Y or falls. Only words that change.
+std::vector<Move> approach(const Words& from, const Visit& visit);
 
-/// One straight move as the program asks for it, in absolute positions.
+/// One straight move as the program asks for it, its words absolute.
 struct PlannedMove {
-  bool rapid = true;
-  bool rotary = false;
-  Motion motion = Motion::translate;  ///< of a feed move
-  Position to;
-  double feed_mm_per_min = 0.0;  ///< 0 for rapids
-  double dwell_s = 0.0;          ///< after the move
-  double trace_s = 0.0;          ///< time of a move of a trace; 0 for others
-  std::int32_t element = -1;     ///< that is visited; -1: none
+  Move move;
+  Words at{};                 ///< of all axes afterwards; nothing: not known yet
+  double dwell_s = 0.0;       ///< after the move
+  std::int32_t element = -1;  ///< that is visited; -1: none
+
+  bool is_rapid() const { return move.motion == Motion::rapid; }
+  bool is_rotary() const { return is_rapid() && (move.to[kTilt] || move.to[kC]); }
 };
 
-/// Calls `sink` for every move of the program, in order. Dwells belong to the move before them.
+/// Calls `sink` for every move of the program, in order. Dwells belong to the move before them. Rotary axes begin at 0.
 void for_each_move(const Program& program, const std::function<void(const PlannedMove&)>& sink);
 
 }  // namespace retrace::fabrication

@@ -7,30 +7,31 @@
 namespace retrace::fabrication {
 namespace {
 
-using Code = IsoBlock::Code;
+using namespace nc_effects;
 
 /// Groups of the operator's manual, G code system B of lathes and that of machining centres.
-IsoBlock::Meaning fanuc_meaning_of(double g) {
-  if (g == 0) return {Code::rapid, 1};
-  if (g == 1) return {Code::linear, 1};
-  if (g == 4) return {Code::dwell, 0};
-  if (g == 17 || g == 18 || g == 19) return {Code::no_effect, 2};
-  if (g == 20) return {Code::inch, 6};
-  if (g == 21) return {Code::millimetre, 6};
-  if (g == 40) return {Code::compensation_off, 7};
-  if (g == 49) return {Code::compensation_off, 8};
-  if (g == 54) return {Code::workpiece_offset, 14};
-  if (g == 61) return {Code::exact_stop, 15};
-  if (g == 64) return {Code::blending, 15};
-  if (g == 69) return {Code::no_effect, 16};  // turned coordinates cancelled
-  if (g == 80) return {Code::no_effect, 9};
-  if (g == 90) return {Code::absolute, 3};
-  if (g == 91) return {Code::incremental, 3};
-  if (g == 93) return {Code::inverse_time, 5};
-  if (g == 94) return {Code::feed_per_minute, 5};
-  if (g == 97) return {Code::no_effect, 17};  // S counts turns per minute
-  return {};
-}
+constexpr NcCode kFanucCodes[] = {
+    {0, 1, kRapid},
+    {1, 1, kLinear},
+    {4, 0, nullptr},
+    {17, 2, kNone},
+    {18, 2, kNone},
+    {19, 2, kNone},
+    {20, 6, kInch},
+    {21, 6, kMillimetre},
+    {40, 7, kCompensationOff},
+    {49, 8, kCompensationOff},
+    {54, 14, kWorkpieceOffset},
+    {61, 15, kExactStop},
+    {64, 15, kBlending},
+    {69, 16, kNone},  // turned coordinates cancelled
+    {80, 9, kNone},
+    {90, 3, kAbsolute},
+    {91, 3, kIncremental},
+    {93, 5, kInverseTime},
+    {94, 5, kFeedPerMinute},
+    {97, 17, kNone},  // S counts turns per minute
+};
 
 /// The line without its comments ( ... ).
 std::string without_comments(std::string_view line, const NcLines& lines) {
@@ -68,7 +69,7 @@ class FanucReader {
       read_line_that_may_be_cut(lines_, program_, [&] { read(without_comments(line, lines_)); });
     program_.lines = lines_.number();
     close_part();
-    if (open_ >= 0 && !program_.truncated) program_.truncated = "a subprogram has no M99";
+    if (table_.is_open() && !program_.truncated) program_.truncated = "a subprogram has no M99";
     if (percent_signs_ == 1 && !program_.truncated) program_.truncated = "the % at the end is missing";
     return std::move(program_);
   }
@@ -93,14 +94,10 @@ class FanucReader {
     const NcNumber number = take_number(text, lines_);
     if (!number.is_whole() || number.has_point || !text.empty())
       lines_.fail("O must have a whole number and stand alone");
-    if (open_ >= 0) lines_.fail("a subprogram must end with M99 before another begins");
+    if (table_.is_open()) lines_.fail("a subprogram must end with M99 before another begins");
     close_part();
-    if (has_main_) {
-      const std::int32_t index = table_.index_of(fmt::format("{}", number.value));
-      if (table_.get(index).is_whole) lines_.fail(fmt::format("there is a program O{} already", number.value));
-      table_.get(index).first = program_.blocks.size();
-      open_ = index;
-    }
+    if (has_main_ && !table_.begin(fmt::format("{}", number.value)))
+      lines_.fail(fmt::format("there is a program O{} already", number.value));
     has_main_ = true;
   }
 
@@ -111,40 +108,20 @@ class FanucReader {
   }
 
   void read_word(const NcWord& word, IsoBlock& iso, Line& line) {
-    const std::size_t axis = axis_index(word.letter);
-    if (axis < kNcAxes) {
-      if (!word.number.has_point)
-        lines_.fail(fmt::format("{} needs a decimal point: without one it counts least increments", word.letter));
-      return iso.set_axis(axis, word.number.value);
-    }
-    switch (word.letter) {
-      case 'N':
-        return;
-      case 'G':
-        return iso.set_g(word, fanuc_meaning_of(word.number.value));
-      case 'M':
-        return read_m(word, iso, line);
-      case 'F':
-        return iso.set_feed(word);
-      case 'P':
-        if (line.p) lines_.fail("has two words P");
-        line.p = word.number.value;
-        line.p_has_point = word.number.has_point;
-        return;
-      case 'S':
-        return iso.set_spindle_speed(word);
-      default:
-        lines_.fail(fmt::format("a word {} is not understood", word.letter));
-    }
-  }
-
-  void read_m(const NcWord& word, IsoBlock& iso, Line& line) {
-    if (word.number.value == 98)
+    if (axis_index(word.letter) < kNcAxes && !word.number.has_point)
+      lines_.fail(fmt::format("{} needs a decimal point: without one it counts least increments", word.letter));
+    if (word.letter == 'N') return;
+    if (word.letter == 'P') {
+      if (line.p) lines_.fail("has two words P");
+      line.p = word.number.value;
+      line.p_has_point = word.number.has_point;
+    } else if (word.letter == 'M' && word.number.value == 98) {
       line.has_call = true;
-    else if (word.number.value == 99)
+    } else if (word.letter == 'M' && word.number.value == 99) {
       line.has_return = true;
-    else
-      iso.set_m(word);
+    } else if (!iso.set(word, kFanucCodes)) {
+      lines_.fail(fmt::format("a word {} is not understood", word.letter));
+    }
   }
 
   void finish(IsoBlock& iso, Line& line) {
@@ -158,7 +135,7 @@ class FanucReader {
     if (line.has_call) set_call(line);
     if (line.has_return) set_return(line.block);
     program_.blocks.push_back(line.block);
-    if (line.has_return) end_subprogram();
+    if (line.has_return) table_.end();
   }
 
   void set_call(Line& line) {
@@ -169,20 +146,13 @@ class FanucReader {
   }
 
   void set_return(NcBlock& block) {
-    if (open_ < 0) lines_.fail("M99 outside of a subprogram would run the program again without end");
+    if (!table_.is_open()) lines_.fail("M99 outside of a subprogram would run the program again without end");
     block.returns = true;
-  }
-
-  void end_subprogram() {
-    table_.get(open_).last = program_.blocks.size();
-    table_.get(open_).is_whole = true;
-    open_ = -1;
   }
 
   NcLines lines_;
   NcProgram program_;
   SubroutineTable table_;
-  std::int32_t open_ = -1;
   int percent_signs_ = 0;
   bool has_main_ = false;
   bool main_is_closed_ = false;
@@ -190,7 +160,7 @@ class FanucReader {
 
 }  // namespace
 
-NcProgram parse_fanuc(NcLines lines) {
+NcProgram parse_fanuc(NcLines lines, const NcSpindleTexts&) {
   return FanucReader(std::move(lines)).run();
 }
 

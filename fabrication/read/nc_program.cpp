@@ -1,22 +1,20 @@
 #include "fabrication/read/nc_program.h"
 
+#include <array>
+
 #include "fabrication/read/dialects.h"
 
 namespace retrace::fabrication {
+namespace {
+
+/// In the order of the enumerators.
+constexpr std::array kReaders = {parse_rs274ngc, parse_sinumerik, parse_fanuc, parse_pmac};
+
+}  // namespace
 
 NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect, const NcSpindleTexts& spindle) {
   NcLines lines(text, file);
-  switch (dialect) {
-    case NcDialect::rs274ngc:
-      return parse_rs274ngc(std::move(lines));
-    case NcDialect::sinumerik:
-      return parse_sinumerik(std::move(lines));
-    case NcDialect::fanuc:
-      return parse_fanuc(std::move(lines));
-    case NcDialect::pmac:
-      return parse_pmac(std::move(lines), spindle);
-  }
-  throw InputError({file, 0, ""}, "no such dialect");
+  return kReaders[static_cast<std::size_t>(dialect)](std::move(lines), spindle);
 }
 
 NcDialect recognise_dialect(std::string_view text, const std::string& file) {

@@ -23,6 +23,23 @@ bool is_control(char c) {
   return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f;
 }
 
+constexpr NcCode kMCodes[] = {{0, 0, nc_effects::kNone},
+                              {1, 0, nc_effects::kNone},
+                              {2, 0, [](NcBlock& b) { b.ends = true; }},
+                              {3, 0, [](NcBlock& b) { b.spindle = NcSpindle::clockwise; }},
+                              {4, 0, [](NcBlock& b) { b.spindle = NcSpindle::counterclockwise; }},
+                              {5, 0, [](NcBlock& b) { b.spindle = NcSpindle::stopped; }},
+                              {7, 0, [](NcBlock& b) { b.mist_on = true; }},
+                              {8, 0, [](NcBlock& b) { b.mist_on = true; }},
+                              {9, 0, [](NcBlock& b) { b.mist_on = false; }},
+                              {30, 0, [](NcBlock& b) { b.ends = true; }}};
+
+const NcCode* code_of(std::span<const NcCode> codes, const NcWord& word) {
+  const auto found =
+      std::find_if(codes.begin(), codes.end(), [&](const NcCode& code) { return code.number == word.number.value; });
+  return found == codes.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), rest_(text) {
@@ -105,78 +122,40 @@ std::size_t axis_index(char letter) {
   return index == std::string_view::npos ? kNcAxes : index;
 }
 
-void IsoBlock::set_g(const NcWord& word, Meaning meaning) {
-  if (meaning.group != 0) {
-    const unsigned bit = 1U << static_cast<unsigned>(meaning.group);
-    if ((groups_ & bit) != 0)
-      lines_.fail(fmt::format("has two G codes of one group, the second is G{}", word.number.value));
-    groups_ |= bit;
-  }
-  switch (meaning.code) {
-    case Code::unknown:
-      lines_.fail(fmt::format("G{} is not understood", word.number.value));
-    case Code::rapid:
-      block_.move = NcMove::rapid;
-      break;
-    case Code::linear:
-      block_.move = NcMove::linear;
-      break;
-    case Code::dwell:
-      wants_dwell_ = true;
-      break;
-    case Code::no_effect:
-      break;
-    case Code::inch:
-      block_.unit_mm = 25.4;
-      break;
-    case Code::millimetre:
-      block_.unit_mm = 1.0;
-      break;
-    case Code::compensation_off:
-      block_.compensation_off = true;
-      break;
-    case Code::workpiece_offset:
-      block_.workpiece_offset = true;
-      break;
-    case Code::exact_stop:
-      block_.exact_stop = true;
-      break;
-    case Code::blending:
-      block_.exact_stop = false;
-      break;
-    case Code::absolute:
-      block_.absolute = true;
-      break;
-    case Code::incremental:
-      block_.absolute = false;
-      break;
-    case Code::feed_per_minute:
-      block_.feed_time_s = 60.0;
-      block_.inverse_time = false;
-      break;
-    case Code::inverse_time:
-      block_.inverse_time = true;
-      break;
-  }
+bool IsoBlock::set(const NcWord& word, std::span<const NcCode> g_codes) {
+  const std::size_t axis = axis_index(word.letter);
+  if (axis < kNcAxes)
+    set_axis(axis, word.number.value);
+  else if (word.letter == 'G')
+    set_g(word, g_codes);
+  else if (word.letter == 'M')
+    set_m(word);
+  else if (word.letter == 'F')
+    set_feed(word);
+  else if (word.letter == 'S')
+    set_spindle_speed(word);
+  else
+    return false;
+  return true;
+}
+
+void IsoBlock::set_g(const NcWord& word, std::span<const NcCode> codes) {
+  const NcCode* const code = code_of(codes, word);
+  if (code == nullptr) lines_.fail(fmt::format("G{} is not understood", word.number.value));
+  const unsigned bit = 1U << static_cast<unsigned>(code->group);
+  if (code->group != 0 && (groups_ & bit) != 0)
+    lines_.fail(fmt::format("has two G codes of one group, the second is G{}", word.number.value));
+  groups_ |= bit;
+  if (code->effect == nullptr)
+    wants_dwell_ = true;
+  else
+    code->effect(block_);
 }
 
 void IsoBlock::set_m(const NcWord& word) {
-  const double code = word.number.value;
-  if (code == 0.0 || code == 1.0) return;
-  if (code == 2.0 || code == 30.0)
-    block_.ends = true;
-  else if (code == 3.0)
-    block_.spindle = NcSpindle::clockwise;
-  else if (code == 4.0)
-    block_.spindle = NcSpindle::counterclockwise;
-  else if (code == 5.0)
-    block_.spindle = NcSpindle::stopped;
-  else if (code == 7.0 || code == 8.0)
-    block_.mist_on = true;
-  else if (code == 9.0)
-    block_.mist_on = false;
-  else
-    lines_.fail(fmt::format("M{} is not understood", code));
+  const NcCode* const code = code_of(kMCodes, word);
+  if (code == nullptr) lines_.fail(fmt::format("M{} is not understood", word.number.value));
+  code->effect(block_);
 }
 
 void IsoBlock::set_feed(const NcWord& word) {

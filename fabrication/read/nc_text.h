@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -55,37 +56,43 @@ std::string without_blanks(std::string_view text);
 
 bool starts_with_word(std::string_view text, std::string_view word);
 
-/// Turns the words of one ISO 6983 line into a block: what the dialects share. A dialect says which codes it has.
+/// A code of a dialect.
+struct NcCode {
+  double number = 0.0;
+  int group = 0;                       ///< modal group, of which a line may have one code; 0: of none
+  void (*effect)(NcBlock&) = nullptr;  ///< on its block; null: the line has the time of a dwell
+};
+
+/// What codes do, for the tables of dialects.
+namespace nc_effects {
+inline constexpr auto kRapid = [](NcBlock& b) { b.move = NcMove::rapid; };
+inline constexpr auto kLinear = [](NcBlock& b) { b.move = NcMove::linear; };
+inline constexpr auto kInch = [](NcBlock& b) { b.unit_mm = 25.4; };
+inline constexpr auto kMillimetre = [](NcBlock& b) { b.unit_mm = 1.0; };
+inline constexpr auto kCompensationOff = [](NcBlock& b) { b.compensation_off = true; };
+inline constexpr auto kWorkpieceOffset = [](NcBlock& b) { b.workpiece_offset = true; };
+inline constexpr auto kExactStop = [](NcBlock& b) { b.exact_stop = true; };
+inline constexpr auto kBlending = [](NcBlock& b) { b.exact_stop = false; };
+inline constexpr auto kAbsolute = [](NcBlock& b) { b.absolute = true; };
+inline constexpr auto kIncremental = [](NcBlock& b) { b.absolute = false; };
+inline constexpr auto kFeedPerMinute = [](NcBlock& b) {
+  b.feed_time_s = 60.0;
+  b.inverse_time = false;
+};
+/// F is one over the time of the move, per minute.
+inline constexpr auto kInverseTime = [](NcBlock& b) { b.inverse_time = true; };
+/// A plane, a cycle that is cancelled, S in turns per minute: nothing that a straight move depends on.
+inline constexpr auto kNone = [](NcBlock&) {};
+}  // namespace nc_effects
+
+/// Turns the words of one ISO 6983 line into a block: what the dialects share. A dialect says which G codes it has.
 class IsoBlock {
  public:
-  /// What a G code does.
-  enum class Code {
-    unknown,
-    rapid,
-    linear,
-    dwell,
-    no_effect,  ///< a plane, or a cycle that is cancelled: nothing that a straight move depends on
-    inch,
-    millimetre,
-    compensation_off,
-    workpiece_offset,
-    exact_stop,
-    blending,
-    absolute,
-    incremental,
-    feed_per_minute,
-    inverse_time  ///< F is one over the time of the move, per minute
-  };
-
-  /// Codes of one modal group exclude each other in a line; 0: of no group.
-  struct Meaning {
-    Code code = Code::unknown;
-    int group = 0;
-  };
-
   IsoBlock(const NcLines& lines, NcBlock& block) : lines_(lines), block_(block) {}
 
-  void set_g(const NcWord& word, Meaning meaning);
+  /// Takes a word that all dialects have: of an axis, G, M, F or S. False for any other.
+  bool set(const NcWord& word, std::span<const NcCode> g_codes);
+  void set_g(const NcWord& word, std::span<const NcCode> codes);
   /// M codes that all dialects share: 0, 1, 3, 4, 5, 7, 8, 9 and, as ends of the program, 2 and 30.
   void set_m(const NcWord& word);
   void set_feed(const NcWord& word);

@@ -31,7 +31,7 @@ class PmacReader {
         read_line_that_may_be_cut(lines_, program_, [&] { read(line.substr(0, line.find("//"))); });
     program_.lines = lines_.number();
     if (is_in_main_) end_main();
-    if ((is_in_main_ || open_ >= 0 || !has_main_) && !program_.truncated) program_.truncated = "close is missing";
+    if ((is_in_main_ || table_.is_open() || !has_main_) && !program_.truncated) program_.truncated = "close is missing";
     return std::move(program_);
   }
 
@@ -52,7 +52,7 @@ class PmacReader {
     if (text.empty()) return;
     if (starts_with_word(text, "OPEN")) return open(trimmed(text.substr(4)));
     if (text == "CLOSE") return close();
-    if (!is_in_main_ && open_ < 0) lines_.fail("stands outside of open ... close");
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("stands outside of open ... close");
     NcBlock block;
     block.line = lines_.number();
     IsoBlock iso(lines_, block);
@@ -66,7 +66,7 @@ class PmacReader {
   }
 
   void open(std::string_view text) {
-    if (is_in_main_ || open_ >= 0) lines_.fail("open within open");
+    if (is_in_main_ || table_.is_open()) lines_.fail("open within open");
     const bool is_main = starts_with_word(text, "PROG");
     if (!is_main && !starts_with_word(text, "SUBPROG")) lines_.fail("must be open prog or open subprog");
     text = trimmed(text.substr(is_main ? 4 : 7));
@@ -78,13 +78,11 @@ class PmacReader {
       program_.main_first = program_.blocks.size();
       return;
     }
-    open_ = table_.index_of(name);
-    if (table_.get(open_).is_whole) lines_.fail("there is a subprogram of that number already: " + name);
-    table_.get(open_).first = program_.blocks.size();
+    if (!table_.begin(name)) lines_.fail("there is a subprogram of that number already: " + name);
   }
 
   void close() {
-    if (!is_in_main_ && open_ < 0) lines_.fail("close without open");
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("close without open");
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.ends = is_in_main_;
@@ -94,9 +92,7 @@ class PmacReader {
       is_in_main_ = false;
       return;
     }
-    table_.get(open_).last = program_.blocks.size();
-    table_.get(open_).is_whole = true;
-    open_ = -1;
+    table_.end();
   }
 
   void end_main() { program_.main_last = program_.blocks.size(); }
@@ -190,18 +186,14 @@ class PmacReader {
   }
 
   void read_word(const NcWord& word, IsoBlock& iso) {
-    const std::size_t axis = axis_index(word.letter);
-    if (axis < kNcAxes) return iso.set_axis(axis, word.number.value);
-    if (word.letter == 'F') return iso.set_feed(word);
-    if (word.letter == 'M') return iso.set_m(word);
-    lines_.fail(fmt::format("a word {} is not understood", word.letter));
+    if (word.letter == 'G' || word.letter == 'S' || !iso.set(word, {}))
+      lines_.fail(fmt::format("a word {} is not understood", word.letter));
   }
 
   NcLines lines_;
   const NcSpindleTexts& spindle_;
   NcProgram program_;
   SubroutineTable table_;
-  std::int32_t open_ = -1;
   bool is_in_main_ = false;
   bool has_main_ = false;
 };

@@ -7,30 +7,32 @@
 namespace retrace::fabrication {
 namespace {
 
-using Code = IsoBlock::Code;
+using namespace nc_effects;
 
 /// Modal groups of NISTIR 6556, table 4.
-IsoBlock::Meaning rs274ngc_meaning_of(double g) {
-  if (g == 0) return {Code::rapid, 1};
-  if (g == 1) return {Code::linear, 1};
-  if (g == 4) return {Code::dwell, 9};
-  if (g == 17 || g == 18 || g == 19) return {Code::no_effect, 2};
-  if (g == 20) return {Code::inch, 6};
-  if (g == 21) return {Code::millimetre, 6};
-  if (g == 40) return {Code::compensation_off, 7};
-  if (g == 49) return {Code::compensation_off, 8};
-  if (g == 54) return {Code::workpiece_offset, 12};
-  if (g == 61 || g == 61.1) return {Code::exact_stop, 13};
-  if (g == 64) return {Code::blending, 13};
-  if (g == 80) return {Code::no_effect, 1};
-  if (g == 90) return {Code::absolute, 3};
-  if (g == 91) return {Code::incremental, 3};
-  if (g == 92.1) return {Code::no_effect, 0};  // shifts of G92 cancelled
-  if (g == 93) return {Code::inverse_time, 5};
-  if (g == 94) return {Code::feed_per_minute, 5};
-  if (g == 97) return {Code::no_effect, 14};  // S counts turns per minute
-  return {};
-}
+constexpr NcCode kRs274ngcCodes[] = {
+    {0, 1, kRapid},
+    {1, 1, kLinear},
+    {4, 9, nullptr},
+    {17, 2, kNone},
+    {18, 2, kNone},
+    {19, 2, kNone},
+    {20, 6, kInch},
+    {21, 6, kMillimetre},
+    {40, 7, kCompensationOff},
+    {49, 8, kCompensationOff},
+    {54, 12, kWorkpieceOffset},
+    {61, 13, kExactStop},
+    {61.1, 13, kExactStop},
+    {64, 13, kBlending},
+    {80, 1, kNone},
+    {90, 3, kAbsolute},
+    {91, 3, kIncremental},
+    {92.1, 0, kNone},  // shifts of G92 cancelled
+    {93, 5, kInverseTime},
+    {94, 5, kFeedPerMinute},
+    {97, 14, kNone},  // S counts turns per minute
+};
 
 /// The line without comments: ( ... ), which do not nest, and what follows a semicolon.
 std::string without_rs274ngc_comments(std::string_view line, const NcLines& lines) {
@@ -64,8 +66,8 @@ class Rs274Reader {
     program_.lines = lines_.number();
     program_.main_last = program_.blocks.size();
     // Of a file that stops within a subroutine there is no main program to carry out.
-    if (open_ >= 0) program_.main_first = program_.main_last;
-    if (open_ >= 0 && !program_.truncated) program_.truncated = "a subroutine has no endsub";
+    if (table_.is_open()) program_.main_first = program_.main_last;
+    if (table_.is_open() && !program_.truncated) program_.truncated = "a subroutine has no endsub";
     if (percent_signs_ == 1 && !program_.truncated) program_.truncated = "the % at the end is missing";
     return std::move(program_);
   }
@@ -107,22 +109,18 @@ class Rs274Reader {
   }
 
   void begin(const std::string& name) {
-    if (open_ >= 0) lines_.fail("a subroutine must end before another begins");
+    if (table_.is_open()) lines_.fail("a subroutine must end before another begins");
     if (!is_before_main()) lines_.fail("a subroutine must stand before the main program");
-    open_ = table_.index_of(name);
-    if (table_.get(open_).is_whole) lines_.fail("there is a subroutine of that number already: " + name);
-    table_.get(open_).first = program_.blocks.size();
+    if (!table_.begin(name)) lines_.fail("there is a subroutine of that number already: " + name);
   }
 
   void end(const std::string& name) {
-    if (open_ < 0 || open_ != table_.index_of(name)) lines_.fail("endsub without its sub: " + name);
+    if (!table_.is_open(name)) lines_.fail("endsub without its sub: " + name);
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.returns = true;
-    table_.get(open_).last = program_.blocks.size();
-    table_.get(open_).is_whole = true;
+    table_.end();
     program_.main_first = program_.blocks.size();
-    open_ = -1;
   }
 
   void call(const std::string& name) {
@@ -143,35 +141,20 @@ class Rs274Reader {
   }
 
   void read_word(const NcWord& word, IsoBlock& iso) {
-    const std::size_t axis = axis_index(word.letter);
-    if (axis < kNcAxes) return iso.set_axis(axis, word.number.value);
-    switch (word.letter) {
-      case 'G':
-        return iso.set_g(word, rs274ngc_meaning_of(word.number.value));
-      case 'M':
-        return iso.set_m(word);
-      case 'F':
-        return iso.set_feed(word);
-      case 'P':
-        return iso.set_dwell(word.number.value);  // seconds
-      case 'S':
-        return iso.set_spindle_speed(word);
-      default:
-        lines_.fail(fmt::format("a word {} is not understood", word.letter));
-    }
+    if (word.letter == 'P') return iso.set_dwell(word.number.value);  // seconds
+    if (!iso.set(word, kRs274ngcCodes)) lines_.fail(fmt::format("a word {} is not understood", word.letter));
   }
 
   NcLines lines_;
   NcProgram program_;
   SubroutineTable table_;
-  std::int32_t open_ = -1;  ///< subroutine that is being read
   int percent_signs_ = 0;
   bool is_over_ = false;
 };
 
 }  // namespace
 
-NcProgram parse_rs274ngc(NcLines lines) {
+NcProgram parse_rs274ngc(NcLines lines, const NcSpindleTexts&) {
   return Rs274Reader(std::move(lines)).run();
 }
 

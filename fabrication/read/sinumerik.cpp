@@ -10,27 +10,16 @@
 namespace retrace::fabrication {
 namespace {
 
-using Code = IsoBlock::Code;
+using namespace nc_effects;
 
 /// G groups of the Programming Manual Fundamentals, section Tables.
-IsoBlock::Meaning sinumerik_meaning_of(double g) {
-  if (g == 0) return {Code::rapid, 1};
-  if (g == 1) return {Code::linear, 1};
-  if (g == 4) return {Code::dwell, 2};
-  if (g == 17 || g == 18 || g == 19) return {Code::no_effect, 6};
-  if (g == 40) return {Code::compensation_off, 7};
-  if (g == 54) return {Code::workpiece_offset, 8};
-  if (g == 60) return {Code::exact_stop, 10};
-  if (g == 64) return {Code::blending, 10};
-  if (g == 601) return {Code::no_effect, 12};
-  if (g == 700) return {Code::inch, 13};
-  if (g == 710) return {Code::millimetre, 13};
-  if (g == 90) return {Code::absolute, 14};
-  if (g == 91) return {Code::incremental, 14};
-  if (g == 93) return {Code::inverse_time, 15};
-  if (g == 94) return {Code::feed_per_minute, 15};
-  return {};
-}
+constexpr NcCode kSinumerikCodes[] = {
+    {0, 1, kRapid},           {1, 1, kLinear},     {4, 2, nullptr},           {17, 6, kNone},
+    {18, 6, kNone},           {19, 6, kNone},      {40, 7, kCompensationOff}, {54, 8, kWorkpieceOffset},
+    {60, 10, kExactStop},     {64, 10, kBlending}, {601, 12, kNone},          {700, 13, kInch},
+    {710, 13, kMillimetre},   {90, 14, kAbsolute}, {91, 14, kIncremental},    {93, 15, kInverseTime},
+    {94, 15, kFeedPerMinute},
+};
 
 /// The line without its comment, in capitals but for what stands between quotes.
 std::string_view without_comment(std::string_view line) {
@@ -175,21 +164,11 @@ class SinumerikReader {
   }
 
   void read_word(const NcWord& word, IsoBlock& iso, NcBlock& block) {
-    const std::size_t axis = axis_index(word.letter);
-    if (axis < kNcAxes) return iso.set_axis(axis, word.number.value);
-    switch (word.letter) {
-      case 'G':
-        return iso.set_g(word, sinumerik_meaning_of(word.number.value));
-      case 'M':
-        return iso.set_m(word);
-      case 'D':
-        if (word.number.value != 0) lines_.fail("D must be 0: offsets of the tool are not understood");
-        block.compensation_off = true;
-        return;
-      case 'S':
-        return iso.set_spindle_speed(word);
-      default:
-        lines_.fail(fmt::format("a word {} is not understood", word.letter));
+    if (word.letter == 'D') {
+      if (word.number.value != 0) lines_.fail("D must be 0: offsets of the tool are not understood");
+      block.compensation_off = true;
+    } else if (!iso.set(word, kSinumerikCodes)) {
+      lines_.fail(fmt::format("a word {} is not understood", word.letter));
     }
   }
 
@@ -215,7 +194,7 @@ class SinumerikReader {
 
 }  // namespace
 
-NcProgram parse_sinumerik(NcLines lines) {
+NcProgram parse_sinumerik(NcLines lines, const NcSpindleTexts&) {
   return SinumerikReader(std::move(lines)).run();
 }
 

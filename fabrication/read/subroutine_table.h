@@ -8,7 +8,7 @@
 
 namespace retrace::fabrication {
 
-/// Subroutines by name, whether they are called or defined first.
+/// Subroutines by name, whether they are called or defined first, and the one that is being read.
 class SubroutineTable {
  public:
   explicit SubroutineTable(NcProgram& program) : program_(program) {}
@@ -18,10 +18,28 @@ class SubroutineTable {
     if (is_new) program_.subroutines.push_back({name, 0, 0, false});
     return entry->second;
   }
-  NcSubroutine& get(std::int32_t index) { return program_.subroutines[static_cast<std::size_t>(index)]; }
+
+  /// The next block is the first of a subroutine. False if there is one of that name already.
+  bool begin(const std::string& name) {
+    open_ = index_of(name);
+    if (open().is_whole) return false;
+    open().first = program_.blocks.size();
+    return true;
+  }
+  /// The last block was the last of the subroutine that was begun.
+  void end() {
+    open().last = program_.blocks.size();
+    open().is_whole = true;
+    open_ = -1;
+  }
+  bool is_open() const { return open_ >= 0; }
+  bool is_open(const std::string& name) { return is_open() && open_ == index_of(name); }
 
  private:
+  NcSubroutine& open() { return program_.subroutines[static_cast<std::size_t>(open_)]; }
+
   NcProgram& program_;
+  std::int32_t open_ = -1;
   std::map<std::string, std::int32_t> indices_;
 };
 

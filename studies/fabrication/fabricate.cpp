@@ -28,11 +28,12 @@ const fabrication::Dialect& dialect_of(const std::string& name) {
 
 /// Where the axes are, in the section of an element.
 geometry::Vec2 in_section(const FabricationResult& result, const fabrication::CutElement& element,
-                          const fabrication::Position& at) {
-  fabrication::AxisPositions axes{
-      1e-6 * static_cast<double>(at.x_nm.value_or(0)), 1e-6 * static_cast<double>(at.y_nm.value_or(0)),
-      1e-6 * static_cast<double>(at.z_nm.value_or(0)), 0.0, 1e-7 * static_cast<double>(at.c)};
-  (result.machine.tilt == fabrication::Tilt::table ? axes.a_deg : axes.b_deg) = 1e-7 * static_cast<double>(at.a);
+                          const fabrication::Words& at) {
+  const auto mm = [&](fabrication::Axis axis) { return 1e-6 * static_cast<double>(at[axis].value_or(0)); };
+  const auto deg = [&](fabrication::Axis axis) { return 1e-7 * static_cast<double>(at[axis].value_or(0)); };
+  fabrication::AxisPositions axes{mm(fabrication::kX), mm(fabrication::kY), mm(fabrication::kZ), 0.0,
+                                  deg(fabrication::kC)};
+  (result.machine.tilt == fabrication::Tilt::table ? axes.a_deg : axes.b_deg) = deg(fabrication::kTilt);
   const Vec3 tip = fabrication::forward(result.machine, axes).reference_mm;
   const Vec3 root(0.0, 0.0, -geometry::element_depth_mm(fabrication::blank_element(result.job)));
   const Vec3 from_root = element.turn.transpose() * (tip - element.foot_mm) - root;
@@ -71,7 +72,8 @@ std::vector<SectionMove> section_moves(const FabricationResult& result, bool rou
     std::optional<std::int32_t> element;
     std::set<std::uint32_t> seen;
     for (const fabrication::Item& item : program.items) {
-      if (std::holds_alternative<fabrication::Turn>(item)) first_only.items.push_back(item);
+      const auto* const move = std::get_if<fabrication::Move>(&item);
+      if (move != nullptr && move->to[fabrication::kC]) first_only.items.push_back(item);
       const auto* const visit = std::get_if<fabrication::Visit>(&item);
       if (visit == nullptr || !wanted.contains(program.subroutines[visit->subroutine].title)) continue;
       const bool rotated = result.plan.elements[static_cast<std::size_t>(visit->element)].rotated;
@@ -83,9 +85,9 @@ std::vector<SectionMove> section_moves(const FabricationResult& result, bool rou
     const fabrication::CutElement& cut = result.plan.elements[static_cast<std::size_t>(*element)];
     geometry::Vec2 at = geometry::Vec2::Zero();
     fabrication::for_each_move(first_only, [&](const fabrication::PlannedMove& move) {
-      if (move.rotary) return;
-      const geometry::Vec2 to = in_section(result, cut, move.to);
-      if (!move.rapid) moves.push_back({move.motion, at.x(), at.y(), to.x(), to.y()});
+      if (move.is_rotary()) return;
+      const geometry::Vec2 to = in_section(result, cut, move.at);
+      if (!move.is_rapid()) moves.push_back({move.move.motion, at.x(), at.y(), to.x(), to.y()});
       at = to;
     });
     break;

@@ -260,7 +260,7 @@ TEST(Cutting, TheErrorFieldShowsFaultsWhereTheyAre) {
   for (Program& program : programs)
     for (Item& item : program.items)
       if (auto* visit = std::get_if<Visit>(&item))
-        if (visit->element == 1) visit->y_nm += 200;
+        if (visit->element == 1) visit->start.y() += 200;
   const ErrorField wrong = field_of();
   double inside_nm = 0.0;
   double outside_nm = 0.0;

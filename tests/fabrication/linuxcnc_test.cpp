@@ -39,16 +39,14 @@ void expect_planned(const Plan& plan, const std::string& what) {
     ASSERT_EQ(moves.size(), planned.size());
     constexpr double kPrinted = 1e-4;  // four decimals
     for (std::size_t k = 0; k < moves.size(); ++k) {
-      const Position& to = planned[k].to;
-      ASSERT_EQ(moves[k].rapid, planned[k].rapid) << "move " << k;
-      ASSERT_NEAR(moves[k].at[0], 1e-6 * static_cast<double>(to.x_nm.value_or(0)), kPrinted);
-      ASSERT_NEAR(moves[k].at[1], 1e-6 * static_cast<double>(to.y_nm.value_or(0)), kPrinted);
-      ASSERT_NEAR(moves[k].at[2], 1e-6 * static_cast<double>(*to.z_nm), kPrinted);
+      const Words& to = planned[k].at;
+      ASSERT_EQ(moves[k].rapid, planned[k].is_rapid()) << "move " << k;
+      for (const Axis axis : {kX, kY, kZ}) ASSERT_NEAR(moves[k].at[axis], millimetres(to[axis].value_or(0)), kPrinted);
       const bool tilts_table = program.tilt_letter == 'A';
-      ASSERT_NEAR(moves[k].at[tilts_table ? 3 : 4], 1e-7 * static_cast<double>(to.a), kPrinted);
+      ASSERT_NEAR(moves[k].at[tilts_table ? 3 : 4], degrees(*to[kTilt]), kPrinted);
       ASSERT_EQ(moves[k].at[tilts_table ? 4 : 3], 0.0);
-      ASSERT_NEAR(moves[k].at[5], 1e-7 * static_cast<double>(to.c), kPrinted);
-      ASSERT_EQ(moves[k].feed, planned[k].feed_mm_per_min);
+      ASSERT_NEAR(moves[k].at[5], degrees(*to[kC]), kPrinted);
+      ASSERT_EQ(moves[k].feed, planned[k].move.feed_mm_per_min);
       ASSERT_NEAR(moves[k].dwell_s, planned[k].dwell_s, 1e-9);
       ASSERT_TRUE(moves[k].rapid || !tilts_table || moves[k].at[0] == moves[k - 1].at[0]) << "X while cutting";
     }
@@ -140,8 +138,10 @@ TEST(Dialects, AreComplete) {
 
 TEST(Dialects, WriteNumbersInFixedPoint) {
   Program program;
-  program.subroutines.push_back({101, "a routine", {Increment{Motion::plunge, -1, 2000000, 12.5}}});
-  program.items = {Raise{5000000}, Turn{-1, 450000000}, Visit{3, 0, -123, 1000000000, 7}};
+  program.subroutines.push_back({101, "a routine", {increment(Motion::plunge, {0, -1, 2000000}, 12.5)}});
+  const auto rapid = [](const Words& to) { return Move{Motion::rapid, to, 0.0, 0.0}; };
+  program.items = {rapid({{}, {}, 5000000, {}, {}}), rapid({{}, {}, {}, -1, 450000000}),
+                   Visit{3, 0, {-123, 1000000000, 7}}};
   const std::string text = nc_text(program, "rs274ngc");
   EXPECT_NE(text.find("G1 Y-0.000001 Z2.000000 F12.500\n"), std::string::npos) << text;
   EXPECT_NE(text.find("G0 A-0.0000001 C45.0000000\n"), std::string::npos) << text;

@@ -41,9 +41,8 @@ Job job_of(double base_mm, double depth_um, Strategy strategy) {
   return job;
 }
 
-AxisPositions axes_of(const Position& p) {
-  return {static_cast<double>(*p.x_nm) * 1e-6, static_cast<double>(*p.y_nm) * 1e-6, static_cast<double>(*p.z_nm) * 1e-6,
-          static_cast<double>(p.a) * 1e-7, static_cast<double>(p.c) * 1e-7};
+AxisPositions axes_of(const Words& p) {
+  return {millimetres(*p[kX]), millimetres(*p[kY]), millimetres(*p[kZ]), degrees(*p[kTilt]), degrees(*p[kC])};
 }
 
 std::vector<PlannedMove> moves_of(const Plan& plan) {
@@ -68,8 +67,8 @@ std::vector<double> plunge_lengths_mm(const Job& job) {
   const double approach_mm = job.process.clearance_mm * std::sqrt(2.0);
   std::vector<double> lengths;
   for (const Step& step : routine.subroutine.steps)
-    if (const auto* move = std::get_if<Increment>(&step); move != nullptr && move->motion == Motion::plunge)
-      lengths.push_back(-1e-6 * static_cast<double>(move->z_nm) - approach_mm);
+    if (const auto* move = std::get_if<Move>(&step); move != nullptr && move->motion == Motion::plunge)
+      lengths.push_back(-1e-6 * static_cast<double>(*move->to[kZ]) - approach_mm);
   return lengths;
 }
 
@@ -155,7 +154,7 @@ double distance_nm(const Job& job, const CutElement& element, int facet, const V
 }
 
 /// Both ends of the tool's edge in the workpiece, where the axes are there.
-std::array<Vec3, 2> edge_ends(const Job& job, const Machine& m, const Position& at) {
+std::array<Vec3, 2> edge_ends(const Job& job, const Machine& m, const Words& at) {
   const ToolPose tool = forward(m, axes_of(at));
   const Vec3 half = tool.workpiece_from_machine * Vec3(0.5 * job.tool.width_mm, 0.0, 0.0);
   return {Vec3(tool.reference_mm - half), Vec3(tool.reference_mm + half)};
@@ -171,12 +170,12 @@ TEST(Plunges, EndWhereTheDeeperEndTouchesTheOtherFacetAndNeverBelow) {
         const Plan plan = make_plan(job, m);
         std::map<std::pair<std::int32_t, int>, std::array<double, 2>> nearest;  // to wall and floor
         for (const PlannedMove& move : moves_of(plan)) {
-          if (move.rapid || move.motion != Motion::plunge) continue;
+          if (move.is_rapid() || move.move.motion != Motion::plunge) continue;
           const CutElement& element = plan.elements[static_cast<std::size_t>(move.element)];
-          double c_deg = 1e-7 * static_cast<double>(move.to.c) - (element.rotated ? 90.0 : 0.0);
+          double c_deg = 1e-7 * static_cast<double>(*move.at[kC]) - (element.rotated ? 90.0 : 0.0);
           const int wall = std::abs(c_deg) < 45.0 || std::abs(c_deg - 360.0) < 45.0 ? 1 : 2;
           auto [it, is_new] = nearest.try_emplace({move.element, wall}, std::array{1e9, 1e9});
-          for (const Vec3& end : edge_ends(job, m, move.to)) {
+          for (const Vec3& end : edge_ends(job, m, move.at)) {
             it->second[0] = std::min(it->second[0], distance_nm(job, element, wall, end));
             it->second[1] = std::min(it->second[1], distance_nm(job, element, 3 - wall, end));
           }
@@ -194,10 +193,10 @@ TEST(Unidirectional, SlicesAreParallelToFacetOneAndRootsLieOnThePloughedPlane) {
   const int cuts = plan.cuts_per_facet;
   int cut = 0;
   for (const PlannedMove& move : moves_of(plan)) {
-    if (move.rapid || (move.motion != Motion::plunge && move.motion != Motion::plough)) continue;
-    const Vec3 tip = forward(m, axes_of(move.to)).reference_mm;
+    if (move.is_rapid() || (move.move.motion != Motion::plunge && move.move.motion != Motion::plough)) continue;
+    const Vec3 tip = forward(m, axes_of(move.at)).reference_mm;
     EXPECT_NEAR(distance_nm(job, plan.elements[0], 2, tip), 0.0, 1.0) << "on the ploughed plane";
-    if (move.motion == Motion::plough) continue;
+    if (move.move.motion == Motion::plough) continue;
     ++cut;
     EXPECT_NEAR(distance_nm(job, plan.elements[0], 1, tip), 1e4 * (cuts - cut), 1.0) << "cut " << cut;
     EXPECT_DOUBLE_EQ(move.dwell_s, 0.1);
@@ -211,10 +210,10 @@ TEST(Bidirectional, EveryTipStopsOnTheRootOfItsShell) {
   const Plan plan = make_plan(job, m);
   std::map<int, int> plunges;  // by facet
   for (const PlannedMove& move : moves_of(plan)) {
-    if (move.rapid || move.motion != Motion::plunge) continue;
-    const int facet = move.to.c < 900000000 ? 1 : 2;
+    if (move.is_rapid() || move.move.motion != Motion::plunge) continue;
+    const int facet = *move.at[kC] < 900000000 ? 1 : 2;
     const int layer = ++plunges[facet];
-    const Vec3 tip = forward(m, axes_of(move.to)).reference_mm;
+    const Vec3 tip = forward(m, axes_of(move.at)).reference_mm;
     // Past the floor of the layer before by one depth of cut, which is the floor of this one.
     for (const int side : {1, 2})
       EXPECT_NEAR(distance_nm(job, plan.elements[0], side, tip), 2e4 * (plan.cuts_per_facet - layer), 1.5);
@@ -229,8 +228,8 @@ TEST(TwoStep, RoughingStopsShortOfBothFacets) {
   const Plan plan = make_plan(job, m);
   double least[2] = {1e9, 1e9};
   for (const PlannedMove& move : moves_of(plan)) {
-    if (move.rapid || move.feed_mm_per_min != job.process.roughing_feed_mm_per_min) continue;
-    const Vec3 tip = forward(m, axes_of(move.to)).reference_mm;
+    if (move.is_rapid() || move.move.feed_mm_per_min != job.process.roughing_feed_mm_per_min) continue;
+    const Vec3 tip = forward(m, axes_of(move.at)).reference_mm;
     for (const int facet : {1, 2})
       least[facet - 1] = std::min(least[facet - 1], distance_nm(job, plan.elements[0], facet, tip));
   }
@@ -244,22 +243,22 @@ TEST(Options, OfTheThesisChangeTheCutAsTheySay) {
   job.tool.edge_radius_um = 0.5;
   const CuttingPose pose = cutting_pose(job, machine("ideal"), {}, 0.0);
   for (const Step& step : unidirectional_routine(job, pose.section).subroutine.steps)
-    if (const auto* move = std::get_if<Increment>(&step); move != nullptr && move->motion == Motion::plough) {
-      EXPECT_EQ(move->y_nm, -10500);
+    if (const auto* move = std::get_if<Move>(&step); move != nullptr && move->motion == Motion::plough) {
+      EXPECT_EQ(move->to[kY], -10500);
     }
   job.process.shortest_plough = false;
   job.process.plough_lift_um = 3.0;
   int ploughs = 0;
   for (const Step& step : unidirectional_routine(job, pose.section).subroutine.steps)
-    if (const auto* move = std::get_if<Increment>(&step); move != nullptr && move->motion == Motion::plough) {
-      EXPECT_EQ(move->z_nm, ploughs++ % 2 == 0 ? 0 : 3000);
+    if (const auto* move = std::get_if<Move>(&step); move != nullptr && move->motion == Motion::plough) {
+      EXPECT_EQ(move->to[kZ].value_or(0), ploughs++ % 2 == 0 ? 0 : 3000);
     }
   EXPECT_EQ(ploughs, 142);
   job.process.slow_retract_um = 8.0;
   const Routine plunge = plunge_routine(job, pose.section, 0.0, 20.0);
-  const auto& slow = std::get<Increment>(plunge.subroutine.steps[2]);
-  EXPECT_EQ(slow.y_nm, 0);
-  EXPECT_EQ(slow.z_nm, 8000);
+  const auto& slow = std::get<Move>(plunge.subroutine.steps[2]);
+  EXPECT_FALSE(slow.to[kY]);
+  EXPECT_EQ(slow.to[kZ], 8000);
   EXPECT_EQ(slow.feed_mm_per_min, 20.0);
 }
 
@@ -327,7 +326,7 @@ TEST(Time, OfAMoveFromRestToRest) {
 }
 
 /// Height of a point above the blank's face, normal to it.
-double height_mm(const Machine& m, const Position& at) {
+double height_mm(const Machine& m, const Words& at) {
   return forward(m, axes_of(at)).reference_mm.z();
 }
 
@@ -341,24 +340,24 @@ RC_GTEST_PROP(Moves, AreSafe, ()) {
   job.tool.edge_radius_um = *rc::gen::element(0.0, 0.2, 2.0);
   const Machine m = machine(*rc::gen::elementOf(kMachines));
   const Plan plan = make_plan(job, m);
-  Position at;
+  Words at{};
   for (const PlannedMove& move : moves_of(plan)) {
-    const Position& to = move.to;
-    if (move.rotary) {
-      RC_ASSERT(at.z_nm == std::llround(plan.safe_z_mm * 1e6));
-    } else if (move.rapid && at.z_nm && at.x_nm && to.x_nm) {
-      const bool down = *to.z_nm < *at.z_nm;
-      const bool across = to.x_nm != at.x_nm || to.y_nm != at.y_nm;
+    const Words& to = move.at;
+    if (move.is_rotary()) {
+      RC_ASSERT(at[kZ] == std::llround(plan.safe_z_mm * 1e6));
+    } else if (move.is_rapid() && at[kZ] && at[kX] && to[kX]) {
+      const bool down = *to[kZ] < *at[kZ];
+      const bool across = to[kX] != at[kX] || to[kY] != at[kY];
       RC_ASSERT(!(down && across));
       // Never nearer to the face than the clearance, but for rounding: half the way is as high as its ends.
       RC_ASSERT(height_mm(m, to) > job.process.clearance_mm - 1e-3);
-    } else if (!move.rapid) {
-      RC_ASSERT(to.x_nm == at.x_nm);
+    } else if (!move.is_rapid()) {
+      RC_ASSERT(to[kX] == at[kX]);
     }
     at = to;
   }
-  RC_ASSERT(at.a == 0);
-  RC_ASSERT(at.c == 0);
+  RC_ASSERT(*at[kTilt] == 0);
+  RC_ASSERT(*at[kC] == 0);
 }
 
 RC_GTEST_PROP(Positions, DoNotDrift, ()) {
@@ -378,15 +377,14 @@ RC_GTEST_PROP(Positions, DoNotDrift, ()) {
     if (visit.subroutine != first.subroutine) continue;
     const geometry::Vec2 centre0 = plan.elements[static_cast<std::size_t>(first.element)].centre_mm;
     const AxisPositions root0 = inverse(m, Vec3(centre0.x(), centre0.y(), -pose.section.depth_mm), pose.rounded);
-    RC_ASSERT(std::abs(1e-6 * static_cast<double>(visit.x_nm - first.x_nm) - (root.x_mm - root0.x_mm)) < 1.01e-6);
-    RC_ASSERT(std::abs(1e-6 * static_cast<double>(visit.y_nm - first.y_nm) - (root.y_mm - root0.y_mm)) < 1.01e-6);
-    RC_ASSERT(std::abs(1e-6 * static_cast<double>(visit.z_nm - first.z_nm) - (root.z_mm - root0.z_mm)) < 1.01e-6);
+    const Vec3 moved = millimetres(Place(visit.start - first.start));
+    const Vec3 wanted(root.x_mm - root0.x_mm, root.y_mm - root0.y_mm, root.z_mm - root0.z_mm);
+    RC_ASSERT((moved - wanted).cwiseAbs().maxCoeff() < 1.01e-6);
   }
 }
 
 bool same_visit(const Visit& a, const Visit& b) {
-  return a.element == b.element && a.subroutine == b.subroutine && a.x_nm == b.x_nm && a.y_nm == b.y_nm &&
-         a.z_nm == b.z_nm;
+  return a.element == b.element && a.subroutine == b.subroutine && a.start == b.start;
 }
 
 TEST(LongJobs, PartsAddUpToTheWhole) {

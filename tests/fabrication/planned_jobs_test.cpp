@@ -50,7 +50,7 @@ std::vector<Program> raised(std::vector<Program> programs, std::int32_t element,
     for (Item& item : program.items)
       if (auto* visit = std::get_if<Visit>(&item))
         if (visit->element == element && program.subroutines[visit->subroutine].title.starts_with(title)) {
-          visit->z_nm += by_nm;
+          visit->start.z() += by_nm;
           ++moved;
         }
   EXPECT_GT(moved, 0);

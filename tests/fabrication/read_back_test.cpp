@@ -55,14 +55,13 @@ ReadBack read_back(const Program& program, NcDialect dialect) {
   result.moves = planned.size();
   for (std::size_t i = 0; i < planned.size(); ++i) {
     const NcMotion& read = record.motions[i];
-    require((read.move == NcMove::rapid) == planned[i].rapid, "rapid and feed are mixed up");
-    require(std::abs(read.feed_mm_per_min - planned[i].feed_mm_per_min) < 1e-9, "a feed differs");
-    const Position& to = planned[i].to;
+    require((read.move == NcMove::rapid) == planned[i].is_rapid(), "rapid and feed are mixed up");
+    require(std::abs(read.feed_mm_per_min - planned[i].move.feed_mm_per_min) < 1e-9, "a feed differs");
+    const Words& to = planned[i].at;
     for (const double d :
-         {distance_mm(read.to.x_mm, to.x_nm), distance_mm(read.to.y_mm, to.y_nm), distance_mm(read.to.z_mm, to.z_nm)})
+         {distance_mm(read.to.x_mm, to[kX]), distance_mm(read.to.y_mm, to[kY]), distance_mm(read.to.z_mm, to[kZ])})
       result.worst_linear_mm = std::max(result.worst_linear_mm, d);
-    for (const double d : {read.to.a_deg - static_cast<double>(to.a) / kRotaryUnitsPerDeg,
-                           read.to.c_deg - static_cast<double>(to.c) / kRotaryUnitsPerDeg})
+    for (const double d : {read.to.a_deg - degrees(*to[kTilt]), read.to.c_deg - degrees(*to[kC])})
       result.worst_rotary_deg = std::max(result.worst_rotary_deg, std::abs(d));
   }
   for (const Record::Dwell& dwell : record.dwells) dwell_s -= dwell.seconds;

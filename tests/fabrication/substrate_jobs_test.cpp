@@ -291,12 +291,8 @@ TEST(OnSubstrate, APlaneGivenAsAFormulaMovesAsTheFlatArray) {
         const std::vector<PlannedMove> moves = moves_of(job);
         ASSERT_EQ(moves.size(), flat.size());
         for (std::size_t k = 0; k < flat.size(); ++k) {
-          ASSERT_EQ(moves[k].to.x_nm, flat[k].to.x_nm) << k;
-          ASSERT_EQ(moves[k].to.y_nm, flat[k].to.y_nm) << k;
-          ASSERT_EQ(moves[k].to.z_nm, flat[k].to.z_nm) << k;
-          ASSERT_EQ(moves[k].to.a, flat[k].to.a) << k;
-          ASSERT_EQ(moves[k].to.c, flat[k].to.c) << k;
-          ASSERT_EQ(moves[k].feed_mm_per_min, flat[k].feed_mm_per_min) << k;
+          ASSERT_EQ(moves[k].at, flat[k].at) << k;
+          ASSERT_EQ(moves[k].move.feed_mm_per_min, flat[k].move.feed_mm_per_min) << k;
           ASSERT_EQ(moves[k].dwell_s, flat[k].dwell_s) << k;
         }
       }
@@ -313,14 +309,13 @@ struct Cut {
 /// The feed moves of each element.
 std::vector<std::vector<Cut>> cuts_by_element(const Job& job) {
   const Machine m = machine_of(job);
-  const auto mm = [](Nanometres nm) { return static_cast<double>(nm) / kNanometresPerMm; };
   std::vector<std::vector<Cut>> cuts(cut_elements(job).size());
   for (const PlannedMove& move : moves_of(job)) {
-    if (move.rapid || move.element < 0) continue;
-    AxisPositions axes{mm(*move.to.x_nm), mm(*move.to.y_nm), mm(*move.to.z_nm), 0.0,
-                       static_cast<double>(move.to.c) / kRotaryUnitsPerDeg};
-    (m.tilt == Tilt::table ? axes.a_deg : axes.b_deg) = static_cast<double>(move.to.a) / kRotaryUnitsPerDeg;
-    cuts[static_cast<std::size_t>(move.element)].push_back({forward(m, axes).reference_mm, move.to.a, move.to.c});
+    if (move.is_rapid() || move.element < 0) continue;
+    const auto& [x, y, z, tilt, c] = move.at;
+    AxisPositions axes{millimetres(*x), millimetres(*y), millimetres(*z), 0.0, degrees(*c)};
+    (m.tilt == Tilt::table ? axes.a_deg : axes.b_deg) = degrees(*tilt);
+    cuts[static_cast<std::size_t>(move.element)].push_back({forward(m, axes).reference_mm, *tilt, *c});
   }
   return cuts;
 }

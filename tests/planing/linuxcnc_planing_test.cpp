@@ -30,15 +30,14 @@ void expect_read(const std::string& part_file) {
     std::array<double, 3> at{};
     std::size_t next = 0;
     for (const auto& item : planned.program.items) {
-      const auto* const move = std::get_if<LinearMove>(&item);
+      const auto* const move = std::get_if<Move>(&item);
       if (move == nullptr) continue;
-      const std::array words = {move->x_nm, move->y_nm, move->z_nm};
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        if (words[axis]) at[axis] = static_cast<double>(*words[axis]) / kNanometresPerMm;
+      for (const Axis axis : {kX, kY, kZ})
+        if (move->to[axis]) at[axis] = millimetres(*move->to[axis]);
       ASSERT_LT(next, moves.size());
       for (std::size_t axis = 0; axis < 3; ++axis) ASSERT_NEAR(moves[next].at[axis], at[axis], 1e-4) << "move " << next;
       for (std::size_t axis = 3; axis < 6; ++axis) ASSERT_EQ(moves[next].at[axis], 0.0);
-      ASSERT_EQ(moves[next].rapid, move->feed_mm_per_min == 0.0) << "move " << next;
+      ASSERT_EQ(moves[next].rapid, (move->motion == Motion::rapid)) << "move " << next;
       ASSERT_EQ(moves[next].feed, move->feed_mm_per_min);
       ++next;
     }

@@ -21,27 +21,20 @@ TurnedSurface wavy() {
   return {sag, std::nullopt, {}, kHere};
 }
 
-/// The moves of a trace as they are printed, from one point to the next in the time of the point.
-void expect_trace(const Trace& trace, const std::vector<test::CanonicalMove>& moves, std::size_t& next) {
+/// A path as it is printed, from one point to the next in the time of the point.
+void expect_path(const Path& path, Words at, const std::vector<test::CanonicalMove>& moves, std::size_t& next) {
   constexpr double kPrinted = 1e-4;  // four decimals
-  const auto mm = [](Nanometres nm) { return static_cast<double>(nm) / kNanometresPerMm; };
-  for (std::size_t i = 0; i < trace.points.size(); ++i) {
+  for (const Move& move : path.moves) {
     ASSERT_LT(next, moves.size());
-    const test::CanonicalMove& move = moves[next++];
-    const TracePoint& p = trace.points[i];
-    ASSERT_FALSE(move.rapid);
-    ASSERT_NEAR(move.at[0], mm(p.x_nm), kPrinted);
-    ASSERT_NEAR(move.at[1], mm(p.y_nm), kPrinted);
-    ASSERT_NEAR(move.at[2], mm(p.z_nm), kPrinted);
-    ASSERT_NEAR(move.at[5], static_cast<double>(p.c) / kRotaryUnitsPerDeg, kPrinted);
-    if (i == 0) {
-      ASSERT_EQ(move.feed, trace.approach_feed_mm_per_min);
-      continue;
-    }
+    const test::CanonicalMove& read = moves[next++];
+    const geometry::Vec3 from(millimetres(*at[kX]), millimetres(*at[kY]), millimetres(*at[kZ]));
+    go_to(at, move.to);
+    const geometry::Vec3 to(millimetres(*at[kX]), millimetres(*at[kY]), millimetres(*at[kZ]));
+    ASSERT_FALSE(read.rapid);
+    for (const Axis axis : {kX, kY, kZ}) ASSERT_NEAR(read.at[axis], to[axis], kPrinted);
+    ASSERT_NEAR(read.at[5], degrees(*at[kC]), kPrinted);
     // The interpreter turns a time into a feed along X, Y and Z.
-    const TracePoint& last = trace.points[i - 1];
-    const double length = std::hypot(mm(p.x_nm - last.x_nm), mm(p.y_nm - last.y_nm), mm(p.z_nm - last.z_nm));
-    ASSERT_NEAR(move.feed, length / p.seconds * 60.0, 1e-4 + 1e-6 * move.feed) << i;
+    ASSERT_NEAR(read.feed, (to - from).norm() / move.seconds * 60.0, 1e-4 + 1e-6 * read.feed);
   }
 }
 
@@ -53,15 +46,19 @@ void expect_read(const std::vector<Pass>& passes, const PathOptions& options) {
   EXPECT_NE(printed.find("PROGRAM_END()"), std::string::npos);
   const std::vector<test::CanonicalMove> moves = test::canonical_moves(printed);
   std::size_t next = 0;
+  Words at{};
   for (const Item& item : program.items) {
-    if (const auto* const raise = std::get_if<Raise>(&item)) {
-      ASSERT_LT(next, moves.size());
-      EXPECT_TRUE(moves[next].rapid);
-      EXPECT_NEAR(moves[next++].at[2], static_cast<double>(raise->z_nm) / kNanometresPerMm, 1e-4);
-    } else {
-      EXPECT_TRUE(moves[next++].rapid) << "over the first point";
-      expect_trace(std::get<Trace>(item), moves, next);
+    if (const auto* const path = std::get_if<Path>(&item)) {
+      expect_path(*path, at, moves, next);
+      continue;
     }
+    const auto& move = std::get<Move>(item);
+    go_to(at, move.to);
+    ASSERT_LT(next, moves.size());
+    EXPECT_EQ(moves[next].rapid, move.motion == Motion::rapid);
+    EXPECT_EQ(moves[next].feed, move.feed_mm_per_min);
+    for (const Axis axis : {kX, kY, kZ}) EXPECT_NEAR(moves[next].at[axis], millimetres(at[axis].value_or(0)), 1e-4);
+    ++next;
   }
   EXPECT_EQ(next, moves.size());
 }

@@ -273,7 +273,7 @@ TEST(TurningProgram, MovesAreTheProgramsOwn) {
   double seconds = 0.0;
   int moves = 0;
   for_each_move(turning_program(passes, o, "part", {}), [&](const PlannedMove& move) {
-    seconds += move.trace_s;
+    seconds += move.move.seconds;
     ++moves;
   });
   EXPECT_NEAR(seconds, path_seconds(passes), 1e-9);

@@ -1,0 +1,40 @@
+#pragma once
+
+// The dialects of NC text as data: how each of them says what a program asks for.
+
+#include <span>
+#include <string_view>
+
+#include "fabrication/post/post.h"
+
+namespace retrace::fabrication {
+
+/// The words of a dialect. Texts are whole lines, with their ends; those with {} are formats (fmt) of what is named
+/// behind them, counted from {0}.
+struct DialectWords {
+  Dialect dialect;
+  bool subroutines_first = false;     ///< before the main part, or after it
+  std::string_view file_ends;         ///< first and last line of the file
+  std::string_view main_begin;        ///< what precedes the first line of the main part
+  std::string_view main_end;          ///< what follows its last one
+  std::string_view prepare;           ///< plane, mm, absolute words, feed per minute, compensations and blending off,
+                                      ///< exact stop, first zero offset, spindle off
+  std::string_view spindle_start;     ///< turns per minute; M3 or M4; the program's own text
+  std::string_view spindle_stop;      ///< the program's own text
+  std::string_view comment;           ///< text
+  std::string_view message;           ///< text
+  std::string_view subroutine_begin;  ///< number; title
+  std::string_view subroutine_end;    ///< number
+  std::string_view call;              ///< number
+  std::string_view rapid;             ///< word before those of the axes
+  std::string_view linear;
+  std::string_view dwell;       ///< seconds; milliseconds
+  std::string_view path_begin;  ///< a path without stops, its moves timed
+  std::string_view path_time;   ///< moves like this in a minute; milliseconds
+  std::string_view path_end;    ///< exact stop and feeds per minute again
+};
+
+/// All dialects, the reference first.
+std::span<const DialectWords> dialect_words();
+
+}  // namespace retrace::fabrication
