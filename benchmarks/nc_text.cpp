@@ -4,9 +4,9 @@
 #include <sys/resource.h>
 
 #include "core/atomic_file.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
 
 namespace retrace::benchmarks::nc_text_benchmark {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/path.h"
+#include "fabrication/turning/plan/path.h"
 
 namespace retrace::benchmarks::turning_benchmark {
 namespace {

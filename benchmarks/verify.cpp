@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "fabrication/verify/verify.h"
 
 namespace retrace::benchmarks::verify_benchmark {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fabrication/turning/path.h"
+#include "fabrication/turning/path_options.h"
 #include "fabrication/turning/surface.h"
 #include "fabrication/turning/tool.h"
 

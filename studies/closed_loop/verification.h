@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "fabrication/chisel/check/error_field.h"
+#include "fabrication/chisel/check/verify.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_program.h"
-#include "fabrication/verify/error_field.h"
-#include "fabrication/verify/verify.h"
 
 namespace retrace::studies {
 

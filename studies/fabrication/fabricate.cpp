@@ -5,9 +5,9 @@
 #include <set>
 
 #include "core/message_text.h"
+#include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/chiseling.h"
 #include "fabrication/post/post.h"
 #include "geometry/elements/element_cells.h"
 

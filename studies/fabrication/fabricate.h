@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
-#include "fabrication/plan/plan.h"
 
 namespace retrace::studies {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "fabrication/verify/chisel_reach.h"
+#include "fabrication/chisel/check/chisel_reach.h"
 #include "studies/design/design.h"
 #include "studies/fabrication/job_maker.h"
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "fabrication/planing/plan.h"
-#include "fabrication/planing/verify/check.h"
+#include "fabrication/planing/check/check.h"
+#include "fabrication/planing/plan/plan.h"
 
 namespace retrace::studies {
 

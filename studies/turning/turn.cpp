@@ -11,9 +11,9 @@
 #include "core/number_format.h"
 #include "fabrication/post/post.h"
 #include "fabrication/read/nc_motion.h"
+#include "fabrication/turning/check/machined_mesh.h"
 #include "fabrication/turning/io/part_files.h"
-#include "fabrication/turning/turning_program.h"
-#include "fabrication/turning/verify/machined_mesh.h"
+#include "fabrication/turning/plan/turning_program.h"
 #include "geometry/io/stl_file.h"
 
 namespace retrace::studies {
@@ -52,14 +52,14 @@ void write_programs(TurningResult& r) {
 }
 
 /// Adds the strokes of the servo's file to the heights that the slide's program reaches.
-void add_strokes(const std::string& csv, std::vector<turning::CutPass>& cuts, std::vector<std::string>& findings) {
+void add_strokes(const std::string& csv, std::vector<turning::CutPass>& cuts, fabrication::FindingList& findings) {
   if (csv.empty()) return;
   std::vector<double>& z_mm = cuts.front().z_mm;
   CsvReader strokes(csv, "servo.csv", csv.size());
   while (strokes.next())
     if (strokes.rows() <= z_mm.size()) z_mm[strokes.rows() - 1] += strokes.number(1);
   if (strokes.rows() != z_mm.size())
-    findings.push_back("the servo's file does not have one stroke for every point of the program");
+    findings.add("servo", 0, "the servo's file does not have one stroke for every point of the program");
 }
 
 bool same_cuts(const std::vector<turning::CutPass>& a, const std::vector<turning::CutPass>& b) {
@@ -71,21 +71,21 @@ bool same_cuts(const std::vector<turning::CutPass>& a, const std::vector<turning
 }
 
 /// The cuts of the reference's text; the others must read as the same.
-std::vector<turning::CutPass> read_back(TurningResult& r) {
+std::vector<turning::CutPass> read_back(const TurningResult& r, fabrication::FindingList& findings) {
   std::vector<turning::CutPass> reference;
   for (std::size_t d = 0; d < r.programs.size(); ++d) {
     const TurningText& program = r.programs[d];
     turning::CutRecorder recorder;
+    findings.begin(program.file);
     const fabrication::NcEnd end = fabrication::run_nc(
         fabrication::parse_nc(program.text, program.file, static_cast<fabrication::NcDialect>(d)), recorder);
-    if (!end.is_complete) r.findings.push_back(fmt::format("{}: {}", program.file, end.reason));
-    for (const std::string& finding : recorder.findings())
-      r.findings.push_back(fmt::format("{}: {}", program.file, finding));
+    if (!end.is_complete) findings.add("truncated", 0, end.reason);
+    for (const fabrication::Finding& f : recorder.findings()) findings.add(f.kind, f.line, f.message);
     std::vector<turning::CutPass> cuts = recorder.take();
     if (d == 0)
       reference = std::move(cuts);
     else if (!same_cuts(reference, cuts))
-      r.findings.push_back(fmt::format("{}: moves otherwise than {}", program.file, r.programs.front().file));
+      findings.add("differs", 0, fmt::format("moves otherwise than {}", r.programs.front().file));
   }
   return reference;
 }
@@ -100,15 +100,16 @@ turning::InspectedRegion region_of(const turning::PathOptions& path) {
   return region;
 }
 
-void judge(TurningResult& r) {
+void judge(const TurningResult& r, fabrication::FindingList& findings) {
   const double limit = r.part.form_tolerance_nm;
-  const auto check = [&](const char* what, double value) {
+  const auto check = [&](const char* kind, const char* what, double value) {
     if (value > limit)
-      r.findings.push_back(
-          fmt::format("{} of {} nm exceeds the tolerance of {} nm", what, fixed(value, 2), shortest(limit)));
+      findings.add(kind, 0,
+                   fmt::format("{} of {} nm exceeds the tolerance of {} nm", what, fixed(value, 2), shortest(limit)),
+                   value, limit);
   };
-  check("a form error", r.inspection.form_error_nm);
-  check("a cut below the surface", r.inspection.interference_nm);
+  check("form", "a form error", r.inspection.form_error_nm);
+  check("gouge", "a cut below the surface", r.inspection.interference_nm);
 }
 
 /// Two turns round the largest jump of Z's acceleration.
@@ -160,10 +161,13 @@ TurningResult turn(const std::string& part_file) {
   r.clearance = turning::clearance_figures(part.tool, turning::slopes_along(part.surface, part.path));
   r.finish = turning::finish_figures(turning::effective_radius_mm(part.tool), part.path.feed_mm);
   for (int axis = 0; axis < 4; ++axis) r.axes[static_cast<std::size_t>(axis)] = turning::axis_figures(r.passes, axis);
-  r.findings = turning::excesses(part.machine, r.passes, part.path);
+  fabrication::FindingList findings;
+  for (std::string& excess : turning::excesses(part.machine, r.passes, part.path))
+    findings.add("axis_limit", 0, std::move(excess));
   write_programs(r);
-  std::vector<turning::CutPass> cuts = read_back(r);
-  add_strokes(r.servo_csv, cuts, r.findings);
+  std::vector<turning::CutPass> cuts = read_back(r, findings);
+  findings.begin("");
+  add_strokes(r.servo_csv, cuts, findings);
   const turning::Envelope envelope(part.tool, std::move(cuts));
   r.inspection = turning::inspect(envelope, part.surface, part.tool, region_of(part.path), part.map_pixels);
   if (part.mesh_thickness_mm)
@@ -172,7 +176,8 @@ TurningResult turn(const std::string& part_file) {
         "what is moulded in a turned surface");
   find_stretch(r);
   find_profile(r, envelope);
-  judge(r);
+  judge(r, findings);
+  r.findings = findings.take();
   return r;
 }
 

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "fabrication/check/findings.h"
+#include "fabrication/turning/check/inspection.h"
 #include "fabrication/turning/finish.h"
 #include "fabrication/turning/part.h"
-#include "fabrication/turning/verify/inspection.h"
+#include "fabrication/turning/plan/path.h"
 
 namespace retrace::studies {
 
@@ -37,7 +39,7 @@ struct TurningResult {
   std::string servo_csv;     ///< strokes of a fast tool servo; empty without
   fabrication::turning::Inspection inspection;
   TurningStretch stretch;
-  std::vector<std::string> findings;  ///< none: the programs pass
+  std::vector<fabrication::Finding> findings;  ///< none: the programs pass
 
   bool passes_inspection() const { return findings.empty(); }
 };

@@ -8,13 +8,13 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "fabrication/chisel/check/bodies.h"
+#include "fabrication/chisel/check/dexel.h"
+#include "fabrication/chisel/check/error_field.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "fabrication/verify/bodies.h"
-#include "fabrication/verify/dexel.h"
-#include "fabrication/verify/error_field.h"
-#include "fabrication/verify/verify.h"
 #include "tests/fabrication/jobs.h"
 
 // Cutting by planes against analytic shapes, against dexels that clip polyhedra, and against random faults.

@@ -5,9 +5,9 @@
 
 #include "core/atomic_file.h"
 #include "core/data_directory.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
 #include "tests/fabrication/linuxcnc.h"
 #include "tests/fabrication/substrate_jobs.h"

@@ -1,4 +1,4 @@
-#include "fabrication/plan/plan.h"
+#include "fabrication/chisel/plan/plan.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -10,10 +10,10 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "fabrication/chisel/plan/move_time.h"
+#include "fabrication/chisel/plan/routines.h"
 #include "fabrication/job/tool_angles.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/move_time.h"
-#include "fabrication/plan/routines.h"
 #include "tests/fabrication/jobs.h"
 
 // Plans: cuts, poses, order, safety of moves and time, against the figures of the thesis and the machine's own forward

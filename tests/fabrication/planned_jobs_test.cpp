@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "fabrication/verify/verify.h"
 #include "tests/fabrication/jobs.h"
 
 // What the less usual keys of a job ask for is cut as designed: programs are read back and cut virtually, on the

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
 #include "tests/fabrication/jobs.h"
 #include "tests/fabrication/nc_record.h"

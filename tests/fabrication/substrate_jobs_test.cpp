@@ -14,13 +14,13 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "fabrication/chisel/check/dexel.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "fabrication/verify/dexel.h"
-#include "fabrication/verify/verify.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/closed_boundary.h"
 #include "geometry/part/part.h"
@@ -402,7 +402,7 @@ TEST(OnSubstrate, WhatIsLeftIsTheLowestOfAllCavities) {
     const Machine m = machine_of(named.job);
     SweptVolumeSink sink(m);
     run_nc(parse_nc(text_of(named.job), "p", NcDialect::rs274ngc), sink);
-    const Workpiece3d workpiece = workpiece_of(named.job, m, {});
+    const Workpiece3d workpiece = workpiece_of(named.job, m);
     const Vec2 half = 0.45 * blank_extent_mm(named.job);
     double lowest_mm = 0.0;
     for (const Groove& groove : workpiece.grooves) lowest_mm = std::min(lowest_mm, groove.root_mm.z());

@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "core/atomic_file.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "fabrication/verify/verify.h"
 #include "tests/fabrication/substrate_jobs.h"
 
 namespace retrace::fabrication::test {

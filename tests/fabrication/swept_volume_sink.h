@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fabrication/verify/dexel.h"
-#include "fabrication/verify/verify.h"
+#include "fabrication/chisel/check/dexel.h"
+#include "fabrication/chisel/check/verify.h"
 
 namespace retrace::fabrication::test {
 

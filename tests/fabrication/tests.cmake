@@ -9,28 +9,28 @@ retrace_test(fabrication_tests
   LIBRARIES retrace::job retrace::machine retrace::planing retrace::turning rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plan_test.cpp
-  LIBRARIES retrace::plan rapidcheck)
+  LIBRARIES retrace::chisel_plan rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/linuxcnc_test.cpp
-  LIBRARIES retrace::plan retrace::post)
+  LIBRARIES retrace::chisel_plan retrace::post)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/nc_reader_test.cpp
   LIBRARIES retrace::nc_read rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/read_back_test.cpp
-  LIBRARIES retrace::plan retrace::post retrace::nc_read rapidcheck)
+  LIBRARIES retrace::chisel_plan retrace::post retrace::nc_read rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/cutting_test.cpp ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
-  LIBRARIES retrace::plan retrace::post retrace::verify rapidcheck)
+  LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp
-  LIBRARIES retrace::plan retrace::post retrace::nc_read retrace::verify rapidcheck)
+  LIBRARIES retrace::chisel_plan retrace::post retrace::nc_read retrace::chisel_check rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/forces_test.cpp
   LIBRARIES retrace::forces)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/chiseling_test.cpp
-  LIBRARIES retrace::plan retrace::post retrace::verify)
+  LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/substrate_faults_test.cpp ${CMAKE_CURRENT_LIST_DIR}/substrate_jobs_test.cpp
-  LIBRARIES retrace::plan retrace::post retrace::verify)
+  LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check)

@@ -10,11 +10,11 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
-#include "fabrication/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "fabrication/verify/verify.h"
 #include "tests/fabrication/jobs.h"
 
 // What planner and writers make is cut again from its text, by a verifier that knows nothing of either.

@@ -58,31 +58,30 @@ const std::map<std::string, Names>& study_rooms() {
   return rooms;
 }
 
-/// The same for rooms of fabrication/. Readers and verifier share nothing with planner and writers.
+/// The same for rooms of fabrication/: machine and programs first, then a room for each process.
 const std::map<std::string, Names>& fabrication_rooms() {
   static const std::map<std::string, Names> rooms = {{"job", {}},
                                                      {"machine", {}},
                                                      {"program", {}},
-                                                     {"plan", {"job", "machine", "program"}},
                                                      {"post", {"program"}},
                                                      {"read", {"machine"}},
+                                                     {"check", {"machine", "read"}},
                                                      {"forces", {"job"}},
-                                                     {"verify", {"job", "machine", "read"}},
-                                                     {"turning", {"program", "read"}},
-                                                     {"planing", {"program", "read"}}};
+                                                     {"chisel", {"job", "machine", "program", "read", "check"}},
+                                                     {"planing", {"program", "read", "check"}},
+                                                     {"turning", {"program", "read", "check"}}};
   return rooms;
 }
 
-/// Inner rooms that check what the room around them has planned: which of its headers they may see, themselves or
-/// through others. The rest is the planner's.
-const std::map<std::string, Names>& inner_rooms() {
-  static const std::map<std::string, Names> rooms = {
-      {"fabrication/planing/verify/", {"fabrication/planing/part.h"}},
-      {"fabrication/turning/verify/",
-       {"fabrication/turning/boundary.h", "fabrication/turning/finish.h", "fabrication/turning/lenslet.h",
-        "fabrication/turning/numbers.h", "fabrication/turning/periodic_spline.h", "fabrication/turning/sag.h",
-        "fabrication/turning/surface.h", "fabrication/turning/tool.h"}}};
-  return rooms;
+/// Of fabrication/: what plans and writes programs, and what reads and judges them. Neither may see the other, directly
+/// or through others, or they would share their mistakes.
+enum class Side { neither, plans, judges };
+
+Side side_of(const std::string& path) {
+  const auto lies_in = [&](const char* folder) { return path.find(folder) != std::string::npos; };
+  if (!path.starts_with("fabrication/")) return Side::neither;
+  if (lies_in("/plan/") || lies_in("/program/") || lies_in("/post/")) return Side::plans;
+  return lies_in("/check/") || lies_in("/read/") ? Side::judges : Side::neither;
 }
 
 /// The rooms of a folder that has such; null for others.
@@ -233,7 +232,7 @@ class Checker {
       return;
     }
     check_order(path, include, target);
-    check_inner_room(path, include);
+    check_side(path, include);
     // Types of a library must not reach files that may not include it through a header either.
     if (!(place_of(path) == target))
       for (const Library* library : leaked_by(include.target))
@@ -257,14 +256,13 @@ class Checker {
     }
   }
 
-  void check_inner_room(const std::string& path, const Include& include) {
-    for (const auto& [room, seen] : inner_rooms()) {
-      const std::string around = room.substr(0, room.rfind('/', room.size() - 2) + 1);
-      if (!path.starts_with(room)) continue;
-      for (const std::string& header : reached_from(include.target))
-        if (header.starts_with(around) && !header.starts_with(room) && !seen.contains(header))
-          report(path, include.line, room + " may not see " + header);
-    }
+  void check_side(const std::string& path, const Include& include) {
+    const Side side = side_of(path);
+    if (side == Side::neither) return;
+    for (const std::string& header : reached_from(include.target))
+      if (const Side other = side_of(header); other != Side::neither && other != side)
+        report(path, include.line,
+               std::string(side == Side::plans ? "what plans" : "what judges") + " may not see " + header);
   }
 
   /// What including `path` brings: itself and all that it includes.

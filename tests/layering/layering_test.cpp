@@ -63,31 +63,36 @@ TEST_F(SyntheticTree, WithoutCoreIsRefused) {
 }
 
 TEST_F(SyntheticTree, ReadersOfPrograms) {
-  add("fabrication/plan/plan.h", "#pragma once\n#include \"fabrication/job/job.h\"\n");
+  add("fabrication/chisel/plan/plan.h", "#pragma once\n#include \"fabrication/job/job.h\"\n");
   add("fabrication/job/job.h", "#pragma once\n");
-  add("fabrication/read/reader.cpp", "#include \"fabrication/plan/plan.h\"\n");
-  add("fabrication/verify/verify.cpp", "#include \"fabrication/program/program.h\"\n");
+  add("fabrication/read/reader.cpp", "#include \"fabrication/chisel/plan/plan.h\"\n");
   add("fabrication/milling/mill.cpp", "#include \"fabrication/job/job.h\"\n");
   EXPECT_EQ(found(),
             (Lines{"fabrication/milling/mill.cpp:1: room fabrication/milling/ has no place in the order of rooms",
-                   "fabrication/read/reader.cpp:1: fabrication/read/ may not include fabrication/plan/plan.h",
-                   "fabrication/verify/verify.cpp:1: fabrication/verify/ may not include "
-                   "fabrication/program/program.h"}));
+                   "fabrication/read/reader.cpp:1: fabrication/read/ may not include fabrication/chisel/plan/plan.h",
+                   "fabrication/read/reader.cpp:1: what judges may not see fabrication/chisel/plan/plan.h"}));
 }
 
-TEST_F(SyntheticTree, ChecksSeeNothingOfThePlannerAroundThem) {
+TEST_F(SyntheticTree, PlannersAndJudgesDoNotSeeEachOther) {
+  add("fabrication/program/program.h", "#pragma once\n");
+  add("fabrication/check/findings.h", "#pragma once\n");
   add("fabrication/planing/part.h", "#pragma once\n");
-  add("fabrication/planing/zone_profile.h", "#pragma once\n#include \"fabrication/planing/part.h\"\n");
-  add("fabrication/planing/verify/check.h", "#pragma once\n#include \"fabrication/planing/part.h\"\n");
-  add("fabrication/planing/verify/mill.cpp",
-      "#include \"fabrication/planing/verify/check.h\"\n#include \"fabrication/planing/zone_profile.h\"\n");
-  add("fabrication/turning/path.h", "#pragma once\n");
-  add("fabrication/turning/surface.h", "#pragma once\n#include \"fabrication/turning/path.h\"\n");
-  add("fabrication/turning/verify/inspection.cpp", "#include \"fabrication/turning/surface.h\"\n");
-  EXPECT_EQ(found(), (Lines{"fabrication/planing/verify/mill.cpp:2: fabrication/planing/verify/ may not see "
-                            "fabrication/planing/zone_profile.h",
-                            "fabrication/turning/verify/inspection.cpp:1: fabrication/turning/verify/ may not see "
-                            "fabrication/turning/path.h"}));
+  add("fabrication/planing/plan/zone_profile.h", "#pragma once\n#include \"fabrication/planing/part.h\"\n");
+  add("fabrication/planing/check/check.h", "#pragma once\n#include \"fabrication/planing/part.h\"\n");
+  add("fabrication/planing/check/mill.cpp",
+      "#include \"fabrication/planing/check/check.h\"\n#include \"fabrication/planing/plan/zone_profile.h\"\n");
+  add("fabrication/chisel/check/verify.cpp", "#include \"fabrication/program/program.h\"\n");
+  add("fabrication/chisel/plan/plan.cpp", "#include \"fabrication/check/findings.h\"\n");
+  add("fabrication/turning/plan/path.h", "#pragma once\n");
+  add("fabrication/turning/surface.h", "#pragma once\n#include \"fabrication/turning/plan/path.h\"\n");
+  add("fabrication/turning/check/inspection.cpp", "#include \"fabrication/turning/surface.h\"\n");
+  EXPECT_EQ(found(),
+            (Lines{"fabrication/chisel/check/verify.cpp:1: what judges may not see fabrication/program/program.h",
+                   "fabrication/chisel/plan/plan.cpp:1: what plans may not see fabrication/check/findings.h",
+                   "fabrication/planing/check/mill.cpp:2: what judges may not see "
+                   "fabrication/planing/plan/zone_profile.h",
+                   "fabrication/turning/check/inspection.cpp:1: what judges may not see "
+                   "fabrication/turning/plan/path.h"}));
 }
 
 TEST_F(SyntheticTree, InOrderPasses) {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/random.h"
-#include "fabrication/planing/chords.h"
+#include "fabrication/planing/plan/chords.h"
 
 namespace retrace::fabrication::chords_test {
 namespace {

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <string>
 
-#include "fabrication/planing/verify/check.h"
+#include "fabrication/planing/check/check.h"
 
 namespace retrace::fabrication::test {
 
 /// Whether a check has a finding of that kind.
 inline bool finds(const PlaningCheck& check, const std::string& kind) {
-  return std::any_of(check.findings.begin(), check.findings.end(),
-                     [&](const PlaningFinding& f) { return f.kind == kind; });
+  return std::any_of(check.findings.begin(), check.findings.end(), [&](const Finding& f) { return f.kind == kind; });
 }
 
 }  // namespace retrace::fabrication::test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "fabrication/planing/io/part_files.h"
-#include "fabrication/planing/plan.h"
+#include "fabrication/planing/plan/plan.h"
 #include "fabrication/post/post.h"
 #include "tests/fabrication/linuxcnc.h"
 

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "fabrication/planing/io/part_files.h"
-#include "fabrication/planing/nose_path.h"
+#include "fabrication/planing/plan/nose_path.h"
 
 namespace retrace::fabrication::part_files_test {
 namespace {

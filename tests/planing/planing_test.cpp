@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "fabrication/planing/check/check.h"
 #include "fabrication/planing/io/part_files.h"
-#include "fabrication/planing/plan.h"
-#include "fabrication/planing/verify/check.h"
+#include "fabrication/planing/plan/plan.h"
 #include "fabrication/post/post.h"
 #include "studies/design/io/init_templates.h"
 #include "studies/planing/io/planing_files.h"
@@ -122,7 +122,7 @@ TEST(Planing, ProgramsKeepTheToleranceAndTheMachine) {
     const PlaningPlan plan = plan_planing(part);
     EXPECT_LT(plan.quantum_mm, tolerance_mm);
     const PlaningCheck check = check_planing(part, plan.flank_slope, texts_of(plan, "rs274ngc"), NcDialect::rs274ngc);
-    for (const PlaningFinding& f : check.findings) ADD_FAILURE() << f.kind << ' ' << f.line << ' ' << f.message;
+    for (const Finding& f : check.findings) ADD_FAILURE() << f.kind << ' ' << f.line << ' ' << f.message;
     EXPECT_LE(check.standing_mm_max, tolerance_mm);
     EXPECT_GT(check.standing_mm_max, 0.5 * tolerance_mm);
     EXPECT_LE(check.gouge_mm_max, 0.005 + 1e-6);

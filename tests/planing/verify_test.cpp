@@ -8,11 +8,11 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "fabrication/planing/nose_path.h"
-#include "fabrication/planing/plan.h"
-#include "fabrication/planing/verify/check.h"
-#include "fabrication/planing/verify/phase_profile.h"
-#include "fabrication/planing/verify/swept_nose.h"
+#include "fabrication/planing/check/check.h"
+#include "fabrication/planing/check/phase_profile.h"
+#include "fabrication/planing/check/swept_nose.h"
+#include "fabrication/planing/plan/nose_path.h"
+#include "fabrication/planing/plan/plan.h"
 #include "fabrication/post/post.h"
 #include "tests/planing/findings.h"
 
@@ -173,7 +173,7 @@ TEST(Lathe, ARoundNoseKeepsTheTubeAndLeavesFillets) {
   for (const double nose : {0.1, 0.8, 2.0}) {
     const PlanedPart part = turned_part(nose);
     const PlaningCheck check = check_of(part, part);
-    for (const PlaningFinding& f : check.findings) ADD_FAILURE() << f.kind << ' ' << f.message << ' ' << f.value_mm;
+    for (const Finding& f : check.findings) ADD_FAILURE() << f.kind << ' ' << f.message << ' ' << f.value;
     EXPECT_LE(check.path_distance_mm_max, 0.05 * 1.01);
     EXPECT_GT(check.path_distance_mm_max, 0.03);
     // A circle in the corner between an upright wall and a floor that falls towards it by the angle a.
@@ -208,7 +208,7 @@ const std::string kStops[] = {"M5", "M5", "M5", "M105"};
 /// The only finding of the spindle, and nothing else.
 std::string spindle_finding(const PlaningCheck& check) {
   std::string found;
-  for (const PlaningFinding& f : check.findings) found += f.kind + ": " + f.message + ";";
+  for (const Finding& f : check.findings) found += f.kind + ": " + f.message + ";";
   return found;
 }
 

@@ -4,10 +4,10 @@
 #include <numbers>
 
 #include "fabrication/post/post.h"
+#include "fabrication/turning/check/inspection.h"
 #include "fabrication/turning/finish.h"
-#include "fabrication/turning/path.h"
-#include "fabrication/turning/turning_program.h"
-#include "fabrication/turning/verify/inspection.h"
+#include "fabrication/turning/plan/path.h"
+#include "fabrication/turning/plan/turning_program.h"
 
 // What the programs' text leaves, against closed forms of cusps and against the design.
 

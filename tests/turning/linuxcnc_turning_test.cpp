@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "fabrication/post/post.h"
-#include "fabrication/turning/path.h"
-#include "fabrication/turning/turning_program.h"
+#include "fabrication/turning/plan/path.h"
+#include "fabrication/turning/plan/turning_program.h"
 #include "tests/fabrication/linuxcnc.h"
 
 // LinuxCNC's interpreter reads programs of turning, whose moves have times instead of feeds: it makes the planned moves

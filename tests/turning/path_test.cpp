@@ -1,4 +1,4 @@
-#include "fabrication/turning/path.h"
+#include "fabrication/turning/plan/path.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "fabrication/post/post.h"
-#include "fabrication/turning/polynomial_spiral.h"
-#include "fabrication/turning/turning_program.h"
-#include "fabrication/turning/verify/envelope.h"
+#include "fabrication/turning/check/envelope.h"
+#include "fabrication/turning/plan/polynomial_spiral.h"
+#include "fabrication/turning/plan/turning_program.h"
 
 // Paths against closed forms: compensation on spheres and planes, kinematics, and programs that read back the same.
 
@@ -254,7 +254,7 @@ TEST(TurningProgram, ReadsBackTheSameInAllDialects) {
     const NcEnd end = run_nc(parse_nc(text, "part", dialects_read[d]), recorder);
     EXPECT_TRUE(end.is_complete) << end.reason;
     const std::vector<CutPass> cuts = recorder.take();
-    EXPECT_TRUE(recorder.findings().empty()) << recorder.findings().front();
+    EXPECT_TRUE(recorder.findings().empty()) << recorder.findings().front().message;
     ASSERT_EQ(cuts.size(), 1U);
     ASSERT_EQ(cuts[0].x_mm.size(), passes[0].size());
     EXPECT_NEAR(cuts[0].seconds, path_seconds(passes), 1e-4);
@@ -294,11 +294,11 @@ TEST(TurningProgram, StopsAndMissingTimesAreFound) {
   CutRecorder stops;
   run_nc(parse_nc("%\nG90 G21 G61 G93\nG0 X0. Y0. C0.\nG1 X1. C1. F60.\nM2\n%\n", "p", NcDialect::rs274ngc), stops);
   ASSERT_EQ(stops.findings().size(), 1U);
-  EXPECT_NE(stops.findings()[0].find("stops at every point"), std::string::npos);
+  EXPECT_NE(stops.findings()[0].message.find("stops at every point"), std::string::npos);
   CutRecorder untimed;
   run_nc(parse_nc("%\nG90 G21 G64 G94\nG0 X0. Y0. C0.\nG1 X1. C1. F60.\nM2\n%\n", "p", NcDialect::rs274ngc), untimed);
   ASSERT_EQ(untimed.findings().size(), 1U);
-  EXPECT_NE(untimed.findings()[0].find("no time"), std::string::npos);
+  EXPECT_NE(untimed.findings()[0].message.find("no time"), std::string::npos);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
-#include "fabrication/turning/touch_map.h"
+#include "fabrication/turning/plan/touch_map.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/concavity_bound.h"
-#include "fabrication/turning/path.h"
+#include "fabrication/turning/plan/concavity_bound.h"
+#include "fabrication/turning/plan/path.h"
 
 // What is proved of the surface's curvature against samples of it, and paths that rely on it against those that search
 // the whole arc at every point.

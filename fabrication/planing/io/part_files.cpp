@@ -10,7 +10,7 @@
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
 #include "core/schema/reader.h"
-#include "fabrication/planing/nose_path.h"
+#include "fabrication/planing/plan/nose_path.h"
 
 namespace retrace::fabrication {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "fabrication/planing/zone_profile.h"
+#include "fabrication/planing/plan/zone_profile.h"
 
 namespace retrace::studies {
 namespace {
@@ -69,8 +69,8 @@ Json programs_json(const PlaningResult& result) {
 
 Json findings_json(const PlaningCheck& check) {
   Json findings = Json::array();
-  for (const PlaningFinding& f : check.findings) {
-    Json finding = {{"kind", f.kind}, {"message", f.message}, {"value", f.value_mm}, {"limit", f.limit_mm}};
+  for (const Finding& f : check.findings) {
+    Json finding = {{"kind", f.kind}, {"message", f.message}, {"value", f.value}, {"limit", f.limit}};
     if (!f.program.empty()) finding["program"] = f.program;
     if (f.line > 0) finding["line"] = f.line;
     findings.push_back(std::move(finding));
@@ -167,10 +167,9 @@ std::string planing_table(const PlaningResult& result) {
   else
     text += fmt::format("; {} chords, {} passes", result.plan.chords.size() - 1, result.plan.passes);
   text += fmt::format("\n{}\n", result.check.passes() ? "pass" : "fail");
-  for (const PlaningFinding& f : result.check.findings)
+  for (const Finding& f : result.check.findings)
     text += fmt::format("  {}{}{}: {} ({}, limit {})\n", f.kind, f.program.empty() ? "" : " " + f.program,
-                        f.line > 0 ? fmt::format(":{}", f.line) : "", f.message, fixed(f.value_mm, 6),
-                        shortest(f.limit_mm));
+                        f.line > 0 ? fmt::format(":{}", f.line) : "", f.message, fixed(f.value, 6), shortest(f.limit));
   return text;
 }
 

@@ -41,8 +41,10 @@ Json tool_json(const TurningResult& r) {
 
 Json verification_json(const TurningResult& r) {
   const turning::Inspection& i = r.inspection;
+  Json findings = Json::array();
+  for (const fabrication::Finding& finding : r.findings) findings.push_back(text_of(finding));
   return {{"verdict", r.passes_inspection() ? "pass" : "fail"},
-          {"findings", r.findings},
+          {"findings", std::move(findings)},
           {"form_tolerance_nm", r.part.form_tolerance_nm},
           {"form_error_nm", i.form_error_nm},
           {"interference_nm", i.interference_nm},
@@ -130,7 +132,7 @@ std::string turning_table(const TurningResult& r) {
   row("deepest cut below the surface", r.inspection.interference_nm, 3, "nm");
   row("scallops, mean", r.inspection.scallop_nm, 3, "nm");
   text += fmt::format("  {:<34} {:>10}\n", "verdict", r.passes_inspection() ? "pass" : "fail");
-  for (const std::string& finding : r.findings) text += "  " + finding + "\n";
+  for (const fabrication::Finding& finding : r.findings) text += "  " + text_of(finding) + "\n";
   return text;
 }
 

@@ -1,0 +1,22 @@
+#pragma once
+
+// How long a program takes, from the moves that were read.
+
+#include "fabrication/machine/machine.h"
+#include "fabrication/read/nc_motion.h"
+
+namespace retrace::fabrication {
+
+/// Seconds by what they are spent on. Moves start and end at rest.
+struct ProgramTime {
+  double feed_s = 0.0;
+  double rapid_s = 0.0;
+  double rotary_s = 0.0;
+  double dwell_s = 0.0;
+  double total_s() const { return feed_s + rapid_s + rotary_s + dwell_s; }
+
+  /// Adds a move. Ways of linear axes whose position is not known yet count nothing; rotary axes start at 0.
+  void add(const Machine& machine, const NcMotion& motion);
+};
+
+}  // namespace retrace::fabrication

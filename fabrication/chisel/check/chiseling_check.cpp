@@ -1,0 +1,116 @@
+#include "fabrication/chisel/check/chiseling_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/number_format.h"
+
+namespace retrace::fabrication {
+
+using geometry::Vec3;
+
+ChiselingCheck::ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control,
+                               FindingList& findings)
+    : CutCheck(workpiece, wedge, control, findings) {
+  for (const Groove& cavity : workpiece.grooves) {
+    State state;
+    // Where the blank's face cuts the axis, which makes equal angles with the facets.
+    state.left_mm.fill((cavity.face_mm - cavity.axis.dot(cavity.root_mm)) / std::numbers::sqrt3);
+    states_.push_back(state);
+  }
+}
+
+void ChiselingCheck::move(const CutMove& cut) {
+  check_feed(cut.motion);
+  const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
+  if (travel.dot(wedge_.sides[0].outward) > kMostSlip * travel.norm()) find_clearance_face(cut);
+  const bool goes_down = workpiece_.grooves[cut.element].axis.dot(cut.back.direction(travel)) < 0.0;
+  if (goes_down) {
+    close();
+    open(cut);
+  } else if (open_) {
+    open_->went_up = true;
+  }
+}
+
+void ChiselingCheck::open(const CutMove& move) {
+  const Groove& cavity = workpiece_.grooves[move.element];
+  const Vec3 clearance_face = move.back.direction(wedge_.sides[0].outward);
+  OpenCut cut;
+  cut.element = move.element;
+  cut.place = move.sweep.place;
+  double best = 2.0;
+  const Vec3 tip = move.back.point(move.sweep.to_mm);
+  for (std::size_t f = 0; f < 3; ++f) {
+    cut.tip_mm[f] = cavity.facets[f].height_mm(tip);
+    // The clearance face looks at the facet that is cut.
+    const double towards = cavity.facets[f].normal.dot(clearance_face);
+    if (towards >= best) continue;
+    best = towards;
+    cut.facet = f;
+  }
+  check_layer(cut, states_[move.element]);
+  open_ = cut;
+}
+
+void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
+  const double tip_mm = cut.tip_mm[cut.facet];
+  const double chip_mm = state.left_mm[cut.facet] - tip_mm;
+  const double deepest_um = std::max(process_.roughing_depth_um, process_.finishing_depth_um);
+  const double limit_mm = 1e-3 * deepest_um + workpiece_.tolerance_mm;
+  if (chip_mm > limit_mm)
+    find("chip_too_thick", cut.place, cut.element,
+         fmt::format("the cut takes {} um at once, the process {} um: a layer before it is missing",
+                     fixed(1e3 * chip_mm, 3), shortest(deepest_um)),
+         1e3 * chip_mm, 1e3 * limit_mm);
+  if (std::abs(chip_mm) < kSameTipMm) find("cut_twice", cut.place, cut.element, "this cut has been made before");
+  for (std::size_t g = 0; g < 3; ++g) {
+    if (g == cut.facet) continue;
+    const double short_mm = cut.tip_mm[g] - tip_mm;
+    if (short_mm > workpiece_.tolerance_mm)
+      find("chip_not_separated", cut.place, cut.element,
+           fmt::format("the tip stops {} um short of its layer's apex: the chip hangs on", fixed(1e3 * short_mm, 3)),
+           1e3 * short_mm, 1e3 * workpiece_.tolerance_mm);
+    const double hangs_mm = state.left_mm[g] - state.left_mm[cut.facet];
+    if (hangs_mm > workpiece_.tolerance_mm)
+      find("chip_not_separated", cut.place, cut.element,
+           fmt::format("facet {} was not cut as deep as facet {} before the next layer: its chip hangs on", g + 1,
+                       cut.facet + 1),
+           1e3 * hangs_mm, 1e3 * workpiece_.tolerance_mm);
+  }
+}
+
+void ChiselingCheck::dwell(double seconds) {
+  if (open_ && !open_->went_up && is_long_enough(seconds)) open_->has_dwell = true;
+}
+
+void ChiselingCheck::close() {
+  if (!open_) return;
+  if (!open_->has_dwell && process_.dwell_s > 0.0)
+    find("missing_dwell", open_->place, open_->element,
+         fmt::format("the cut turns at the apex without its dwell of {} s", shortest(process_.dwell_s)), 0,
+         process_.dwell_s);
+  if (!open_->went_up)
+    find("chip_not_separated", open_->place, open_->element,
+         "the cut does not go up its second edge: its chip hangs on");
+  State& state = states_[open_->element];
+  state.left_mm[open_->facet] = std::min(state.left_mm[open_->facet], open_->tip_mm[open_->facet]);
+  state.last = open_->place;
+  open_.reset();
+}
+
+void ChiselingCheck::finish() {
+  close();
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const State& state = states_[i];
+    const auto [least, most] = std::minmax_element(state.left_mm.begin(), state.left_mm.end());
+    if (state.last.line == 0 || *most - *least <= workpiece_.tolerance_mm) continue;
+    find("chip_not_separated", state.last, i, "the last layer was not cut on all three facets: its chip hangs on",
+         1e3 * (*most - *least), 1e3 * workpiece_.tolerance_mm);
+  }
+}
+
+}  // namespace retrace::fabrication

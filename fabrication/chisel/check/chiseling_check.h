@@ -1,0 +1,47 @@
+#pragma once
+
+// Cube corners, cut by micro chiseling: layers, dwells, and whether chips come free.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "fabrication/chisel/check/cut_check.h"
+
+namespace retrace::fabrication {
+
+/// Follows the V-shaped motions of diamond micro chiseling: dwells, depths of cut, and whether chips come free
+/// (docs/theory/micro_chiseling.md).
+class ChiselingCheck : public CutCheck {
+ public:
+  ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control, FindingList& findings);
+
+  void move(const CutMove& cut) override;
+  void dwell(double seconds) override;
+  void close() override;
+  void finish() override;
+
+ private:
+  /// Down one edge to the apex of a layer, and up the other.
+  struct OpenCut {
+    std::size_t element = 0;
+    std::size_t facet = 0;
+    std::array<double, 3> tip_mm{};  ///< heights of the tip over the facets
+    NcPlace place;
+    bool has_dwell = false;
+    bool went_up = false;
+  };
+  /// What stands on the facets of an element.
+  struct State {
+    std::array<double, 3> left_mm{};
+    NcPlace last;
+  };
+
+  void open(const CutMove& move);
+  void check_layer(const OpenCut& cut, const State& state);
+
+  std::vector<State> states_;
+  std::optional<OpenCut> open_;
+};
+
+}  // namespace retrace::fabrication

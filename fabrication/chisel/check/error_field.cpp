@@ -1,0 +1,128 @@
+#include "fabrication/chisel/check/error_field.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "core/error.h"
+#include "fabrication/check/findings.h"
+#include "fabrication/chisel/check/dexel.h"
+#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/program_check.h"
+#include "fabrication/chisel/check/verify.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+constexpr std::size_t kMostLines = 400;
+constexpr std::size_t kLeastLines = 4;
+/// Cavities of hexagonal cube corners reach twice the radius of their apertures.
+constexpr double kCavityReach = 2.0;
+
+/// The dexels of one element, as heights over its facets.
+struct ElementField {
+  DexelBox box;
+  std::size_t columns = 0;
+  std::size_t rows = 0;
+  std::vector<double> height_nm;
+
+  double at(const Vec2& p) const {
+    const auto index = [](double share, std::size_t count) {
+      return std::min(static_cast<std::size_t>(std::max(share, 0.0) * static_cast<double>(count)), count - 1);
+    };
+    const Vec3 size = box.high_mm - box.low_mm;
+    const std::size_t column = index((p.x() - box.low_mm.x()) / size.x(), columns);
+    const std::size_t row = index((p.y() - box.low_mm.y()) / size.y(), rows);
+    return height_nm[row * columns + column];
+  }
+};
+
+ElementField field_of(const Groove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
+                      const ToolWedge& wedge, std::size_t lines) {
+  const Vec3 across = groove.root_direction.cross(Vec3::UnitZ());
+  const Vec3 half =
+      groove.is_cube()
+          ? Vec3(kCavityReach * groove.half_base_mm, kCavityReach * groove.half_base_mm, 0.0)
+          : Vec3((groove.half_width_mm * groove.root_direction).cwiseAbs() + (groove.half_base_mm * across).cwiseAbs());
+  ElementField field;
+  field.box = {groove.root_mm - half + 2.0 * groove.root_mm.z() * Vec3::UnitZ(), groove.root_mm + half};
+  field.box.high_mm.z() = 0.0;
+  const DexelField dexels = cut_dexels(sweeps, poses, wedge, field.box, 2, lines);
+  field.columns = dexels.columns;
+  field.rows = dexels.rows;
+  const Vec3 size = field.box.high_mm - field.box.low_mm;
+  for (std::size_t row = 0; row < dexels.rows; ++row)
+    for (std::size_t column = 0; column < dexels.columns; ++column) {
+      const double x =
+          field.box.low_mm.x() + (static_cast<double>(column) + 0.5) / static_cast<double>(dexels.columns) * size.x();
+      const double y =
+          field.box.low_mm.y() + (static_cast<double>(row) + 0.5) / static_cast<double>(dexels.rows) * size.y();
+      const Vec3 left(x, y, -dexels.removed_mm[row * dexels.columns + column]);
+      // Above the nearer facet: what is left of the other one is its own.
+      double height_mm = std::numeric_limits<double>::infinity();
+      for (const DesignFacet& facet : groove.facets) height_mm = std::min(height_mm, facet.height_mm(left));
+      // Where nothing is removed beyond a cavity's rim the face stays as it should.
+      if (left.z() == 0.0) height_mm = std::max(height_mm, 0.0);
+      field.height_nm.push_back(height_mm * kNmPerMm);
+    }
+  return field;
+}
+
+}  // namespace
+
+ErrorField error_field(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
+                       std::size_t pixels) {
+  if (job.substrate)
+    throw InputError({job.source, 0, "base"}, "no map is drawn of elements on a base, only of flat arrays");
+  const Workpiece3d workpiece = workpiece_of(job, machine);
+  FindingList findings;
+  ProgramCheck check(workpiece, findings);
+  for (const NcProgram& program : programs) {
+    check.begin(program.file);
+    check.end(run_nc(program, check));
+  }
+  const std::vector<RigidMotion> poses = check.poses();
+  ErrorField field;
+  field.size_mm = blank_extent_mm(job);
+  field.low_mm = -0.5 * field.size_mm;
+  const double pitch_mm = field.size_mm.maxCoeff() / static_cast<double>(pixels);
+  const auto count = [&](double size_mm) {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(size_mm / pitch_mm)));
+  };
+  field.columns = count(field.size_mm.x());
+  field.rows = count(field.size_mm.y());
+
+  std::vector<ElementField> elements(workpiece.grooves.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const Groove& groove = workpiece.grooves[i];
+      const double longest_mm =
+          2.0 * (groove.is_cube() ? kCavityReach : 1.0) * std::max(groove.half_width_mm, groove.half_base_mm);
+      const auto lines =
+          std::clamp(static_cast<std::size_t>(std::ceil(longest_mm / pitch_mm)), kLeastLines, kMostLines);
+      elements[i] = field_of(groove, check.sweeps()[i], poses, check.wedge(), lines);
+    }
+  });
+
+  const GrooveMap map(workpiece.grooves);
+  field.height_nm.assign(field.columns * field.rows, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t row = 0; row < field.rows; ++row)
+    for (std::size_t column = 0; column < field.columns; ++column) {
+      const Vec2 share((static_cast<double>(column) + 0.5) / static_cast<double>(field.columns),
+                       1.0 - (static_cast<double>(row) + 0.5) / static_cast<double>(field.rows));
+      const Vec2 p = field.low_mm + share.cwiseProduct(field.size_mm);
+      if (const auto element = map.deepest(p.x(), p.y()))
+        field.height_nm[row * field.columns + column] = elements[*element].at(p);
+    }
+  return field;
+}
+
+}  // namespace retrace::fabrication

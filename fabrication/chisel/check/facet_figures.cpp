@@ -1,0 +1,281 @@
+#include "fabrication/chisel/check/facet_figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fabrication/chisel/check/plane_fit.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// Lines stay this far off the corners of the envelope, where they would run within a plane of the tool.
+constexpr double kOffCornerMm = 2e-7;
+/// Nearer to the root than this a line cannot tell the facets apart.
+constexpr double kLeastStripMm = 2e-6;
+/// Where what is left at the root is taken.
+constexpr double kAtRootMm = 1.5e-6;
+/// Margin on what is predicted of the region at the root: rounding of poses and positions.
+constexpr double kRootMargin = 1.05;
+constexpr int kEvenLines = 12;
+/// Passes of the tool whose middles are this close are one: what ploughing leaves differs by picometres then.
+constexpr double kSamePassMm = 3e-6;
+/// Inner part of the width from which a facet's plane is taken.
+constexpr double kPlaneShare = 0.8;
+
+/// Where sections are taken, along the root, and which passes of the tool cover them.
+struct Stations {
+  std::vector<double> along_mm;
+  std::vector<double> pass_middles_mm;
+};
+
+class Measurer {
+ public:
+  Measurer(const Groove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
+           const ToolWedge& wedge, const Prediction& prediction)
+      : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
+    for (const SweptVolume& sweep : sweeps) used_poses_.push_back(sweep.pose);
+    std::sort(used_poses_.begin(), used_poses_.end());
+    used_poses_.erase(std::unique(used_poses_.begin(), used_poses_.end()), used_poses_.end());
+    find_stations();
+    strip_mm_ = std::max(kRootMargin * prediction.root_mm, kLeastStripMm);
+    find_burr();
+  }
+
+  /// The facet that the first cuts stand upright for the tool.
+  std::size_t plunged_facet() const {
+    const Vec3 n = poses_[sweeps_.front().pose].direction(groove_.facets[0].normal);
+    const Vec3 up = wedge_.sides[0].outward;
+    return n.dot(up) < poses_[sweeps_.front().pose].direction(groove_.facets[1].normal).dot(up) ? 0 : 1;
+  }
+
+  /// \param is_other_ploughed the other facet is, and its floor rises along the edge by what is predicted
+  FacetFigures measure(std::size_t facet, bool is_ploughed, bool is_other_ploughed) {
+    FacetFigures figures;
+    figures.is_ploughed = is_ploughed;
+    const std::vector<double> slants = slant_positions(facet);
+    PlaneFit plane;
+    for (std::size_t k = 0; k < stations_.along_mm.size(); ++k) {
+      const double along = stations_.along_mm[k];
+      const double width_mm = width_of_station(k);
+      double previous_slant = 0.0;
+      double previous_top = 0.0;
+      for (const double slant : slants) {
+        const double floor_mm =
+            is_other_ploughed && slant == kAtRootMm ? ploughed_height(1 - facet, along).high / sine_between() : 0.0;
+        if (!is_clear_of_other(slant)) continue;
+        const LineSurface surface = surface_at(facet, along, slant + floor_mm);
+        take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along) : Interval{});
+        if (is_for_plane(slant, along)) plane.add(slant, along, surface.lowest);
+        figures.residual_mm3 += 0.5 * (surface.top + previous_top) * (slant - previous_slant) * width_mm;
+        previous_slant = slant;
+        previous_top = surface.top;
+      }
+    }
+    plane.fit(figures);
+    figures.distance_nm = std::max(figures.highest.nm, -figures.deepest.nm);
+    return figures;
+  }
+
+ private:
+  /// Part of the width that a station stands for: halfway to its neighbours.
+  double width_of_station(std::size_t k) const {
+    const std::vector<double>& at = stations_.along_mm;
+    const double low = k == 0 ? -groove_.half_width_mm : 0.5 * (at[k - 1] + at[k]);
+    const double high = k + 1 == at.size() ? groove_.half_width_mm : 0.5 * (at[k] + at[k + 1]);
+    return high - low;
+  }
+
+  /// The plane of a facet is taken where neither root nor rim nor the tool's ends disturb it.
+  bool is_for_plane(double slant, double along) const {
+    return std::abs(along) <= plane_end_mm_ && slant >= std::max(burr_end_mm_, 0.02 * groove_.facet_length_mm) &&
+           slant <= 0.98 * groove_.facet_length_mm;
+  }
+
+  /// Plunges along the two facets whose tips end up to t up the facets leave a burr between their rake faces, free of
+  /// the facets beyond the strip (docs/theory/verification.md). Rake faces that do not cross leave a fin, which no
+  /// prediction excuses.
+  void find_burr() {
+    const double up = wedge_.rake_direction.dot(wedge_.clearance_direction);
+    const double slope = std::tan(std::acos(std::clamp(up, -1.0, 1.0)) + std::asin(wedge_.sides[0].outward.z()));
+    const double sine = sine_between();
+    const double cosine = groove_.facets[0].up_slope.dot(groove_.facets[1].up_slope);
+    const double across = slope * sine + cosine;
+    const double slope_of_other = (sine - slope * cosine) / across;
+    if (slope <= slope_of_other) return;
+    const double t = kRootMargin * prediction_.root_mm;
+    const double end_mm = t * slope * (1.0 + 1.0 / across) / (slope - slope_of_other);
+    burr_end_mm_ = strip_mm_ + end_mm;
+    burr_height_mm_ = strip_mm_ + end_mm * slope;
+  }
+
+  /// Where the plane in which the middle of the edge moves meets the root line, along it.
+  double middle_of(const SweptVolume& sweep) const {
+    const Vec3& across = wedge_.edge;
+    const RigidMotion& pose = poses_[sweep.pose];
+    return across.dot(sweep.to_mm - pose.point(groove_.root_mm)) / across.dot(pose.direction(groove_.root_direction));
+  }
+
+  void find_stations() {
+    for (const SweptVolume& sweep : sweeps_) {
+      const double middle = middle_of(sweep);
+      const auto is_same = [&](double known) { return std::abs(known - middle) < kSamePassMm; };
+      if (std::none_of(stations_.pass_middles_mm.begin(), stations_.pass_middles_mm.end(), is_same))
+        stations_.pass_middles_mm.push_back(middle);
+    }
+    // The ends of a tilted edge leave slivers at the walls, which the neighbours' cuts take.
+    const double margin = prediction_.wall_mm + 2.0 * kSamePassMm;
+    const double end = groove_.half_width_mm - margin;
+    stations_.along_mm = {-end, -kPlaneShare * end, kPlaneShare * end, end};
+    plane_end_mm_ = kPlaneShare * groove_.half_width_mm;
+    if (stations_.pass_middles_mm.size() < 2) return;
+    for (const double middle : stations_.pass_middles_mm)
+      for (const double side : {-1.0, 1.0}) {
+        const double inner = middle + side * (wedge_.half_width_mm - margin);
+        if (std::abs(inner) < end) stations_.along_mm.push_back(inner);
+      }
+    std::sort(stations_.along_mm.begin(), stations_.along_mm.end());
+  }
+
+  /// Distances from the root at which lines are taken: on both sides of every corner that a tip leaves, between them,
+  /// and evenly over the facet.
+  std::vector<double> slant_positions(std::size_t facet) const {
+    std::vector<double> corners = {strip_mm_, burr_end_mm_, groove_.facet_length_mm};
+    for (const SweptVolume& sweep : sweeps_)
+      for (const Vec3& tip : {sweep.from_mm, sweep.to_mm}) {
+        const Vec3 p = poses_[sweep.pose].inverse().point(tip);
+        corners.push_back(groove_.facets[facet].up_slope.dot(p - groove_.root_mm));
+      }
+    std::sort(corners.begin(), corners.end());
+    std::vector<double> slants = {kAtRootMm};
+    const double last = groove_.facet_length_mm - kOffCornerMm;
+    const auto add = [&](double slant) {
+      if (slant > strip_mm_ && slant < last) slants.push_back(slant);
+    };
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      add(corners[i] - kOffCornerMm);
+      add(corners[i] + kOffCornerMm);
+      if (i > 0) add(0.5 * (corners[i - 1] + corners[i]) + 1e-9);
+    }
+    for (int i = 0; i < kEvenLines; ++i) add((i + 0.5137) / kEvenLines * groove_.facet_length_mm);
+    std::sort(slants.begin(), slants.end());
+    const auto is_same = [](double a, double b) { return b - a < 0.5 * kOffCornerMm; };
+    slants.erase(std::unique(slants.begin(), slants.end(), is_same), slants.end());
+    return slants;
+  }
+
+  LineSurface surface_at(std::size_t facet, double along, double slant) {
+    const DesignFacet& design = groove_.facets[facet];
+    const bool is_at_root = slant <= strip_mm_;
+    const Vec3 point = groove_.root_mm + along * groove_.root_direction + slant * design.up_slope;
+    // What is left at the root is told along the other facet: how far up that its cuts end.
+    const Vec3& direction = is_at_root ? groove_.facets[1 - facet].up_slope : design.normal;
+    spans_.clear();
+    for (const std::uint32_t pose : used_poses_) {
+      const Vec3 p = poses_[pose].point(point);
+      const Vec3 d = poses_[pose].direction(direction);
+      for (const SweptVolume& sweep : sweeps_)
+        if (sweep.pose == pose)
+          if (const auto span = swept_span(wedge_, sweep, p, d)) spans_.push_back(*span);
+    }
+    return surface_along(spans_, is_at_root ? groove_.to_face_mm(point, direction) : exit_of(facet, point));
+  }
+
+  /// Height over the other facet for each mm up a facet: the sine of the angle that they include.
+  double sine_between() const { return groove_.facets[1].normal.dot(groove_.facets[0].up_slope); }
+
+  /// How fast a line normal to a facet comes down on the other one; 0 where they include 90 degrees or more.
+  double approach_of_other() const {
+    constexpr double kParallel = 1e-9;
+    const double towards = -groove_.facets[0].normal.dot(groove_.facets[1].normal);
+    return towards > kParallel ? towards : 0.0;
+  }
+
+  /// Height over the other facet below which a line would meet what is left on that one.
+  double residue_of_other_mm() const { return strip_mm_ + kLeastStripMm; }
+
+  /// Whether a line at that distance from the root says anything of its own facet: of closed grooves the lowest ones
+  /// run into what the other facet may keep.
+  bool is_clear_of_other(double slant) const {
+    if (slant <= strip_mm_ || approach_of_other() <= 0.0) return true;
+    return slant * sine_between() > 2.0 * residue_of_other_mm();
+  }
+
+  /// Where a line normal to a facet leaves what the design takes away: at the blank's face, or before the other facet.
+  double exit_of(std::size_t facet, const Vec3& point) const {
+    const DesignFacet& design = groove_.facets[facet];
+    const double at_face = groove_.to_face_mm(point, design.normal);
+    const double towards = approach_of_other();
+    if (towards <= 0.0) return at_face;
+    const double free = groove_.facets[1 - facet].height_mm(point) - residue_of_other_mm();
+    return std::min(at_face, free / towards);
+  }
+
+  /// What ploughing must leave at a station: 0 at the deeper end of the edge, which touches the design's facet. The
+  /// ends of a tilted edge wander by up to wall_mm along a facet: within that of an end the pass may or may not have
+  /// been there.
+  Interval ploughed_height(std::size_t facet, double along) const {
+    const double slope = prediction_.plough_slope[facet];
+    const double half = wedge_.half_width_mm;
+    const double most = 2.0 * half * std::abs(slope);
+    Interval height{most, most};
+    for (const double middle : stations_.pass_middles_mm) {
+      const double off = std::abs(along - middle);
+      const double left = std::clamp(half * std::abs(slope) + slope * (along - middle), 0.0, most);
+      if (off <= half + prediction_.wall_mm + kSamePassMm) height.low = std::min(height.low, left);
+      if (off <= half - prediction_.wall_mm - 0.5 * kSamePassMm) height.high = std::min(height.high, left);
+    }
+    return height;
+  }
+
+  /// \param predicted heights over the design's facet between which the surface must lie, but for the blank's face:
+  /// close to the rim a ploughed facet that rises along the edge leaves the blank, and nothing is left up there
+  void take(FacetFigures& figures, const LineSurface& surface, double slant, const Interval& predicted) const {
+    const double lowest_mm = std::min(surface.lowest, surface.top);
+    if (slant <= strip_mm_) {
+      const double left_nm = (surface.top - predicted.high / sine_between()) * kNmPerMm;
+      if (left_nm > figures.root.nm) figures.root = {left_nm, surface.top_line};
+      return;
+    }
+    const bool is_under_burr = slant < burr_end_mm_ && surface.top < burr_height_mm_;
+    const double high_mm = std::min(predicted.high, surface.exit);
+    const double low_mm = std::min(predicted.low, surface.exit);
+    const double above_nm = ((is_under_burr ? lowest_mm : surface.top) - high_mm) * kNmPerMm;
+    const double below_nm = (lowest_mm - low_mm) * kNmPerMm;
+    if (above_nm > figures.highest.nm) figures.highest = {above_nm, surface.top_line};
+    if (below_nm < figures.deepest.nm) figures.deepest = {below_nm, surface.lowest_line};
+  }
+
+  const Groove& groove_;
+  std::span<const SweptVolume> sweeps_;
+  std::span<const RigidMotion> poses_;
+  const ToolWedge& wedge_;
+  const Prediction& prediction_;
+  std::vector<std::uint32_t> used_poses_;  ///< in which the element is cut
+  Stations stations_;
+  double strip_mm_ = 0.0;
+  double plane_end_mm_ = 0.0;
+  double burr_end_mm_ = 0.0;     ///< distance from the root
+  double burr_height_mm_ = 0.0;  ///< over a facet
+  std::vector<LineSpan> spans_;
+};
+
+}  // namespace
+
+ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume> sweeps,
+                               std::span<const RigidMotion> poses, const ToolWedge& wedge, const Prediction& prediction,
+                               bool is_one_facet_ploughed) {
+  ElementFigures figures;
+  figures.is_cut = !sweeps.empty();
+  if (!figures.is_cut) return figures;
+  Measurer measurer(groove, sweeps, poses, wedge, prediction);
+  const std::size_t plunged = measurer.plunged_facet();
+  figures.facets.resize(2);
+  for (std::size_t f = 0; f < 2; ++f)
+    figures.facets[f] =
+        measurer.measure(f, is_one_facet_ploughed && f != plunged, is_one_facet_ploughed && f == plunged);
+  return figures;
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,148 @@
+#include "fabrication/chisel/check/groove.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/angle.h"
+#include "geometry/elements/element_cells.h"
+
+namespace retrace::fabrication {
+
+using geometry::Vec3;
+
+namespace {
+
+/// From the frame of an element on a flat blank, over its middle, to where it stands.
+void stand(Groove& groove, const CutElement& element, double stock_mm) {
+  groove.axis = element.turn.col(2);
+  groove.face_mm = groove.axis.dot(element.foot_mm) + stock_mm;
+  groove.stock_mm = stock_mm;
+  groove.root_mm = element.foot_mm + element.turn * groove.root_mm;
+  groove.root_direction = element.turn * groove.root_direction;
+  for (Vec3& edge : groove.edges) edge = element.turn * edge;
+  for (DesignFacet& facet : groove.facets) {
+    facet.normal = element.turn * facet.normal;
+    facet.up_slope = element.turn * facet.up_slope;
+    facet.offset_mm = facet.normal.dot(groove.root_mm);
+  }
+}
+
+}  // namespace
+
+Groove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm) {
+  const double half_apex = 0.5 * Angle::from_deg(size.apex_angle_deg).rad();
+  const Vec3 across = element.rotated ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  Groove groove;
+  groove.half_base_mm = 0.5 * size.base_mm;
+  groove.half_width_mm = 0.5 * size.width_mm;
+  groove.facet_length_mm = groove.half_base_mm / std::sin(half_apex);
+  groove.depth_mm = groove.half_base_mm / std::tan(half_apex);
+  groove.root_mm = {0.0, 0.0, -groove.depth_mm};
+  groove.root_direction = element.rotated ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
+  groove.facets.resize(2);
+  for (std::size_t f = 0; f < 2; ++f) {
+    const double side = f == 0 ? 1.0 : -1.0;  // facet 1 lies on the far side of the root and faces back
+    DesignFacet& facet = groove.facets[f];
+    facet.normal = -side * std::cos(half_apex) * across + std::sin(half_apex) * Vec3::UnitZ();
+    facet.up_slope = side * std::sin(half_apex) * across + std::cos(half_apex) * Vec3::UnitZ();
+  }
+  stand(groove, element, stock_mm);
+  return groove;
+}
+
+Groove cavity_of(const CutElement& element, const geometry::Element& size, double stock_mm) {
+  Groove cavity;
+  cavity.depth_mm = geometry::element_depth_mm(size);
+  cavity.root_mm = {0.0, 0.0, -cavity.depth_mm};
+  cavity.facet_length_mm = std::numbers::sqrt3 * cavity.depth_mm;
+  cavity.half_base_mm = cavity.half_width_mm = geometry::element_cell(size).outline.front().norm();
+  // The edges of a cube that stands on its corner: 1 / sqrt(3) up each, 120 degrees apart.
+  const double first = element.rotated ? 0.5 * std::numbers::pi : -0.5 * std::numbers::pi;
+  for (int k = 0; k < 3; ++k) {
+    const double azimuth = first + 2.0 * std::numbers::pi / 3.0 * k;
+    cavity.edges.emplace_back(std::sqrt(2.0 / 3.0) * std::cos(azimuth), std::sqrt(2.0 / 3.0) * std::sin(azimuth),
+                              1.0 / std::numbers::sqrt3);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& a = cavity.edges[k];
+    const Vec3& b = cavity.edges[(k + 1) % 3];
+    DesignFacet facet;
+    facet.normal = a.cross(b).normalized();  // along the third edge, into the cavity
+    facet.up_slope = (a + b).normalized();
+    cavity.facets.push_back(facet);
+  }
+  cavity.root_direction = Vec3::UnitZ().cross(cavity.facets.front().normal).normalized();
+  stand(cavity, element, stock_mm);
+  return cavity;
+}
+
+GrooveMap::GrooveMap(const std::vector<Groove>& grooves) : grooves_(grooves) {
+  for (const Groove& groove : grooves) {
+    // Seen along z the aperture of an element that leans lies beside its root.
+    if (groove.axis != Vec3::UnitZ()) cells_around_ = 3;
+    cell_mm_ = std::max({cell_mm_ == 1.0 ? 0.0 : cell_mm_, groove.half_base_mm, groove.half_width_mm});
+  }
+  cells_.reserve(grooves.size());
+  for (std::size_t i = 0; i < grooves.size(); ++i)
+    cells_.emplace(cell_of(grooves[i].root_mm.x(), grooves[i].root_mm.y(), 0, 0), i);
+}
+
+GrooveMap::Cell GrooveMap::cell_of(double x_mm, double y_mm, int dx, int dy) const {
+  constexpr double furthest = 1e9;  // keeps absurd positions of faulty programs within whole numbers
+  const auto index = [&](double v) {
+    return static_cast<Cell>(std::floor(std::clamp(v / cell_mm_, -furthest, furthest)));
+  };
+  return (index(x_mm) + dx) * (Cell{1} << 32) + index(y_mm) + dy;
+}
+
+std::optional<std::size_t> GrooveMap::at(const Vec3& p) const {
+  std::optional<std::size_t> nearest;
+  double least_mm = 0.0;
+  for (int dx = -cells_around_; dx <= cells_around_; ++dx)
+    for (int dy = -cells_around_; dy <= cells_around_; ++dy) {
+      const auto [first, last] = cells_.equal_range(cell_of(p.x(), p.y(), dx, dy));
+      for (auto entry = first; entry != last; ++entry) {
+        const Groove& groove = grooves_[entry->second];
+        Vec3 from_root = p - groove.root_mm;
+        from_root -= groove.axis * groove.axis.dot(from_root);
+        if (groove.is_cube()) {
+          const double distance_mm = from_root.norm();
+          if (distance_mm > groove.half_base_mm || (nearest && distance_mm >= least_mm)) continue;
+          nearest = entry->second;
+          least_mm = distance_mm;
+          continue;
+        }
+        const double along = std::abs(groove.root_direction.dot(from_root));
+        const double across = (from_root - groove.root_direction * groove.root_direction.dot(from_root)).norm();
+        if (along <= groove.half_width_mm && across <= groove.half_base_mm) return entry->second;
+      }
+    }
+  return nearest;
+}
+
+std::optional<std::size_t> GrooveMap::deepest(double x_mm, double y_mm) const {
+  if (grooves_.empty() || !grooves_.front().is_cube()) return at(x_mm, y_mm);
+  // Cavities of hexagonal elements reach twice their radius.
+  constexpr int kCells = 2;
+  std::optional<std::size_t> best;
+  double lowest_mm = 0.0;
+  for (int dx = -kCells; dx <= kCells; ++dx)
+    for (int dy = -kCells; dy <= kCells; ++dy) {
+      const auto [first, last] = cells_.equal_range(cell_of(x_mm, y_mm, dx, dy));
+      for (auto entry = first; entry != last; ++entry) {
+        const Groove& cavity = grooves_[entry->second];
+        const Vec3 from_apex(x_mm - cavity.root_mm.x(), y_mm - cavity.root_mm.y(), 0.0);
+        double height_mm = cavity.root_mm.z();
+        for (const DesignFacet& facet : cavity.facets)
+          height_mm = std::max(height_mm, cavity.root_mm.z() - facet.normal.dot(from_apex) / facet.normal.z());
+        if (height_mm >= lowest_mm) continue;
+        lowest_mm = height_mm;
+        best = entry->second;
+      }
+    }
+  return best;
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,134 @@
+#include "fabrication/chisel/check/nose.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/angle.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// Planes that touch the arc, its ends not among them: those are the flanks.
+constexpr int kTangents = 32;
+/// How far off an edge is searched, and how far along a facet's normal, in radii.
+constexpr double kFurthest = 40.0;
+/// Only cuts that end so near to a facet reach its edges, in radii.
+constexpr double kNear = 20.0;
+
+/// The part of a vector across a unit vector, of length 1.
+Vec3 across(const Vec3& v, const Vec3& unit) {
+  return (v - unit * unit.dot(v)).normalized();
+}
+
+class Searcher {
+ public:
+  Searcher(const Groove& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
+           std::span<const RigidMotion> poses, const ToolWedge& nosed)
+      : cavity_(cavity), radius_mm_(radius_mm), poses_(poses), nosed_(nosed) {
+    for (const SweptVolume& sweep : sweeps)
+      if (is_near(sweep)) sweeps_.push_back(sweep);
+  }
+
+  NoseResidue run() const {
+    NoseResidue residue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& edge = cavity_.edges[k];
+      // Half-way to the end of a full cube's edge.
+      const Vec3 place = cavity_.root_mm + 0.25 * cavity_.facet_length_mm * edge;
+      for (const std::size_t facet : {k, (k + 2) % 3}) {
+        const Vec3& normal = cavity_.facets[facet].normal;
+        residue.strip_mm =
+            std::max(residue.strip_mm,
+                     strip_mm(place,
+                              normal.cross(edge).dot(cavity_.facets[facet].up_slope) > 0.0 ? Vec3(normal.cross(edge))
+                                                                                           : Vec3(edge.cross(normal)),
+                              normal));
+      }
+      const Vec3 between = (cavity_.facets[k].normal + cavity_.facets[(k + 2) % 3].normal).normalized();
+      residue.ridge_mm = std::max(residue.ridge_mm, first_cut_mm(place, between, kFurthest * radius_mm_));
+    }
+    return residue;
+  }
+
+ private:
+  bool is_near(const SweptVolume& sweep) const {
+    const RigidMotion back = poses_[sweep.pose].inverse();
+    double least_mm = std::numeric_limits<double>::infinity();
+    for (const Vec3& tip : {back.point(sweep.from_mm), back.point(sweep.to_mm)}) {
+      double most_mm = -std::numeric_limits<double>::infinity();
+      for (const DesignFacet& facet : cavity_.facets) most_mm = std::max(most_mm, facet.height_mm(tip));
+      least_mm = std::min(least_mm, most_mm);
+    }
+    return least_mm < kNear * radius_mm_;
+  }
+
+  /// Where the first cut along a line begins, from its point.
+  double first_cut_mm(const Vec3& point, const Vec3& direction, double furthest_mm) const {
+    double first = furthest_mm;
+    for (const SweptVolume& sweep : sweeps_) {
+      const RigidMotion& pose = poses_[sweep.pose];
+      const auto span = swept_span(nosed_, sweep, pose.point(point), pose.direction(direction));
+      if (span && span->high > 0.0) first = std::min(first, std::max(span->low, 0.0));
+    }
+    return first;
+  }
+
+  /// Bisects for the least distance from the edge, along the facet, over which something is cut within a few radii of
+  /// the facet: the ends of the arc stand as far off it as the clearance makes them.
+  double strip_mm(const Vec3& edge_point, const Vec3& along_facet, const Vec3& normal) const {
+    const double high_mm = 0.5 * radius_mm_;
+    double low = 0.0;
+    double high = kFurthest * radius_mm_;
+    constexpr int kHalvings = 32;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      (first_cut_mm(edge_point + middle * along_facet, normal, high_mm) < high_mm ? high : low) = middle;
+    }
+    return high;
+  }
+
+  const Groove& cavity_;
+  double radius_mm_;
+  std::span<const RigidMotion> poses_;
+  const ToolWedge& nosed_;
+  std::vector<SweptVolume> sweeps_;
+};
+
+}  // namespace
+
+ToolWedge nosed_wedge(const Tool& tool, const Machine& machine) {
+  ToolWedge wedge = v_tool_wedge(tool, machine);
+  const Vec3 leading = wedge.edge;
+  const Vec3 trailing = wedge.clearance_direction;
+  const Vec3 spine = wedge.rake_direction;
+  const double radius_mm = 1e-3 * tool.edge_radius_um;
+  const double half_nose = Angle::from_deg(0.5 * tool.nose_angle_deg).rad();
+  const Vec3 middle = (leading + trailing).normalized();
+  const Vec3 centre = radius_mm / std::sin(half_nose) * middle;
+  // Round the arc, from the normal of one edge to that of the other, both out of the V.
+  const Vec3 first = -across(trailing, leading);
+  const Vec3 last = -across(leading, trailing);
+  const double angle = std::acos(std::clamp(first.dot(last), -1.0, 1.0));
+  const Vec3 turned = across(last, first);
+  for (int k = 1; k <= kTangents; ++k) {
+    const double at = angle * k / (kTangents + 1);
+    const Vec3 outwards = std::cos(at) * first + std::sin(at) * turned;
+    const Vec3 along = -std::sin(at) * first + std::cos(at) * turned;
+    Vec3 normal = along.cross(spine).normalized();
+    if (normal.dot(outwards) < 0.0) normal = -normal;
+    wedge.sides.push_back({normal, normal.dot(centre + radius_mm * outwards)});
+  }
+  return wedge;
+}
+
+NoseResidue nose_residue(const Groove& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
+                         std::span<const RigidMotion> poses, const ToolWedge& nosed) {
+  return Searcher(cavity, radius_mm, sweeps, poses, nosed).run();
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,130 @@
+#include "fabrication/chisel/check/plunge_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/number_format.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// Z alone moves a plunge or a retract; this much of a move along Z makes it one.
+constexpr double kMostlyAlong = 0.9;
+
+}  // namespace
+
+void PlungeCheck::move(const CutMove& cut) {
+  const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
+  const double z_share = travel.z() / travel.norm();
+  // Only a retract may move the tool towards the facet that its clearance face looks at.
+  if (z_share < 0.5 && travel.y() > kMostSlip * travel.norm()) find_clearance_face(cut);
+  if (z_share < -kMostlyAlong) return plunge(cut);
+  if (z_share < 0.5) return plough(cut);
+  if (cut.motion.feed_mm_per_min <= 0.0) control_.feed(cut.motion, 0.0);
+  close();
+}
+
+void PlungeCheck::dwell(double seconds) {
+  if (open_ && is_long_enough(seconds)) open_->has_dwell = true;
+}
+
+void PlungeCheck::check_dwell() {
+  if (!open_->has_dwell && process_.dwell_s > 0.0)
+    find("missing_dwell", open_->place, open_->element,
+         fmt::format("the plunge ends without its dwell of {} s", shortest(process_.dwell_s)), 0, process_.dwell_s);
+}
+
+void PlungeCheck::plunge(const CutMove& cut) {
+  const auto& [motion, sweep, there, back, element] = cut;
+  close();
+  check_feed(motion);
+  const Groove& groove = workpiece_.grooves[element];
+  const Vec3 upright = there.direction(groove.facets[0].normal);
+  OpenPlunge plunge;
+  plunge.element = element;
+  plunge.place = motion.place;
+  // The plunged facet faces away from the clearance face.
+  plunge.facet = upright.dot(wedge_.sides[0].outward) < 0.0 && std::abs(upright.z()) < 0.5 ? 0 : 1;
+  plunge.tip_mm = {1e9, 1e9};
+  for (const double side : {-1.0, 1.0}) {
+    const Vec3 tip = back.point(sweep.to_mm + side * wedge_.half_width_mm * wedge_.edge);
+    for (std::size_t f = 0; f < 2; ++f) plunge.tip_mm[f] = std::min(plunge.tip_mm[f], groove.facets[f].height_mm(tip));
+  }
+  State& state = states_[element];
+  const Vec3 tip = back.point(sweep.to_mm);
+  // Where nothing was cut before, the blank's face ends the chip.
+  plunge.chip_mm = std::min(state.surface_mm[plunge.facet] - plunge.tip_mm[plunge.facet],
+                            groove.to_face_mm(tip, groove.facets[plunge.facet].normal));
+  check_chip_thickness(plunge);
+  for (const auto& known : state.tips)
+    if (known[3] == static_cast<double>(plunge.facet) && (Vec3(known[0], known[1], known[2]) - tip).norm() < kSameTipMm)
+      find("cut_twice", motion.place, element, "this cut has been made before");
+  state.tips.push_back({tip.x(), tip.y(), tip.z(), static_cast<double>(plunge.facet)});
+  open_ = plunge;
+}
+
+void PlungeCheck::check_chip_thickness(const OpenPlunge& plunge) {
+  const double deepest_mm =
+      1e-3 * std::max(process_.roughing_depth_um,
+                      workpiece_.job->strategy == Strategy::two_step ? process_.finishing_depth_um : 0.0);
+  // The first of nested V shells is a whole V, which both of its plunges take from the blank's face: two depths wide.
+  const bool is_first_shell =
+      workpiece_.job->strategy == Strategy::bidirectional && states_[plunge.element].surface_mm[plunge.facet] > 1e8;
+  const double limit_mm = (is_first_shell ? 2.0 : 1.0) * deepest_mm + workpiece_.tolerance_mm +
+                          workpiece_.prediction(plunge.element).root_mm;
+  if (plunge.chip_mm > limit_mm)
+    find("chip_too_thick", plunge.place, plunge.element,
+         fmt::format("the plunge takes {} um at once, the process {} um: a cut before it is missing",
+                     fixed(1e3 * plunge.chip_mm, 3), shortest(1e3 * deepest_mm)),
+         1e3 * plunge.chip_mm, 1e3 * limit_mm);
+}
+
+void PlungeCheck::plough(const CutMove& cut) {
+  check_feed(cut.motion);
+  if (!open_ || open_->element != cut.element) return;
+  check_dwell();
+  const double length_mm = (cut.sweep.to_mm - cut.sweep.from_mm).norm();
+  const double chip_mm = std::min(open_->chip_mm, 1e-3 * process_.roughing_depth_um);
+  if (length_mm < chip_mm - workpiece_.tolerance_mm)
+    find("chip_not_separated", cut.motion.place, cut.element,
+         fmt::format("the plough is {} um long, the chip {} um thick", fixed(1e3 * length_mm, 3),
+                     fixed(1e3 * chip_mm, 3)),
+         1e3 * length_mm, 1e3 * chip_mm);
+  State& state = states_[cut.element];
+  for (std::size_t f = 0; f < 2; ++f) state.surface_mm[f] = std::min(state.surface_mm[f], open_->tip_mm[f]);
+  state.last[open_->facet] = State::Plunge{open_->tip_mm, open_->place.line};
+  open_.reset();
+}
+
+void PlungeCheck::close() {
+  if (!open_) return;
+  check_dwell();
+  check_chip();
+  State& state = states_[open_->element];
+  state.surface_mm[open_->facet] = std::min(state.surface_mm[open_->facet], open_->tip_mm[open_->facet]);
+  state.last[open_->facet] = State::Plunge{open_->tip_mm, open_->place.line};
+  open_.reset();
+}
+
+/// A chip that no plough frees needs two plunges: the first passes the other facet's surface by its own depth, the
+/// second ends on what the first has left.
+void PlungeCheck::check_chip() {
+  const std::size_t f = open_->facet;
+  const std::size_t g = 1 - f;
+  const State& state = states_[open_->element];
+  const double tolerance_mm = workpiece_.tolerance_mm + workpiece_.prediction(open_->element).root_mm;
+  const bool passes = open_->tip_mm[g] < state.surface_mm[g] - tolerance_mm;
+  if (passes) return;
+  const auto& before = state.last[g];
+  const bool meets = before && before->tip_mm[f] <= open_->tip_mm[f] + tolerance_mm;
+  if (meets) return;
+  find("chip_not_separated", open_->place, open_->element,
+       "the plunge neither passes the other facet nor meets a cut along it that does: its chip hangs on",
+       1e3 * (open_->tip_mm[g] - std::min(state.surface_mm[g], 1e3)), 0.0);
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fabrication/chisel/check/groove.h"
+#include "fabrication/machine/machine.h"
+
+namespace retrace::fabrication {
+
+/// What a machine's axes make unavoidable for the elements of one orientation, from the poses that this machine needs -
+/// not from those of the program (docs/theory/verification.md).
+struct Prediction {
+  std::vector<PlungePose> poses;  ///< in which facets 1, 2 and, of cube corners, 3 are cut
+  /// By how much facet f rises from one end of the tool's edge to the other, per mm, when it is ploughed in the pose of
+  /// the other facet; signed along the root direction of the groove.
+  std::array<double, 2> plough_slope{};
+  /// Of prisms. A V follows the dihedral edges themselves and its planes hold the facets: it leaves nothing.
+  double root_mm = 0.0;  ///< by which the ends of the tilted edge stay up a facet at the root at most
+  double wall_mm = 0.0;  ///< by which the tilted edge's ends cut into the walls at most
+};
+
+/// \throw InputError if the machine cannot plunge a facet
+Prediction predict(const Machine& machine, const Groove& groove, double tool_width_mm);
+
+}  // namespace retrace::fabrication

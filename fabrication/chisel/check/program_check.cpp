@@ -1,0 +1,191 @@
+#include "fabrication/chisel/check/program_check.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/number_format.h"
+#include "fabrication/chisel/check/chiseling_check.h"
+#include "fabrication/chisel/check/plunge_check.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+constexpr std::uint8_t kLinearBits = 0b00111;
+
+std::uint8_t rotary_bits(const Machine& machine) {
+  const auto bit = [](char axis) { return 1U << kNcAxisLetters.find(axis); };
+  return static_cast<std::uint8_t>(bit(machine.tilt_letter()) | bit('C'));
+}
+
+Vec3 interpolated(const Vec3& a, const Vec3& b, double a_height, double b_height) {
+  return a + (b - a) * (a_height / (a_height - b_height));
+}
+
+std::unique_ptr<CutCheck> cut_check_of(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control,
+                                       FindingList& findings) {
+  if (workpiece.job->strategy == Strategy::dmc)
+    return std::make_unique<ChiselingCheck>(workpiece, wedge, control, findings);
+  return std::make_unique<PlungeCheck>(workpiece, wedge, control, findings);
+}
+
+}  // namespace
+
+ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
+                           std::vector<std::optional<std::size_t>> visits)
+    : workpiece_(workpiece),
+      machine_(*workpiece.machine),
+      findings_(findings),
+      map_(workpiece.grooves),
+      visits_(std::move(visits)),
+      wedge_(wedge_of(*workpiece.job, machine_)),
+      control_(findings, {}),
+      way_(workpiece, wedge_, findings),
+      cuts_(cut_check_of(workpiece, wedge_, control_, findings)),
+      sweeps_(workpiece.grooves.size()) {}
+
+void ProgramCheck::begin(const std::string& program) {
+  findings_.begin(program);
+  control_.begin();
+}
+
+std::vector<RigidMotion> ProgramCheck::poses() const {
+  return poses_;
+}
+
+std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
+  const auto [known, is_new] = known_poses_.try_emplace({pose.a_deg, pose.c_deg}, pose_words_.size());
+  if (!is_new) return known->second;
+  pose_words_.push_back(pose);
+  poses_.push_back(machine_from_workpiece(machine_, pose));
+  back_.push_back(poses_.back().inverse());
+  standing_.push_back(standing_bodies(machine_, pose));
+  return poses_.size() - 1;
+}
+
+void ProgramCheck::dwell(double seconds, const NcPlace&, const AxisPositions&) {
+  time_.dwell_s += seconds;
+  cuts_->dwell(seconds);
+}
+
+void ProgramCheck::finish() {
+  cuts_->finish();
+}
+
+void ProgramCheck::end(const NcEnd& end) {
+  cuts_->close();
+  runs_.end();
+  if (!end.is_complete) findings_.add("truncated", end.line, "the program stops in the middle: " + end.reason);
+}
+
+void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
+  control_.axes(machine_, motion);
+  time_.add(machine_, motion);
+  const std::optional<std::size_t> run = visits_.empty() ? std::nullopt : runs_.of(motion);
+  if (motion.moved == 0) return;
+  const std::uint8_t rotary = rotary_bits(machine_);
+  if ((motion.moved & rotary) != 0) {
+    cuts_->close();
+    return way_.turn(motion);
+  }
+  // Before X, Y and Z are known nothing can be said; the settings are looked at when the first cut comes.
+  const auto all = static_cast<std::uint8_t>(kLinearBits | rotary);
+  const auto known_after = static_cast<std::uint8_t>((motion.known | motion.moved) & all);
+  if (known_after != all || (motion.known & kLinearBits) != kLinearBits) return;
+  SweptVolume sweep;
+  sweep.pose = static_cast<std::uint32_t>(pose_index(rotary_pose(machine_, motion.to)));
+  sweep.place = motion.place;
+  sweep.is_rapid = motion.move == NcMove::rapid;
+  sweep.from_mm = machine_point(machine_, motion.from) + wedge_.tip_mm;
+  sweep.to_mm = machine_point(machine_, motion.to) + wedge_.tip_mm;
+  const RigidMotion& back = back_[sweep.pose];
+  const std::optional<std::size_t> element = run ? visits_[*run] : element_of(sweep);
+  find_corners(sweep, element);
+  way_.fixtures(sweep, standing_[sweep.pose]);
+  if (sweep.is_rapid) way_.rapid(motion, sweep, back, element);
+  if (corners_.empty()) {
+    cuts_->close();
+    if (!sweep.is_rapid && motion.feed_mm_per_min <= 0.0) control_.feed(motion, 0.0);
+    return;
+  }
+  control_.settings(settings, motion.place);
+  way_.holder(sweep, back);
+  if (!element) {
+    cuts_->close();
+    return way_.outside(sweep, corners_);
+  }
+  sweeps_[*element].push_back(sweep);
+  check_cut(motion, sweep, *element);
+}
+
+void ProgramCheck::find_corners(const SweptVolume& sweep, std::optional<std::size_t> element) {
+  corners_.clear();
+  const RigidMotion& back = back_[sweep.pose];
+  const BlankFace& face = way_.face();
+  // Beside the elements the blank ends in the plane that touches its face under the tool.
+  const Vec3 tip = back.point(sweep.to_mm);
+  const Vec3 out = element ? workpiece_.grooves[*element].axis : face.normal_at(tip);
+  const double face_mm = element          ? workpiece_.grooves[*element].face_mm
+                         : face.is_flat() ? 0.0
+                                          : out.dot(tip) - face.height_mm(tip);
+  const auto height_mm = [&](const Vec3& p) { return out.dot(p) - face_mm; };
+  const Vec3 half_edge = wedge_.half_width_mm * wedge_.edge;
+  // The four corners of the parallelogram that the edge sweeps, in order.
+  const std::array<Vec3, 4> swept = {back.point(sweep.from_mm - half_edge), back.point(sweep.from_mm + half_edge),
+                                     back.point(sweep.to_mm + half_edge), back.point(sweep.to_mm - half_edge)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3& a = swept[i];
+    const Vec3& b = swept[(i + 1) % 4];
+    const double a_mm = height_mm(a);
+    const double b_mm = height_mm(b);
+    if (a_mm < 0.0) {
+      corners_.push_back(a);
+      // Up the faces of the wedge to where they leave the blank.
+      for (const Vec3& ray : wedge_.rays) {
+        const Vec3 up = back.direction(ray);
+        const double rise = out.dot(up);
+        if (rise > 1e-3) corners_.push_back(a - up * (a_mm / rise));
+      }
+    }
+    if ((a_mm < 0.0) != (b_mm < 0.0)) corners_.push_back(interpolated(a, b, a_mm, b_mm));
+  }
+}
+
+std::optional<std::size_t> ProgramCheck::element_of(const SweptVolume& sweep) const {
+  const Vec3 from = back_[sweep.pose].point(sweep.from_mm);
+  const Vec3 to = back_[sweep.pose].point(sweep.to_mm);
+  return map_.at(from.z() < to.z() ? from : to);
+}
+
+void ProgramCheck::check_cut(const NcMotion& motion, const SweptVolume& sweep, std::size_t element) {
+  const Groove& groove = workpiece_.grooves[element];
+  const Prediction& prediction = workpiece_.prediction(element);
+  const auto find = [&](const char* kind, std::string message, double value_mm, double limit_mm) {
+    findings_.add(kind, motion.place.line, std::move(message), value_mm * kNmPerMm, limit_mm * kNmPerMm,
+                  static_cast<std::int64_t>(element));
+  };
+  double gouge_mm = 0.0;
+  double wall_mm = 0.0;
+  for (const Vec3& corner : corners_) {
+    for (const DesignFacet& facet : groove.facets) gouge_mm = std::max(gouge_mm, -facet.height_mm(corner));
+    if (!groove.is_cube()) wall_mm = std::max(wall_mm, std::abs(groove.along_mm(corner)) - groove.half_width_mm);
+  }
+  deepest_wall_mm_ = std::max(deepest_wall_mm_, wall_mm);
+  if (gouge_mm > workpiece_.tolerance_mm)
+    find("gouge", fmt::format("the tool goes {} nm below the design's facet", fixed(gouge_mm * kNmPerMm, 1)), gouge_mm,
+         workpiece_.tolerance_mm);
+  const double wall_limit_mm = prediction.wall_mm + workpiece_.tolerance_mm;
+  if (wall_mm > wall_limit_mm)
+    find("wall_overcut",
+         fmt::format("the tool goes {} nm into the wall, {} are unavoidable", fixed(wall_mm * kNmPerMm, 1),
+                     fixed(prediction.wall_mm * kNmPerMm, 1)),
+         wall_mm, wall_limit_mm);
+  if (sweep.is_rapid) return cuts_->close();
+  cuts_->move({motion, sweep, poses_[sweep.pose], back_[sweep.pose], element});
+}
+
+}  // namespace retrace::fabrication

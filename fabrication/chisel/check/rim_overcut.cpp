@@ -1,0 +1,77 @@
+#include "fabrication/chisel/check/rim_overcut.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// Rims that meet do so to rounding.
+constexpr double kMeetMm = 1e-9;
+
+/// Places along the rims of an element.
+std::vector<Vec3> rim_of(const Groove& groove) {
+  std::vector<Vec3> rim;
+  if (!groove.is_cube()) {
+    for (const DesignFacet& facet : groove.facets)
+      for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0})
+        rim.push_back(groove.root_mm + groove.facet_length_mm * facet.up_slope +
+                      (1.0 - 1e-6) * share * groove.half_width_mm * groove.root_direction);
+    return rim;
+  }
+  // The circle round a full cube's hexagon is sqrt(2/3) of an edge wide, that round a triangle as wide as its cavity.
+  const double edge_mm = std::min(groove.facet_length_mm, groove.half_base_mm * std::sqrt(1.5));
+  const bool is_hexagonal = edge_mm < (1.0 - 1e-9) * groove.facet_length_mm;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 low = edge_mm * groove.edges[k];
+    const Vec3 next = edge_mm * groove.edges[(k + 1) % 3];
+    const Vec3 between = is_hexagonal ? Vec3(low + next) : Vec3(0.5 * (low + next));
+    for (const Vec3& p : {low, Vec3(0.5 * (low + between)), between, Vec3(0.5 * (between + next))})
+      rim.push_back(groove.root_mm + p);
+  }
+  return rim;
+}
+
+/// How deep a point lies within what an element's cut opens; below 0 outside.
+double depth_in(const Groove& groove, const Vec3& p) {
+  if (!groove.is_cube() && std::abs(groove.along_mm(p)) > groove.half_width_mm) return -1.0;
+  double depth_mm = std::numeric_limits<double>::infinity();
+  for (const DesignFacet& facet : groove.facets) depth_mm = std::min(depth_mm, facet.height_mm(p));
+  return depth_mm;
+}
+
+}  // namespace
+
+double rim_overcut_mm(const std::vector<Groove>& grooves) {
+  double cell_mm = 0.0;
+  for (const Groove& groove : grooves) cell_mm = std::max({cell_mm, groove.half_base_mm, groove.half_width_mm});
+  cell_mm *= 4.0;
+  const auto index = [&](const Vec3& p) {
+    return std::pair{static_cast<std::int64_t>(std::floor(p.x() / cell_mm)),
+                     static_cast<std::int64_t>(std::floor(p.y() / cell_mm))};
+  };
+  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::size_t>> cells;
+  for (std::size_t i = 0; i < grooves.size(); ++i) cells[index(grooves[i].root_mm)].push_back(i);
+  double most_mm = 0.0;
+  for (std::size_t i = 0; i < grooves.size(); ++i) {
+    const auto [x, y] = index(grooves[i].root_mm);
+    const std::vector<Vec3> rim = rim_of(grooves[i]);
+    for (std::int64_t dx = -1; dx <= 1; ++dx)
+      for (std::int64_t dy = -1; dy <= 1; ++dy) {
+        const auto found = cells.find({x + dx, y + dy});
+        if (found == cells.end()) continue;
+        for (const std::size_t j : found->second)
+          for (const Vec3& p : rim)
+            if (j != i) most_mm = std::max(most_mm, depth_in(grooves[j], p));
+      }
+  }
+  return most_mm > kMeetMm ? most_mm : 0.0;
+}
+
+}  // namespace retrace::fabrication

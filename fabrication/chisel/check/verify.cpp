@@ -1,0 +1,269 @@
+#include "fabrication/chisel/check/verify.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "fabrication/chisel/check/nose.h"
+#include "fabrication/chisel/check/program_check.h"
+#include "fabrication/chisel/check/rim_overcut.h"
+#include "fabrication/chisel/check/visits.h"
+#include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/job/substrate_cells.h"
+#include "fabrication/job/v_tool.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
+
+bool has_poses_of(const Machine& machine, const Workpiece3d& workpiece, const std::vector<RotaryPose>& words) {
+  // Poses are written with seven digits; between the shipped machines they differ by far more.
+  constexpr double same_deg = 1e-5;
+  const auto is_solved = [&](const RotaryPose& word) {
+    for (const Prediction& prediction : workpiece.predictions)
+      for (const PlungePose& p : prediction.poses) {
+        const double c = word.c_deg - p.pose.c_deg;
+        if (std::abs(word.a_deg - p.pose.a_deg) < same_deg && std::abs(c - 360.0 * std::round(c / 360.0)) < same_deg)
+          return true;
+      }
+    return false;
+  };
+  static_cast<void>(machine);
+  return !words.empty() && std::all_of(words.begin(), words.end(), is_solved);
+}
+
+/// Refuses a program whose poses are those that another measured machine needs.
+void refuse_other_machine(const Job& job, const Machine& machine, const std::vector<Machine>& others,
+                          const VerifyOptions& options, const Workpiece3d& workpiece,
+                          const std::vector<RotaryPose>& words, const std::string& file) {
+  if (has_poses_of(machine, workpiece, words)) return;
+  for (const Machine& other : others) {
+    if (other.name == machine.name || other.tilt != machine.tilt || other.a.direction.basis != Basis::measured)
+      continue;
+    if (has_poses_of(other, workpiece_of(job, other, options.tolerance_nm), words))
+      throw InputError({file, 0, ""}, fmt::format("is a program for machine {}, the job is for {}: its poses are those "
+                                                  "of the other machine's axes",
+                                                  other.name, machine.name));
+  }
+}
+
+/// The error of a cube corner's dihedral angles that is the largest.
+double dihedral_error_arcmin(const Groove& cavity, const ElementFigures& figures) {
+  std::vector<Vec3> normals;
+  for (std::size_t f = 0; f < figures.facets.size(); ++f) {
+    const DesignFacet& design = cavity.facets[f];
+    const Vec3 level = design.normal.cross(cavity.axis).normalized();
+    normals.push_back(
+        (design.normal - figures.facets[f].slope_up * design.up_slope - figures.facets[f].slope_along * level)
+            .normalized());
+  }
+  double largest = 0.0;
+  for (std::size_t f = 0; f < normals.size(); ++f) {
+    const double error = std::asin(normals[f].dot(normals[(f + 1) % normals.size()])) * kArcminPerRad;
+    if (std::abs(error) > std::abs(largest)) largest = error;
+  }
+  return largest;
+}
+
+ElementResult result_of(const Groove& groove, const ElementFigures& figures, const Prediction& prediction) {
+  ElementResult result;
+  result.figures = figures;
+  result.facet_angle_arcmin.resize(figures.facets.size());
+  for (std::size_t f = 0; f < figures.facets.size(); ++f) {
+    const FacetFigures& facet = figures.facets[f];
+    const double along = facet.slope_along - (facet.is_ploughed ? prediction.plough_slope[f] : 0.0);
+    result.facet_angle_arcmin[f] = std::atan(std::hypot(facet.slope_up, along)) * kArcminPerRad;
+    // A facet that rises above the design up its slope leans into the groove.
+    result.apex_error_arcmin -= std::atan(facet.slope_up) * kArcminPerRad;
+  }
+  if (groove.is_cube()) result.apex_error_arcmin = dihedral_error_arcmin(groove, figures);
+  return result;
+}
+
+class Judge {
+ public:
+  Judge(const Workpiece3d& workpiece, FindingList& findings, Verification& verification)
+      : workpiece_(workpiece), findings_(findings), result_(verification) {}
+
+  void element(std::size_t index, const std::string& program) {
+    const ElementResult& element = result_.elements[index];
+    const auto number = static_cast<std::int64_t>(index);
+    if (!element.figures.is_cut) {
+      findings_.add({"element_missing", program, 0, number, fmt::format("element {} is not cut", number), 0, 0, 1});
+      return;
+    }
+    ++result_.elements_cut;
+    for (std::size_t f = 0; f < element.figures.facets.size(); ++f)
+      facet(element.figures.facets[f], f, number, program);
+    for (const double angle : element.facet_angle_arcmin)
+      result_.facet_angle_arcmin_max = std::max(result_.facet_angle_arcmin_max, angle);
+    if (std::abs(element.apex_error_arcmin) > std::abs(result_.apex_error_arcmin_max))
+      result_.apex_error_arcmin_max = element.apex_error_arcmin;
+  }
+
+ private:
+  void facet(const FacetFigures& facet, std::size_t f, std::int64_t number, const std::string& program) {
+    const double tolerance_nm = workpiece_.tolerance_mm * kNmPerMm;
+    const double root_nm = workpiece_.prediction(static_cast<std::size_t>(number)).root_mm * kNmPerMm;
+    result_.facet_distance_nm_max = std::max(result_.facet_distance_nm_max, facet.distance_nm);
+    result_.root_residual_nm_max = std::max(result_.root_residual_nm_max, facet.root.nm);
+    const auto add = [&](const char* kind, const FacetDeviation& deviation, const char* what, double limit) {
+      findings_.add(
+          {kind, program, deviation.line, number,
+           fmt::format("facet {} of element {}: {} nm {}", f + 1, number, fixed(std::abs(deviation.nm), 1), what),
+           deviation.nm, limit, 1});
+    };
+    if (facet.highest.nm > tolerance_nm) add("excess", facet.highest, "of material are left above it", tolerance_nm);
+    if (facet.deepest.nm < -tolerance_nm) add("gouge", facet.deepest, "too much are removed below it", tolerance_nm);
+    if (facet.root.nm > root_nm + tolerance_nm)
+      add("root_residual", facet.root, "are left at the root", root_nm + tolerance_nm);
+  }
+
+  const Workpiece3d& workpiece_;
+  FindingList& findings_;
+  Verification& result_;
+};
+
+/// Volume of the material that an element takes; of hexagonal cube corners without what overlaps.
+double design_volume_mm3(const Groove& groove, bool is_hexagonal) {
+  const double edge_mm = groove.facet_length_mm;
+  if (groove.is_cube()) return edge_mm * edge_mm * edge_mm / (is_hexagonal ? 8.0 : 6.0);
+  return groove.half_base_mm * groove.depth_mm * 2.0 * groove.half_width_mm;
+}
+
+/// What triangular cavities take beyond the hexagons of their elements. In units of the cube's edge a the blank's face
+/// passes above N cubes that lie open, of which it leaves a sixth each, and cuts a sixth off each of the M cubes above
+/// them: M corners of hexagons at dihedral edges (docs/theory/micro_chiseling.md).
+/// On a base that is so of the array when it is rolled out.
+double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
+  const std::vector<Groove>& cavities = workpiece.grooves;
+  std::set<std::pair<std::int64_t, std::int64_t>> corners;
+  std::int64_t cut = 0;
+  double edge_mm = 0.0;
+  for (std::size_t i = 0; i < cavities.size(); ++i) {
+    if (!elements[i].figures.is_cut) continue;
+    ++cut;
+    edge_mm = 0.5 * cavities[i].facet_length_mm;
+    for (int k = 0; k < 3; ++k) {
+      // Edges go out at -90, 30 and 150 degrees; hexagons are not turned.
+      const double azimuth = 2.0 * std::numbers::pi / 3.0 * k - 0.5 * std::numbers::pi;
+      const geometry::Vec2 outwards(std::cos(azimuth), std::sin(azimuth));
+      const geometry::Vec2 from_first =
+          workpiece.centres_mm[i] - workpiece.centres_mm.front() + cavities[i].half_base_mm * outwards;
+      // Corners lie on a grid of half the radius by half the width of the hexagons.
+      const double half_radius_mm = 0.5 * cavities[i].half_base_mm;
+      corners.emplace(std::llround(from_first.x() / (std::numbers::sqrt3 * half_radius_mm)),
+                      std::llround(from_first.y() / half_radius_mm));
+    }
+  }
+  return edge_mm * edge_mm * edge_mm * static_cast<double>(static_cast<std::int64_t>(corners.size()) - cut) / 6.0;
+}
+
+/// Which elements the runs of a job with a base belong to; none for others.
+std::vector<std::optional<std::size_t>> visits_of(const Workpiece3d& workpiece,
+                                                  const std::vector<NcProgram>& programs) {
+  if (!workpiece.job->substrate) return {};
+  const Machine& machine = *workpiece.machine;
+  VisitFinder finder(machine, workpiece.grooves, wedge_of(*workpiece.job, machine).tip_mm);
+  for (const NcProgram& program : programs) {
+    run_nc(program, finder);
+    finder.end();
+  }
+  return finder.elements();
+}
+
+/// What the tool's nose leaves in the dihedral edges of all elements.
+void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, const std::vector<RigidMotion>& poses,
+                   Verification& result) {
+  const Tool& tool = workpiece.job->tool;
+  if (tool.edge_radius_um <= 0.0) return;
+  const ToolWedge nosed = nosed_wedge(tool, *workpiece.machine);
+  std::vector<NoseResidue> residues(workpiece.grooves.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, residues.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      if (result.elements[i].figures.is_cut)
+        residues[i] = nose_residue(workpiece.grooves[i], 1e-3 * tool.edge_radius_um, check.sweeps()[i], poses, nosed);
+  });
+  for (const NoseResidue& residue : residues) {
+    result.root_chamfer_um = std::max(result.root_chamfer_um, 1e3 * std::numbers::sqrt2 * residue.strip_mm);
+    result.root_ridge_um = std::max(result.root_ridge_um, 1e3 * residue.ridge_mm);
+  }
+}
+
+}  // namespace
+
+Verification verify_programs(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
+                             const VerifyOptions& options, const std::vector<Machine>& others,
+                             const Cancellation* cancellation) {
+  const Workpiece3d workpiece = workpiece_of(job, machine, options.tolerance_nm);
+  FindingList findings;
+  ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));
+  for (const NcProgram& program : programs) {
+    check.begin(program.file);
+    check.end(run_nc(program, check));
+  }
+  check.finish();
+  const std::string first = programs.empty() ? std::string() : programs.front().file;
+  Verification result;
+  result.tolerance_nm = options.tolerance_nm;
+  const std::vector<RigidMotion> poses = check.poses();
+  std::vector<bool> cuts(poses.size());
+  for (const std::vector<SweptVolume>& sweeps : check.sweeps())
+    for (const SweptVolume& sweep : sweeps) cuts[sweep.pose] = true;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (cuts[i]) result.poses.push_back(check.pose_words()[i]);
+  refuse_other_machine(job, machine, others, options, workpiece, result.poses, first);
+
+  const bool ploughs = job.strategy == Strategy::unidirectional;
+  const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(job.element);
+  result.elements.resize(workpiece.grooves.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.elements.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      if (cancellation != nullptr && cancellation->requested()) return;
+      const Prediction& prediction = workpiece.prediction(i);
+      const Groove& groove = workpiece.grooves[i];
+      const ElementFigures figures =
+          groove.is_cube() ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses, check.wedge(),
+                                            job.tool.nose_angle_deg, prediction)
+                           : element_figures(groove, check.sweeps()[i], poses, check.wedge(), prediction, ploughs);
+      result.elements[i] = result_of(groove, figures, prediction);
+    }
+  });
+
+  Judge judge(workpiece, findings, result);
+  for (std::size_t i = 0; i < result.elements.size(); ++i) {
+    judge.element(i, first);
+    if (!result.elements[i].figures.is_cut) continue;
+    result.removed_volume_mm3 += design_volume_mm3(workpiece.grooves[i], is_hexagonal);
+    for (const FacetFigures& facet : result.elements[i].figures.facets) result.removed_volume_mm3 -= facet.residual_mm3;
+  }
+  for (const Prediction& prediction : workpiece.predictions) {
+    result.root_residual_nm_predicted = std::max(result.root_residual_nm_predicted, prediction.root_mm * kNmPerMm);
+    result.wall_overcut_nm_predicted = std::max(result.wall_overcut_nm_predicted, prediction.wall_mm * kNmPerMm);
+  }
+  result.wall_overcut_nm_max = check.deepest_wall_mm() * kNmPerMm;
+  if (is_hexagonal) result.border_overcut_mm3 = border_overcut_mm3(workpiece, result.elements);
+  if (job.substrate) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
+  result.removed_volume_mm3 += result.border_overcut_mm3;
+  if (job.strategy == Strategy::dmc)
+    cut_with_nose(workpiece, check, poses, result);
+  else
+    result.root_radius_um = job.tool.edge_radius_um;
+  result.free_tool_length_mm = check.least_free_tool_mm();
+  result.time = check.time();
+  result.findings = findings.take();
+  return result;
+}
+
+}  // namespace retrace::fabrication

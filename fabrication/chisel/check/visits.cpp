@@ -1,0 +1,40 @@
+#include "fabrication/chisel/check/visits.h"
+
+namespace retrace::fabrication {
+
+using geometry::Vec3;
+
+VisitFinder::VisitFinder(const Machine& machine, const std::vector<Groove>& grooves, const Vec3& tip_mm)
+    : machine_(machine), grooves_(grooves), map_(grooves), tip_mm_(tip_mm) {}
+
+std::optional<std::size_t> CutRuns::of(const NcMotion& motion) {
+  constexpr unsigned kLinearBits = 0b00111;
+  if (motion.moved == 0 && !is_open_) return std::nullopt;
+  const bool turns = (motion.moved & ~kLinearBits) != 0;
+  if (motion.move == NcMove::rapid || turns || (motion.known & kLinearBits) != kLinearBits) {
+    is_open_ = is_open_ && motion.moved == 0;
+    return std::nullopt;
+  }
+  if (!is_open_) ++next_;
+  is_open_ = true;
+  return next_ - 1;
+}
+
+void VisitFinder::motion(const NcMotion& motion, const NcSettings&) {
+  const std::optional<std::size_t> run = runs_.of(motion);
+  if (!run) return;
+  if (*run == elements_.size()) {
+    elements_.emplace_back();
+    depth_mm_ = 0.0;
+  }
+  const RigidMotion back = machine_from_workpiece(machine_, rotary_pose(machine_, motion.to)).inverse();
+  const Vec3 tip = back.point(machine_point(machine_, motion.to) + tip_mm_);
+  const std::optional<std::size_t> element = map_.at(tip);
+  if (!element) return;
+  const double depth_mm = -grooves_[*element].over_face_mm(tip);
+  if (elements_.back() && depth_mm <= depth_mm_) return;
+  elements_.back() = element;
+  depth_mm_ = depth_mm;
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,44 @@
+#include "fabrication/chisel/check/workpiece.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <utility>
+
+#include "core/error.h"
+#include "fabrication/job/substrate_cells.h"
+
+namespace retrace::fabrication {
+
+Workpiece3d workpiece_of(const Job& job, const Machine& machine, double tolerance_nm) {
+  Workpiece3d workpiece;
+  workpiece.job = &job;
+  workpiece.machine = &machine;
+  workpiece.tolerance_mm = tolerance_nm / kNmPerMm;
+  const bool is_dmc = job.strategy == Strategy::dmc;
+  if (is_dmc != (machine.tilt == Tilt::head))
+    throw InputError({job.source, 0, "machine"},
+                     fmt::format("must be a machine whose {} tilts for this strategy, got {}",
+                                 is_dmc ? "head" : "table", machine.name));
+  const geometry::Element size = blank_element(job);
+  const auto* const prism = std::get_if<geometry::RtpElement>(&size);
+  const std::vector<CutElement> elements = cut_elements(job);
+  const double stock = stock_mm(job, elements);
+  std::map<std::pair<bool, std::int32_t>, std::size_t> groups;
+  for (const CutElement& element : elements) {
+    Groove groove = prism != nullptr ? groove_of(element, *prism, stock) : cavity_of(element, size, stock);
+    const auto [group, is_new] = groups.try_emplace({element.rotated, element.orientation}, groups.size());
+    if (is_new) workpiece.predictions.push_back(predict(machine, groove, job.tool.width_mm));
+    groove.group = group->second;
+    workpiece.grooves.push_back(std::move(groove));
+    workpiece.centres_mm.push_back(element.centre_mm);
+  }
+  return workpiece;
+}
+
+ToolWedge wedge_of(const Job& job, const Machine& machine) {
+  if (job.strategy == Strategy::dmc) return v_tool_wedge(job.tool, machine);
+  return tool_wedge(job.tool, machine, Angle::from_deg(prism_of(job).apex_angle_deg));
+}
+
+}  // namespace retrace::fabrication

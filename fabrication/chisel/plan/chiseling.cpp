@@ -1,0 +1,206 @@
+#include "fabrication/chisel/plan/chiseling.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/angle.h"
+#include "core/error.h"
+#include "core/number_format.h"
+#include "fabrication/chisel/plan/routines.h"
+#include "fabrication/job/v_tool.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// Azimuth of dihedral edge 0, 1 or 2 in the workpiece frame, whose x runs along y of the part.
+double edge_azimuth_deg(bool rotated, int edge) {
+  return 120.0 * edge - 90.0 + (rotated ? 180.0 : 0.0);
+}
+
+Vec3 horizontal(double azimuth_deg) {
+  const double azimuth = Angle::from_deg(azimuth_deg).rad();
+  return {std::cos(azimuth), std::sin(azimuth), 0.0};
+}
+
+/// In the middle between its two edges.
+double facet_azimuth_deg(const FacetChoice& facet) {
+  return edge_azimuth_deg(facet.rotated, facet.facet - 1) + 60.0;
+}
+
+Vec3 words_of(const Machine& machine, const Vec3& point_mm, const RotaryPose& pose) {
+  const AxisPositions axes = inverse(machine, point_mm, pose);
+  return {axes.x_mm, axes.y_mm, axes.z_mm};
+}
+
+/// (X, Y, Z) parts of a plane's normal when positions are words of the axes instead of points, of length 1.
+Vec3 in_words(const Machine& machine, const RotaryPose& pose, const Vec3& normal) {
+  const Vec3 zero = words_of(machine, Vec3::Zero(), pose);
+  Eigen::Matrix3d words_from_points;
+  for (Eigen::Index k = 0; k < 3; ++k) words_from_points.col(k) = words_of(machine, Vec3::Unit(k), pose) - zero;
+  return (words_from_points.inverse().transpose() * normal).normalized();
+}
+
+}  // namespace
+
+Vec3 cube_facet_normal(const FacetChoice& facet) {
+  return (std::numbers::sqrt2 * -horizontal(facet_azimuth_deg(facet)) + Vec3::UnitZ()) / std::numbers::sqrt3;
+}
+
+std::array<Vec3, 2> cube_facet_edges(const FacetChoice& facet) {
+  const auto edge = [&](int k) -> Vec3 {
+    const Vec3 outwards = horizontal(edge_azimuth_deg(facet.rotated, k));
+    return (std::numbers::sqrt2 * outwards + Vec3::UnitZ()) / std::numbers::sqrt3;
+  };
+  return {edge(facet.facet - 1), edge(facet.facet)};
+}
+
+double chiseling_allowance_mm(const Job& job) {
+  return 1e-3 * job.process.finishing_cuts * job.process.finishing_depth_um;
+}
+
+int chiseling_layers(const Job& job, double stock_mm) {
+  // The blank's face is 1 / sqrt(3) of the depth from the apex of each facet's normal.
+  const double across_mm =
+      (cavity_depth_mm(blank_element(job)) + stock_mm) / std::numbers::sqrt3 - chiseling_allowance_mm(job);
+  return whole_cuts(job, across_mm / (1e-3 * job.process.roughing_depth_um));
+}
+
+CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
+                           const Stance& stance) {
+  const InputLocation where{job.source, 0, "machine"};
+  const double azimuth_deg = facet_azimuth_deg(facet);
+  const Vec3 normal = stance.turn * cube_facet_normal(facet);
+  CuttingPose pose;
+  pose.facet = facet;
+  pose.orientation = stance.orientation;
+  pose.turn = stance.turn;
+  pose.root = pose.turn * Vec3::UnitZ().cross(horizontal(azimuth_deg));
+  const double tilt_deg = Angle::from_rad(std::asin(1.0 / std::numbers::sqrt3)).deg();
+  const RotaryPose near{machine.a.sign.value * tilt_deg, -machine.c.sign.value * azimuth_deg};
+  const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
+  pose.root_tilt = solved.root_tilt;
+  pose.a = rotary_units(solved.pose.a_deg);
+  pose.c = rotary_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()));
+  pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
+  check_tilt(machine, pose.rounded.a_deg, where, stance.who());
+  pose.section.depth_mm = cavity_depth_mm(blank_element(job));
+  pose.section.stock_mm = stance.stock_mm;
+  pose.section.start_mm = stance.start_mm;
+  pose.section.apex = Angle::from_deg(90.0);
+  pose.rounded_along = in_words(machine, pose.rounded, normal);
+  return pose;
+}
+
+Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
+                          double feed_mm_per_min) {
+  const auto edges = cube_facet_edges(pose.facet);
+  const double up_axis = edges[0].z();
+  const Vec3 down = pose.turn * edges[0];
+  const Vec3 up = pose.turn * edges[1];
+  // From the design's apex to that of this layer, along the axis.
+  const double tip_mm = std::numbers::sqrt3 * left_mm;
+  const Vec3 tip = pose.turn * Vec3(0.0, 0.0, tip_mm);
+  const double to_go_mm = (pose.section.depth_mm + pose.section.start_mm + job.process.clearance_mm - tip_mm) / up_axis;
+  const Vec3 zero = words_of(machine, Vec3::Zero(), pose.rounded);
+  const auto rounded = [&](const Vec3& from_apex) {
+    return rounded_words(words_of(machine, from_apex, pose.rounded) - zero, pose.rounded_along);
+  };
+  const Place start = rounded(tip + to_go_mm * down);
+  const Place middle = rounded(tip);
+  const Place end = rounded(tip + to_go_mm * up);
+  Routine routine;
+  routine.start = start;
+  std::vector<Step>& steps = routine.subroutine.steps;
+  steps.emplace_back(increment(Motion::plunge, middle - start, feed_mm_per_min));
+  const auto dwell_ms = static_cast<std::int32_t>(std::lround(1e3 * job.process.dwell_s));
+  if (dwell_ms > 0) steps.emplace_back(Dwell{dwell_ms});
+  steps.emplace_back(increment(Motion::retract, end - middle, feed_mm_per_min));
+  return routine;
+}
+
+void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, const Stance& stance) {
+  if (stance.element < 0) return;
+  const InputLocation where{job.source, 0, "machine"};
+  const VToolEdges edges = v_tool_edges(job.tool);
+  std::array<Vec3, 3> spines;
+  for (std::size_t k = 0; k < 3; ++k) {
+    // The element is turned in the tool's view, so the tool the other way in the element's.
+    const Eigen::AngleAxisd turn(-poses[k].root_tilt.rad(), Vec3::UnitZ());
+    const auto azimuth_deg = [](const Vec3& v) { return Angle::from_rad(std::atan2(v.y(), v.x())).deg(); };
+    double room_deg = 90.0;
+    for (const Vec3& edge : {edges.leading, edges.trailing, edges.spine}) {
+      const double at_deg = azimuth_deg(edge);
+      room_deg = std::min(room_deg, poses[k].root_tilt.rad() > 0.0 ? at_deg : 90.0 - at_deg);
+    }
+    const double turned_deg = std::abs(poses[k].root_tilt.deg());
+    if (turned_deg > room_deg)
+      throw InputError(where,
+                       fmt::format("{}the tool would stand turned by {} degrees in facet {}, which B and C cannot "
+                                   "mend, and run into a neighbouring facet: at most {} fit its angles",
+                                   stance.who(), fixed(turned_deg, 3), k + 1, fixed(room_deg, 3)));
+    spines[k] = turn * edges.spine;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& along_second = spines[k];
+    const Vec3& along_first = spines[(k + 1) % 3];
+    const double covered_deg =
+        Angle::from_rad(std::atan2(along_second.z(), along_second.x()) + std::atan2(along_first.z(), along_first.y()))
+            .deg();
+    if (covered_deg < 90.0)
+      throw InputError(where,
+                       fmt::format("{}the tool stands so in facets {} and {} that a fin of {} degrees would stay "
+                                   "between its cuts, 0 are allowed: tool.wedge_deg must be larger",
+                                   stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 - covered_deg, 3)));
+  }
+  double most_turned = 0.0;
+  for (const CuttingPose& pose : poses) most_turned = std::max(most_turned, std::abs(pose.root_tilt.rad()));
+  const double half_nose = Angle::from_deg(0.5 * job.tool.nose_angle_deg).rad();
+  const double up_facet_mm =
+      (poses[0].section.depth_mm + stance.stock_mm) / std::sqrt(2.0 / 3.0) / std::cos(half_nose + most_turned);
+  const double least_mm = 2.0 * up_facet_mm * std::sin(half_nose);
+  if (job.tool.width_mm < least_mm - 1e-9)
+    throw InputError(
+        {job.source, 0, "tool.width_mm"},
+        fmt::format("{}must be >= {} for the cutting edges to reach from the apex to the blank's face, "
+                    "got {}",
+                    stance.who(), fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(job.tool.width_mm)));
+}
+
+std::vector<std::string> chiseling_description(const Job& job, std::size_t elements, const std::string& zero) {
+  const geometry::Element element = blank_element(job);
+  const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(element);
+  return {fmt::format("{} {} cube corners, apex {} mm deep, edges {} mm to the face", elements,
+                      is_hexagonal ? "hexagonal" : "triangular", fixed(cavity_depth_mm(element), 6),
+                      fixed(cavity_edge_mm(element), 6)),
+          zero + ", dihedral edges along -Y and 120 deg apart at B0 C0. Controller transformation off",
+          fmt::format("Tool: V of {} deg, width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: the tip",
+                      shortest(job.tool.nose_angle_deg), shortest(job.tool.width_mm), shortest(job.tool.wedge_deg),
+                      shortest(job.tool.clearance_deg))};
+}
+
+Place rounded_words(const Vec3& words_mm, const Vec3& along) {
+  const Vec3 exact = words_mm * kNanometresPerMm;
+  if (along == Vec3::Zero()) return {std::llround(exact.x()), std::llround(exact.y()), std::llround(exact.z())};
+  const Vec3 low = exact.array().floor();
+  Vec3 best = low;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 candidate = low + Vec3((k & 1) != 0, (k & 2) != 0, (k & 4) != 0);
+    const Vec3 error = candidate - exact;
+    // Of equals that which is nearer.
+    const double measure = std::abs(along.dot(error)) + 1e-3 * error.norm();
+    if (measure >= least) continue;
+    least = measure;
+    best = candidate;
+  }
+  return {std::llround(best.x()), std::llround(best.y()), std::llround(best.z())};
+}
+
+}  // namespace retrace::fabrication

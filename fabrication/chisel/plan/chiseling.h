@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "fabrication/chisel/plan/routines.h"
+#include "fabrication/chisel/plan/section.h"
+
+namespace retrace::fabrication {
+
+// Diamond micro chiseling of cube corners (docs/theory/micro_chiseling.md): a V-shaped tool, tilted by B until its
+// leading edge lies in the facet, goes down one dihedral edge to the apex and up the other one.
+
+/// Outward normal of facet 1, 2 or 3 of a cube corner, in the workpiece frame.
+geometry::Vec3 cube_facet_normal(const FacetChoice& facet);
+/// Its dihedral edges, from the apex outwards: down the first, up the second.
+std::array<geometry::Vec3, 2> cube_facet_edges(const FacetChoice& facet);
+
+/// What layers of roughing leave on all facets for the finishing layers.
+double chiseling_allowance_mm(const Job& job);
+/// Roughing layers: nested cube corners, each `roughing_depth_um` further along the normals of all three facets.
+/// \param stock_mm by which the blank stands over the rims
+int chiseling_layers(const Job& job, double stock_mm = 0.0);
+
+/// The pose, with C as near to `previous_c_deg` as its limits let it. \throw InputError naming axis and limits if the
+/// machine cannot take it
+CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
+                           const Stance& stance = {});
+
+/// That the tool, which B and C lay on the facets but cannot turn in them, keeps clear of the other facets, leaves no
+/// fin between two and comes out of the blank. \param poses of the three facets of elements that stand alike
+/// \throw InputError naming element, tilt and limit
+void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, const Stance& stance);
+
+/// Down one edge and up the other of a cube corner that leaves `left_mm` on all facets.
+Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
+                          double feed_mm_per_min);
+
+/// Lines for people on what is cut by which tool. \param zero where it is touched off
+std::vector<std::string> chiseling_description(const Job& job, std::size_t elements, const std::string& zero);
+
+/// Words in whole nanometres: each rounded by itself where `along` is 0, else that of the eight neighbours with the
+/// least error along it.
+Place rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along);
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,68 @@
+#include "fabrication/chisel/plan/clear_way.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/elements/element_cells.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// Share of the clearance that rapid moves must keep; a verifier asks for a little less.
+constexpr double kShare = 0.95;
+constexpr double kStepShare = 0.25;
+constexpr int kMostSteps = 4000;
+
+}  // namespace
+
+ClearWay::ClearWay(const Job& job, const Machine& machine)
+    : machine_(machine),
+      face_(job),
+      half_edge_mm_(job.strategy == Strategy::dmc ? 0.0 : 0.5 * job.tool.width_mm),
+      clearance_mm_(kShare * job.process.clearance_mm) {
+  const geometry::Vec2 size = geometry::bounding_box(geometry::aperture_outline(blank_element(job))).size();
+  step_mm_ = kStepShare * size.minCoeff();
+}
+
+double ClearWay::least_height_mm(const Place& at, const CuttingPose& pose) const {
+  AxisPositions axes{millimetres(at[0]), millimetres(at[1]), millimetres(at[2]), 0.0, pose.rounded.c_deg};
+  (machine_.tilt == Tilt::table ? axes.a_deg : axes.b_deg) = pose.rounded.a_deg;
+  const ToolPose tool = forward(machine_, axes);
+  double least = face_.height_mm(tool.reference_mm);
+  if (half_edge_mm_ == 0.0) return least;
+  const Vec3 half_edge = half_edge_mm_ * (tool.workpiece_from_machine * machine_.x.direction.value);
+  for (const double side : {-1.0, 1.0}) least = std::min(least, face_.height_mm(tool.reference_mm + side * half_edge));
+  return least;
+}
+
+bool ClearWay::is_clear_along(const Place& from, const Place& to, const CuttingPose& pose) const {
+  const Vec3 by = millimetres(Place(to - from));
+  const int steps = std::clamp(static_cast<int>(std::ceil(by.norm() / step_mm_)), 1, kMostSteps);
+  for (int i = 0; i <= steps; ++i) {
+    Place at = from;
+    for (Eigen::Index k = 0; k < 3; ++k) at[k] += std::llround(static_cast<double>(to[k] - from[k]) * i / steps);
+    if (least_height_mm(at, pose) < clearance_mm_) return false;
+  }
+  return true;
+}
+
+bool ClearWay::is_clear(const Words& from, const Visit& visit, const CuttingPose& pose) const {
+  if (face_.is_flat()) return true;
+  Words at = from;
+  for (const Move& move : approach(from, visit)) {
+    Words to = at;
+    go_to(to, move.to);
+    // Before X and Y are known the tool stands at the safe height.
+    if (to[kX] && to[kY] && to[kZ]) {
+      const Place last(*to[kX], *to[kY], *to[kZ]);
+      const Place first(at[kX].value_or(last.x()), at[kY].value_or(last.y()), at[kZ].value_or(last.z()));
+      if (!is_clear_along(first, last, pose)) return false;
+    }
+    at = to;
+  }
+  return true;
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,454 @@
+#include "fabrication/chisel/plan/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <span>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "fabrication/chisel/plan/chiseling.h"
+#include "fabrication/chisel/plan/clear_way.h"
+#include "fabrication/chisel/plan/move_time.h"
+#include "fabrication/chisel/plan/order.h"
+#include "fabrication/chisel/plan/routines.h"
+#include "fabrication/chisel/plan/stages.h"
+#include "fabrication/job/substrate_cells.h"
+#include "geometry/elements/element_cells.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+constexpr double kSecondsPerHour = 3600.0;
+
+/// `text` as every dialect takes it within a comment.
+std::string plain(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool fits = c >= 0x20 && c < 0x7f && std::string_view("()[]{}\"';%").find(c) == std::string_view::npos;
+    result += fits ? c : '_';
+  }
+  return result;
+}
+
+/// Leaves the stages that were asked for. \throw InputError for a phase that the job does not have
+void choose_stages(Plan& plan, const PlanOptions& options) {
+  if (options.phase == "all") return;
+  const bool and_after = options.phase.ends_with('+');
+  const std::string name = options.phase.substr(0, options.phase.size() - (and_after ? 1 : 0));
+  std::vector<Stage> chosen;
+  for (const Stage& stage : plan.stages) {
+    const bool group = (name == "roughing" && stage.roughs) || (name == "finishing" && stage.name.starts_with(name));
+    if ((and_after && !chosen.empty()) || group || stage.name == name) chosen.push_back(stage);
+  }
+  if (chosen.empty()) {
+    std::vector<std::string> names;
+    for (const Stage& stage : plan.stages) names.push_back(stage.name);
+    constexpr std::size_t kMostNamed = 12;
+    if (names.size() > kMostNamed) {
+      names.resize(kMostNamed);
+      names.emplace_back("...");
+    }
+    throw InputError({"", 0, "--phase"},
+                     fmt::format("must be all, roughing, finishing or one of {} (with + for all after "
+                                 "it too), got {}",
+                                 fmt::join(names, ", "), plain(options.phase)));
+  }
+  plan.stages = std::move(chosen);
+}
+
+/// Seconds that a routine takes, by what they are spent on.
+TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
+  TimeShares time;
+  for (const Step& step : subroutine.steps) {
+    if (const auto* dwell = std::get_if<Dwell>(&step)) {
+      time.dwell_s += 1e-3 * dwell->ms;
+      continue;
+    }
+    const auto& move = std::get<Move>(step);
+    const Place by(move.to[kX].value_or(0), move.to[kY].value_or(0), move.to[kZ].value_or(0));
+    const double seconds = linear_move_s(machine, millimetres(by), move.feed_mm_per_min);
+    const bool cuts = move.motion == Motion::plunge || move.motion == Motion::plough;
+    (cuts ? time.cutting_s : time.retract_s) += seconds;
+  }
+  return time;
+}
+
+/// Puts visits into programs, keeps time, and starts a new program where one has grown too long.
+class ProgramMaker {
+ public:
+  ProgramMaker(const Job& job, const Machine& machine, const PlanOptions& options,
+               const std::vector<RoutineStart>& starts, Plan& plan)
+      : job_(job), machine_(machine), options_(options), starts_(starts), plan_(plan), way_(job, machine) {
+    for (const Subroutine& subroutine : plan.subroutines) routine_times_.push_back(routine_time(machine, subroutine));
+    safe_z_nm_ = nanometres(plan.safe_z_mm);
+  }
+
+  void run() {
+    const std::vector<double> offsets = job_.strategy == Strategy::dmc
+                                            ? std::vector<double>{0.0}
+                                            : pass_offsets_mm(blank_prism(job_).width_mm, job_.tool.width_mm);
+    plan_.passes = static_cast<int>(offsets.size());
+    const std::map<ElementGroup, std::vector<std::int32_t>> orders = cutting_orders(plan_.elements);
+    const auto order_of = [&](const Stage& stage) -> const std::vector<std::int32_t>& {
+      const CuttingPose& pose = plan_.poses[stage.pose];
+      return orders.at({pose.facet.rotated, pose.orientation});
+    };
+    for (const Stage& stage : plan_.stages)
+      if (stage.roughs) roughing_total_ += static_cast<std::int64_t>(order_of(stage).size());
+    bool waiting = options_.from_element.has_value();
+    begin();
+    for (Stage& stage : plan_.stages) {
+      std::vector<std::int32_t> order = order_of(stage);
+      if (waiting) {
+        const auto first = std::find(order.begin(), order.end(), static_cast<std::int32_t>(*options_.from_element));
+        waiting = first == order.end();
+        if (stage.roughs) roughing_done_ += first - order.begin();
+        order.erase(order.begin(), first);
+        if (waiting) continue;
+      }
+      enter(stage);
+      for (const std::int32_t element : order) visit(stage, element, offsets);
+    }
+    end();
+    plan_.programs.size() == 1 ? void(plan_.programs.front().name = substrate_name()) : number_programs();
+  }
+
+ private:
+  std::string substrate_name() const {
+    if (options_.phase == "all") return "program";
+    if (!options_.phase.ends_with('+')) return options_.phase;
+    return options_.phase.substr(0, options_.phase.size() - 1) + "_and_after";
+  }
+
+  void number_programs() {
+    for (std::size_t k = 0; k < plan_.programs.size(); ++k) {
+      plan_.programs[k].name = fmt::format("{}_{:03}", substrate_name(), k + 1);
+      plan_.programs[k].header.insert(plan_.programs[k].header.begin(),
+                                      fmt::format("Part {} of {}", k + 1, plan_.programs.size()));
+    }
+  }
+
+  void begin() {
+    program_ = {};
+    program_seconds_ = 0.0;
+    if (!job_.substrate) program_.subroutines = plan_.subroutines;
+    program_.tilt_letter = machine_.tilt_letter();
+    at_ = {std::nullopt, std::nullopt, std::nullopt, 0, 0};
+    raise();
+  }
+
+  void raise() {
+    if (at_[kZ] != safe_z_nm_) {
+      const double up_mm = at_[kZ] ? millimetres(safe_z_nm_ - *at_[kZ]) : 0.0;
+      spend(nullptr, &TimeShares::fixed_s, linear_move_s(machine_, Vec3(0.0, 0.0, up_mm), std::nullopt));
+      Move up;
+      up.to[kZ] = safe_z_nm_;
+      program_.items.emplace_back(up);
+    }
+    at_[kZ] = safe_z_nm_;
+    just_turned_ = true;
+  }
+
+  void turn(RotaryUnits a, RotaryUnits c) {
+    const RotaryUnits by_a = a - *at_[kTilt];
+    const RotaryUnits by_c = c - *at_[kC];
+    if (by_a == 0 && by_c == 0) return;
+    raise();
+    constexpr double kRotationDeg = 45.0;
+    if (std::abs(degrees(by_c)) > kRotationDeg) ++plan_.c_rotations;
+    spend(nullptr, &TimeShares::fixed_s, rotary_move_s(machine_, degrees(by_a), degrees(by_c)));
+    Move turn;
+    turn.to[kTilt] = a;
+    turn.to[kC] = c;
+    program_.items.emplace_back(turn);
+    go_to(at_, turn.to);
+  }
+
+  /// The operator is told where the work stands before a stage starts.
+  void enter(const Stage& stage) {
+    const CuttingPose& pose = plan_.poses[stage.pose];
+    turn(pose.a, pose.c);
+    if (stage.roughs) {
+      program_.items.emplace_back(Comment{plain("Stage " + stage.name)});
+      return;
+    }
+    const auto c_deg = static_cast<long>(std::lround(pose.rounded.c_deg));
+    const std::string what = stage.name.starts_with("layer") ? "Layer" : "Finishing cut";
+    program_.items.emplace_back(Message{fmt::format("{} {} of {} C-axis at {}", what, stage.cut, stage.cuts, c_deg)});
+  }
+
+  void visit(Stage& stage, std::int32_t element, const std::vector<double>& offsets) {
+    const CuttingPose& pose = plan_.poses[stage.pose];
+    const Vec3 root =
+        plan_.elements[static_cast<std::size_t>(element)].foot_mm - pose.section.depth_mm * pose.turn.col(2);
+    if (is_full(stage)) {
+      finish_program();
+      begin();
+      enter(stage);
+    }
+    // To and fro over the passes as well.
+    forth_ = !forth_;
+    for (std::size_t k = 0; k < offsets.size(); ++k) {
+      const double offset_mm = offsets[forth_ ? k : offsets.size() - 1 - k];
+      const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
+      const auto& [start, reach] = starts_[stage.subroutine];
+      const Visit visit{element, stage.subroutine,
+                        rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along) + start};
+      check_limits(visit, reach);
+      clear_way(visit, pose);
+      add(stage, visit, reach);
+    }
+    ++stage.visits;
+    ++visits_;
+    if (options_.stop_every && visits_ % *options_.stop_every == 0) program_.items.emplace_back(OptionalStop{});
+    if (stage.roughs) tell_progress();
+  }
+
+  /// Up to the safe height first where the way there would come too near to the blank.
+  void clear_way(const Visit& visit, const CuttingPose& pose) {
+    if (way_.is_clear(at_, visit, pose)) return;
+    raise();
+    if (way_.is_clear(at_, visit, pose)) return;
+    throw InputError({job_.source, 0, "machine"},
+                     fmt::format("element {}: the tool cannot come down to it at {}{} C{} without coming nearer to the "
+                                 "blank than process.clearance_mm, {}",
+                                 visit.element, machine_.tilt_letter(), fixed(pose.rounded.a_deg, 4),
+                                 fixed(pose.rounded.c_deg, 4), shortest(job_.process.clearance_mm)));
+  }
+
+  void tell_progress() {
+    ++roughing_done_;
+    for (const int percent : {25, 50, 75, 100}) {
+      // The first visit with which so much of the roughing is done.
+      const std::int64_t due = (roughing_total_ * percent + 99) / 100;
+      if (roughing_done_ == due) program_.items.emplace_back(Message{fmt::format("Roughing {} percent", percent)});
+    }
+  }
+
+  void add(Stage& stage, const Visit& visit, const Reach& reach) {
+    for (const Move& move : approach(at_, visit)) {
+      Vec3 by = Vec3::Zero();
+      for (const Axis axis : {kX, kY, kZ})
+        if (move.to[axis] && at_[axis]) by[axis] = millimetres(*move.to[axis] - *at_[axis]);
+      go_to(at_, move.to);
+      spend(&stage, just_turned_ ? &TimeShares::fixed_s : &TimeShares::rapid_s,
+            linear_move_s(machine_, by, std::nullopt));
+    }
+    just_turned_ = false;
+    const TimeShares& routine = routine_times_[stage.subroutine];
+    spend(&stage, &TimeShares::cutting_s, routine.cutting_s);
+    spend(&stage, &TimeShares::dwell_s, routine.dwell_s);
+    spend(&stage, &TimeShares::retract_s, routine.retract_s);
+    go_to(at_, linear_words(visit.start + reach.end));
+    program_.items.emplace_back(visit);
+    if (job_.substrate) used_.insert(visit.subroutine);
+  }
+
+  void spend(Stage* stage, double TimeShares::*on, double seconds) {
+    plan_.time.*on += seconds;
+    if (stage != nullptr) stage->time.*on += seconds;
+    program_seconds_ += seconds;
+  }
+
+  bool is_full(const Stage& stage) const {
+    if (program_.items.size() < 4) return false;
+    if (job_.substrate && is_out_of_numbers(stage)) return true;
+    if (!options_.split_hours) return false;
+    constexpr double kToLeaveS = 30.0;  // for the way home
+    return program_seconds_ + routine_times_[stage.subroutine].total_s() + kToLeaveS >
+           *options_.split_hours * kSecondsPerHour;
+  }
+
+  /// Whether a program that calls one subroutine more would need numbers of more than four digits.
+  bool is_out_of_numbers(const Stage& stage) const {
+    constexpr std::size_t kMostSubroutines = 9000;
+    return used_.size() >= kMostSubroutines && !used_.contains(stage.subroutine);
+  }
+
+  /// The subroutines that the program calls alone: of a base there is one for each tilt of its elements.
+  void add_used_subroutines() {
+    std::vector<Subroutine> left;
+    std::map<std::uint32_t, std::uint32_t> places;
+    for (const std::uint32_t index : used_) {
+      places[index] = static_cast<std::uint32_t>(left.size());
+      left.push_back(plan_.subroutines[index]);
+      left.back().number = kFirstSubroutine + static_cast<int>(left.size()) - 1;
+    }
+    program_.subroutines = std::move(left);
+    for (Item& item : program_.items)
+      if (auto* const visit = std::get_if<Visit>(&item)) visit->subroutine = places.at(visit->subroutine);
+  }
+
+  void check_axis(char axis, Nanometres low_nm, Nanometres high_nm, const Interval& limits,
+                  std::int32_t element) const {
+    const double low_mm = millimetres(low_nm);
+    const double high_mm = millimetres(high_nm);
+    if (limits.contains(low_mm) && limits.contains(high_mm)) return;
+    const std::string who = element < 0 ? "the safe height" : fmt::format("element {}", element);
+    throw InputError({job_.source, 0, "machine"},
+                     fmt::format("{}: axis {} of machine {} would go to {} mm, beyond its limits of {} to {}", who,
+                                 axis, machine_.name, fixed(limits.contains(low_mm) ? high_mm : low_mm, 3),
+                                 shortest(limits.low), shortest(limits.high)));
+  }
+
+  void check_limits(const Visit& visit, const Reach& reach) const {
+    const std::array<const LinearAxis*, 3> axes = {&machine_.x, &machine_.y, &machine_.z};
+    for (const Axis axis : {kX, kY, kZ})
+      check_axis("XYZ"[axis], visit.start[axis] + reach.low[axis], visit.start[axis] + reach.high[axis],
+                 axes[axis]->limits_mm.value, visit.element);
+  }
+
+  void finish_program() {
+    raise();
+    turn(0, 0);
+    program_.header = header();
+    if (job_.substrate) add_used_subroutines();
+    used_.clear();
+    plan_.program_times_s.push_back(program_seconds_);
+    plan_.programs.push_back(std::move(program_));
+  }
+
+  void end() {
+    check_axis('Z', safe_z_nm_, safe_z_nm_, machine_.z.limits_mm.value, -1);
+    finish_program();
+  }
+
+  /// Where the tool is touched off.
+  std::string zero() const {
+    return job_.substrate ? "Zero: centre of the array, as high as the highest place of the blank"
+                          : "Zero: centre of the array on the face of the blank";
+  }
+
+  /// What is cut, by which tool.
+  std::vector<std::string> description() const {
+    if (job_.strategy == Strategy::dmc) return chiseling_description(job_, plan_.elements.size(), zero());
+    const geometry::RtpElement element = blank_prism(job_);
+    return {
+        fmt::format("{} elements, base {} width {} apex {} deg, root {} mm deep", plan_.elements.size(),
+                    shortest(element.base_mm), shortest(element.width_mm), shortest(element.apex_angle_deg),
+                    fixed(root_depth_mm(element), 6)),
+        zero() + ", roof edges along X at A0 C0. Controller transformation off",
+        fmt::format("Tool: width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: middle of the edge",
+                    shortest(job_.tool.width_mm), shortest(job_.tool.wedge_deg), shortest(job_.tool.clearance_deg))};
+  }
+
+  std::vector<std::string> header() const {
+    const geometry::Vec2 extent = blank_extent_mm(job_);
+    const Process& p = job_.process;
+    const bool is_dmc = job_.strategy == Strategy::dmc;
+    const char tilt = machine_.tilt_letter();
+    std::vector<std::string> lines = {
+        job_.title.empty() ? is_dmc ? "Cube corner array" : "Prism array" : plain(job_.title),
+        plain("Job " + std::filesystem::path(job_.source).filename().string() + ", machine " + machine_.name),
+        fmt::format("Blank: {}, array of {} x {} mm along X and Y at {}0 C0",
+                    kWorkpieceWords[static_cast<std::size_t>(job_.workpiece.kind)], fixed(extent.x(), 3),
+                    fixed(extent.y(), 3), tilt)};
+    if (job_.substrate) lines.push_back(plain(substrate_description(job_)));
+    for (const std::string& line : description()) lines.push_back(line);
+    const bool is_finished = is_dmc || job_.strategy == Strategy::two_step;
+    lines.push_back(plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
+                                      shortest(p.roughing_depth_um), is_finished ? p.finishing_cuts : 0,
+                                      shortest(p.finishing_depth_um), shortest(p.clearance_mm))));
+    constexpr std::size_t kMostPoses = 24;
+    for (const CuttingPose& pose : std::span(plan_.poses).first(std::min(kMostPoses, plan_.poses.size())))
+      lines.push_back(fmt::format("Pose: facet {}{} {}{:.7f} C{:.7f}", pose.facet.facet,
+                                  pose.facet.rotated ? " of turned elements" : "", tilt, pose.rounded.a_deg,
+                                  pose.rounded.c_deg));
+    if (plan_.poses.size() > kMostPoses)
+      lines.push_back(fmt::format("And {} poses more, each where it begins", plan_.poses.size() - kMostPoses));
+    const auto minutes = static_cast<std::int64_t>(std::ceil(program_seconds_ / 60.0));
+    lines.push_back(fmt::format("Expected time: {} h {} min", minutes / 60, minutes % 60));
+    return lines;
+  }
+
+  const Job& job_;
+  const Machine& machine_;
+  const PlanOptions& options_;
+  const std::vector<RoutineStart>& starts_;
+  Plan& plan_;
+  std::vector<TimeShares> routine_times_;
+  Program program_;
+  double program_seconds_ = 0.0;
+  Words at_{};
+  Nanometres safe_z_nm_ = 0;
+  bool just_turned_ = true;
+  ClearWay way_;
+  std::set<std::uint32_t> used_;  ///< subroutines that the program calls
+  bool forth_ = false;
+  std::int64_t visits_ = 0;
+  std::int64_t roughing_total_ = 0;
+  std::int64_t roughing_done_ = 0;
+};
+
+void check_options(const PlanOptions& options, std::size_t elements) {
+  const auto most = static_cast<std::int64_t>(elements) - 1;
+  if (options.from_element && (*options.from_element < 0 || *options.from_element > most))
+    throw InputError({"", 0, "--from-element"}, fmt::format("must be 0 to {}, got {}", most, *options.from_element));
+  if (options.stop_every && *options.stop_every < 1)
+    throw InputError({"", 0, "--stop-every"}, fmt::format("must be >= 1, got {}", *options.stop_every));
+  if (options.split_hours && !(*options.split_hours > 0.0))
+    throw InputError({"", 0, "--split-hours"}, "must be > 0, got " + shortest(*options.split_hours));
+}
+
+/// A chisel stands upright and the table tilts; a V is tilted by the head.
+void check_machine(const Job& job, const Machine& machine) {
+  const bool is_dmc = job.strategy == Strategy::dmc;
+  if (is_dmc == (machine.tilt == Tilt::head)) return;
+  throw InputError(
+      {job.source, 0, "machine"},
+      is_dmc
+          ? "must be a machine whose head tilts (B), such as \"ideal-dmc\", for strategy \"dmc\", got " + machine.name
+          : "must be a machine whose table tilts (A) for this strategy, got " + machine.name);
+}
+
+}  // namespace
+
+double safe_height_mm(const Job& job, const Machine& machine, const std::vector<CuttingPose>& poses) {
+  constexpr double kStepDeg = 3.0;
+  const geometry::Vec2 half = 0.5 * blank_extent_mm(job);
+  double a_low = 0.0;
+  double a_high = 0.0;
+  for (const CuttingPose& pose : poses) {
+    a_low = std::min(a_low, pose.rounded.a_deg);
+    a_high = std::max(a_high, pose.rounded.a_deg);
+  }
+  double highest_mm = 0.0;
+  const int a_steps = static_cast<int>(std::ceil((a_high - a_low) / kStepDeg));
+  for (int i = 0; i <= a_steps; ++i)
+    for (double c_deg = 0.0; c_deg < 360.0; c_deg += kStepDeg)
+      for (const double x : {-half.x(), half.x()})
+        for (const double y : {-half.y(), half.y()}) {
+          const RotaryPose pose{std::min(a_low + kStepDeg * i, a_high), c_deg};
+          highest_mm = std::max(highest_mm, inverse(machine, Vec3(x, y, 0.0), pose).z_mm);
+        }
+  // Between samples a corner rises by less than the sagitta of its circle.
+  const double sagitta_mm = (1.0 - std::cos(Angle::from_deg(0.5 * kStepDeg).rad())) * 2.0 * highest_mm;
+  return highest_mm + sagitta_mm + job.process.rotary_clearance_mm + job.process.clearance_mm;
+}
+
+Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& options) {
+  Plan plan;
+  plan.elements = cut_elements(job);
+  check_options(options, plan.elements.size());
+  check_machine(job, machine);
+  if (job.substrate) plan.stock_mm = stock_mm(job, plan.elements);
+  plan.cuts_per_facet =
+      job.strategy == Strategy::dmc ? chiseling_layers(job, plan.stock_mm) : cuts_per_facet(job, plan.stock_mm);
+  const std::vector<RoutineStart> starts = add_stages(job, machine, plan);
+  plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);
+  plan.aperture_area_mm2 =
+      geometry::area(geometry::aperture_outline(blank_element(job))) * static_cast<double>(plan.elements.size());
+  choose_stages(plan, options);
+  ProgramMaker(job, machine, options, starts, plan).run();
+  return plan;
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,144 @@
+#include "fabrication/chisel/plan/routines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec2;
+
+/// A whole number of cuts or passes is not made one more by rounding.
+constexpr double kWholeTolerance = 1e-9;
+// Of a facet: more are a mistake in a unit, and a program that nobody waits for.
+constexpr int kMostCuts = 100'000;
+constexpr double kFitToleranceMm = 1e-6;
+
+/// Puts points in whole nanometres in a row, as moves between them.
+class SectionPath {
+ public:
+  SectionPath(Routine& routine, const Vec2& start_mm) : routine_(routine), at_(place_of(start_mm)) {
+    routine.start = at_;
+  }
+
+  void to(const Vec2& point_mm, Motion motion, double feed_mm_per_min) {
+    const Place to = place_of(point_mm);
+    if (to == at_) return;
+    routine_.subroutine.steps.push_back(increment(motion, to - at_, feed_mm_per_min));
+    at_ = to;
+  }
+
+  void dwell(double seconds) {
+    const auto ms = static_cast<std::int32_t>(std::lround(1e3 * seconds));
+    if (ms > 0) routine_.subroutine.steps.push_back(Dwell{ms});
+  }
+
+ private:
+  static Place place_of(const Vec2& point_mm) { return {0, nanometres(point_mm.x()), nanometres(point_mm.y())}; }
+
+  Routine& routine_;
+  Place at_;
+};
+
+Vec2 start_of_cut(const Section& section, double y, double clearance_mm) {
+  return {y, section.face_z(y, clearance_mm)};
+}
+
+/// The point above the blank's face where a line from `point` leaves the clearance plane.
+Vec2 on_clearance_plane(const Section& section, const Vec2& point, const Vec2& direction, double clearance_mm) {
+  const double to_go = section.depth_mm + section.start_mm + clearance_mm - section.face_normal.dot(point);
+  return point + to_go / section.face_normal.dot(direction) * direction;
+}
+
+/// From the root along the floor, in one move or leaving the floor once the chip is free.
+Vec2 plough(SectionPath& path, const Job& job, const Section& section, const Vec2& root) {
+  const Process& process = job.process;
+  const double freed_mm = shortest_plough_mm(job, section);
+  const double length_mm = process.shortest_plough ? freed_mm : std::max(process.plough_length_mm, freed_mm);
+  Vec2 end = root + length_mm * section.floor_direction;
+  if (process.plough_lift_um > 0.0 && length_mm > freed_mm) {
+    path.to(root + freed_mm * section.floor_direction, Motion::plough, process.roughing_feed_mm_per_min);
+    end += Vec2(0.0, 1e-3 * process.plough_lift_um);
+  }
+  path.to(end, Motion::plough, process.roughing_feed_mm_per_min);
+  return end;
+}
+
+}  // namespace
+
+double finishing_allowance_mm(const Job& job) {
+  return job.strategy == Strategy::two_step ? 1e-3 * job.process.finishing_cuts * job.process.finishing_depth_um : 0.0;
+}
+
+int cuts_per_facet(const Job& job, double stock_mm) {
+  const geometry::RtpElement element = blank_prism(job);
+  const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
+  const double facet_mm = 0.5 * element.base_mm / std::sin(0.5 * apex_rad) + stock_mm / std::cos(0.5 * apex_rad);
+  const double depth_mm = 1e-3 * job.process.roughing_depth_um;
+  double across_mm = facet_mm * std::sin(apex_rad) - finishing_allowance_mm(job);
+  if (job.strategy == Strategy::bidirectional) across_mm *= 0.5;
+  return whole_cuts(job, across_mm / depth_mm);
+}
+
+int whole_cuts(const Job& job, double cuts) {
+  if (!(cuts <= kMostCuts))
+    throw InputError({job.source, 0, "process.roughing_depth_um"},
+                     fmt::format("must leave at most {} cuts a facet, {} um would make {:.3g}", kMostCuts,
+                                 job.process.roughing_depth_um, cuts));
+  return std::max(1, static_cast<int>(std::ceil(cuts - kWholeTolerance)));
+}
+
+double shortest_plough_mm(const Job& job, const Section& section) {
+  return 1e-3 * (job.process.roughing_depth_um / std::sin(section.apex.rad()) + job.tool.edge_radius_um);
+}
+
+Routine unidirectional_routine(const Job& job, const Section& section) {
+  const Process& process = job.process;
+  const double left_mm = finishing_allowance_mm(job);
+  const int cuts = cuts_per_facet(job, section.stock_mm);
+  const auto wall_y = [&](int cut) {
+    return section.wall_y * (left_mm + 1e-3 * process.roughing_depth_um * (cuts - cut));
+  };
+  Routine routine;
+  SectionPath path(routine, start_of_cut(section, wall_y(1), process.clearance_mm));
+  for (int cut = 1; cut <= cuts; ++cut) {
+    const double y = wall_y(cut);
+    const Vec2 root(y, section.floor_z(y, left_mm));
+    path.to(start_of_cut(section, y, process.clearance_mm), Motion::translate, process.retract_feed_mm_per_min);
+    path.to(root, Motion::plunge, process.roughing_feed_mm_per_min);
+    path.dwell(process.dwell_s);
+    const Vec2 end = plough(path, job, section, root);
+    path.to(start_of_cut(section, end.x(), process.clearance_mm), Motion::retract, process.retract_feed_mm_per_min);
+  }
+  return routine;
+}
+
+Routine plunge_routine(const Job& job, const Section& section, double left_mm, double feed_mm_per_min) {
+  const Process& process = job.process;
+  const double y = section.wall_y * left_mm;
+  Routine routine;
+  SectionPath path(routine, start_of_cut(section, y, process.clearance_mm));
+  Vec2 at(y, section.floor_z(y, left_mm));
+  path.to(at, Motion::plunge, feed_mm_per_min);
+  path.dwell(process.dwell_s);
+  if (process.slow_retract_um > 0.0) {
+    at += Vec2(0.0, 1e-3 * process.slow_retract_um);
+    path.to(at, Motion::retract, feed_mm_per_min);
+  }
+  path.to(on_clearance_plane(section, at, section.bisector, process.clearance_mm), Motion::retract,
+          process.retract_feed_mm_per_min);
+  return routine;
+}
+
+std::vector<double> pass_offsets_mm(double width_mm, double tool_width_mm) {
+  const int passes =
+      std::max(1, static_cast<int>(std::ceil((width_mm - kFitToleranceMm) / tool_width_mm - kWholeTolerance)));
+  std::vector<double> offsets;
+  for (int k = 0; k < passes; ++k)
+    offsets.push_back(passes == 1 ? 0.0 : (width_mm - tool_width_mm) * (static_cast<double>(k) / (passes - 1) - 0.5));
+  return offsets;
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "fabrication/chisel/plan/section.h"
+#include "fabrication/program/program.h"
+
+namespace retrace::fabrication {
+
+/// A subroutine with the place where it starts, relative to the root's middle or the apex.
+struct Routine {
+  Subroutine subroutine;
+  Place start = Place::Zero();
+};
+
+/// How many cuts a facet takes (roughing; layers of a bidirectional strategy). Unidirectional cuts are slices of
+/// `roughing_depth_um` parallel to facet 1: ceil((base / sqrt 2 - allowance) / DOC) at 90 degrees. Bidirectional layers
+/// are nested V shells that take as much off either facet.
+/// \param stock_mm by which the blank stands over the rims
+int cuts_per_facet(const Job& job, double stock_mm = 0.0);
+
+/// So many cuts as a whole number, at least 1. \throw InputError at process.roughing_depth_um for more than 100,000
+int whole_cuts(const Job& job, double cuts);
+
+/// What roughing leaves on both facets for the finishing cuts.
+double finishing_allowance_mm(const Job& job);
+
+/// Length of a plough that just frees the chip: the slice's thickness along the floor and the edge's radius.
+double shortest_plough_mm(const Job& job, const Section& section);
+
+/// All cuts of an element by plunging and ploughing, cut i of N ending (N - i) DOC short of the last wall. Every root
+/// lies on the floor. What stays on wall and floor is the finishing allowance.
+Routine unidirectional_routine(const Job& job, const Section& section);
+
+/// One plunge along the wall that leaves `left_mm` on wall and floor, with the retract along the bisector.
+Routine plunge_routine(const Job& job, const Section& section, double left_mm, double feed_mm_per_min);
+
+/// Side-by-side passes that an element of `width_mm` takes, as offsets of their middles along the root.
+std::vector<double> pass_offsets_mm(double width_mm, double tool_width_mm);
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,150 @@
+#include "fabrication/chisel/plan/section.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "core/error.h"
+#include "core/number_format.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+double half_apex_rad(const geometry::RtpElement& element) {
+  return 0.5 * Angle::from_deg(element.apex_angle_deg).rad();
+}
+
+/// By how much Z about 90 degrees turns the directions of an unturned element into those of a turned one.
+Vec3 turned_back(const Vec3& v) {
+  return {v.y(), -v.x(), v.z()};
+}
+
+RotaryUnits rounded_units(double deg) {
+  return std::llround(deg * kRotaryUnitsPerDeg);
+}
+
+/// (Y, Z) parts of a plane's normal when positions are words of the axes instead of points.
+Vec3 in_words(const Machine& machine, const Vec3& normal) {
+  return {normal.dot(machine.x.direction.value), normal.dot(machine.y.direction.value),
+          normal.dot(machine.z.direction.value)};
+}
+
+/// A and C lay a facet's normal where the tool plunges it, and nothing is left to lay its root along the tool's edge: a
+/// root that slopes against the table's axes keeps material at one end of the edge, of which a finishing cut's depth is
+/// borne.
+void check_root(const Job& job, const CuttingPose& pose, const InputLocation& where, const Stance& stance) {
+  if (stance.element < 0) return;
+  const double limit = std::atan(1e-3 * job.process.finishing_depth_um / job.tool.width_mm);
+  if (std::abs(pose.root_tilt.rad()) <= limit) return;
+  const double width_mm = 1e-3 * job.process.finishing_depth_um / std::tan(std::abs(pose.root_tilt.rad()));
+  throw InputError(
+      where,
+      fmt::format("{}its root would stand at {} degrees to the tool's edge, which A and C cannot turn in the facet, at "
+                  "most {} are borne: a finishing cut over the edge's width, which would have to be {} mm",
+                  stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4), fixed(Angle::from_rad(limit).deg(), 4),
+                  fixed(width_mm, 4)));
+}
+
+Vec2 direction_in_words(const Machine& machine, double y, double z) {
+  const auto words = linear_words(machine, Vec3(0.0, y, z));
+  return {words[1], words[2]};
+}
+
+}  // namespace
+
+Vec3 facet_normal(const geometry::RtpElement& element, const FacetChoice& facet) {
+  const double half = half_apex_rad(element);
+  const double side = facet.facet == 1 ? -1.0 : 1.0;
+  const Vec3 normal(0.0, side * std::cos(half), std::sin(half));
+  return facet.rotated ? turned_back(normal) : normal;
+}
+
+Vec3 root_direction(const FacetChoice& facet) {
+  const Vec3 root(facet.facet == 1 ? 1.0 : -1.0, 0.0, 0.0);
+  return facet.rotated ? turned_back(root) : root;
+}
+
+double root_depth_mm(const geometry::RtpElement& element) {
+  return 0.5 * element.base_mm / std::tan(half_apex_rad(element));
+}
+
+std::string Stance::who() const {
+  if (element < 0) return "";
+  const double tilt_deg = Angle::from_rad(std::atan2(turn.col(2).head<2>().norm(), turn(2, 2))).deg();
+  return fmt::format("element {}, tilted by {} degrees: ", element, fixed(tilt_deg, 4));
+}
+
+double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where,
+                     const std::string& who) {
+  const Interval& limits = machine.c.limits_deg.value;
+  std::optional<double> best;
+  for (const int turns : {0, 1, -1, 2, -2}) {
+    const double candidate = c_deg + 360.0 * turns;
+    if (!limits.contains(candidate)) continue;
+    constexpr double kAsFarDeg = 1.0;  // solved angles differ from round ones by less
+    if (!best || std::abs(candidate - previous_c_deg) < std::abs(*best - previous_c_deg) - kAsFarDeg) best = candidate;
+  }
+  if (!best)
+    throw InputError(where,
+                     fmt::format("{}machine {}: axis C would go to {} degrees, beyond its limits of {} to {}", who,
+                                 machine.name, fixed(c_deg, 4), shortest(limits.low), shortest(limits.high)));
+  return *best;
+}
+
+void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where, const std::string& who) {
+  const Interval& limits = machine.a.limits_deg.value;
+  if (limits.contains(tilt_deg)) return;
+  throw InputError(where, fmt::format("{}machine {}: axis {} would go to {} degrees, beyond its limits of {} to {}",
+                                      who, machine.name, machine.tilt_letter(), fixed(tilt_deg, 4),
+                                      shortest(limits.low), shortest(limits.high)));
+}
+
+CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
+                         const Stance& stance) {
+  const InputLocation where{job.source, 0, "machine"};
+  const geometry::RtpElement element = blank_prism(job);
+  const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
+  const double nominal_c_deg = (facet.facet == 1 ? 0.0 : 180.0) + (facet.rotated ? 90.0 : 0.0);
+  CuttingPose pose;
+  pose.facet = facet;
+  pose.orientation = stance.orientation;
+  pose.turn = stance.turn;
+  pose.root = pose.turn * root_direction(facet);
+  const Vec3 normal = pose.turn * facet_normal(element, facet);
+  const RotaryPose near{machine.a.sign.value * 0.5 * element.apex_angle_deg, machine.c.sign.value * nominal_c_deg};
+  const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
+  pose.root_tilt = solved.root_tilt;
+  pose.a = rounded_units(solved.pose.a_deg);
+  pose.c = rounded_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()));
+  pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
+  check_tilt(machine, pose.rounded.a_deg, where, stance.who());
+  check_root(job, pose, where, stance);
+
+  const RigidMotion motion = machine_from_workpiece(machine, pose.rounded);
+  Section& section = pose.section;
+  const Vec3 wall = in_words(machine, motion.direction(normal));
+  section.wall_y = 1.0 / wall.y();
+  // A floor that is ploughed makes exactly the apex angle with the wall; the other facet's own normal is turned away
+  // from it by the root's tilt, and touches the deeper end of the edge.
+  const Vec3 floor = in_words(machine, Vec3(0.0, std::cos(apex_rad), std::sin(apex_rad)));
+  section.floor_normal = {floor.y(), floor.z()};
+  section.floor_direction = direction_in_words(machine, -std::sin(apex_rad), std::cos(apex_rad));
+  section.bisector = direction_in_words(machine, -std::sin(0.5 * apex_rad), std::cos(0.5 * apex_rad));
+  const FacetChoice other{facet.rotated, 3 - facet.facet};
+  const Vec3 design_floor = in_words(machine, motion.direction(pose.turn * facet_normal(element, other)));
+  section.lift_mm = std::abs(design_floor.x() / design_floor.z()) * 0.5 * job.tool.width_mm;
+  const Vec3 face = in_words(machine, motion.direction(pose.turn.col(2)));
+  section.face_normal = {face.y(), face.z()};
+  section.depth_mm = root_depth_mm(element);
+  section.stock_mm = stance.stock_mm;
+  section.start_mm = stance.start_mm;
+  section.edge_mm = 1e-3 * job.tool.edge_radius_um * (1.0 - std::sin(apex_rad) + std::cos(apex_rad));
+  section.apex = Angle::from_rad(apex_rad);
+  return pose;
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,178 @@
+#include "fabrication/chisel/plan/stages.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "fabrication/chisel/plan/chiseling.h"
+#include "fabrication/chisel/plan/order.h"
+#include "fabrication/chisel/plan/routines.h"
+#include "fabrication/job/substrate_cells.h"
+
+namespace retrace::fabrication {
+namespace {
+
+class StageMaker {
+ public:
+  StageMaker(const Job& job, const Machine& machine, Plan& plan) : job_(job), machine_(machine), plan_(plan) {
+    find_groups();
+  }
+
+  std::vector<RoutineStart> run() {
+    if (job_.strategy == Strategy::dmc) {
+      chisel();
+      return std::move(starts_);
+    }
+    const int facets = job_.strategy == Strategy::unidirectional ? 1 : 2;
+    for (int facet = 1; facet <= facets; ++facet)
+      for (const auto& [group, stance] : groups_) {
+        plan_.poses.push_back(cutting_pose(job_, machine_, {group.first, facet}, previous_c_deg_, stance));
+        previous_c_deg_ = plan_.poses.back().rounded.c_deg;
+      }
+    switch (job_.strategy) {
+      case Strategy::unidirectional:
+        for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) add_roughing(pose);
+        break;
+      case Strategy::bidirectional:
+        add_plunges("layer", plan_.cuts_per_facet, job_.process.roughing_depth_um,
+                    job_.process.roughing_feed_mm_per_min, false);
+        break;
+      case Strategy::two_step:
+        add_plunges("finishing", job_.process.finishing_cuts, job_.process.finishing_depth_um,
+                    job_.process.finishing_feed_mm_per_min, true);
+        break;
+      case Strategy::dmc:
+        break;
+    }
+    return std::move(starts_);
+  }
+
+ private:
+  /// The elements that stand alike, those that are not turned first.
+  void find_groups() {
+    const double start_mm = job_.substrate ? stock_mm(job_, plan_.elements, job_.process.clearance_mm) : 0.0;
+    for (std::size_t k = 0; k < plan_.elements.size(); ++k) {
+      const CutElement& element = plan_.elements[k];
+      Stance stance;
+      stance.orientation = element.orientation;
+      stance.turn = element.turn;
+      stance.stock_mm = plan_.stock_mm;
+      stance.start_mm = start_mm;
+      if (job_.substrate) stance.element = static_cast<std::int64_t>(k);
+      groups_.try_emplace({element.rotated, element.orientation}, stance);
+      has_tilts_ = has_tilts_ || element.orientation > 0;
+    }
+  }
+
+  /// Layer by layer, all elements on one facet, then on the next: chips come off with the third.
+  void chisel() {
+    has_tilts_ ? add_poses_by_facet() : add_poses_by_group();
+    const Process& process = job_.process;
+    const double left_mm = chiseling_allowance_mm(job_);
+    add_layers("layer", plan_.cuts_per_facet, process.roughing_depth_um, left_mm, process.roughing_feed_mm_per_min);
+    add_layers("finishing", process.finishing_cuts, process.finishing_depth_um, 0.0, process.finishing_feed_mm_per_min);
+  }
+
+  CuttingPose next_pose(const ElementGroup& group, int facet) {
+    CuttingPose pose = chiseling_pose(job_, machine_, {group.first, facet}, previous_c_deg_, groups_.at(group));
+    previous_c_deg_ = pose.rounded.c_deg;
+    return pose;
+  }
+
+  void add_poses_by_group() {
+    for (const auto& [group, stance] : groups_) {
+      const std::size_t first = plan_.poses.size();
+      for (int facet = 1; facet <= 3; ++facet) plan_.poses.push_back(next_pose(group, facet));
+      check_v_in_poses(job_, {plan_.poses[first], plan_.poses[first + 1], plan_.poses[first + 2]}, stance);
+    }
+  }
+
+  /// Between elements that lean differently C turns by little, between facets by 120 degrees.
+  void add_poses_by_facet() {
+    for (int facet = 1; facet <= 3; ++facet)
+      for (const auto& [group, stance] : groups_) plan_.poses.push_back(next_pose(group, facet));
+    std::size_t k = 0;
+    const std::size_t count = groups_.size();
+    for (const auto& [group, stance] : groups_) {
+      check_v_in_poses(job_, {plan_.poses[k], plan_.poses[k + count], plan_.poses[k + 2 * count]}, stance);
+      ++k;
+    }
+  }
+
+  void add_layers(std::string_view what, int cuts, double depth_um, double left_mm, double feed_mm_per_min) {
+    for (int cut = 1; cut <= cuts; ++cut)
+      for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
+        Stage stage;
+        stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, plan_.poses[pose].facet.facet, group_name(pose));
+        stage.roughs = what == "layer";
+        stage.cut = cut;
+        stage.cuts = cuts;
+        Routine routine = chiseling_routine(job_, machine_, plan_.poses[pose], left_mm + 1e-3 * depth_um * (cuts - cut),
+                                            feed_mm_per_min);
+        routine.subroutine.title = fmt::format("{}: down one edge, up the other", stage.name);
+        add(std::move(stage), pose, std::move(routine));
+      }
+  }
+
+  /// What tells the elements of a pose apart in the names of its stages.
+  std::string group_name(std::size_t pose) const {
+    std::string name = plan_.poses[pose].facet.rotated ? "-turned" : "";
+    if (has_tilts_) name += fmt::format("-tilt-{}", plan_.poses[pose].orientation + 1);
+    return name;
+  }
+
+  void add_roughing(std::size_t pose) {
+    Stage stage;
+    stage.name = "roughing" + group_name(pose);
+    stage.roughs = true;
+    Routine routine = unidirectional_routine(job_, plan_.poses[pose].section);
+    routine.subroutine.title = fmt::format("{}: {} cuts by plunging and ploughing", stage.name, plan_.cuts_per_facet);
+    add(std::move(stage), pose, std::move(routine));
+  }
+
+  /// Cut by cut, all poses in turn. \param rough_first roughs in the pose of a facet 1 before its first cut
+  void add_plunges(std::string_view what, int cuts, double depth_um, double feed_mm_per_min, bool rough_first) {
+    for (int cut = 1; cut <= cuts; ++cut)
+      for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
+        const FacetChoice& facet = plan_.poses[pose].facet;
+        if (rough_first && cut == 1 && facet.facet == 1) add_roughing(pose);
+        Stage stage;
+        stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, facet.facet, group_name(pose));
+        stage.cut = cut;
+        stage.cuts = cuts;
+        Routine routine =
+            plunge_routine(job_, plan_.poses[pose].section, 1e-3 * depth_um * (cuts - cut), feed_mm_per_min);
+        routine.subroutine.title = fmt::format("{}: one plunge", stage.name);
+        add(std::move(stage), pose, std::move(routine));
+      }
+  }
+
+  void add(Stage stage, std::size_t pose, Routine routine) {
+    stage.pose = pose;
+    stage.subroutine = static_cast<std::uint32_t>(plan_.subroutines.size());
+    routine.subroutine.number = kFirstSubroutine + static_cast<int>(plan_.subroutines.size());
+    starts_.push_back({routine.start, reach_of(routine.subroutine)});
+    plan_.subroutines.push_back(std::move(routine.subroutine));
+    plan_.stages.push_back(std::move(stage));
+  }
+
+  const Job& job_;
+  const Machine& machine_;
+  Plan& plan_;
+  std::map<ElementGroup, Stance> groups_;
+  bool has_tilts_ = false;
+  std::vector<RoutineStart> starts_;
+  double previous_c_deg_ = 0.0;
+};
+
+}  // namespace
+
+std::vector<RoutineStart> add_stages(const Job& job, const Machine& machine, Plan& plan) {
+  return StageMaker(job, machine, plan).run();
+}
+
+}  // namespace retrace::fabrication

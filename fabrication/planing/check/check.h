@@ -1,0 +1,50 @@
+#pragma once
+
+// Judges programs of flat lenses by their text, for planing mills and lathes.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fabrication/check/findings.h"
+#include "fabrication/planing/part.h"
+#include "fabrication/read/nc_program.h"
+
+namespace retrace::fabrication {
+
+/// A sample of the profile: what is asked for and what programs leave, as depths below the face.
+struct ProfileSample {
+  double x_mm = 0.0;
+  double design_mm = 0.0;
+  double left_mm = 0.0;
+};
+
+/// What the text of programs does, found without the planner: from the part, the tool and the NC text alone.
+struct PlaningCheck {
+  std::vector<Finding> findings;     ///< values in mm
+  std::vector<double> time_s;        ///< by program
+  std::vector<std::int64_t> frames;  ///< moves, by program
+  double standing_mm_max = 0.0;      ///< left above the design
+  double gouge_mm_max = 0.0;         ///< cut below it
+  double off_grid_nm_max = 0.0;      ///< of positions, from the machine's grid
+  double shortest_x_mm = 0.0;        ///< moves of single axes; 0: none
+  double shortest_y_mm = 0.0;
+  double shortest_z_mm = 0.0;
+  std::vector<ProfileSample> profile;  ///< mill
+  double path_distance_mm_max = 0.0;   ///< lathe: of what the last pass leaves from what its nose can leave
+  double unreached_mm_max = 0.0;       ///< lathe: what a perfect pass leaves below the walls, as the nose is round
+
+  bool passes() const { return findings.empty(); }
+};
+
+/// One program as text.
+struct PlaningText {
+  std::string name;
+  std::string text;
+};
+
+/// \param flank_slope of the mill's tool, depth over distance \throw InputError for text that cannot be read
+PlaningCheck check_planing(const PlanedPart& part, double flank_slope, const std::vector<PlaningText>& programs,
+                           NcDialect dialect);
+
+}  // namespace retrace::fabrication

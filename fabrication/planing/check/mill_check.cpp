@@ -1,0 +1,138 @@
+#include "fabrication/planing/check/mill_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "core/number_format.h"
+
+namespace retrace::fabrication {
+namespace {
+
+constexpr double kRoundingMm = 1e-7;
+constexpr const char* kLetters = "XYZ";
+
+std::array<double, 3> linear(const AxisPositions& at) {
+  return {at.x_mm, at.y_mm, at.z_mm};
+}
+
+}  // namespace
+
+void MillCheck::begin() {
+  std::fill(std::begin(is_placed_), std::end(is_placed_), false);
+}
+
+void MillCheck::check_length(const NcMotion& motion, std::size_t axis, double length_mm) {
+  const std::array least = {part_.mill->least_x_mm, part_.mill->least_y_mm, part_.mill->least_z_mm};
+  double& shortest_mm = axis == 0 ? result_.shortest_x_mm : axis == 1 ? result_.shortest_y_mm : result_.shortest_z_mm;
+  if (shortest_mm == 0.0 || length_mm < shortest_mm) shortest_mm = length_mm;
+  if (length_mm < least[axis] - kRoundingMm)
+    findings_.add("short_move", motion.place.line, fmt::format("{} moves by less than fast feed can", kLetters[axis]),
+                  length_mm, least[axis]);
+}
+
+void MillCheck::check_grid(const NcMotion& motion, std::size_t axis, double place_mm) {
+  const double off_mm = std::abs(std::remainder(place_mm, part_.mill->grid_mm));
+  result_.off_grid_nm_max = std::max(result_.off_grid_nm_max, 1e6 * off_mm);
+  if (off_mm > kRoundingMm)
+    findings_.add("off_grid", motion.place.line,
+                  fmt::format("{} stands between two steps of the machine", kLetters[axis]), off_mm, 0.0);
+}
+
+/// The tool must not move across or down while its stroke is in the part.
+void MillCheck::check_place(const NcMotion& motion, std::size_t axis) {
+  const double lowest = std::min(motion.from.z_mm, motion.to.z_mm);
+  const bool is_beside = motion.to.y_mm < 0.0 || motion.to.y_mm > part_.length_mm;
+  if (axis == 1) {
+    if (!is_beside && lowest < 0.0)
+      findings_.add("ends_in_part", motion.place.line, "a stroke ends within the part", motion.to.y_mm,
+                    part_.length_mm);
+    const bool is_through = std::min(motion.from.y_mm, motion.to.y_mm) < 0.0 &&
+                            std::max(motion.from.y_mm, motion.to.y_mm) > part_.length_mm;
+    if (is_through && lowest < 0.0) strokes_.push_back({motion.to.x_mm, -lowest});
+  } else if (!is_beside && lowest < 0.0) {
+    findings_.add("moves_in_part", motion.place.line,
+                  fmt::format("{} moves while the tool is in the part", kLetters[axis]), lowest, 0.0);
+  }
+}
+
+void MillCheck::motion(const NcMotion& motion, const NcSettings&) {
+  const std::array from = linear(motion.from);
+  const std::array to = linear(motion.to);
+  std::size_t moved = 0;
+  double length_mm = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool is_known = ((motion.known >> axis) & 1U) != 0;
+    if (!is_known && ((motion.moved >> axis) & 1U) == 0) continue;
+    low_mm_[axis] = is_placed_[axis] ? std::min(low_mm_[axis], to[axis]) : to[axis];
+    high_mm_[axis] = is_placed_[axis] ? std::max(high_mm_[axis], to[axis]) : to[axis];
+    is_placed_[axis] = true;
+    check_grid(motion, axis, to[axis]);
+    if (!is_known || from[axis] == to[axis]) continue;
+    ++moved;
+    length_mm += std::abs(to[axis] - from[axis]);
+    check_length(motion, axis, std::abs(to[axis] - from[axis]));
+    check_place(motion, axis);
+  }
+  if (moved == 0) return;
+  if (moved > 1)
+    findings_.add("several_axes", motion.place.line, "more than one axis moves at a time", static_cast<double>(moved),
+                  1.0);
+  if (motion.move != NcMove::rapid)
+    findings_.add("not_fast", motion.place.line, "the tool planes in fast feed alone", motion.feed_mm_per_min, 0.0);
+  ++result_.frames.back();
+  result_.time_s.back() += length_mm / part_.mill->fast_feed_mm_per_min * 60.0 + part_.mill->frame_s;
+}
+
+void MillCheck::end() {
+  const std::array travel = {part_.mill->travel_x_mm, part_.mill->travel_y_mm, part_.mill->travel_z_mm};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (high_mm_[axis] - low_mm_[axis] > travel[axis] + kRoundingMm)
+      findings_.add("travel", 0, fmt::format("{} goes farther than the machine", kLetters[axis]),
+                    high_mm_[axis] - low_mm_[axis], travel[axis]);
+  const double hours = result_.time_s.back() / 3600.0;
+  if (hours > part_.mill->most_hours + 1e-9)
+    findings_.add("too_long", 0, fmt::format("the program runs for {} hours", fixed(hours, 3)), hours,
+                  part_.mill->most_hours);
+}
+
+void MillCheck::measure_at(double x_mm, double left_mm, const PhaseProfile& profile) {
+  // Within a step of the grid of an upright wall either side of it may be meant.
+  const double near_mm = part_.mill->grid_mm;
+  const double design_mm = profile.depth_mm(x_mm);
+  double standing = std::max(0.0, design_mm - left_mm);
+  double gouge = std::max(0.0, left_mm - design_mm);
+  for (const Wall& wall : profile.walls())
+    if (std::abs(x_mm - wall.x_mm) <= near_mm) standing = gouge = 0.0;
+  if (x_mm > part_.lens.half_width_mm - near_mm) standing = 0.0;
+  result_.standing_mm_max = std::max(result_.standing_mm_max, standing);
+  result_.gouge_mm_max = std::max(result_.gouge_mm_max, gouge);
+  result_.profile.push_back({x_mm, design_mm, left_mm});
+}
+
+void MillCheck::measure() {
+  const PhaseProfile profile(part_.lens);
+  std::sort(strokes_.begin(), strokes_.end(), [](const Stroke& a, const Stroke& b) { return a.x_mm < b.x_mm; });
+  // From the outside in: the deepest flank over a place is that of the greatest depth - slope x of strokes beyond it.
+  constexpr double kBeside = 1e-9;  // of the strokes, which stand on the grid: most stands just outside of one
+  const double grid = part_.mill->grid_mm;
+  double deepest = -1e300;
+  auto next = strokes_.rbegin();
+  for (auto k = 2 * static_cast<std::int64_t>(part_.lens.half_width_mm / grid); k >= 0; --k) {
+    const double x = static_cast<double>(k / 2) * grid + (k % 2 == 0 ? -kBeside : kBeside);
+    for (; next != strokes_.rend() && next->x_mm >= x; ++next)
+      deepest = std::max(deepest, next->depth_mm - flank_slope_ * next->x_mm);
+    measure_at(std::clamp(x, 0.0, part_.lens.half_width_mm), std::max(0.0, deepest + flank_slope_ * x), profile);
+  }
+  std::reverse(result_.profile.begin(), result_.profile.end());
+  const double limit = part_.tolerance_mm + kRoundingMm;
+  if (result_.standing_mm_max > limit)
+    findings_.add("excess", 0, "material stands above the design", result_.standing_mm_max, part_.tolerance_mm);
+  if (result_.gouge_mm_max > limit)
+    findings_.add("gouge", 0, "cuts go below the design", result_.gouge_mm_max, part_.tolerance_mm);
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,54 @@
+#include "fabrication/planing/check/phase_profile.h"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+
+namespace retrace::fabrication {
+namespace {
+
+/// The root of a function that has both signs at the ends (G. E. Alefeld, F. A. Potra, Y. Shi, ACM TOMS 21, 327, 1995).
+template <class F>
+double root_between(const F& f, double low, double high) {
+  const double at_low = f(low);
+  const double at_high = f(high);
+  if (at_low == 0.0) return low;
+  if (at_high == 0.0) return high;
+  std::uintmax_t steps = 100;
+  const auto [a, b] = boost::math::tools::toms748_solve(f, low, high, at_low, at_high,
+                                                        boost::math::tools::eps_tolerance<double>(52), steps);
+  return 0.5 * (a + b);
+}
+
+}  // namespace
+
+PhaseProfile::PhaseProfile(const ZoneLens& lens)
+    : lens_(lens), deepest_mm_(lens.wavelength_mm / (lens.refractive_index - 1.0)) {
+  // At the greatest depth the way grows with the distance from the middle: a wall stands where it passes a whole
+  // number.
+  const auto at_the_deepest = [&](double x) { return waves(x, deepest_mm_); };
+  const double last = at_the_deepest(lens.half_width_mm);
+  double from = 0.0;
+  for (double order = 0.0; order < last; order += 1.0) {
+    const double x =
+        root_between([&](double place) { return at_the_deepest(place) - order; }, from, lens.half_width_mm);
+    walls_.push_back({x, deepest_mm_, depth_of_order_mm(x, order + 1.0)});
+    from = x;
+  }
+}
+
+double PhaseProfile::waves(double x_mm, double depth_mm) const {
+  const double to_lens = lens_.focal_length_mm + depth_mm;
+  return (std::hypot(x_mm, to_lens) - lens_.focal_length_mm - lens_.refractive_index * depth_mm) / lens_.wavelength_mm;
+}
+
+double PhaseProfile::depth_of_order_mm(double x_mm, double order) const {
+  return root_between([&](double depth) { return waves(x_mm, depth) - order; }, 0.0, deepest_mm_);
+}
+
+double PhaseProfile::depth_mm(double x_mm) const {
+  // The way gets shorter with the depth: the lowest order that is reached at the greatest depth or before.
+  return depth_of_order_mm(x_mm, std::max(0.0, std::ceil(waves(x_mm, deepest_mm_))));
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,276 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "fabrication/turning/interval.h"
+#include "fabrication/turning/numbers.h"
+#include "fabrication/turning/plan/concavity_bound.h"
+
+// Between its two boundaries a blend is a polynomial of the share v of the way. In Bernstein's form its values lie
+// between its coefficients and those of its derivatives between their differences (G. Farin, Curves and Surfaces for
+// CAGD, 5th ed., sections 5.3 and 6.3), which are enclosed over pieces of the azimuth.
+
+namespace retrace::fabrication::turning {
+namespace {
+
+constexpr int kMostDegree = 2 * kMostBlendOrder + 1;
+constexpr int kHalvings = 4;
+
+double binomial(int n, int k) {
+  double b = 1.0;
+  for (int i = 1; i <= k; ++i) b = b * (n - k + i) / i;
+  return b;
+}
+
+/// A spline's coefficients on one piece.
+struct Piece {
+  double start_rad = 0.0;
+  const double* coefficients = nullptr;
+  int count = 0;
+};
+
+Piece piece_of(const PeriodicSpline& spline, double angle_rad) {
+  const std::vector<double>& knots = spline.knots_rad();
+  const double turns = std::floor((angle_rad - knots.front()) / kTurn);
+  const auto after = std::upper_bound(knots.begin(), knots.end(), angle_rad - turns * kTurn);
+  const auto index = static_cast<std::size_t>(after - knots.begin()) - 1;
+  return {knots[index] + turns * kTurn, spline.piece(index), spline.degree() + 1};
+}
+
+/// The blend along one ray, and what it does as the azimuth changes: C is double or Interval, the series are in the
+/// azimuth.
+template <class C>
+struct Ray {
+  SecondOrder<C> inner;
+  SecondOrder<C> width;
+  std::array<SecondOrder<C>, kMostDegree + 1> node;  ///< Bernstein coefficients of z
+};
+
+/// Heights on the lenslet along a line over doubles; nothing is enclosed, so that it always is there.
+template <int N>
+std::optional<Series<Jet2, N>> on_lenslet(const Lenslet& lenslet, const Series<Jet2, N>& x, const Series<Jet2, N>& y) {
+  return lenslet.evaluate(x, y);
+}
+
+using Enclosure = SecondOrder<Interval>;
+
+/// Where the lenslet's surface is over a box of plan: Newton's rule for intervals (R. E. Moore, Methods and
+/// Applications of Interval Analysis, SIAM 1979, section 5.2), which also proves that there is one such height near.
+struct Enclosed {
+  Interval z;
+  Interval slope;
+};
+std::optional<Enclosed> enclosed_height(const Lenslet& lenslet, const Interval& x, const Interval& y) {
+  const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
+  const geometry::Vec3& o = lenslet.origin_mm;
+  const double middle = lenslet.evaluate(median(x) + o.x(), median(y) + o.y()) - o.z();
+  if (!std::isfinite(middle)) return std::nullopt;
+  const auto residual_and_slope = [&](const Interval& z) {
+    const Enclosure u(x * r(0, 0) + y * r(1, 0) + z * r(2, 0), Interval(r(2, 0)), Interval(0.0));
+    const Enclosure v(x * r(0, 1) + y * r(1, 1) + z * r(2, 1), Interval(r(2, 1)), Interval(0.0));
+    const Enclosure sag = lenslet.sag.evaluate_without_formula(u, v);
+    return Enclosed{x * r(0, 2) + y * r(1, 2) + z * r(2, 2) - sag.v, r(2, 2) - sag.a};
+  };
+  const Enclosed at_middle = residual_and_slope(Interval(middle));
+  double reach = 1.5 * norm(at_middle.z) / r(2, 2) + 1e-15;
+  for (int attempt = 0; attempt < 4; ++attempt, reach *= 2.0) {
+    const Interval trial(middle - reach, middle + reach);
+    const Interval slope = residual_and_slope(trial).slope;
+    if (!(slope.lower() > 0.0)) return std::nullopt;
+    const Interval next = middle - at_middle.z / slope;
+    if (next.lower() > trial.lower() && next.upper() < trial.upper()) return Enclosed{next, slope};
+  }
+  return std::nullopt;
+}
+
+/// The k-th of the three coefficients.
+Interval& coefficient(Enclosure& e, int k) {
+  return k == 0 ? e.v : k == 1 ? e.a : e.b;
+}
+
+/// Derivatives follow order by order, as those of the residual must vanish: each is linear in its own.
+template <int N>
+std::optional<Series<Enclosure, N>> on_lenslet(const Lenslet& lenslet, const Series<Enclosure, N>& x,
+                                               const Series<Enclosure, N>& y) {
+  const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
+  const Series<Enclosure, N> px = x - lenslet.origin_mm.x();
+  const Series<Enclosure, N> py = y - lenslet.origin_mm.y();
+  if (r(2, 2) == 1.0) return lenslet.sag.evaluate_without_formula(px, py) + lenslet.origin_mm.z();
+  const auto start = enclosed_height(lenslet, px[0].v, py[0].v);
+  if (!start) return std::nullopt;
+  Series<Enclosure, N> z = constant_like(px, 0.0);
+  z[0].v = start->z;
+  constexpr int kOrdersOfAzimuth = 2;
+  for (int order = 1; order <= z.order + kOrdersOfAzimuth; ++order) {
+    const Series<Enclosure, N> u = px * r(0, 0) + py * r(1, 0) + z * r(2, 0);
+    const Series<Enclosure, N> v = px * r(0, 1) + py * r(1, 1) + z * r(2, 1);
+    Series<Enclosure, N> residual =
+        px * r(0, 2) + py * r(1, 2) + z * r(2, 2) - lenslet.sag.evaluate_without_formula(u, v);
+    for (int k = std::max(0, order - kOrdersOfAzimuth); k <= std::min(order, z.order); ++k)
+      coefficient(z[k], order - k) = -(coefficient(residual[k], order - k) / start->slope);
+  }
+  return z + lenslet.origin_mm.z();
+}
+
+template <int N, class C>
+std::optional<Ray<C>> ray_of_order(const Lenslet& lenslet, const Sag& base, const C& angle_rad, const Piece& inner,
+                                   const Piece& outer) {
+  using T = SecondOrder<C>;
+  constexpr int d = N;
+  constexpr int n = 2 * d + 1;
+  const T angle(angle_rad, C(1.0), C(0.0));
+  const T cosine = cos(angle);
+  const T sine = sin(angle);
+  const auto radius = [&](const Piece& p) { return horner(p.coefficients, p.count, T(angle - p.start_rad)); };
+  Ray<C> ray;
+  ray.inner = radius(inner);
+  const T far = radius(outer);
+  ray.width = far - ray.inner;
+  const geometry::Vec2& centre = lenslet.outer.centre_mm;
+  const auto line = [&](const T& at, const T& direction, double c) {
+    return line_series<T, N>(T(at * direction + c), direction, d);
+  };
+  const auto first = on_lenslet(lenslet, line(ray.inner, cosine, centre.x()), line(ray.inner, sine, centre.y()));
+  if (!first) return std::nullopt;
+  const Series<T, N> second = base.evaluate_without_formula(line(far, cosine, centre.x()), line(far, sine, centre.y()));
+  for (int j = 0; j <= d; ++j) {
+    T from_first(0.0);
+    T from_second(0.0);
+    T scale(1.0);
+    for (int k = 0; k <= j; ++k) {
+      const double share = binomial(j, k) / binomial(n, k);
+      from_first = from_first + (*first)[k] * scale * share;
+      from_second = from_second + second[k] * scale * (k % 2 == 0 ? share : -share);
+      scale = scale * ray.width;
+    }
+    ray.node[static_cast<std::size_t>(j)] = from_first;
+    ray.node[static_cast<std::size_t>(n - j)] = from_second;
+  }
+  return ray;
+}
+
+template <class C>
+std::optional<Ray<C>> ray_at(const Lenslet& lenslet, const Sag& base, const C& angle_rad, const Piece& inner,
+                             const Piece& outer) {
+  switch (lenslet.blend_order) {
+    case 1:
+      return ray_of_order<1>(lenslet, base, angle_rad, inner, outer);
+    case 2:
+      return ray_of_order<2>(lenslet, base, angle_rad, inner, outer);
+    case 3:
+      return ray_of_order<3>(lenslet, base, angle_rad, inner, outer);
+    default:
+      return ray_of_order<kMostBlendOrder>(lenslet, base, angle_rad, inner, outer);
+  }
+}
+
+/// The second difference of the nodes as a derivative by the radius.
+template <class C>
+SecondOrder<C> second_by_radius(const Ray<C>& ray, int degree, std::size_t j) {
+  const double factor = static_cast<double>(degree * (degree - 1));
+  return (ray.node[j + 2] - ray.node[j + 1] * 2.0 + ray.node[j]) / (ray.width * ray.width) * factor;
+}
+
+/// Above all values on [0, 1] of the polynomial with those Bernstein coefficients, after halvings by de Casteljau's
+/// rule.
+double above(std::array<double, kMostDegree> node, int degree, int halvings) {
+  if (halvings == 0) return *std::max_element(node.begin(), node.begin() + degree + 1);
+  std::array<double, kMostDegree> first{};
+  for (int k = 0; k <= degree; ++k) {
+    first[static_cast<std::size_t>(k)] = node[0];
+    for (std::size_t j = 0; j < static_cast<std::size_t>(degree - k); ++j) node[j] = 0.5 * (node[j] + node[j + 1]);
+  }
+  // What is left in `node` is the second half from its end back.
+  return std::max(above(first, degree, halvings - 1), above(node, degree, halvings - 1));
+}
+
+/// The largest second derivative on the rays of an interval of azimuth. \param middle the ray in its middle: with it
+/// only how the nodes bend over the interval is left to enclosures, not how they tilt
+double largest_bend(const Ray<Interval>& ray, const Ray<double>& middle, double half_rad, int degree) {
+  const Interval share(0.0, 1.0);
+  const Interval turn(-half_rad, half_rad);
+  const Interval turn_squared(0.0, half_rad * half_rad);
+  const auto at = [](int j) { return static_cast<std::size_t>(j); };
+  Interval zrr = Interval::empty(), zv = zrr, slope = zrr, twist = zrr, bend = zrr;
+  std::array<double, kMostDegree> upper{};
+  for (int j = 0; j <= degree; ++j) {
+    slope = hull(slope, ray.node[at(j)].a);
+    bend = hull(bend, 2.0 * ray.node[at(j)].b);
+    if (j + 1 > degree) continue;
+    zv = hull(zv, static_cast<double>(degree) * (ray.node[at(j + 1)].v - ray.node[at(j)].v));
+    twist = hull(twist, static_cast<double>(degree) * (ray.node[at(j + 1)].a - ray.node[at(j)].a));
+    if (j + 2 > degree) continue;
+    const Jet2 centre = second_by_radius(middle, degree, at(j));
+    const Enclosure whole = second_by_radius(ray, degree, at(j));
+    const Interval second = intersect(whole.v, centre.v + centre.a * turn + whole.b * turn_squared);
+    zrr = hull(zrr, second);
+    upper[at(j)] = second.upper();
+  }
+  // v = (radius - inner) / width changes with the azimuth where the boundaries are no circles.
+  const Interval& w = ray.width.v;
+  const Interval v_t = -(ray.inner.a + share * ray.width.a) / w;
+  const Interval v_tt = -(2.0 * (ray.inner.b + share * ray.width.b)) / w - 2.0 * ray.width.a * v_t / w;
+  const Interval zvv = zrr * w * w;
+  const Interval z_t = slope + zv * v_t;
+  const Interval z_tt = bend + 2.0 * twist * v_t + zvv * v_t * v_t + zv * v_tt;
+  const Interval z_rt = twist / w + zvv * v_t / w - zv * ray.width.a / (w * w);
+  const Interval radius = hull(ray.inner.v, ray.inner.v + w);
+  const Interval across = zv / w / radius + z_tt / (radius * radius);
+  const Interval mixed = z_rt / radius - z_t / (radius * radius);
+  // Bernstein's polynomials are nowhere below 0, so that those of the upper ends lie above the others.
+  const double most = above(upper, degree - 2, 3);
+  return 0.5 * (most + across.upper()) + std::hypot(0.5 * (most - across.upper()), norm(mixed));
+}
+
+bool is_proved_between(const Lenslet& lenslet, const Sag& base, double limit_per_mm, double from_rad, double to_rad,
+                       int halvings) {
+  const double middle = 0.5 * (from_rad + to_rad);
+  const Piece inner = piece_of(lenslet.inner.radius_mm, middle);
+  const Piece outer = piece_of(lenslet.outer.radius_mm, middle);
+  const auto ray = ray_at(lenslet, base, Interval(from_rad, to_rad), inner, outer);
+  if (ray && ray->inner.v.lower() > 0.0 && ray->width.v.lower() > 0.0) {
+    const auto centre = ray_at(lenslet, base, middle, inner, outer);
+    if (largest_bend(*ray, *centre, 0.5 * (to_rad - from_rad), 2 * lenslet.blend_order + 1) < limit_per_mm) return true;
+  }
+  return halvings > 0 && is_proved_between(lenslet, base, limit_per_mm, from_rad, middle, halvings - 1) &&
+         is_proved_between(lenslet, base, limit_per_mm, middle, to_rad, halvings - 1);
+}
+
+/// Where a piece of one of the boundaries begins, rising within one turn, and the first once more a turn later.
+std::vector<double> breaks_of(const Lenslet& lenslet) {
+  std::vector<double> breaks;
+  const double start = lenslet.inner.radius_mm.knots_rad().front();
+  for (const PeriodicSpline* spline : {&lenslet.inner.radius_mm, &lenslet.outer.radius_mm})
+    for (const double knot : spline->knots_rad()) breaks.push_back(knot - kTurn * std::floor((knot - start) / kTurn));
+  std::sort(breaks.begin(), breaks.end());
+  breaks.push_back(breaks.front() + kTurn);
+  return breaks;
+}
+
+/// An interval in equal parts none of which is so wide that nothing could be proved of it.
+bool is_proved_in_parts(const Lenslet& lenslet, const Sag& base, double limit_per_mm, double from_rad, double to_rad) {
+  constexpr double kWidest = kTurn / 20.0;
+  const int parts = static_cast<int>(std::ceil((to_rad - from_rad) / kWidest - 1e-9));
+  const auto at = [&](int part) { return from_rad + (to_rad - from_rad) * part / parts; };
+  for (int part = 0; part < parts; ++part)
+    if (!is_proved_between(lenslet, base, limit_per_mm, at(part), at(part + 1), kHalvings)) return false;
+  return true;
+}
+
+}  // namespace
+
+bool is_blend_concavity_bounded(const Lenslet& lenslet, const Sag& base, double limit_per_mm) {
+  // Without a common slope the surface has an edge there.
+  if (lenslet.blend_order < 1 || !lenslet.ends_on_base || lenslet.sag.formula || base.formula) return false;
+  const std::vector<double> breaks = breaks_of(lenslet);
+  constexpr double kNone = 1e-12;  // between knots that both boundaries have
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+    if (breaks[i + 1] - breaks[i] > kNone && !is_proved_in_parts(lenslet, base, limit_per_mm, breaks[i], breaks[i + 1]))
+      return false;
+  return true;
+}
+
+}  // namespace retrace::fabrication::turning

@@ -1,0 +1,115 @@
+#include "fabrication/turning/plan/concavity_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fabrication/turning/interval.h"
+
+namespace retrace::fabrication::turning {
+namespace {
+
+using geometry::Vec2;
+using Enclosure = SecondOrder<Interval>;
+
+constexpr int kDeepest = 6;  ///< halvings of a box along each side
+
+/// The larger eigenvalue of a symmetric matrix rises with its diagonal and with the size of what stands beside it.
+double largest_eigenvalue(const Interval& xx, const Interval& xy, const Interval& yy) {
+  const double a = xx.upper();
+  const double d = yy.upper();
+  return 0.5 * (a + d) + std::hypot(0.5 * (a - d), norm(xy));
+}
+
+/// Height, slopes and second derivatives of a sag over a box.
+struct Bend {
+  Interval z;
+  Interval x;
+  Interval y;
+  double largest = 0.0;  ///< second derivative, in any direction; not a number where there is none
+};
+
+Bend bend_over(const Sag& sag, const Interval& x, const Interval& y) {
+  const auto along = [&](double c, double s) {
+    return sag.evaluate_without_formula(Enclosure(x, Interval(c), Interval(0.0)),
+                                        Enclosure(y, Interval(s), Interval(0.0)));
+  };
+  const Enclosure by_x = along(1.0, 0.0);
+  const Enclosure by_y = along(0.0, 1.0);
+  const Interval xy = along(1.0, 1.0).b - by_x.b - by_y.b;
+  return {by_x.v, by_x.a, by_y.a, largest_eigenvalue(2.0 * by_x.b, xy, 2.0 * by_y.b)};
+}
+
+Interval along_x(const PlanBox& box) {
+  return {box.low_mm.x(), box.high_mm.x()};
+}
+Interval along_y(const PlanBox& box) {
+  return {box.low_mm.y(), box.high_mm.y()};
+}
+
+/// Half the side of a square in the lenslet's frame over which its surface covers the disc of radius `reach` about its
+/// origin in plan: the rim of the disc of that radius has cos(tilt) rho - sin(tilt) |w| > reach. Nothing if none of
+/// those tried does.
+std::optional<double> covering(const Lenslet& lenslet, double reach_mm) {
+  const double cosine = lenslet.part_from_lenslet(2, 2);
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  double rho = 1.001 * reach_mm / cosine;
+  for (int attempt = 0; attempt < 4; ++attempt, rho *= 1.3) {
+    const Interval span(-rho, rho);
+    const Enclosure u(span, Interval(0.0), Interval(0.0));
+    if (cosine * rho - sine * norm(lenslet.sag.evaluate_without_formula(u, u).v) > reach_mm) return rho;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void prove_by_quarters(const PlanBox& box, int depth, const std::function<bool(const PlanBox&)>& holds,
+                       const std::function<void(const PlanBox&)>& on_failure) {
+  if (holds(box)) return;
+  if (depth == 0) {
+    on_failure(box);
+    return;
+  }
+  const Vec2 middle = 0.5 * (box.low_mm + box.high_mm);
+  for (const double x : {box.low_mm.x(), middle.x()})
+    for (const double y : {box.low_mm.y(), middle.y()}) {
+      const Vec2 high(x == middle.x() ? box.high_mm.x() : middle.x(), y == middle.y() ? box.high_mm.y() : middle.y());
+      prove_by_quarters({{x, y}, high}, depth - 1, holds, on_failure);
+    }
+}
+
+void bound_concavity(const Sag& sag, const PlanBox& box, double limit_per_mm,
+                     const std::function<bool(const PlanBox&)>& is_needed,
+                     const std::function<void(const PlanBox&)>& on_failure) {
+  if (sag.formula) {
+    on_failure(box);
+    return;
+  }
+  prove_by_quarters(
+      box, kDeepest,
+      [&](const PlanBox& b) { return !is_needed(b) || bend_over(sag, along_x(b), along_y(b)).largest < limit_per_mm; },
+      on_failure);
+}
+
+bool is_concavity_bounded(const Lenslet& lenslet, double limit_per_mm) {
+  if (lenslet.sag.formula) return false;
+  const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
+  const Vec2 offset = lenslet.inner.centre_mm - lenslet.origin_mm.head<2>();
+  const auto rho = covering(lenslet, offset.norm() + lenslet.inner.most_mm);
+  if (!rho) return false;
+  const auto holds = [&](const PlanBox& box) {
+    const Bend bend = bend_over(lenslet.sag, along_x(box), along_y(box));
+    // Of n = (-h_u, -h_v, 1), the part's z component: the slope of w - h by the part's z.
+    const Interval upright = r(2, 2) - bend.x * r(2, 0) - bend.y * r(2, 1);
+    if (!(upright.lower() > 0.0) || !std::isfinite(bend.largest)) return false;
+    const double square = 1.0 + std::pow(norm(bend.x), 2) + std::pow(norm(bend.y), 2);
+    // Along a curve over the part's plan z'' = h'' / upright, and h'' takes (u', v') of length up to |n| / upright.
+    return std::max(0.0, bend.largest) * square / std::pow(upright.lower(), 3) < limit_per_mm;
+  };
+  bool is_proved = true;
+  prove_by_quarters({{-*rho, -*rho}, {*rho, *rho}}, 5, holds, [&](const PlanBox&) { is_proved = false; });
+  return is_proved;
+}
+
+}  // namespace retrace::fabrication::turning

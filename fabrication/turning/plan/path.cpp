@@ -1,0 +1,251 @@
+#include "fabrication/turning/plan/path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fabrication/turning/numbers.h"
+#include "fabrication/turning/plan/polynomial_spiral.h"
+
+namespace retrace::fabrication::turning {
+namespace {
+
+using geometry::Vec2;
+constexpr std::size_t kMostPoints = std::size_t{1} << 26;
+
+/// Angles of the spindle at the points of a spiral, in turns.
+std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& where) {
+  const double start = o.radius_mm + o.overrun_mm;
+  const double turns = start / o.feed_mm;
+  const double mean_arc = std::numbers::pi * start;
+  const double count = o.sampling == Sampling::angle ? turns * o.points_per_turn : turns * mean_arc / o.arc_mm;
+  if (!(count < static_cast<double>(kMostPoints)))
+    throw InputError(where, fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPoints, count));
+  std::vector<double> result;
+  result.reserve(static_cast<std::size_t>(count) + 2);
+  if (o.sampling == Sampling::angle) {
+    const auto whole = static_cast<std::size_t>(std::floor(turns * o.points_per_turn + 1e-9));
+    for (std::size_t i = 0; i <= whole; ++i) result.push_back(static_cast<double>(i) / o.points_per_turn);
+    return result;
+  }
+  // Near the centre equal lengths would be few points a turn: at least 24.
+  constexpr double kMostStep = 1.0 / 24.0;
+  for (double turn = 0.0; turn < turns;) {
+    result.push_back(turn);
+    const double r = o.feed_mm * (turns - turn);
+    turn += std::min(kMostStep, o.arc_mm / (kTurn * r));
+  }
+  return result;
+}
+
+/// Where on the nose the next point touches, if the last three went on as a parabola.
+class TouchForecast {
+ public:
+  explicit TouchForecast(double end_rad) : end_rad_(end_rad) {}
+  double next() const { return std::clamp(3.0 * (angles_[0] - angles_[1]) + angles_[2], -end_rad_, end_rad_); }
+  void add(double angle_rad) { angles_ = {angle_rad, angles_[0], angles_[1]}; }
+
+ private:
+  double end_rad_;
+  std::array<double, 3> angles_{};  // the last first
+};
+
+Pass spiral(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o, const InputLocation& where) {
+  if (const auto pass = polynomial_spiral(surface, tool, o)) return *pass;
+  const NoseCompensation nose(surface, tool, TouchMap(surface, tool, o.radius_mm + o.overrun_mm));
+  const double skew = tool.skew_deg * kDegree;
+  Pass pass;
+  TouchForecast forecast(nose.end_rad());
+  double last = 0.0;
+  const std::vector<double> all_turns = spiral_turns(o, where);
+  pass.reserve(all_turns.size());
+  for (const double turns : all_turns) {
+    const double r = o.radius_mm + o.overrun_mm - o.feed_mm * turns;
+    const double c = kTurn * (turns - std::floor(turns));
+    const Vec2 across(std::cos(c), -std::sin(c));
+    const Vec2 cut(-std::sin(c), -std::cos(c));
+    PathPoint p;
+    p.x_mm = r * std::cos(skew);
+    p.y_mm = tool.skew_deg == 0.0 ? 0.0 : -r * std::sin(skew);
+    p.c_deg = 360.0 * turns;
+    p.seconds = (turns - last) * 60.0 / o.spindle_rpm;
+    const Vec2 tip = p.x_mm * across - p.y_mm * cut;
+    double angle = forecast.next();
+    p.z_mm = nose.height_mm(tip.x(), tip.y(), across, cut, angle);
+    forecast.add(angle);
+    last = turns;
+    pass.push_back(p);
+  }
+  return pass;
+}
+
+std::vector<Pass> raster(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o,
+                         const InputLocation& where) {
+  const double lines = std::floor(o.height_mm / o.feed_mm + 1e-9) + 1.0;
+  const double points = std::max(1.0, std::ceil(o.width_mm / o.arc_mm - 1e-9));
+  if (!(lines * points < static_cast<double>(kMostPoints)))
+    throw InputError(where,
+                     fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPoints, lines * points));
+  const NoseCompensation nose(surface, tool, TouchMap(surface, tool, 0.5 * std::hypot(o.width_mm, o.height_mm)));
+  // The rake face is square to the machine's Y: a skew turns the part against it, the lines with the part.
+  const double cosine = std::cos(tool.skew_deg * kDegree);
+  const double sine = std::sin(tool.skew_deg * kDegree);
+  const Vec2 across(cosine, sine);
+  const Vec2 cut(sine, -cosine);
+  const double step = o.width_mm / points;
+  std::vector<Pass> passes;
+  for (int line = 0; line < static_cast<int>(lines); ++line) {
+    Pass pass;
+    TouchForecast forecast(nose.end_rad());
+    for (int i = 0; i <= static_cast<int>(points); ++i) {
+      PathPoint p;
+      const Vec2 tip(0.5 * o.height_mm - o.feed_mm * line, 0.5 * o.width_mm - step * i);
+      p.x_mm = across.dot(tip);
+      p.y_mm = -cut.dot(tip);
+      p.c_deg = tool.skew_deg == 0.0 ? 0.0 : -tool.skew_deg;
+      p.seconds = i == 0 ? 0.0 : 60.0 * step / o.cutting_mm_per_min;
+      double angle = forecast.next();
+      p.z_mm = nose.height_mm(tip.x(), tip.y(), across, cut, angle);
+      forecast.add(angle);
+      pass.push_back(p);
+    }
+    passes.push_back(std::move(pass));
+  }
+  return passes;
+}
+
+/// Splits Z of a spiral by angles: the slide follows the mean over the turn round each point, the servo the rest. In
+/// the first and last half turn the slide goes on evenly.
+void share_with_servo(Pass& pass, int points_per_turn) {
+  const std::size_t count = pass.size();
+  const auto turn = static_cast<std::size_t>(points_per_turn);
+  const std::size_t half = turn / 2;
+  if (count < turn + 2) return;
+  std::vector<double> sums(count + 1, 0.0);
+  for (std::size_t i = 0; i < count; ++i) sums[i + 1] = sums[i] + pass[i].z_mm;
+  const auto mean_from = [&](std::size_t first) {
+    return (sums[first + turn] - sums[first]) / static_cast<double>(turn);
+  };
+  const std::size_t last = count - turn;  // the last window's first point
+  for (std::size_t i = 0; i < count; ++i) {
+    const double window = static_cast<double>(i) - static_cast<double>(half);
+    double mean = 0.0;
+    if (window < 0.0)
+      mean = mean_from(0) + window * (mean_from(1) - mean_from(0));
+    else if (window > static_cast<double>(last))
+      mean = mean_from(last) + (window - static_cast<double>(last)) * (mean_from(last) - mean_from(last - 1));
+    else
+      mean = mean_from(i - half);
+    pass[i].servo_mm = pass[i].z_mm - mean;
+    pass[i].z_mm = mean;
+  }
+}
+
+}  // namespace
+
+NoseCompensation::NoseCompensation(const TurnedSurface& surface, const TurningTool& tool, TouchMap map)
+    : surface_(surface),
+      map_(std::move(map)),
+      radius_mm_(tool.nose_radius_mm),
+      sin_rake_(std::sin(tool.rake_deg * kDegree)),
+      cos_rake_(std::cos(tool.rake_deg * kDegree)),
+      end_rad_(0.5 * tool.window_deg * kDegree) {}
+
+double NoseCompensation::sampled(double x_mm, double y_mm, const Vec2& across, const Vec2& cut, double angle) const {
+  const double aside = radius_mm_ * std::sin(angle);
+  const double lift = radius_mm_ * (1.0 - std::cos(angle));
+  const Vec2 p = Vec2(x_mm, y_mm) + aside * across - lift * sin_rake_ * cut;
+  return surface_.height_mm(p.x(), p.y()) - lift * cos_rake_;
+}
+
+NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, const Vec2& across, const Vec2& cut,
+                                                   double& angle) const {
+  constexpr int kMostSteps = 12;
+  // What a step leaves is of the third order in it: below 1e-14 mm.
+  constexpr double kSmallStep = 2e-5;
+  Touch touch;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double sine = std::sin(angle);
+    const double cosine = std::cos(angle);
+    const Jet2 aside(radius_mm_ * sine, radius_mm_ * cosine, -0.5 * radius_mm_ * sine);
+    const Jet2 lift(radius_mm_ * (1.0 - cosine), radius_mm_ * sine, 0.5 * radius_mm_ * cosine);
+    const Jet2 back = lift * sin_rake_;
+    const Jet2 f =
+        surface_.evaluate(aside * across.x() - back * cut.x() + x_mm, aside * across.y() - back * cut.y() + y_mm) -
+        lift * cos_rake_;
+    touch.height_mm = f.v;
+    // Where the surface is hollower than the nose there is no maximum here: another start finds it.
+    if (!(f.b < 0.0)) return touch;
+    const double change = std::clamp(-0.5 * f.a / f.b, -0.5, 0.5);
+    const double next = std::clamp(angle + change, -end_rad_, end_rad_);
+    const double done = next - angle;
+    angle = next;
+    touch.height_mm = f.v + done * (f.a + done * f.b);
+    touch.is_found = std::abs(done) < kSmallStep;
+    if (touch.is_found) return touch;
+  }
+  return touch;
+}
+
+double NoseCompensation::height_mm(double x_mm, double y_mm, const Vec2& across, const Vec2& cut,
+                                   double& start_rad) const {
+  const Touch touch = searched(x_mm, y_mm, across, cut, start_rad);
+  if (touch.is_found && map_.touches_once(x_mm, y_mm)) return touch.height_mm;
+  double height = touch.height_mm;
+  // A steep place farther along the edge may touch first, as the far side of a lenslet does.
+  constexpr int kPlaces = 8;
+  double best = start_rad;
+  double highest = height;
+  for (int i = 0; i <= kPlaces; ++i) {
+    const double angle = end_rad_ * (2.0 * i / kPlaces - 1.0);
+    const double z = sampled(x_mm, y_mm, across, cut, angle);
+    if (z > highest) {
+      highest = z;
+      best = angle;
+    }
+  }
+  if (highest > height) {
+    double angle = best;
+    height = std::max(highest, searched(x_mm, y_mm, across, cut, angle).height_mm);
+    start_rad = angle;
+  }
+  return height;
+}
+
+std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& options,
+                            const InputLocation& where) {
+  if (options.strategy == Strategy::raster) return raster(surface, tool, options, where);
+  std::vector<Pass> passes;
+  passes.push_back(spiral(surface, tool, options, where));
+  if (options.servo == Servo::fast) share_with_servo(passes.front(), options.points_per_turn);
+  return passes;
+}
+
+std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOptions& options) {
+  std::vector<SlopeSample> samples;
+  const auto add = [&](double x, double y, const Vec2& outward, const Vec2& cut) {
+    const Dual z = surface.gradient(x, y);
+    samples.push_back({{x, y}, z.dx * outward.x() + z.dy * outward.y(), z.dx * cut.x() + z.dy * cut.y()});
+  };
+  constexpr int kAcross = 200;
+  constexpr int kAlong = 720;
+  if (options.strategy == Strategy::raster) {
+    for (int i = 0; i <= kAcross; ++i)
+      for (int k = 0; k <= kAlong; ++k)
+        add(options.height_mm * (static_cast<double>(i) / kAcross - 0.5),
+            options.width_mm * (static_cast<double>(k) / kAlong - 0.5), Vec2::UnitX(), -Vec2::UnitY());
+    return samples;
+  }
+  for (int i = 1; i <= kAcross; ++i)
+    for (int k = 0; k < kAlong; ++k) {
+      const double r = options.radius_mm * i / kAcross;
+      const double theta = kTurn * k / kAlong;
+      const Vec2 outward(std::cos(theta), std::sin(theta));
+      add(r * outward.x(), r * outward.y(), outward, Vec2(outward.y(), -outward.x()));
+    }
+  return samples;
+}
+
+}  // namespace retrace::fabrication::turning
