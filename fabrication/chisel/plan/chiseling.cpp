@@ -11,6 +11,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/chisel/plan/process_facts.h"
 #include "fabrication/chisel/plan/routines.h"
 #include "fabrication/job/v_tool.h"
 
@@ -173,16 +174,25 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
                     stance.who(), fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(job.tool.width_mm)));
 }
 
-std::vector<std::string> chiseling_description(const Job& job, std::size_t elements, const std::string& zero) {
+ProcessFacts chiseling_facts(const Job& job, double stock_mm, std::size_t elements) {
   const geometry::Element element = blank_element(job);
   const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(element);
-  return {fmt::format("{} {} cube corners, apex {} mm deep, edges {} mm to the face", elements,
-                      is_hexagonal ? "hexagonal" : "triangular", fixed(cavity_depth_mm(element), 6),
-                      fixed(cavity_edge_mm(element), 6)),
-          zero + ", dihedral edges along -Y and 120 deg apart at B0 C0. Controller transformation off",
-          fmt::format("Tool: V of {} deg, width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: the tip",
-                      shortest(job.tool.nose_angle_deg), shortest(job.tool.width_mm), shortest(job.tool.wedge_deg),
-                      shortest(job.tool.clearance_deg))};
+  ProcessFacts facts;
+  facts.tilts = Tilt::head;
+  facts.machine_text = "must be a machine whose head tilts (B), such as \"ideal-dmc\", for strategy \"dmc\"";
+  facts.cuts_per_facet = chiseling_layers(job, stock_mm);
+  facts.is_finished = true;
+  facts.passes_mm = {0.0};
+  facts.array_title = "Cube corner array";
+  facts.description = {
+      fmt::format("{} {} cube corners, apex {} mm deep, edges {} mm to the face", elements,
+                  is_hexagonal ? "hexagonal" : "triangular", fixed(cavity_depth_mm(element), 6),
+                  fixed(cavity_edge_mm(element), 6)),
+      zero_text(job) + ", dihedral edges along -Y and 120 deg apart at B0 C0. Controller transformation off",
+      fmt::format("Tool: V of {} deg, width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: the tip",
+                  shortest(job.tool.nose_angle_deg), shortest(job.tool.width_mm), shortest(job.tool.wedge_deg),
+                  shortest(job.tool.clearance_deg))};
+  return facts;
 }
 
 Place rounded_words(const Vec3& words_mm, const Vec3& along) {

@@ -37,9 +37,6 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
                           double feed_mm_per_min);
 
-/// Lines for people on what is cut by which tool. \param zero where it is touched off
-std::vector<std::string> chiseling_description(const Job& job, std::size_t elements, const std::string& zero);
-
 /// Words in whole nanometres: each rounded by itself where `along` is 0, else that of the eight neighbours with the
 /// least error along it.
 Place rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along);

@@ -12,10 +12,10 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/chisel/plan/clear_way.h"
 #include "fabrication/chisel/plan/move_time.h"
 #include "fabrication/chisel/plan/order.h"
+#include "fabrication/chisel/plan/process_facts.h"
 #include "fabrication/chisel/plan/routines.h"
 #include "fabrication/chisel/plan/stages.h"
 #include "fabrication/job/substrate_cells.h"
@@ -84,18 +84,21 @@ TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
 /// Puts visits into programs, keeps time, and starts a new program where one has grown too long.
 class ProgramMaker {
  public:
-  ProgramMaker(const Job& job, const Machine& machine, const PlanOptions& options,
+  ProgramMaker(const Job& job, const Machine& machine, const PlanOptions& options, const ProcessFacts& facts,
                const std::vector<RoutineStart>& starts, Plan& plan)
-      : job_(job), machine_(machine), options_(options), starts_(starts), plan_(plan), way_(job, machine) {
+      : job_(job),
+        machine_(machine),
+        options_(options),
+        facts_(facts),
+        starts_(starts),
+        plan_(plan),
+        way_(job, machine) {
     for (const Subroutine& subroutine : plan.subroutines) routine_times_.push_back(routine_time(machine, subroutine));
     safe_z_nm_ = nanometres(plan.safe_z_mm);
   }
 
   void run() {
-    const std::vector<double> offsets = job_.strategy == Strategy::dmc
-                                            ? std::vector<double>{0.0}
-                                            : pass_offsets_mm(blank_prism(job_).width_mm, job_.tool.width_mm);
-    plan_.passes = static_cast<int>(offsets.size());
+    plan_.passes = static_cast<int>(facts_.passes_mm.size());
     const std::map<ElementGroup, std::vector<std::int32_t>> orders = cutting_orders(plan_.elements);
     const auto order_of = [&](const Stage& stage) -> const std::vector<std::int32_t>& {
       const CuttingPose& pose = plan_.poses[stage.pose];
@@ -115,7 +118,7 @@ class ProgramMaker {
         if (waiting) continue;
       }
       enter(stage);
-      for (const std::int32_t element : order) visit(stage, element, offsets);
+      for (const std::int32_t element : order) visit(stage, element);
     }
     end();
     plan_.programs.size() == 1 ? void(plan_.programs.front().name = substrate_name()) : number_programs();
@@ -185,7 +188,7 @@ class ProgramMaker {
     program_.items.emplace_back(Message{fmt::format("{} {} of {} C-axis at {}", what, stage.cut, stage.cuts, c_deg)});
   }
 
-  void visit(Stage& stage, std::int32_t element, const std::vector<double>& offsets) {
+  void visit(Stage& stage, std::int32_t element) {
     const CuttingPose& pose = plan_.poses[stage.pose];
     const Vec3 root =
         plan_.elements[static_cast<std::size_t>(element)].foot_mm - pose.section.depth_mm * pose.turn.col(2);
@@ -196,8 +199,8 @@ class ProgramMaker {
     }
     // To and fro over the passes as well.
     forth_ = !forth_;
-    for (std::size_t k = 0; k < offsets.size(); ++k) {
-      const double offset_mm = offsets[forth_ ? k : offsets.size() - 1 - k];
+    for (std::size_t k = 0; k < facts_.passes_mm.size(); ++k) {
+      const double offset_mm = facts_.passes_mm[forth_ ? k : facts_.passes_mm.size() - 1 - k];
       const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
       const auto& [start, reach] = starts_[stage.subroutine];
       const Visit visit{element, stage.subroutine,
@@ -321,41 +324,20 @@ class ProgramMaker {
     finish_program();
   }
 
-  /// Where the tool is touched off.
-  std::string zero() const {
-    return job_.substrate ? "Zero: centre of the array, as high as the highest place of the blank"
-                          : "Zero: centre of the array on the face of the blank";
-  }
-
-  /// What is cut, by which tool.
-  std::vector<std::string> description() const {
-    if (job_.strategy == Strategy::dmc) return chiseling_description(job_, plan_.elements.size(), zero());
-    const geometry::RtpElement element = blank_prism(job_);
-    return {
-        fmt::format("{} elements, base {} width {} apex {} deg, root {} mm deep", plan_.elements.size(),
-                    shortest(element.base_mm), shortest(element.width_mm), shortest(element.apex_angle_deg),
-                    fixed(root_depth_mm(element), 6)),
-        zero() + ", roof edges along X at A0 C0. Controller transformation off",
-        fmt::format("Tool: width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: middle of the edge",
-                    shortest(job_.tool.width_mm), shortest(job_.tool.wedge_deg), shortest(job_.tool.clearance_deg))};
-  }
-
   std::vector<std::string> header() const {
     const geometry::Vec2 extent = blank_extent_mm(job_);
     const Process& p = job_.process;
-    const bool is_dmc = job_.strategy == Strategy::dmc;
     const char tilt = machine_.tilt_letter();
     std::vector<std::string> lines = {
-        job_.title.empty() ? is_dmc ? "Cube corner array" : "Prism array" : plain(job_.title),
+        job_.title.empty() ? facts_.array_title : plain(job_.title),
         plain("Job " + std::filesystem::path(job_.source).filename().string() + ", machine " + machine_.name),
         fmt::format("Blank: {}, array of {} x {} mm along X and Y at {}0 C0",
                     kWorkpieceWords[static_cast<std::size_t>(job_.workpiece.kind)], fixed(extent.x(), 3),
                     fixed(extent.y(), 3), tilt)};
     if (job_.substrate) lines.push_back(plain(substrate_description(job_)));
-    for (const std::string& line : description()) lines.push_back(line);
-    const bool is_finished = is_dmc || job_.strategy == Strategy::two_step;
+    for (const std::string& line : facts_.description) lines.push_back(line);
     lines.push_back(plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
-                                      shortest(p.roughing_depth_um), is_finished ? p.finishing_cuts : 0,
+                                      shortest(p.roughing_depth_um), facts_.is_finished ? p.finishing_cuts : 0,
                                       shortest(p.finishing_depth_um), shortest(p.clearance_mm))));
     constexpr std::size_t kMostPoses = 24;
     for (const CuttingPose& pose : std::span(plan_.poses).first(std::min(kMostPoses, plan_.poses.size())))
@@ -372,6 +354,7 @@ class ProgramMaker {
   const Job& job_;
   const Machine& machine_;
   const PlanOptions& options_;
+  const ProcessFacts& facts_;
   const std::vector<RoutineStart>& starts_;
   Plan& plan_;
   std::vector<TimeShares> routine_times_;
@@ -398,15 +381,11 @@ void check_options(const PlanOptions& options, std::size_t elements) {
     throw InputError({"", 0, "--split-hours"}, "must be > 0, got " + shortest(*options.split_hours));
 }
 
-/// A chisel stands upright and the table tilts; a V is tilted by the head.
-void check_machine(const Job& job, const Machine& machine) {
-  const bool is_dmc = job.strategy == Strategy::dmc;
-  if (is_dmc == (machine.tilt == Tilt::head)) return;
-  throw InputError(
-      {job.source, 0, "machine"},
-      is_dmc
-          ? "must be a machine whose head tilts (B), such as \"ideal-dmc\", for strategy \"dmc\", got " + machine.name
-          : "must be a machine whose table tilts (A) for this strategy, got " + machine.name);
+ProcessFacts facts_of(const Job& job, const Machine& machine, const Plan& plan) {
+  ProcessFacts facts =
+      (job.strategy == Strategy::dmc ? chiseling_facts : plunging_facts)(job, plan.stock_mm, plan.elements.size());
+  if (facts.tilts == machine.tilt) return facts;
+  throw InputError({job.source, 0, "machine"}, fmt::format("{}, got {}", facts.machine_text, machine.name));
 }
 
 }  // namespace
@@ -438,16 +417,15 @@ Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& option
   Plan plan;
   plan.elements = cut_elements(job);
   check_options(options, plan.elements.size());
-  check_machine(job, machine);
   if (job.substrate) plan.stock_mm = stock_mm(job, plan.elements);
-  plan.cuts_per_facet =
-      job.strategy == Strategy::dmc ? chiseling_layers(job, plan.stock_mm) : cuts_per_facet(job, plan.stock_mm);
+  const ProcessFacts facts = facts_of(job, machine, plan);
+  plan.cuts_per_facet = facts.cuts_per_facet;
   const std::vector<RoutineStart> starts = add_stages(job, machine, plan);
   plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);
   plan.aperture_area_mm2 =
       geometry::area(geometry::aperture_outline(blank_element(job))) * static_cast<double>(plan.elements.size());
   choose_stages(plan, options);
-  ProgramMaker(job, machine, options, starts, plan).run();
+  ProgramMaker(job, machine, options, facts, starts, plan).run();
   return plan;
 }
 

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/number_format.h"
+#include "fabrication/chisel/plan/process_facts.h"
+
 namespace retrace::fabrication {
 namespace {
 
@@ -130,6 +133,28 @@ Routine plunge_routine(const Job& job, const Section& section, double left_mm, d
   path.to(on_clearance_plane(section, at, section.bisector, process.clearance_mm), Motion::retract,
           process.retract_feed_mm_per_min);
   return routine;
+}
+
+std::string zero_text(const Job& job) {
+  return job.substrate ? "Zero: centre of the array, as high as the highest place of the blank"
+                       : "Zero: centre of the array on the face of the blank";
+}
+
+ProcessFacts plunging_facts(const Job& job, double stock_mm, std::size_t elements) {
+  const geometry::RtpElement element = blank_prism(job);
+  ProcessFacts facts;
+  facts.machine_text = "must be a machine whose table tilts (A) for this strategy";
+  facts.cuts_per_facet = cuts_per_facet(job, stock_mm);
+  facts.is_finished = job.strategy == Strategy::two_step;
+  facts.passes_mm = pass_offsets_mm(element.width_mm, job.tool.width_mm);
+  facts.array_title = "Prism array";
+  facts.description = {
+      fmt::format("{} elements, base {} width {} apex {} deg, root {} mm deep", elements, shortest(element.base_mm),
+                  shortest(element.width_mm), shortest(element.apex_angle_deg), fixed(root_depth_mm(element), 6)),
+      zero_text(job) + ", roof edges along X at A0 C0. Controller transformation off",
+      fmt::format("Tool: width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: middle of the edge",
+                  shortest(job.tool.width_mm), shortest(job.tool.wedge_deg), shortest(job.tool.clearance_deg))};
+  return facts;
 }
 
 std::vector<double> pass_offsets_mm(double width_mm, double tool_width_mm) {
