@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/chisel/plan/clear_way.h"
 #include "fabrication/chisel/plan/move_time.h"
 #include "fabrication/chisel/plan/order.h"
