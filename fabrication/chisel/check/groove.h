@@ -11,6 +11,8 @@
 
 namespace retrace::fabrication {
 
+inline constexpr double kNmPerMm = 1e6;
+
 /// A facet as designed, in the workpiece frame: normal . p = offset_mm on it, more outside of the material.
 struct DesignFacet {
   geometry::Vec3 normal = geometry::Vec3::UnitZ();  ///< outward from the material, of length 1

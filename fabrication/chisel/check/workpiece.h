@@ -12,8 +12,6 @@
 
 namespace retrace::fabrication {
 
-inline constexpr double kNmPerMm = 1e6;
-
 /// What must be known to judge a program.
 struct Workpiece3d {
   const Job* job = nullptr;
