@@ -46,8 +46,7 @@ ExitCode write_schema(const CommonOptions& common, const std::string& json, cons
                       const std::string& file) {
   const ResultFiles files(common, {}, file);
   files.prepare();
-  files.write(json, text);
-  return ExitCode::done;
+  return files.write(json, text);
 }
 
 ExitCode list_formats(const CommonOptions& common) {

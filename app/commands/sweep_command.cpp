@@ -23,8 +23,7 @@ ExitCode run(const SweepOptions& options, const CommonOptions& common) {
   };
   command.read = [&] { return studies::read_sweep(studies::read_study(options.study, common.overrides, common.seed)); };
   command.write = [](const studies::SweepResult& result, const ResultFiles& files) {
-    files.write(studies::sweep_json(result), studies::sweep_table(result));
-    return ExitCode::done;
+    return files.write(studies::sweep_json(result), studies::sweep_table(result));
   };
   return run_points(options, common, command);
 }

@@ -34,9 +34,8 @@ ExitCode run(const ToleranceOptions& options, const CommonOptions& common) {
   command.write = [&](studies::SweepResult& result, const ResultFiles& files) {
     found = studies::analyse(result.sweep, request, result.points);
     result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
-    files.write(studies::tolerance_json(result, request, found),
-                studies::tolerance_text(result.sweep.study(), request, found));
-    return found.is_enough ? ExitCode::done : ExitCode::answer_is_no;
+    return files.write(studies::tolerance_json(result, request, found),
+                       studies::tolerance_text(result.sweep.study(), request, found), {}, {.is_yes = found.is_enough});
   };
   return run_points(options, common, command);
 }
