@@ -8,9 +8,7 @@
 namespace retrace::raytrace {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
-using std::numbers::pi;
+using geometry::Vec2, geometry::Vec3, std::numbers::pi;
 
 // Sines below this are those of parallel directions.
 constexpr double kParallel = 1e-14;

@@ -14,8 +14,7 @@
 namespace retrace::report {
 namespace {
 
-using geometry::Polygon;
-using geometry::Vec2;
+using geometry::Polygon, geometry::Vec2;
 
 /// Of more elements neighbours in a row are drawn as one.
 constexpr std::size_t kMostElementsDrawn = 4000;

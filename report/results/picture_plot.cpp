@@ -13,8 +13,7 @@
 namespace retrace::report {
 namespace {
 
-using studies::CameraResult;
-using studies::DetectorResult;
+using studies::CameraResult, studies::DetectorResult;
 
 /// Rows from above: grids of directions have the lowest first.
 std::vector<double> turned_over(const std::vector<double>& values, std::size_t columns) {

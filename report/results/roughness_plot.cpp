@@ -14,8 +14,7 @@
 namespace retrace::report {
 namespace {
 
-using studies::FacetGroup;
-using studies::RoughnessPoint;
+using studies::FacetGroup, studies::RoughnessPoint;
 
 /// Processes stand alone; single facets go together by their table.
 std::string label_of(const FacetGroup& group) {

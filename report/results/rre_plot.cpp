@@ -15,8 +15,7 @@
 namespace retrace::report {
 namespace {
 
-using studies::RrePoint;
-using studies::RreResult;
+using studies::RrePoint, studies::RreResult;
 
 /// What varies in the result: one of these becomes the axis, the others tell curves apart.
 struct Variation {

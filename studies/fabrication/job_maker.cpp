@@ -20,9 +20,7 @@
 namespace retrace::studies {
 namespace {
 
-using fabrication::Job;
-using geometry::Arrangement;
-using geometry::PartSpec;
+using fabrication::Job, geometry::Arrangement, geometry::PartSpec;
 
 /// \throw InputError at the option if the word is none of `words`
 std::size_t word_index(const std::string& option, const std::string& given, std::span<const std::string_view> words) {
