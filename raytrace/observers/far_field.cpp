@@ -51,12 +51,6 @@ double power_of(const JonesMatrix& jones, const Eigen::Matrix2cd& coherency) {
   return (jones * coherency * jones.adjoint()).trace().real();
 }
 
-Vec3 direction_to_source(const Illumination& illumination) {
-  const double t = illumination.incidence.rad();
-  const double p = illumination.azimuth.rad();
-  return Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
-}
-
 double small_angle_between(const Vec3& a, const Vec3& b) {
   return 2.0 * std::asin(std::min(1.0, 0.5 * (a - b).norm()));
 }

@@ -8,9 +8,9 @@
 
 #include "core/schema/access.h"
 #include "core/schema/json_schema.h"
-#include "core/schema/key_table.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
+#include "tests/support/key_table.h"
 
 // A small format that has every kind of key: what is read, what is refused in which words, what is written, and what
 // JSON Schema and the documentation say of it.

@@ -1,10 +1,10 @@
-#include "core/schema/key_table.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/planing/io/part_files.h"
 #include "fabrication/turning/io/part_files.h"
 #include "tests/support/documents.h"
+#include "tests/support/key_table.h"
 
 // Process and machine files: what is written reads back the same, and the documentation says what the rows say.
 

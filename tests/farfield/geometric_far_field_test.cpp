@@ -46,7 +46,7 @@ FarFieldPolicy geometric() {
 
 ReturnFrame frame_at(double incidence_deg, double azimuth_deg) {
   ReturnFrame frame;
-  frame.to_source = direction_from({Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg)});
+  frame.to_source = direction_to_source({Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg)});
   frame.right = source_axis(frame.to_source);
   frame.up = frame.to_source.cross(frame.right);
   return frame;

@@ -160,10 +160,7 @@ double share_by_points(const Polygon& outline, const Cant& cant, double depth_mm
 double straight_back(const PartSpec& spec, const Illumination& light) {
   double power = 0.0;
   const BeamObserver note = [&](const ReturnedBeam& beam) {
-    const double t = light.incidence.rad();
-    const double p = light.azimuth.rad();
-    const Vec3 to_source(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
-    if (beam.depth == 4 && (beam.direction - to_source).norm() < 1e-9) power += beam.stokes.i;
+    if (beam.depth == 4 && (beam.direction - direction_to_source(light)).norm() < 1e-9) power += beam.stokes.i;
   };
   BeamTracer(build_part(spec)).trace(ideal(), light, {0.5}, {}, nullptr, note);
   return power;
