@@ -11,6 +11,7 @@
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
 #include "tests/support/key_table.h"
+#include "tests/support/refusals.h"
 
 // A small format that has every kind of key: what is read, what is refused in which words, what is written, and what
 // JSON Schema and the documentation say of it.
@@ -115,12 +116,7 @@ const std::string kLeast = "schema = 'retrace.thing/1'\nname = 'a'\nsize_mm = 2\
 
 /// The message for the least file with further lines, the first of which is line 5.
 std::string refusal(const std::string& more, const std::string& least = kLeast) {
-  try {
-    read(least + more);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { read(least + more); }, "accepted");
 }
 
 TEST(Schema, DefaultsHoldForKeysThatAreNotGiven) {

@@ -15,6 +15,7 @@
 #include "fabrication/plan/move_time.h"
 #include "fabrication/plan/routines.h"
 #include "tests/fabrication/jobs.h"
+#include "tests/support/refusals.h"
 
 // Plans: cuts, poses, order, safety of moves and time, against the figures of the thesis and the machine's own forward
 // kinematics.
@@ -447,12 +448,7 @@ TEST(Messages, TellProgress) {
 }
 
 std::string refusal(const Job& job, const Machine& m, const PlanOptions& options = {}) {
-  try {
-    make_plan(job, m, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
+  return refusal_of([&] { make_plan(job, m, options); }, "not refused");
 }
 
 TEST(Refused, JobsBeyondTheLimitsOfAnAxis) {

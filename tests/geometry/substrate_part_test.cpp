@@ -15,6 +15,7 @@
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/faceted_solid.h"
 #include "tests/geometry/part_checks.h"
+#include "tests/support/refusals.h"
 
 // Elements on inclined, curved and freeform substrates: where they stand, and that the part stays a solid.
 
@@ -334,12 +335,7 @@ TEST(SubstratePart, RepeatsPatchesWhereTheSubstrateRepeats) {
 }
 
 std::string complaint(const PartSpec& spec) {
-  try {
-    check_substrate(spec);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { check_substrate(spec); });
 }
 
 TEST(SubstrateCheck, RefusesWhatCannotCarryTheElements) {

@@ -16,6 +16,7 @@
 #include "raytrace/paths/path_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/entrance_surfaces.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::testing::front_test {
 namespace {
@@ -415,12 +416,7 @@ TEST(Entrance, RangesAreThoseOfTheOutline) {
 TEST(Entrance, MeshesMustCoverTheOutlineOnce) {
   const Polygon outline = to_polygon({Vec2(0.0, 0.0), Vec2(1.0, 1.0)});
   const auto message = [&](const TriangleMesh& mesh, MeshSide side) -> std::string {
-    try {
-      entrance_of_mesh(mesh, side, Vec3::Zero(), outline);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { entrance_of_mesh(mesh, side, Vec3::Zero(), outline); });
   };
   EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::top), "");
   EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::bottom), "");

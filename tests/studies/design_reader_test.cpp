@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "studies/design/io/init_templates.h"
 #include "tests/studies/design_texts.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::design_reader_test {
 namespace {
@@ -340,14 +341,7 @@ TEST(DesignReader, ErrorsInOverridesNameTheOverride) {
 }
 
 TEST(DesignReader, UnreadablePathsAreRefused) {
-  const auto refused = [](const fs::path& path) -> std::string {
-    try {
-      read_design(path);
-      return {};
-    } catch (const InputError& error) {
-      return error.what();
-    }
-  };
+  const auto refused = [](const fs::path& path) { return refusal_of([&] { read_design(path); }); };
   EXPECT_EQ(refused("no/such.toml"), "no/such.toml: cannot be read: No such file or directory");
   EXPECT_EQ(refused("/"), "/: cannot be read: it is a folder");
   EXPECT_EQ(refused("/dev/zero"), "/dev/zero: must have at most 16384 bytes, got more");

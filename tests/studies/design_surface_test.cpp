@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "geometry/elements/element_cells.h"
 #include "tests/studies/design_texts.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::design_surface_test {
 namespace {
@@ -63,12 +64,7 @@ TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
   EXPECT_EQ(design.facet_planes()->name, "planes.csv");
   EXPECT_EQ(design.facet_planes()->file, std::filesystem::path("folder/planes.csv"));
   const auto refused = [&](const std::vector<std::string>& sets) {
-    try {
-      parse_design(text, "d.toml", sets);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+    return refusal_of([&] { parse_design(text, "d.toml", sets); }, "accepted");
   };
   EXPECT_EQ(refused({"surface.facet_tilt_arcmin=[1,1]"}),
             "d.toml:11: part.facets: not allowed together with errors of angle, which its planes hold");
@@ -82,12 +78,7 @@ TEST(DesignReader, CantIsReadForCubeCornersAlone) {
     return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part();
   };
   const auto refused = [&](const std::string& element, const std::vector<std::string>& overrides) -> std::string {
-    try {
-      read(element, overrides);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { read(element, overrides); });
   };
   for (const std::string& cube : {kHexagonal, kTriangular}) {
     const std::string azimuth = "element.cant_azimuth_deg=-90";

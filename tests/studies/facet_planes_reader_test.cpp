@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::facet_planes_reader_test {
 namespace {
@@ -22,12 +23,7 @@ const std::string kHead = "# planes\nx_mm,y_mm,facet,height_mm,x_slope,y_slope\n
 const std::string kElement = "0.25,0.25,1,-0.25,-1,0.001\n0.25,0.25,2,-0.2500001,1.0002,0\n";
 
 std::string refused(const std::string& text, geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
-  try {
-    parse_facet_planes(text, "p.csv", prisms(arrangement));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { parse_facet_planes(text, "p.csv", prisms(arrangement)); }, "accepted");
 }
 
 TEST(FacetPlanesReader, ReadsWhatItWrites) {
@@ -77,12 +73,7 @@ geometry::PartSpec cubes(const geometry::Element& element) {
 }
 
 std::string refused_cube(const std::string& text) {
-  try {
-    parse_facet_planes(text, "p.csv", cubes(geometry::HexagonalCube{1.0, {}}));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { parse_facet_planes(text, "p.csv", cubes(geometry::HexagonalCube{1.0, {}})); }, "accepted");
 }
 
 TEST(FacetPlanesReader, CubeCornersHaveThreeFacetsAndFlares) {

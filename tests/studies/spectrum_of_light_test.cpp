@@ -14,6 +14,7 @@
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 #include "studies/rre/spectral_mean.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::spectrum_of_light_test {
 namespace {
@@ -58,13 +59,7 @@ RrePoint point(const Overrides& overrides, const RreRequest& request) {
 }
 
 std::string complaint(const Design& given, const RreRequest& request) {
-  try {
-    RreStudy({given}, request);
-    return {};
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    return error.what();
-  }
+  return refusal_of([&] { RreStudy({given}, request); });
 }
 
 /// Lines of one power at every wavelength of the CIE's table, as a design has them.
