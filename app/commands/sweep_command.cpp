@@ -7,13 +7,7 @@
 namespace retrace::app {
 namespace {
 
-struct SweepOptions : StudyOptions {};
-
-std::vector<Argument> arguments(SweepOptions& options) {
-  return study_arguments(options);
-}
-
-ExitCode run(const SweepOptions& options, const CommonOptions& common) {
+ExitCode run(const StudyOptions& options, const CommonOptions& common) {
   PointsCommand command;
   command.doing = "sweeping";
   command.store = "sweep.sqlite";
@@ -39,7 +33,7 @@ Command sweep_command() {
               "Exits with 1 if every point failed.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.sweep/1"},
-          .begin = begins<SweepOptions>(arguments, run)};
+          .begin = begins(study_arguments, run)};
 }
 
 }  // namespace retrace::app

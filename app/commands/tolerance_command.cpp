@@ -9,13 +9,7 @@
 namespace retrace::app {
 namespace {
 
-struct ToleranceOptions : StudyOptions {};
-
-std::vector<Argument> arguments(ToleranceOptions& options) {
-  return study_arguments(options);
-}
-
-ExitCode run(const ToleranceOptions& options, const CommonOptions& common) {
+ExitCode run(const StudyOptions& options, const CommonOptions& common) {
   PointsCommand command;
   command.doing = "making parts";
   command.store = "tolerance.sqlite";
@@ -51,7 +45,7 @@ Command tolerance_command() {
               "folder. Exits with 1 if the yield is below what the study asks for or every point failed.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.tolerance/1"},
-          .begin = begins<ToleranceOptions>(arguments, run)};
+          .begin = begins(study_arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -257,7 +257,7 @@ TEST(Coefficients, LambertianGivesTheCosines) {
     score.add({across * std::cos(2.0 * pi * v), across * std::sin(2.0 * pi * v), std::sqrt(1.0 - u)}, kRho / kCount,
               sums);
   }
-  const double beta = entrance_angle(geometry).rad();
+  const double beta = std::acos(directions_of(geometry).to_source.z());
   const double nu = viewing_angle(geometry).rad();
   const double expected = kRho * std::cos(beta) * std::cos(nu) / pi;
   const double r_a = coefficient_of_retroreflection(sums[0], entrance_angle(geometry));

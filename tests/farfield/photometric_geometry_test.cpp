@@ -63,7 +63,7 @@ IntrinsicGeometry intrinsic_of(const PhotometricGeometry& geometry) {
   return intrinsic;
 }
 
-PhotometricGeometry geometry_from(const IntrinsicGeometry& intrinsic) {
+PhotometricGeometry from_intrinsic(const IntrinsicGeometry& intrinsic) {
   const double beta = intrinsic.beta.rad();
   const double gamma = intrinsic.gamma.rad();
   // Laboratory: z to the source, y towards the observer. The normal lies in the half plane that reaches the observer's
@@ -104,7 +104,7 @@ TEST(PhotometricGeometry, RoundTripsOverRandomGeometries) {
   for (std::uint32_t k = 0; k < 5000; ++k) {
     const PhotometricGeometry g = random_geometry(k);
     expect_equal(geometry_of(directions_of(g)), g);
-    expect_equal(geometry_from(intrinsic_of(g)), g);
+    expect_equal(from_intrinsic(intrinsic_of(g)), g);
     expect_equal(geometry_from(entrance_angles(g), g.alpha, g.epsilon), g);
     const Vec3 to_source = directions_of(g).to_source;
     const SourceAngles angles = source_angles(to_source);
@@ -117,7 +117,7 @@ TEST(PhotometricGeometry, IntrinsicAnglesRoundTrip) {
     const IntrinsicGeometry i{Angle::from_deg(uniform(k, 4, 0.0, 20.0)), Angle::from_deg(uniform(k, 5, 0.5, 88.0)),
                               Angle::from_deg(uniform(k, 6, -179.0, 179.0)),
                               Angle::from_deg(uniform(k, 7, -179.0, 179.0))};
-    const IntrinsicGeometry back = intrinsic_of(geometry_from(i));
+    const IntrinsicGeometry back = intrinsic_of(from_intrinsic(i));
     EXPECT_NEAR(back.alpha.deg(), i.alpha.deg(), 1e-9);
     EXPECT_NEAR(back.beta.deg(), i.beta.deg(), 1e-9);
     EXPECT_NEAR(back.gamma.deg(), i.gamma.deg(), 1e-9);

@@ -39,16 +39,17 @@ TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
 
 TEST(DesignReader, HeightMapKeysAreChecked) {
   const auto said = [](const std::string& lines) { return complaint(with_line(11, "[surface]\n" + lines)); };
-  EXPECT_EQ(said("model = \"height_map\""),
-            "d.toml:11: surface.height_map: missing, must be the name of the file of a measured map");
-  EXPECT_EQ(said("height_map = \"\""), "d.toml:12: surface.height_map: must name a file, got \"\"");
-  EXPECT_EQ(said("height_map = 3"), "d.toml:12: surface.height_map: must be a string, got 3");
-  EXPECT_EQ(said("model = \"smooth\"\nheight_map = \"m.txt\""),
-            "d.toml:13: surface.height_map: only allowed for model = \"height_map\", got \"m.txt\"");
-  EXPECT_EQ(said("height_map_form = \"poly2\""),
-            "d.toml:12: surface.height_map_form: only allowed for model = \"height_map\", got \"poly2\"");
-  EXPECT_EQ(said("model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9"),
-            "d.toml:14: surface.waviness_sq_nm: must be 0 for model = \"height_map\", whose map holds both, got 5");
+  expect_messages(
+      said, {{"model = \"height_map\"",
+              "d.toml:11: surface.height_map: missing, must be the name of the file of a measured map"},
+             {"height_map = \"\"", "d.toml:12: surface.height_map: must name a file, got \"\""},
+             {"height_map = 3", "d.toml:12: surface.height_map: must be a string, got 3"},
+             {"model = \"smooth\"\nheight_map = \"m.txt\"",
+              "d.toml:13: surface.height_map: only allowed for model = \"height_map\", got \"m.txt\""},
+             {"height_map_form = \"poly2\"",
+              "d.toml:12: surface.height_map_form: only allowed for model = \"height_map\", got \"poly2\""},
+             {"model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9",
+              "d.toml:14: surface.waviness_sq_nm: must be 0 for model = \"height_map\", whose map holds both, got 5"}});
   EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_level_axis = \"z\"")
                   .starts_with("d.toml:13: surface.height_map_level_axis: must be \"x\" or \"y\", got \"z\""));
   EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_form = \"none\"")

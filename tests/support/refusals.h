@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
 
@@ -20,6 +22,12 @@ std::string refusal_of(const Read& read, const std::string& taken = "") {
     return error.what();
   }
   return taken;
+}
+
+/// Expects `complain` to say of each first text what stands beside it.
+template <class Complain>
+void expect_messages(const Complain& complain, const std::vector<std::pair<std::string, std::string>>& cases) {
+  for (const auto& [given, message] : cases) EXPECT_EQ(complain(given), message) << given;
 }
 
 /// A text with the first `from` in it replaced.
