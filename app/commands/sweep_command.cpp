@@ -7,7 +7,7 @@
 namespace retrace::app {
 namespace {
 
-ExitCode run(const StudyOptions& options, const CommonOptions& common) {
+ExitCode run_sweep(const StudyOptions& options, const CommonOptions& common) {
   PointsCommand command;
   command.doing = "sweeping";
   command.store = "sweep.sqlite";
@@ -33,7 +33,7 @@ Command sweep_command() {
               "Exits with 1 if every point failed.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.sweep/1"},
-          .begin = begins(study_arguments, run)};
+          .begin = begins(study_arguments, run_sweep)};
 }
 
 }  // namespace retrace::app

@@ -9,7 +9,7 @@
 namespace retrace::app {
 namespace {
 
-ExitCode run(const StudyOptions& options, const CommonOptions& common) {
+ExitCode run_tolerance(const StudyOptions& options, const CommonOptions& common) {
   PointsCommand command;
   command.doing = "making parts";
   command.store = "tolerance.sqlite";
@@ -45,7 +45,7 @@ Command tolerance_command() {
               "folder. Exits with 1 if the yield is below what the study asks for or every point failed.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.tolerance/1"},
-          .begin = begins(study_arguments, run)};
+          .begin = begins(study_arguments, run_tolerance)};
 }
 
 }  // namespace retrace::app

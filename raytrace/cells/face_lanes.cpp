@@ -32,6 +32,34 @@ HWY_INLINE V3 axis_at(const V3& d, const V3& axis, const V3& against) {
   return chosen(hn::Lt(dot(across, across), splat(1e-16)), axis, across);
 }
 
+/// What a face makes of light: shares of power that it reflects, r_s conj(r_p) and t_s t_p.
+struct Shares {
+  V power_s, power_p;
+  V re, im;
+  V passed;
+};
+
+/// \param ci cosine of incidence \param root that of refraction, or of what is total its imaginary part
+/// \param a_s, b_p index ratio times `ci` and times `root` \param over 1 / ((a_s + root) (ci + b_p)), or of what is
+/// total 1 / |(a_s + i root) (ci + i b_p)|^2
+HWY_INLINE Shares shares(double index_ratio, V ci, V root, V a_s, V b_p, V over, M total, M grazes) {
+  const V one = splat(1.0);
+  // Partial reflection: real amplitudes. Total: (a - i b) / (a + i b), so that r_s conj(r_p) is a phase.
+  const V r_s = hn::Mul(over, hn::Mul(hn::Sub(a_s, root), hn::Add(ci, b_p)));
+  const V r_p = hn::Mul(over, hn::Mul(hn::Sub(ci, b_p), hn::Add(a_s, root)));
+  // (a_s - i root)^2 (ci + i b_p)^2 / norm
+  const V re_s = hn::MulSub(a_s, a_s, hn::Mul(root, root));
+  const V im_s = hn::Mul(splat(-2.0), hn::Mul(a_s, root));
+  const V re_p = hn::MulSub(ci, ci, hn::Mul(b_p, b_p));
+  const V im_p = hn::Mul(splat(2.0), hn::Mul(ci, b_p));
+  const V total_re = hn::IfThenElse(grazes, one, hn::Mul(over, hn::MulSub(re_s, re_p, hn::Mul(im_s, im_p))));
+  const V total_im = hn::IfThenElseZero(hn::Not(grazes), hn::Mul(over, hn::MulAdd(re_s, im_p, hn::Mul(im_s, re_p))));
+  return {hn::IfThenElse(total, one, hn::Mul(r_s, r_s)), hn::IfThenElse(total, one, hn::Mul(r_p, r_p)),
+          hn::IfThenElse(total, total_re, hn::Mul(r_s, r_p)), hn::IfThenElseZero(total, total_im),
+          // 4 ratio ci root / ((a_s + root) (ci + b_p)), of amplitudes whose squares are shares of power
+          hn::IfThenElseZero(hn::Not(total), hn::Mul(over, hn::Mul(splat(4.0 * index_ratio), hn::Mul(ci, root))))};
+}
+
 /// \param against the normal against the light
 HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& against, double index_ratio) {
   const D tag;
@@ -63,30 +91,14 @@ HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& 
   const V s = hn::Mul(splat(0.5), hn::Add(in.i, in.q));
   const V p = hn::Mul(splat(0.5), hn::Sub(in.i, in.q));
 
-  // Partial reflection: real amplitudes. Total: (a - i b) / (a + i b), so that r_s conj(r_p) is a phase.
-  const V r_s = hn::Mul(over, hn::Mul(hn::Sub(a_s, root), sum_p));
-  const V r_p = hn::Mul(over, hn::Mul(hn::Sub(ci, b_p), sum_s));
-  // (a_s - i root)^2 (ci + i b_p)^2 / norm
-  const V re_s = hn::MulSub(a_s, a_s, hn::Mul(root, root));
-  const V im_s = hn::Mul(splat(-2.0), hn::Mul(a_s, root));
-  const V re_p = hn::MulSub(ci, ci, hn::Mul(b_p, b_p));
-  const V im_p = hn::Mul(splat(2.0), hn::Mul(ci, b_p));
-  const V total_re = hn::IfThenElse(grazes, one, hn::Mul(over, hn::MulSub(re_s, re_p, hn::Mul(im_s, im_p))));
-  const V total_im = hn::IfThenElseZero(hn::Not(grazes), hn::Mul(over, hn::MulAdd(re_s, im_p, hn::Mul(im_s, re_p))));
-  const V power_s = hn::IfThenElse(total, one, hn::Mul(r_s, r_s));
-  const V power_p = hn::IfThenElse(total, one, hn::Mul(r_p, r_p));
-  const V re = hn::IfThenElse(total, total_re, hn::Mul(r_s, r_p));
-  const V im = hn::IfThenElseZero(total, total_im);
-  const V rs = hn::Mul(s, power_s);
-  const V rp = hn::Mul(p, power_p);
-  face.reflected = {hn::Add(rs, rp), hn::Sub(rs, rp), hn::MulSub(re, in.u, hn::Mul(im, in.v)),
-                    hn::MulAdd(re, in.v, hn::Mul(im, in.u))};
-  const V ts = hn::Mul(s, hn::Sub(one, power_s));
-  const V tp = hn::Mul(p, hn::Sub(one, power_p));
-  // t_s t_p = 4 ratio ci root / ((a_s + root) (ci + b_p)), of amplitudes whose squares are shares of power
-  const V both =
-      hn::IfThenElseZero(hn::Not(total), hn::Mul(over, hn::Mul(splat(4.0 * index_ratio), hn::Mul(ci, root))));
-  face.transmitted = {hn::Add(ts, tp), hn::Sub(ts, tp), hn::Mul(both, in.u), hn::Mul(both, in.v)};
+  const Shares of = shares(index_ratio, ci, root, a_s, b_p, over, total, grazes);
+  const V rs = hn::Mul(s, of.power_s);
+  const V rp = hn::Mul(p, of.power_p);
+  face.reflected = {hn::Add(rs, rp), hn::Sub(rs, rp), hn::MulSub(of.re, in.u, hn::Mul(of.im, in.v)),
+                    hn::MulAdd(of.re, in.v, hn::Mul(of.im, in.u))};
+  const V ts = hn::Mul(s, hn::Sub(one, of.power_s));
+  const V tp = hn::Mul(p, hn::Sub(one, of.power_p));
+  face.transmitted = {hn::Add(ts, tp), hn::Sub(ts, tp), hn::Mul(of.passed, in.u), hn::Mul(of.passed, in.v)};
   face.mirrored = renormalised(along(d, hn::Add(ci, ci), against));
   face.refracted = renormalised(along(times(ratio, d), hn::MulSub(ratio, ci, root), against));
   return face;
