@@ -1,4 +1,3 @@
-#include <filesystem>
 
 #include "app/commands.h"
 #include "app/output.h"

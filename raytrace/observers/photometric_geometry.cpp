@@ -1,7 +1,6 @@
 #include "raytrace/observers/photometric_geometry.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "report/drawing/dimension_layout.h"
 #include "report/drawing/svg_sheet.h"

@@ -1,7 +1,6 @@
 #include "report/drawing/dimension_layout.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "report/drawing/svg_sheet.h"
 

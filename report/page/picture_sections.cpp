@@ -1,8 +1,6 @@
 // Pictures: of a detector, a camera and a road at night.
 #include <fmt/format.h>
 
-#include <array>
-
 #include "report/page/document_sections.h"
 #include "report/page/document_view.h"
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <utility>

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/number_format.h"
 #include "core/version.h"
 #include "report/colour_scale.h"

@@ -4,7 +4,6 @@
 #include <limits>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "core/number_format.h"
 #include "report/results/result_plots.h"

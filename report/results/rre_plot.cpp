@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 #include <tuple>
-#include <utility>
 
 #include "core/number_format.h"
 #include "report/results/result_plots.h"

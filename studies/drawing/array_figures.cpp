@@ -1,7 +1,6 @@
 #include "studies/drawing/array_figures.h"
 #include "geometry/elements/whole_elements.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 
 #include "core/error.h"
 #include "materials/io/spectrum_reader.h"
