@@ -6,6 +6,7 @@
 #include <csignal>
 #include <ctime>
 
+#include "app/progress_bar.h"
 #include "core/error.h"
 #include "raytrace/sampling/threads.h"
 
@@ -56,6 +57,12 @@ void OrderlyInterrupt::run(std::optional<unsigned> threads,
                            const std::function<void(const Cancellation*)>& work) const {
   raytrace::run_with_threads(threads.value_or(0), [&] { work(&cancellation_asked); });
   set_deadline(kNever);
+}
+
+void OrderlyInterrupt::run(const CommonOptions& common, const std::string& doing,
+                           const std::function<void(Progress*, const Cancellation*)>& work) const {
+  ProgressBar bar(doing, !common.quiet);
+  run(common.threads, [&](const Cancellation* cancel) { work(&bar, cancel); });
 }
 
 }  // namespace retrace::app

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include "app/command.h"
 #include "core/progress.h"
 
 namespace retrace::app {
@@ -23,6 +24,9 @@ class OrderlyInterrupt {
   /// with it, and nothing is written; once it has stopped, what it has is written however long that takes.
   /// \param threads none or 0: as many as there are cores
   void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;
+  /// The same with a progress bar. \param doing what it says
+  void run(const CommonOptions& common, const std::string& doing,
+           const std::function<void(Progress*, const Cancellation*)>& work) const;
 };
 
 }  // namespace retrace::app

@@ -20,36 +20,32 @@ std::vector<Argument> making_arguments(MakingOptions& options, const std::string
   const auto machines = [] { return names_of(fabrication::shipped_machines()); };
   const auto processes = [] { return names_of(fabrication::shipped_processes()); };
   std::vector<Argument> all = {
-      {"--machine MACHINE", "ideal, paper, thesis, ideal-dmc or a file", &options.machine, one_of(machines, ".toml")},
+      {"--machine MACHINE", "ideal, paper, thesis, ideal-dmc or a file", &options.request.machine,
+       one_of(machines, ".toml")},
       {"--tool-width-mm W",
        "width of the tool's edge, 0.1 to 2; of dmc 0.01 to 10",
        &options.tool_width_mm,
        {.required = needs.empty()}},
-      {"--strategy STRATEGY", "unidirectional, bidirectional or two-step; dmc for cube corners", &options.strategy,
-       one_of(words_of(fabrication::kStrategyWords))},
-      {"--process PROCESS", "depths, feeds and dwells: a shipped process or a file", &options.process,
+      {"--strategy STRATEGY", "unidirectional, bidirectional or two-step; dmc for cube corners",
+       &options.request.strategy, one_of(words_of(fabrication::kStrategyWords))},
+      {"--process PROCESS", "depths, feeds and dwells: a shipped process or a file", &options.request.process,
        one_of(processes, ".toml")},
-      {"--workpiece KIND", "mould, or direct: the optic itself is cut", &options.workpiece,
+      {"--workpiece KIND", "mould, or direct: the optic itself is cut", &options.request.workpiece,
        one_of(words_of(fabrication::kWorkpieceWords))},
-      {"--shrinkage-percent S", "by which the mould is larger than the part", &options.shrinkage_percent}};
+      {"--shrinkage-percent S", "by which the mould is larger than the part", &options.request.shrinkage_percent}};
   for (Argument& argument : all) argument.traits.needs = needs;
   return all;
 }
 
 studies::JobRequest job_request(const MakingOptions& options, double tool_width_mm) {
-  studies::JobRequest request;
-  request.machine = options.machine;
+  studies::JobRequest request = options.request;
   request.tool_width_mm = tool_width_mm;
-  request.strategy = options.strategy;
-  request.process = options.process;
-  request.workpiece = options.workpiece;
-  request.shrinkage_percent = options.shrinkage_percent;
   return request;
 }
 
 std::vector<std::string> files_of_making(const MakingOptions& options) {
   std::vector<std::string> files;
-  for (const std::string& name : {options.machine, options.process})
+  for (const std::string& name : {options.request.machine, options.request.process})
     if (fs::path(name).has_extension()) files.push_back(name);
   return files;
 }

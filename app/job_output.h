@@ -12,12 +12,8 @@ namespace retrace::app {
 
 /// How a job is made, for every command that makes one.
 struct MakingOptions {
-  std::string machine = "ideal";
+  studies::JobRequest request;
   std::optional<double> tool_width_mm;
-  std::string strategy = "two-step";
-  std::string process = "thesis-acrylic";
-  std::string workpiece = "mould";
-  double shrinkage_percent = 0.0;
 };
 
 /// Their declaration. \param needs the option that they cannot go without; empty: none, and the width of the tool is

@@ -106,7 +106,18 @@ void ResultFiles::prepare() const {
   if (!options_.out.empty()) make_output_folder(options_.out);
 }
 
-void ResultFiles::write(std::string_view json, std::string_view text) const {
+ExitCode ResultFiles::write(std::string_view json, std::string_view text, const std::vector<std::string>& warnings,
+                            const Ending& ending) const {
+  write_outputs(json, text);
+  print_warnings(options_, warnings);
+  if (!ending.complete) {
+    say("retrace: interrupted; " + ending.interrupted);
+    return ExitCode::interrupted;
+  }
+  return ending.is_yes ? ExitCode::done : ExitCode::answer_is_no;
+}
+
+void ResultFiles::write_outputs(std::string_view json, std::string_view text) const {
   std::vector<std::pair<fs::path, std::string>> contents;
   if (!document_.empty()) contents.emplace_back(document_, json);
   for (const File& file : files_)
@@ -133,8 +144,7 @@ ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohma
   files.add_named("--out", common.out, [&] { return text; });
   files.prepare();
   content["text"] = text;
-  files.write(result_text(schema, std::move(content), {}), common.out.empty() ? text : "");
-  return ExitCode::done;
+  return files.write(result_text(schema, std::move(content), {}), common.out.empty() ? text : "");
 }
 
 void say(std::string_view text) {

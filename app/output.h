@@ -22,6 +22,13 @@ std::vector<std::string> files_read(const std::vector<studies::Design>& designs)
 /// The same options of a command whose --out is no folder.
 CommonOptions without_folder(CommonOptions options);
 
+/// How work ended.
+struct Ending {
+  bool complete = true;  ///< else it was interrupted
+  std::string interrupted = "what is finished is in the result";
+  bool is_yes = true;  ///< the answer to what was asked
+};
+
 /// The files of a result, each named once: before the work they are checked, after it they are made and written.
 class ResultFiles {
  public:
@@ -47,10 +54,14 @@ class ResultFiles {
   /// written. \throw InputError, OutputError
   void prepare() const;
   /// Writes the JSON document and the files where the options want them, and the text, with what was written, to
-  /// standard output if neither `--quiet` nor `--json -` forbids it. \throw OutputError
-  void write(std::string_view json, std::string_view text) const;
+  /// standard output if neither `--quiet` nor `--json -` forbids it; then says the warnings, and that work was
+  /// interrupted. \return the exit code \throw OutputError
+  ExitCode write(std::string_view json, std::string_view text, const std::vector<std::string>& warnings = {},
+                 const Ending& ending = {}) const;
 
  private:
+  void write_outputs(std::string_view json, std::string_view text) const;
+
   struct File {
     std::string option;
     std::filesystem::path path;

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <thread>
-#include <utility>
 
 #include "app/interrupt.h"
 #include "app/progress_bar.h"

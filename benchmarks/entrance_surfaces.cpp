@@ -8,6 +8,7 @@
 #include "geometry/part/plate.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "raytrace/sampling/threads.h"
+#include "tests/support/entrance_surfaces.h"
 
 namespace retrace::benchmarks::fronts_benchmark {
 namespace {
@@ -35,20 +36,8 @@ class Bumps : public geometry::EntranceSurface {
 
 geometry::Entrance meshed(const geometry::EntranceSurface& surface, std::uint32_t cells,
                           const geometry::Polygon& outline) {
-  geometry::TriangleMesh mesh;
-  for (std::uint32_t j = 0; j <= cells; ++j)
-    for (std::uint32_t i = 0; i <= cells; ++i) {
-      const Vec2 p(kSize * i / cells, kSize * j / cells);
-      mesh.vertices.emplace_back(p.x(), p.y(), surface.at(p).height_mm);
-    }
-  for (std::uint32_t j = 0; j < cells; ++j)
-    for (std::uint32_t i = 0; i < cells; ++i) {
-      const std::uint32_t a = j * (cells + 1) + i;
-      mesh.triangles.push_back({a, a + 1, a + cells + 2});
-      mesh.triangles.push_back({a, a + cells + 2, a + cells + 1});
-    }
-  return std::make_shared<const geometry::SurfacePatch>(
-      geometry::entrance_of_mesh(mesh, geometry::MeshSide::top, Vec3::Zero(), outline));
+  return std::make_shared<const geometry::SurfacePatch>(geometry::entrance_of_mesh(
+      testing::meshed(surface, kSize, cells), geometry::MeshSide::top, Vec3::Zero(), outline));
 }
 
 /// Args: 0 a plane entrance face, 1 an exact surface, 2 its mesh of 20,000 triangles.

@@ -13,20 +13,16 @@
 namespace retrace::report {
 
 struct Point {
-  double x = 0.0;
-  double y = 0.0;
+  double x = 0.0, y = 0.0;
 };
 
 struct Size {
-  double width = 0.0;
-  double height = 0.0;
+  double width = 0.0, height = 0.0;
 };
 
 /// sRGB, each 0..1.
 struct Colour {
-  double red = 0.0;
-  double green = 0.0;
-  double blue = 0.0;
+  double red = 0.0, green = 0.0, blue = 0.0;
 };
 
 struct Font {

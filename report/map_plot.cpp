@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -13,9 +12,7 @@
 namespace retrace::report {
 namespace {
 
-using geometry::Polygon;
-using geometry::Rectangle;
-using geometry::Vec2;
+using geometry::Polygon, geometry::Rectangle, geometry::Vec2;
 
 constexpr Colour kRest{0.945, 0.945, 0.945};
 constexpr Colour kHatch{0.80, 0.80, 0.80};
@@ -44,13 +41,11 @@ constexpr AxisLook kMapAxis{.font = kMapTickFont,
                             .beside = kMapTickLength + 3.0,
                             .baseline = 0.36 * kMapTickFont.size};
 constexpr double kPlanLeft = 40.0;  ///< in its cell: room for the labels of the axis
-constexpr double kMapBarWidth = 16.0;
-constexpr double kHatchSpacing = 6.0;
+constexpr double kMapBarWidth = 16.0, kHatchSpacing = 6.0;
 /// Smoothed edges of neighbours would leave some of what is below.
 constexpr double kSwell = 0.15;
 /// What of its neighbours a periodic outline is shown with, in periods.
-constexpr double kSurroundings = 0.3;
-constexpr double kSurroundingsVeil = 0.62;
+constexpr double kSurroundings = 0.3, kSurroundingsVeil = 0.62;
 /// Thin lines need this much room each.
 constexpr double kLeastCell = 3.0;
 

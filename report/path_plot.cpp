@@ -45,6 +45,28 @@ Box box_of(const PathPlot& plot) {
   return {{across.low - room, up.low - room}, {across.high + room, up.high + room}};
 }
 
+void draw_heading(Canvas& canvas, const PathPlot& plot, double width) {
+  double y = kMargin + kTitleFont.size;
+  draw_within(canvas, width, Ellipsis::end, {kMargin, y}, plot.title, kTitleFont, kText, Align::left);
+  for (const std::string& remark : plot.remarks) {
+    y += kPathRemarkFont.size + 5.0;
+    draw_within(canvas, width, Ellipsis::end, {kMargin, y}, remark, kPathRemarkFont, kFaint, Align::left);
+  }
+}
+
+/// Moves of one kind, and what the legend says of them.
+void draw_moves(Canvas& canvas, const PathPlot& plot, std::size_t k, const std::function<Point(const Vec2&)>& at,
+                double legend_top) {
+  Stroke stroke{kColours[k % kColours.size()], 0.9, {}};
+  if (plot.kinds[k].dashed) stroke.dashes = {4.0, 3.0};
+  for (const auto& [from, to] : plot.kinds[k].moves) canvas.line({at(from), at(to)}, stroke);
+  const Point sample{kPathLeft + 140.0 * static_cast<double>(k % 4),
+                     legend_top + kLegendLine * static_cast<double>(k / 4)};
+  stroke.width = 2.0;
+  canvas.line({sample, {sample.x + 24.0, sample.y}}, stroke);
+  canvas.text({sample.x + 30.0, sample.y + 4.0}, plot.kinds[k].label, kPathTickFont, kText, Align::left);
+}
+
 }  // namespace
 
 std::string render(const PathPlot& plot, PlotFormat format, double scale) {
@@ -59,13 +81,7 @@ std::string render(const PathPlot& plot, PlotFormat format, double scale) {
                     legend_top + kLegendLine * static_cast<double>((plot.kinds.size() + 3) / 4) + kMargin};
   Canvas canvas(format, figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, figure, kWhite);
-  const double width = figure.width - 2.0 * kMargin;
-  double y = kMargin + kTitleFont.size;
-  draw_within(canvas, width, Ellipsis::end, {kMargin, y}, plot.title, kTitleFont, kText, Align::left);
-  for (const std::string& remark : plot.remarks) {
-    y += kPathRemarkFont.size + 5.0;
-    draw_within(canvas, width, Ellipsis::end, {kMargin, y}, remark, kPathRemarkFont, kFaint, Align::left);
-  }
+  draw_heading(canvas, plot, figure.width - 2.0 * kMargin);
 
   const auto at = [&](const Vec2& p) {
     return Point{kPathLeft + (p.x() - box.low.x()) * unit, top + height - (p.y() - box.low.y()) * unit};
@@ -76,16 +92,7 @@ std::string render(const PathPlot& plot, PlotFormat format, double scale) {
     canvas.fill({material}, kMaterial);
     canvas.line(material, {kAxis, 1.0, {}});
   }
-  for (std::size_t k = 0; k < plot.kinds.size(); ++k) {
-    Stroke stroke{kColours[k % kColours.size()], 0.9, {}};
-    if (plot.kinds[k].dashed) stroke.dashes = {4.0, 3.0};
-    for (const auto& [from, to] : plot.kinds[k].moves) canvas.line({at(from), at(to)}, stroke);
-    const Point sample{kPathLeft + 140.0 * static_cast<double>(k % 4),
-                       legend_top + kLegendLine * static_cast<double>(k / 4)};
-    stroke.width = 2.0;
-    canvas.line({sample, {sample.x + 24.0, sample.y}}, stroke);
-    canvas.text({sample.x + 30.0, sample.y + 4.0}, plot.kinds[k].label, kPathTickFont, kText, Align::left);
-  }
+  for (std::size_t k = 0; k < plot.kinds.size(); ++k) draw_moves(canvas, plot, k, at, legend_top);
 
   const AxisScale across{{box.low.x(), box.low.x() + kPathPlanWidth / unit}, kPathLeft, kPathLeft + kPathPlanWidth};
   const AxisScale up{{box.low.y(), box.low.y() + height / unit}, top + height, top};

@@ -5,10 +5,6 @@
 
 namespace retrace::surface_models {
 
-HeightMap with_heights(const HeightMap& grid, std::vector<double> heights_nm) {
-  return {grid.columns, grid.rows, grid.x_pixel_um, grid.y_pixel_um, std::move(heights_nm)};
-}
-
 std::size_t measured_points(const HeightMap& map) {
   return static_cast<std::size_t>(
       std::count_if(map.heights_nm.begin(), map.heights_nm.end(), [](double z) { return std::isfinite(z); }));

@@ -27,9 +27,6 @@ struct HeightMap {
   int dimensions() const { return is_profile() ? 1 : 2; }
 };
 
-/// A map of the same grid with other heights. \pre as many heights as points
-HeightMap with_heights(const HeightMap& grid, std::vector<double> heights_nm);
-
 /// How many points have a height.
 std::size_t measured_points(const HeightMap& map);
 

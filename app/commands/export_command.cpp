@@ -1,4 +1,3 @@
-#include <filesystem>
 
 #include "app/commands.h"
 #include "app/output.h"
@@ -49,9 +48,7 @@ ExitCode run(const ExportOptions& options, const CommonOptions& common) {
   ResultFiles files(without_folder(common), files_read({design}));
   files.add_named("--out", file, [&] { return studies::solid_text(solid, format); });
   files.prepare();
-  files.write(studies::solid_json(solid, file), studies::solid_table(solid));
-  print_warnings(common, solid.warnings);
-  return ExitCode::done;
+  return files.write(studies::solid_json(solid, file), studies::solid_table(solid), solid.warnings);
 }
 
 }  // namespace

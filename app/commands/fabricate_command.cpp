@@ -63,9 +63,7 @@ ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
     files.add(result.program_file(k),
               [&result, k] { return fabrication::nc_text(result.plan.programs[k], result.dialect); });
   files.prepare();
-  files.write(studies::fabrication_json(result), studies::fabrication_table(result));
-  print_warnings(common, result.warnings);
-  return ExitCode::done;
+  return files.write(studies::fabrication_json(result), studies::fabrication_table(result), result.warnings);
 }
 
 }  // namespace

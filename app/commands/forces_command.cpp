@@ -9,24 +9,21 @@ namespace retrace::app {
 namespace {
 
 struct ForcesOptions {
-  std::string job;
-  std::string configuration = "isolated";
+  studies::ForcesRequest request;
   std::uint32_t facet = 1;
   std::optional<double> plunge_mm;
 };
 
 std::vector<Argument> arguments(ForcesOptions& options) {
-  return {job_argument(options.job),
+  return {job_argument(options.request.job),
           {"--configuration WORD", "isolated: between walls that rub, or orthogonal: with the edge alone",
-           &options.configuration, one_of(words_of(fabrication::kConfigurationWords))},
+           &options.request.configuration, one_of(words_of(fabrication::kConfigurationWords))},
           {"--facet N", "of a bidirectional job: 1 or 2", &options.facet, whole(1, 2)},
           {"--plunge-mm L", "length of the plunge [that of the last cut]", &options.plunge_mm}};
 }
 
 ExitCode run(const ForcesOptions& options, const CommonOptions& common) {
-  studies::ForcesRequest request;
-  request.job = options.job;
-  request.configuration = options.configuration;
+  studies::ForcesRequest request = options.request;
   request.facet = static_cast<int>(options.facet);
   if (options.plunge_mm) {
     if (!(*options.plunge_mm > 0.0)) throw InputError({"", 0, "--plunge-mm"}, "must be > 0");
@@ -37,9 +34,7 @@ ExitCode run(const ForcesOptions& options, const CommonOptions& common) {
   files.add("forces.csv", [&] { return studies::forces_csv(result); });
   files.add_drawing("forces", [&] { return report::forces_plot(result); });
   files.prepare();
-  files.write(studies::forces_json(result), studies::forces_table(result));
-  print_warnings(common, result.warnings);
-  return ExitCode::done;
+  return files.write(studies::forces_json(result), studies::forces_table(result), result.warnings);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
-#include "app/progress_bar.h"
 #include "app/shared_arguments.h"
 #include "core/atomic_file.h"
 #include "core/message_text.h"
@@ -36,86 +35,65 @@ struct ImageOptions {
   bool camera = false;
   bool road = false;
 
-  // Detector.
-  double incidence_deg = 0.0;
-  double azimuth_deg = 0.0;
-  std::string engine = "auto";
-  std::optional<double> cutoff;
-  std::uint64_t samples = 1U << 22;
-  double window_deg = 1.0;
-  std::uint64_t angle_pixels = 201;
+  // What of the requests is an option as it is.
+  studies::DetectorRequest detected;
+  studies::CameraRequest photographed;
+  studies::RoadRequest driven;
 
-  // Camera.
-  double distance_m = 10.0;
-  double observation_deg = 0.33;
-  double v_deg = 0.0;
-  double h_deg = 0.0;
-  double rotation_deg = 0.0;
+  std::string engine = "auto";
   std::optional<std::string> eye_mm;
   std::optional<std::string> lamp_mm;
-  double lamp_arcmin = 10.0;
-  double pupil_arcmin = 10.0;
-  double illuminance_lx = 10.0;
-  double ambient_lx = 0.0;
-  double backlight_lx = 0.0;
-  std::optional<double> field_mm;
   std::string film_mm = "100x100";
-  std::optional<double> cylinder_mm;
-  double noise = 0.02;
-  std::optional<std::uint32_t> passes;
   bool false_colour = false;
-
-  // Road.
   std::string road_distance_m = "10,30,100";
-  double lamp_cd = 10'000.0;
   std::string dye = "none";
-
   std::optional<std::string> pixels;
 };
 
 constexpr std::uint64_t kMostWhole = std::numeric_limits<std::uint32_t>::max();
 
 std::vector<Argument> detector_arguments(ImageOptions& o) {
-  return {
-      {"--detector", "maps of the light that comes back, by place and by direction", &o.detector},
-      {"--incidence T", "detector: angle of incidence in degrees", &o.incidence_deg},
-      {"--azimuth P", "detector: azimuth of the source in degrees", &o.azimuth_deg},
-      engine_argument(o.engine, "detector: exact, montecarlo (embree), or auto: exact where it serves"),
-      {"--cutoff W",
-       "detector, exact: least power that is followed, as a share of the incident [what leaves 1e-5 truncated]",
-       &o.cutoff},
-      {"--samples N", "detector: rays, by Monte Carlo", &o.samples, whole(0, kMostWhole)},
-      {"--window-deg W", "detector: half width of the angular map", &o.window_deg},
-      {"--angle-pixels N", "detector: pixels along a side of the angular map", &o.angle_pixels, whole(0, kMostWhole)}};
+  return {{"--detector", "maps of the light that comes back, by place and by direction", &o.detector},
+          {"--incidence T", "detector: angle of incidence in degrees", &o.detected.incidence_deg},
+          {"--azimuth P", "detector: azimuth of the source in degrees", &o.detected.azimuth_deg},
+          engine_argument(o.engine, "detector: exact, montecarlo (embree), or auto: exact where it serves"),
+          {"--cutoff W",
+           "detector, exact: least power that is followed, as a share of the incident [what leaves 1e-5 truncated]",
+           &o.detected.cutoff},
+          {"--samples N", "detector: rays, by Monte Carlo", &o.detected.rays, whole(0, kMostWhole)},
+          {"--window-deg W", "detector: half width of the angular map", &o.detected.window_deg},
+          {"--angle-pixels N", "detector: pixels along a side of the angular map", &o.detected.angle_pixels,
+           whole(0, kMostWhole)}};
 }
 
 std::vector<Argument> camera_arguments(ImageOptions& o) {
   return {{"--camera", "the part in the light of a lamp, as a camera sees it", &o.camera},
-          {"--distance-m D", "camera: distance of lamp and eye", &o.distance_m},
-          {"--observation-deg A", "camera: angle by which the eye is above the lamp", &o.observation_deg},
-          {"--v-deg V", "camera: vertical angle of the lamp", &o.v_deg},
-          {"--h-deg H", "camera: horizontal angle of the lamp", &o.h_deg},
-          {"--rotation-deg E", "camera: turn of the part about its normal", &o.rotation_deg},
+          {"--distance-m D", "camera: distance of lamp and eye", &o.photographed.distance_m},
+          {"--observation-deg A", "camera: angle by which the eye is above the lamp", &o.photographed.observation_deg},
+          {"--v-deg V", "camera: vertical angle of the lamp", &o.photographed.v_deg},
+          {"--h-deg H", "camera: horizontal angle of the lamp", &o.photographed.h_deg},
+          {"--rotation-deg E", "camera: turn of the part about its normal", &o.photographed.rotation_deg},
           {"--eye-mm X,Y,Z", "camera: place of the eye [by distance and angles]", &o.eye_mm},
           {"--lamp-mm X,Y,Z", "camera: place of the lamp [by distance and angles]", &o.lamp_mm},
-          {"--lamp-arcmin D", "camera: diameter of the lamp's disc", &o.lamp_arcmin},
-          {"--pupil-arcmin D", "camera: diameter of the eye's disc", &o.pupil_arcmin},
-          {"--illuminance-lx E", "camera: of the lamp, across its beam at the part", &o.illuminance_lx},
-          {"--ambient-lx E", "camera: even light from in front, on the face", &o.ambient_lx},
-          {"--backlight-lx E", "camera: even light from behind and round the part", &o.backlight_lx},
-          {"--field-mm W", "camera: width shown at the part [the part and a margin]", &o.field_mm},
+          {"--lamp-arcmin D", "camera: diameter of the lamp's disc", &o.photographed.lamp_arcmin},
+          {"--pupil-arcmin D", "camera: diameter of the eye's disc", &o.photographed.pupil_arcmin},
+          {"--illuminance-lx E", "camera: of the lamp, across its beam at the part", &o.photographed.illuminance_lx},
+          {"--ambient-lx E", "camera: even light from in front, on the face", &o.photographed.ambient_lx},
+          {"--backlight-lx E", "camera: even light from behind and round the part", &o.photographed.backlight_lx},
+          {"--field-mm W", "camera: width shown at the part [the part and a margin]", &o.photographed.field_mm},
           {"--film-mm WxH", "camera: size of the sheet that an endless design is seen as", &o.film_mm},
           {"--cylinder-mm R", "camera: radius of the cylinder that the sheet is bent over; negative: inside it [plane]",
-           &o.cylinder_mm},
-          {"--noise E", "camera: relative noise of pixels to reach", &o.noise},
-          {"--passes N", "camera: passes of four paths a pixel, in place of --noise", &o.passes, whole(0, kMostWhole)},
+           &o.photographed.cylinder_mm},
+          {"--noise E", "camera: relative noise of pixels to reach", &o.photographed.noise},
+          {"--passes N", "camera: passes of four paths a pixel, in place of --noise", &o.photographed.passes,
+           whole(0, kMostWhole)},
           {"--false-colour", "camera: luminance as colours too", &o.false_colour}};
 }
 
 std::vector<Argument> road_arguments(ImageOptions& o) {
   return {{"--road", "two such reflectors on a car ahead at night, from a driver's eye", &o.road},
           {"--road-distance-m LIST", "road: distances of the car ahead", &o.road_distance_m},
-          {"--lamp-cd I", "road: intensity of each headlamp towards the reflectors", &o.lamp_cd},
+          {"--lamp-cd I", "road: intensity of each headlamp towards the reflectors", &o.driven.lamp_cd},
           dye_argument(o.dye, "road: none, red, amber (illustrative) or a file")};
 }
 
@@ -156,55 +134,29 @@ std::array<double, 3> place_of(const std::string& text, const std::string& optio
 }
 
 studies::DetectorRequest detector_request(const ImageOptions& options, const CommonOptions& common) {
-  studies::DetectorRequest request;
-  request.incidence_deg = options.incidence_deg;
-  request.azimuth_deg = options.azimuth_deg;
+  studies::DetectorRequest request = options.detected;
   if (options.pixels) request.pixels = pixels_of(*options.pixels, 1, "a whole number")[0];
-  request.angle_pixels = options.angle_pixels;
-  request.window_deg = options.window_deg;
   request.engine = studies::engine_from_name(options.engine);
-  if (options.cutoff && !(*options.cutoff > 0.0 && *options.cutoff < 1.0))
-    throw InputError({"", 0, "--cutoff"}, fmt::format("must lie between 0 and 1, got {}", *options.cutoff));
-  request.cutoff = options.cutoff;
-  if (options.samples < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
-  request.rays = options.samples;
+  if (request.cutoff && !(*request.cutoff > 0.0 && *request.cutoff < 1.0))
+    throw InputError({"", 0, "--cutoff"}, fmt::format("must lie between 0 and 1, got {}", *request.cutoff));
+  if (request.rays < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
   request.seed = common.seed;
   return request;
 }
 
 studies::CameraRequest camera_request(const ImageOptions& options, const CommonOptions& common) {
-  studies::CameraRequest request;
-  request.distance_m = options.distance_m;
-  request.observation_deg = options.observation_deg;
-  request.v_deg = options.v_deg;
-  request.h_deg = options.h_deg;
-  request.rotation_deg = options.rotation_deg;
+  studies::CameraRequest request = options.photographed;
   if (options.eye_mm) request.eye_mm = place_of(*options.eye_mm, "--eye-mm");
   if (options.lamp_mm) request.lamp_mm = place_of(*options.lamp_mm, "--lamp-mm");
-  request.lamp_arcmin = options.lamp_arcmin;
-  request.pupil_arcmin = options.pupil_arcmin;
-  request.illuminance_lx = options.illuminance_lx;
-  request.ambient_lx = options.ambient_lx;
-  request.backlight_lx = options.backlight_lx;
   if (options.pixels) {
     const auto n = pixels_of(*options.pixels, 2, "columns and rows, such as 400x300");
     request.columns = n[0];
     request.rows = n[1];
   }
-  request.field_mm = options.field_mm;
   const auto film = numbers_of(options.film_mm, 'x', 2, "--film-mm", "width and height, such as 100x100");
   request.film_mm = {film[0], film[1]};
-  request.cylinder_mm = options.cylinder_mm;
-  request.noise = options.noise;
-  request.passes = options.passes;
   request.seed = common.seed;
   return request;
-}
-
-ExitCode exit_code_of(bool complete) {
-  if (complete) return ExitCode::done;
-  say("retrace: interrupted; what is finished is in the result");
-  return ExitCode::interrupted;
 }
 
 /// Before any work is done for pictures that could not be written; after what is cheaper to check, as what writes them
@@ -228,13 +180,9 @@ ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, 
   check_can_draw(common);
   const OrderlyInterrupt interrupt;
   files.prepare();
-  {
-    ProgressBar bar("tracing", !common.quiet);
-    interrupt.run(common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
-  }
-  files.write(studies::detector_json(result), studies::detector_table(result));
-  print_warnings(common, result.warnings);
-  return exit_code_of(result.complete);
+  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  return files.write(studies::detector_json(result), studies::detector_table(result), result.warnings,
+                     {.complete = result.complete});
 }
 
 std::string camera_png(const raytrace::CameraImage& image) {
@@ -272,23 +220,18 @@ ExitCode run_camera(const ImageOptions& options, const CommonOptions& common, st
   check_can_draw(common);
   const OrderlyInterrupt interrupt;
   files.prepare();
-  {
-    ProgressBar bar("rendering", !common.quiet);
-    Preview preview(common);
-    interrupt.run(common.threads, [&](const Cancellation* cancel) {
-      result = study.run(&bar, cancel, [&](const raytrace::CameraImage& image) { preview(image); });
-    });
-  }
-  files.write(studies::camera_json(result), studies::camera_table(result));
-  print_warnings(common, result.warnings);
-  return exit_code_of(result.complete);
+  Preview preview(common);
+  interrupt.run(common, "rendering", [&](Progress* bar, const Cancellation* cancel) {
+    result = study.run(bar, cancel, [&](const raytrace::CameraImage& image) { preview(image); });
+  });
+  return files.write(studies::camera_json(result), studies::camera_table(result), result.warnings,
+                     {.complete = result.complete});
 }
 
 ExitCode run_road(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
   std::vector<std::string> inputs = files_read({design});
-  studies::RoadRequest request;
+  studies::RoadRequest request = options.driven;
   request.distance_m = read_number_list(options.road_distance_m, "--road-distance-m");
-  request.lamp_cd = options.lamp_cd;
   const std::filesystem::path dye = studies::dye_file_of(options.dye, false, {});
   if (!dye.empty()) {
     request.dye = options.dye;
@@ -306,13 +249,9 @@ ExitCode run_road(const ImageOptions& options, const CommonOptions& common, stud
   add("road.png", [](const auto& r) { return report::road_png(r); });
   add("road.exr", [](const auto& r) { return report::exr_file(report::road_picture(r)); });
   files.prepare();
-  {
-    ProgressBar bar("tracing", !common.quiet);
-    interrupt.run(common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
-  }
-  files.write(studies::road_json(result), studies::road_table(result));
-  print_warnings(common, result.warnings);
-  return exit_code_of(result.complete);
+  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  return files.write(studies::road_json(result), studies::road_table(result), result.warnings,
+                     {.complete = result.complete});
 }
 
 ExitCode run(const ImageOptions& options, const CommonOptions& common) {

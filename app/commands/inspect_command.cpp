@@ -66,9 +66,7 @@ ExitCode run(const InspectOptions& options, const CommonOptions& common) {
   files.add("front.svg", [&] { return drawings.entrance; });
   files.prepare();
   if (!common.out.empty()) drawings = drawings_of(design, inspection);
-  files.write(studies::inspect_json(inspection), studies::inspect_text(inspection));
-  print_warnings(common, inspection.warnings);
-  return ExitCode::done;
+  return files.write(studies::inspect_json(inspection), studies::inspect_text(inspection), inspection.warnings);
 }
 
 }  // namespace

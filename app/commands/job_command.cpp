@@ -46,8 +46,7 @@ ExitCode write_reachable(const JobOptions& options, const CommonOptions& common,
   files.add_named("--reachable", file, [&] { return part.design; });
   files.add_named("--reachable", facets_file, [&] { return part.facets; });
   files.prepare();
-  files.write(studies::reach_json(part, request), studies::reach_table(part));
-  return ExitCode::done;
+  return files.write(studies::reach_json(part, request), studies::reach_table(part));
 }
 
 ExitCode run(const JobOptions& options, const CommonOptions& common) {

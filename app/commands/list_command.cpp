@@ -28,8 +28,7 @@ using Json = nlohmann::ordered_json;
 ExitCode write_list(const CommonOptions& common, const std::string& what, Json json, const std::string& text) {
   const ResultFiles files(common, {}, what + ".json");
   files.prepare();
-  files.write(result_text("retrace." + what + "/1", std::move(json), {}), text);
-  return ExitCode::done;
+  return files.write(result_text("retrace." + what + "/1", std::move(json), {}), text);
 }
 
 template <class Value>

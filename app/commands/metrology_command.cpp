@@ -12,15 +12,9 @@ namespace retrace::app {
 namespace {
 
 struct MetrologyOptions {
-  std::string file;
   std::string form = "plane";
-  double cutoff_um = 80.0;
   std::optional<std::string> pixel_um;  ///< one number, or two with a comma between
-  std::optional<std::string> height_unit;
-  std::optional<std::string> lateral_unit;
-  std::optional<std::uint64_t> channel;
-  std::optional<double> feed_mm_per_min;
-  bool edge = false;
+  studies::MetrologyRequest request;    ///< what is not among the above
 };
 
 Words forms() {
@@ -31,17 +25,18 @@ Words forms() {
 
 std::vector<Argument> arguments(MetrologyOptions& options) {
   const Words units = {"m", "mm", "um", "nm", "pm"};
-  return {{"FILE", "height map or profile: text, SDF, GSF or GWY", &options.file, files("")},
+  studies::MetrologyRequest& request = options.request;
+  return {{"FILE", "height map or profile: text, SDF, GSF or GWY", &request.file, files("")},
           {"--form FORM", "form to remove: none, plane or poly2 to poly8", &options.form, one_of(forms)},
-          {"--cutoff-um L", "cut-off of the Gaussian filter between roughness and waviness", &options.cutoff_um},
+          {"--cutoff-um L", "cut-off of the Gaussian filter between roughness and waviness", &request.cutoff_um},
           {"--pixel-um P", "spacing of the points, or PX,PY [what the file says]", &options.pixel_um},
-          {"--height-unit UNIT", "of the heights: m, mm, um, nm or pm [what the file says]", &options.height_unit,
-           one_of(units)},
-          {"--lateral-unit UNIT", "of lengths without a unit, likewise [what the file says]", &options.lateral_unit,
-           one_of(units)},
-          {"--channel N", "channel of a GWY file [the first]", &options.channel, whole(0, 999999)},
-          {"--feed-mm-per-min F", "feed of the cut, for waves in Hz", &options.feed_mm_per_min},
-          {"--edge", "rows are profiles across an edge: fit its radius and chamfer", &options.edge}};
+          {"--height-unit UNIT", "of the heights: m, mm, um, nm or pm [what the file says]",
+           &request.reading.height_unit, one_of(units)},
+          {"--lateral-unit UNIT", "of lengths without a unit, likewise [what the file says]",
+           &request.reading.lateral_unit, one_of(units)},
+          {"--channel N", "channel of a GWY file [the first]", &request.reading.channel, whole(0, 999999)},
+          {"--feed-mm-per-min F", "feed of the cut, for waves in Hz", &request.feed_mm_per_min},
+          {"--edge", "rows are profiles across an edge: fit its radius and chamfer", &request.edge}};
 }
 
 double spacing_of(std::string_view text, const std::string& whole) {
@@ -52,8 +47,7 @@ double spacing_of(std::string_view text, const std::string& whole) {
 }
 
 studies::MetrologyRequest request_of(const MetrologyOptions& options) {
-  studies::MetrologyRequest request;
-  request.file = options.file;
+  studies::MetrologyRequest request = options.request;
   if (options.pixel_um) {
     const std::string& text = *options.pixel_um;
     const std::size_t comma = text.find(',');
@@ -62,26 +56,18 @@ studies::MetrologyRequest request_of(const MetrologyOptions& options) {
                                      ? *request.reading.x_pixel_um
                                      : spacing_of(std::string_view(text).substr(comma + 1), text);
   }
-  request.reading.height_unit = options.height_unit;
-  request.reading.lateral_unit = options.lateral_unit;
-  request.reading.channel = options.channel;
   request.form_degree = studies::form_degree_of(options.form);
-  request.cutoff_um = options.cutoff_um;
-  request.feed_mm_per_min = options.feed_mm_per_min;
-  request.edge = options.edge;
   return request;
 }
 
 ExitCode run(const MetrologyOptions& options, const CommonOptions& common) {
   const studies::MetrologyResult result = studies::measure_surface(request_of(options));
-  ResultFiles files(common, {options.file}, "metrology.json");
+  ResultFiles files(common, {options.request.file}, "metrology.json");
   files.add("surface.toml", [&] { return studies::surface_toml(result); });
   files.add("psd.csv", [&] { return studies::spectra_csv(result); });
   files.add_drawing("metrology", [&] { return report::metrology_plot(result); });
   files.prepare();
-  files.write(studies::metrology_json(result), studies::metrology_text(result));
-  print_warnings(common, result.warnings);
-  return ExitCode::done;
+  return files.write(studies::metrology_json(result), studies::metrology_text(result), result.warnings);
 }
 
 }  // namespace

@@ -87,16 +87,14 @@ ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
   }
   if (optimum.best && !options.job.empty()) made = job_of(options, study, *optimum.best);
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  files.write(studies::optimum_json(study, request, optimum, elapsed_s),
-              studies::optimum_text(study, request, optimum));
-  if (made) print_warnings(common, made->warnings);
-  if (!optimum.complete) {
-    say(fmt::format("retrace: interrupted; designs looked at: {}", optimum.evaluations));
-    return ExitCode::interrupted;
-  }
-  if (optimum.best) return ExitCode::done;
-  say("retrace: no feasible design: " + optimum.none_because);
-  return ExitCode::answer_is_no;
+  const ExitCode code =
+      files.write(studies::optimum_json(study, request, optimum, elapsed_s),
+                  studies::optimum_text(study, request, optimum), made ? made->warnings : std::vector<std::string>(),
+                  {.complete = optimum.complete,
+                   .interrupted = fmt::format("designs looked at: {}", optimum.evaluations),
+                   .is_yes = optimum.best.has_value()});
+  if (code == ExitCode::answer_is_no) say("retrace: no feasible design: " + optimum.none_because);
+  return code;
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -8,7 +7,6 @@
 #include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
-#include "app/progress_bar.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
 #include "core/message_text.h"
@@ -149,17 +147,9 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   ResultFiles files(common, inputs, "photometry.json");
   add_files(files, result);
   files.prepare();
-  {
-    ProgressBar bar("tracing", !common.quiet);
-    interrupt.run(common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
-  }
-  files.write(studies::photometry_json(result), studies::photometry_table(result));
-  print_warnings(common, result.warnings);
-  if (!result.complete) {
-    say("retrace: interrupted; what is finished is in the result");
-    return ExitCode::interrupted;
-  }
-  return result.passes() ? ExitCode::done : ExitCode::answer_is_no;
+  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  return files.write(studies::photometry_json(result), studies::photometry_table(result), result.warnings,
+                     {.complete = result.complete, .is_yes = result.passes()});
 }
 
 }  // namespace

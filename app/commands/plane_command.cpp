@@ -28,9 +28,8 @@ ExitCode run(const PlaneOptions& options, const CommonOptions& common) {
   }
   for (const fabrication::PlaningText& program : result.programs) files.add(program.name, [&] { return program.text; });
   files.prepare();
-  files.write(studies::planing_json(result), studies::planing_table(result));
-  print_warnings(common, result.warnings);
-  return result.check.passes() ? ExitCode::done : ExitCode::answer_is_no;
+  return files.write(studies::planing_json(result), studies::planing_table(result), result.warnings,
+                     {.is_yes = result.check.passes()});
 }
 
 }  // namespace

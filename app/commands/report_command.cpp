@@ -92,11 +92,10 @@ ExitCode run(const ReportOptions& options, const CommonOptions& common) {
   files.add_named("report", file, [&] { return html; });
   files.prepare();
   if (!common.out.empty() && file != fs::path(common.out)) make_output_folder(common.out);
-  files.write(report_json(page, folder, file, html.size(), warnings),
-              fmt::format("{}: {} documents, {} sections, {} KiB\n", page.title, folder.documents.size(),
-                          page.sections.size(), html.size() / 1024));
-  print_warnings(common, warnings);
-  return ExitCode::done;
+  return files.write(report_json(page, folder, file, html.size(), warnings),
+                     fmt::format("{}: {} documents, {} sections, {} KiB\n", page.title, folder.documents.size(),
+                                 page.sections.size(), html.size() / 1024),
+                     warnings);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
-#include "app/progress_bar.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
 #include "report/results/result_plots.h"
@@ -21,12 +20,8 @@ struct RoughnessOptions {
   std::string design;
   std::string sa = "0,2,5,10,15,20,30,40,50,75,100,150,200";
   std::string correlation_length_um = "5,20,50";
-  double waviness_length_um = 200.0;
-  std::vector<std::string> facets;  ///< tables; none: the shipped ones
-  double incidence_deg = 0.0;
-  double azimuth_deg = 0.0;
-  std::optional<std::uint64_t> samples;
-  double target_error = 1e-3;
+  std::vector<std::string> facets;    ///< tables; none: the shipped ones
+  studies::RoughnessRequest request;  ///< what is not among the above
 };
 
 std::vector<Argument> arguments(RoughnessOptions& options) {
@@ -34,12 +29,12 @@ std::vector<Argument> arguments(RoughnessOptions& options) {
           {"--sa LIST", "Sa of the curves in nm: a,b,c and start:stop:step", &options.sa},
           {"--correlation-length-um LIST", "one curve each; measured facets have the first",
            &options.correlation_length_um},
-          {"--waviness-length-um L", "period of the waviness of measured facets", &options.waviness_length_um},
+          {"--waviness-length-um L", "period of the waviness of measured facets", &options.request.waviness_length_um},
           {"--facets FILE", "table of measured facets, repeatable [the shipped ones]", &options.facets, files(".csv")},
-          {"--incidence T", "angle of incidence in degrees", &options.incidence_deg},
-          {"--azimuth P", "azimuth of the source in degrees", &options.azimuth_deg},
-          {"--samples N", "rays for each point [until the target error is reached]", &options.samples, whole(1)},
-          {"--target-error E", "standard error of RRE to reach, as a fraction", &options.target_error,
+          {"--incidence T", "angle of incidence in degrees", &options.request.incidence_deg},
+          {"--azimuth P", "azimuth of the source in degrees", &options.request.azimuth_deg},
+          {"--samples N", "rays for each point [until the target error is reached]", &options.request.rays, whole(1)},
+          {"--target-error E", "standard error of RRE to reach, as a fraction", &options.request.target_error,
            not_with("--samples")}};
 }
 
@@ -52,16 +47,11 @@ std::vector<std::filesystem::path> tables_of(const RoughnessOptions& options) {
 
 studies::RoughnessRequest request_of(const RoughnessOptions& options, const CommonOptions& common,
                                      const std::vector<std::filesystem::path>& tables) {
-  studies::RoughnessRequest request;
+  studies::RoughnessRequest request = options.request;
   request.sa_nm = read_number_list(options.sa, "--sa");
   request.correlation_length_um = read_number_list(options.correlation_length_um, "--correlation-length-um");
-  request.waviness_length_um = options.waviness_length_um;
-  request.incidence_deg = options.incidence_deg;
-  request.azimuth_deg = options.azimuth_deg;
   if (!std::isfinite(request.azimuth_deg))
     throw InputError({"", 0, "--azimuth"}, fmt::format("must be a finite number, got {}", request.azimuth_deg));
-  request.rays = options.samples;
-  request.target_error = options.target_error;
   if (!(request.target_error > 0.0 && request.target_error < 1.0))
     throw InputError({"", 0, "--target-error"}, fmt::format("must lie between 0 and 1, got {}", request.target_error));
   request.seed = common.seed;
@@ -82,17 +72,10 @@ ExitCode run(const RoughnessOptions& options, const CommonOptions& common) {
   files.add("roughness.csv", [&] { return studies::roughness_csv(result); });
   files.add_drawing("roughness", [&] { return report::roughness_plot(result); });
   files.prepare();
-  {
-    ProgressBar bar("tracing", !common.quiet);
-    interrupt.run(common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
-  }
-  files.write(studies::roughness_json(result), studies::roughness_table(result));
-  print_warnings(common, result.warnings);
-  if (!result.complete) {
-    say(fmt::format("retrace: interrupted; finished points: {}", result.points.size()));
-    return ExitCode::interrupted;
-  }
-  return ExitCode::done;
+  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  return files.write(
+      studies::roughness_json(result), studies::roughness_table(result), result.warnings,
+      {.complete = result.complete, .interrupted = fmt::format("finished points: {}", result.points.size())});
 }
 
 }  // namespace

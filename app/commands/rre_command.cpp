@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
-#include "app/progress_bar.h"
 #include "app/shared_arguments.h"
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_reader.h"
@@ -23,36 +21,32 @@ struct RreOptions {
   std::string azimuth = "0";
   std::string engine = "auto";
   std::string sampling = "stratified";
-  std::optional<std::uint64_t> samples;
-  std::optional<double> target_error;
-  std::optional<double> cutoff;
-  bool derivatives = false;
-  bool footprint = false;
-  bool far_field = false;
+  studies::RreRequest request;  ///< what is not among the above
 };
 
 std::vector<Argument> arguments(RreOptions& options) {
+  studies::RreRequest& request = options.request;
   return {{"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
           {"--incidence LIST", "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
            &options.incidence},
           {"--azimuth LIST", "azimuths of the source in degrees: a,b,c and start:stop:step", &options.azimuth},
           {"--engine ENGINE", "exact, montecarlo (cell or embree), or auto: the faster one for each direction",
            &options.engine, one_of([] { return engine_words(true); })},
-          {"--samples N", "rays for each point [until the target error is reached]", &options.samples, whole(1)},
+          {"--samples N", "rays for each point [until the target error is reached]", &request.rays, whole(1)},
           {"--sampling KIND", "stratified, or plain: random points and no splitting, to compare with",
            &options.sampling, one_of(Words{"stratified", "plain"})},
           {"--target-error E",
            "standard error of RRE to reach, and most that exact may leave truncated, as a fraction "
            "[0.0001; --engine exact: 1e-10]",
-           &options.target_error, not_with("--samples")},
+           &request.target_error, not_with("--samples")},
           {"--cutoff W",
            "least power that is followed, as a share of the incident power [1e-10; exact: as the target error asks]",
-           &options.cutoff},
-          {"--derivatives", "of RRE by the parameters of the design (--engine exact)", &options.derivatives},
+           &request.cutoff},
+          {"--derivatives", "of RRE by the parameters of the design (--engine exact)", &request.derivatives},
           {"--footprint", "which regions of the entrance face send light back, as polygons (--engine exact, --out)",
-           &options.footprint},
+           &request.footprint},
           {"--far-field", "the directions in which light leaves the entrance face (--engine exact, --out)",
-           &options.far_field}};
+           &request.far_field}};
 }
 
 void check_share(double value, bool zero_allowed, const char* option) {
@@ -66,22 +60,16 @@ void check_has_folder(const CommonOptions& common, bool asked, const char* optio
 }
 
 studies::RreRequest request_of(const RreOptions& options, const CommonOptions& common) {
-  studies::RreRequest request;
+  studies::RreRequest request = options.request;
   const CurveList incidence = read_curve_list(options.incidence, "--incidence");
   request.incidence_deg = incidence.values;
   for (const NumberRange& range : incidence.chosen) request.incidence_spans.push_back({range.low, range.high});
   request.azimuth_deg = read_number_list(options.azimuth, "--azimuth");
   request.engine = studies::engine_from_name(options.engine);
   request.sampling = studies::sampling_from_name(options.sampling);
-  request.rays = options.samples;
-  if (options.target_error) check_share(*options.target_error, false, "--target-error");
-  if (options.cutoff) check_share(*options.cutoff, true, "--cutoff");
-  request.target_error = options.target_error;
-  request.cutoff = options.cutoff;
+  if (request.target_error) check_share(*request.target_error, false, "--target-error");
+  if (request.cutoff) check_share(*request.cutoff, true, "--cutoff");
   request.seed = common.seed;
-  request.derivatives = options.derivatives;
-  request.footprint = options.footprint;
-  request.far_field = options.far_field;
   check_has_folder(common, request.footprint, "--footprint");
   check_has_folder(common, request.far_field, "--far-field");
   return request;
@@ -103,7 +91,7 @@ void warn_of_panels(studies::RreResult& result) {
 }
 
 /// \param result what is there when they are made
-void add_files(ResultFiles& files, const RreOptions& asked, const studies::RreResult& result) {
+void add_files(ResultFiles& files, const studies::RreRequest& asked, const studies::RreResult& result) {
   files.add("rre.csv", [&] { return studies::rre_csv(result); });
   files.add_drawing("rre", [&] { return report::rre_plot(result); });
   if (asked.footprint) {
@@ -121,22 +109,15 @@ ExitCode run(const RreOptions& options, const CommonOptions& common) {
   std::vector<studies::Design> designs = designs_of(options, common);
   studies::RreResult result;
   ResultFiles files(common, files_read(designs), "rre.json");
-  add_files(files, options, result);
+  add_files(files, request, result);
   const studies::RreStudy study(std::move(designs), std::move(request));
   const OrderlyInterrupt interrupt;
   files.prepare();
-  {
-    ProgressBar bar("tracing", !common.quiet);
-    interrupt.run(common.threads, [&](const Cancellation* cancel) { result = study.run(&bar, cancel); });
-  }
+  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
   warn_of_panels(result);
-  files.write(studies::rre_json(result), studies::rre_table(result) + studies::derivative_table(result));
-  print_warnings(common, result.warnings);
-  if (!result.complete) {
-    say(fmt::format("retrace: interrupted; finished points: {}", result.points.size()));
-    return ExitCode::interrupted;
-  }
-  return ExitCode::done;
+  return files.write(
+      studies::rre_json(result), studies::rre_table(result) + studies::derivative_table(result), result.warnings,
+      {.complete = result.complete, .interrupted = fmt::format("finished points: {}", result.points.size())});
 }
 
 }  // namespace

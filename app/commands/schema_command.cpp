@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -46,8 +45,7 @@ ExitCode write_schema(const CommonOptions& common, const std::string& json, cons
                       const std::string& file) {
   const ResultFiles files(common, {}, file);
   files.prepare();
-  files.write(json, text);
-  return ExitCode::done;
+  return files.write(json, text);
 }
 
 ExitCode list_formats(const CommonOptions& common) {

@@ -7,13 +7,7 @@
 namespace retrace::app {
 namespace {
 
-struct SweepOptions : StudyOptions {};
-
-std::vector<Argument> arguments(SweepOptions& options) {
-  return study_arguments(options);
-}
-
-ExitCode run(const SweepOptions& options, const CommonOptions& common) {
+ExitCode run_sweep(const StudyOptions& options, const CommonOptions& common) {
   PointsCommand command;
   command.doing = "sweeping";
   command.store = "sweep.sqlite";
@@ -23,8 +17,7 @@ ExitCode run(const SweepOptions& options, const CommonOptions& common) {
   };
   command.read = [&] { return studies::read_sweep(studies::read_study(options.study, common.overrides, common.seed)); };
   command.write = [](const studies::SweepResult& result, const ResultFiles& files) {
-    files.write(studies::sweep_json(result), studies::sweep_table(result));
-    return ExitCode::done;
+    return files.write(studies::sweep_json(result), studies::sweep_table(result));
   };
   return run_points(options, common, command);
 }
@@ -40,7 +33,7 @@ Command sweep_command() {
               "Exits with 1 if every point failed.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.sweep/1"},
-          .begin = begins<SweepOptions>(arguments, run)};
+          .begin = begins(study_arguments, run_sweep)};
 }
 
 }  // namespace retrace::app

@@ -9,13 +9,7 @@
 namespace retrace::app {
 namespace {
 
-struct ToleranceOptions : StudyOptions {};
-
-std::vector<Argument> arguments(ToleranceOptions& options) {
-  return study_arguments(options);
-}
-
-ExitCode run(const ToleranceOptions& options, const CommonOptions& common) {
+ExitCode run_tolerance(const StudyOptions& options, const CommonOptions& common) {
   PointsCommand command;
   command.doing = "making parts";
   command.store = "tolerance.sqlite";
@@ -34,9 +28,8 @@ ExitCode run(const ToleranceOptions& options, const CommonOptions& common) {
   command.write = [&](studies::SweepResult& result, const ResultFiles& files) {
     found = studies::analyse(result.sweep, request, result.points);
     result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
-    files.write(studies::tolerance_json(result, request, found),
-                studies::tolerance_text(result.sweep.study(), request, found));
-    return found.is_enough ? ExitCode::done : ExitCode::answer_is_no;
+    return files.write(studies::tolerance_json(result, request, found),
+                       studies::tolerance_text(result.sweep.study(), request, found), {}, {.is_yes = found.is_enough});
   };
   return run_points(options, common, command);
 }
@@ -52,7 +45,7 @@ Command tolerance_command() {
               "folder. Exits with 1 if the yield is below what the study asks for or every point failed.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.tolerance/1"},
-          .begin = begins<ToleranceOptions>(arguments, run)};
+          .begin = begins(study_arguments, run_tolerance)};
 }
 
 }  // namespace retrace::app

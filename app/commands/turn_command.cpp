@@ -28,9 +28,8 @@ ExitCode run(const TurnOptions& options, const CommonOptions& common) {
   files.add("profile.svg", [&] { return report::render_svg(report::turning_profile_plot(result)); });
   files.add("maps.png", [&] { return report::render_png(report::turning_maps(result)); });
   files.prepare();
-  files.write(studies::turning_json(result), studies::turning_table(result));
-  print_warnings(common, result.part.warnings);
-  return result.passes_inspection() ? ExitCode::done : ExitCode::answer_is_no;
+  return files.write(studies::turning_json(result), studies::turning_table(result), result.part.warnings,
+                     {.is_yes = result.passes_inspection()});
 }
 
 }  // namespace

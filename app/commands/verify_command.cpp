@@ -18,10 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct VerifyOptions {
-  std::string job;
-  std::vector<std::string> programs;
-  std::string dialect = "auto";
-  double tolerance_nm = 10.0;
+  studies::VerificationRequest request;
   std::string as_machined;  ///< design file to write; empty: none
   std::string map;          ///< PNG to write; empty: none
 };
@@ -34,21 +31,17 @@ Words dialects() {
 
 std::vector<Argument> arguments(VerifyOptions& options) {
   return {
-      job_argument(options.job),
-      {"PROGRAM", "NC programs, in the order in which they run", &options.programs, files("")},
-      {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc or pmac, or auto: told from the text", &options.dialect,
+      job_argument(options.request.job),
+      {"PROGRAM", "NC programs, in the order in which they run", &options.request.programs, files("")},
+      {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc or pmac, or auto: told from the text", &options.request.dialect,
        one_of(dialects)},
-      {"--tolerance-nm T", "that facet planes may differ from the design by", &options.tolerance_nm},
+      {"--tolerance-nm T", "that facet planes may differ from the design by", &options.request.tolerance_nm},
       {"--map FILE", "draw what the programs leave over the facets to a PNG FILE", &options.map, files(".png")},
       {"--as-machined FILE", "write the part that is left as a design to FILE", &options.as_machined, files(".toml")}};
 }
 
-studies::VerificationRun verified(const VerifyOptions& options, const CommonOptions& common, double& elapsed_s) {
-  studies::VerificationRequest request;
-  request.job = options.job;
-  request.programs = options.programs;
-  request.dialect = options.dialect;
-  request.tolerance_nm = options.tolerance_nm;
+studies::VerificationRun verified(const studies::VerificationRequest& request, const CommonOptions& common,
+                                  double& elapsed_s) {
   studies::VerificationRun run;
   const auto start = std::chrono::steady_clock::now();
   raytrace::run_with_threads(common.threads.value_or(0), [&] { run = studies::run_verification(request); });
@@ -56,10 +49,10 @@ studies::VerificationRun verified(const VerifyOptions& options, const CommonOpti
   return run;
 }
 
-std::vector<std::string> inputs_of(const VerifyOptions& options) {
-  std::vector<std::string> files = options.programs;
-  files.push_back(options.job);
-  if (const fs::path machine = fabrication::read_job(options.job).machine; machine.has_extension())
+std::vector<std::string> inputs_of(const studies::VerificationRequest& request) {
+  std::vector<std::string> files = request.programs;
+  files.push_back(request.job);
+  if (const fs::path machine = fabrication::read_job(request.job).machine; machine.has_extension())
     files.push_back(machine.string());
   return files;
 }
@@ -74,14 +67,14 @@ ExitCode run(const VerifyOptions& options, const CommonOptions& common) {
   studies::VerificationRun run;
   std::string design;
   std::string facets;
-  ResultFiles files(common, inputs_of(options), "verification.json");
+  ResultFiles files(common, inputs_of(options.request), "verification.json");
   files.add_named("--as-machined", options.as_machined, [&] { return design; });
   files.add_named("--as-machined", facets_file, [&] { return facets; });
   files.add_named("--map", options.map,
                   [&] { return report::render_png(report::error_map_plot(studies::error_map(run))); });
   files.check();
   double elapsed_s = 0.0;
-  run = verified(options, common, elapsed_s);
+  run = verified(options.request, common, elapsed_s);
   if (!options.as_machined.empty()) {
     const studies::AsMachined part = studies::as_machined(run);
     run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());
@@ -89,9 +82,8 @@ ExitCode run(const VerifyOptions& options, const CommonOptions& common) {
     if (part.planes) facets = studies::facet_planes_text(*part.planes);
   }
   files.prepare();
-  files.write(studies::verification_json(run, elapsed_s), studies::verification_table(run));
-  print_warnings(common, run.warnings);
-  return run.result.passes() ? ExitCode::done : ExitCode::answer_is_no;
+  return files.write(studies::verification_json(run, elapsed_s), studies::verification_table(run), run.warnings,
+                     {.is_yes = run.result.passes()});
 }
 
 }  // namespace

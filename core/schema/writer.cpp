@@ -205,9 +205,4 @@ std::string object_text(const Format& format, const void* object) {
   return document_text(format, document_of(format, object));
 }
 
-std::string table_text(const Format& format, std::string_view name, const void* object) {
-  const Document document = document_of(format, object);
-  return Writer(document).tables(*std::ranges::find(format.root.tables, name, &Table::name), std::string(name));
-}
-
 }  // namespace retrace::schema

@@ -23,7 +23,4 @@ Document document_of(const Format& format, const void* object);
 /// The text of an object's file, which reads back to the same object.
 std::string object_text(const Format& format, const void* object);
 
-/// Of that text what a table of the root has, with its head; nothing if the object does not have it.
-std::string table_text(const Format& format, std::string_view name, const void* object);
-
 }  // namespace retrace::schema

@@ -8,8 +8,7 @@
 
 namespace retrace::raytrace {
 
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Vec2, geometry::Vec3;
 
 /// A ball of a layer, by its place in the lattice: rows along x, every next one shifted by half a pitch.
 struct BallIndex {

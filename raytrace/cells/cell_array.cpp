@@ -7,8 +7,7 @@
 
 namespace retrace::raytrace {
 
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Vec2, geometry::Vec3;
 
 namespace {
 

@@ -36,9 +36,7 @@ struct Plane {
 
 /// c + x px + y py.
 struct LinearForm {
-  double x = 0.0;
-  double y = 0.0;
-  double c = 0.0;
+  double x = 0.0, y = 0.0, c = 0.0;
 };
 
 /// What rays have met, in `which`: 0 a facet, with its normal; 1 the top of the surface (inside) or nothing (outside,

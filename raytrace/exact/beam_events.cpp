@@ -7,8 +7,7 @@
 
 namespace retrace::raytrace {
 
-using geometry::FacetRole;
-using surface_models::Lobe;
+using geometry::FacetRole, surface_models::Lobe;
 
 /// A piece of a beam where the beam starts.
 Beam BeamWalk::at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) {

@@ -6,10 +6,7 @@
 namespace retrace::raytrace {
 namespace {
 
-using geometry::FacetRole;
-using geometry::PatchCell;
-using geometry::PatchFacet;
-using geometry::SurfacePatch;
+using geometry::FacetRole, geometry::PatchCell, geometry::PatchFacet, geometry::SurfacePatch;
 
 // Pieces of a cross-section smaller than this share of an element's area are rounding: booked, not followed.
 constexpr double kLeastAreaShare = 1e-15;

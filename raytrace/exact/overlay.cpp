@@ -16,8 +16,7 @@ namespace {
 
 namespace bg = boost::geometry;
 
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Vec2, geometry::Vec3;
 using Corner = bg::model::point<double, 2, bg::cs::cartesian>;
 using Box = bg::model::box<Corner>;
 using Entry = std::pair<Box, std::size_t>;

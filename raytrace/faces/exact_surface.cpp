@@ -8,12 +8,10 @@
 namespace retrace::raytrace {
 namespace {
 
-using geometry::PatchFacet;
-using geometry::SurfacePatch;
+using geometry::PatchFacet, geometry::SurfacePatch;
 
 // Relative to the element's size.
-constexpr double kTolerance = 1e-10;
-constexpr double kWideTolerance = 1e-6;
+constexpr double kTolerance = 1e-10, kWideTolerance = 1e-6;
 
 Vec3 place_of(const geometry::Placement& placement) {
   return {placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm};

@@ -7,8 +7,7 @@
 
 namespace retrace::raytrace {
 
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Vec2, geometry::Vec3;
 
 /// A facet of the back surface: which placement of which patch, and which facet of that.
 struct FacetRef {

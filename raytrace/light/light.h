@@ -10,8 +10,7 @@
 
 namespace retrace::raytrace {
 
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Vec2, geometry::Vec3;
 
 /// Power and polarisation of light of one direction: Stokes parameters along s and p = direction x s.
 ///

@@ -85,12 +85,16 @@ Stokes Tally::retroreflected(std::size_t cone) const {
   return sum;
 }
 
+Vec3 direction_to_source(const Illumination& illumination) {
+  const double t = illumination.incidence.rad();
+  const double p = illumination.azimuth.rad();
+  return Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+}
+
 LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const Optics& how,
                        const Illumination& illumination, const std::vector<double>& cones_deg)
     : optics(how), thickness_mm(part.thickness_mm), depth_mm(part.element_depth_mm), top_mm(part.top_mm) {
-  const double t = illumination.incidence.rad();
-  const double p = illumination.azimuth.rad();
-  to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+  to_source = direction_to_source(illumination);
   for (const double half_angle_deg : cones_deg) {
     const double chord = 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad());
     cone_chord2.push_back(chord * chord * (1.0 + 1e-9));  // the cone's edge belongs to it, rounding or not

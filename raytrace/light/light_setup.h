@@ -78,6 +78,9 @@ struct Tally {
 /// \pre direction not along x
 Vec3 source_axis(const Vec3& direction);
 
+/// From the part to the source, in the part frame.
+Vec3 direction_to_source(const Illumination& illumination);
+
 /// Light of the incident beam, which travels along -`to_source`. \param stokes along source_axis(to_source)
 Light light_of_beam(const Stokes& stokes, const Vec3& to_source);
 

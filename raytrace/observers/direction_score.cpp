@@ -7,8 +7,7 @@
 namespace retrace::raytrace {
 namespace {
 
-using geometry::Vec2;
-using std::numbers::pi;
+using geometry::Vec2, std::numbers::pi;
 
 /// Solid angle of the rectangle of equidistant angles: its area shrunk by sin(r) / r, by a rule of 3 x 3.
 double square_solid_angle(const Vec2& middle_rad, double width_rad, double height_rad) {

@@ -15,18 +15,14 @@
 namespace retrace::raytrace {
 namespace {
 
-using geometry::Vec2;
-using std::numbers::pi;
+using geometry::Vec2, std::numbers::pi;
 
 // Directions nearer than this are one.
 constexpr double kOneDirection_rad = 1e-9;
 // Beams below this are not looked at one by one.
 constexpr double kFaint = 1e-10;
 // Steps by which fields of cells are compared: of lengths in elements, of cosines, of amplitudes, of paths in mm.
-constexpr double kLengthStep = 1e-7;
-constexpr double kCosineStep = 1e-8;
-constexpr double kAmplitudeStep = 1e-7;
-constexpr double kPathStep_mm = 1e-7;
+constexpr double kLengthStep = 1e-7, kCosineStep = 1e-8, kAmplitudeStep = 1e-7, kPathStep_mm = 1e-7;
 // Polygons are joined if their union is convex but for this share of an element's area.
 constexpr double kJoinShare = 1e-10;
 // Lattice points to the finest detail: the density is a band-limited function.
@@ -53,12 +49,6 @@ Eigen::Matrix2cd coherency_of(const Stokes& s) {
 
 double power_of(const JonesMatrix& jones, const Eigen::Matrix2cd& coherency) {
   return (jones * coherency * jones.adjoint()).trace().real();
-}
-
-Vec3 direction_to_source(const Illumination& illumination) {
-  const double t = illumination.incidence.rad();
-  const double p = illumination.azimuth.rad();
-  return Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
 }
 
 double small_angle_between(const Vec3& a, const Vec3& b) {

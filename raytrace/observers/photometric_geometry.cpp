@@ -1,16 +1,13 @@
 #include "raytrace/observers/photometric_geometry.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace retrace::raytrace {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
-using std::numbers::pi;
+using geometry::Vec2, geometry::Vec3, std::numbers::pi;
 
 // Sines below this are those of parallel directions.
 constexpr double kParallel = 1e-14;
@@ -35,11 +32,6 @@ Angle wrapped(double angle_rad) {
 
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// From the plane through `axis` and `from` to that through `axis` and `to`, counter-clockwise as seen from its end.
-double turn_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
-  return std::atan2(axis.dot(from.cross(to)), from.dot(to) - axis.dot(from) * axis.dot(to));
 }
 
 }  // namespace
@@ -77,57 +69,10 @@ PhotometricGeometry geometry_of(const PhotometricDirections& directions) {
   return geometry;
 }
 
-IntrinsicGeometry intrinsic_of(const PhotometricGeometry& geometry) {
-  const PhotometricDirections d = directions_of(geometry);
-  const Vec3 normal = Vec3::UnitZ();
-  IntrinsicGeometry intrinsic;
-  intrinsic.alpha = geometry.alpha;
-  intrinsic.beta = Angle::from_rad(angle_between(normal, d.to_source));
-  Vec3 entrance_half_plane = normal;  // beyond the illumination axis
-  if (normal.cross(d.to_source).norm() < kParallel) {
-    // Without an entrance half plane its trace is taken through the observer: gamma = 0.
-    const Vec3 observer = lab_from_part(geometry).transpose() * Vec3::UnitY();
-    entrance_half_plane = d.to_source + observer;
-  }
-  const Vec3 up = lab_from_part(geometry).transpose() * Vec3::UnitY();
-  intrinsic.gamma = wrapped(turn_about(d.to_source, entrance_half_plane, d.to_source + up));
-  const Vec3 trace = entrance_half_plane - d.to_source;  // points away from the source
-  const Vec3 away = normal.cross(d.to_source).norm() < kParallel ? trace : Vec3(-d.to_source);
-  intrinsic.omega_s = wrapped(turn_about(normal, away, Vec3::UnitY()));
-  return intrinsic;
-}
-
-PhotometricGeometry geometry_from(const IntrinsicGeometry& intrinsic) {
-  const double beta = intrinsic.beta.rad();
-  const double gamma = intrinsic.gamma.rad();
-  // Laboratory: z to the source, y towards the observer. The normal lies in the half plane that reaches the observer's
-  // by a turn of gamma about z.
-  const Vec3 in_plane(std::sin(gamma), std::cos(gamma), 0.0);
-  const Vec3 normal = std::cos(beta) * Vec3::UnitZ() + std::sin(beta) * in_plane;
-  // Across the normal, away from the source.
-  const Vec3 away = std::cos(beta) * in_plane - std::sin(beta) * Vec3::UnitZ();
-  const Vec3 datum = turn(intrinsic.omega_s.rad(), normal) * away;
-  Eigen::Matrix3d part_from_lab;
-  part_from_lab << datum.cross(normal).transpose(), datum.transpose(), normal.transpose();
-  const double alpha = intrinsic.alpha.rad();
-  const Vec3 up = part_from_lab * Vec3::UnitY();
-  const Vec3 s = part_from_lab * Vec3::UnitZ();
-  // From the observation half plane itself, which is there even where alpha is 0.
-  PhotometricGeometry geometry = geometry_of({s, (s + up).normalized()});
-  geometry.alpha = Angle::from_rad(alpha);
-  return geometry;
-}
-
 SourceAngles source_angles(const Vec3& to_source) {
   const double across = to_source.head<2>().norm();
   return {Angle::from_rad(std::atan2(across, to_source.z())),
           Angle::from_rad(across > kParallel ? std::atan2(to_source.y(), to_source.x()) : 0.0)};
-}
-
-Vec3 direction_from(const SourceAngles& angles) {
-  const double t = angles.incidence.rad();
-  const double p = angles.azimuth.rad();
-  return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
 }
 
 ReturnFrame return_frame(const PhotometricGeometry& geometry) {
@@ -137,10 +82,6 @@ ReturnFrame return_frame(const PhotometricGeometry& geometry) {
 
 Angle viewing_angle(const PhotometricGeometry& geometry) {
   return Angle::from_rad(angle_between(Vec3::UnitZ(), directions_of(geometry).to_observer));
-}
-
-Angle entrance_angle(const PhotometricGeometry& geometry) {
-  return Angle::from_rad(angle_between(Vec3::UnitZ(), directions_of(geometry).to_source));
 }
 
 }  // namespace retrace::raytrace

@@ -19,17 +19,6 @@ struct PhotometricGeometry {
   Angle epsilon;  ///< -180 to 180 degrees
 };
 
-/// The intrinsic system of CIE 54.2 and ASTM E808: angles between the illumination axis, the observation axis, the
-/// normal and the datum mark, whatever turned them there.
-struct IntrinsicGeometry {
-  Angle alpha;    ///< observation angle
-  Angle beta;     ///< entrance angle, between the normal and the illumination axis; 0 to 180 degrees
-  Angle gamma;    ///< presentation angle: about the illumination axis, from the half plane of the normal to that of the
-                  ///< observer, counter-clockwise as seen from the source; -180 to 180 degrees
-  Angle omega_s;  ///< orientation angle: about the normal, from the trace of the half plane of the normal - which
-                  ///< points away from the source - to the datum mark, counter-clockwise likewise
-};
-
 /// Directions from the part to source and observer, in the part frame; unit vectors.
 struct PhotometricDirections {
   geometry::Vec3 to_source = geometry::Vec3::UnitZ();
@@ -57,18 +46,12 @@ PhotometricDirections directions_of(const PhotometricGeometry& geometry);
 /// that epsilon is 0 where the normal allows.
 PhotometricGeometry geometry_of(const PhotometricDirections& directions);
 
-IntrinsicGeometry intrinsic_of(const PhotometricGeometry& geometry);
-PhotometricGeometry geometry_from(const IntrinsicGeometry& intrinsic);
-
 SourceAngles source_angles(const geometry::Vec3& to_source);
-geometry::Vec3 direction_from(const SourceAngles& angles);
 
 /// Directions around the return as the observer's half plane orders them: `up` is where the observer lies.
 ReturnFrame return_frame(const PhotometricGeometry& geometry);
 
 /// Viewing angle nu, between the normal and the observation axis.
 Angle viewing_angle(const PhotometricGeometry& geometry);
-/// Entrance angle beta: cos beta = cos beta1 cos beta2.
-Angle entrance_angle(const PhotometricGeometry& geometry);
 
 }  // namespace retrace::raytrace

@@ -6,9 +6,7 @@
 namespace retrace::raytrace {
 namespace {
 
-using geometry::Polygon;
-using geometry::Rectangle;
-using geometry::Vec2;
+using geometry::Polygon, geometry::Rectangle, geometry::Vec2;
 
 /// First and last of `count` steps from `from` on that an interval touches.
 std::pair<std::size_t, std::size_t> steps_over(double low, double high, double from, double step, std::size_t count) {

@@ -45,13 +45,9 @@ void PathWalker::resume(const Vec3& position, const Ray& ray, RandomKey key, std
   replicate_ = replicate;
   sample_ = sample;
   choices_ = choices;
-  State state;
+  State& state = pending_.emplace_back();
+  static_cast<Ray&>(state) = ray;
   state.position = position;
-  state.direction = ray.direction;
-  state.light = ray.light;
-  state.inside = ray.inside;
-  state.scattered = ray.scattered;
-  pending_.push_back(state);
   follow_pending();
   choices = choices_;
 }
@@ -285,7 +281,7 @@ bool PathWalker::meet_entrance(State& state) {
   state.light.turn_to(state.direction, down);
   if (setup_.optics.lossless_entrance) {
     if (f.total_reflection)
-      (state.scattered ? tally_.scattered : tally_.returned).back().i += state.light.power();
+      returned(state).back().i += state.light.power();
     else
       leave(state, state.light, out);
     return false;
@@ -302,8 +298,7 @@ bool PathWalker::meet_entrance(State& state) {
 
 /// Books light that leaves through the entrance face. \param state where it does \param direction in air
 void PathWalker::leave(const State& state, const Light& light, const Vec3& direction) {
-  std::vector<Stokes>& returned = state.scattered ? tally_.scattered : tally_.returned;
-  returned[setup_.cone_of(direction)] += seen_from_above(light, direction);
+  returned(state)[setup_.cone_of(direction)] += seen_from_above(light, direction);
   if (observer_ != nullptr) observer_->leaves(state.position, direction, light.power());
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
@@ -345,19 +340,23 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   if (is_retro && optics.coating_index) tally_.other[Account::absorbed] += state.light.power() - reflected.power();
   Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
-  if (branch != Branch::reflected) {
-    State through = state;
+  return go_on(state, branch, reflected, against, [&](State& through) {
     through.light = transmitted;
     through.direction =
-        refracted(state.direction, against, optics.ratio_at_back(state.inside), cos_incidence, f.cos_refracted);
-    through.inside = !state.inside;
-    if (state.inside) through.left_through = facet.role;
-    if (branch == Branch::transmitted) {
-      state = through;
-      return true;
-    }
-    pending_.push_back(through);
+        refracted(through.direction, against, optics.ratio_at_back(through.inside), cos_incidence, f.cos_refracted);
+    if (through.inside) through.left_through = facet.role;
+    through.inside = !through.inside;
+  });
+}
+
+/// Follows the branches at a face. \param pass makes of the path the one that goes through
+template <class Pass>
+bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass) {
+  if (branch == Branch::transmitted) {
+    pass(state);
+    return true;
   }
+  if (branch == Branch::both) pass(pending_.emplace_back(state));
   state.light = reflected;
   state.direction = mirrored(state.direction, against);
   return true;
@@ -365,20 +364,14 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
 
 bool PathWalker::meet_textured(State& state, const Vec3& normal) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
-  const TexturedReturn back =
-      meet_textured_facet(setup_.optics, normal, {state.direction, state.light, state.inside, state.scattered},
-                          setup_.policy.split_power, random);
+  const TexturedReturn back = meet_textured_facet(setup_.optics, normal, state, setup_.policy.split_power, random);
   tally_.other[Account::truncated] += back.truncated;
   tally_.other[Account::absorbed] += back.absorbed;
   const State before = state;
   for (std::size_t k = 0; k < back.count; ++k) {
-    const Ray& ray = back.rays[k];
     state = before;
-    state.direction = ray.direction;
-    state.light = ray.light;
-    state.inside = ray.inside;
-    state.scattered = ray.scattered;
-    if (before.inside && !ray.inside) state.left_through = FacetRole::retro_facet;
+    static_cast<Ray&>(state) = back.rays[k];
+    if (before.inside && !state.inside) state.left_through = FacetRole::retro_facet;
     if (k + 1 < back.count) pending_.push_back(state);
   }
   return back.count > 0;
@@ -450,28 +443,20 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
   state.entrance_source = hit.facet;
   const bool is_lossless = setup_.optics.lossless_entrance;
   if (is_lossless && f.total_reflection) {
-    (state.scattered ? tally_.scattered : tally_.returned).back().i += state.light.power();
+    returned(state).back().i += state.light.power();
     return false;
   }
-  State through = state;
   Light reflected = is_lossless ? Light{Stokes{}, state.light.s_axis} : state.light.reflected(f);
-  through.light = is_lossless ? state.light : state.light.transmitted(f);
+  Light transmitted = is_lossless ? state.light : state.light.transmitted(f);
   // What the first surface makes of the beam is followed both ways, as at a plane entrance face.
-  const Branch branch = is_first && !is_lossless ? Branch::both : choose(reflected, through.light);
-  if (branch != Branch::reflected) {
-    through.direction = refracted(state.direction, against, ratio, cos_incidence, f.cos_refracted);
+  const Branch branch = is_first && !is_lossless ? Branch::both : choose(reflected, transmitted);
+  return go_on(state, branch, reflected, against, [&](State& through) {
+    through.light = transmitted;
+    through.direction = refracted(through.direction, against, ratio, cos_incidence, f.cos_refracted);
     through.inside = !from_inside;
     through.above = from_inside;
     through.entered = true;
-    if (branch == Branch::transmitted) {
-      state = through;
-      return true;
-    }
-    pending_.push_back(through);
-  }
-  state.light = reflected;
-  state.direction = mirrored(state.direction, against);
-  return true;
+  });
 }
 
 bool PathWalker::leave_entrance_face(const State& state) {

@@ -48,16 +48,12 @@ class PathWalker {
               std::uint32_t& choices);
 
  private:
-  struct State {
+  struct State : Ray {
     Vec3 position = Vec3::Zero();
-    Vec3 direction = Vec3::UnitZ();
-    Light light;
-    FacetRef source;           ///< facet that the path has just left
-    FacetRef entrance_source;  ///< the same, of an entrance surface
-    bool inside = true;
+    FacetRef source;                                                      ///< facet that the path has just left
+    FacetRef entrance_source;                                             ///< the same, of an entrance surface
     bool above = false;                                                   ///< in the air on the entrance surface's side
     bool entered = false;                                                 ///< it has passed an entrance surface
-    bool scattered = false;                                               ///< a non-specular event lies behind it
     geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through
     std::uint32_t events = 0;
   };
@@ -89,11 +85,14 @@ class PathWalker {
   bool meet_entrance_face(State& state, const SurfaceHit& hit, const Vec3& normal);
   bool leave_entrance_face(const State& state);
   bool meet_entrance(State& state);
+  std::vector<Stokes>& returned(const State& state) { return state.scattered ? tally_.scattered : tally_.returned; }
   void leave(const State& state, const Light& light, const Vec3& direction);
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
   bool meet_textured(State& state, const Vec3& normal);
   Branch choose(Light& reflected, Light& transmitted);
+  template <class Pass>
+  bool go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass);
   bool finish(const State& state, Account account);
   bool escape(const State& state);
 

@@ -11,9 +11,7 @@ namespace {
 
 using geometry::Vec3;
 
-constexpr double kWidth = 860.0;
-constexpr double kHeight = 560.0;
-constexpr double kHead = 66.0;
+constexpr double kWidth = 860.0, kHeight = 560.0, kHead = 66.0;
 constexpr double kScale = 2.0;
 constexpr double kAxisLength = 34.0;
 constexpr Font kRemarkFont{11.5, false};

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "report/drawing/dimension_layout.h"
 #include "report/drawing/svg_sheet.h"
@@ -14,19 +13,13 @@
 namespace retrace::report {
 namespace {
 
-using geometry::Polygon;
-using geometry::Rectangle;
-using geometry::Vec2;
-using studies::DesignDrawing;
-using studies::PlanPanel;
-using studies::SectionPanel;
+using geometry::Polygon, geometry::Rectangle, geometry::Vec2, studies::DesignDrawing, studies::PlanPanel,
+    studies::SectionPanel;
 
 constexpr double kWholeWidth = 520.0;  ///< most room of a panel's figure
 constexpr double kWholeHeight = 460.0;
-constexpr double kSheetMargin = 26.0;
-constexpr double kPanelGap = 44.0;
-constexpr double kArrowLength = 8.0;
-constexpr double kArrowHalf = 2.6;
+constexpr double kSheetMargin = 26.0, kPanelGap = 44.0;
+constexpr double kArrowLength = 8.0, kArrowHalf = 2.6;
 /// Elements' lines closer than this are drawn finer, in units.
 constexpr double kFineLines = 14.0;
 /// A plate more than this many times as thick as the elements are deep is drawn interrupted.

@@ -1,7 +1,6 @@
 #include "report/drawing/dimension_layout.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "report/drawing/svg_sheet.h"
 
@@ -13,18 +12,15 @@ constexpr double kStep = 24.0;   ///< between dimension lines
 constexpr double kArrow = 8.0;
 constexpr double kGap = 3.0;   ///< from what is measured to its extension line
 constexpr double kOver = 4.0;  ///< of an extension line beyond the dimension line
-constexpr double kClear = 3.0;
-constexpr double kTextGap = 4.0;
+constexpr double kClear = 3.0, kTextGap = 4.0;
 constexpr int kMostLevels = 16;
 
 /// Coordinates of one side: along the dimension line, and away from the figure.
 struct Span {
-  double from = 0.0;
-  double to = 0.0;
+  double from = 0.0, to = 0.0;
 };
 struct Block {
-  Span along;
-  Span away;
+  Span along, away;
 };
 
 bool meet(const Span& a, const Span& b, double clear) {
@@ -160,11 +156,8 @@ class SideLayout {
   }
 
   DimensionSide side_;
-  Point lower_;
-  Point upper_;
-  std::vector<Block> texts_;
-  std::vector<Block> lines_;
-  std::vector<Block> extensions_;
+  Point lower_, upper_;
+  std::vector<Block> texts_, lines_, extensions_;
 };
 
 }  // namespace

@@ -8,10 +8,7 @@
 namespace retrace::report {
 namespace {
 
-using geometry::BoundaryMesh;
-using geometry::FacetRole;
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::BoundaryMesh, geometry::FacetRole, geometry::Vec2, geometry::Vec3;
 
 constexpr std::size_t kFiner = 3;      ///< points of a pixel along either side
 constexpr double kMarginShare = 0.04;  ///< left free on every side

@@ -11,8 +11,7 @@
 namespace retrace::report::document {
 
 PageSection inspect_section(const ResultDocument& document, const ResultFolder&) {
-  PageSection section;
-  section.title = "Design";
+  PageSection section = titled("Design");
   section.tables.push_back(figures_of(document.json, "What the design is", csv_name(document, "figures")));
   return section;
 }
@@ -21,8 +20,7 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
   const Json& json = document.json;
   const Json& programme = member(json, "programme");
   const std::string verdict = text(json, "verdict");
-  PageSection section;
-  section.title = "Photometry";
+  PageSection section = titled("Photometry");
   section.facts = {{"Standard", text(programme, "standard"), ""},
                    {"Class and colour", text(programme, "class") + " " + text(programme, "colour"), ""},
                    {"Area", measured(number(json, "area_cm2"), " cm2"), ""},
@@ -44,12 +42,8 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
 }
 
 PageSection roughness_section(const ResultDocument& document, const ResultFolder&) {
-  PageSection section;
-  section.title = "Roughness";
-  PageChart chart;
-  chart.title = "Efficiency against the roughness of the facets";
-  chart.x_label = "Sa (nm)";
-  chart.y_label = "RRE (%)";
+  PageSection section = titled("Roughness");
+  PageChart chart{"Efficiency against the roughness of the facets", "Sa (nm)", "RRE (%)", {}, {}};
   for (const Json& p : list(document.json, "points")) {
     const double length = number(p, "correlation_length_um");
     series_of(chart, fmt::format("correlation length {} um", shown(length)))
@@ -94,8 +88,7 @@ PagePath tool_path(const Json& path, bool is_dmc) {
 
 PageSection fabrication_section(const ResultDocument& document, const ResultFolder&) {
   const Json& json = document.json;
-  PageSection section;
-  section.title = "Tool path";
+  PageSection section = titled("Tool path");
   section.facts = {{"Machining time", measured(number(json, "time_s") / 3600.0, 3, " h"), ""},
                    {"Time an element", measured(number(json, "time_per_element_s"), 2, " s"), ""},
                    {"Elements", shown(number(json, "elements")), ""},
@@ -116,8 +109,7 @@ PageSection verification_section(const ResultDocument& document, const ResultFol
   const Json& json = document.json;
   const std::string verdict = text(json, "verdict");
   const Json& findings = list(json, "findings");
-  PageSection section;
-  section.title = "Verification";
+  PageSection section = titled("Verification");
   section.facts = {{"Verdict", verdict, verdict_style(verdict)},
                    {"Findings", std::to_string(findings.size()), findings.empty() ? "good" : "bad"},
                    {"Facets off by at most", measured(number(json, "facet_distance_nm_max"), " nm"), ""},
@@ -134,12 +126,8 @@ PageSection verification_section(const ResultDocument& document, const ResultFol
 }
 
 PageSection forces_section(const ResultDocument& document, const ResultFolder&) {
-  PageSection section;
-  section.title = "Cutting forces";
-  PageChart chart;
-  chart.title = "Forces on the tool over one cycle";
-  chart.x_label = "time (s)";
-  chart.y_label = "force (N)";
+  PageSection section = titled("Cutting forces");
+  PageChart chart{"Forces on the tool over one cycle", "time (s)", "force (N)", {}, {}};
   for (const char* key : {"fx_n", "fy_n", "fz_n"}) {
     ChartSeries series{column_name(key), {}, {}};
     for (const Json& sample : list(document.json, "profile")) series.add(number(sample, "time_s"), number(sample, key));
@@ -184,8 +172,7 @@ PageChart sweep_chart(const Json& json) {
 }  // namespace
 
 PageSection sweep_section(const ResultDocument& document, const ResultFolder&) {
-  PageSection section;
-  section.title = "Sweep";
+  PageSection section = titled("Sweep");
   const PageChart chart = sweep_chart(document.json);
   if (!chart.series.empty()) section.charts.push_back(chart);
   const Json& points = list(document.json, "points");
@@ -194,8 +181,7 @@ PageSection sweep_section(const ResultDocument& document, const ResultFolder&) {
 }
 
 PageSection optimum_section(const ResultDocument& document, const ResultFolder&) {
-  PageSection section;
-  section.title = "Optimum";
+  PageSection section = titled("Optimum");
   const Json& best = member(document.json, "best");
   if (best.is_object())
     section.tables.push_back(figures_of(best, "The best design", csv_name(document, "best")));
@@ -210,8 +196,7 @@ PageSection optimum_section(const ResultDocument& document, const ResultFolder&)
 }
 
 PageSection plain_section(const ResultDocument& document, const ResultFolder&) {
-  PageSection section;
-  section.title = document.kind;
+  PageSection section = titled(document.kind);
   section.title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(section.title.front())));
   section.tables.push_back(figures_of(document.json, "Figures", csv_name(document, "figures")));
   for (const auto& [key, value] : document.json.items())

@@ -7,20 +7,12 @@
 
 namespace retrace::report::document {
 
-PageSection rre_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection footprint_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection far_field_section(const ResultDocument& document, const ResultFolder& folder);
+using SectionOf = PageSection(const ResultDocument& document, const ResultFolder& folder);
 
-PageSection inspect_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection image_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection photometry_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection roughness_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection fabrication_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection verification_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection forces_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection sweep_section(const ResultDocument& document, const ResultFolder& folder);
-PageSection optimum_section(const ResultDocument& document, const ResultFolder& folder);
+SectionOf rre_section, footprint_section, far_field_section;
+SectionOf inspect_section, image_section, photometry_section, roughness_section, fabrication_section;
+SectionOf verification_section, forces_section, sweep_section, optimum_section;
 /// Documents that have no section of their own: their figures, and tables of what is in lists.
-PageSection plain_section(const ResultDocument& document, const ResultFolder& folder);
+SectionOf plain_section;
 
 }  // namespace retrace::report::document

@@ -74,9 +74,8 @@ PageTable ledger_table(const ResultDocument& document) {
 }  // namespace
 
 PageSection rre_section(const ResultDocument& document, const ResultFolder&) {
-  PageSection section;
-  section.title = "Efficiency";
-  section.paragraphs.push_back(
+  PageSection section = titled(
+      "Efficiency",
       "RRE is the power that comes back into the acceptance cone over the incident power. The standard error covers "
       "sampling alone; the exact engine has none.");
   const PageChart chart = rre_chart(document.json);
@@ -210,9 +209,8 @@ PageFigure footprint_panel(const Json& json, const Json& region, const Extent& e
 }  // namespace
 
 PageSection footprint_section(const ResultDocument& document, const ResultFolder& folder) {
-  PageSection section;
-  section.title = "Footprint";
-  section.paragraphs.push_back(
+  PageSection section = titled(
+      "Footprint",
       "Where light must fall on the entrance face to come back into the acceptance cone; what is left blank is dead. "
       "Darker regions return more of it.");
   const Json& regions = list(document.json, "regions");
@@ -271,9 +269,8 @@ PageFigure far_field_panel(const Json& direction) {
 }  // namespace
 
 PageSection far_field_section(const ResultDocument& document, const ResultFolder&) {
-  PageSection section;
-  section.title = "Far field";
-  section.paragraphs.push_back(
+  PageSection section = titled(
+      "Far field",
       "The directions in which light leaves the entrance face, seen from the source: the centre is the way back. The "
       "area of a spot is as its power.");
   Json rows = Json::array();

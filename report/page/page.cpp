@@ -240,6 +240,13 @@ class HtmlWriter {
 
 }  // namespace
 
+PageSection titled(std::string title, const std::string& paragraph) {
+  PageSection section;
+  section.title = std::move(title);
+  if (!paragraph.empty()) section.paragraphs.push_back(paragraph);
+  return section;
+}
+
 std::string shown(double value) {
   if (!std::isfinite(value)) return "";
   return fmt::format("{:.6g}", value + 0.0);

@@ -92,6 +92,8 @@ struct PageSection {
   bool has_scene = false;
 };
 
+PageSection titled(std::string title, const std::string& paragraph = {});
+
 /// One light path of the view in three dimensions.
 struct ScenePathView {
   std::string label;

@@ -1,8 +1,6 @@
 // Pictures: of a detector, a camera and a road at night.
 #include <fmt/format.h>
 
-#include <array>
-
 #include "report/page/document_sections.h"
 #include "report/page/document_view.h"
 
@@ -10,8 +8,7 @@ namespace retrace::report::document {
 namespace {
 
 PageSection detector_section(const Json& json) {
-  PageSection section;
-  section.title = "Detector";
+  PageSection section = titled("Detector");
   section.facts = {{"Returned (RRE)", percent(number(json, "rre")), ""},
                    {"Incidence", measured(number(json, "incidence_deg"), " deg"), ""},
                    {"Azimuth", measured(number(json, "azimuth_deg"), " deg"), ""},
@@ -24,8 +21,7 @@ PageSection detector_section(const Json& json) {
 }
 
 PageSection camera_section(const Json& json) {
-  PageSection section;
-  section.title = "Camera";
+  PageSection section = titled("Camera");
   const double error = number(json, "part_std_error_cd_per_m2");
   section.facts = {{"Mean luminance of the part", measured(number(json, "part_luminance_cd_per_m2"), " cd/m2"), ""},
                    {"Its standard error", measured(error, " cd/m2"), ""},
@@ -47,9 +43,8 @@ PageCell of_lamp(const Json& reflector, const char* key, std::size_t lamp) {
 }
 
 PageSection road_section(const ResultDocument& document) {
-  PageSection section;
-  section.title = "Night road";
-  section.paragraphs.push_back(
+  PageSection section = titled(
+      "Night road",
       "Two such reflectors on the rear of a car ahead, in the light of both headlamps, as the driver sees them.");
   PageTable table;
   table.caption = "The reflectors";

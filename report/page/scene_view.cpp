@@ -9,8 +9,7 @@
 namespace retrace::report {
 namespace {
 
-using geometry::FacetRole;
-using raytrace::PathEvent;
+using geometry::FacetRole, raytrace::PathEvent;
 
 std::string face_name(FacetRole role) {
   switch (role) {

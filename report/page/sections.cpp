@@ -107,8 +107,7 @@ void add_summary_facts(const ResultDocument& document, std::vector<PageFact>& fa
 }
 
 PageSection summary_section(const ResultFolder& folder) {
-  PageSection section;
-  section.title = "Summary";
+  PageSection section = titled("Summary");
   for (const auto& [kind, make] : makers())
     for (const ResultDocument& document : folder.documents)
       if (document.kind == kind) add_summary_facts(document, section.facts);
@@ -125,8 +124,7 @@ PageSection summary_section(const ResultFolder& folder) {
 }
 
 PageSection provenance_section(const ResultFolder& folder) {
-  PageSection section;
-  section.title = "Provenance";
+  PageSection section = titled("Provenance");
   section.paragraphs.push_back(
       fmt::format("This page was made by retrace {} from the documents below. With the same design, seed and version "
                   "they come out the same.",

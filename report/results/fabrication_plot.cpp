@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <utility>
@@ -14,8 +12,7 @@
 namespace retrace::report {
 namespace {
 
-using geometry::Polygon;
-using geometry::Vec2;
+using geometry::Polygon, geometry::Vec2;
 
 /// Of more elements neighbours in a row are drawn as one.
 constexpr std::size_t kMostElementsDrawn = 4000;
@@ -89,6 +86,39 @@ PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing)
   return plot;
 }
 
+namespace {
+
+/// Elements of a row that are drawn as one.
+struct DrawnElements {
+  Polygon outline;
+  std::size_t count = 1;
+  std::int64_t places = 0;  ///< sum of their places in the order of cutting
+};
+
+/// From element `first` on: prisms that touch, where there are many elements, else that one alone.
+template <class InPlan>
+DrawnElements drawn_from(std::size_t first, const std::vector<fabrication::CutElement>& elements,
+                         const std::vector<std::int64_t>& places, const geometry::Element& element,
+                         const InPlan& in_plan) {
+  const auto outline_at = [&](std::size_t k) {
+    return outline_of(element, in_plan(elements[k].centre_mm), elements[k].rotated);
+  };
+  DrawnElements drawn{outline_at(first), 1, places[first]};
+  if (!std::holds_alternative<geometry::RtpElement>(element) || elements.size() <= kMostElementsDrawn) return drawn;
+  for (std::size_t next = first + 1; next < elements.size() && elements[next].row == elements[first].row &&
+                                     elements[next].column == elements[next - 1].column + 1;
+       ++next) {
+    const geometry::Rectangle box = geometry::bounding_box(drawn.outline);
+    const geometry::Rectangle more = geometry::bounding_box(outline_at(next));
+    drawn.outline = rectangle(box.lower.cwiseMin(more.lower), box.upper.cwiseMax(more.upper));
+    drawn.places += places[next];
+    ++drawn.count;
+  }
+  return drawn;
+}
+
+}  // namespace
+
 MapPlot arrangement_plot(const studies::FabricationResult& result) {
   const std::vector<fabrication::CutElement>& elements = result.plan.elements;
   const geometry::Element element = fabrication::blank_element(result.job);
@@ -111,28 +141,15 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
   const auto in_plan = [&](const Vec2& w) -> Vec2 { return Vec2(-w.y(), w.x()) + 0.5 * extent; };
   for (std::size_t k = 0; k < elements.size();) {
     const Vec2 centre = in_plan(elements[k].centre_mm);
-    Polygon outline = outline_of(element, centre, elements[k].rotated);
-    std::int64_t sum = places[k];
-    std::int64_t count = 1;
-    std::size_t next = k + 1;
-    while (is_of_prisms && elements.size() > kMostElementsDrawn && next < elements.size() &&
-           elements[next].row == elements[k].row && elements[next].column == elements[next - 1].column + 1) {
-      const geometry::Rectangle box = geometry::bounding_box(outline);
-      const geometry::Rectangle more =
-          geometry::bounding_box(outline_of(element, in_plan(elements[next].centre_mm), elements[next].rotated));
-      outline = rectangle(box.lower.cwiseMin(more.lower), box.upper.cwiseMax(more.upper));
-      sum += places[next];
-      ++count;
-      ++next;
-    }
-    const double mean = static_cast<double>(sum) / static_cast<double>(count);
-    const Vec2 half = 0.5 * geometry::bounding_box(outline).size();
-    panel.regions.push_back({outline, 100.0 * mean / static_cast<double>(elements.size())});
-    if (count == 1 && is_of_prisms) {
+    const DrawnElements drawn = drawn_from(k, elements, places, element, in_plan);
+    const double mean = static_cast<double>(drawn.places) / static_cast<double>(drawn.count);
+    const Vec2 half = 0.5 * geometry::bounding_box(drawn.outline).size();
+    panel.regions.push_back({drawn.outline, 100.0 * mean / static_cast<double>(elements.size())});
+    if (drawn.count == 1 && is_of_prisms) {
       const Vec2 along = elements[k].rotated ? Vec2(half.x(), 0.0) : Vec2(0.0, half.y());
       panel.fine_lines.push_back({centre - along, centre + along});
     }
-    k = next;
+    k += drawn.count;
   }
   plot.panels.push_back(std::move(panel));
   return plot;

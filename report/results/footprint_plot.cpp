@@ -12,9 +12,7 @@
 namespace retrace::report {
 namespace {
 
-using studies::EntranceFace;
-using studies::ReturnedLight;
-using studies::RreResult;
+using studies::EntranceFace, studies::ReturnedLight, studies::RreResult;
 
 std::string angle(double deg) {
   return (deg < 0.0 ? "\u2212" : "") + shortest(std::abs(deg)) + "°";

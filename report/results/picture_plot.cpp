@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/number_format.h"
 #include "core/version.h"
 #include "report/colour_scale.h"
@@ -13,8 +11,7 @@
 namespace retrace::report {
 namespace {
 
-using studies::CameraResult;
-using studies::DetectorResult;
+using studies::CameraResult, studies::DetectorResult;
 
 /// Rows from above: grids of directions have the lowest first.
 std::vector<double> turned_over(const std::vector<double>& values, std::size_t columns) {

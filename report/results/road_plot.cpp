@@ -13,8 +13,7 @@
 namespace retrace::report {
 namespace {
 
-using studies::RoadResult;
-using studies::RoadView;
+using studies::RoadResult, studies::RoadView;
 
 constexpr Colour kBackground{0.07, 0.075, 0.09};
 constexpr Colour kText{0.93, 0.93, 0.93};

@@ -4,7 +4,6 @@
 #include <limits>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "core/number_format.h"
 #include "report/results/result_plots.h"
@@ -14,8 +13,7 @@
 namespace retrace::report {
 namespace {
 
-using studies::FacetGroup;
-using studies::RoughnessPoint;
+using studies::FacetGroup, studies::RoughnessPoint;
 
 /// Processes stand alone; single facets go together by their table.
 std::string label_of(const FacetGroup& group) {

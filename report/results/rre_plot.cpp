@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 #include <tuple>
-#include <utility>
 
 #include "core/number_format.h"
 #include "report/results/result_plots.h"
@@ -15,8 +14,7 @@
 namespace retrace::report {
 namespace {
 
-using studies::RrePoint;
-using studies::RreResult;
+using studies::RrePoint, studies::RreResult;
 
 /// What varies in the result: one of these becomes the axis, the others tell curves apart.
 struct Variation {

@@ -15,10 +15,8 @@ namespace retrace::studies {
 /// between roughness and feed marks (docs/theory/verification.md).
 struct PredictedTexture {
   double sa_nm = 0.0;
-  double roughness_sq_nm = 0.0;
-  double correlation_length_um = 0.0;
-  double waviness_sq_nm = 0.0;
-  double waviness_length_um = 0.0;  ///< of the feed marks
+  double roughness_sq_nm = 0.0, correlation_length_um = 0.0;
+  double waviness_sq_nm = 0.0, waviness_length_um = 0.0;  ///< of the feed marks
 };
 PredictedTexture predicted_texture(const fabrication::Job& job);
 
@@ -36,8 +34,7 @@ struct AsMachined {
   /// Opening is positive; of a prism towards -x and +x of the part, of a cube corner in the order of its facets.
   std::vector<double> facet_tilt_arcmin;
   std::optional<geometry::FacetPlanes> planes;
-  double root_radius_um = 0.0;
-  double root_chamfer_um = 0.0;
+  double root_radius_um = 0.0, root_chamfer_um = 0.0;
   PredictedTexture texture;
   std::vector<geometry::Scratch> scratches;  ///< that the chips of the tool's edge leave
   MachinedBody body;

@@ -1,20 +1,14 @@
 #include "studies/drawing/array_figures.h"
 #include "geometry/elements/whole_elements.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
 namespace retrace::studies {
 namespace {
 
-using geometry::Arrangement;
-using geometry::Extent;
-using geometry::Part;
-using geometry::PartSpec;
-using geometry::Rectangle;
-using geometry::RtpElement;
-using geometry::Vec2;
+using geometry::Arrangement, geometry::Extent, geometry::Part, geometry::PartSpec, geometry::Rectangle,
+    geometry::RtpElement, geometry::Vec2;
 
 Rectangle extent_of(const Part& part) {
   if (part.period_mm) return {Vec2::Zero(), *part.period_mm};

@@ -12,12 +12,8 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Arrangement;
-using geometry::Part;
-using geometry::PartSpec;
-using geometry::Rectangle;
-using geometry::RtpElement;
-using geometry::Vec2;
+using geometry::Arrangement, geometry::Part, geometry::PartSpec, geometry::Rectangle, geometry::RtpElement,
+    geometry::Vec2;
 using Side = Dimension::Side;
 
 // Arrays of more elements than this along an axis have a detail.

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "geometry/part/mesh_part.h"
@@ -12,12 +11,8 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::BoundaryMesh;
-using geometry::FacetRole;
-using geometry::Part;
-using geometry::SurfacePatch;
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::BoundaryMesh, geometry::FacetRole, geometry::Part, geometry::SurfacePatch, geometry::Vec2,
+    geometry::Vec3;
 
 // Of a cosine: neighbours that look so nearly the same way have no edge between them.
 constexpr double kSameDirection = 1e-6;

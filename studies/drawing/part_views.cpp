@@ -10,14 +10,8 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Part;
-using geometry::PatchFacet;
-using geometry::Placement;
-using geometry::Polygon;
-using geometry::Rectangle;
-using geometry::SurfacePatch;
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Part, geometry::PatchFacet, geometry::Placement, geometry::Polygon, geometry::Rectangle,
+    geometry::SurfacePatch, geometry::Vec2, geometry::Vec3;
 
 // Faces that are steeper than this are walls, which a plan shows as lines.
 constexpr double kLevelShare = 1e-6;

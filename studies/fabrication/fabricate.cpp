@@ -14,8 +14,7 @@
 namespace retrace::studies {
 namespace {
 
-using fabrication::Plan;
-using geometry::Vec3;
+using fabrication::Plan, geometry::Vec3;
 
 const fabrication::Dialect& dialect_of(const std::string& name) {
   std::vector<std::string_view> names;

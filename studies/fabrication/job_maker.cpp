@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "core/message_text.h"
 #include "core/number_format.h"
@@ -20,9 +19,7 @@
 namespace retrace::studies {
 namespace {
 
-using fabrication::Job;
-using geometry::Arrangement;
-using geometry::PartSpec;
+using fabrication::Job, geometry::Arrangement, geometry::PartSpec;
 
 /// \throw InputError at the option if the word is none of `words`
 std::size_t word_index(const std::string& option, const std::string& given, std::span<const std::string_view> words) {

@@ -17,8 +17,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Vec2, geometry::Vec3;
 
 /// A plane through a point told from the apex, which lies `depth_mm` below the rims; for a turned cell turned with it.
 geometry::HeightPlane height_plane(const Vec3& normal, const Vec3& point_mm, double depth_mm, bool rotated) {

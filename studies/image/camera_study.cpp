@@ -16,8 +16,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Vec2, geometry::Vec3;
 
 // The picture shows this much more than the part.
 constexpr double kMargin = 1.15;

@@ -12,9 +12,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Rectangle;
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Rectangle, geometry::Vec2, geometry::Vec3;
 
 constexpr std::size_t kMostPixels = 8192;
 constexpr std::size_t kMostAnglePixels = 2049;

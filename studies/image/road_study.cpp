@@ -19,20 +19,14 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
-using std::numbers::pi;
+using geometry::Vec2, geometry::Vec3, std::numbers::pi;
 
 constexpr std::size_t kMostViews = 6;
 // Points of a pixel along either side.
 constexpr int kFiner = 4;
 
 // Diffuse reflectances, typical of dark paint, glass, tyres, asphalt, and white paint on plates and lines.
-constexpr double kPaint = 0.025;
-constexpr double kGlass = 0.004;
-constexpr double kTyre = 0.012;
-constexpr double kAsphalt = 0.05;
-constexpr double kWhite = 0.3;
+constexpr double kPaint = 0.025, kGlass = 0.004, kTyre = 0.012, kAsphalt = 0.05, kWhite = 0.3;
 constexpr double kNightSky = 0.002;   ///< cd/m^2, overcast over inhabited land
 constexpr double kNightLight = 0.02;  ///< lx, all round
 

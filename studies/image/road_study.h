@@ -21,12 +21,9 @@ struct RoadScene {
   double eye_right = -0.35;  ///< negative: the driver sits on the left
   double eye_behind = 1.8;   ///< the headlamps
   double pupil_diameter = 0.007;
-  double reflector_height = 0.6;
-  double reflector_half_gap = 0.72;
-  double reflector_width = 0.12;
-  double reflector_tall = 0.025;
-  double car_width = 1.75;
-  double car_tall = 1.42;
+  double reflector_height = 0.6, reflector_half_gap = 0.72;
+  double reflector_width = 0.12, reflector_tall = 0.025;
+  double car_width = 1.75, car_tall = 1.42;
 };
 
 struct RoadRequest {

@@ -9,8 +9,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Vec2, geometry::Vec3;
 
 constexpr int kPoints = 400;
 

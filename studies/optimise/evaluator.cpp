@@ -1,7 +1,6 @@
 #include "studies/optimise/evaluator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <utility>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 
 #include "core/error.h"
 #include "materials/io/spectrum_reader.h"
@@ -15,9 +14,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
-using raytrace::PhotometricGeometry;
+using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
 
 // Least power of a beam that is followed, as a share of what falls on an element: some 1e-4 is left behind.
 constexpr double kCutoff = 1e-6;

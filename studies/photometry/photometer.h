@@ -14,9 +14,7 @@ namespace retrace::studies {
 
 /// A design lit from one direction and looked at from several.
 struct PhotometerSetting {
-  double v_deg = 0.0;
-  double h_deg = 0.0;
-  double rotation_deg = 0.0;
+  double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
   std::vector<double> observation_deg;
   std::size_t map_columns = 0;  ///< 0: no map
   bool split = false;

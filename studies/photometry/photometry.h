@@ -62,11 +62,8 @@ struct PhotometricPoint {
 
 /// One direction of incidence.
 struct PhotometricDirection {
-  double v_deg = 0.0;
-  double h_deg = 0.0;
-  double rotation_deg = 0.0;
-  double incidence_deg = 0.0;
-  double azimuth_deg = 0.0;
+  double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
+  double incidence_deg = 0.0, azimuth_deg = 0.0;
   double rre = 0.0;        ///< geometric, of the design's widest cone; of the light that is weighed
   double std_error = 0.0;  ///< of it
   double truncated = 0.0;  ///< by how much it may be too low

@@ -8,14 +8,12 @@ namespace retrace::studies {
 
 /// A value of a curve, with the standard error that sampling left in it.
 struct CurveValue {
-  double value = 0.0;
-  double std_error = 0.0;
+  double value = 0.0, std_error = 0.0;
 };
 
 /// A piece of the axis over which a curve is wanted.
 struct CurveSpan {
-  double low = 0.0;
-  double high = 0.0;
+  double low = 0.0, high = 0.0;
 };
 
 /// Chooses the places at which to find curves, in degrees, until straight lines between neighbours follow all of them.
@@ -49,8 +47,7 @@ class AdaptiveCurve {
  private:
   /// Between two places next to each other.
   struct Gap {
-    double low = 0.0;
-    double high = 0.0;
+    double low = 0.0, high = 0.0;
     double miss = 0.0;                 ///< of the middle of the gap that it was cut from
     bool is_half_of_straight = false;  ///< that middle lay on the line
   };

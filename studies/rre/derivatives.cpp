@@ -15,9 +15,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::PartSpec;
-using geometry::RtpElement;
-using raytrace::Account;
+using geometry::PartSpec, geometry::RtpElement, raytrace::Account;
 
 /// Rounding of the exact engine, beside what it truncates.
 constexpr double kRounding = 1e-12;

@@ -9,8 +9,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Polygon;
-using geometry::Vec2;
+using geometry::Polygon, geometry::Vec2;
 
 // Neighbours whose efficiencies differ by less are one region.
 constexpr double kEqualEfficiency = 1e-9;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <utility>
 
 #include "core/error.h"
 #include "raytrace/balls/ball_tracer.h"

@@ -17,7 +17,6 @@
 #include <set>
 #include <string_view>
 #include <thread>
-#include <utility>
 
 #include "core/error.h"
 #include "raytrace/sampling/threads.h"

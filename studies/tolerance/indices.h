@@ -8,9 +8,7 @@ namespace retrace::studies {
 
 /// An estimate with a confidence interval.
 struct Estimate {
-  double value = 0.0;
-  double low = 0.0;
-  double high = 0.0;
+  double value = 0.0, low = 0.0, high = 0.0;
 };
 
 /// Shares of the variance of a quantity that one parameter causes.
@@ -22,8 +20,7 @@ struct SobolIndex {
 /// A quantity at one row of the design of Saltelli et al. (2010): at two independent points A and B, and at A with one
 /// coordinate after the other from B.
 struct SaltelliRow {
-  double a = 0.0;
-  double b = 0.0;
+  double a = 0.0, b = 0.0;
   std::vector<double> mixed;  ///< by parameter
 };
 
@@ -42,8 +39,7 @@ struct Spread {
   double mean = 0.0;
   Estimate mean_interval;  ///< of the mean, by Student's t
   double deviation = 0.0;  ///< standard deviation; 0 for a single value
-  double least = 0.0;
-  double most = 0.0;
+  double least = 0.0, most = 0.0;
 };
 /// \pre values is not empty
 Spread spread_of(const std::vector<double>& values, double confidence);

@@ -18,16 +18,11 @@ enum class Columns { matrix, xyz, xz };
 
 /// What the header says.
 struct Header {
-  std::optional<double> x_pixel_um;
-  std::optional<double> y_pixel_um;
-  std::optional<double> cell_size;  ///< in the lateral unit
-  std::optional<double> width_um;   ///< of the whole map
-  std::optional<double> height_um;
-  std::optional<double> height_unit_nm;
-  std::optional<double> lateral_unit_nm;
-  std::optional<double> columns;
-  std::optional<double> rows;
-  std::optional<double> no_data;
+  std::optional<double> x_pixel_um, y_pixel_um;
+  std::optional<double> cell_size;            ///< in the lateral unit
+  std::optional<double> width_um, height_um;  ///< of the whole map
+  std::optional<double> height_unit_nm, lateral_unit_nm;
+  std::optional<double> columns, rows, no_data;
   Columns layout = Columns::matrix;
 };
 

@@ -91,12 +91,6 @@ double HarveyShack::scattered_share(const ScatterEvent& event, const Facet& face
   return phase_lobe ? phase_lobe->scattered_share() : 0.0;
 }
 
-std::optional<Vec2> HarveyShack::sample_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
-                                                  RandomStream& random) const {
-  if (random.next() >= scattered_share(event, facet, lobe)) return std::nullopt;
-  return draw_scattered(event, facet, lobe, random);
-}
-
 std::optional<Vec2> HarveyShack::draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                                 RandomStream& random) const {
   const Band what = band(event, facet, lobe);

@@ -41,12 +41,9 @@ class HarveyShack {
   double specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
   /// One less the same, to full precision where that is small.
   double scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
-  /// The same as sample_scattered() given that the light scatters. Nothing if no direction can be found.
+  /// Draws the direction of light, given that it scatters. Nothing if no direction can be found.
   std::optional<Vec2> draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                      RandomStream& random) const;
-  /// Draws the direction of light that scatters; nothing for light that is specular.
-  std::optional<Vec2> sample_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
-                                       RandomStream& random) const;
   /// Density of scattered light per unit of direction cosines squared, as a share of the lobe's power: the lobe's BSDF
   /// without its Fresnel factor, per sr. By quadrature: for tests and tables, not for every ray.
   double scattered_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;

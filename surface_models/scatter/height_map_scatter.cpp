@@ -267,12 +267,6 @@ double HeightMapScatter::scattered_share(const ScatterEvent& event, const Facet&
   return phase_lobe ? phase_lobe->scattered_share() : 0.0;
 }
 
-std::optional<Vec2> HeightMapScatter::sample_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
-                                                       RandomStream& random) const {
-  if (random.next() >= scattered_share(event, facet, lobe)) return std::nullopt;
-  return draw_scattered(event, facet, lobe, random);
-}
-
 std::optional<Vec2> HeightMapScatter::draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                                      RandomStream& random) const {
   if (facet.is_tilted) return std::nullopt;

@@ -38,11 +38,9 @@ class HeightMapScatter {
   double specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
   /// One less the same, to full precision where that is small.
   double scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
-  /// The same as sample_scattered() given that the light scatters. Nothing if no direction can be found.
+  /// Draws the direction of light, given that it scatters. Nothing if no direction can be found.
   std::optional<Vec2> draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                      RandomStream& random) const;
-  std::optional<Vec2> sample_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
-                                       RandomStream& random) const;
   double scattered_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;
   /// The density before scaling to the scattered share.
   double unscaled_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;

@@ -9,8 +9,7 @@
 
 namespace retrace::surface_models {
 
-using geometry::Vec2;
-using geometry::Vec3;
+using geometry::Vec2, geometry::Vec3;
 
 /// What becomes of light at an interface: it stays on its side or goes to the other one.
 enum class Lobe { reflection, transmission };

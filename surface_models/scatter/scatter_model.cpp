@@ -21,6 +21,18 @@ class FacetFrame {
   Eigen::Quaterniond facet_from_mean_ = Eigen::Quaterniond::Identity();
 };
 
+/// Draws the direction of light that scatters, in the facet's frame; nothing for light that is specular.
+template <class Model>
+std::optional<Vec2> sample_scattered(const Model& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                     RandomStream& random) {
+  if constexpr (requires { model.scattered_share(event, facet, lobe); }) {
+    if (random.next() >= model.scattered_share(event, facet, lobe)) return std::nullopt;
+    return model.draw_scattered(event, facet, lobe, random);
+  } else {
+    return model.sample_scattered(event, facet, lobe, random);
+  }
+}
+
 /// Density of scattered directions per unit of the facet's direction cosines squared.
 template <class Model>
 double density(const Model& model, const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& direction) {
@@ -44,7 +56,7 @@ std::optional<ScatterSample> sample(const ScatterModel& model, const ScatterEven
       [&](const auto& m) -> std::optional<ScatterSample> {
         ScatterSample drawn{*specular, *specular, 1.0, true};
         const FacetFrame frame(facet);
-        if (const auto beta = m.sample_scattered(frame.to_facet(event), facet, lobe, random)) {
+        if (const auto beta = sample_scattered(m, frame.to_facet(event), facet, lobe, random)) {
           drawn.direction = frame.to_mean(direction_of(*beta, lobe));
           drawn.is_specular = false;
         }

@@ -34,13 +34,6 @@ std::string design_with(std::size_t number, const std::string& line) {
   return text;
 }
 
-void expect_one_line(const Outcome& outcome, int code, const std::string& begin) {
-  EXPECT_EQ(outcome.code, code);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err << "should begin: " << begin;
-}
-
 struct BadLine {
   std::size_t number;
   std::string line;
@@ -87,7 +80,7 @@ TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
       SCOPED_TRACE(command + ", line " + std::to_string(bad.number) + ": " + bad.line);
       const TemporaryFolder folder;
       folder.write("d.toml", design_with(bad.number, bad.line));
-      expect_one_line(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"}), 2, bad.where);
+      expect_refused(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"}), bad.where);
       EXPECT_EQ(folder.names(), Arguments{"d.toml"});
     }
 }
@@ -110,8 +103,8 @@ TEST(BadInput, WrongFilesOfSpectraAreRefusedWithFileLineAndColumn) {
       folder.write("d.toml", design_with(12, "[light]\nspectrum = \"lamp.csv\""));
       folder.write("lamp.csv", text);
       const std::string where = "d.toml:13: light.spectrum: ";
-      expect_one_line(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"}), 2,
-                      where + (complaint.empty() ? "holds no light that the eye sees" : "lamp.csv" + complaint));
+      expect_refused(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"}),
+                     where + (complaint.empty() ? "holds no light that the eye sees" : "lamp.csv" + complaint));
       EXPECT_EQ(folder.names(), (Arguments{"d.toml", "lamp.csv"}));
     }
 }
@@ -121,25 +114,24 @@ TEST(BadOutput, NoOutputReplacesTheFileOfASpectrum) {
   const std::string lamp = "wavelength_nm,power\n400,1\n700,1\n";
   folder.write("d.toml", design_with(12, "[light]\nspectrum = \"rre.csv\""));
   folder.write("rre.csv", lamp);
-  expect_one_line(retrace(folder, {"rre", "d.toml", "-o", "."}), 2, "--out: ./rre.csv is a file that is read");
-  expect_one_line(retrace(folder, {"inspect", "d.toml", "--json", "rre.csv"}), 2,
-                  "--json: rre.csv is a file that is read");
+  expect_refused(retrace(folder, {"rre", "d.toml", "-o", "."}), "--out: ./rre.csv is a file that is read");
+  expect_refused(retrace(folder, {"inspect", "d.toml", "--json", "rre.csv"}), "--json: rre.csv is a file that is read");
   EXPECT_EQ(folder.read("rre.csv"), lamp);
 }
 
 TEST(BadInput, ErrorsOfStandardInputAndOverridesSayWhere) {
   const TemporaryFolder folder;
-  expect_one_line(retrace(folder, {"rre", "-", "-o", "out"}, design_with(3, "base_mm = -1")), 2,
-                  "standard input:3: element.base_mm: ");
-  expect_one_line(retrace(folder, {"rre", "-", "-o", "out", "--set", "element.base_mm=-2"}, design_with(0, "")), 2,
-                  "--set element.base_mm=-2: ");
+  expect_refused(retrace(folder, {"rre", "-", "-o", "out"}, design_with(3, "base_mm = -1")),
+                 "standard input:3: element.base_mm: ");
+  expect_refused(retrace(folder, {"rre", "-", "-o", "out", "--set", "element.base_mm=-2"}, design_with(0, "")),
+                 "--set element.base_mm=-2: ");
   EXPECT_TRUE(folder.names().empty());
 }
 
 TEST(BadInput, OneBadDesignOfSeveralStopsAllOfThem) {
   const TemporaryFolder folder;
   folder.write("bad.toml", design_with(3, "base_mm = 0"));
-  expect_one_line(retrace(folder, {"rre", example("rtp_brick_2mm.toml"), "bad.toml", "-o", "out"}), 2, "bad.toml:3: ");
+  expect_refused(retrace(folder, {"rre", example("rtp_brick_2mm.toml"), "bad.toml", "-o", "out"}), "bad.toml:3: ");
   EXPECT_EQ(folder.names(), Arguments{"bad.toml"});
 }
 
@@ -151,27 +143,20 @@ TEST(BadInput, FilesThatCannotBeReadAreRefused) {
     folder.write("binary.toml", std::string("\x89PNG\r\n\x1a\n\0\0\xff", 11));
     fs::create_directory(folder.path() / "folder.toml");
     const Arguments before = folder.names();
-    expect_one_line(retrace(folder, {command, "missing.toml", "-o", "out"}), 2, "missing.toml: cannot be read");
-    expect_one_line(retrace(folder, {command, "folder.toml", "-o", "out"}), 2, "folder.toml: cannot be read");
-    expect_one_line(retrace(folder, {command, "empty.toml/d.toml", "-o", "out"}), 2,
-                    "empty.toml/d.toml: cannot be read");
-    expect_one_line(retrace(folder, {command, "empty.toml", "-o", "out"}), 2, "empty.toml: element.kind: missing");
-    expect_one_line(retrace(folder, {command, "binary.toml", "-o", "out"}), 2, "binary.toml:1: not valid TOML");
-    expect_one_line(retrace(folder, {command, "two\nlines.toml", "-o", "out"}), 2, "two lines.toml: cannot be read");
-    expect_one_line(retrace(folder, {command, "\x1b[31mred.toml", "-o", "out"}), 2,
-                    "\\x1b[31mred.toml: cannot be read");
-    expect_one_line(retrace(folder, {command, "", "-o", "out"}), 2, "DESIGN: must not be empty");
+    expect_refused(retrace(folder, {command, "missing.toml", "-o", "out"}), "missing.toml: cannot be read");
+    expect_refused(retrace(folder, {command, "folder.toml", "-o", "out"}), "folder.toml: cannot be read");
+    expect_refused(retrace(folder, {command, "empty.toml/d.toml", "-o", "out"}), "empty.toml/d.toml: cannot be read");
+    expect_refused(retrace(folder, {command, "empty.toml", "-o", "out"}), "empty.toml: element.kind: missing");
+    expect_refused(retrace(folder, {command, "binary.toml", "-o", "out"}), "binary.toml:1: not valid TOML");
+    expect_refused(retrace(folder, {command, "two\nlines.toml", "-o", "out"}), "two lines.toml: cannot be read");
+    expect_refused(retrace(folder, {command, "\x1b[31mred.toml", "-o", "out"}), "\\x1b[31mred.toml: cannot be read");
+    expect_refused(retrace(folder, {command, "", "-o", "out"}), "DESIGN: must not be empty");
     EXPECT_EQ(folder.names(), before);
   }
 }
 
-struct BadArguments {
-  Arguments arguments;
-  std::string message;
-};
-
 TEST(BadInput, WrongOptionsAreRefused) {
-  const std::vector<BadArguments> cases = {
+  const std::vector<Refused> cases = {
       {{"--engine", "magic"}, "--engine: must be auto, exact, montecarlo, cell or embree, got magic"},
       {{"--engine", ""}, "--engine: "},
       {{"--engine", "cell"},
@@ -221,14 +206,10 @@ TEST(BadInput, WrongOptionsAreRefused) {
       {{"--json", ""}, "--json: must not be empty"},
       {{"--out", ""}, "--out: must not be empty"},
   };
-  for (const BadArguments& bad : cases) {
-    SCOPED_TRACE(bad.message);
-    const TemporaryFolder folder;
-    Arguments arguments = {"rre", example("rtp_single_0p45mm.toml")};
-    arguments.insert(arguments.end(), bad.arguments.begin(), bad.arguments.end());
-    if (bad.arguments.front() != "--out") arguments.insert(arguments.begin(), {"-o", "out"});
-    expect_one_line(retrace(folder, arguments), 2, bad.message);
-    EXPECT_TRUE(folder.names().empty());
+  for (const Refused& bad : cases) {
+    Arguments command = {"rre", example("rtp_single_0p45mm.toml")};
+    if (bad.arguments.front() != "--out") command.insert(command.begin(), {"-o", "out"});
+    expect_refused(TemporaryFolder(), {bad}, command, {});
   }
 }
 
@@ -243,19 +224,18 @@ TEST(BadInput, SeedMayBeAnyOfThem) {
 
 TEST(BadInput, WordsThatAreNoCommandAreRefused) {
   const TemporaryFolder folder;
-  expect_one_line(retrace(folder, {}), 2, "a command is required");
-  expect_one_line(retrace(folder, {"trace", "d.toml", "-o", "out"}), 2, "unknown command trace");
-  expect_one_line(retrace(folder, {"--bogus"}), 2, "unknown option --bogus");
-  expect_one_line(retrace(folder, {"rre", "--bogus"}), 2, "unknown option --bogus");
-  expect_one_line(retrace(folder, {"rre", "-o", "out"}), 2, "DESIGN is required");
-  expect_one_line(retrace(folder, {"rre", "-", "-", "-o", "out"}), 2, "standard input can be read as one design only");
-  expect_one_line(retrace(folder, {"inspect", "a.toml", "b.toml"}), 2,
-                  "The following argument was not expected: b.toml");
-  expect_one_line(retrace(folder, {"init", "prism", "-o", "out"}), 2, "KIND must be one of");
-  expect_one_line(retrace(folder, {"init", "-o", "out"}), 2, "KIND is required");
-  expect_one_line(retrace(folder, {"init", "rtp", "--set", "element.base_mm=1", "-o", "out"}), 2, "--set: ");
-  expect_one_line(retrace(folder, {"list", "planets", "-o", "out"}), 2, "list: ");
-  expect_one_line(retrace(folder, {"list"}), 2, "WHAT is required");
+  expect_refused(retrace(folder, {}), "a command is required");
+  expect_refused(retrace(folder, {"trace", "d.toml", "-o", "out"}), "unknown command trace");
+  expect_refused(retrace(folder, {"--bogus"}), "unknown option --bogus");
+  expect_refused(retrace(folder, {"rre", "--bogus"}), "unknown option --bogus");
+  expect_refused(retrace(folder, {"rre", "-o", "out"}), "DESIGN is required");
+  expect_refused(retrace(folder, {"rre", "-", "-", "-o", "out"}), "standard input can be read as one design only");
+  expect_refused(retrace(folder, {"inspect", "a.toml", "b.toml"}), "The following argument was not expected: b.toml");
+  expect_refused(retrace(folder, {"init", "prism", "-o", "out"}), "KIND must be one of");
+  expect_refused(retrace(folder, {"init", "-o", "out"}), "KIND is required");
+  expect_refused(retrace(folder, {"init", "rtp", "--set", "element.base_mm=1", "-o", "out"}), "--set: ");
+  expect_refused(retrace(folder, {"list", "planets", "-o", "out"}), "list: ");
+  expect_refused(retrace(folder, {"list"}), "WHAT is required");
   EXPECT_TRUE(folder.names().empty());
 }
 
@@ -267,7 +247,7 @@ TEST(BadOutput, FolderThatCannotBeMadeEndsWith3) {
     for (const std::string out : {"way", "way/below"}) {
       Arguments arguments = run;
       arguments.insert(arguments.end(), {"-o", out, "--json", "r.json"});
-      expect_one_line(retrace(folder, arguments), 3, out + ": the output folder cannot be made");
+      expect_refused(retrace(folder, arguments), out + ": the output folder cannot be made", 3);
     }
   EXPECT_EQ(folder.names(), Arguments{"way"});
   EXPECT_EQ(folder.read("way"), "in the way");
@@ -280,10 +260,10 @@ TEST(BadOutput, JsonThatCannotBeWrittenEndsWith3AndMakesNoFolder) {
   for (const std::string json : {"missing/r.json", "folder"}) {
     Arguments arguments = run;
     arguments.push_back(json);
-    expect_one_line(retrace(folder, arguments), 3, json + ": cannot be written");
+    expect_refused(retrace(folder, arguments), json + ": cannot be written", 3);
     EXPECT_EQ(folder.names(), Arguments{"folder"});
   }
-  expect_one_line(retrace(folder, {"list", "materials", "--json", "/dev/full"}), 3, "/dev/full: cannot be written");
+  expect_refused(retrace(folder, {"list", "materials", "--json", "/dev/full"}), "/dev/full: cannot be written", 3);
 }
 
 TEST(BadOutput, NoOutputReplacesADesignOrAnotherOutput) {
@@ -291,32 +271,27 @@ TEST(BadOutput, NoOutputReplacesADesignOrAnotherOutput) {
   const std::string design = read_text(example("rtp_single_0p45mm.toml"));
   folder.write("d.toml", design);
   folder.write("rre.csv", design);
-  const Arguments before = folder.names();
   const Arguments run = {"rre", "d.toml", "rre.csv", "--samples=64", "--quiet"};
-  const std::vector<BadArguments> cases = {
+  const std::vector<Refused> cases = {
       {{"--json", "d.toml"}, "--json: d.toml is a file that is read"},
       {{"--json", "./d.toml"}, "--json: ./d.toml is a file that is read"},
       {{"-o", "."}, "--out: ./rre.csv is a file that is read"},
       {{"-o", "out", "--json", "out/rre.csv"}, "--json: out/rre.csv is a file that --out writes"},
       {{"-o", "out", "--json", "./out/rre.png"}, "--json: ./out/rre.png is a file that --out writes"},
   };
-  for (const BadArguments& bad : cases) {
-    Arguments arguments = run;
-    arguments.insert(arguments.end(), bad.arguments.begin(), bad.arguments.end());
-    expect_one_line(retrace(folder, arguments), 2, bad.message);
-    EXPECT_EQ(folder.names(), before);
+  for (const Refused& bad : cases) {
+    expect_refused(folder, {bad}, run, {});
     EXPECT_EQ(folder.read("d.toml"), design);
     EXPECT_EQ(folder.read("rre.csv"), design);
   }
-  expect_one_line(retrace(folder, {"inspect", "d.toml", "--json", "d.toml"}), 2,
-                  "--json: d.toml is a file that is read");
+  expect_refused(retrace(folder, {"inspect", "d.toml", "--json", "d.toml"}), "--json: d.toml is a file that is read");
 }
 
 TEST(BadOutput, ResultFileBehindAFolderEndsWith3AndLeavesNoTemporaryFile) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "out/rre.csv");
-  expect_one_line(retrace(folder, {"rre", example("rtp_single_0p45mm.toml"), "--samples=64", "-o", "out"}), 3,
-                  "out/rre.csv: cannot be written");
+  expect_refused(retrace(folder, {"rre", example("rtp_single_0p45mm.toml"), "--samples=64", "-o", "out"}),
+                 "out/rre.csv: cannot be written", 3);
   for (const std::string& name : folder.names()) EXPECT_EQ(name.find(".tmp"), std::string::npos) << name;
 }
 

@@ -160,10 +160,7 @@ TEST(ReachablePart, WhatIsWrongIsRefusedInOneLine) {
       {{"job", "d.toml", "--tool-width-mm", "0.2", "--set", "array.x_length_mm=0.1", "--reachable", "o.toml"},
        "array.x_length_mm: must be >= 1 to hold one element"}};
   for (const auto& [arguments, message] : cases) {
-    const Outcome outcome = retrace(folder, arguments);
-    EXPECT_EQ(outcome.code, 2) << message;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    expect_refused_with(retrace(folder, arguments), message);
     EXPECT_EQ(folder.names(), before);
   }
 }

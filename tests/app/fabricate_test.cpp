@@ -21,11 +21,6 @@ std::string design(const std::string& arrangement, double length_mm, const std::
 
 const Arguments kJob = {"job", "d.toml", "--tool-width-mm", "0.451", "--machine", "thesis", "--strategy", "two-step"};
 
-Arguments with(Arguments arguments, const Arguments& more) {
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
-
 /// A portable grey map of so many pixels, white but for those of `black` (index from the upper left).
 std::string grey_map(int columns, int rows, const std::vector<int>& values) {
   std::string text = "P2\n" + std::to_string(columns) + " " + std::to_string(rows) + "\n255\n";
@@ -185,11 +180,6 @@ TEST(Job, ADihedralErrorOpensTheApex) {
   EXPECT_NE(folder.read("j.toml").find("apex_angle_deg = 90.05\n"), std::string::npos) << folder.read("j.toml");
 }
 
-struct Refused {
-  Arguments arguments;
-  std::string message;
-};
-
 TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
   const TemporaryFolder folder;
   folder.write("d.toml", design("offset", 3 * 0.451));
@@ -224,8 +214,6 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
   ASSERT_NE(machine.find(axis), std::string::npos);
   machine.replace(machine.find(axis), axis.size(), "direction = { value = [0, 0, 0], assumed = \"ideal\"");
   folder.write("zero_axis.toml", machine);
-  const Arguments before = folder.names();
-
   const std::vector<Refused> cases = {
       {{"job", "d.toml", "--tool-width-mm", "0.46"},
        "--tool-width-mm: must be <= 0.451, the element's width, got 0.46"},
@@ -277,15 +265,7 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
       {{"fabricate", "j.toml", "--split-hours", "0"}, "--split-hours: must be > 0, got 0"},
       {{"fabricate", "j.toml", "--set", "a=1"}, "--set: fabricate reads no design"},
   };
-  for (const Refused& bad : cases) {
-    SCOPED_TRACE(bad.message);
-    const Outcome outcome = retrace(folder, with(bad.arguments, {"-o", "out", "--json", "r.json"}));
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_TRUE(outcome.err.starts_with("retrace: " + bad.message)) << outcome.err;
-    EXPECT_EQ(folder.names(), before);
-  }
+  expect_refused(folder, cases, {});
 }
 
 TEST(List, NamesMachinesAndProcesses) {

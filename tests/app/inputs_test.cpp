@@ -45,11 +45,6 @@ void expect_refused(const TemporaryFolder& folder, const Arguments& arguments, c
 
 const std::string kRead = " is a file that is read; it would be overwritten";
 
-Arguments with(Arguments arguments, const Arguments& more) {
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
-
 /// Offers a file as --json under every name that it can have.
 void expect_protected(const TemporaryFolder& folder, const Arguments& command, const std::string& file) {
   fs::create_directories(folder.path() / "beside");

@@ -78,11 +78,6 @@ TEST(Metrology, TakesFormAndCutoff) {
   EXPECT_LT(plane["sq_nm"].get<double>(), 0.5 * none["sq_nm"].get<double>());
 }
 
-struct Refused {
-  Arguments arguments;
-  std::string message;
-};
-
 TEST(Metrology, RefusesBadFilesAndOptionsInOneLine) {
   const TemporaryFolder folder;
   const std::string row = "1 2 3 4 5 6 7 8\n";
@@ -92,7 +87,6 @@ TEST(Metrology, RefusesBadFilesAndOptionsInOneLine) {
   folder.write("holes.txt", "pixel_um 1\nheight_unit nm\nnan nan nan nan nan nan nan nan\n");
   folder.write("picture.png", std::string("\x89PNG\r\n\x1a\n\0\0", 10));
   folder.write("short.gsf", "Gwyddion Simple Field 1.0\nXRes = 8\nYRes = 90000000\n" + std::string(1, '\0'));
-  const Arguments before = folder.names();
   const std::vector<Refused> cases = {
       {{"missing.txt"}, "missing.txt: cannot be read"},
       {{"bare.txt"}, "bare.txt: the spacing along x is not known: give x_pixel_um in the file, or --pixel-um"},
@@ -113,18 +107,7 @@ TEST(Metrology, RefusesBadFilesAndOptionsInOneLine) {
       {{"good.txt", "--set", "a=1"}, "--set: metrology reads no design"},
       {{}, "FILE is required"},
   };
-  for (const Refused& bad : cases) {
-    SCOPED_TRACE(bad.message);
-    Arguments arguments = {"metrology"};
-    arguments.insert(arguments.end(), bad.arguments.begin(), bad.arguments.end());
-    arguments.insert(arguments.end(), {"-o", "out", "--json", "r.json"});
-    const Outcome outcome = retrace(folder, arguments);
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_TRUE(outcome.err.starts_with("retrace: " + bad.message)) << outcome.err;
-    EXPECT_EQ(folder.names(), before);
-  }
+  expect_refused(folder, cases, {"metrology"});
 }
 
 TEST(Metrology, DoesNotReplaceWhatItReads) {

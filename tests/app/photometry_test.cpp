@@ -147,11 +147,6 @@ TEST(Photometry, AnExampleOfATenthOfANanometrePasses) {
   for (const Json& point : json["points"]) EXPECT_EQ(point["lower_bound"], true);
 }
 
-struct Refused {
-  Arguments arguments;
-  std::string message;
-};
-
 TEST(Photometry, RefusesBadInputInOneLine) {
   const TemporaryFolder folder;
   folder.write("d.toml", kDesign);
@@ -162,25 +157,21 @@ TEST(Photometry, RefusesBadInputInOneLine) {
   folder.write("short.csv", "wavelength_nm,absorption_per_mm\n610,1\n620,1\n");
   const Arguments before = folder.names();
   const Arguments r150 = {"photometry", "d.toml", "--standard=r150", "--class=IA", "--colour=red", "--area-cm2=30"};
-  const auto with = [&](std::size_t k, const std::string& word) {
+  const auto instead = [&](std::size_t k, const std::string& word) {
     Arguments arguments = r150;
     arguments[k] = word;
     return arguments;
   };
-  const auto also = [&](const std::string& word) {
-    Arguments arguments = r150;
-    arguments.push_back(word);
-    return arguments;
-  };
+  const auto also = [&](const std::string& word) { return with(r150, {word}); };
   const std::vector<Refused> cases = {
-      {with(2, "--standard=r151"), "--standard: must be r150, j594, bicycle or a file that exists, got \"r151\""},
-      {with(3, "--class=XX"), "--class: must be IA, IB, IIIA, IIIB, IVA for UN R3 / R150, got \"XX\""},
-      {with(4, "--colour=green"), "--colour: must be red, amber, white for UN R3 / R150, got \"green\""},
+      {instead(2, "--standard=r151"), "--standard: must be r150, j594, bicycle or a file that exists, got \"r151\""},
+      {instead(3, "--class=XX"), "--class: must be IA, IB, IIIA, IIIB, IVA for UN R3 / R150, got \"XX\""},
+      {instead(4, "--colour=green"), "--colour: must be red, amber, white for UN R3 / R150, got \"green\""},
       {{"photometry", "d.toml", "--standard=r150", "--colour=red", "--area-cm2=30"}, "--class: is required"},
       {{"photometry", "d.toml", "--standard=j594", "--class=IA", "--colour=red", "--area-cm2=1"}, "--class: SAE J594"},
-      {with(5, "--area-cm2=0"), "--area-cm2: must be a number above 0, to 1e+06, got 0"},
-      {with(5, "--area-cm2=-3"), "--area-cm2: must be"},
-      {with(5, "--area-cm2=big"), "--area-cm2: "},
+      {instead(5, "--area-cm2=0"), "--area-cm2: must be a number above 0, to 1e+06, got 0"},
+      {instead(5, "--area-cm2=-3"), "--area-cm2: must be"},
+      {instead(5, "--area-cm2=big"), "--area-cm2: "},
       {also("--window-deg=1"), "r150:8: observation_deg: must lie within the far field that is computed"},
       {also("--rotation=a"), "--rotation: "},
       {also("--dye=blue"), "--dye: must be none, red, amber or a file that exists, got \"blue\""},
@@ -194,15 +185,8 @@ TEST(Photometry, RefusesBadInputInOneLine) {
       {{"photometry", "d.toml", "--standard=far.csv", "--area-cm2=30"}, "far.csv:2: observation_deg: must lie within"},
       {{"photometry", "d.toml", "--standard=two.csv", "--area-cm2=30"}, "--standard: is required for two.csv: S, T"},
   };
-  for (const Refused& refused : cases) {
-    Arguments arguments = refused.arguments;
-    arguments.insert(arguments.end(), {"-o", "out"});
-    const Outcome outcome = retrace(folder, arguments);
-    EXPECT_EQ(outcome.code, 2) << refused.message;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_NE(outcome.err.find(refused.message), std::string::npos) << outcome.err << " lacks: " << refused.message;
-    EXPECT_EQ(outcome.out, "");
-  }
+  for (const Refused& refused : cases)
+    expect_refused_with(retrace(folder, with(refused.arguments, {"-o", "out"})), refused.begin);
   EXPECT_EQ(folder.names(), before);
 }
 

@@ -165,6 +165,35 @@ Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std:
   return Json::parse(outcome.out, nullptr, false);
 }
 
+void expect_refused_with(const Outcome& outcome, const std::string& words) {
+  EXPECT_EQ(outcome.code, 2) << words;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err << " lacks: " << words;
+}
+
+void expect_refused(const Outcome& outcome, const std::string& begin, int code) {
+  EXPECT_EQ(outcome.code, code);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err << "should begin: " << begin;
+}
+
+void expect_refused(const TemporaryFolder& folder, const std::vector<Refused>& cases, const Arguments& before,
+                    const Arguments& after) {
+  const std::vector<std::string> names = folder.names();
+  for (const Refused& bad : cases) {
+    SCOPED_TRACE(bad.begin);
+    expect_refused(retrace(folder, with(with(before, bad.arguments), after)), bad.begin);
+    EXPECT_EQ(folder.names(), names);
+  }
+}
+
+Arguments with(Arguments arguments, const Arguments& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
 std::string example(const std::string& name) {
   return std::string(RETRACE_SOURCE_DIR) + "/examples/" + name;
 }

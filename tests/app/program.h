@@ -85,6 +85,25 @@ Outcome retrace(const TemporaryFolder& folder, Arguments arguments, const std::s
 /// The same, for a run that must say it is done and complain of nothing: the JSON that `--json -` prints.
 Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std::string& input = {});
 
+/// Expects a run to have ended so, with nothing on standard output and one line that says what was wrong, from where it
+/// begins.
+void expect_refused(const Outcome& outcome, const std::string& begin, int code = 2);
+/// The same of a line that has the words anywhere.
+void expect_refused_with(const Outcome& outcome, const std::string& words);
+
+/// Arguments that are refused, and how the message begins.
+struct Refused {
+  Arguments arguments;
+  std::string begin;
+};
+
+/// Expects runs in `folder` to be refused and to write nothing. \param before, after the arguments of each case
+void expect_refused(const TemporaryFolder& folder, const std::vector<Refused>& cases, const Arguments& before,
+                    const Arguments& after = {"-o", "out", "--json", "r.json"});
+
+/// The arguments, and more.
+Arguments with(Arguments arguments, const Arguments& more);
+
 /// A file of examples/.
 std::string example(const std::string& name);
 std::string read_text(const std::filesystem::path& file);

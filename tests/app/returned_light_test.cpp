@@ -18,16 +18,6 @@ Arguments exact(const Arguments& more) {
   return arguments;
 }
 
-void expect_refused(const Arguments& arguments, const std::string& begin) {
-  const TemporaryFolder folder;
-  const Outcome outcome = retrace(folder, arguments);
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err;
-  EXPECT_TRUE(folder.names().empty());
-}
-
 TEST(ReturnedLight, FilesAreWrittenAsAskedFor) {
   const Arguments plain = {"result", "result/rre.csv", "result/rre.json", "result/rre.png", "result/rre.svg"};
   for (const auto& [option, files] :
@@ -99,15 +89,17 @@ TEST(ReturnedLight, ManyDirectionsAreWrittenButNotAllDrawn) {
 }
 
 TEST(ReturnedLight, NeedsAnOutputFolder) {
-  expect_refused(exact({"--footprint"}), "--footprint: needs --out DIR");
-  expect_refused(exact({"--far-field", "--json", "-"}), "--far-field: needs --out DIR");
+  expect_refused(TemporaryFolder(),
+                 {{{"--footprint"}, "--footprint: needs --out DIR"},
+                  {{"--far-field", "--json", "-"}, "--far-field: needs --out DIR"}},
+                 exact({}), {});
 }
 
 TEST(ReturnedLight, NeedsTheExactEngine) {
-  expect_refused({"rre", kDesign, "--engine=montecarlo", "--footprint", "-o", "result"},
-                 "--footprint: needs --engine exact");
-  expect_refused({"rre", kDesign, "--engine=embree", "--far-field", "-o", "result"},
-                 "--far-field: needs --engine exact");
+  expect_refused(TemporaryFolder(),
+                 {{{"--engine=montecarlo", "--footprint"}, "--footprint: needs --engine exact"},
+                  {{"--engine=embree", "--far-field"}, "--far-field: needs --engine exact"}},
+                 {"rre", kDesign}, {"-o", "result"});
 }
 
 }  // namespace

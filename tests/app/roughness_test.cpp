@@ -58,16 +58,10 @@ TEST(Roughness, WritesItsFilesTheSameInEveryRun) {
   EXPECT_TRUE(lines[3].starts_with("mine,2,5,9,40,")) << lines[3];
 }
 
-struct Refused {
-  Arguments arguments;
-  std::string message;
-};
-
 TEST(Roughness, RefusesBadInputInOneLine) {
   const TemporaryFolder folder;
   folder.write("d.toml", kDesign);
   folder.write("bad.csv", "facet,sa_nm\nF1,smooth\n");
-  const Arguments before = folder.names();
   const std::vector<Refused> cases = {
       {{"d.toml", "--facets", "bad.csv"}, "bad.csv:2: sa_nm: must be a number >= 0 and <= 1e+05, got \"smooth\""},
       {{"d.toml", "--facets", "none.csv"}, "none.csv: cannot be read"},
@@ -83,18 +77,7 @@ TEST(Roughness, RefusesBadInputInOneLine) {
       {{"none.toml"}, "none.toml: cannot be read"},
       {{}, "DESIGN is required"},
   };
-  for (const Refused& bad : cases) {
-    SCOPED_TRACE(bad.message);
-    Arguments arguments = {"roughness"};
-    arguments.insert(arguments.end(), bad.arguments.begin(), bad.arguments.end());
-    arguments.insert(arguments.end(), {"-o", "out", "--json", "r.json"});
-    const Outcome outcome = retrace(folder, arguments);
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_TRUE(outcome.err.starts_with("retrace: " + bad.message)) << outcome.err;
-    EXPECT_EQ(folder.names(), before);
-  }
+  expect_refused(folder, cases, {"roughness"});
 }
 
 TEST(Roughness, DoesNotReplaceWhatItReads) {

@@ -62,11 +62,7 @@ TEST(HeightMapOfADesign, BadFilesAreRefusedInOneLineThatNamesBoth) {
       folder.write("parts/m.txt", bad.content);
       const Arguments before = folder.names();
       const Outcome outcome = retrace(folder, {command, "parts/d.toml", "-o", "out", "--json", "r.json"});
-      EXPECT_EQ(outcome.code, 2);
-      EXPECT_EQ(outcome.out, "");
-      EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-      EXPECT_TRUE(outcome.err.starts_with("retrace: parts/d.toml:10: surface.height_map: parts/m.txt" + bad.message))
-          << outcome.err;
+      expect_refused(outcome, "parts/d.toml:10: surface.height_map: parts/m.txt" + bad.message);
       EXPECT_EQ(folder.names(), before);
     }
 }
@@ -184,9 +180,7 @@ TEST(TextureOfADesign, OutsideOfEveryModelIsRefused) {
       const TemporaryFolder folder;
       folder.write("d.toml", kDesign + bad.surface);
       const Outcome outcome = retrace(folder, {command, "d.toml", "-o", "out"});
-      EXPECT_EQ(outcome.code, 2);
-      EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-      EXPECT_TRUE(outcome.err.starts_with("retrace: d.toml:" + bad.warning)) << outcome.err;
+      expect_refused(outcome, "d.toml:" + bad.warning);
       EXPECT_EQ(folder.names(), Arguments{"d.toml"});
     }
 }

@@ -115,10 +115,7 @@ TEST_F(VerifyCommand, BadInputEndsWithOneLineAndWritesNothing) {
   for (const auto& [file, message] : cases) {
     const Outcome outcome = retrace(
         folder_, {"verify", "job.toml", file, "--as-machined", "out.toml", "-o", "out", "--dialect", "rs274ngc"});
-    EXPECT_EQ(outcome.code, 2) << file;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_TRUE(outcome.out.empty());
+    expect_refused_with(outcome, message);
   }
   for (const std::string& name : folder_.names()) EXPECT_FALSE(name.starts_with("out")) << name;
   EXPECT_EQ(retrace(folder_, {"verify", "job.toml", good, "--dialect", "heidenhain"}).code, 2);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "tests/support/refusals.h"
 
 // The tests may run as root, whom permissions do not bind: failures are made by other means.
 
@@ -130,12 +131,7 @@ TEST_F(AtomicFile, OnlyFilesAreRead) {
 
 /// What a file is refused for.
 std::string complaint_of(const fs::path& file, std::size_t most_bytes) {
-  try {
-    read_file(file, most_bytes);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { read_file(file, most_bytes); });
 }
 
 TEST_F(AtomicFile, NoMoreIsReadThanAFileMayHave) {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::csv_test {
 namespace {
@@ -36,12 +37,7 @@ std::vector<Item> items_of(std::string_view text) {
 }
 
 std::string refused(std::string_view text) {
-  try {
-    items_of(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { items_of(text); }, "accepted");
 }
 
 TEST(CsvReader, TakesMarksBlanksLineEndsAndCommentsAsTheyCome) {

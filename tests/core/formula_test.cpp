@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/math/formula_evaluation.h"
+#include "tests/support/refusals.h"
 
 // Formulas: their values, their exact derivatives, and what is none.
 
@@ -168,14 +169,7 @@ TEST(Formula, SaysWhereItDoesNotParse) {
 }
 
 TEST(Formula, SaysWhatIsWrongAndWhere) {
-  const auto complaint = [](const std::string& text) -> std::string {
-    try {
-      formula(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
+  const auto complaint = [](const std::string& text) -> std::string { return refusal_of([&] { formula(text); }); };
   EXPECT_NE(complaint("x + * y").find("does not parse at character 5: "), std::string::npos) << complaint("x + * y");
   EXPECT_NE(complaint("(x + y").find("got \"(x + y\""), std::string::npos);
   EXPECT_NE(complaint("x y").find("does not parse at character 3: "), std::string::npos) << complaint("x y");

@@ -8,9 +8,10 @@
 
 #include "core/schema/access.h"
 #include "core/schema/json_schema.h"
-#include "core/schema/key_table.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
+#include "tests/support/key_table.h"
+#include "tests/support/refusals.h"
 
 // A small format that has every kind of key: what is read, what is refused in which words, what is written, and what
 // JSON Schema and the documentation say of it.
@@ -115,12 +116,7 @@ const std::string kLeast = "schema = 'retrace.thing/1'\nname = 'a'\nsize_mm = 2\
 
 /// The message for the least file with further lines, the first of which is line 5.
 std::string refusal(const std::string& more, const std::string& least = kLeast) {
-  try {
-    read(least + more);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { read(least + more); }, "accepted");
 }
 
 TEST(Schema, DefaultsHoldForKeysThatAreNotGiven) {
@@ -159,30 +155,33 @@ TEST(Schema, EachKindRefusesWhatItIsNot) {
             "f.toml: schema: missing, must be \"retrace.thing/1\"");
   EXPECT_EQ(refusal("", "schema = 'retrace.thing/2'\n"),
             "f.toml:1: schema: must be \"retrace.thing/1\", got \"retrace.thing/2\"");
-  EXPECT_EQ(refusal("title = 3\n"), "f.toml:5: title: must be a string, got 3");
-  EXPECT_EQ(refusal("shape = 'bal'\n"),
-            "f.toml:5: shape: must be \"ball\" or \"cone\", got \"bal\"; did you mean \"ball\"?");
-  EXPECT_EQ(refusal("shape = 1\n"), "f.toml:5: shape: must be a string, got 1");
-  EXPECT_EQ(refusal("tip_um = nan\n"), "f.toml:5: tip_um: must be a finite number, got nan");
-  EXPECT_EQ(refusal("tip_um = 'x'\n"), "f.toml:5: tip_um: must be a number, got \"x\"");
-  EXPECT_EQ(refusal("tip_um = 4\n"), "f.toml:5: tip_um: must be >= 5, got 4");
-  EXPECT_EQ(refusal("count = 0\n"), "f.toml:5: count: must be >= 1 and <= 9, got 0");
-  EXPECT_EQ(refusal("count = 2.5\n"), "f.toml:5: count: must be a whole number, got 2.5");
+  expect_messages(
+      [](const std::string& given) { return refusal(given); },
+      {{"title = 3\n", "f.toml:5: title: must be a string, got 3"},
+       {"shape = 'bal'\n", "f.toml:5: shape: must be \"ball\" or \"cone\", got \"bal\"; did you mean \"ball\"?"},
+       {"shape = 1\n", "f.toml:5: shape: must be a string, got 1"},
+       {"tip_um = nan\n", "f.toml:5: tip_um: must be a finite number, got nan"},
+       {"tip_um = 'x'\n", "f.toml:5: tip_um: must be a number, got \"x\""},
+       {"tip_um = 4\n", "f.toml:5: tip_um: must be >= 5, got 4"},
+       {"count = 0\n", "f.toml:5: count: must be >= 1 and <= 9, got 0"},
+       {"count = 2.5\n", "f.toml:5: count: must be a whole number, got 2.5"}});
   EXPECT_EQ(refusal("is_open = 1\n", without("is_open = false\n")), "f.toml:4: is_open: must be true or false, got 1");
-  EXPECT_EQ(refusal("place_mm = 1\n"), "f.toml:5: place_mm: must be a list of 2 numbers, got 1");
-  EXPECT_EQ(refusal("place_mm = [1]\n"), "f.toml:5: place_mm: must be a list of 2 numbers, got 1 of them");
-  EXPECT_EQ(refusal("place_mm = [1, 10]\n"), "f.toml:5: place_mm: must be <= 9, got 10");
-  EXPECT_EQ(refusal("points_mm = 1\n"), "f.toml:5: points_mm: must be a list of lists of 2 numbers, got 1");
-  EXPECT_EQ(refusal("points_mm = [[1]]\n"), "f.toml:5: points_mm: must be a list of lists of 2 numbers, got one of 1");
-  EXPECT_EQ(refusal("points_mm = [[1, 2]]\n"), "f.toml:5: points_mm: must be 2 to 3 points, got 1");
+  expect_messages([](const std::string& given) { return refusal(given); },
+                  {{"place_mm = 1\n", "f.toml:5: place_mm: must be a list of 2 numbers, got 1"},
+                   {"place_mm = [1]\n", "f.toml:5: place_mm: must be a list of 2 numbers, got 1 of them"},
+                   {"place_mm = [1, 10]\n", "f.toml:5: place_mm: must be <= 9, got 10"},
+                   {"points_mm = 1\n", "f.toml:5: points_mm: must be a list of lists of 2 numbers, got 1"},
+                   {"points_mm = [[1]]\n", "f.toml:5: points_mm: must be a list of lists of 2 numbers, got one of 1"},
+                   {"points_mm = [[1, 2]]\n", "f.toml:5: points_mm: must be 2 to 3 points, got 1"}});
   EXPECT_EQ(refusal("notes = []\n", without("is_open = false\n")),
             "f.toml:4: notes: must be a list of one or more strings, got an empty list");
   EXPECT_EQ(refusal("notes = [1]\n", without("is_open = false\n")),
             "f.toml:4: notes: must be a list of strings, got 1 in it");
-  EXPECT_EQ(refusal("middle = 1\n"), "f.toml:5: middle: must be a table, got 1");
-  EXPECT_EQ(refusal("middle = {}\n"), "f.toml:5: middle.depth_um: missing, must be > 0");
-  EXPECT_EQ(refusal("hole = 1\n"), "f.toml:5: hole: must be tables, got 1");
-  EXPECT_EQ(refusal("[[hole]]\n\ndepth_um = -1\n"), "f.toml:7: hole[1].depth_um: must be > 0, got -1");
+  expect_messages([](const std::string& given) { return refusal(given); },
+                  {{"middle = 1\n", "f.toml:5: middle: must be a table, got 1"},
+                   {"middle = {}\n", "f.toml:5: middle.depth_um: missing, must be > 0"},
+                   {"hole = 1\n", "f.toml:5: hole: must be tables, got 1"},
+                   {"[[hole]]\n\ndepth_um = -1\n", "f.toml:7: hole[1].depth_um: must be > 0, got -1"}});
 }
 
 const std::string kTitel =
@@ -197,13 +196,14 @@ TEST(Schema, UnknownKeysAreToldTheNearest) {
 }
 
 TEST(Schema, KeysHoldUnderTheirCondition) {
-  EXPECT_EQ(refusal("shape = 'cone'\n"), "f.toml: angle_deg: missing, must be >= 60 and <= 120");
-  EXPECT_EQ(refusal("shape = 'cone'\nangle_deg = 90\ntip_um = 7\n"), "f.toml:7: tip_um: must be >= 0 and <= 1, got 7");
-  EXPECT_EQ(refusal("angle_deg = 90\n"), "f.toml:5: angle_deg: only allowed for shape = \"cone\", got 90");
-  EXPECT_EQ(refusal("[[hole]]\ndepth_um = 1\nangle_deg = 20\n"),
-            "f.toml:7: hole[1].angle_deg: only allowed for shape = \"cone\", got 20");
-  EXPECT_EQ(refusal("shape = 'cone'\nangle_deg = 90\n[[hole]]\ndepth_um = 1\nangle_deg = 91\n"),
-            "f.toml:9: hole[1].angle_deg: must be >= 0 and <= 90, got 91");
+  expect_messages([](const std::string& given) { return refusal(given); },
+                  {{"shape = 'cone'\n", "f.toml: angle_deg: missing, must be >= 60 and <= 120"},
+                   {"shape = 'cone'\nangle_deg = 90\ntip_um = 7\n", "f.toml:7: tip_um: must be >= 0 and <= 1, got 7"},
+                   {"angle_deg = 90\n", "f.toml:5: angle_deg: only allowed for shape = \"cone\", got 90"},
+                   {"[[hole]]\ndepth_um = 1\nangle_deg = 20\n",
+                    "f.toml:7: hole[1].angle_deg: only allowed for shape = \"cone\", got 20"},
+                   {"shape = 'cone'\nangle_deg = 90\n[[hole]]\ndepth_um = 1\nangle_deg = 91\n",
+                    "f.toml:9: hole[1].angle_deg: must be >= 0 and <= 90, got 91"}});
 }
 
 TEST(Schema, ConditionsThatNameNothingAreRefused) {
@@ -212,11 +212,12 @@ TEST(Schema, ConditionsThatNameNothingAreRefused) {
 }
 
 TEST(Schema, RulesBlameTheFirstOfTheirKeysThatWasGiven) {
-  EXPECT_EQ(refusal("[[hole]]\ndepth_um = 2001\n"), "f.toml:3: size_mm: must be at least as deep as its holes");
-  EXPECT_EQ(refusal("title = 't'\n[[hole]]\ndepth_um = 2001\n"),
-            "f.toml:5: title: must be at least as deep as its holes");
-  EXPECT_EQ(refusal("titel = 't'\n[[hole]]\ndepth_um = 2001\n"), kTitel);
-  EXPECT_EQ(refusal("notes = ['a']\n"), "f.toml:5: notes: must say either is_open or notes");
+  expect_messages(
+      [](const std::string& given) { return refusal(given); },
+      {{"[[hole]]\ndepth_um = 2001\n", "f.toml:3: size_mm: must be at least as deep as its holes"},
+       {"title = 't'\n[[hole]]\ndepth_um = 2001\n", "f.toml:5: title: must be at least as deep as its holes"},
+       {"titel = 't'\n[[hole]]\ndepth_um = 2001\n", kTitel},
+       {"notes = ['a']\n", "f.toml:5: notes: must say either is_open or notes"}});
   EXPECT_EQ(refusal("", "schema = 'retrace.thing/1'\nname = 'a'\nsize_mm = 2\n"),
             "f.toml: must say either is_open or notes");
 }
@@ -309,10 +310,8 @@ TEST(Schema, KeyTablesOfTheDocumentation) {
 }
 
 TEST(Schema, UnitsAreSuffixes) {
-  EXPECT_EQ(unit_of("feed_mm_per_min"), "mm/min");
-  EXPECT_EQ(unit_of("speed_deg_per_s"), "degrees/s");
-  EXPECT_EQ(unit_of("dwell_s"), "s");
-  EXPECT_EQ(unit_of("cuts"), "");
+  expect_messages([](const std::string& given) { return unit_of(given); },
+                  {{"feed_mm_per_min", "mm/min"}, {"speed_deg_per_s", "degrees/s"}, {"dwell_s", "s"}, {"cuts", ""}});
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "core/toml_file.h"
+#include "tests/support/refusals.h"
 
 #include <gtest/gtest.h>
 
@@ -11,14 +12,11 @@ namespace retrace::toml_file_test {
 namespace {
 
 std::string refusal(const std::string& text, const std::function<void(TomlTable&)>& read) {
-  try {
+  return refusal_of([&] {
     TomlTable root = parse_toml(text, "f.toml");
     read(root);
     root.finish();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 TEST(TomlFile, HandsOutWhatIsThere) {

@@ -27,6 +27,7 @@
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/part.h"
 #include "tests/fabrication/chiseling_jobs.h"
+#include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/swept_volume_sink.h"
 
 // Diamond micro chiseling: poses and paths against the geometry of cubes, programs cut again from their text, and
@@ -60,14 +61,6 @@ Verification verified(const Job& job, const Machine& m, const std::string& text,
                       NcDialect dialect = NcDialect::rs274ngc) {
   return verify_programs(job, m, {parse_nc(text, "p.ngc", dialect)}, {},
                          {machine("ideal"), machine("paper"), machine("thesis"), machine()});
-}
-
-std::string listed(const Verification& v) {
-  std::string text;
-  for (const Finding& f : v.findings)
-    text += fmt::format("{}:{} {} [{}] {} ({} > {}) x{}\n", f.program, f.line, f.kind, f.element, f.message, f.value,
-                        f.limit, f.count);
-  return text.substr(0, 3000);
 }
 
 double degrees_between(const Vec3& a, const Vec3& b) {

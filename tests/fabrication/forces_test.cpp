@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "fabrication/forces/forces.h"
 #include "fabrication/forces/io/force_table.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::fabrication::forces_test {
 namespace {
@@ -126,12 +127,7 @@ TEST(Forces, WarnsWhereTheLinearLawIsNotShown) {
 
 TEST(Forces, BadTablesAreRefused) {
   const auto refusal = [](const std::string& text) -> std::string {
-    try {
-      parse_forces(text, "f.csv");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return refusal_of([&] { parse_forces(text, "f.csv"); }, "accepted");
   };
   const std::string columns = "experiment,strategy,configuration,doc_um,width_mm,event,time_s,fx_n,fy_n,fz_n";
   const std::string header = columns + "\n";

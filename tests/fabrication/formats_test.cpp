@@ -1,10 +1,11 @@
-#include "core/schema/key_table.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/planing/io/part_files.h"
 #include "fabrication/turning/io/part_files.h"
 #include "tests/support/documents.h"
+#include "tests/support/key_table.h"
+#include "tests/support/refusals.h"
 
 // Process and machine files: what is written reads back the same, and the documentation says what the rows say.
 
@@ -137,17 +138,16 @@ TEST(ProcessFile, DefaultsAreThoseOfAProcess) {
 
 /// The message for a process file that is right but for one line, which is its last.
 std::string refusal(const std::string& line) {
-  try {
-    parse_process(
-        "schema = \"retrace.process/1\"\nname = \"p\"\nsource = \"s\"\nclearance_mm = 0.2\nroughing_depth_um = 15\n"
-        "finishing_depth_um = 5\nroughing_feed_mm_per_min = 50\nfinishing_feed_mm_per_min = 20\n"
-        "retract_feed_mm_per_min = 200\n" +
-            line,
-        "p.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of(
+      [&] {
+        parse_process(
+            "schema = \"retrace.process/1\"\nname = \"p\"\nsource = \"s\"\nclearance_mm = 0.2\nroughing_depth_um = 15\n"
+            "finishing_depth_um = 5\nroughing_feed_mm_per_min = 50\nfinishing_feed_mm_per_min = 20\n"
+            "retract_feed_mm_per_min = 200\n" +
+                line,
+            "p.toml");
+      },
+      "accepted");
 }
 
 TEST(ProcessFile, WhatIsWrongIsRefusedWithFileLineAndKey) {

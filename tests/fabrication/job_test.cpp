@@ -10,6 +10,7 @@
 #include "fabrication/job/io/job_files.h"
 #include "geometry/part/part.h"
 #include "tests/fabrication/jobs.h"
+#include "tests/support/refusals.h"
 
 // Jobs: where the elements lie, files that are read and written without loss, and what is refused.
 
@@ -198,20 +199,12 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
   };
   for (const Wrong& wrong : cases) {
     SCOPED_TRACE(wrong.message);
-    std::string text = good;
-    const std::size_t at = text.find(wrong.from);
-    ASSERT_NE(at, std::string::npos);
-    text.replace(at, wrong.from.size(), wrong.to);
-    try {
-      parse_job(text, "j.toml");
-      ADD_FAILURE() << "not refused";
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      EXPECT_TRUE(message.starts_with("j.toml:")) << message;
-      EXPECT_NE(message.find(": " + wrong.message), std::string::npos) << message;
-      if (wrong.from.front() != '\n' && wrong.to.find('\n') == std::string::npos) {
-        EXPECT_TRUE(message.starts_with("j.toml:" + line_of(wrong.from) + ": ")) << message;
-      }
+    const std::string message =
+        refusal_of([&] { parse_job(with_replaced(good, wrong.from, wrong.to), "j.toml"); }, "not refused");
+    EXPECT_TRUE(message.starts_with("j.toml:")) << message;
+    EXPECT_NE(message.find(": " + wrong.message), std::string::npos) << message;
+    if (wrong.from.front() != '\n' && wrong.to.find('\n') == std::string::npos) {
+      EXPECT_TRUE(message.starts_with("j.toml:" + line_of(wrong.from) + ": ")) << message;
     }
   }
 }
@@ -235,12 +228,7 @@ TEST(JobFile, BasesReadBackEqual) {
 
 TEST(JobFile, BasesThatCannotBeAreRefused) {
   const auto complaint = [](const Job& job, const std::string& substrate) -> std::string {
-    try {
-      parse_job(job_text(job) + "\n[base]\n" + substrate, "j.toml");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "none";
+    return refusal_of([&] { parse_job(job_text(job) + "\n[base]\n" + substrate, "j.toml"); }, "none");
   };
   const Job good = square_job(4);
   const std::string plane = "kind = \"plane\"\nincline_deg = 5\n";

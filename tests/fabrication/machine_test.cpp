@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/machine/machine.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::fabrication::machine_test {
 namespace {
@@ -174,16 +175,8 @@ TEST(MachineFile, EveryShippedValueSaysWhereItComesFrom) {
 
 /// The message for a machine file in which `from` was replaced by `to`.
 std::string refusal(const std::string& from, const std::string& to) {
-  std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml");
-  const std::size_t at = text.find(from);
-  if (at == std::string::npos) return "not in the file: " + from;
-  text.replace(at, from.size(), to);
-  try {
-    parse_machine(text, "m.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  const std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml");
+  return refusal_of([&] { parse_machine(with_replaced(text, from, to), "m.toml"); }, "accepted");
 }
 
 TEST(MachineFile, BadInputIsRefusedOnOneLine) {

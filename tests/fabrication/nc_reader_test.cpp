@@ -11,6 +11,7 @@
 #include "fabrication/read/nc_motion.h"
 #include "fabrication/read/nc_program.h"
 #include "tests/fabrication/nc_record.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::fabrication::nc_reader_test {
 namespace {
@@ -167,23 +168,17 @@ RC_GTEST_PROP(NcReader, RandomMovesInEveryLanguage, ()) {
 }
 
 std::string refusal(const std::string& text, NcDialect dialect) {
-  try {
+  std::string taken;
+  const std::string refused = refusal_of([&] {
     const Record record = record_of(text, dialect);
-    return record.end.is_complete ? "accepted" : fmt::format("cut off at {}: {}", record.end.line, record.end.reason);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  if (at == std::string::npos) throw std::runtime_error("the sample has no " + from);
-  return text.replace(at, from.size(), to);
+    taken = record.end.is_complete ? "accepted" : fmt::format("cut off at {}: {}", record.end.line, record.end.reason);
+  });
+  return refused + taken;
 }
 
 TEST(NcReader, WhatIsNotUnderstoodIsAnErrorWithItsLine) {
   const auto rs274 = [](const std::string& from, const std::string& to) {
-    return refusal(replaced(sample(NcDialect::rs274ngc), from, to), NcDialect::rs274ngc);
+    return refusal(with_replaced(sample(NcDialect::rs274ngc), from, to), NcDialect::rs274ngc);
   };
   EXPECT_EQ(rs274("G0 Z5.", "G2 Z5."), "p:14: G2 is not understood");
   EXPECT_EQ(rs274("G0 Z5.", "G0 U5."), "p:14: a word U is not understood");
@@ -199,17 +194,17 @@ TEST(NcReader, WhatIsNotUnderstoodIsAnErrorWithItsLine) {
   EXPECT_EQ(rs274("o101 call", "o101 while [1]"), "p:19: o101 is followed by what is not understood, \"WHILE[1]\"");
   EXPECT_EQ(rs274("G0 Z5.", "Z5."), "p:14: axes move before G0 or G1 says how");
   EXPECT_EQ(rs274("G90 G94\n", "G91 G94\n"), "p:14: Z moves by an increment before its position is known");
-  EXPECT_EQ(refusal(replaced(sample(NcDialect::fanuc), "X1.5", "X1500"), NcDialect::fanuc),
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::fanuc), "X1.5", "X1500"), NcDialect::fanuc),
             "p:9: X needs a decimal point: without one it counts least increments");
-  EXPECT_EQ(refusal(replaced(sample(NcDialect::fanuc), "M98 P0101", "M99"), NcDialect::fanuc),
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::fanuc), "M98 P0101", "M99"), NcDialect::fanuc),
             "p:11: M99 outside of a subprogram would run the program again without end");
-  EXPECT_EQ(refusal(replaced(sample(NcDialect::sinumerik), "TRAFOOF", "TRAORI"), NcDialect::sinumerik),
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::sinumerik), "TRAFOOF", "TRAORI"), NcDialect::sinumerik),
             "p:4: must have a number of at most 20 digits at \"RAORI\"");
-  EXPECT_EQ(refusal(replaced(sample(NcDialect::sinumerik), "D0", "D1"), NcDialect::sinumerik),
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::sinumerik), "D0", "D1"), NcDialect::sinumerik),
             "p:3: D must be 0: offsets of the tool are not understood");
-  EXPECT_EQ(refusal(replaced(sample(NcDialect::pmac), "frax(X,Y,Z)", "frax(X,Y)"), NcDialect::pmac),
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::pmac), "frax(X,Y,Z)", "frax(X,Y)"), NcDialect::pmac),
             "p:13: frax must name X, Y and Z");
-  EXPECT_EQ(refusal(replaced(sample(NcDialect::pmac), "rapid Z5.", "spline Z5."), NcDialect::pmac),
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::pmac), "rapid Z5.", "spline Z5."), NcDialect::pmac),
             "p:17: is not understood from \"SPLINE Z5.\"");
 }
 
@@ -229,10 +224,11 @@ TEST(NcReader, WhatTheSpindleDoes) {
                                       {NcDialect::fanuc, "%\nO1\nG97 S800 M3\nS900.5\nM30\n%\n"}}) {
     EXPECT_EQ(settings_after(text, dialect).spindle, NcSpindle::clockwise) << word_of(dialect);
     EXPECT_EQ(settings_after(text, dialect).spindle_rpm, 900.5) << word_of(dialect);
-    EXPECT_EQ(settings_after(replaced(text, "M3", "M4"), dialect).spindle, NcSpindle::counterclockwise);
-    EXPECT_EQ(settings_after(replaced(text, "S900.5", "M5"), dialect).spindle, NcSpindle::stopped);
-    EXPECT_NE(refusal(replaced(text, "S900.5", "S1 S2"), dialect).find(": has two words S"), std::string::npos);
-    EXPECT_NE(refusal(replaced(text, "S900.5", "S-1"), dialect).find(": S must be >= 0, got -1"), std::string::npos);
+    EXPECT_EQ(settings_after(with_replaced(text, "M3", "M4"), dialect).spindle, NcSpindle::counterclockwise);
+    EXPECT_EQ(settings_after(with_replaced(text, "S900.5", "M5"), dialect).spindle, NcSpindle::stopped);
+    EXPECT_NE(refusal(with_replaced(text, "S900.5", "S1 S2"), dialect).find(": has two words S"), std::string::npos);
+    EXPECT_NE(refusal(with_replaced(text, "S900.5", "S-1"), dialect).find(": S must be >= 0, got -1"),
+              std::string::npos);
   }
 }
 
@@ -240,12 +236,13 @@ TEST(NcReader, APmacsSpindleIsTakenLetterByLetter) {
   const NcSpindleTexts texts = {"send1\"go 800\"", "M105"};
   const std::string text = "open prog 1\nM5\n  send1\"go 800\"\nclose\n";
   EXPECT_EQ(settings_after(text, NcDialect::pmac, texts).spindle, NcSpindle::started_by_text);
-  EXPECT_EQ(settings_after(replaced(text, "close", "M105\nclose"), NcDialect::pmac, texts).spindle,
+  EXPECT_EQ(settings_after(with_replaced(text, "close", "M105\nclose"), NcDialect::pmac, texts).spindle,
             NcSpindle::stopped_by_text);
-  EXPECT_EQ(settings_after(replaced(text, "close", "M5\nclose"), NcDialect::pmac, texts).spindle, NcSpindle::stopped);
+  EXPECT_EQ(settings_after(with_replaced(text, "close", "M5\nclose"), NcDialect::pmac, texts).spindle,
+            NcSpindle::stopped);
   EXPECT_THROW(settings_after(text, NcDialect::pmac), InputError);
-  EXPECT_THROW(settings_after(replaced(text, "800", "801"), NcDialect::pmac, texts), InputError);
-  EXPECT_THROW(settings_after(replaced(text, "send1", "SEND1"), NcDialect::pmac, texts), InputError);
+  EXPECT_THROW(settings_after(with_replaced(text, "800", "801"), NcDialect::pmac, texts), InputError);
+  EXPECT_THROW(settings_after(with_replaced(text, "send1", "SEND1"), NcDialect::pmac, texts), InputError);
   EXPECT_THROW(settings_after("M105\n" + text, NcDialect::pmac, texts), InputError) << "outside of the program";
 }
 

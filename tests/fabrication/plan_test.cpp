@@ -15,6 +15,7 @@
 #include "fabrication/job/tool_angles.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "tests/fabrication/jobs.h"
+#include "tests/support/refusals.h"
 
 // Plans: cuts, poses, order, safety of moves and time, against the figures of the thesis and the machine's own forward
 // kinematics.
@@ -445,12 +446,7 @@ TEST(Messages, TellProgress) {
 }
 
 std::string refusal(const Job& job, const Machine& m, const PlanOptions& options = {}) {
-  try {
-    make_plan(job, m, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
+  return refusal_of([&] { make_plan(job, m, options); }, "not refused");
 }
 
 TEST(Refused, JobsBeyondTheLimitsOfAnAxis) {

@@ -27,6 +27,7 @@
 #include "geometry/part/substrate_part.h"
 #include "tests/fabrication/substrate_programs.h"
 #include "tests/fabrication/swept_volume_sink.h"
+#include "tests/support/refusals.h"
 
 // Jobs of elements on inclined, curved and freeform substrates: where they stand, against the part that light is traced
 // in; and their programs, read back and cut again.
@@ -428,12 +429,7 @@ TEST(OnSubstrate, WhatIsLeftIsTheLowestOfAllCavities) {
 }
 
 std::string complaint(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no complaint";
+  return refusal_of(action, "no complaint");
 }
 
 TEST(OnSubstrate, TiltsThatTheMachineCannotReachAreNamed) {

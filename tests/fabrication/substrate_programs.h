@@ -12,6 +12,7 @@
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
+#include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/substrate_jobs.h"
 
 namespace retrace::fabrication::test {
@@ -29,14 +30,6 @@ inline std::string text_of(const Job& job, std::string_view dialect = "rs274ngc"
 
 inline Verification verified(const Job& job, const std::string& text, NcDialect dialect = NcDialect::rs274ngc) {
   return verify_programs(job, machine_of(job), {parse_nc(text, "p", dialect)}, {}, {});
-}
-
-inline std::string listed(const Verification& v) {
-  std::string text;
-  for (const Finding& f : v.findings)
-    text += fmt::format("{}:{} {} [{}] {} ({} > {}) x{}\n", f.program, f.line, f.kind, f.element, f.message, f.value,
-                        f.limit, f.count);
-  return text.substr(0, 2000);
 }
 
 inline std::string kinds_of(const Verification& v) {

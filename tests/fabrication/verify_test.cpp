@@ -15,6 +15,7 @@
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
+#include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/jobs.h"
 
 // What planner and writers make is cut again from its text, by a verifier that knows nothing of either.
@@ -44,14 +45,6 @@ Verification verify_texts(const Job& job, const Machine& m, const std::vector<st
 
 Verification verify_texts(const Job& job, const std::string& machine_name, const std::vector<std::string>& texts) {
   return verify_texts(job, machine(machine_name), texts);
-}
-
-std::string listed(const Verification& v) {
-  std::string text;
-  for (const Finding& f : v.findings)
-    text += fmt::format("{}:{} {} [{}] {} ({} > {}) x{}\n", f.program, f.line, f.kind, f.element, f.message, f.value,
-                        f.limit, f.count);
-  return text.substr(0, 3000);
 }
 
 TEST(Verify, CorrectProgramsOfEveryStrategyAndMachine) {
@@ -132,6 +125,10 @@ class Faults : public ::testing::Test {
     lines_[line].replace(at, from.size(), to);
   }
   Verification verified() const { return verify_texts(job_, "paper", {text_of(lines_)}); }
+  void expect_found(const std::string& kind, std::size_t index_of_line) const {
+    const Verification v = verified();
+    EXPECT_TRUE(has(v, kind, index_of_line)) << listed(v);
+  }
 
   static bool has(const Verification& v, const std::string& kind, std::size_t index_of_line) {
     for (const Finding& f : v.findings)
@@ -176,8 +173,7 @@ TEST_F(Faults, DwellLost) {
 TEST_F(Faults, FeedOfZero) {
   const std::size_t line = find("F50", find("o101 sub"));
   replace(line, "F50", "F0");
-  const Verification v = verified();
-  EXPECT_TRUE(has(v, "zero_feed", line)) << listed(v);
+  expect_found("zero_feed", line);
 }
 
 TEST_F(Faults, ElementDropped) {
@@ -222,15 +218,13 @@ TEST_F(Faults, LostReturnToAbsolute) {
 
 TEST_F(Faults, TruncatedFile) {
   lines_.resize(lines_.size() / 2);
-  const Verification v = verified();
-  EXPECT_TRUE(has(v, "truncated", lines_.size() - 1)) << listed(v);
+  expect_found("truncated", lines_.size() - 1);
 }
 
 TEST_F(Faults, SignFlippedInOneLineOfASubroutine) {
   const std::size_t line = find("G1 Y-0.1", find("o101 sub"));
   replace(line, "Y-", "Y");
-  const Verification v = verified();
-  EXPECT_TRUE(has(v, "clearance_face_leads", line)) << listed(v);
+  expect_found("clearance_face_leads", line);
 }
 
 TEST_F(Faults, TheTableAndTheHolder) {
@@ -308,15 +302,13 @@ TEST_F(Faults, WhatTurnsMeetsTheHolder) {
 TEST_F(Faults, BeyondAnAxisLimit) {
   const std::size_t line = find("G0 Z");
   lines_[line] = "G0 Z151.";
-  const Verification v = verified();
-  EXPECT_TRUE(has(v, "axis_limit", line)) << listed(v);
+  expect_found("axis_limit", line);
 }
 
 TEST_F(Faults, TheTableTurnsBelowTheTool) {
   const std::size_t turn = find("G0 A", find("o101 call"));
   lines_[turn - 1] = "(no lift)";
-  const Verification v = verified();
-  EXPECT_TRUE(has(v, "turn_too_low", turn)) << listed(v);
+  expect_found("turn_too_low", turn);
 }
 
 TEST_F(Faults, ShiftedOrigin) {
@@ -345,8 +337,7 @@ TEST_F(Faults, OverTravelLost) {
   const std::size_t line = find("G1 Z-", routine);
   const double z = std::stod(lines_[line].substr(4));
   lines_[line] = fmt::format("G1 Z{:.6f} F20.000", z + 1e-3 * job_.process.finishing_depth_um);
-  const Verification v = verified();
-  EXPECT_TRUE(has(v, "chip_not_separated", line)) << listed(v);
+  expect_found("chip_not_separated", line);
 }
 
 TEST_F(Faults, StartOfFacet2UsedAtC0) {

@@ -46,7 +46,7 @@ FarFieldPolicy geometric() {
 
 ReturnFrame frame_at(double incidence_deg, double azimuth_deg) {
   ReturnFrame frame;
-  frame.to_source = direction_from({Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg)});
+  frame.to_source = direction_to_source({Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg)});
   frame.right = source_axis(frame.to_source);
   frame.up = frame.to_source.cross(frame.right);
   return frame;
@@ -257,12 +257,13 @@ TEST(Coefficients, LambertianGivesTheCosines) {
     score.add({across * std::cos(2.0 * pi * v), across * std::sin(2.0 * pi * v), std::sqrt(1.0 - u)}, kRho / kCount,
               sums);
   }
-  const double beta = entrance_angle(geometry).rad();
+  const Angle beta = Angle::from_rad(std::acos(directions_of(geometry).to_source.z()));
   const double nu = viewing_angle(geometry).rad();
-  const double expected = kRho * std::cos(beta) * std::cos(nu) / pi;
-  const double r_a = coefficient_of_retroreflection(sums[0], entrance_angle(geometry));
+  const double expected = kRho * std::cos(beta.rad()) * std::cos(nu) / pi;
+  const double r_a = coefficient_of_retroreflection(sums[0], beta);
   EXPECT_NEAR(r_a, expected, 3e-3 * expected);
-  EXPECT_NEAR(coefficient_of_luminance(r_a, viewing_angle(geometry)), kRho * std::cos(beta) / pi, 3e-3 * expected);
+  EXPECT_NEAR(coefficient_of_luminance(r_a, viewing_angle(geometry)), kRho * std::cos(beta.rad()) / pi,
+              3e-3 * expected);
 }
 
 // A mirror shows the receiver the lamp: R_L = rho / Omega_source, whatever the receiver within its image. The front

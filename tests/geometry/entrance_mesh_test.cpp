@@ -12,6 +12,7 @@
 #include "geometry/entrance/entrance_mesh.h"
 #include "geometry/part/mesh_part.h"
 #include "geometry/part/plate.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::geometry::front_mesh_test {
 namespace {
@@ -61,12 +62,7 @@ const Polygon kOutline = to_polygon({Vec2(0.9, 0.8), Vec2(7.1, 7.2)});
 
 std::string message(const TriangleMesh& mesh, const Polygon& outline = kOutline, MeshSide side = MeshSide::top,
                     const Vec3& move_mm = Vec3::Zero()) {
-  try {
-    entrance_of_mesh(mesh, side, move_mm, outline);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { entrance_of_mesh(mesh, side, move_mm, outline); });
 }
 
 /// The place of "at x = 1.2, y = 3.4 mm".

@@ -15,6 +15,8 @@
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/faceted_solid.h"
 #include "tests/geometry/part_checks.h"
+#include "tests/support/part_specs.h"
+#include "tests/support/refusals.h"
 
 // Elements on inclined, curved and freeform substrates: where they stand, and that the part stays a solid.
 
@@ -28,13 +30,7 @@ Substrate formula(const std::string& text, ElementAxes element_axes = ElementAxe
 }
 
 PartSpec spec_of(const Element& element, Arrangement arrangement, double x_length_mm, double y_length_mm) {
-  PartSpec spec;
-  spec.element = element;
-  spec.array.arrangement = arrangement;
-  spec.array.x_length_mm = x_length_mm;
-  spec.array.y_length_mm = y_length_mm;
-  spec.thickness_mm = 3.0;
-  return spec;
+  return retrace::testing::finite(element, arrangement, x_length_mm, y_length_mm, 3.0);
 }
 
 std::vector<PartSpec> arrays() {
@@ -334,12 +330,7 @@ TEST(SubstratePart, RepeatsPatchesWhereTheSubstrateRepeats) {
 }
 
 std::string complaint(const PartSpec& spec) {
-  try {
-    check_substrate(spec);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { check_substrate(spec); });
 }
 
 TEST(SubstrateCheck, RefusesWhatCannotCarryTheElements) {

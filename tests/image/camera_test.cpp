@@ -245,14 +245,18 @@ TEST(Camera, CylinderIsPlaneWhereItIsTouched) {
       student_bound(1, 64) * std::hypot(on_cylinder.part_error(), on_plane.part_error()) + 0.02 * on_plane.part_mean());
 }
 
+void show(CameraScene& scene, const Film& film, double width_mm, std::size_t columns, std::size_t rows) {
+  scene.film = film;
+  scene.view.width_mm = width_mm;
+  scene.view.columns = columns;
+  scene.view.rows = rows;
+}
+
 TEST(Camera, SeesTheBodyOfASheetOnlyFromTheFront) {
   const Part part = cubes();
   CameraScene scene = far_scene(part, 0.0, 0.0, 0.0, 10.0, 10.0);
   scene.surroundings = {2.0, 3.0};
-  scene.film = Film{10.0, 10.0, 5.0};
-  scene.view.width_mm = 40.0;
-  scene.view.columns = 41;
-  scene.view.rows = 3;
+  show(scene, {10.0, 10.0, 5.0}, 40.0, 41, 3);
   const CameraImage image = pictured(part, pmma(), scene, 2);
   EXPECT_DOUBLE_EQ(image.luminance[0], 3.0) << "beside it";
   EXPECT_EQ(image.coverage[0], 0.0);
@@ -285,10 +289,7 @@ std::vector<ReferencePixel> stored_reference() {
 CameraScene reference_scene(const Part& part) {
   CameraScene scene = far_scene(part, 0.1, 5.0, 12.0, 40.0, 5.0);
   scene.surroundings = {1.0, 0.2};
-  scene.film = Film{40.0, 40.0, 30.0};
-  scene.view.width_mm = 50.0;
-  scene.view.columns = 20;
-  scene.view.rows = 16;
+  show(scene, {40.0, 40.0, 30.0}, 50.0, 20, 16);
   return scene;
 }
 

@@ -23,10 +23,8 @@ constexpr double kTruncated = 1e-4;
 
 DetectorSetting setting_of(const Part& part, std::size_t columns, std::size_t rows, const Illumination& light = {}) {
   const Rectangle bounds = part.period_mm ? Rectangle{Vec2::Zero(), *part.period_mm} : bounding_box(part.outline);
-  const double t = light.incidence.rad();
-  const double p = light.azimuth.rad();
   ReturnFrame frame;
-  frame.to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
+  frame.to_source = direction_to_source(light);
   frame.right = source_axis(frame.to_source);
   frame.up = frame.to_source.cross(frame.right);
   return {{bounds, columns, rows}, {DirectionGrid::Layout::square, 0.02, 21, 21}, frame, 0.5};

@@ -13,6 +13,7 @@
 #include "materials/fresnel.h"
 #include "materials/io/material_library.h"
 #include "materials/io/spectrum_reader.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::materials::spectrum_test {
 namespace {
@@ -40,16 +41,6 @@ double mean(const Spectrum& spectrum, const std::function<double(double)>& f) {
   double sum = 0.0;
   for (std::size_t k = 0; k < spectrum.size(); ++k) sum += spectrum.weights[k] * f(spectrum.wavelengths_nm[k]);
   return sum;
-}
-
-std::string complaint(const std::function<void()>& action) {
-  try {
-    action();
-    return {};
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    return error.what();
-  }
 }
 
 // CIE 015:2018, 3.1: S(w) = 100 (560/w)^5 (exp(c / 560) - 1) / (exp(c / w) - 1), c = 1.435e7 / 2848.
@@ -223,11 +214,11 @@ TEST(Spectrum, UnitsOfPowerDoNotMatter) {
 
 TEST(Spectrum, NoFluxIsAnError) {
   const CieTable table = cie();
-  const std::string unseen = complaint([&] { line_spectrum({{1064.0, 1.0}}, &table.photopic_efficiency); });
+  const std::string unseen = refusal_of([&] { line_spectrum({{1064.0, 1.0}}, &table.photopic_efficiency); });
   EXPECT_TRUE(unseen.starts_with("holds no light that the eye sees (380 to 780 nm)")) << unseen;
-  EXPECT_EQ(complaint([&] { line_spectrum({{550.0, 0.0}}, nullptr); }), "holds no power");
-  EXPECT_EQ(complaint([&] { resolved_spectrum({{400.0, 500.0}, {0.0, 0.0}}, nullptr); }), "holds no power");
-  EXPECT_EQ(complaint([&] { line_spectrum({{1064.0, 1.0}}, nullptr); }), "");
+  EXPECT_EQ(refusal_of([&] { line_spectrum({{550.0, 0.0}}, nullptr); }), "holds no power");
+  EXPECT_EQ(refusal_of([&] { resolved_spectrum({{400.0, 500.0}, {0.0, 0.0}}, nullptr); }), "holds no power");
+  EXPECT_EQ(refusal_of([&] { line_spectrum({{1064.0, 1.0}}, nullptr); }), "");
 }
 
 TEST(SpectrumReader, ReadsPowerOverWavelength) {
@@ -238,7 +229,7 @@ TEST(SpectrumReader, ReadsPowerOverWavelength) {
 }
 
 TEST(SpectrumReader, WhatIsNoSpectrumIsRefusedWithFileLineAndColumn) {
-  const auto refused = [](const std::string& text) { return complaint([&] { parse_spectral_power(text, "l.csv"); }); };
+  const auto refused = [](const std::string& text) { return refusal_of([&] { parse_spectral_power(text, "l.csv"); }); };
   const std::string head = "wavelength_nm,power\n";
   EXPECT_EQ(refused(""), "l.csv: must have the header wavelength_nm,power");
   EXPECT_EQ(refused("# only words\n"), "l.csv: must have the header wavelength_nm,power");
@@ -261,9 +252,9 @@ TEST(SpectrumReader, WhatIsNoSpectrumIsRefusedWithFileLineAndColumn) {
 }
 
 TEST(SpectrumReader, FilesThatCannotBeReadAreRefused) {
-  EXPECT_TRUE(complaint([] { read_spectral_power("no/such.csv"); }).starts_with("no/such.csv: cannot be read"));
-  EXPECT_NE(complaint([] { read_spectral_power(fs::temp_directory_path()); }), "");
-  EXPECT_EQ(complaint([] { read_spectral_power("/dev/zero"); }),
+  EXPECT_TRUE(refusal_of([] { read_spectral_power("no/such.csv"); }).starts_with("no/such.csv: cannot be read"));
+  EXPECT_NE(refusal_of([] { read_spectral_power(fs::temp_directory_path()); }), "");
+  EXPECT_EQ(refusal_of([] { read_spectral_power("/dev/zero"); }),
             "/dev/zero: must have at most 1048576 bytes, got more");
 }
 

@@ -15,13 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void expect_refused(const Outcome& outcome, const std::string& begin) {
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err << "should begin: " << begin;
-}
-
 void make_results(const TemporaryFolder& folder) {
   ASSERT_EQ(retrace(folder, {"rre", example("rtp_single_0p45mm.toml"), "--engine", "exact", "--incidence=0,20", "-o",
                              "results", "--quiet"})

@@ -8,6 +8,7 @@
 #include "core/number_format.h"
 #include "fabrication/planing/io/part_files.h"
 #include "fabrication/planing/plan/nose_path.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::fabrication::part_files_test {
 namespace {
@@ -26,16 +27,8 @@ form_mm = 0.2
 fast_feed_mm_per_min = 3000
 )";
 
-std::string refusal(const std::string& from, const std::string& to, std::string text = kMilled) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  text.replace(at, from.size(), to);
-  try {
-    parse_planed_part(text, "p.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+std::string refusal(const std::string& from, const std::string& to, const std::string& text = kMilled) {
+  return refusal_of([&] { parse_planed_part(with_replaced(text, from, to), "p.toml"); }, "accepted");
 }
 
 TEST(PlanedPart, DefaultsAreThoseOfTheMachineOfThePaper) {

@@ -11,6 +11,7 @@
 
 #include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
+#include "tests/support/engines.h"
 #include "tests/support/reference_tracer.h"
 #include "tests/support/statistics.h"
 
@@ -65,16 +66,7 @@ TEST_P(WithAngleErrors, NothingIsLost) {
   const Case c = cases()[GetParam()];
   const Part part = build_part(c.spec);
   ASSERT_GT(part.top_mm, 1e-3);
-  const MonteCarlo tracer(part);
-  for (const Optics& optics : {pmma(), ideal()})
-    for (const double t : {0.0, 20.0, 60.0, 85.0})
-      for (const double p : {0.0, 70.0, 190.0}) {
-        const MonteCarloResult result = tracer.trace(optics, from(t, p), {0.5}, rays(1024), {});
-        const Ledger& ledger = result.cones[0].ledger;
-        EXPECT_NEAR(ledger.total(), 1.0, 1e-9) << c.name << " at " << t << ", " << p;
-        EXPECT_EQ(ledger[Account::lost], 0.0) << c.name << " at " << t << ", " << p;
-        EXPECT_EQ(result.misses, 0U) << c.name << " at " << t << ", " << p;
-      }
+  expect_nothing_lost(part, {0.0, 20.0, 60.0, 85.0}, 1024, c.name);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, WithAngleErrors, ::testing::Range(std::size_t{0}, cases().size()));
@@ -84,35 +76,16 @@ class EnginesWithAngleErrors : public ::testing::TestWithParam<std::size_t> {};
 TEST_P(EnginesWithAngleErrors, Agree) {
   const Case c = cases()[GetParam()];
   const Part part = build_part(c.spec);
-  BeamPolicy policy;
-  policy.cutoff = 1e-6;
-  for (const double azimuth_deg : {0.0, 40.0}) {
-    const Illumination light = from(30.0, azimuth_deg);
-    const Ledger exact = BeamTracer(part).trace(pmma(), light, {8.0}, policy).ledgers[0];
-    const Ledger traced = MonteCarlo(part).trace(pmma(), light, {8.0}, rays(1U << 16), {}).cones[0].ledger;
-    EXPECT_NEAR(exact.total(), 1.0, 1e-9);
-    for (std::size_t a = 0; a < kAccountCount; ++a)
-      EXPECT_NEAR(exact.power[a], traced.power[a], exact[Account::truncated] + 2e-3)
-          << c.name << ": " << kAccountNames[a];
-  }
+  for (const double azimuth_deg : {0.0, 40.0}) expect_same_accounts(part, from(30.0, azimuth_deg), 1e-6, 2e-3, c.name);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, EnginesWithAngleErrors, ::testing::Range(std::size_t{0}, cases().size() - 1));
 
 TEST(AngleErrors, AgreeWithTheReference) {
   const std::vector<Case> all = cases();
-  const double cone_deg = 8.0;
   for (const std::size_t k : {std::size_t{4}, std::size_t{8}}) {
     const Part part = build_part(all[k].spec);
-    const ReferenceResult reference = reference_trace(part, pmma(), from(20.0, 70.0), cone_deg, 8000, 7);
-    const MonteCarloResult traced = MonteCarlo(part).trace(pmma(), from(20.0, 70.0), {cone_deg}, rays(1U << 17), {});
-    const double z = student_bound(2 * kAccountCount);
-    const double slack = reference.mean[Account::truncated] + 1e-3;
-    for (std::size_t a = 0; a < kAccountCount; ++a) {
-      if (a == static_cast<std::size_t>(Account::truncated)) continue;
-      EXPECT_NEAR(traced.cones[0].ledger.power[a], reference.mean.power[a], z * reference.std_error[a] + slack)
-          << all[k].name << ": " << kAccountNames[a];
-    }
+    expect_agrees_with_reference(part, from(20.0, 70.0), 8000, 1U << 17, all[k].name);
   }
 }
 

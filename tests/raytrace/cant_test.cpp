@@ -13,6 +13,7 @@
 
 #include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
+#include "tests/support/engines.h"
 #include "tests/support/reference_tracer.h"
 #include "tests/support/statistics.h"
 
@@ -57,50 +58,22 @@ TEST_P(Canted, NothingIsLost) {
   const Part part = build_part(c.spec);
   ASSERT_GT(part.top_mm, 1e-3);
   ASSERT_LT(part.top_mm, part.thickness_mm);
-  const MonteCarlo tracer(part);
-  for (const Optics& optics : {pmma(), ideal()})
-    for (const double t : {0.0, 20.0, 60.0, 85.0})
-      for (const double p : {0.0, 70.0, 190.0}) {
-        const MonteCarloResult result = tracer.trace(optics, from(t, p), {0.5}, rays(1024), {});
-        const Ledger& ledger = result.cones[0].ledger;
-        EXPECT_NEAR(ledger.total(), 1.0, 1e-9) << c.name << " at " << t << ", " << p;
-        EXPECT_EQ(ledger[Account::lost], 0.0) << c.name << " at " << t << ", " << p;
-        EXPECT_EQ(result.misses, 0U) << c.name << " at " << t << ", " << p;
-      }
+  expect_nothing_lost(part, {0.0, 20.0, 60.0, 85.0}, 1024, c.name);
 }
 
 TEST_P(Canted, EnginesAgree) {
   const Case c = cases()[GetParam()];
   const Part part = build_part(c.spec);
-  BeamPolicy policy;
-  policy.cutoff = 1e-5;
-  for (const double azimuth_deg : {0.0, 130.0}) {
-    const Illumination light = from(15.0, azimuth_deg);
-    const Ledger exact = BeamTracer(part).trace(pmma(), light, {8.0}, policy).ledgers[0];
-    const Ledger traced = MonteCarlo(part).trace(pmma(), light, {8.0}, rays(1U << 16), {}).cones[0].ledger;
-    EXPECT_NEAR(exact.total(), 1.0, 1e-9) << c.name;
-    for (std::size_t a = 0; a < kAccountCount; ++a)
-      EXPECT_NEAR(exact.power[a], traced.power[a], exact[Account::truncated] + 3e-3)
-          << c.name << ": " << kAccountNames[a];
-  }
+  for (const double azimuth_deg : {0.0, 130.0}) expect_same_accounts(part, from(15.0, azimuth_deg), 1e-5, 3e-3, c.name);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Canted, ::testing::Range(std::size_t{0}, cases().size()));
 
 TEST(Cant, AgreesWithTheReference) {
   const std::vector<Case> all = cases();
-  const double cone_deg = 8.0;
   for (const std::size_t k : {std::size_t{3}, std::size_t{5}}) {
     const Part part = build_part(all[k].spec);
-    const ReferenceResult reference = reference_trace(part, pmma(), from(20.0, 70.0), cone_deg, 8000, 7);
-    const MonteCarloResult traced = MonteCarlo(part).trace(pmma(), from(20.0, 70.0), {cone_deg}, rays(1U << 17), {});
-    const double z = student_bound(2 * kAccountCount);
-    const double slack = reference.mean[Account::truncated] + 1e-3;
-    for (std::size_t a = 0; a < kAccountCount; ++a) {
-      if (a == static_cast<std::size_t>(Account::truncated)) continue;
-      EXPECT_NEAR(traced.cones[0].ledger.power[a], reference.mean.power[a], z * reference.std_error[a] + slack)
-          << all[k].name << ": " << kAccountNames[a];
-    }
+    expect_agrees_with_reference(part, from(20.0, 70.0), 8000, 1U << 17, all[k].name);
   }
 }
 
@@ -160,10 +133,7 @@ double share_by_points(const Polygon& outline, const Cant& cant, double depth_mm
 double straight_back(const PartSpec& spec, const Illumination& light) {
   double power = 0.0;
   const BeamObserver note = [&](const ReturnedBeam& beam) {
-    const double t = light.incidence.rad();
-    const double p = light.azimuth.rad();
-    const Vec3 to_source(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
-    if (beam.depth == 4 && (beam.direction - to_source).norm() < 1e-9) power += beam.stokes.i;
+    if (beam.depth == 4 && (beam.direction - direction_to_source(light)).norm() < 1e-9) power += beam.stokes.i;
   };
   BeamTracer(build_part(spec)).trace(ideal(), light, {0.5}, {}, nullptr, note);
   return power;

@@ -16,6 +16,7 @@
 #include "raytrace/paths/path_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/entrance_surfaces.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::testing::front_test {
 namespace {
@@ -347,23 +348,6 @@ TEST(Entrance, WavesFinerThanTheFirstGridAreNotPassedBy) {
   EXPECT_THROW(make_entrance_face(entrance_of(fine, INFINITY), plate, Vec2::Zero()), InputError);
 }
 
-/// A surface as triangles on a grid over a square.
-TriangleMesh meshed(const EntranceSurface& surface, double size_mm, std::uint32_t cells) {
-  TriangleMesh mesh;
-  for (std::uint32_t j = 0; j <= cells; ++j)
-    for (std::uint32_t i = 0; i <= cells; ++i) {
-      const Vec2 p(size_mm * i / cells, size_mm * j / cells);
-      mesh.vertices.emplace_back(p.x(), p.y(), surface.at(p).height_mm);
-    }
-  for (std::uint32_t j = 0; j < cells; ++j)
-    for (std::uint32_t i = 0; i < cells; ++i) {
-      const std::uint32_t a = j * (cells + 1) + i;
-      mesh.triangles.push_back({a, a + 1, a + cells + 2});
-      mesh.triangles.push_back({a, a + cells + 2, a + cells + 1});
-    }
-  return mesh;
-}
-
 // Steep lenslets in front of prisms: light goes from lenslet to lenslet and in again. All of it is booked, none is
 // lost, and a fine mesh of the same surface, met triangle by triangle, sends it to the same accounts.
 TEST(Entrance, SurfaceAndItsMeshAgreeOverPrisms) {
@@ -415,12 +399,7 @@ TEST(Entrance, RangesAreThoseOfTheOutline) {
 TEST(Entrance, MeshesMustCoverTheOutlineOnce) {
   const Polygon outline = to_polygon({Vec2(0.0, 0.0), Vec2(1.0, 1.0)});
   const auto message = [&](const TriangleMesh& mesh, MeshSide side) -> std::string {
-    try {
-      entrance_of_mesh(mesh, side, Vec3::Zero(), outline);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { entrance_of_mesh(mesh, side, Vec3::Zero(), outline); });
   };
   EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::top), "");
   EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::bottom), "");

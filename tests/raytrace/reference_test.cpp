@@ -8,6 +8,7 @@
 #include "materials/fresnel.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
+#include "tests/support/engines.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::reference_test {
@@ -76,14 +77,8 @@ TEST_P(AgainstReference, EveryAccountAgrees) {
   const Ledger& ledger = traced.cones[0].ledger;
   // The program's own error is far below the reference's.
   ASSERT_LT(traced.cones[0].std_error, 5e-4);
-  const double z = student_bound(cases().size() * kAccountCount);
-  const double slack = reference.mean[Account::truncated] + 2e-4;
   EXPECT_LT(reference.mean[Account::truncated], 2e-3) << c.name;
-  for (std::size_t a = 0; a < kAccountCount; ++a) {
-    if (a == static_cast<std::size_t>(Account::truncated)) continue;
-    EXPECT_NEAR(ledger.power[a], reference.mean.power[a], z * reference.std_error[a] + slack)
-        << c.name << ": " << kAccountNames[a];
-  }
+  expect_accounts_of(reference, ledger, cases().size() * kAccountCount, 2e-4, c.name);
 }
 
 // At normal incidence a prism's facets at 45 degrees reflect little in water: (R_s^2 + R_p^2) / 2 comes back, in both

@@ -117,9 +117,7 @@ int expect_reciprocity(const Part& part, const Optics& optics, const Illuminatio
   const auto cos_inside = [&](const Vec3& d) {
     return std::sqrt(1.0 - (1.0 - d.z() * d.z()) / (optics.index * optics.index));
   };
-  const double t = illumination.incidence.rad();
-  const double p = illumination.azimuth.rad();
-  const Vec3 to_source(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
+  const Vec3 to_source = direction_to_source(illumination);
   int checked = 0;
   for (const Spot& spot : spots_of(trace(part, optics, illumination).beams)) {
     if (spot.power < 1e-6) continue;

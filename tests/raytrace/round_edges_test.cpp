@@ -18,14 +18,11 @@ namespace {
 using namespace geometry;
 using namespace raytrace;
 
-constexpr double kBase = 0.5;
-constexpr double kThickness = 0.5;
-constexpr double kConeDeg = 0.5;
+constexpr double kBase = 0.5, kThickness = 0.5, kConeDeg = 0.5;
 
 /// A point or a direction across the grooves.
 struct Vec {
-  double x = 0.0;
-  double z = 0.0;
+  double x = 0.0, z = 0.0;
 };
 
 Vec operator*(double s, Vec v) {

@@ -15,6 +15,7 @@
 #include "geometry/substrate/sag_formula.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
+#include "tests/support/engines.h"
 #include "tests/support/reference_tracer.h"
 #include "tests/support/statistics.h"
 
@@ -68,29 +69,13 @@ class OnSubstrate : public ::testing::TestWithParam<std::size_t> {};
 TEST_P(OnSubstrate, NothingIsLost) {
   const Case c = cases()[GetParam()];
   const Part part = build_part(c.spec);
-  const MonteCarlo tracer(part);
-  for (const Optics& optics : {pmma(), ideal()})
-    for (const double t : {0.0, 25.0, 70.0})
-      for (const double p : {0.0, 70.0, 190.0}) {
-        const MonteCarloResult result = tracer.trace(optics, from(t, p), {0.5}, rays(2048), {});
-        const Ledger& ledger = result.cones[0].ledger;
-        EXPECT_NEAR(ledger.total(), 1.0, 1e-9) << c.name << " at " << t << ", " << p;
-        EXPECT_EQ(ledger[Account::lost], 0.0) << c.name << " at " << t << ", " << p;
-        EXPECT_EQ(result.misses, 0U) << c.name << " at " << t << ", " << p;
-      }
+  expect_nothing_lost(part, {0.0, 25.0, 70.0}, 2048, c.name);
 }
 
 TEST_P(OnSubstrate, EnginesAgree) {
   const Case c = cases()[GetParam()];
   const Part part = build_part(c.spec);
-  BeamPolicy policy;
-  policy.cutoff = 1e-4;
-  const Ledger exact = BeamTracer(part).trace(pmma(), from(5.0, 30.0), {8.0}, policy).ledgers[0];
-  const Ledger traced = MonteCarlo(part).trace(pmma(), from(5.0, 30.0), {8.0}, rays(1U << 16), {}).cones[0].ledger;
-  EXPECT_NEAR(exact.total(), 1.0, 1e-9) << c.name;
-  for (std::size_t a = 0; a < kAccountCount; ++a)
-    EXPECT_NEAR(exact.power[a], traced.power[a], exact[Account::truncated] + 3e-3)
-        << c.name << ": " << kAccountNames[a];
+  expect_same_accounts(part, from(5.0, 30.0), 1e-4, 3e-3, c.name);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, OnSubstrate, ::testing::Range(std::size_t{0}, cases().size()));
@@ -99,15 +84,7 @@ TEST(OnSubstrate, AgreesWithTheReference) {
   for (const std::size_t k : {2U, 5U}) {
     const Case c = cases()[k];
     const Part part = build_part(c.spec);
-    const ReferenceResult reference = reference_trace(part, pmma(), from(10.0, 70.0), 8.0, 1500, 7);
-    const MonteCarloResult traced = MonteCarlo(part).trace(pmma(), from(10.0, 70.0), {8.0}, rays(1U << 16), {});
-    const double z = student_bound(2 * kAccountCount);
-    const double slack = reference.mean[Account::truncated] + 1e-3;
-    for (std::size_t a = 0; a < kAccountCount; ++a) {
-      if (a == static_cast<std::size_t>(Account::truncated)) continue;
-      EXPECT_NEAR(traced.cones[0].ledger.power[a], reference.mean.power[a], z * reference.std_error[a] + slack)
-          << c.name << ": " << kAccountNames[a];
-    }
+    expect_agrees_with_reference(part, from(10.0, 70.0), 1500, 1U << 16, c.name);
   }
 }
 

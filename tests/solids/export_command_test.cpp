@@ -12,13 +12,6 @@ namespace {
 
 const std::string kPrism = example("rtp_single_0p45mm.toml");
 
-void expect_refused(const Outcome& outcome, const std::string& begin) {
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err << "should begin: " << begin;
-}
-
 TEST(Export, WritesTheThreeFormats) {
   const TemporaryFolder folder;
   for (const std::string name : {"a.stl", "a.obj", "a.STEP", "b.stp"}) {

@@ -14,13 +14,6 @@ const std::string kArray =
     "y_length_mm = 2\n[body]\nthickness_mm = 1\nrefractive_index = 1.4917\n";
 const std::string kMesh = "[part]\nmesh = \"part.stl\"\n[body]\nrefractive_index = 1.4917\n";
 
-void expect_refused(const Outcome& outcome, const std::string& begin) {
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err << "should begin: " << begin;
-}
-
 void export_part(const TemporaryFolder& folder, const std::string& design) {
   folder.write("direct.toml", design);
   folder.write("mesh.toml", kMesh);

@@ -9,6 +9,7 @@
 #include "geometry/part/faceted_solid.h"
 #include "geometry/part/part.h"
 #include "tests/solids/solid_specs.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::geometry::mesh_files_test {
 namespace {
@@ -22,12 +23,7 @@ BoundaryMesh as_boundary(const TriangleMesh& mesh) {
 }
 
 std::string complaint(const std::string& text) {
-  try {
-    parse_stl(text, "a.stl");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { parse_stl(text, "a.stl"); });
 }
 
 const std::string kTriangle =

@@ -9,6 +9,7 @@
 #include "geometry/io/stl_file.h"
 #include "geometry/part/faceted_solid.h"
 #include "tests/solids/solid_specs.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::geometry::mesh_part_test {
 namespace {
@@ -18,12 +19,7 @@ TriangleMesh mesh_of(const PartSpec& spec) {
 }
 
 std::string complaint(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of(act);
 }
 
 double level(const Part& part, FacetRole role) {

@@ -3,27 +3,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/elements/part_spec.h"
+#include "tests/support/part_specs.h"
 
 namespace retrace::test {
 
 inline geometry::PartSpec single_part(const geometry::Element& element) {
-  geometry::PartSpec spec;
-  spec.element = element;
-  spec.array.arrangement = geometry::Arrangement::single;
-  spec.thickness_mm = 0.7;
-  return spec;
+  return testing::single(element, 0.7);
 }
 
 inline geometry::PartSpec array_part(const geometry::Element& element, geometry::Arrangement arrangement, double x_mm,
                                      double y_mm) {
-  geometry::PartSpec spec;
-  spec.element = element;
-  spec.array.arrangement = arrangement;
-  spec.array.x_length_mm = x_mm;
-  spec.array.y_length_mm = y_mm;
-  spec.thickness_mm = 0.7;
-  return spec;
+  return testing::finite(element, arrangement, x_mm, y_mm, 0.7);
 }
 
 /// Below z = 0, in closed form: a prism of base b and width w holds b^2 w / 4.

@@ -16,6 +16,7 @@
 #include "studies/photometry/photometry.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::balls_test {
 namespace {
@@ -36,12 +37,7 @@ Design balls(const std::vector<std::string>& overrides = {}) {
 }
 
 std::string refusal(const std::vector<std::string>& overrides, const std::string& text = kBalls) {
-  try {
-    parse_design(text, "balls.toml", overrides);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { parse_design(text, "balls.toml", overrides); }, "accepted");
 }
 
 TEST(BallDesign, DefaultsAreAPackedLayerWithAMirrorOnTheBalls) {
@@ -118,14 +114,7 @@ TEST(BallDesign, KeysOfBallsAreRefusedForPrisms) {
 
 TEST(BallDesign, WhatTakesNoBallsSaysWhatDoes) {
   const std::string text = "balls.toml:2: element.kind: balls are taken by retrace rre, photometry and inspect alone";
-  const auto message = [](const auto& work) -> std::string {
-    try {
-      work();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
+  const auto message = [](const auto& work) -> std::string { return refusal_of(work, "accepted"); };
   EXPECT_EQ(message([] { make_model(balls(), materials::MaterialLibrary::shipped()); }), text);
   EXPECT_EQ(message([] { part_of(balls()); }), text);
   EXPECT_EQ(message([] { check_taken(balls(), {.what = "retrace job"}); }), text);

@@ -152,16 +152,21 @@ TEST(RreDerivatives, IsOddInTheIncidence) {
   EXPECT_GT(std::abs(from_right.derivative.value), 1e-4);
 }
 
+/// A size and a thickness of which a common factor changes nothing.
+void expect_in_proportion(const RrePoint& point, double size_mm, double thickness_mm) {
+  const RreDerivative size = by(RreParameter::size_mm, point);
+  const RreDerivative thickness = by(RreParameter::thickness_mm, point);
+  ASSERT_EQ(size.left_out + thickness.left_out, "");
+  EXPECT_NEAR(size_mm * size.derivative.value + thickness_mm * thickness.derivative.value, 0.0,
+              size_mm * size.derivative.error + thickness_mm * thickness.derivative.error);
+  EXPECT_GT(std::abs(size.derivative.value), 1e-3);
+}
+
 // Lengths have no scale: with everything of one length in proportion, a transparent part returns the same.
 TEST(RreDerivatives, SizeAndThicknessAreInProportion) {
   const Design design = design_of(single(RtpElement{0.45, 0.6, 90.0}, 0.5));
   const RrePoint point = point_of(design, exactly(-11.0, 20.0));
-  const RreDerivative size = by(RreParameter::size_mm, point);
-  const RreDerivative thickness = by(RreParameter::thickness_mm, point);
-  ASSERT_EQ(size.left_out + thickness.left_out, "");
-  EXPECT_NEAR(0.45 * size.derivative.value + 0.5 * thickness.derivative.value, 0.0,
-              0.45 * size.derivative.error + 0.5 * thickness.derivative.error);
-  EXPECT_GT(std::abs(size.derivative.value), 1e-3);
+  expect_in_proportion(point, 0.45, 0.5);
 }
 
 // Straight down and up again through the plate, whatever happens below it: exp(-2 a h) times what does not know of h.
@@ -178,12 +183,7 @@ TEST(RreDerivatives, ThicknessAboveCantedCubes) {
 TEST(RreDerivatives, SizeAndThicknessOfACantedCubeAreInProportion) {
   const Design design = idealised(design_of(single(TriangularCube{0.8, {7.0, 40.0}}, 0.5)));
   const RrePoint point = point_of(design, exactly(8.0, 70.0));
-  const RreDerivative size = by(RreParameter::size_mm, point);
-  const RreDerivative thickness = by(RreParameter::thickness_mm, point);
-  ASSERT_EQ(size.left_out + thickness.left_out, "");
-  EXPECT_NEAR(0.8 * size.derivative.value + 0.5 * thickness.derivative.value, 0.0,
-              0.8 * size.derivative.error + 0.5 * thickness.derivative.error);
-  EXPECT_GT(std::abs(size.derivative.value), 1e-3);
+  expect_in_proportion(point, 0.8, 0.5);
 }
 
 // A canted rim close under the entrance face: thinner plates and larger cubes than that are no parts.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/studies/design_texts.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::design_array_test {
 namespace {
@@ -43,29 +44,28 @@ TEST(DesignReader, KeysOfAnotherKindAreRefused) {
 TEST(DesignReader, SingleAndInfiniteTakeNoLengths) {
   const std::string single = "not allowed for arrangement = \"single\", whose extent is the element's aperture, got ";
   const std::string infinite = "not allowed for extent = \"infinite\", which is one periodic cell, got ";
-  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; x_length_mm = 1")),
-            "d.toml:7: array.x_length_mm: " + single + "1");
-  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; y_offset_mm = 1")),
-            "d.toml:7: array.y_offset_mm: " + single + "1");
-  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; y_length_mm = 3")),
-            "d.toml:7: array.y_length_mm: " + infinite + "3");
-  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; x_offset_mm = 3")),
-            "d.toml:7: array.x_offset_mm: " + infinite + "3");
-  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; extent = \"infinite\"")),
-            "d.toml:7: array.extent: must be \"finite\" for arrangement = \"single\", got \"infinite\"");
-  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; x_offset_mm = 0; x_gap_mm = 0.0")), "");
+  expect_messages(
+      [](const std::string& given) { return complaint(given); },
+      {{design_of(kRtp, "arrangement = \"single\"; x_length_mm = 1"), "d.toml:7: array.x_length_mm: " + single + "1"},
+       {design_of(kRtp, "arrangement = \"single\"; y_offset_mm = 1"), "d.toml:7: array.y_offset_mm: " + single + "1"},
+       {design_of(kRtp, "extent = \"infinite\"; y_length_mm = 3"), "d.toml:7: array.y_length_mm: " + infinite + "3"},
+       {design_of(kRtp, "extent = \"infinite\"; x_offset_mm = 3"), "d.toml:7: array.x_offset_mm: " + infinite + "3"},
+       {design_of(kRtp, "arrangement = \"single\"; extent = \"infinite\""),
+        "d.toml:7: array.extent: must be \"finite\" for arrangement = \"single\", got \"infinite\""},
+       {design_of(kRtp, "arrangement = \"single\"; x_offset_mm = 0; x_gap_mm = 0.0"), ""}});
 }
 
 TEST(DesignReader, GapsRowsAndOverlapOnlyWhereTheyMeanSomething) {
-  EXPECT_EQ(complaint(design_of(kHexagonal, "extent = \"infinite\"; x_gap_mm = 0.1")),
-            "d.toml:6: array.x_gap_mm: only allowed for kind = \"rtp\", got 0.1");
-  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"single\"; y_gap_mm = 0.1")),
-            "d.toml:7: array.y_gap_mm: not allowed for arrangement = \"single\", got 0.1");
-  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; shifted_rows = \"odd\"")),
-            "d.toml:7: array.shifted_rows: only allowed for arrangement = \"offset\", got \"odd\"");
-  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; overlap_percent = 50")),
-            "d.toml:7: array.overlap_percent: only allowed for arrangement = \"offset\", got 50");
-  EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"; x_gap_mm = 0.1")), "");
+  expect_messages([](const std::string& given) { return complaint(given); },
+                  {{design_of(kHexagonal, "extent = \"infinite\"; x_gap_mm = 0.1"),
+                    "d.toml:6: array.x_gap_mm: only allowed for kind = \"rtp\", got 0.1"},
+                   {design_of(kRtp, "arrangement = \"single\"; y_gap_mm = 0.1"),
+                    "d.toml:7: array.y_gap_mm: not allowed for arrangement = \"single\", got 0.1"},
+                   {design_of(kRtp, "extent = \"infinite\"; shifted_rows = \"odd\""),
+                    "d.toml:7: array.shifted_rows: only allowed for arrangement = \"offset\", got \"odd\""},
+                   {design_of(kRtp, "extent = \"infinite\"; overlap_percent = 50"),
+                    "d.toml:7: array.overlap_percent: only allowed for arrangement = \"offset\", got 50"},
+                   {design_of(kRtp, "extent = \"infinite\"; x_gap_mm = 0.1"), ""}});
   EXPECT_EQ(set_complaint({"array.x_gap_mm=-0.1"}),
             "--set array.x_gap_mm=-0.1: array.x_gap_mm: must be >= 0 and <= 1e+06, got -0.1");
   EXPECT_EQ(set_complaint({"array.y_offset_mm=-0.1"}),

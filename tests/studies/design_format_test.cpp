@@ -3,9 +3,9 @@
 #include <set>
 #include <string>
 
-#include "core/schema/key_table.h"
 #include "studies/design/io/design_format.h"
 #include "tests/support/documents.h"
+#include "tests/support/key_table.h"
 
 // Design files by their rows: what is written reads back the same, and the documentation says what the rows say.
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/studies/design_texts.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::design_light_test {
 namespace {
@@ -46,18 +47,18 @@ TEST(DesignReader, WhatIsNoPolarisationIsRefused) {
   const std::string words =
       "must be \"unpolarised\", \"linear\", \"right_circular\" or \"left_circular\" or a list of four Stokes "
       "parameters, got ";
-  EXPECT_EQ(refused("\"liner\""), where + words + "\"liner\"; did you mean \"linear\"?");
-  EXPECT_EQ(refused("1"), where + "must be a string or a list of four Stokes parameters, got 1");
-  EXPECT_EQ(refused("[1, 0, 0]"), where + "must be a list of 4 Stokes parameters, got 3 of them");
-  EXPECT_EQ(refused("[]"), where + "must be a list of 4 Stokes parameters, got 0 of them");
-  EXPECT_EQ(refused("[1, 0, 0, \"x\"]"), where + "must be a number, got \"x\"");
-  EXPECT_EQ(refused("[1, 0, 0, inf]"), where + "must be a finite number, got inf");
+  expect_messages(refused, {{"\"liner\"", where + words + "\"liner\"; did you mean \"linear\"?"},
+                            {"1", where + "must be a string or a list of four Stokes parameters, got 1"},
+                            {"[1, 0, 0]", where + "must be a list of 4 Stokes parameters, got 3 of them"},
+                            {"[]", where + "must be a list of 4 Stokes parameters, got 0 of them"},
+                            {"[1, 0, 0, \"x\"]", where + "must be a number, got \"x\""},
+                            {"[1, 0, 0, inf]", where + "must be a finite number, got inf"}});
   const std::string stokes = where + "must be [i, q, u, v] with i > 0 and q^2 + u^2 + v^2 <= i^2, got ";
-  EXPECT_EQ(refused("[0, 0, 0, 0]"), stokes + "[0, 0, 0, 0]");
-  EXPECT_EQ(refused("[-1, 0, 0, 1]"), stokes + "[-1, 0, 0, 1]");
-  EXPECT_EQ(refused("[1, 0.8, 0, 0.7]"), stokes + "[1, 0.8, 0, 0.7]");
-  EXPECT_EQ(refused("\"linear\"\npolarisation_angle_deg = 361"),
-            "d.toml:13: light.polarisation_angle_deg: must be >= -360 and <= 360, got 361");
+  expect_messages(refused, {{"[0, 0, 0, 0]", stokes + "[0, 0, 0, 0]"},
+                            {"[-1, 0, 0, 1]", stokes + "[-1, 0, 0, 1]"},
+                            {"[1, 0.8, 0, 0.7]", stokes + "[1, 0.8, 0, 0.7]"},
+                            {"\"linear\"\npolarisation_angle_deg = 361",
+                             "d.toml:13: light.polarisation_angle_deg: must be >= -360 and <= 360, got 361"}});
   const std::string alone =
       "--set light.polarisation_angle_deg=0: light.polarisation_angle_deg: only allowed for polarisation = \"linear\", "
       "got 0";
@@ -103,13 +104,14 @@ TEST(DesignReader, AbsorptionIsANumberOrPairsOverTheWavelength) {
     return complaint(with_line(11, "absorption_per_mm = " + value));
   };
   const std::string where = "d.toml:11: " + key + ": ";
-  EXPECT_EQ(refused("[[400, 1], [400, 2]]"), where + "wavelengths must ascend, got 400 after 400");
-  EXPECT_EQ(refused("[[500, 1], [400, 2]]"), where + "wavelengths must ascend, got 400 after 500");
-  EXPECT_EQ(refused("[[500, 1]]"), where + "must be a number or a list of two or more pairs, got a list of one");
-  EXPECT_EQ(refused("[[500, -1], [600, 1]]"), where + "must be >= 0, got -1");
-  EXPECT_EQ(refused("[500, 600]"), where + "must be a list of [wavelength_nm, absorption_per_mm], got 500 in it");
-  EXPECT_EQ(refused("[]"), where + "must be a list of [wavelength_nm, absorption_per_mm], got an empty list");
-  EXPECT_EQ(refused("\"much\""), where + "must be a number, got \"much\"");
+  expect_messages(refused,
+                  {{"[[400, 1], [400, 2]]", where + "wavelengths must ascend, got 400 after 400"},
+                   {"[[500, 1], [400, 2]]", where + "wavelengths must ascend, got 400 after 500"},
+                   {"[[500, 1]]", where + "must be a number or a list of two or more pairs, got a list of one"},
+                   {"[[500, -1], [600, 1]]", where + "must be >= 0, got -1"},
+                   {"[500, 600]", where + "must be a list of [wavelength_nm, absorption_per_mm], got 500 in it"},
+                   {"[]", where + "must be a list of [wavelength_nm, absorption_per_mm], got an empty list"},
+                   {"\"much\"", where + "must be a number, got \"much\""}});
 }
 
 TEST(DesignReader, WhatIsNoSpectrumIsRefused) {
@@ -119,22 +121,22 @@ TEST(DesignReader, WhatIsNoSpectrumIsRefused) {
   const std::string where = "d.toml:12: light.spectrum: ";
   const std::string allowed =
       where + "must be \"A\", \"D65\", a file that ends in .csv or a list of [wavelength_nm, power], got ";
-  EXPECT_EQ(refused("\"F11\""), allowed + "\"F11\"");
-  EXPECT_EQ(refused("\"a\""), allowed + "\"a\"");
-  EXPECT_EQ(refused("\"\""), allowed + "\"\"");
-  EXPECT_EQ(refused("\"a\\u0000.csv\""), allowed + "\"a\\x00.csv\"");
-  EXPECT_EQ(refused("555"), allowed + "555");
-  EXPECT_EQ(refused("{ a = 1 }"), allowed + "a table");
+  expect_messages(refused, {{"\"F11\"", allowed + "\"F11\""},
+                            {"\"a\"", allowed + "\"a\""},
+                            {"\"\"", allowed + "\"\""},
+                            {"\"a\\u0000.csv\"", allowed + "\"a\\x00.csv\""},
+                            {"555", allowed + "555"},
+                            {"{ a = 1 }", allowed + "a table"}});
   const std::string list = where + "must be a list of [wavelength_nm, power], got ";
-  EXPECT_EQ(refused("[]"), list + "an empty list");
-  EXPECT_EQ(refused("[555, 1]"), list + "555 in it");
-  EXPECT_EQ(refused("[[555]]"), list + "a list of 1 in it");
-  EXPECT_EQ(refused("[[555, 1, 2]]"), list + "a list of 3 in it");
-  EXPECT_EQ(refused("[[555, \"x\"]]"), where + "must be a number, got \"x\"");
-  EXPECT_EQ(refused("[[555, 1], [0, 1]]"), where + "must be > 0, got 0");
-  EXPECT_EQ(refused("[[555, -1]]"), where + "must be >= 0, got -1");
-  EXPECT_EQ(refused("[[555, nan]]"), where + "must be a finite number, got nan");
-  EXPECT_EQ(refused("[[555, 1], [555.0, 2]]"), where + "must name each wavelength once, got 555 twice");
+  expect_messages(refused, {{"[]", list + "an empty list"},
+                            {"[555, 1]", list + "555 in it"},
+                            {"[[555]]", list + "a list of 1 in it"},
+                            {"[[555, 1, 2]]", list + "a list of 3 in it"},
+                            {"[[555, \"x\"]]", where + "must be a number, got \"x\""},
+                            {"[[555, 1], [0, 1]]", where + "must be > 0, got 0"},
+                            {"[[555, -1]]", where + "must be >= 0, got -1"},
+                            {"[[555, nan]]", where + "must be a finite number, got nan"},
+                            {"[[555, 1], [555.0, 2]]", where + "must name each wavelength once, got 555 twice"}});
   EXPECT_EQ(
       refused("\"A\"\nwavelength_nm = 555"),
       "d.toml:13: light.wavelength_nm: not allowed together with spectrum: one of the two says what the light is, "

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "studies/design/io/init_templates.h"
 #include "tests/studies/design_texts.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::design_reader_test {
 namespace {
@@ -122,27 +123,23 @@ entrance = "lossless"
 }
 
 TEST(DesignReader, NumbersOutOfRangeAreRefused) {
-  EXPECT_EQ(complaint(with_line(3, "base_mm = -3")), "d.toml:3: element.base_mm: must be > 0, got -3");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = 0")), "d.toml:3: element.base_mm: must be > 0, got 0");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = 0.0")), "d.toml:3: element.base_mm: must be > 0, got 0");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = inf")), "d.toml:3: element.base_mm: must be a finite number, got inf");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = nan")), "d.toml:3: element.base_mm: must be a finite number, got nan");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = 1e7")),
-            "d.toml:3: element.base_mm: must be >= 1e-06 and <= 1e+06, got 1e+07");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = 1e-7")),
-            "d.toml:3: element.base_mm: must be >= 1e-06 and <= 1e+06, got 1e-07");
-  EXPECT_EQ(complaint(with_line(7, "x_length_mm = -inf")),
-            "d.toml:7: array.x_length_mm: must be a finite number, got -inf");
-  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 0")), "d.toml:10: body.thickness_mm: must be > 0, got 0");
-  EXPECT_EQ(complaint(with_line(11, "refractive_index = 0.9")),
-            "d.toml:11: body.refractive_index: must be >= 1, got 0.9");
-  EXPECT_EQ(complaint(with_line(11, "absorption_per_mm = -1")),
-            "d.toml:11: body.absorption_per_mm: must be >= 0, got -1");
-  EXPECT_EQ(complaint(with_line(11, "light.wavelength_nm = 0")),
-            "d.toml:11: body.light: unknown table (allowed: thickness_mm, material, refractive_index, "
-            "absorption_per_mm, facet_coating, back_index)");
-  EXPECT_EQ(complaint(with_line(11, "[light]\nwavelength_nm = 0")),
-            "d.toml:12: light.wavelength_nm: must be > 0, got 0");
+  expect_messages(
+      [](const std::string& given) { return complaint(given); },
+      {{with_line(3, "base_mm = -3"), "d.toml:3: element.base_mm: must be > 0, got -3"},
+       {with_line(3, "base_mm = 0"), "d.toml:3: element.base_mm: must be > 0, got 0"},
+       {with_line(3, "base_mm = 0.0"), "d.toml:3: element.base_mm: must be > 0, got 0"},
+       {with_line(3, "base_mm = inf"), "d.toml:3: element.base_mm: must be a finite number, got inf"},
+       {with_line(3, "base_mm = nan"), "d.toml:3: element.base_mm: must be a finite number, got nan"},
+       {with_line(3, "base_mm = 1e7"), "d.toml:3: element.base_mm: must be >= 1e-06 and <= 1e+06, got 1e+07"},
+       {with_line(3, "base_mm = 1e-7"), "d.toml:3: element.base_mm: must be >= 1e-06 and <= 1e+06, got 1e-07"},
+       {with_line(7, "x_length_mm = -inf"), "d.toml:7: array.x_length_mm: must be a finite number, got -inf"},
+       {with_line(10, "thickness_mm = 0"), "d.toml:10: body.thickness_mm: must be > 0, got 0"},
+       {with_line(11, "refractive_index = 0.9"), "d.toml:11: body.refractive_index: must be >= 1, got 0.9"},
+       {with_line(11, "absorption_per_mm = -1"), "d.toml:11: body.absorption_per_mm: must be >= 0, got -1"},
+       {with_line(11, "light.wavelength_nm = 0"),
+        "d.toml:11: body.light: unknown table (allowed: thickness_mm, material, refractive_index, "
+        "absorption_per_mm, facet_coating, back_index)"},
+       {with_line(11, "[light]\nwavelength_nm = 0"), "d.toml:12: light.wavelength_nm: must be > 0, got 0"}});
 }
 
 TEST(DesignReader, WholeNumbersOfAnySizeAreNumbers) {
@@ -165,26 +162,28 @@ TEST(DesignReader, AcceptanceIsANumberOrAListWithin90Degrees) {
     return complaint(with_line(11, "[detector]\nacceptance_half_angle_deg = " + value));
   };
   const std::string where = "d.toml:12: detector.acceptance_half_angle_deg: ";
-  EXPECT_EQ(refused("0"), where + "must be > 0 and <= 90, got 0");
-  EXPECT_EQ(refused("90.5"), where + "must be > 0 and <= 90, got 90.5");
-  EXPECT_EQ(refused("[0.5, -1]"), where + "must be > 0 and <= 90, got -1");
-  EXPECT_EQ(refused("[0.5,\n\"x\"]"), "d.toml:13: detector.acceptance_half_angle_deg: must be a number, got \"x\"");
-  EXPECT_EQ(refused("[]"), where + "must be a number or a list of at least one number, got an empty list");
-  EXPECT_EQ(refused("\"a\""), where + "must be a number or a list of numbers, got \"a\"");
-  EXPECT_EQ(refused("90"), "");
+  expect_messages(refused,
+                  {{"0", where + "must be > 0 and <= 90, got 0"},
+                   {"90.5", where + "must be > 0 and <= 90, got 90.5"},
+                   {"[0.5, -1]", where + "must be > 0 and <= 90, got -1"},
+                   {"[0.5,\n\"x\"]", "d.toml:13: detector.acceptance_half_angle_deg: must be a number, got \"x\""},
+                   {"[]", where + "must be a number or a list of at least one number, got an empty list"},
+                   {"\"a\"", where + "must be a number or a list of numbers, got \"a\""},
+                   {"90", ""}});
 }
 
 TEST(DesignReader, WrongTypesAreRefused) {
-  EXPECT_EQ(complaint(with_line(3, "base_mm = \"0.5\"")), "d.toml:3: element.base_mm: must be a number, got \"0.5\"");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = true")), "d.toml:3: element.base_mm: must be a number, got true");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = [1]")), "d.toml:3: element.base_mm: must be a number, got a list");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = {a = 1}")), "d.toml:3: element.base_mm: must be a number, got a table");
-  EXPECT_EQ(complaint(with_line(3, "base_mm = 2020-01-01")),
-            "d.toml:3: element.base_mm: must be a number, got a date or time");
-  EXPECT_EQ(complaint(with_line(2, "kind = 5")), "d.toml:2: element.kind: must be a string, got 5");
-  EXPECT_EQ(complaint("title = 1\n" + joined(kLines)), "d.toml:1: title: must be a string, got 1");
-  EXPECT_EQ(complaint("element = 3\n"), "d.toml:1: element: must be a table, got 3");
-  EXPECT_EQ(complaint("[[element]]\nkind = \"rtp\"\n"), "d.toml:1: element: must be a table, got a list");
+  expect_messages(
+      [](const std::string& given) { return complaint(given); },
+      {{with_line(3, "base_mm = \"0.5\""), "d.toml:3: element.base_mm: must be a number, got \"0.5\""},
+       {with_line(3, "base_mm = true"), "d.toml:3: element.base_mm: must be a number, got true"},
+       {with_line(3, "base_mm = [1]"), "d.toml:3: element.base_mm: must be a number, got a list"},
+       {with_line(3, "base_mm = {a = 1}"), "d.toml:3: element.base_mm: must be a number, got a table"},
+       {with_line(3, "base_mm = 2020-01-01"), "d.toml:3: element.base_mm: must be a number, got a date or time"},
+       {with_line(2, "kind = 5"), "d.toml:2: element.kind: must be a string, got 5"},
+       {"title = 1\n" + joined(kLines), "d.toml:1: title: must be a string, got 1"},
+       {"element = 3\n", "d.toml:1: element: must be a table, got 3"},
+       {"[[element]]\nkind = \"rtp\"\n", "d.toml:1: element: must be a table, got a list"}});
 }
 
 TEST(DesignReader, UnknownKeysAreNamedWithASuggestion) {
@@ -216,14 +215,15 @@ TEST(DesignReader, TheFirstUnknownKeyOfTheFileIsReported) {
 }
 
 TEST(DesignReader, MissingKeysAreReportedAtTheirTable) {
-  EXPECT_EQ(complaint(with_line(3, "")), "d.toml:1: element.base_mm: missing, must be > 0");
-  EXPECT_EQ(complaint(with_line(2, "")),
-            "d.toml:1: element.kind: missing, must be \"rtp\", \"hexagonal_icc\", \"triangular_icc\" or \"ball\"");
-  EXPECT_EQ(complaint(with_line(8, "")), "d.toml:5: array.y_length_mm: missing, must be > 0");
-  EXPECT_EQ(complaint(with_line(10, "")), "d.toml:9: body.thickness_mm: missing, must be > 0");
-  EXPECT_EQ(complaint("[element]\nkind = \"hexagonal_icc\"\n"), "d.toml:1: element.aperture_mm: missing, must be > 0");
-  EXPECT_EQ(complaint(""),
-            "d.toml: element.kind: missing, must be \"rtp\", \"hexagonal_icc\", \"triangular_icc\" or \"ball\"");
+  expect_messages(
+      [](const std::string& given) { return complaint(given); },
+      {{with_line(3, ""), "d.toml:1: element.base_mm: missing, must be > 0"},
+       {with_line(2, ""),
+        "d.toml:1: element.kind: missing, must be \"rtp\", \"hexagonal_icc\", \"triangular_icc\" or \"ball\""},
+       {with_line(8, ""), "d.toml:5: array.y_length_mm: missing, must be > 0"},
+       {with_line(10, ""), "d.toml:9: body.thickness_mm: missing, must be > 0"},
+       {"[element]\nkind = \"hexagonal_icc\"\n", "d.toml:1: element.aperture_mm: missing, must be > 0"},
+       {"", "d.toml: element.kind: missing, must be \"rtp\", \"hexagonal_icc\", \"triangular_icc\" or \"ball\""}});
   EXPECT_EQ(complaint("", {"element.kind=rtp"}), "d.toml: element.base_mm: missing, must be > 0");
 }
 
@@ -252,14 +252,15 @@ TEST(DesignReader, WordsAreCheckedWithASuggestion) {
 TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
   const std::string no = ": not available in this version";
   const auto refused = [](const std::string& set) { return set_complaint({set}); };
-  EXPECT_EQ(refused("array.mask_threshold=0.7"),
-            "--set array.mask_threshold=0.7: array.mask_threshold: only allowed with mask, got 0.7");
-  EXPECT_EQ(refused("body.back_index=0.9"),
-            "--set body.back_index=0.9: body.back_index: must be >= 1 and <= 3, got 0.9");
-  EXPECT_EQ(refused("body.back_index=1.33"), "");
-  EXPECT_EQ(refused("body.facet_coating=aluminium"), "");
-  EXPECT_EQ(refused("body.facet_coating=silver"),
-            "--set body.facet_coating=silver: body.facet_coating: must be \"none\" or \"aluminium\", got \"silver\"");
+  expect_messages(
+      refused,
+      {{"array.mask_threshold=0.7",
+        "--set array.mask_threshold=0.7: array.mask_threshold: only allowed with mask, got 0.7"},
+       {"body.back_index=0.9", "--set body.back_index=0.9: body.back_index: must be >= 1 and <= 3, got 0.9"},
+       {"body.back_index=1.33", ""},
+       {"body.facet_coating=aluminium", ""},
+       {"body.facet_coating=silver",
+        "--set body.facet_coating=silver: body.facet_coating: must be \"none\" or \"aluminium\", got \"silver\""}});
   EXPECT_EQ(complaint(with_line(11, "[part]\nmesh = \"a.stl\"")),
             "d.toml:1: element: not allowed beside part.mesh, which is the whole part");
   EXPECT_EQ(refused("surface.roughness_sq_nm=rough"),
@@ -340,14 +341,7 @@ TEST(DesignReader, ErrorsInOverridesNameTheOverride) {
 }
 
 TEST(DesignReader, UnreadablePathsAreRefused) {
-  const auto refused = [](const fs::path& path) -> std::string {
-    try {
-      read_design(path);
-      return {};
-    } catch (const InputError& error) {
-      return error.what();
-    }
-  };
+  const auto refused = [](const fs::path& path) { return refusal_of([&] { read_design(path); }); };
   EXPECT_EQ(refused("no/such.toml"), "no/such.toml: cannot be read: No such file or directory");
   EXPECT_EQ(refused("/"), "/: cannot be read: it is a folder");
   EXPECT_EQ(refused("/dev/zero"), "/dev/zero: must have at most 16384 bytes, got more");

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "geometry/elements/element_cells.h"
 #include "tests/studies/design_texts.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::design_surface_test {
 namespace {
@@ -38,16 +39,17 @@ TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
 
 TEST(DesignReader, HeightMapKeysAreChecked) {
   const auto said = [](const std::string& lines) { return complaint(with_line(11, "[surface]\n" + lines)); };
-  EXPECT_EQ(said("model = \"height_map\""),
-            "d.toml:11: surface.height_map: missing, must be the name of the file of a measured map");
-  EXPECT_EQ(said("height_map = \"\""), "d.toml:12: surface.height_map: must name a file, got \"\"");
-  EXPECT_EQ(said("height_map = 3"), "d.toml:12: surface.height_map: must be a string, got 3");
-  EXPECT_EQ(said("model = \"smooth\"\nheight_map = \"m.txt\""),
-            "d.toml:13: surface.height_map: only allowed for model = \"height_map\", got \"m.txt\"");
-  EXPECT_EQ(said("height_map_form = \"poly2\""),
-            "d.toml:12: surface.height_map_form: only allowed for model = \"height_map\", got \"poly2\"");
-  EXPECT_EQ(said("model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9"),
-            "d.toml:14: surface.waviness_sq_nm: must be 0 for model = \"height_map\", whose map holds both, got 5");
+  expect_messages(
+      said, {{"model = \"height_map\"",
+              "d.toml:11: surface.height_map: missing, must be the name of the file of a measured map"},
+             {"height_map = \"\"", "d.toml:12: surface.height_map: must name a file, got \"\""},
+             {"height_map = 3", "d.toml:12: surface.height_map: must be a string, got 3"},
+             {"model = \"smooth\"\nheight_map = \"m.txt\"",
+              "d.toml:13: surface.height_map: only allowed for model = \"height_map\", got \"m.txt\""},
+             {"height_map_form = \"poly2\"",
+              "d.toml:12: surface.height_map_form: only allowed for model = \"height_map\", got \"poly2\""},
+             {"model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9",
+              "d.toml:14: surface.waviness_sq_nm: must be 0 for model = \"height_map\", whose map holds both, got 5"}});
   EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_level_axis = \"z\"")
                   .starts_with("d.toml:13: surface.height_map_level_axis: must be \"x\" or \"y\", got \"z\""));
   EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_form = \"none\"")
@@ -63,12 +65,7 @@ TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
   EXPECT_EQ(design.facet_planes()->name, "planes.csv");
   EXPECT_EQ(design.facet_planes()->file, std::filesystem::path("folder/planes.csv"));
   const auto refused = [&](const std::vector<std::string>& sets) {
-    try {
-      parse_design(text, "d.toml", sets);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+    return refusal_of([&] { parse_design(text, "d.toml", sets); }, "accepted");
   };
   EXPECT_EQ(refused({"surface.facet_tilt_arcmin=[1,1]"}),
             "d.toml:11: part.facets: not allowed together with errors of angle, which its planes hold");
@@ -82,12 +79,7 @@ TEST(DesignReader, CantIsReadForCubeCornersAlone) {
     return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part();
   };
   const auto refused = [&](const std::string& element, const std::vector<std::string>& overrides) -> std::string {
-    try {
-      read(element, overrides);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { read(element, overrides); });
   };
   for (const std::string& cube : {kHexagonal, kTriangular}) {
     const std::string azimuth = "element.cant_azimuth_deg=-90";

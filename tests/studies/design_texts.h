@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "studies/design/io/design_reader.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies {
 
@@ -41,14 +42,7 @@ inline std::string with_line(std::size_t number, const std::string& line) {
 
 /// What reading `text` complains of; empty if it does not.
 inline std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    parse_design(text, "d.toml", overrides);
-    return {};
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.exit_code(), ExitCode::bad_input);
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    return error.what();
-  }
+  return refusal_of([&] { parse_design(text, "d.toml", overrides); });
 }
 
 /// What a valid design complains of when `key=value` is set.

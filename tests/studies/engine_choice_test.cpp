@@ -15,7 +15,7 @@ namespace {
 using namespace retrace::studies;
 using raytrace::Account;
 
-constexpr const char* kHoneycomb = R"(
+const std::string kHoneycomb = R"(
 [element]
 kind = "hexagonal_icc"
 aperture_mm = 2.5
@@ -26,30 +26,12 @@ thickness_mm = 2
 refractive_index = 1.49
 )";
 
-constexpr const char* kSingle = R"(
-[element]
-kind = "rtp"
-base_mm = 0.45
-width_mm = 0.45
-[array]
-arrangement = "single"
-[body]
-thickness_mm = 2
-refractive_index = 1.4917
-)";
-
-constexpr const char* kBricks = R"(
-[element]
-kind = "rtp"
-base_mm = 0.45
-width_mm = 0.45
-[array]
-arrangement = "offset"
-extent = "infinite"
-[body]
-thickness_mm = 2
-refractive_index = 1.4917
-)";
+std::string prisms(const std::string& array) {
+  return "[element]\nkind = \"rtp\"\nbase_mm = 0.45\nwidth_mm = 0.45\n[array]\n" + array +
+         "\n[body]\nthickness_mm = 2\nrefractive_index = 1.4917\n";
+}
+const std::string kSingle = prisms("arrangement = \"single\"");
+const std::string kBricks = prisms("arrangement = \"offset\"\nextent = \"infinite\"");
 
 RreResult run(const std::string& text, const std::vector<std::string>& overrides, RreRequest request,
               unsigned threads = 0) {
@@ -70,7 +52,7 @@ RreRequest at(std::vector<double> incidence_deg, Engine engine, std::optional<do
 
 TEST(EngineChoice, WhatIsTruncatedBoundsTheExactValue) {
   constexpr double left = 3e-5;
-  for (const char* text : {kHoneycomb, kBricks}) {
+  for (const std::string& text : {kHoneycomb, kBricks}) {
     const RreResult fine = run(text, {}, at({0.0, 12.0}, Engine::exact, left));
     for (const double goal : {1e-2, 1e-3, 1e-4}) {
       const RreResult rough = run(text, {}, at({0.0, 12.0}, Engine::exact, goal));
@@ -102,7 +84,7 @@ TEST(EngineChoice, OneHardDirectionLeavesTheOthersExact) {
 
 TEST(EngineChoice, AgreesWithTheExactEngineWithinWhatItSays) {
   constexpr double left = 1e-4;
-  for (const char* text : {kHoneycomb, kBricks}) {
+  for (const std::string& text : {kHoneycomb, kBricks}) {
     const RreResult chosen = run(text, {}, at({3.0, 12.0, 30.0}, Engine::automatic, 1e-3));
     const RreResult fine = run(text, {}, at({3.0, 12.0, 30.0}, Engine::exact, left));
     for (std::size_t k = 0; k < chosen.points.size(); ++k) {

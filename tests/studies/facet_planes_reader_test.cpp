@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::facet_planes_reader_test {
 namespace {
@@ -22,12 +23,7 @@ const std::string kHead = "# planes\nx_mm,y_mm,facet,height_mm,x_slope,y_slope\n
 const std::string kElement = "0.25,0.25,1,-0.25,-1,0.001\n0.25,0.25,2,-0.2500001,1.0002,0\n";
 
 std::string refused(const std::string& text, geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
-  try {
-    parse_facet_planes(text, "p.csv", prisms(arrangement));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { parse_facet_planes(text, "p.csv", prisms(arrangement)); }, "accepted");
 }
 
 TEST(FacetPlanesReader, ReadsWhatItWrites) {
@@ -48,23 +44,24 @@ TEST(FacetPlanesReader, TurnedElementsOnlyInACheckers) {
 }
 
 TEST(FacetPlanesReader, SaysWhereAndWhatIsAllowed) {
-  EXPECT_EQ(refused(""), "p.csv: must have the header x_mm,y_mm,facet,height_mm,x_slope,y_slope");
-  EXPECT_EQ(refused("x,y\n"), "p.csv:1: must be the header x_mm,y_mm,facet,height_mm,x_slope,y_slope, got \"x,y\"");
-  EXPECT_EQ(refused(kHead + "1,2,3\n"), "p.csv:3: must have the 6 values of the header, got 3");
-  EXPECT_EQ(refused(kHead + "1,2,3,4,5,6,7\n"), "p.csv:3: must have the 6 values of the header, got 7");
-  EXPECT_EQ(refused(kHead + "0.25,0.25,1,-0.25,-1,wide\n"),
-            "p.csv:3: y_slope: must be a number >= -1e+06 and <= 1e+06, got \"wide\"");
-  EXPECT_EQ(refused(kHead + "nan,0.25,1,-0.25,-1,0\n"),
-            "p.csv:3: x_mm: must be a number >= -1e+06 and <= 1e+06, got \"nan\"");
-  EXPECT_EQ(refused(kHead + "0.25,0.25,3,-0.25,-1,0\n"), "p.csv:3: facet: must be 1 or 2, got 3");
-  EXPECT_EQ(refused(kHead + "0.25,0.25,1,0.25,-1,0\n"),
-            "p.csv:3: height_mm: must be -0.275000 to -0.225000, near the root of the design's element, got 0.25");
-  EXPECT_EQ(refused(kHead + "0.25,0.25,1,-0.25,1,0\n"),
-            "p.csv:3: x_slope: the plane must lie within 5 degrees of facet 1 of the design's element");
-  EXPECT_EQ(refused(kHead + "0.25,0.25,1,-0.25,-1,0\n"), "p.csv:3: must be followed by the other facet of its element");
-  EXPECT_EQ(refused(kHead + "0.25,0.25,1,-0.25,-1,0\n0.25,0.25,1,-0.25,-1,0\n"),
-            "p.csv:4: must be the other facet of the element of the line before");
-  EXPECT_EQ(refused(kHead + kElement + kElement), "p.csv: two elements lie in one place");
+  expect_messages(
+      [](const std::string& given) { return refused(given); },
+      {{"", "p.csv: must have the header x_mm,y_mm,facet,height_mm,x_slope,y_slope"},
+       {"x,y\n", "p.csv:1: must be the header x_mm,y_mm,facet,height_mm,x_slope,y_slope, got \"x,y\""},
+       {kHead + "1,2,3\n", "p.csv:3: must have the 6 values of the header, got 3"},
+       {kHead + "1,2,3,4,5,6,7\n", "p.csv:3: must have the 6 values of the header, got 7"},
+       {kHead + "0.25,0.25,1,-0.25,-1,wide\n",
+        "p.csv:3: y_slope: must be a number >= -1e+06 and <= 1e+06, got \"wide\""},
+       {kHead + "nan,0.25,1,-0.25,-1,0\n", "p.csv:3: x_mm: must be a number >= -1e+06 and <= 1e+06, got \"nan\""},
+       {kHead + "0.25,0.25,3,-0.25,-1,0\n", "p.csv:3: facet: must be 1 or 2, got 3"},
+       {kHead + "0.25,0.25,1,0.25,-1,0\n",
+        "p.csv:3: height_mm: must be -0.275000 to -0.225000, near the root of the design's element, got 0.25"},
+       {kHead + "0.25,0.25,1,-0.25,1,0\n",
+        "p.csv:3: x_slope: the plane must lie within 5 degrees of facet 1 of the design's element"},
+       {kHead + "0.25,0.25,1,-0.25,-1,0\n", "p.csv:3: must be followed by the other facet of its element"},
+       {kHead + "0.25,0.25,1,-0.25,-1,0\n0.25,0.25,1,-0.25,-1,0\n",
+        "p.csv:4: must be the other facet of the element of the line before"},
+       {kHead + kElement + kElement, "p.csv: two elements lie in one place"}});
 }
 
 geometry::PartSpec cubes(const geometry::Element& element) {
@@ -77,12 +74,7 @@ geometry::PartSpec cubes(const geometry::Element& element) {
 }
 
 std::string refused_cube(const std::string& text) {
-  try {
-    parse_facet_planes(text, "p.csv", cubes(geometry::HexagonalCube{1.0, {}}));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { parse_facet_planes(text, "p.csv", cubes(geometry::HexagonalCube{1.0, {}})); }, "accepted");
 }
 
 TEST(FacetPlanesReader, CubeCornersHaveThreeFacetsAndFlares) {
@@ -96,16 +88,17 @@ TEST(FacetPlanesReader, CubeCornersHaveThreeFacetsAndFlares) {
   EXPECT_EQ(planes.element_count(), 1U);
   EXPECT_TRUE(planes.elements()[1].flares[1].has_value());
   EXPECT_EQ(facet_planes_text(planes), "x_mm,y_mm,facet,height_mm,x_slope,y_slope\n" + cube + flare);
-  EXPECT_EQ(refused_cube(kHead + flare), "p.csv: must have three lines for each element");
-  EXPECT_EQ(refused_cube(kHead + cube + flare + flare), "p.csv:7: facet: must not be given twice for one place");
-  EXPECT_EQ(refused_cube(kHead + "2,2,10,-0.70711,0,0\n"), "p.csv:3: facet: must be 1 to 9, got 10");
-  EXPECT_EQ(refused_cube(kHead + "2,2,1.5,-0.70711,0,0\n"), "p.csv:3: facet: must be 1 to 9, got 1.5");
-  EXPECT_EQ(refused_cube(kHead + "2,2,1,-0.70711,0.7071,1.2247\n"),
-            "p.csv:3: must be followed by the other facets of its element");
-  EXPECT_EQ(refused_cube(kHead + "2,2,1,-0.70711,0.7071,1.2247\n2,2,4,0.3536,-1.41421,0\n"),
-            "p.csv:4: must be another facet of the element of the line before");
-  EXPECT_EQ(refused_cube(kHead + "2,2,2,-0.70711,1.41421,0\n"),
-            "p.csv:3: x_slope: the plane must lie within 5 degrees of facet 2 of the design's element");
+  expect_messages(
+      [](const std::string& given) { return refused_cube(given); },
+      {{kHead + flare, "p.csv: must have three lines for each element"},
+       {kHead + cube + flare + flare, "p.csv:7: facet: must not be given twice for one place"},
+       {kHead + "2,2,10,-0.70711,0,0\n", "p.csv:3: facet: must be 1 to 9, got 10"},
+       {kHead + "2,2,1.5,-0.70711,0,0\n", "p.csv:3: facet: must be 1 to 9, got 1.5"},
+       {kHead + "2,2,1,-0.70711,0.7071,1.2247\n", "p.csv:3: must be followed by the other facets of its element"},
+       {kHead + "2,2,1,-0.70711,0.7071,1.2247\n2,2,4,0.3536,-1.41421,0\n",
+        "p.csv:4: must be another facet of the element of the line before"},
+       {kHead + "2,2,2,-0.70711,1.41421,0\n",
+        "p.csv:3: x_slope: the plane must lie within 5 degrees of facet 2 of the design's element"}});
 }
 
 TEST(FacetPlanesReader, CubeCornersMayHaveCaps) {

@@ -15,6 +15,7 @@
 #include "tests/studies/photometric_requests.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
+#include "tests/support/refusals.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::studies::photometry_test {
@@ -28,12 +29,7 @@ using std::numbers::pi;
 constexpr const char* kHeader = "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n";
 
 std::string message_of(const std::string& table) {
-  try {
-    parse_limits(table, "l.csv");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { parse_limits(table, "l.csv"); }, "accepted");
 }
 
 TEST(Limits, ShippedProgrammesHoldTheirPoints) {
@@ -304,12 +300,7 @@ TEST(Photometry, RefusesWhatItCannotMeasure) {
     PhotometryRequest request = request_of(points_at({0.2, 1.5}, 1.0));
     request.limits_source = "l.csv";
     spoil(request);
-    try {
-      PhotometryStudy(design, request);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return refusal_of([&] { PhotometryStudy(design, request); }, "accepted");
   };
   EXPECT_EQ(refusal([](auto&) {}), "accepted");
   EXPECT_TRUE(refusal([](auto& r) { r.area_cm2 = 0.0; }).starts_with("--area-cm2: must be a number above 0"));

@@ -12,6 +12,7 @@
 #include "studies/design/optical_model.h"
 #include "studies/roughness/io/facet_table_reader.h"
 #include "studies/rre/rre.h"
+#include "tests/support/refusals.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::studies::roughness_test {
@@ -28,12 +29,7 @@ const std::string kArray =
     "\"infinite\"\n[body]\nthickness_mm = 0.5\n";
 
 std::string complaint(const std::string& table) {
-  try {
-    parse_facet_table(table, "t.csv");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { parse_facet_table(table, "t.csv"); });
 }
 
 struct Published {
@@ -158,12 +154,7 @@ TEST(RoughnessStudy, FallsWithSaAndRisesWithTheCorrelationLength) {
 
 TEST(RoughnessStudy, RefusesWhatItCannotVary) {
   const auto said = [](const std::string& design, const RoughnessRequest& request) -> std::string {
-    try {
-      RoughnessStudy(parse_design(design, "d.toml"), request);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { RoughnessStudy(parse_design(design, "d.toml"), request); });
   };
   EXPECT_EQ(said(kArray + "[surface]\nroughness_sq_nm = 3\ncorrelation_length_um = 5\n", request_of({1.0})),
             "d.toml:11: surface.roughness_sq_nm: must be left out here: the roughness is what is varied");

@@ -14,6 +14,7 @@
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 #include "studies/rre/spectral_mean.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::spectrum_of_light_test {
 namespace {
@@ -58,13 +59,7 @@ RrePoint point(const Overrides& overrides, const RreRequest& request) {
 }
 
 std::string complaint(const Design& given, const RreRequest& request) {
-  try {
-    RreStudy({given}, request);
-    return {};
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    return error.what();
-  }
+  return refusal_of([&] { RreStudy({given}, request); });
 }
 
 /// Lines of one power at every wavelength of the CIE's table, as a design has them.
@@ -110,21 +105,19 @@ double koksma_bound(const materials::SpectralCurve& lamp, const materials::Spect
 }
 
 TEST(SpectralMean, WeighsPointsAndAddsVariances) {
-  RrePoint a;
-  a.wavelength_nm = 500.0;
-  a.rre = 0.8;
-  a.std_error = 0.03;
-  a.stokes = {0.8, 0.1, -0.2, 0.3};
-  a.ledger[Account::retroreflected] = 0.8;
+  const auto at_wavelength = [](double wavelength_nm, const raytrace::Stokes& stokes, double std_error) {
+    RrePoint point;
+    point.wavelength_nm = wavelength_nm;
+    point.rre = point.ledger[Account::retroreflected] = stokes.i;
+    point.std_error = std_error;
+    point.stokes = stokes;
+    return point;
+  };
+  RrePoint a = at_wavelength(500.0, {0.8, 0.1, -0.2, 0.3}, 0.03);
   a.ledger[Account::transmitted] = 0.2;
   a.beams = 7;
   a.depth = 3;
-  RrePoint b;
-  b.wavelength_nm = 600.0;
-  b.rre = 0.4;
-  b.std_error = 0.04;
-  b.stokes = {0.4, 0.2, 0.0, -0.1};
-  b.ledger[Account::retroreflected] = 0.4;
+  RrePoint b = at_wavelength(600.0, {0.4, 0.2, 0.0, -0.1}, 0.04);
   b.ledger[Account::absorbed] = 0.6;
   b.beams = 5;
   b.depth = 9;

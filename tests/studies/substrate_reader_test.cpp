@@ -10,6 +10,7 @@
 #include "geometry/substrate/sag_formula.h"
 #include "studies/design/io/design_json.h"
 #include "studies/design/io/design_reader.h"
+#include "tests/support/refusals.h"
 
 // `[base]`: what it may say, and that what cannot carry the elements is refused at the key that says so.
 
@@ -28,12 +29,7 @@ Design read(const std::string& text) {
 }
 
 std::string complaint(const std::string& text) {
-  try {
-    read(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing";
+  return refusal_of([&] { read(text); }, "nothing");
 }
 
 TEST(SubstrateReader, ReadsEveryKind) {

@@ -237,13 +237,16 @@ TEST(DesignTexture, RreFallsMonotonicallyWithSa) {
   }
 }
 
+/// Designs and the keys of the radii of their edges.
+std::vector<std::pair<std::string, std::string>> edges() {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const std::string& design : {kArray, kCubes, kTriangles})
+    for (const char* const key : {"root_radius_um", "rim_radius_um"}) all.emplace_back(design, key);
+  return all;
+}
+
 TEST(DesignTexture, RreFallsMonotonicallyWithTheRadiusOfEdges) {
-  for (const auto& [design, key] : std::vector<std::pair<std::string, std::string>>{{kArray, "root_radius_um"},
-                                                                                    {kArray, "rim_radius_um"},
-                                                                                    {kCubes, "root_radius_um"},
-                                                                                    {kCubes, "rim_radius_um"},
-                                                                                    {kTriangles, "root_radius_um"},
-                                                                                    {kTriangles, "rim_radius_um"}}) {
+  for (const auto& [design, key] : edges()) {
     const double sharp = rre_of(design, {}, kSteps).rre;
     double before = sharp;
     for (const double radius_um : {5.0, 10.0, 20.0, 40.0}) {
@@ -255,12 +258,7 @@ TEST(DesignTexture, RreFallsMonotonicallyWithTheRadiusOfEdges) {
 }
 
 TEST(DesignTexture, VanishingRadiusGivesTheExactAnswer) {
-  for (const auto& [design, key] : std::vector<std::pair<std::string, std::string>>{{kArray, "root_radius_um"},
-                                                                                    {kArray, "rim_radius_um"},
-                                                                                    {kCubes, "root_radius_um"},
-                                                                                    {kCubes, "rim_radius_um"},
-                                                                                    {kTriangles, "root_radius_um"},
-                                                                                    {kTriangles, "rim_radius_um"}}) {
+  for (const auto& [design, key] : edges()) {
     const double sharp = exact(design, {}).rre;
     // A thousandth of a micrometre takes 3e-6 of the smallest element.
     const RrePoint round = rre_of(design, {"surface." + key + "=0.001"}, {0.0, Engine::montecarlo, 1U << 18});

@@ -2,6 +2,7 @@
 
 #include "geometry/part/part.h"
 #include "raytrace/paths/monte_carlo.h"
+#include "tests/support/part_specs.h"
 
 namespace retrace::testing {
 
@@ -9,34 +10,6 @@ namespace retrace::testing {
 inline constexpr double kPmma = 1.4917;
 /// Cube corners of edge 1 mm.
 inline constexpr double kCubeAperture = 1.6329931618554521;
-
-inline geometry::PartSpec finite(geometry::Element element, geometry::Arrangement arrangement, double x_mm, double y_mm,
-                                 double thickness_mm) {
-  geometry::PartSpec spec;
-  spec.element = element;
-  spec.array.arrangement = arrangement;
-  spec.array.x_length_mm = x_mm;
-  spec.array.y_length_mm = y_mm;
-  spec.thickness_mm = thickness_mm;
-  return spec;
-}
-
-inline geometry::PartSpec infinite(geometry::Element element, geometry::Arrangement arrangement, double thickness_mm) {
-  geometry::PartSpec spec;
-  spec.element = element;
-  spec.array.arrangement = arrangement;
-  spec.array.extent = geometry::Extent::infinite;
-  spec.thickness_mm = thickness_mm;
-  return spec;
-}
-
-inline geometry::PartSpec single(geometry::Element element, double thickness_mm) {
-  geometry::PartSpec spec;
-  spec.element = element;
-  spec.array.arrangement = geometry::Arrangement::single;
-  spec.thickness_mm = thickness_mm;
-  return spec;
-}
 
 inline raytrace::Optics pmma() {
   raytrace::Optics optics;

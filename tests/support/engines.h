@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "geometry/check/boundary_check.h"
 #include "geometry/part/closed_boundary.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "tests/support/designs.h"
+#include "tests/support/reference_tracer.h"
+#include "tests/support/statistics.h"
 
 namespace retrace::testing {
 
@@ -33,6 +38,57 @@ inline void expect_closed_part(const geometry::PartSpec& spec) {
   EXPECT_TRUE(report.is_closed);
   EXPECT_TRUE(report.is_manifold);
   EXPECT_FALSE(report.self_intersects);
+}
+
+/// From all these directions, through PMMA and between perfect mirrors, all light is booked and none is lost.
+inline void expect_nothing_lost(const geometry::Part& part, const std::vector<double>& incidences_deg,
+                                std::uint64_t ray_count, const std::string& name) {
+  const raytrace::MonteCarlo tracer(part);
+  for (const raytrace::Optics& optics : {pmma(), ideal()})
+    for (const double t : incidences_deg)
+      for (const double p : {0.0, 70.0, 190.0}) {
+        const raytrace::MonteCarloResult result = tracer.trace(optics, from(t, p), {0.5}, rays(ray_count), {});
+        const raytrace::Ledger& ledger = result.cones[0].ledger;
+        EXPECT_NEAR(ledger.total(), 1.0, 1e-9) << name << " at " << t << ", " << p;
+        EXPECT_EQ(ledger[raytrace::Account::lost], 0.0) << name << " at " << t << ", " << p;
+        EXPECT_EQ(result.misses, 0U) << name << " at " << t << ", " << p;
+      }
+}
+
+/// Beams, followed to `cutoff`, and rays send light to the same accounts within what beams leave and `slack`.
+inline void expect_same_accounts(const geometry::Part& part, const raytrace::Illumination& light, double cutoff,
+                                 double slack, const std::string& name) {
+  raytrace::BeamPolicy policy;
+  policy.cutoff = cutoff;
+  const raytrace::Ledger exact = raytrace::BeamTracer(part).trace(pmma(), light, {8.0}, policy).ledgers[0];
+  const raytrace::Ledger traced =
+      raytrace::MonteCarlo(part).trace(pmma(), light, {8.0}, rays(1U << 16), {}).cones[0].ledger;
+  EXPECT_NEAR(exact.total(), 1.0, 1e-9) << name;
+  for (std::size_t a = 0; a < raytrace::kAccountCount; ++a)
+    EXPECT_NEAR(exact.power[a], traced.power[a], exact[raytrace::Account::truncated] + slack)
+        << name << ": " << raytrace::kAccountNames[a];
+}
+
+/// Rays send light to the accounts that the reference finds, within its noise, what it leaves and `slack`.
+/// \param comparisons that are made in all
+inline void expect_accounts_of(const ReferenceResult& reference, const raytrace::Ledger& traced,
+                               std::size_t comparisons, double slack, const std::string& name) {
+  const double z = student_bound(comparisons);
+  const double left = reference.mean[raytrace::Account::truncated] + slack;
+  for (std::size_t a = 0; a < raytrace::kAccountCount; ++a) {
+    if (a == static_cast<std::size_t>(raytrace::Account::truncated)) continue;
+    EXPECT_NEAR(traced.power[a], reference.mean.power[a], z * reference.std_error[a] + left)
+        << name << ": " << raytrace::kAccountNames[a];
+  }
+}
+
+/// The same of PMMA and light within 8 degrees, one of two cases.
+inline void expect_agrees_with_reference(const geometry::Part& part, const raytrace::Illumination& light,
+                                         std::uint64_t reference_rays, std::uint64_t ray_count,
+                                         const std::string& name) {
+  const ReferenceResult reference = reference_trace(part, pmma(), light, 8.0, reference_rays, 7);
+  const raytrace::MonteCarloResult traced = raytrace::MonteCarlo(part).trace(pmma(), light, {8.0}, rays(ray_count), {});
+  expect_accounts_of(reference, traced.cones[0].ledger, 2 * raytrace::kAccountCount, 1e-3, name);
 }
 
 }  // namespace retrace::testing

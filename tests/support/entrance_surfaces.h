@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/entrance/entrance_surface.h"
+#include "geometry/part/triangle_mesh.h"
 
 namespace retrace::testing {
 
@@ -54,6 +55,23 @@ inline geometry::Entrance egg_box_entrance(double height_mm, double a, double k)
             {-a * k * std::sin(k * x) * std::cos(k * y), -a * k * std::cos(k * x) * std::sin(k * y)}};
       },
       3.14159265358979 / k);
+}
+
+/// A surface as triangles on a grid over a square.
+inline geometry::TriangleMesh meshed(const geometry::EntranceSurface& surface, double size_mm, std::uint32_t cells) {
+  geometry::TriangleMesh mesh;
+  for (std::uint32_t j = 0; j <= cells; ++j)
+    for (std::uint32_t i = 0; i <= cells; ++i) {
+      const geometry::Vec2 p(size_mm * i / cells, size_mm * j / cells);
+      mesh.vertices.emplace_back(p.x(), p.y(), surface.at(p).height_mm);
+    }
+  for (std::uint32_t j = 0; j < cells; ++j)
+    for (std::uint32_t i = 0; i < cells; ++i) {
+      const std::uint32_t a = j * (cells + 1) + i;
+      mesh.triangles.push_back({a, a + 1, a + cells + 2});
+      mesh.triangles.push_back({a, a + cells + 2, a + cells + 1});
+    }
+  return mesh;
 }
 
 }  // namespace retrace::testing

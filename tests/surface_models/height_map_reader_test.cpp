@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::surface_models::height_map_reader_test {
 namespace {
@@ -24,12 +25,7 @@ void expect_heights(const HeightMap& map, const std::vector<double>& expected) {
 
 std::string message_of(const std::string& content, const std::string& name = "m.txt",
                        const HeightMapOptions& options = {}) {
-  try {
-    parse_height_map(content, name, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return refusal_of([&] { parse_height_map(content, name, options); }, "no error");
 }
 
 const std::vector<double> kTwoRows = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, kNaN, 13, 14, 15, 16};

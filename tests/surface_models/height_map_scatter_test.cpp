@@ -33,16 +33,8 @@ TEST(HeightMapScatter, SpecularShareIsTheClosedForm) {
       const ScatterEvent event = inside(t_deg);
       const double p = std::exp(-std::pow(4.0 * kPi * kIndex * sq_nm * std::cos(t_deg * kRadians) / 550.0, 2));
       EXPECT_NEAR(specular_share(model, event, {}, Lobe::reflection), p, 1e-9);
-      double specular = 0.0;
-      ++seed;
-      for (std::uint32_t k = 0; k < kDraws; ++k) {
-        RandomStream random = stream(seed, k);
-        const auto drawn = sample(model, event, {}, Lobe::reflection, random);
-        ASSERT_TRUE(drawn);
-        EXPECT_EQ(drawn->weight, 1.0);
-        specular += drawn->is_specular ? 1.0 : 0.0;
-      }
-      EXPECT_NEAR(specular / kDraws, p, normal_bound(16) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-9)
+      EXPECT_NEAR(specular_draws(model, event, Lobe::reflection, ++seed, kDraws), p,
+                  normal_bound(16) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-9)
           << sq_nm << " nm, " << t_deg << " deg";
     }
 }

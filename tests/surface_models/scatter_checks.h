@@ -213,6 +213,21 @@ inline HeightMap random_map(std::size_t points, double pixel_um, double sq_nm, d
   return map;
 }
 
+/// Share of draws that are specular, each with weight 1.
+inline double specular_draws(const ScatterModel& model, const ScatterEvent& event, Lobe lobe, std::uint32_t seed,
+                             std::uint32_t draws) {
+  double specular = 0.0;
+  for (std::uint32_t k = 0; k < draws; ++k) {
+    RandomStream random = stream(seed, k);
+    const auto drawn = sample(model, event, {}, lobe, random);
+    EXPECT_TRUE(drawn);
+    if (!drawn) return NAN;
+    EXPECT_EQ(drawn->weight, 1.0);
+    specular += drawn->is_specular ? 1.0 : 0.0;
+  }
+  return specular / draws;
+}
+
 /// Closed form 7, by the formula and by drawing: exp(-q^2), with the phase q = 4 pi n s cos t / w in reflection and
 /// 2 pi s (n1 cos t1 - n2 cos t2) / w in transmission.
 inline void expect_closed_form_share(const ScatterModel& model, double sq_nm, const Case& c, std::uint32_t seed,
@@ -225,14 +240,9 @@ inline void expect_closed_form_share(const ScatterModel& model, double sq_nm, co
   const double phase = 2.0 * std::numbers::pi * sq_nm * paths / e.wavelength_nm;
   const double p = std::exp(-phase * phase);
   EXPECT_NEAR(specular_share(model, e, {}, c.lobe), p, 1e-9) << c.name;
-  double specular = 0.0;
-  for (std::uint32_t k = 0; k < kDraws; ++k) {
-    RandomStream random = stream(seed, k);
-    const auto drawn = sample(model, e, {}, c.lobe, random);
-    ASSERT_TRUE(drawn) << c.name;
-    specular += drawn->is_specular ? 1.0 : 0.0;
-  }
-  EXPECT_NEAR(specular / kDraws, p, normal_bound(comparisons) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-9) << c.name;
+  EXPECT_NEAR(specular_draws(model, e, c.lobe, seed, kDraws), p,
+              normal_bound(comparisons) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-9)
+      << c.name;
 }
 
 }  // namespace retrace::testing::scatter_checks

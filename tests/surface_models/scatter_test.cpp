@@ -96,17 +96,9 @@ TEST(HarveyShack, SpecularShareIsTheClosedForm) {
         const HarveyShack model({sq_nm, waves * 0.55 / kIndex, 0.0, 0.0});
         const double g = std::pow(4.0 * std::numbers::pi * kIndex * sq_nm * std::cos(t_deg * kRadians) / 550.0, 2);
         EXPECT_NEAR(specular_share(model, event, {}, Lobe::reflection), std::exp(-g), 1e-12);
-        double specular = 0.0;
-        ++seed;
-        for (std::uint32_t k = 0; k < kDraws; ++k) {
-          RandomStream random = stream(seed, k);
-          const auto drawn = sample(model, event, {}, Lobe::reflection, random);
-          ASSERT_TRUE(drawn);
-          EXPECT_EQ(drawn->weight, 1.0);
-          specular += drawn->is_specular ? 1.0 : 0.0;
-        }
         const double p = std::exp(-g);
-        EXPECT_NEAR(specular / kDraws, p, normal_bound(80) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-12)
+        EXPECT_NEAR(specular_draws(model, event, Lobe::reflection, ++seed, kDraws), p,
+                    normal_bound(80) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-12)
             << sq_nm << " nm, " << waves << " waves, " << t_deg << " deg";
       }
 }

@@ -80,6 +80,14 @@ TEST(TextureModel, OfWavesAloneHasNoRoughness) {
   expect_share(*model.waviness_length_um, 160.0, 0.02, "waviness length");
 }
 
+/// Of a surface of 8 nm Sq over 5 um with a wave of 20 nm every 200 um.
+void expect_texture(const TextureModel& model, double roughness_share) {
+  expect_share(model.roughness_sq_nm, 8.0, roughness_share, "roughness");
+  expect_share(*model.correlation_length_um, 5.0, roughness_share, "correlation length");
+  expect_share(model.waviness_sq_nm, 20.0, 0.02, "waviness");
+  expect_share(*model.waviness_length_um, 200.0, 0.02, "waviness length");
+}
+
 TEST(TextureModel, ToleratesMissingPoints) {
   HeightMap map = testing::gaussian_surface(1024, 1024, 8.0, 5.0, 31);
   testing::add_wave(map, 20.0, 1.0 / 200.0, 0.0, 1.0);
@@ -88,21 +96,13 @@ TEST(TextureModel, ToleratesMissingPoints) {
       if (philox({3, 0}, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))[0] % 10 == 0 ||
           std::hypot(static_cast<double>(column) - 700.0, static_cast<double>(row) - 300.0) < 40.0)
         map.at(column, row) = kMissing;
-  const TextureModel model = model_of(map);
-  expect_share(model.roughness_sq_nm, 8.0, 0.02, "roughness");
-  expect_share(*model.correlation_length_um, 5.0, 0.02, "correlation length");
-  expect_share(model.waviness_sq_nm, 20.0, 0.02, "waviness");
-  expect_share(*model.waviness_length_um, 200.0, 0.02, "waviness length");
+  expect_texture(model_of(map), 0.02);
 }
 
 TEST(TextureModel, OfAProfile) {
   HeightMap map = testing::gaussian_surface(40000, 1, 8.0, 5.0, 13);
   testing::add_wave(map, 20.0, 1.0 / 200.0, 0.0, 1.0);
-  const TextureModel model = model_of(map);
-  expect_share(model.roughness_sq_nm, 8.0, 0.04, "roughness");
-  expect_share(*model.correlation_length_um, 5.0, 0.04, "correlation length");
-  expect_share(model.waviness_sq_nm, 20.0, 0.02, "waviness");
-  expect_share(*model.waviness_length_um, 200.0, 0.02, "waviness length");
+  expect_texture(model_of(map), 0.04);
 }
 
 TEST(TextureModel, OfAFlatSurfaceIsNothing) {

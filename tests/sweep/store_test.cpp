@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/error.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::store_test {
 namespace {
@@ -37,12 +38,7 @@ class Store : public ::testing::Test {
     return p;
   }
   std::string message(const StoreLayout& layout, IfExists if_exists) const {
-    try {
-      const ResultStore store(file(), layout, if_exists);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { const ResultStore store(file(), layout, if_exists); });
   }
 
   fs::path folder_;

@@ -8,13 +8,13 @@
 
 #include "core/atomic_file.h"
 #include "core/schema/json.h"
-#include "core/schema/key_table.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
 #include "studies/design/io/design_document.h"
 #include "studies/design/io/design_format.h"
 #include "studies/design/io/design_reader.h"
 #include "tests/support/documents.h"
+#include "tests/support/key_table.h"
 
 namespace retrace::studies::study_format_test {
 namespace {

@@ -1,4 +1,5 @@
 #include "fabrication/turning/boundary.h"
+#include "tests/support/refusals.h"
 
 #include <gtest/gtest.h>
 
@@ -134,12 +135,7 @@ TEST(Boundary, RefusesCurvesThatAreNotOne) {
   }
   std::vector<Vec2> outside = ellipse_points(30, {10.0, 0.0});
   const auto message = [](const std::vector<Vec2>& points, std::optional<Vec2> centre) -> std::string {
-    try {
-      boundary_from_points(points, centre, false, 3, kHere);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "taken";
+    return refusal_of([&] { boundary_from_points(points, centre, false, 3, kHere); }, "taken");
   };
   for (const auto& points : {eight, twice, dented, outside}) {
     const std::string text = message(points, Vec2(0.0, 0.0));

@@ -8,6 +8,7 @@
 #include "fabrication/turning/finish.h"
 #include "fabrication/turning/plan/path.h"
 #include "fabrication/turning/plan/turning_program.h"
+#include "tests/turning/paths.h"
 
 // What the programs' text leaves, against closed forms of cusps and against the design.
 
@@ -26,19 +27,13 @@ Envelope cut(const TurnedSurface& surface, const TurningTool& tool, const PathOp
   return {tool, recorder.take()};
 }
 
-PathOptions spiral(double radius_mm, double feed_mm) {
-  PathOptions o;
-  o.radius_mm = radius_mm;
-  o.feed_mm = feed_mm;
-  o.points_per_turn = 90;
-  return o;
+InspectedRegion disc(const PathOptions& o) {
+  return {.radius_mm = o.radius_mm, .feed_mm = o.feed_mm};
 }
 
-InspectedRegion disc(const PathOptions& o) {
-  InspectedRegion region;
-  region.radius_mm = o.radius_mm;
-  region.feed_mm = o.feed_mm;
-  return region;
+InspectedRegion rectangle(const PathOptions& o) {
+  return {
+      .is_round = false, .half_width_mm = 0.5 * o.width_mm, .half_height_mm = 0.5 * o.height_mm, .feed_mm = o.feed_mm};
 }
 
 TurnedSurface sphere(double curvature_per_mm) {
@@ -57,7 +52,7 @@ void expect_cusps(const Inspection& i, std::size_t least_samples) {
 
 TEST(TurningEnvelope, CuspsOfAFlat) {
   TurningTool tool;
-  const PathOptions o = spiral(0.8, 0.02);
+  const PathOptions o = spiral_of(0.8, 0.02);
   const Inspection i = inspect(cut(sphere(0.0), tool, o), sphere(0.0), tool, disc(o), 41);
   expect_cusps(i, 200);
   // f^2 / (8 r) = 250 nm
@@ -68,7 +63,7 @@ TEST(TurningEnvelope, CuspsOfAFlatWithSkewAndRake) {
   TurningTool tool;
   tool.skew_deg = 40.0;
   tool.rake_deg = -25.0;
-  const PathOptions o = spiral(1.6, 0.02);
+  const PathOptions o = spiral_of(1.6, 0.02);
   const Inspection i = inspect(cut(sphere(0.0), tool, o), sphere(0.0), tool, disc(o), 21);
   expect_cusps(i, 200);
   const double c = std::cos(40.0 * kDegree);
@@ -78,38 +73,21 @@ TEST(TurningEnvelope, CuspsOfAFlatWithSkewAndRake) {
 TEST(TurningEnvelope, CuspsOfSpheres) {
   TurningTool tool;
   for (const double curvature : {-0.5, 0.5}) {
-    const PathOptions o = spiral(0.8, 0.02);
+    const PathOptions o = spiral_of(0.8, 0.02);
     expect_cusps(inspect(cut(sphere(curvature), tool, o), sphere(curvature), tool, disc(o), 21), 200);
   }
 }
 
 TEST(TurningEnvelope, CuspsOfARaster) {
   TurningTool tool;
-  PathOptions o;
-  o.strategy = Strategy::raster;
-  o.width_mm = 1.0;
-  o.height_mm = 1.0;
-  o.feed_mm = 0.02;
-  o.arc_mm = 0.002;
-  InspectedRegion region;
-  region.is_round = false;
-  region.half_width_mm = region.half_height_mm = 0.5;
-  region.feed_mm = o.feed_mm;
+  const PathOptions o = raster_of(1.0, 1.0, 0.02, 0.002);
+  const InspectedRegion region = rectangle(o);
   expect_cusps(inspect(cut(sphere(-0.2), tool, o), sphere(-0.2), tool, region, 21), 200);
 }
 
 TEST(TurningEnvelope, CuspsOfARasterWithSkewAndRake) {
-  PathOptions o;
-  o.strategy = Strategy::raster;
-  o.width_mm = 0.8;
-  o.height_mm = 0.5;
-  o.feed_mm = 0.02;
-  o.arc_mm = 0.002;
-  InspectedRegion region;
-  region.is_round = false;
-  region.half_width_mm = 0.4;
-  region.half_height_mm = 0.25;
-  region.feed_mm = o.feed_mm;
+  const PathOptions o = raster_of(0.8, 0.5, 0.02, 0.002);
+  const InspectedRegion region = rectangle(o);
   Sag tilted;
   tilted.formula = parse_formula("0.1*x-0.15*y-0.1*x^2-0.05*x*y", sag_variables(), kHere);
   const TurnedSurface surface(tilted, std::nullopt, {}, kHere);
@@ -175,7 +153,7 @@ TEST(TurningEnvelope, ARasterWithSkewIsThatOfEdgesLaidOutOneByOne) {
 TEST(TurningEnvelope, MapsShowCuspsAndNoWavesOfThePixels) {
   // Cusps of a flat are equally high everywhere: whatever the pixels, the map must be the same everywhere too.
   TurningTool tool;
-  const PathOptions o = spiral(0.8, 0.02);
+  const PathOptions o = spiral_of(0.8, 0.02);
   const Envelope envelope = cut(sphere(0.0), tool, o);
   const double cusp = finish_figures(effective_radius_mm(tool), o.feed_mm).peak_to_valley_nm;
   for (const std::size_t pixels : {std::size_t{20}, std::size_t{39}, std::size_t{79}, std::size_t{200}}) {
@@ -197,7 +175,7 @@ TEST(TurningEnvelope, MapsShowCuspsAndNoWavesOfThePixels) {
 TEST(TurningEnvelope, FormOfALensletThatReachesTheExtrapolatedBase) {
   TurningTool tool;
   tool.nose_radius_mm = 0.1;
-  PathOptions o = spiral(0.32, 0.01);
+  PathOptions o = spiral_of(0.32, 0.01);
   o.sampling = Sampling::arc;
   o.arc_mm = 0.001;
   Sag base;
@@ -239,7 +217,7 @@ TurnedSurface lenslet_array() {
 TEST(TurningEnvelope, CuspsAndFormOfALensletArray) {
   TurningTool tool;
   tool.nose_radius_mm = 0.1;
-  PathOptions o = spiral(0.32, 0.01);
+  PathOptions o = spiral_of(0.32, 0.01);
   o.sampling = Sampling::arc;
   // The chord of a block sags by arc^2 k / 8: 0.3 nm at k = 2 per mm.
   o.arc_mm = 0.001;
@@ -250,7 +228,7 @@ TEST(TurningEnvelope, CuspsAndFormOfALensletArray) {
 
 TEST(TurningEnvelope, FindsAnErrorOfTheProgram) {
   TurningTool tool;
-  const PathOptions o = spiral(0.5, 0.02);
+  const PathOptions o = spiral_of(0.5, 0.02);
   const Inspection low = inspect(cut(sphere(-0.5), tool, o, 7.0), sphere(-0.5), tool, disc(o), 15);
   EXPECT_NEAR(low.interference_nm, 7.0, 1.0);
   // Planned for another nose: a hollow sphere is cut too deep or too flat.
@@ -267,7 +245,7 @@ TEST(TurningEnvelope, EveryTurnIsMetWhereItBegins) {
   // With a skew the places at which the edge passes at C = 0 lie on a curve; none of the turns may be lost there.
   TurningTool tool;
   tool.skew_deg = -27.0;
-  PathOptions o = spiral(0.8, 0.02);
+  PathOptions o = spiral_of(0.8, 0.02);
   o.sampling = Sampling::arc;
   o.arc_mm = 0.01;
   const Envelope envelope = cut(sphere(0.0), tool, o);
@@ -284,7 +262,7 @@ TEST(TurningEnvelope, EveryTurnIsMetWhereItBegins) {
 
 TEST(TurningEnvelope, RefusesPlacesLeftUncut) {
   TurningTool tool;
-  const PathOptions o = spiral(0.3, 0.02);
+  const PathOptions o = spiral_of(0.3, 0.02);
   PathOptions larger = o;
   larger.radius_mm = 0.9;
   EXPECT_THROW(inspect(cut(sphere(0.0), tool, o), sphere(0.0), tool, disc(larger), 15), InputError);
@@ -295,7 +273,7 @@ TEST(TurningEnvelope, IsThatOfEdgesLaidOutOneByOne) {
   TurningTool tool;
   tool.nose_radius_mm = 0.05;
   tool.skew_deg = 20.0;
-  PathOptions o = spiral(0.2, 0.02);
+  PathOptions o = spiral_of(0.2, 0.02);
   Sag sag;
   sag.formula = parse_formula("0.1*x^2+0.3*x*y", sag_variables(), kHere);
   const TurnedSurface surface(sag, std::nullopt, {}, kHere);

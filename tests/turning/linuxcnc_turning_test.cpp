@@ -6,6 +6,7 @@
 #include "fabrication/turning/plan/path.h"
 #include "fabrication/turning/plan/turning_program.h"
 #include "tests/fabrication/linuxcnc.h"
+#include "tests/turning/paths.h"
 
 // LinuxCNC's interpreter reads programs of turning, whose moves have times instead of feeds: it makes the planned moves
 // in the planned times.
@@ -79,12 +80,7 @@ TEST(LinuxCncTurning, SpiralsInTheirTimes) {
 }
 
 TEST(LinuxCncTurning, RastersInTheirTimes) {
-  PathOptions o;
-  o.strategy = Strategy::raster;
-  o.width_mm = 1.0;
-  o.height_mm = 0.3;
-  o.feed_mm = 0.05;
-  o.arc_mm = 0.02;
+  const PathOptions o = raster_of(1.0, 0.3, 0.05, 0.02);
   for (const double skew : {0.0, -25.0}) {
     TurningTool tool;
     tool.nose_radius_mm = 0.1;

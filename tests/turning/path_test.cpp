@@ -9,6 +9,7 @@
 #include "fabrication/turning/check/envelope.h"
 #include "fabrication/turning/plan/polynomial_spiral.h"
 #include "fabrication/turning/plan/turning_program.h"
+#include "tests/turning/paths.h"
 
 // Paths against closed forms: compensation on spheres and planes, kinematics, and programs that read back the same.
 
@@ -30,17 +31,11 @@ TurnedSurface plain(const Sag& sag) {
 }
 
 TurningTool nose(double radius_mm) {
-  TurningTool tool;
-  tool.nose_radius_mm = radius_mm;
-  return tool;
+  return {.nose_radius_mm = radius_mm};
 }
 
 PathOptions small_spiral() {
-  PathOptions o;
-  o.radius_mm = 1.0;
-  o.feed_mm = 0.02;
-  o.points_per_turn = 90;
-  return o;
+  return spiral_of(1.0, 0.02);
 }
 
 TEST(TurningPath, SpiralOfAFlatIsFlat) {
@@ -140,12 +135,7 @@ TEST(TurningPath, EqualArcs) {
 }
 
 TEST(TurningPath, RasterLines) {
-  PathOptions o;
-  o.strategy = Strategy::raster;
-  o.width_mm = 1.0;
-  o.height_mm = 0.5;
-  o.feed_mm = 0.05;
-  o.arc_mm = 0.01;
+  PathOptions o = raster_of(1.0, 0.5, 0.05, 0.01);
   o.cutting_mm_per_min = 60.0;
   Sag sag;
   sag.asphere.curvature_per_mm = -0.25;

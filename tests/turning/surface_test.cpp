@@ -1,4 +1,5 @@
 #include "fabrication/turning/surface.h"
+#include "tests/support/refusals.h"
 
 #include <gtest/gtest.h>
 
@@ -338,12 +339,7 @@ TEST(Surface, FindsTheLensletOfAPlace) {
 std::string refusal(const std::string& formula, double radius) {
   Sag base;
   base.formula = parse_formula(formula, sag_variables(), kHere);
-  try {
-    check_surface(TurnedSurface(base, std::nullopt, {}, kHere), radius, kHere);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "taken";
+  return refusal_of([&] { check_surface(TurnedSurface(base, std::nullopt, {}, kHere), radius, kHere); }, "taken");
 }
 
 TEST(Surface, SaysWhereItHasNoHeightOrAVerticalSlope) {

@@ -16,11 +16,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 TurningTool sharp_tool(double clearance_deg, double skew_deg) {
-  TurningTool tool;
-  tool.clearance_deg = clearance_deg;
-  tool.skew_deg = skew_deg;
-  tool.window_deg = 179.0;
-  return tool;
+  return {.window_deg = 179.0, .clearance_deg = clearance_deg, .skew_deg = skew_deg};
 }
 
 /// A convex circular cylinder along y whose slope at the rim of a round part is `edge_deg`.

@@ -7,6 +7,7 @@
 
 #include "fabrication/turning/plan/concavity_bound.h"
 #include "fabrication/turning/plan/path.h"
+#include "tests/turning/paths.h"
 
 // What is proved of the surface's curvature against samples of it, and paths that rely on it against those that search
 // the whole arc at every point.
@@ -158,11 +159,7 @@ TEST(Hollowness, OfAFormulaIsNotProved) {
 }
 
 PathOptions spiral() {
-  PathOptions o;
-  o.radius_mm = 0.6;
-  o.feed_mm = 0.02;
-  o.points_per_turn = 400;
-  return o;
+  return spiral_of(0.6, 0.02, 400);
 }
 
 /// Largest difference of a path's heights from those found by searching the whole arc at every point. \param once,

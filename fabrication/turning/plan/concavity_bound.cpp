@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/interval.h"
+#include "fabrication/turning/plan/interval.h"
 
 namespace retrace::fabrication::turning {
 namespace {

@@ -8,24 +8,10 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Arrangement;
-using geometry::Cant;
-using geometry::CylinderSubstrate;
-using geometry::EdgeShape;
-using geometry::Element;
-using geometry::ElementAxes;
-using geometry::Extent;
-using geometry::FormulaSubstrate;
-using geometry::HexagonalCube;
-using geometry::PartSpec;
-using geometry::PlaneSubstrate;
-using geometry::RtpElement;
-using geometry::Scratch;
-using geometry::SphereSubstrate;
-using geometry::Substrate;
-using geometry::TriangularCube;
-using schema::Document;
-using schema::Value;
+using geometry::Arrangement, geometry::Cant, geometry::CylinderSubstrate, geometry::EdgeShape, geometry::Element,
+    geometry::ElementAxes, geometry::Extent, geometry::FormulaSubstrate, geometry::HexagonalCube, geometry::PartSpec,
+    geometry::PlaneSubstrate, geometry::RtpElement, geometry::Scratch, geometry::SphereSubstrate, geometry::Substrate,
+    geometry::TriangularCube, schema::Document, schema::Value;
 
 constexpr double kUmPerMm = 1e3;
 

@@ -22,19 +22,9 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::AngleErrors;
-using geometry::Arrangement;
-using geometry::Cell;
-using geometry::EdgeShape;
-using geometry::ElementAxes;
-using geometry::Extent;
-using geometry::HexagonalCube;
-using geometry::PartSpec;
-using geometry::PlaneSubstrate;
-using geometry::RtpElement;
-using geometry::Scratch;
-using geometry::TriangularCube;
-using schema::Document;
+using geometry::AngleErrors, geometry::Arrangement, geometry::Cell, geometry::EdgeShape, geometry::ElementAxes,
+    geometry::Extent, geometry::HexagonalCube, geometry::PartSpec, geometry::PlaneSubstrate, geometry::RtpElement,
+    geometry::Scratch, geometry::TriangularCube, schema::Document;
 
 /// Most elements that one design may have; keeps element numbers within 32 bits and memory within reason.
 constexpr double kMostElements = 1e8;

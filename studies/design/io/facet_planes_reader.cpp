@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -18,9 +16,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::ElementPlanes;
-using geometry::HeightPlane;
-using geometry::Vec2;
+using geometry::ElementPlanes, geometry::HeightPlane, geometry::Vec2;
 
 constexpr std::array<std::string_view, 6> kColumns = {"x_mm", "y_mm", "facet", "height_mm", "x_slope", "y_slope"};
 constexpr NumberRange kValue{.low = -1e6, .high = 1e6};

@@ -10,9 +10,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Arrangement;
-using geometry::PartSpec;
-using schema::Document;
+using geometry::Arrangement, geometry::PartSpec, schema::Document;
 
 geometry::Element element_of(const Document& document) {
   const std::string kind = document.text("element.kind");

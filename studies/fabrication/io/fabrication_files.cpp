@@ -14,8 +14,7 @@
 namespace retrace::studies {
 namespace {
 
-using fabrication::Plan;
-using fabrication::TimeShares;
+using fabrication::Plan, fabrication::TimeShares;
 using Json = nlohmann::ordered_json;
 
 constexpr double kSecondsPerHour = 3600.0;

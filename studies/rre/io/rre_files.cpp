@@ -17,8 +17,7 @@ namespace retrace::studies {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using raytrace::kAccountCount;
-using raytrace::kAccountNames;
+using raytrace::kAccountCount, raytrace::kAccountNames;
 
 Json direction_of(const RrePoint& at) {
   return {{"design", at.design},

@@ -1,4 +1,4 @@
-#include "core/schema/key_table.h"
+#include "tests/support/key_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

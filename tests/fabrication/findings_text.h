@@ -1,0 +1,20 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "fabrication/chisel/check/verify.h"
+
+namespace retrace::fabrication::test {
+
+/// What was found, a line each, to show where a test fails.
+inline std::string listed(const Verification& v) {
+  std::string text;
+  for (const Finding& f : v.findings)
+    text += fmt::format("{}:{} {} [{}] {} ({} > {}) x{}\n", f.program, f.line, f.kind, f.element, f.message, f.value,
+                        f.limit, f.count);
+  return text.substr(0, 3000);
+}
+
+}  // namespace retrace::fabrication::test
