@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/math/formula_evaluation.h"
-#include "fabrication/turning/plan/interval.h"
+#include "fabrication/turning/interval.h"
 
 namespace retrace::fabrication::turning {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "fabrication/turning/interval.h"
 #include "fabrication/turning/numbers.h"
 #include "fabrication/turning/plan/concavity_bound.h"
-#include "fabrication/turning/plan/interval.h"
 
 // Between its two boundaries a blend is a polynomial of the share v of the way. In Bernstein's form its values lie
 // between its coefficients and those of its derivatives between their differences (G. Farin, Curves and Surfaces for
