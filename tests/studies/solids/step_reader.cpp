@@ -1,4 +1,4 @@
-#include "tests/solids/step_reader.h"
+#include "tests/studies/solids/step_reader.h"
 
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>

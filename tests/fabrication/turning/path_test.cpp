@@ -9,7 +9,7 @@
 #include "fabrication/turning/check/envelope.h"
 #include "fabrication/turning/plan/polynomial_spiral.h"
 #include "fabrication/turning/plan/turning_program.h"
-#include "tests/turning/paths.h"
+#include "tests/fabrication/turning/paths.h"
 
 // Paths against closed forms: compensation on spheres and planes, kinematics, and programs that read back the same.
 

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "tests/app/program.h"
-#include "tests/sweep/stored_points.h"
+#include "tests/studies/sweep/stored_points.h"
 
 namespace retrace::test::sweep_command_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tests/app/program.h"
-#include "tests/sweep/stored_points.h"
+#include "tests/studies/sweep/stored_points.h"
 
 namespace retrace::test::tolerance_command_test {
 namespace {

@@ -8,8 +8,8 @@
 #include "geometry/io/step_file.h"
 #include "geometry/part/mould_boundary.h"
 #include "geometry/part/welded_part.h"
-#include "tests/solids/solid_specs.h"
-#include "tests/solids/step_reader.h"
+#include "tests/studies/solids/solid_specs.h"
+#include "tests/studies/solids/step_reader.h"
 
 // What is written, OpenCASCADE reads back: one valid solid without free edges, of the volume that closed forms give.
 

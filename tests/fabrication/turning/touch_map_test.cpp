@@ -7,7 +7,7 @@
 
 #include "fabrication/turning/plan/concavity_bound.h"
 #include "fabrication/turning/plan/path.h"
-#include "tests/turning/paths.h"
+#include "tests/fabrication/turning/paths.h"
 
 // What is proved of the surface's curvature against samples of it, and paths that rely on it against those that search
 // the whole arc at every point.

@@ -8,7 +8,7 @@
 #include "geometry/io/stl_file.h"
 #include "geometry/part/faceted_solid.h"
 #include "geometry/part/part.h"
-#include "tests/solids/solid_specs.h"
+#include "tests/studies/solids/solid_specs.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::geometry::mesh_files_test {

@@ -14,7 +14,7 @@
 #include "fabrication/planing/plan/nose_path.h"
 #include "fabrication/planing/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "tests/planing/findings.h"
+#include "tests/fabrication/planing/findings.h"
 
 namespace retrace::fabrication::verify_test {
 namespace {

@@ -11,7 +11,7 @@
 #include "report/drawing/svg_sheet.h"
 #include "studies/design/design_part.h"
 #include "studies/design/io/design_reader.h"
-#include "tests/drawing/svg_reader.h"
+#include "tests/report/drawing/svg_reader.h"
 
 namespace retrace::testing::design_drawing_test {
 namespace {

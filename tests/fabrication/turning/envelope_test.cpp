@@ -8,7 +8,7 @@
 #include "fabrication/turning/finish.h"
 #include "fabrication/turning/plan/path.h"
 #include "fabrication/turning/plan/turning_program.h"
-#include "tests/turning/paths.h"
+#include "tests/fabrication/turning/paths.h"
 
 // What the programs' text leaves, against closed forms of cusps and against the design.
 

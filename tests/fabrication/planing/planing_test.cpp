@@ -17,7 +17,7 @@
 #include "studies/design/io/init_templates.h"
 #include "studies/planing/io/planing_files.h"
 #include "studies/planing/planing_study.h"
-#include "tests/planing/findings.h"
+#include "tests/fabrication/planing/findings.h"
 
 namespace retrace::fabrication::planing_test {
 namespace {

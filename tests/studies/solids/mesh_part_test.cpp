@@ -8,7 +8,7 @@
 #include "geometry/check/boundary_check.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/part/faceted_solid.h"
-#include "tests/solids/solid_specs.h"
+#include "tests/studies/solids/solid_specs.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::geometry::mesh_part_test {

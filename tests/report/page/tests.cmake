@@ -1,12 +1,12 @@
 retrace_test(studies_tests
-  SOURCES page/page_test.cpp
+  SOURCES report/page/page_test.cpp
   LIBRARIES retrace::report_page)
 retrace_test(command_tests
-  SOURCES page/report_command_test.cpp
+  SOURCES report/page/report_command_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
-add_test(NAME page/bundle_test COMMAND "${RETRACE_PYTHON}" -B page/bundle_test.py "${PROJECT_SOURCE_DIR}"
+add_test(NAME page/bundle_test COMMAND "${RETRACE_PYTHON}" -B report/page/bundle_test.py "${PROJECT_SOURCE_DIR}"
          WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
 add_test(NAME page/browser_test
-         COMMAND "${RETRACE_PYTHON}" -B page/browser_test.py "$<TARGET_FILE:retrace>" "${PROJECT_SOURCE_DIR}"
+         COMMAND "${RETRACE_PYTHON}" -B report/page/browser_test.py "$<TARGET_FILE:retrace>" "${PROJECT_SOURCE_DIR}"
          WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
 set_tests_properties(page/browser_test PROPERTIES TIMEOUT 600 RUN_SERIAL ON)

@@ -10,7 +10,7 @@
 #include "geometry/part/mould_boundary.h"
 #include "geometry/part/part.h"
 #include "geometry/part/welded_part.h"
-#include "tests/solids/solid_specs.h"
+#include "tests/studies/solids/solid_specs.h"
 
 namespace retrace::geometry::faceted_solid_test {
 namespace {

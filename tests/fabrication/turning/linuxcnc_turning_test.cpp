@@ -6,7 +6,7 @@
 #include "fabrication/turning/plan/path.h"
 #include "fabrication/turning/plan/turning_program.h"
 #include "tests/fabrication/linuxcnc.h"
-#include "tests/turning/paths.h"
+#include "tests/fabrication/turning/paths.h"
 
 // LinuxCNC's interpreter reads programs of turning, whose moves have times instead of feeds: it makes the planned moves
 // in the planned times.

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "tests/app/program.h"
-#include "tests/sweep/stored_points.h"
+#include "tests/studies/sweep/stored_points.h"
 
 namespace retrace::test::mpi_command_test {
 namespace {

@@ -270,7 +270,7 @@ struct ReferencePixel {
 
 /// Row by row; a file that is missing or short fails the test.
 std::vector<ReferencePixel> stored_reference() {
-  std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/tests/image/camera_reference.csv");
+  std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/tests/studies/image/camera_reference.csv");
   EXPECT_TRUE(file.good()) << "the reference is missing";
   std::vector<ReferencePixel> pixels;
   for (std::string line; std::getline(file, line);) {
