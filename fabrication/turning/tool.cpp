@@ -67,6 +67,32 @@ Angle clearance_along_cut(Angle clearance, Angle skew) {
   return Angle::from_rad(std::asin(std::sin(clearance.rad()) / std::cos(skew.rad())));
 }
 
+std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOptions& options) {
+  std::vector<SlopeSample> samples;
+  const auto add = [&](double x, double y, const geometry::Vec2& outward, const geometry::Vec2& cut) {
+    const Dual z = surface.gradient(x, y);
+    samples.push_back({{x, y}, z.dx * outward.x() + z.dy * outward.y(), z.dx * cut.x() + z.dy * cut.y()});
+  };
+  constexpr int kAcross = 200;
+  constexpr int kAlong = 720;
+  if (options.strategy == Strategy::raster) {
+    for (int i = 0; i <= kAcross; ++i)
+      for (int k = 0; k <= kAlong; ++k)
+        add(options.height_mm * (static_cast<double>(i) / kAcross - 0.5),
+            options.width_mm * (static_cast<double>(k) / kAlong - 0.5), geometry::Vec2::UnitX(),
+            -geometry::Vec2::UnitY());
+    return samples;
+  }
+  for (int i = 1; i <= kAcross; ++i)
+    for (int k = 0; k < kAlong; ++k) {
+      const double r = options.radius_mm * i / kAcross;
+      const double theta = 2.0 * std::numbers::pi * k / kAlong;
+      const geometry::Vec2 outward(std::cos(theta), std::sin(theta));
+      add(r * outward.x(), r * outward.y(), outward, geometry::Vec2(outward.y(), -outward.x()));
+    }
+  return samples;
+}
+
 ClearanceFigures clearance_figures(const TurningTool& tool, const std::vector<SlopeSample>& samples) {
   const ToolFrame frame = tool_frame(tool);
   ClearanceFigures figures;

@@ -7,6 +7,8 @@
 
 #include "core/angle.h"
 #include "fabrication/turning/numbers.h"
+#include "fabrication/turning/path_options.h"
+#include "fabrication/turning/surface.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication::turning {
@@ -70,6 +72,9 @@ struct SlopeSample {
   double radial = 0.0;  ///< dz/dr, or across the raster's lines
   double along = 0.0;   ///< dz along the cut
 };
+
+/// The slopes that a tool meets along a path: every place once, sampled on circles or lines.
+std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOptions& options);
 
 ClearanceFigures clearance_figures(const TurningTool& tool, const std::vector<SlopeSample>& samples);
 

@@ -223,29 +223,4 @@ std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& too
   return passes;
 }
 
-std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOptions& options) {
-  std::vector<SlopeSample> samples;
-  const auto add = [&](double x, double y, const Vec2& outward, const Vec2& cut) {
-    const Dual z = surface.gradient(x, y);
-    samples.push_back({{x, y}, z.dx * outward.x() + z.dy * outward.y(), z.dx * cut.x() + z.dy * cut.y()});
-  };
-  constexpr int kAcross = 200;
-  constexpr int kAlong = 720;
-  if (options.strategy == Strategy::raster) {
-    for (int i = 0; i <= kAcross; ++i)
-      for (int k = 0; k <= kAlong; ++k)
-        add(options.height_mm * (static_cast<double>(i) / kAcross - 0.5),
-            options.width_mm * (static_cast<double>(k) / kAlong - 0.5), Vec2::UnitX(), -Vec2::UnitY());
-    return samples;
-  }
-  for (int i = 1; i <= kAcross; ++i)
-    for (int k = 0; k < kAlong; ++k) {
-      const double r = options.radius_mm * i / kAcross;
-      const double theta = kTurn * k / kAlong;
-      const Vec2 outward(std::cos(theta), std::sin(theta));
-      add(r * outward.x(), r * outward.y(), outward, Vec2(outward.y(), -outward.x()));
-    }
-  return samples;
-}
-
 }  // namespace retrace::fabrication::turning

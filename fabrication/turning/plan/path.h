@@ -66,9 +66,6 @@ class NoseCompensation {
   double end_rad_;  ///< of the sharp arc, to both sides
 };
 
-/// The slopes that a tool meets along a path: every place once, sampled on circles or lines.
-std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOptions& options);
-
 /// What an axis does over a path, by difference quotients of its positions.
 struct AxisFigures {
   double low_mm = 0.0;

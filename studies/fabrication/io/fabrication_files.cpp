@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -93,17 +94,8 @@ std::string job_table(const MadeJob& made) {
 namespace {
 
 const char* word_of(fabrication::Motion motion) {
-  switch (motion) {
-    case fabrication::Motion::plunge:
-      return "plunge";
-    case fabrication::Motion::plough:
-      return "plough";
-    case fabrication::Motion::retract:
-      return "retract";
-    case fabrication::Motion::translate:
-      break;
-  }
-  return "translate";
+  constexpr std::array kWords = {"rapid", "plunge", "plough", "retract", "translate"};
+  return kWords[static_cast<std::size_t>(motion)];
 }
 
 /// The way of the tool through one element: for each move its kind, and from where to where in the section, in mm.
