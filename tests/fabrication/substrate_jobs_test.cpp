@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "fabrication/chisel/check/dexel.h"
 #include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/check/workpiece.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/substrate_cells.h"
