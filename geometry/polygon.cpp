@@ -58,6 +58,15 @@ Rectangle bounding_box(const Polygon& polygon) {
   return box;
 }
 
+Polygon moved(Polygon polygon, const Vec2& by) {
+  for (Vec2& p : polygon) p += by;
+  return polygon;
+}
+
+Rectangle moved(const Rectangle& rectangle, const Vec2& by) {
+  return {rectangle.lower + by, rectangle.upper + by};
+}
+
 Polygon clip(const Polygon& polygon, const Rectangle& rectangle, double tolerance_mm) {
   if (rectangle.empty()) return {};
   Polygon result = polygon;

@@ -15,6 +15,7 @@ struct Rectangle {
   Vec2 upper = Vec2::Zero();
 
   Vec2 size() const { return upper - lower; }
+  Vec2 middle() const { return 0.5 * (lower + upper); }
   bool empty() const { return !(upper.x() > lower.x() && upper.y() > lower.y()); }
 };
 
@@ -22,6 +23,8 @@ double area(const Polygon& polygon);
 Vec2 centroid(const Polygon& polygon);
 Polygon to_polygon(const Rectangle& rectangle);
 Rectangle bounding_box(const Polygon& polygon);
+Polygon moved(Polygon polygon, const Vec2& by);
+Rectangle moved(const Rectangle& rectangle, const Vec2& by);
 
 /// The part of a convex polygon inside a rectangle. Vertices within `tolerance_mm` of a border count as on it and stay
 /// where they are, so that an edge that coincides with the border up to rounding is neither moved nor doubled. Empty

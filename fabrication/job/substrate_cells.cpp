@@ -12,20 +12,15 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/whole_elements.h"
 #include "geometry/part/substrate_part.h"
 
 namespace retrace::fabrication {
 namespace {
 
-using geometry::Polygon;
-using geometry::Rectangle;
-using geometry::SubstrateFrame;
-using geometry::SubstrateSurface;
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Outlines that cross the border by less than this share of the part's size lie within it, as in a design.
-constexpr double kInsideTolerance = 1e-9;
 /// Directions that differ by less than this are one: far below what rotary words tell apart.
 constexpr double kSameDirection = 1e-13;
 
@@ -34,142 +29,17 @@ Vec3 in_workpiece(const Vec3& v) {
   return {v.y(), -v.x(), v.z()};
 }
 
-/// A corner of an element's aperture, from its middle or from over its apex, and how high it lies over the rims' plane.
-struct RimCorner {
-  Vec2 at_mm = Vec2::Zero();
-  double height_mm = 0.0;
-};
-
-std::vector<RimCorner> rim_of(const geometry::Element& element) {
-  const geometry::Cell cell = geometry::element_cell(element);
-  const bool is_prism = std::holds_alternative<geometry::RtpElement>(element);
-  const double depth_mm = geometry::element_depth_mm(element);
-  const Vec2 middle = is_prism ? Vec2(0.5 * geometry::bounding_box(cell.outline).upper) : Vec2(Vec2::Zero());
-  std::vector<RimCorner> rim;
-  for (const Vec2& p : cell.outline) {
-    double height_mm = -depth_mm;
-    for (const geometry::CellFacet& facet : cell.facets) height_mm = std::max(height_mm, facet.plane.at(p));
-    // Rims of full cubes are not level.
-    rim.push_back({p - middle, std::abs(height_mm) < 1e-12 * depth_mm ? 0.0 : height_mm});
-  }
-  return rim;
-}
-
-/// The arc coordinates that the part covers, as a box round their middle.
-Rectangle arcs_of(const SubstrateSurface& surface, const Vec2& half_mm) {
-  constexpr int kSteps = 128;
-  Rectangle box{surface.arc_of(-half_mm), surface.arc_of(-half_mm)};
-  for (int k = 0; k <= kSteps; ++k) {
-    const double along = 2.0 * k / kSteps - 1.0;
-    for (const double side : {-1.0, 1.0})
-      for (const Vec2& p : {Vec2(along, side), Vec2(side, along)}) {
-        const Vec2 arc = surface.arc_of(half_mm.cwiseProduct(p));
-        box.lower = box.lower.cwiseMin(arc);
-        box.upper = box.upper.cwiseMax(arc);
-      }
-  }
-  return box;
-}
-
-class Placer {
+/// Numbers the directions of elements, like ones alike.
+class Orientations {
  public:
-  explicit Placer(const Job& job)
-      : job_(job),
-        spec_(part_on_substrate(job)),
-        half_mm_(0.5 * Vec2(spec_.array.x_length_mm, spec_.array.y_length_mm)),
-        surface_(geometry::substrate_surface_of(spec_)),
-        top_mm_(geometry::measure_substrate(surface_, half_mm_).highest_mm),
-        rim_(rim_of(job.element)) {}
-
-  std::vector<CutElement> run() {
-    std::vector<CutElement> placed;
-    for (CutElement& element : on_sheet())
-      if (place(element)) placed.push_back(element);
-    if (!std::holds_alternative<geometry::RtpElement>(job_.element)) number(placed);
-    return placed;
-  }
-
- private:
-  /// The elements of a flat array that is as large as the substrate is, rolled out.
-  std::vector<CutElement> on_sheet() {
-    Job sheet = job_;
-    sheet.substrate.reset();
-    if (std::holds_alternative<geometry::RtpElement>(job_.element)) {
-      const Rectangle reach = surface_.arc_reach();
-      sheet.array.x_length_mm = reach.size().x();
-      sheet.array.y_length_mm = reach.size().y();
-      middle_ = 0.5 * (reach.lower + reach.upper);
-      return cut_elements(sheet);
-    }
-    // Apexes stand over the middle of the part; the tiling is laid out both ways as far as the longer one.
-    const Rectangle reach = arcs_of(surface_, half_mm_);
-    const Vec2 half = reach.lower.cwiseAbs().cwiseMax(reach.upper.cwiseAbs());
-    const Vec2 room = surface_.is_upright() ? Vec2(Vec2::Zero()) : Vec2(Vec2::Constant(1e-6 * half.maxCoeff()));
-    sheet.array.x_length_mm = 2.0 * (half.x() + room.x());
-    sheet.array.y_length_mm = 2.0 * (half.y() + room.y());
-    return cut_elements(sheet);
-  }
-
-  /// \return whether the element lies wholly within the part
-  bool place(CutElement& element) {
-    const double scale = blank_scale(job_.workpiece);
-    const Vec2 on_sheet_mm = element.centre_mm / scale;
-    const Vec2 arc = middle_ + Vec2(-on_sheet_mm.y(), on_sheet_mm.x());
-    const SubstrateFrame frame = surface_.frame_at(arc);
-    // Corners lie no further away in plan than on the sheet, but for how rows draw together.
-    const double room_mm = 2.0 * geometry::width_across_mm(job_.element);
-    const bool is_inside = ((frame.origin.head<2>().cwiseAbs().array() + room_mm) < half_mm_.array()).all();
-    if (!is_inside && !is_within(arc, element.rotated)) return false;
-    element.foot_mm = scale * in_workpiece(frame.origin - top_mm_ * Vec3::UnitZ());
-    // Along x of the workpiece a flat array has y of the part, along y it has -x.
-    element.turn.col(0) = in_workpiece(frame.along_v);
-    element.turn.col(1) = -in_workpiece(frame.along_u);
-    element.turn.col(2) = in_workpiece(frame.normal);
-    element.orientation = orientation_of(element.turn);
-    return true;
-  }
-
-  bool is_within(const Vec2& arc, bool rotated) const {
-    const double tolerance_mm = kInsideTolerance * 2.0 * half_mm_.maxCoeff();
-    const double side = rotated ? -1.0 : 1.0;  // prisms that are rotated are square
-    return std::all_of(rim_.begin(), rim_.end(), [&](const RimCorner& corner) {
-      Vec2 plan = surface_.plan_of(arc + side * corner.at_mm);
-      if (corner.height_mm != 0.0 && !surface_.is_upright())
-        plan += corner.height_mm * surface_.normal_at(plan).head<2>();
-      return (plan.cwiseAbs().array() <= (half_mm_ + Vec2::Constant(tolerance_mm)).array()).all();
-    });
-  }
-
-  std::int32_t orientation_of(const Eigen::Matrix3d& turn) {
+  std::int32_t number_of(const Eigen::Matrix3d& turn) {
     std::array<std::int64_t, 9> key{};
     for (Eigen::Index k = 0; k < 9; ++k)
       key[static_cast<std::size_t>(k)] = std::llround(turn(k / 3, k % 3) / kSameDirection);
     return known_.try_emplace(key, static_cast<std::int32_t>(known_.size())).first->second;
   }
 
-  /// Rows without elements do not count, and cells count from the first that is cut.
-  static void number(std::vector<CutElement>& elements) {
-    std::int32_t row = -1;
-    std::int32_t column = 0;
-    std::int32_t before = 0;
-    for (CutElement& element : elements) {
-      if (row < 0 || element.row != before) {
-        before = element.row;
-        ++row;
-        column = 0;
-      }
-      element.row = row;
-      element.column = column++;
-    }
-  }
-
-  const Job& job_;
-  geometry::PartSpec spec_;
-  Vec2 half_mm_;
-  SubstrateSurface surface_;
-  double top_mm_;
-  std::vector<RimCorner> rim_;
-  Vec2 middle_ = Vec2::Zero();
+ private:
   std::map<std::array<std::int64_t, 9>, std::int32_t> known_;
 };
 
@@ -223,7 +93,24 @@ geometry::PartSpec part_on_substrate(const Job& job) {
 }
 
 std::vector<CutElement> elements_on_substrate(const Job& job) {
-  return Placer(job).run();
+  const double scale = blank_scale(job.workpiece);
+  Orientations orientations;
+  std::vector<CutElement> elements;
+  for (const geometry::PlacedElement& at : geometry::place(part_on_substrate(job))) {
+    if (at.standing != geometry::Standing::whole) continue;
+    CutElement& element = elements.emplace_back();
+    element.centre_mm = scale * Vec2(at.on_sheet.centre_mm.y(), -at.on_sheet.centre_mm.x());
+    element.row = at.on_sheet.row;
+    element.column = at.on_sheet.column;
+    element.rotated = at.on_sheet.is_rotated;
+    element.foot_mm = scale * in_workpiece(at.frame.origin);
+    // Along x of the workpiece a flat array has y of the part, along y it has -x.
+    element.turn.col(0) = in_workpiece(at.frame.along_v);
+    element.turn.col(1) = -in_workpiece(at.frame.along_u);
+    element.turn.col(2) = in_workpiece(at.frame.normal);
+    element.orientation = orientations.number_of(element.turn);
+  }
+  return elements;
 }
 
 double stock_mm(const Job& job, const std::vector<CutElement>& elements, double clearance_mm) {

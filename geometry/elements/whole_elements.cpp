@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <map>
+#include <utility>
 
+#include "geometry/elements/array_sheet.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/part/substrate_part.h"
 
 namespace retrace::geometry {
 namespace {
@@ -12,79 +15,69 @@ namespace {
 /// What crosses the border by less than this share of its size lies within it.
 constexpr double kWholeShare = 1e-9;
 
-double aperture_mm(const Element& element) {
-  if (const auto* const hexagonal = std::get_if<HexagonalCube>(&element)) return hexagonal->aperture_mm;
-  return std::get<TriangularCube>(element).aperture_mm;
-}
-
-/// Finds the whole cells of a tiling of cube corners. Both tilings repeat with (3 R, sqrt(3) R), R the radius of the
-/// aperture.
-class CubeFinder {
+/// Goes through the elements of a sheet.
+class Walk {
  public:
-  CubeFinder(const ArrayLayout& array, const Element& element)
-      : is_triangular_(std::holds_alternative<TriangularCube>(element)),
-        radius_mm_(0.5 * aperture_mm(element)),
-        box_(bounding_box(element_cell(element).outline)),
-        half_period_mm_(0.5 * radius_mm_ * Vec2(3.0, std::numbers::sqrt3)),
-        half_block_mm_(0.5 * Vec2(array.x_length_mm, array.y_length_mm) - Vec2(array.x_offset_mm, array.y_offset_mm) +
-                       Vec2::Constant(2.0 * kWholeShare * radius_mm_)) {}
+  explicit Walk(ArraySheet sheet) : sheet_(std::move(sheet)), piece_(sheet_, 0, 0) {
+    for (std::size_t c = 0; c < sheet_.lattice.cells.size(); ++c)
+      if (sheet_.lattice.cells[c].is_element) rows_[sheet_.middles_mm[c].y()][sheet_.middles_mm[c].x()] = c;
+  }
 
-  std::vector<WholeElement> run() {
-    const auto rows = static_cast<std::int64_t>(std::ceil(half_block_mm_.y() / half_period_mm_.y()));
-    const auto columns = static_cast<std::int64_t>(std::ceil(half_block_mm_.x() / half_period_mm_.x()));
-    for (std::int64_t row = -rows; row <= rows; ++row) {
-      const std::size_t before = elements_.size();
-      for (std::int64_t column = -columns - 1; column <= columns + 1; ++column) {
-        if ((row + column) % 2 != 0) continue;
-        const Vec2 apex = half_period_mm_.cwiseProduct(Vec2(static_cast<double>(column), static_cast<double>(row)));
-        if (is_triangular_) add(apex - Vec2(radius_mm_, 0.0), true);
-        add(apex, false);
+  template <class Visit>
+  void run(const Visit& visit) {
+    const IndexRange all = sheet_.indices();
+    for (std::int64_t j = all.lower[1]; j < all.upper[1]; ++j) {
+      std::int64_t row = j * static_cast<std::int64_t>(rows_.size());
+      for (const auto& [y, cells] : rows_) {
+        std::int64_t column = all.lower[0] * static_cast<std::int64_t>(cells.size());
+        for (std::int64_t i = all.lower[0]; i < all.upper[0]; ++i)
+          for (const auto& [x, cell] : cells) visit_one(cell, {i, j}, row, column++, visit);
+        ++row;
+        if (std::exchange(column_, 0) > 0) ++row_;
       }
-      number_row(before);
     }
-    return std::move(elements_);
   }
 
  private:
-  /// \param apex from the middle of the extent
-  void add(const Vec2& apex, bool is_rotated) {
-    const Vec2 low = is_rotated ? Vec2(apex - box_.upper) : Vec2(apex + box_.lower);
-    const Vec2 high = is_rotated ? Vec2(apex - box_.lower) : Vec2(apex + box_.upper);
-    if ((low.array() < -half_block_mm_.array()).any() || (high.array() > half_block_mm_.array()).any()) return;
-    elements_.push_back({apex, rows_, 0, is_rotated, true});
+  template <class Visit>
+  void visit_one(std::size_t cell, const std::array<std::int64_t, 2>& period, std::int64_t row, std::int64_t column,
+                 const Visit& visit) {
+    const Vec2 shift = sheet_.at_mm(period[0], period[1]) - sheet_.anchor_mm;
+    const CellPlace place = piece_.place(cell, shift);
+    if (piece_.is_clear_of_part(place)) return;
+    const Standing standing = piece_.standing(place);
+    if (standing == Standing::beyond) return;
+    WholeElement element;
+    element.is_rotated = sheet_.lattice.cells[cell].rotated;
+    if (sheet_.prisms) {
+      element.row = static_cast<std::int32_t>(row);
+      element.column = static_cast<std::int32_t>(column);
+      element.centre_mm = sheet_.prisms->centre_mm(row, column);
+    } else {
+      element.row = row_;
+      element.column = standing == Standing::whole ? column_++ : column_;
+      element.centre_mm = apex_mm(cell, shift);
+    }
+    SubstrateFrame frame = place.frame;
+    frame.origin.head<2>() += piece_.origin_mm() - sheet_.middle_mm;
+    frame.origin.z() += piece_.height_mm();
+    visit(PlacedElement{element, standing, frame});
   }
 
-  void number_row(std::size_t first) {
-    if (first == elements_.size()) return;
-    for (std::size_t k = first; k < elements_.size(); ++k) elements_[k].column = static_cast<std::int32_t>(k - first);
-    ++rows_;
+  /// As multiples of half a period, so that what is symmetric is so to the last bit.
+  Vec2 apex_mm(std::size_t cell, const Vec2& shift) const {
+    const Vec2 half = 0.5 * sheet_.lattice.period_mm;
+    const Vec2 aside(sheet_.lattice.cells[cell].rotated ? 0.5 * width_across_mm(sheet_.spec->element) : 0.0, 0.0);
+    const Vec2 steps = (sheet_.middles_mm[cell] + aside + shift).cwiseQuotient(half);
+    return half.cwiseProduct(Vec2(std::round(steps.x()), std::round(steps.y()))) - aside;
   }
 
-  bool is_triangular_;
-  double radius_mm_;
-  Rectangle box_;  ///< of an aperture round its apex, not rotated
-  Vec2 half_period_mm_;
-  Vec2 half_block_mm_;
-  std::vector<WholeElement> elements_;
-  std::int32_t rows_ = 0;
+  const ArraySheet sheet_;
+  const SheetPiece piece_;
+  std::map<double, std::map<double, std::size_t>> rows_;  ///< of a period: cells by y and x
+  std::int32_t row_ = 0;                                  ///< of those that are whole
+  std::int32_t column_ = 0;
 };
-
-std::vector<WholeElement> whole_prisms(const ArrayLayout& array, const RtpElement& prism) {
-  const PrismBlock block = prism_block(array, prism);
-  std::vector<WholeElement> elements;
-  elements.reserve(static_cast<std::size_t>(block.counts.columns * block.counts.rows));
-  for (std::int64_t row = 0; row < block.counts.rows; ++row)
-    for (std::int64_t column = 0; column < block.columns_of(row); ++column)
-      elements.push_back({block.centre_mm(row, column), static_cast<std::int32_t>(row),
-                          static_cast<std::int32_t>(column), block.is_rotated(row, column), true});
-  return elements;
-}
-
-std::vector<WholeElement> whole_cubes(const ArrayLayout& array, const Element& element) {
-  if (array.arrangement != Arrangement::single) return CubeFinder(array, element).run();
-  const Rectangle box = bounding_box(element_cell(element).outline);
-  return {WholeElement{-0.5 * (box.lower + box.upper), 0, 0, false, true}};
-}
 
 }  // namespace
 
@@ -134,9 +127,37 @@ PrismBlock prism_block(const ArrayLayout& array, const RtpElement& element) {
   return block;
 }
 
-std::vector<WholeElement> whole_elements(const ArrayLayout& array, const Element& element) {
+std::vector<PlacedElement> place(const PartSpec& spec) {
+  std::vector<PlacedElement> elements;
+  Walk(ArraySheet(spec)).run([&](const PlacedElement& at) { elements.push_back(at); });
+  return elements;
+}
+
+namespace {
+
+std::vector<WholeElement> on_plane(const ArrayLayout& array, const Element& element) {
   const auto* const prism = std::get_if<RtpElement>(&element);
-  std::vector<WholeElement> elements = prism != nullptr ? whole_prisms(array, *prism) : whole_cubes(array, element);
+  std::vector<WholeElement> elements(1);
+  if (array.arrangement == Arrangement::single) {
+    if (prism == nullptr) elements[0].centre_mm = -bounding_box(element_cell(element).outline).middle();
+    return elements;
+  }
+  elements.clear();
+  const CellCounts counts = prism != nullptr ? prism_block(array, *prism).counts : CellCounts{1, 1};
+  if (counts.columns < 1 || counts.rows < 1) return elements;
+  PartSpec spec;
+  spec.element = element;
+  spec.array = array;
+  Walk(ArraySheet(spec)).run([&](const PlacedElement& at) {
+    if (at.standing == Standing::whole) elements.push_back(at.on_sheet);
+  });
+  return elements;
+}
+
+}  // namespace
+
+std::vector<WholeElement> whole_elements(const ArrayLayout& array, const Element& element) {
+  std::vector<WholeElement> elements = on_plane(array, element);
   if (array.pattern.empty()) return elements;
   for (WholeElement& at : elements)
     at.is_there = array.pattern[array.pattern.size() - 1 - static_cast<std::size_t>(at.row)]
@@ -150,7 +171,7 @@ std::vector<std::int64_t> row_lengths(const ArrayLayout& array, const Element& e
     return std::vector<std::int64_t>(static_cast<std::size_t>(std::max<std::int64_t>(0, counts.rows)), counts.columns);
   }
   std::vector<std::int64_t> lengths;
-  for (const WholeElement& at : whole_cubes(array, element)) {
+  for (const WholeElement& at : on_plane(array, element)) {
     lengths.resize(static_cast<std::size_t>(at.row) + 1);
     ++lengths.back();
   }

@@ -5,9 +5,10 @@
 
 #include "geometry/elements/part_spec.h"
 #include "geometry/polygon.h"
+#include "geometry/substrate/substrate_surface.h"
 
-// Where the whole elements of a flat finite array lie. Drawings, masks, tables of facets and jobs take it; lattice.h
-// has the cells that borders cut.
+// Where the elements of a finite array stand, on the plane z = 0 or on a substrate. Drawings, masks, tables of facets
+// and jobs take it; parts have the same cells by the same sheet (array_sheet.h).
 
 namespace retrace::geometry {
 
@@ -52,8 +53,23 @@ struct WholeElement {
   bool is_there = true;           ///< the array's pattern says so
 };
 
-/// All of them, row by row from least y, x rising. Prisms fill a block that is centred; of cube corners an apex that is
-/// not rotated lies in the middle of the extent, or of `single` in the middle of the aperture's box (CONVENTIONS.md,
+/// What the borders leave of a cell.
+enum class Standing { whole, cut, beyond };
+
+/// An element where it stands.
+struct PlacedElement {
+  WholeElement on_sheet;  ///< on what the array is laid out on: the plane, or the substrate rolled out
+  Standing standing = Standing::whole;
+  SubstrateFrame frame;  ///< under its middle or apex, from the part's middle; z = 0 is the substrate's highest place
+};
+
+/// All elements that are not beyond the border, row by row from least y, x rising; a pattern is not asked. Prisms are
+/// numbered by their places on the sheet, the whole ones of cube corners one by one.
+/// \pre a finite array that is not `single` \throw InputError where the array is smaller than one element
+std::vector<PlacedElement> place(const PartSpec& spec);
+
+/// The whole ones of a flat array, in the same order. Prisms fill a block that is centred; of cube corners an apex that
+/// is not rotated lies in the middle of the extent, or of `single` in the middle of the aperture's box (CONVENTIONS.md,
 /// section 3). \pre the array is finite, a pattern has its rows and cells
 std::vector<WholeElement> whole_elements(const ArrayLayout& array, const Element& element);
 

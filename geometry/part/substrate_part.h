@@ -3,14 +3,9 @@
 #include "geometry/part/part.h"
 #include "geometry/substrate/substrate_surface.h"
 
-namespace retrace::geometry {
+// What is asked of parts on substrates: whether these carry their elements, and what stands open between neighbours.
 
-/// Adds the patches, placements and counts of the elements that stand on spec.substrate to a part that knows its
-/// specification, size and outline. Seen along z the surface is still one height at every place: cells end where the
-/// plan of their corners does, and vertical walls close what differs between neighbours.
-/// \pre part.spec.substrate, a finite array without offsets
-/// \throw InputError if the elements' cells do not cover the part
-void add_surface_on_substrate(Part& part, const Vec2& origin_mm, double elements_per_patch);
+namespace retrace::geometry {
 
 /// The substrate of a design as it lies under its part. \pre spec.substrate
 SubstrateSurface substrate_surface_of(const PartSpec& spec);

@@ -23,11 +23,6 @@ using geometry::Polygon;
 constexpr std::uint32_t kReplicates = 32;
 constexpr std::uint32_t kRaysPerTask = 2048;
 
-Polygon moved(Polygon polygon, const Vec2& by) {
-  for (Vec2& p : polygon) p += by;
-  return polygon;
-}
-
 /// The entrance face, or one period of it.
 Polygon face_of(const geometry::Part& part) {
   return part.period_mm ? geometry::to_polygon({Vec2::Zero(), *part.period_mm}) : part.outline;
@@ -50,7 +45,7 @@ void spread(const geometry::Part& part, const PixelGrid& grid, const Polygon& po
   const Vec2 last = box.upper.cwiseQuotient(*part.period_mm).array().floor();
   for (double j = first.y(); j <= last.y(); ++j)
     for (double i = first.x(); i <= last.x(); ++i)
-      grid.cover(moved(polygon, -Vec2(i, j).cwiseProduct(*part.period_mm)), add);
+      grid.cover(geometry::moved(polygon, -Vec2(i, j).cwiseProduct(*part.period_mm)), add);
 }
 
 void add_direction(const DetectorSetting& setting, const Vec3& direction, double power, DetectorMaps& maps) {

@@ -14,7 +14,7 @@ EntranceSampler::EntranceSampler(const geometry::Part& part) {
     return;
   }
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
-  centre_mm_ = 0.5 * (box.lower + box.upper);
+  centre_mm_ = box.middle();
   is_rectangle_ = part.outline.size() == 4;
   lower_ = box.lower - centre_mm_;
   size_ = box.size();

@@ -78,7 +78,7 @@ void measure_cubes(ArrayFigures& a, const Part& part) {
     a.element_mm = a.extent_mm.lower - box.lower;
   } else if (spec.array.extent == Extent::finite) {
     a.block_mm = {a.extent_mm.lower + margin, a.extent_mm.upper - margin};
-    a.element_mm = 0.5 * (a.extent_mm.lower + a.extent_mm.upper);
+    a.element_mm = a.extent_mm.middle();
     a.count = a.block_mm.size().cwiseQuotient(a.size_mm);
     a.has_neighbours = (a.element_mm + a.pitch_mm).x() < a.block_mm.upper.x();
   } else {
@@ -95,7 +95,7 @@ ArrayFigures array_figures(const Design& design, const Part& part) {
   if (!design.elements()) {
     a.block_mm = a.extent_mm;
     a.size_mm = a.extent_mm.size();
-    a.root_mm = 0.5 * (a.extent_mm.lower + a.extent_mm.upper);
+    a.root_mm = a.extent_mm.middle();
   } else if (std::holds_alternative<RtpElement>(part.spec.element)) {
     measure_prisms(a, design, part);
   } else {

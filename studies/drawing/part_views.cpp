@@ -133,10 +133,6 @@ class CellDrawer {
   Vec2 offset_;
 };
 
-Rectangle moved(const Rectangle& box, const Vec2& by) {
-  return {box.lower + by, box.upper + by};
-}
-
 /// A piece of the section's lower border, from left to right.
 struct Piece {
   Vec2 left;
@@ -202,7 +198,7 @@ PlanView plan_view(const Part& part, const Rectangle& window_mm) {
     if (!overlap(moved(boxes[placement.patch], placement.offset_mm), window_mm)) continue;
     const SurfacePatch& patch = part.patches[placement.patch];
     for (const geometry::PatchCell& cell : patch.cells) {
-      const Rectangle box = moved({cell.lower.head<2>(), cell.upper.head<2>()}, placement.offset_mm);
+      const Rectangle box = moved(Rectangle{cell.lower.head<2>(), cell.upper.head<2>()}, placement.offset_mm);
       if (overlap(box, window_mm)) CellDrawer(patch, cell, placement.offset_mm).draw(view, lines, same_mm);
     }
   }

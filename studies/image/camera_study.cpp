@@ -79,7 +79,7 @@ std::string text_of(const Vec3& p) {
 bool is_inside(const geometry::Part& part, const Vec3& p) {
   if (p.z() > part.thickness_mm || p.z() < -part.element_depth_mm) return false;
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
-  const Vec2 at = p.head<2>() + 0.5 * (box.lower + box.upper);
+  const Vec2 at = p.head<2>() + box.middle();
   for (std::size_t k = 0; k < part.outline.size(); ++k) {
     const Vec2& a = part.outline[k];
     const Vec2 along = part.outline[(k + 1) % part.outline.size()] - a;

@@ -108,7 +108,7 @@ Story story_of(const raytrace::LightPath& path) {
 /// The most frequent ways of light that falls on the middle of the part.
 std::vector<ScenePath> paths_from(const SceneLight& light, const OpticalModel& model, double cone_deg) {
   const geometry::Rectangle box = geometry::bounding_box(model.part.outline);
-  const geometry::Vec2 centre = 0.5 * (box.lower + box.upper);
+  const geometry::Vec2 centre = box.middle();
   const raytrace::ExactSurface surface(model.part, centre);
   const geometry::Vec2 window = box.size().cwiseMin(geometry::Vec2::Constant(model.part.size_mm));
   raytrace::Illumination from;

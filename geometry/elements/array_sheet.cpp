@@ -1,0 +1,256 @@
+#include "geometry/elements/array_sheet.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "geometry/elements/facet_planes.h"
+#include "geometry/elements/whole_elements.h"
+#include "geometry/part/substrate_part.h"
+#include "geometry/plane_polygon.h"
+
+namespace retrace::geometry {
+namespace {
+
+/// Lengths this close to a whole number of elements (relative) are whole.
+constexpr double kWhole = 1e-9;
+// Far beyond all that is asked for.
+constexpr double kEndlessPeriods = 1e3;
+constexpr double kEndlessReaches = 10.0;
+
+/// A bound of the array that meets the part's up to the tolerance is the part's.
+void snap(Rectangle& part, const Rectangle& block, const Vec2& length) {
+  const auto one = [](double& bound, double to, double scale) {
+    if (std::abs(bound - to) <= 2.0 * kWhole * scale) bound = to;
+  };
+  for (const Eigen::Index axis : {0, 1}) {
+    one(part.lower[axis], block.lower[axis], length[axis]);
+    one(part.upper[axis], block.upper[axis], length[axis]);
+  }
+}
+
+Rectangle round_all(const Rectangle& a, const Rectangle& b) {
+  return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+}
+
+Rectangle widened(const Rectangle& r, const Vec2& by) {
+  return {r.lower - by, r.upper + by};
+}
+
+Element without_cant(Element element) {
+  if (auto* cube = std::get_if<HexagonalCube>(&element)) cube->cant = {};
+  if (auto* cube = std::get_if<TriangularCube>(&element)) cube->cant = {};
+  return element;
+}
+
+/// How far the corners of an element's nominal outline lie from the substrate.
+std::vector<double> rim_heights(const Cell& cell, const Element& element) {
+  constexpr double kRounding = 1e-12;
+  const double depth_mm = element_depth_mm(element);
+  const Cell nominal = element_in_place_of(cell, without_cant(element), AngleErrors{});
+  std::vector<double> heights;
+  for (const Vec2& p : cell.outline) {
+    double height = -depth_mm;
+    for (const CellFacet& facet : nominal.facets) height = std::max(height, facet.plane.at(p));
+    heights.push_back(std::abs(height) < kRounding * depth_mm ? 0.0 : height);
+  }
+  return heights;
+}
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// What two convex polygons have in common; empty if it is no wider than the tolerance.
+Polygon common(Polygon polygon, const Polygon& other, double tolerance_mm) {
+  for (std::size_t k = 0; k < other.size() && !polygon.empty(); ++k) {
+    const Vec2 along = (other[(k + 1) % other.size()] - other[k]).normalized();
+    const HeightPlane inward{-cross(along, other[k]), {-along.y(), along.x()}};
+    polygon = where_higher(polygon, inward, HeightPlane{});
+  }
+  if (other.empty() || (!polygon.empty() && area(polygon) <= tolerance_mm * bounding_box(polygon).size().norm()))
+    polygon.clear();
+  return polygon;
+}
+
+}  // namespace
+
+ArraySheet::ArraySheet(const PartSpec& of) : spec(&of) {
+  tolerance_mm = sliver_mm = kWhole * bounding_box(aperture_outline(of.element)).size().minCoeff();
+  if (of.array.extent == Extent::infinite)
+    lay_out_endless();
+  else
+    lay_out_finite();
+  measure_cells();
+}
+
+void ArraySheet::lay_out_endless() {
+  lattice = make_lattice(*spec, true);
+  part_mm = reach_mm = block_mm = widened({}, kEndlessPeriods * lattice.period_mm);
+}
+
+void ArraySheet::lay_out_finite() {
+  const Vec2 length(spec->array.x_length_mm, spec->array.y_length_mm);
+  middle_mm = 0.5 * length;
+  part_mm = reach_mm = {Vec2::Zero(), length};
+  if (spec->substrate) lay_on_substrate();
+  if (const auto* prism = std::get_if<RtpElement>(&spec->element))
+    lay_out_prisms(*prism);
+  else
+    lay_out_cubes();
+  if (!is_upright) return;
+  snap(part_mm, block_mm, length);
+  reach_mm = part_mm;
+}
+
+void ArraySheet::lay_on_substrate() {
+  surface.emplace(substrate_surface_of(*spec));
+  top_mm = measure_substrate(*surface, middle_mm).highest_mm;
+  is_upright = surface->is_upright();
+  if (is_upright) return;
+  tolerance_mm = std::max(sliver_mm, 2.0 * kWhole * middle_mm.maxCoeff());
+  reach_mm = arcs_of_border();
+}
+
+/// As a flat array that is as large as the substrate is, rolled out.
+void ArraySheet::lay_out_prisms(const RtpElement& prism) {
+  const Rectangle all = is_upright ? part_mm : moved(surface->arc_reach(), middle_mm);
+  ArrayLayout array = spec->array;
+  array.x_length_mm = all.size().x();
+  array.y_length_mm = all.size().y();
+  prisms = prism_block(array, prism);
+  if (prisms->counts.columns < 1 || prisms->counts.rows < 1) throw InputError("the array is smaller than one element");
+  block_mm = moved(prisms->filled, all.lower);
+  anchor_mm = block_mm.lower;
+  lattice = make_lattice(*spec, prisms->counts.rows > 1);
+}
+
+void ArraySheet::lay_out_cubes() {
+  const Vec2 margin(spec->array.x_offset_mm, spec->array.y_offset_mm);
+  block_mm = is_upright ? widened(part_mm, -margin) : widened(reach_mm, kEndlessReaches * reach_mm.size());
+  anchor_mm = middle_mm;
+  lattice = make_lattice(*spec, false);
+}
+
+/// Round the part's border, with an element's room to spare.
+Rectangle ArraySheet::arcs_of_border() const {
+  constexpr int kSteps = 128;
+  Rectangle box;
+  for (int k = 0; k <= kSteps; ++k) {
+    const double along = 2.0 * k / kSteps - 1.0;
+    for (const Vec2& p : {Vec2(along, -1.0), Vec2(along, 1.0), Vec2(-1.0, along), Vec2(1.0, along)}) {
+      const Vec2 arc = surface->arc_of(middle_mm.cwiseProduct(p));
+      box = round_all(box, {arc, arc});
+    }
+  }
+  return moved(widened(box, Vec2::Constant(1.5 * width_across_mm(spec->element))), middle_mm);
+}
+
+void ArraySheet::measure_cells() {
+  for (const Cell& cell : lattice.cells) {
+    middles_mm.push_back(cell.is_element ? place_of(*spec, cell) : bounding_box(cell.outline).middle());
+    rims_mm.push_back(cell.is_element ? rim_heights(cell, spec->element)
+                                      : std::vector<double>(cell.outline.size(), 0.0));
+  }
+}
+
+IndexRange ArraySheet::indices() const {
+  Rectangle cells = bounding_box(lattice.cells.front().outline);
+  for (const Cell& cell : lattice.cells) cells = round_all(cells, bounding_box(cell.outline));
+  IndexRange range;
+  for (const Eigen::Index axis : {0, 1}) {
+    const auto k = static_cast<std::size_t>(axis);
+    const double period = lattice.period_mm[axis];
+    const double low = (reach_mm.lower[axis] - anchor_mm[axis] - cells.upper[axis]) / period;
+    const double high = (reach_mm.upper[axis] - anchor_mm[axis] - cells.lower[axis]) / period;
+    range.lower[k] = static_cast<std::int64_t>(std::floor(low));
+    range.upper[k] = static_cast<std::int64_t>(std::ceil(high)) + 1;
+  }
+  return range;
+}
+
+Vec2 ArraySheet::at_mm(std::int64_t i, std::int64_t j) const {
+  return anchor_mm + Vec2(static_cast<double>(i), static_cast<double>(j)).cwiseProduct(lattice.period_mm);
+}
+
+bool ArraySheet::repeats_along(std::size_t axis) const {
+  return !surface || (axis == 0 ? surface->repeats_along_u() : surface->repeats_along_v());
+}
+
+SheetPiece::SheetPiece(const ArraySheet& sheet, std::int64_t i, std::int64_t j)
+    : sheet_(&sheet), at_(sheet.at_mm(i, j)), origin_(at_) {
+  if (sheet.surface) {
+    const Vec3 origin = sheet.surface->frame_at(at_ - sheet.middle_mm).origin;
+    if (!sheet.is_upright) origin_ = sheet.middle_mm + origin.head<2>();
+    height_ = origin.z();
+  }
+  part_ = moved(sheet.part_mm, -origin_);
+  reach_ = moved(sheet.reach_mm, -at_);
+  block_ = moved(sheet.block_mm, -at_);
+}
+
+Vec2 SheetPiece::plan_of(const Vec2& on_sheet, double rim_mm) const {
+  if (sheet_->is_upright) return on_sheet;
+  Vec2 plan = sheet_->surface->plan_of(at_ + on_sheet - sheet_->middle_mm);
+  if (rim_mm != 0.0) plan += rim_mm * sheet_->surface->normal_at(plan).head<2>();
+  return plan + sheet_->middle_mm - origin_;
+}
+
+SubstrateFrame SheetPiece::frame_at(const Vec2& on_sheet) const {
+  SubstrateFrame frame;
+  frame.origin.head<2>() = on_sheet;
+  if (!sheet_->surface) return frame;
+  frame = sheet_->surface->frame_at(at_ + on_sheet - sheet_->middle_mm);
+  frame.origin.head<2>() += sheet_->middle_mm - origin_;
+  frame.origin.z() -= height_;
+  return frame;
+}
+
+CellPlace SheetPiece::place(std::size_t cell, const Vec2& shift_mm) const {
+  CellPlace place;
+  place.shift_mm = shift_mm;
+  place.on_sheet = moved(sheet_->lattice.cells[cell].outline, shift_mm);
+  place.frame = frame_at(sheet_->middles_mm[cell] + shift_mm);
+  place.outline = place.on_sheet;
+  if (!sheet_->is_upright)
+    for (std::size_t k = 0; k < place.outline.size(); ++k)
+      place.outline[k] = plan_of(place.on_sheet[k], sheet_->rims_mm[cell][k]);
+  return place;
+}
+
+Standing SheetPiece::standing(const CellPlace& place) const {
+  if (contains(block_, place.on_sheet, sheet_->sliver_mm) &&
+      (sheet_->is_upright || contains(part_, place.outline, sheet_->tolerance_mm)))
+    return Standing::whole;
+  return within(place, place.outline, block_).empty() ? Standing::beyond : Standing::cut;
+}
+
+bool SheetPiece::is_clear_of_part(const CellPlace& place) const {
+  const Rectangle box = bounding_box(place.outline);
+  return (box.lower.array() > part_.upper.array()).any() || (box.upper.array() < part_.lower.array()).any();
+}
+
+Polygon SheetPiece::within(const CellPlace& place, const Polygon& outline, const Rectangle& on_sheet) const {
+  if (sheet_->is_upright) return clip(outline, on_sheet, sheet_->sliver_mm);
+  Polygon inner = outline;
+  if (!contains(on_sheet, place.on_sheet, sheet_->sliver_mm)) {
+    Polygon in_plan = clip(place.on_sheet, on_sheet, sheet_->sliver_mm);
+    for (Vec2& p : in_plan) p = plan_of(p);
+    inner = common(outline, in_plan, sheet_->sliver_mm);
+  }
+  return contains(part_, inner, 0.0) ? inner : clip(inner, part_, sheet_->tolerance_mm);
+}
+
+Rectangle SheetPiece::plan_round(const Rectangle& on_sheet) const {
+  Polygon corners = to_polygon(on_sheet);
+  for (Vec2& p : corners) p = plan_of(p);
+  return bounding_box(corners);
+}
+
+Rectangle SheetPiece::block_in_plan() const {
+  if (sheet_->is_upright) return block_;
+  if (!std::holds_alternative<RtpElement>(sheet_->spec->element)) return part_;
+  return {plan_of(block_.lower).cwiseMax(part_.lower), plan_of(block_.upper).cwiseMin(part_.upper)};
+}
+
+}  // namespace retrace::geometry

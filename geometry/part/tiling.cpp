@@ -1,0 +1,351 @@
+#include "geometry/part/tiling.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "geometry/elements/edges.h"
+#include "geometry/plane_polygon.h"
+
+namespace retrace::geometry {
+namespace {
+
+// Where a sheet repeats along one axis alone, patches are kept short along the other.
+constexpr double kElementsPerColumnPatch = 256.0;
+// An infinite array is a patch of this many periods round the central one: rays seldom have to be brought back.
+constexpr int kPeriodsBeyond = 2;
+constexpr std::uint32_t kNoPatch = UINT32_MAX;
+
+/// The errors of the element at (i, j), the `number`th of the period: those of all, and its own random tilts.
+AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std::uint32_t number) {
+  constexpr std::uint32_t kTiltStream = 3;
+  AngleErrors errors = spec.angle_errors;
+  if (!(spec.random_tilts.sigma_arcmin > 0.0)) return errors;
+  const auto words = philox({spec.random_tilts.seed, kTiltStream}, static_cast<std::uint32_t>(i),
+                            static_cast<std::uint32_t>(j), number);
+  // Box and Muller; the shift keeps 0 out of the logarithm.
+  const auto radius = [&](std::size_t k) { return std::sqrt(-2.0 * std::log(unit_interval(words[k]) + 0x1p-33)); };
+  const auto angle = [&](std::size_t k) { return 2.0 * std::numbers::pi * unit_interval(words[k]); };
+  const std::array<double, 3> normal = {radius(0) * std::cos(angle(1)), radius(0) * std::sin(angle(1)),
+                                        radius(2) * std::cos(angle(3))};
+  for (std::size_t k = 0; k < 3; ++k) errors.facet_tilt_arcmin[k] += spec.random_tilts.sigma_arcmin * normal[k];
+  return errors;
+}
+
+/// The four strips of the extent that the block leaves free; any of them may be empty.
+std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block) {
+  return {Rectangle{extent.lower, {block.lower.x(), extent.upper.y()}},
+          Rectangle{{block.upper.x(), extent.lower.y()}, extent.upper},
+          Rectangle{{block.lower.x(), extent.lower.y()}, {block.upper.x(), block.lower.y()}},
+          Rectangle{{block.lower.x(), block.upper.y()}, {block.upper.x(), extent.upper.y()}}};
+}
+
+bool is_convex(const Polygon& polygon, double tolerance_mm) {
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 a = polygon[(k + 1) % polygon.size()] - polygon[k];
+    const Vec2 b = polygon[(k + 2) % polygon.size()] - polygon[(k + 1) % polygon.size()];
+    if (a.x() * b.y() - a.y() * b.x() < -tolerance_mm * (a.norm() + b.norm())) return false;
+  }
+  return true;
+}
+
+/// A plane that is told in a frame of its own.
+HeightPlane placed_plane(const HeightPlane& own, const SubstrateFrame& frame) {
+  const Vec3 normal = own.slope.x() * frame.along_u + own.slope.y() * frame.along_v - frame.normal;
+  const Vec3 point = frame.origin + own.height_mm * frame.normal;
+  HeightPlane plane;
+  plane.slope = -normal.head<2>() / normal.z();
+  plane.height_mm = point.z() - plane.slope.dot(point.head<2>());
+  return plane;
+}
+
+/// The cell moved in plan, and up.
+void move_facets(Cell& cell, const Vec2& shift_mm, double height_mm) {
+  for (CellFacet& facet : cell.facets) {
+    facet.outline = moved(std::move(facet.outline), shift_mm);
+    facet.plane.height_mm -= facet.plane.slope.dot(shift_mm);
+    if (height_mm != 0.0) facet.plane.height_mm += height_mm;
+  }
+}
+
+FacetRole role_of(const Cell& cell, const CellFacet& facet) {
+  return cell.is_element || facet.is_edge ? FacetRole::retro_facet : FacetRole::flat_back;
+}
+
+/// Each facet stands where its plane is the highest.
+void cut_by_each_other(Cell& cell) {
+  for (CellFacet& facet : cell.facets) {
+    facet.outline = cell.outline;
+    for (const CellFacet& other : cell.facets)
+      if (&other != &facet && !facet.outline.empty())
+        facet.outline = where_higher(facet.outline, facet.plane, other.plane);
+  }
+}
+
+class Tiler {
+ public:
+  Tiler(Part& part, const ArraySheet& sheet, const FacetPlanes* planes)
+      : part_(part), sheet_(sheet), spec_(part.spec), planes_(planes) {}
+
+  void add_all(const Vec2& origin_mm, double elements_per_patch) {
+    const IndexRange all = sheet_.indices();
+    const std::array<std::int64_t, 2> step = patch_size(all, elements_per_patch);
+    for (std::int64_t j = all.lower[1]; j < all.upper[1]; j += step[1])
+      for (std::int64_t i = all.lower[0]; i < all.upper[0]; i += step[0])
+        add_piece({{i, j}, {std::min(i + step[0], all.upper[0]), std::min(j + step[1], all.upper[1])}}, origin_mm);
+    check_cover();
+  }
+
+  void add_periods() {
+    add_piece({{-kPeriodsBeyond, -kPeriodsBeyond}, {kPeriodsBeyond + 1, kPeriodsBeyond + 1}}, Vec2::Zero());
+  }
+
+ private:
+  /// What a patch is made of; others like it share it.
+  struct Piece {
+    std::uint32_t patch = kNoPatch;  ///< of nothing that is within the part: none
+    std::int64_t full = 0;
+    std::int64_t partial = 0;
+    double area_mm2 = 0.0;  ///< of all tiles in plan
+  };
+  using Key = std::array<std::int64_t, 12>;
+
+  std::array<std::int64_t, 2> patch_size(const IndexRange& all, double elements_per_patch) const {
+    const double each = std::max(1, sheet_.lattice.elements_per_period);
+    const double periods = std::max(1.0, elements_per_patch / each);
+    if (sheet_.reach_mm.size().cwiseQuotient(sheet_.lattice.period_mm).prod() <= periods)
+      return {all.upper[0] - all.lower[0], all.upper[1] - all.lower[1]};
+    const bool repeats_once = sheet_.repeats_along(0) != sheet_.repeats_along(1);
+    const double most = repeats_once ? std::min(periods, kElementsPerColumnPatch / each) : periods;
+    const auto side = static_cast<std::int64_t>(std::max(1.0, std::floor(std::sqrt(most))));
+    return {side, side};
+  }
+
+  void add_piece(const IndexRange& range, const Vec2& origin_mm) {
+    here_.emplace(sheet_, range.lower[0], range.lower[1]);
+    // No piece is like another.
+    if (planes_ != nullptr || spec_.random_tilts.sigma_arcmin > 0.0) known_.clear();
+    const auto [it, is_new] = known_.try_emplace(key_of(range));
+    Piece& piece = it->second;
+    if (is_new) fill(piece, range);
+    if (piece.patch == kNoPatch) return;
+    part_.placements.push_back({piece.patch, origin_mm + here_->origin_mm(), here_->height_mm()});
+    part_.elements_full += piece.full;
+    part_.elements_partial += piece.partial;
+    covered_mm2_ += piece.area_mm2;
+  }
+
+  /// Tells pieces apart by where borders cross them and what the substrate does there. Borders beyond the neighbourhood
+  /// do not matter.
+  Key key_of(const IndexRange& range) const {
+    const double quantum = 1e-7 * sheet_.lattice.period_mm.minCoeff();
+    const Vec2 reach = 2.0 * sheet_.lattice.period_mm;
+    const Vec2 size =
+        Vec2(static_cast<double>(range.upper[0] - range.lower[0]), static_cast<double>(range.upper[1] - range.lower[1]))
+            .cwiseProduct(sheet_.lattice.period_mm);
+    const Rectangle round{-reach, size + reach};
+    const Rectangle in_plan = here_->plan_round(round);
+    Key key{};
+    std::size_t k = 0;
+    for (const Eigen::Index axis : {0, 1}) {
+      const auto a = static_cast<std::size_t>(axis);
+      const auto add = [&](const Rectangle& border, const Rectangle& within) {
+        for (const double bound : {border.lower[axis], border.upper[axis]})
+          key[k++] = std::llround(std::clamp(bound, within.lower[axis], within.upper[axis]) / quantum);
+      };
+      add(here_->part(), in_plan);
+      add(here_->block(), round);
+      key[k++] = range.upper[a] - range.lower[a];
+      key[k++] = sheet_.repeats_along(a) ? 0 : range.lower[a];
+    }
+    return key;
+  }
+
+  /// The tiles of a range of the lattice and of one more cell all round, welded to a patch.
+  void fill(Piece& piece, const IndexRange& range) {
+    tiles_.clear();
+    std::uint32_t number = 0;
+    for (std::int64_t j = range.lower[1] - 1; j <= range.upper[1]; ++j)
+      for (std::int64_t i = range.lower[0] - 1; i <= range.upper[0]; ++i) {
+        const bool owned = i >= range.lower[0] && i < range.upper[0] && j >= range.lower[1] && j < range.upper[1];
+        const Vec2 index(static_cast<double>(i - range.lower[0]), static_cast<double>(j - range.lower[1]));
+        for (std::uint32_t c = 0; c < sheet_.lattice.cells.size(); ++c) {
+          const std::size_t first = tiles_.size();
+          add_cell(owned ? &piece : nullptr, {i, j, c}, index.cwiseProduct(sheet_.lattice.period_mm));
+          for (std::size_t t = first; t < tiles_.size(); ++t) {
+            tiles_[t].cell = number;
+            tiles_[t].owned = owned;
+          }
+          ++number;
+        }
+      }
+    for (const Tile& tile : tiles_) piece.area_mm2 += tile.owned ? area(tile.outline) : 0.0;
+    if (std::none_of(tiles_.begin(), tiles_.end(), [](const Tile& tile) { return tile.owned; })) return;
+    piece.patch = static_cast<std::uint32_t>(part_.patches.size());
+    part_.patches.push_back(build_patch(tiles_, here_->block_in_plan(), part_.size_mm));
+  }
+
+  /// A cell of the lattice: its period, and which of the period's it is.
+  struct Index {
+    std::int64_t i = 0;
+    std::int64_t j = 0;
+    std::uint32_t number = 0;
+  };
+
+  /// Appends what the borders leave of a cell. \param piece counts it; null: it belongs to a neighbour
+  void add_cell(Piece* piece, const Index& index, const Vec2& shift_mm) {
+    const CellPlace place = here_->place(index.number, shift_mm);
+    if (here_->is_clear_of_part(place)) return;
+    Cell cell = cell_at(index, place);
+    const Standing standing = here_->standing(place);
+    if (piece != nullptr && cell.is_element) {
+      piece->full += standing == Standing::whole ? 1 : 0;
+      piece->partial += standing == Standing::cut ? 1 : 0;
+    }
+    if (standing == Standing::whole) {
+      for (CellFacet& facet : cell.facets) add_tile(std::move(facet.outline), facet.plane, role_of(cell, facet));
+      return;
+    }
+    if (cell.is_element && spec_.array.partial_elements == PartialElements::omit) turn_to_land(cell, place);
+    for (const CellFacet& facet : cell.facets) {
+      add_tile(here_->within(place, facet.outline, here_->block()), facet.plane, role_of(cell, facet));
+      if (sheet_.is_upright) add_margins(place, facet.outline);
+    }
+    if (!sheet_.is_upright) add_margins(place, place.outline);
+  }
+
+  void add_tile(Polygon outline, const HeightPlane& plane, FacetRole role) {
+    if (!outline.empty()) tiles_.push_back({std::move(outline), plane, role});
+  }
+
+  /// The land beside the block of elements.
+  void add_margins(const CellPlace& place, const Polygon& outline) {
+    for (const Rectangle& margin : margins(here_->reach(), here_->block()))
+      if (!margin.empty())
+        add_tile(here_->within(place, outline, margin), placed_plane({}, place.frame), FacetRole::flat_back);
+  }
+
+  void turn_to_land(Cell& cell, const CellPlace& place) const {
+    cell.is_element = false;
+    if (!sheet_.is_upright) cell.facets = {CellFacet{place.outline, {}, false}};
+    for (CellFacet& facet : cell.facets) {
+      facet.plane = placed_plane({}, place.frame);
+      facet.is_edge = false;
+    }
+  }
+
+  /// The cell as it stands in its place.
+  Cell cell_at(const Index& index, const CellPlace& place) const {
+    if (!sheet_.is_upright) return cell_along_normal(index, place);
+    Cell cell = upright_cell(index);
+    move_facets(cell, place.shift_mm, place.frame.origin.z());
+    return cell;
+  }
+
+  Cell upright_cell(const Index& index) const {
+    const Cell& cell = sheet_.lattice.cells[index.number];
+    if (cell.is_element && planes_ != nullptr) return own_cell(cell, index);
+    if (!cell.is_element || !(spec_.random_tilts.sigma_arcmin > 0.0)) return cell;
+    const AngleErrors errors = errors_of(spec_, index.i, index.j, index.number);
+    return finished_cell(element_in_place_of(cell, spec_.element, errors), spec_);
+  }
+
+  /// The element of the lattice with its own planes, or land where there is none.
+  Cell own_cell(const Cell& cell, const Index& index) const {
+    const Vec2 place = place_of(spec_, cell);
+    const ElementPlanes* const planes = planes_->at(sheet_.at_mm(index.i, index.j) + place);
+    if (planes != nullptr && planes->planes.empty()) return flared_land(cell, *planes, place);
+    if (planes != nullptr) return finished_cell(cell_with_planes(cell, *planes, place), spec_);
+    Cell land = cell;
+    land.is_element = false;
+    land.facets = {CellFacet{cell.outline, HeightPlane{}, false}};
+    return land;
+  }
+
+  /// An element as a rigid body along the substrate's normal, cut by the vertical walls over its corners.
+  Cell cell_along_normal(const Index& index, const CellPlace& place) const {
+    Cell cell = sheet_.lattice.cells[index.number];
+    if (!cell.is_element) {
+      turn_to_land(cell, place);
+      return cell;
+    }
+    if (!is_convex(place.outline, sheet_.tolerance_mm)) refuse_bend(place.frame);
+    cell = element_in_place_of(cell, spec_.element, errors_of(spec_, index.i, index.j, index.number));
+    for (CellFacet& facet : cell.facets) {
+      facet.plane.height_mm += facet.plane.slope.dot(sheet_.middles_mm[index.number]);
+      facet.plane = placed_plane(facet.plane, place.frame);
+    }
+    cell.outline = place.outline;
+    cut_by_each_other(cell);
+    return with_edges(cell, spec_);
+  }
+
+  [[noreturn]] void refuse_bend(const SubstrateFrame& frame) const {
+    const Vec2 at = frame.origin.head<2>() + here_->origin_mm() - sheet_.middle_mm;
+    throw InputError(
+        fmt::format("the base bends too much for the element at x = {:.6g}, y = {:.6g} mm from the "
+                    "middle of the part",
+                    at.x(), at.y()));
+  }
+
+  /// Cells on a substrate may leave gaps or overlap.
+  void check_cover() const {
+    constexpr double kAreaRounding = 1e-7;
+    const double whole_mm2 = sheet_.part_mm.size().prod();
+    if (!sheet_.surface || std::abs(covered_mm2_ - whole_mm2) <= kAreaRounding * whole_mm2) return;
+    throw InputError(fmt::format("the base bends too much for its elements: their cells cover {:.9g} of {:.9g} mm2",
+                                 covered_mm2_, whole_mm2));
+  }
+
+  Part& part_;
+  const ArraySheet& sheet_;
+  const PartSpec& spec_;
+  const FacetPlanes* planes_;
+  std::map<Key, Piece> known_;
+  std::optional<SheetPiece> here_;  ///< the piece at work
+  std::vector<Tile> tiles_;         ///< its tiles
+  double covered_mm2_ = 0.0;
+};
+
+}  // namespace
+
+void add_array(Part& part, const ArraySheet& sheet, const FacetPlanes* planes, const Vec2& origin_mm,
+               double elements_per_patch) {
+  Tiler(part, sheet, planes).add_all(origin_mm, elements_per_patch);
+}
+
+void add_periods(Part& part, const ArraySheet& sheet) {
+  Tiler(part, sheet, nullptr).add_periods();
+  part.period_mm = sheet.lattice.period_mm;
+  part.periods_beyond = kPeriodsBeyond;
+  part.elements_full = sheet.lattice.elements_per_period;
+}
+
+void add_single(Part& part, const FacetPlanes* planes, const Vec2& origin_mm) {
+  Cell cell = element_cell(part.spec.element, errors_of(part.spec, 0, 0, 0));
+  if (planes != nullptr) {
+    const Vec2 place = place_of(part.spec, cell);
+    const ElementPlanes* const own = planes->at(place - bounding_box(cell.outline).lower);
+    if (own != nullptr && !own->planes.empty()) cell = cell_with_planes(cell, *own, place);
+  }
+  cell = finished_cell(cell, part.spec);
+  move_facets(cell, -bounding_box(cell.outline).lower, 0.0);
+  std::vector<Tile> tiles;
+  for (CellFacet& facet : cell.facets) tiles.push_back({std::move(facet.outline), facet.plane});
+  const Polygon outline = aperture_outline(part.spec.element);
+  part.patches.push_back(build_patch(tiles, bounding_box(outline), part.size_mm));
+  part.placements.push_back({0, origin_mm});
+  part.outline = moved(outline, origin_mm);
+  part.elements_full = 1;
+}
+
+}  // namespace retrace::geometry

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "geometry/elements/array_sheet.h"
+#include "geometry/elements/facet_planes.h"
+#include "geometry/part/part.h"
+
+// Internal to geometry: the back surface of a part, from cells that stand on a plane or on a substrate.
+
+namespace retrace::geometry {
+
+/// Adds patches, placements and counts of a finite array to a part that knows its specification and size. Seen along z
+/// the surface is one height at every place: cells end where the plan of their corners does, and vertical walls close
+/// what differs between neighbours. \param planes of elements that have their own; null: all are the specification's
+/// \param elements_per_patch up to this many the surface is one patch; beyond, blocks of at most this many are shared
+/// \throw InputError if elements on a substrate do not cover the part
+void add_array(Part& part, const ArraySheet& sheet, const FacetPlanes* planes, const Vec2& origin_mm,
+               double elements_per_patch);
+
+/// The same of an infinite array: some periods of it.
+void add_periods(Part& part, const ArraySheet& sheet);
+
+/// The same of an element by itself.
+void add_single(Part& part, const FacetPlanes* planes, const Vec2& origin_mm);
+
+}  // namespace retrace::geometry
