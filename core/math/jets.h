@@ -1,112 +1,60 @@
 #pragma once
 
-// Automatic differentiation: a dual number with the two partial derivatives, and truncated Taylor series in one
-// variable, both over the elementary functions of formulas (A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed.,
-// SIAM 2008, tables 13.1 and 13.2). They nest: Series<Dual> is a series whose coefficients carry their own derivatives.
-// second_order.h has short series and second partial derivatives.
+// Automatic differentiation along a line: truncated Taylor series in one variable over the elementary functions of
+// formulas (A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, tables 13.1 and 13.2). Coefficients
+// are doubles, intervals for proofs, or numbers that carry derivatives of their own: they nest. partials.h has the
+// derivatives by two variables.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
+#include <utility>
 
 namespace retrace::jets {
 
 /// Most derivatives that a series carries.
 inline constexpr int kMostOrder = 9;
-
-/// A value with its partial derivatives with respect to x and y.
-struct Dual {
-  double v = 0.0;
-  double dx = 0.0;
-  double dy = 0.0;
-
-  Dual() = default;
-  Dual(double value) : v(value) {}  // NOLINT: constants are numbers too
-  Dual(double value, double by_x, double by_y) : v(value), dx(by_x), dy(by_y) {}
-};
-
-inline double value_of(double a) {
-  return a;
-}
-inline double value_of(const Dual& a) {
-  return a.v;
-}
-
-inline Dual operator-(const Dual& a) {
-  return {-a.v, -a.dx, -a.dy};
-}
-inline Dual operator+(const Dual& a, const Dual& b) {
-  return {a.v + b.v, a.dx + b.dx, a.dy + b.dy};
-}
-inline Dual operator-(const Dual& a, const Dual& b) {
-  return {a.v - b.v, a.dx - b.dx, a.dy - b.dy};
-}
-inline Dual operator*(const Dual& a, const Dual& b) {
-  return {a.v * b.v, a.dx * b.v + a.v * b.dx, a.dy * b.v + a.v * b.dy};
-}
-inline Dual operator/(const Dual& a, const Dual& b) {
-  const double v = a.v / b.v;
-  return {v, (a.dx - v * b.dx) / b.v, (a.dy - v * b.dy) / b.v};
-}
-
-/// Chain rule: f(a) with the derivative of f there.
-inline Dual chained(const Dual& a, double value, double slope) {
-  return {value, slope * a.dx, slope * a.dy};
-}
-inline Dual sqrt(const Dual& a) {
-  const double root = std::sqrt(a.v);
-  return chained(a, root, 0.5 / root);
-}
-inline Dual exp(const Dual& a) {
-  return chained(a, std::exp(a.v), std::exp(a.v));
-}
-inline Dual log(const Dual& a) {
-  return chained(a, std::log(a.v), 1.0 / a.v);
-}
-inline Dual sin(const Dual& a) {
-  return chained(a, std::sin(a.v), std::cos(a.v));
-}
-inline Dual cos(const Dual& a) {
-  return chained(a, std::cos(a.v), -std::sin(a.v));
-}
-inline Dual atan2(const Dual& y, const Dual& x) {
-  const double square = x.v * x.v + y.v * y.v;
-  return {std::atan2(y.v, x.v), (x.v * y.dx - y.v * x.dx) / square, (x.v * y.dy - y.v * x.dy) / square};
-}
-
-/// For Series: the order is known when it runs only.
+/// Of a series: the order is known when it runs only.
 inline constexpr int kAnyOrder = -1;
+
+/// How many derivatives a series has.
+template <int N>
+struct Length {
+  static constexpr int order = N;
+
+  Length() = default;
+  explicit Length(int) {}
+};
+template <>
+struct Length<kAnyOrder> {
+  int order = 0;
+
+  Length() = default;
+  explicit Length(int length) : order(length) {}
+};
 
 /// The start of a Taylor series: c[0] + c[1] t + ... + c[order] t^order. Results are as long as the shorter operand.
 /// Of an order that the type fixes it is quicker, as the compiler writes the loops out.
 template <class T, int N = kAnyOrder>
-struct Series {
-  std::array<T, static_cast<std::size_t>(N) + 1> c{};
-  static constexpr int order = N;
+struct Series : Length<N> {
+  std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMostOrder : N) + 1> c{};  ///< the first order + 1 count
 
   Series() = default;
-  explicit Series(int) {}
+  explicit Series(int length) : Length<N>(length) {}
+  Series(const T& value, const T& first, const T& second) requires(N == 2) : c{{value, first, second}} {}
   T& operator[](int k) { return c[static_cast<std::size_t>(k)]; }
   const T& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
 };
-template <class T>
-struct Series<T, kAnyOrder> {
-  std::array<T, static_cast<std::size_t>(kMostOrder) + 1> c{};  ///< the first order + 1 of them count
-  int order = 0;
 
-  Series() = default;
-  explicit Series(int length) : order(length) {}
-  T& operator[](int k) { return c[static_cast<std::size_t>(k)]; }
-  const T& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
-};
+/// A path's look at a surface: height, slope and bend along a line.
+using Jet2 = Series<double, 2>;
 
 /// A constant that is as long as `like`.
-inline double constant_like(double, double value) {
-  return value;
-}
-inline Dual constant_like(const Dual&, double value) {
-  return value;
+template <std::constructible_from<double> T>
+T constant_like(const T&, double value) {
+  return T(value);
 }
 template <class T, int N>
 Series<T, N> constant_like(const Series<T, N>& like, double value) {
@@ -126,6 +74,9 @@ Series<T, N> line_series(const T& value, const T& slope, int order) {
   return s;
 }
 
+inline double value_of(double a) {
+  return a;
+}
 template <class T, int N>
 double value_of(const Series<T, N>& a) {
   return value_of(a[0]);

@@ -57,7 +57,7 @@ struct Lenslet {
   int blend_order = 2;                                              ///< d: C^d at both
   bool ends_on_base = true;  ///< the blend ends where the base is not extrapolated; found by the surface
 
-  /// Its surface as z(x, y) in the part's frame, for double, Dual, Jet2 and series of them.
+  /// Its surface as z(x, y) in the part's frame, for double, Gradient, Jet2 and series of them.
   template <class T>
   T evaluate(const T& x_mm, const T& y_mm) const;
 };

@@ -6,7 +6,7 @@
 
 #include "core/math/formula.h"
 #include "core/math/jets.h"
-#include "core/math/second_order.h"
+#include "core/math/partials.h"
 
 namespace retrace::fabrication::turning {
 
@@ -14,14 +14,13 @@ inline constexpr double kTurn = 2.0 * std::numbers::pi;      ///< rad
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< rad
 
 using jets::constant_like;
-using jets::Dual;
+using jets::Gradient;
 using jets::horner;
 using jets::Jet2;
 using jets::kAnyOrder;
 using jets::kMostOrder;
 using jets::line_series;
 using jets::power;
-using jets::SecondOrder;
 using jets::Series;
 using jets::value_of;
 

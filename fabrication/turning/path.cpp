@@ -175,14 +175,14 @@ NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, con
     const Jet2 f =
         surface_.evaluate(aside * across.x() - back * cut.x() + x_mm, aside * across.y() - back * cut.y() + y_mm) -
         lift * cos_rake_;
-    touch.height_mm = f.v;
+    touch.height_mm = f[0];
     // Where the surface is hollower than the nose there is no maximum here: another start finds it.
-    if (!(f.b < 0.0)) return touch;
-    const double change = std::clamp(-0.5 * f.a / f.b, -0.5, 0.5);
+    if (!(f[2] < 0.0)) return touch;
+    const double change = std::clamp(-0.5 * f[1] / f[2], -0.5, 0.5);
     const double next = std::clamp(angle + change, -end_rad_, end_rad_);
     const double done = next - angle;
     angle = next;
-    touch.height_mm = f.v + done * (f.a + done * f.b);
+    touch.height_mm = f[0] + done * (f[1] + done * f[2]);
     touch.is_found = std::abs(done) < kSmallStep;
     if (touch.is_found) return touch;
   }
@@ -226,8 +226,8 @@ std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& too
 std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOptions& options) {
   std::vector<SlopeSample> samples;
   const auto add = [&](double x, double y, const Vec2& outward, const Vec2& cut) {
-    const Dual z = surface.gradient(x, y);
-    samples.push_back({{x, y}, z.dx * outward.x() + z.dy * outward.y(), z.dx * cut.x() + z.dy * cut.y()});
+    const Gradient z = surface.gradient(x, y);
+    samples.push_back({{x, y}, z.x * outward.x() + z.y * outward.y(), z.x * cut.x() + z.y * cut.y()});
   };
   constexpr int kAcross = 200;
   constexpr int kAlong = 720;

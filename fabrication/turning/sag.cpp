@@ -104,34 +104,34 @@ T Sag::evaluate(const T& x, const T& y) const {
 }
 
 template double Sag::evaluate(const double&, const double&) const;
-template Dual Sag::evaluate(const Dual&, const Dual&) const;
+template Gradient Sag::evaluate(const Gradient&, const Gradient&) const;
 template Jet2 Sag::evaluate(const Jet2&, const Jet2&) const;
 template Series<double> Sag::evaluate(const Series<double>&, const Series<double>&) const;
-template Series<Dual> Sag::evaluate(const Series<Dual>&, const Series<Dual>&) const;
+template Series<Gradient> Sag::evaluate(const Series<Gradient>&, const Series<Gradient>&) const;
 template Series<Jet2> Sag::evaluate(const Series<Jet2>&, const Series<Jet2>&) const;
 template Series<Series<double>> Sag::evaluate(const Series<Series<double>>&, const Series<Series<double>>&) const;
-template Series<Series<Dual>> Sag::evaluate(const Series<Series<Dual>>&, const Series<Series<Dual>>&) const;
-template Series<Series<Jet2>> Sag::evaluate(const Series<Series<Jet2>>&, const Series<Series<Jet2>>&) const;
-template Series<Series<Series<double>>> Sag::evaluate(const Series<Series<Series<double>>>&,
-                                                      const Series<Series<Series<double>>>&) const;
+template Series<double, 1> Sag::evaluate(const Series<double, 1>&, const Series<double, 1>&) const;
+template Series<Gradient, 1> Sag::evaluate(const Series<Gradient, 1>&, const Series<Gradient, 1>&) const;
+template Series<Series<double>, 1> Sag::evaluate(const Series<Series<double>, 1>&,
+                                                 const Series<Series<double>, 1>&) const;
 template Series<Jet2, 1> Sag::evaluate(const Series<Jet2, 1>&, const Series<Jet2, 1>&) const;
 template Series<Jet2, 2> Sag::evaluate(const Series<Jet2, 2>&, const Series<Jet2, 2>&) const;
 template Series<Jet2, 3> Sag::evaluate(const Series<Jet2, 3>&, const Series<Jet2, 3>&) const;
 template Series<Jet2, 4> Sag::evaluate(const Series<Jet2, 4>&, const Series<Jet2, 4>&) const;
-template SecondOrder<Interval> Sag::evaluate_without_formula(const SecondOrder<Interval>&,
-                                                             const SecondOrder<Interval>&) const;
+template Series<Interval, 2> Sag::evaluate_without_formula(const Series<Interval, 2>&,
+                                                           const Series<Interval, 2>&) const;
 template Series<Jet2, 1> Sag::evaluate_without_formula(const Series<Jet2, 1>&, const Series<Jet2, 1>&) const;
 template Series<Jet2, 2> Sag::evaluate_without_formula(const Series<Jet2, 2>&, const Series<Jet2, 2>&) const;
 template Series<Jet2, 3> Sag::evaluate_without_formula(const Series<Jet2, 3>&, const Series<Jet2, 3>&) const;
 template Series<Jet2, 4> Sag::evaluate_without_formula(const Series<Jet2, 4>&, const Series<Jet2, 4>&) const;
-template Series<SecondOrder<Interval>, 1> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 1>&,
-                                                                        const Series<SecondOrder<Interval>, 1>&) const;
-template Series<SecondOrder<Interval>, 2> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 2>&,
-                                                                        const Series<SecondOrder<Interval>, 2>&) const;
-template Series<SecondOrder<Interval>, 3> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 3>&,
-                                                                        const Series<SecondOrder<Interval>, 3>&) const;
-template Series<SecondOrder<Interval>, 4> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 4>&,
-                                                                        const Series<SecondOrder<Interval>, 4>&) const;
+template Series<Series<Interval, 2>, 1> Sag::evaluate_without_formula(const Series<Series<Interval, 2>, 1>&,
+                                                                      const Series<Series<Interval, 2>, 1>&) const;
+template Series<Series<Interval, 2>, 2> Sag::evaluate_without_formula(const Series<Series<Interval, 2>, 2>&,
+                                                                      const Series<Series<Interval, 2>, 2>&) const;
+template Series<Series<Interval, 2>, 3> Sag::evaluate_without_formula(const Series<Series<Interval, 2>, 3>&,
+                                                                      const Series<Series<Interval, 2>, 3>&) const;
+template Series<Series<Interval, 2>, 4> Sag::evaluate_without_formula(const Series<Series<Interval, 2>, 4>&,
+                                                                      const Series<Series<Interval, 2>, 4>&) const;
 
 std::vector<std::string> sag_variables() {
   return {"x", "y", "r", "theta", "cx", "cy"};

@@ -122,11 +122,11 @@ T TurnedSurface::evaluate(const T& x_mm, const T& y_mm) const {
 }
 
 template double TurnedSurface::evaluate(const double&, const double&) const;
-template Dual TurnedSurface::evaluate(const Dual&, const Dual&) const;
+template Gradient TurnedSurface::evaluate(const Gradient&, const Gradient&) const;
 template Jet2 TurnedSurface::evaluate(const Jet2&, const Jet2&) const;
 template Series<double> TurnedSurface::evaluate(const Series<double>&, const Series<double>&) const;
 template double TurnedSurface::evaluate_base(const double&, const double&) const;
-template Dual TurnedSurface::evaluate_base(const Dual&, const Dual&) const;
+template Gradient TurnedSurface::evaluate_base(const Gradient&, const Gradient&) const;
 template Jet2 TurnedSurface::evaluate_base(const Jet2&, const Jet2&) const;
 template Series<double> TurnedSurface::evaluate_base(const Series<double>&, const Series<double>&) const;
 
@@ -210,13 +210,13 @@ void TurnedSurface::sort_into_grid(const InputLocation& where) {
 
 void place_on_base(Lenslet& lenslet, const TurnedSurface& base, double x_mm, double y_mm, double height_mm, bool tilted,
                    const InputLocation& where) {
-  const Dual z = base.gradient(x_mm, y_mm);
-  if (!std::isfinite(z.v) || !std::isfinite(z.dx) || !std::isfinite(z.dy))
+  const Gradient z = base.gradient(x_mm, y_mm);
+  if (!std::isfinite(z.value) || !std::isfinite(z.x) || !std::isfinite(z.y))
     throw InputError(where, "must lie where the base has a height and slope, got " + place(x_mm, y_mm));
-  const Vec3 normal = Vec3(-z.dx, -z.dy, 1.0).normalized();
-  lenslet.origin_mm = Vec3(x_mm, y_mm, z.v) + height_mm * (tilted ? normal : Vec3(Vec3::UnitZ()));
+  const Vec3 normal = Vec3(-z.x, -z.y, 1.0).normalized();
+  lenslet.origin_mm = Vec3(x_mm, y_mm, z.value) + height_mm * (tilted ? normal : Vec3(Vec3::UnitZ()));
   lenslet.part_from_lenslet = Eigen::Matrix3d::Identity();
-  if (tilted && (z.dx != 0.0 || z.dy != 0.0))
+  if (tilted && (z.x != 0.0 || z.y != 0.0))
     lenslet.part_from_lenslet = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
 }
 
@@ -233,8 +233,8 @@ void check_surface(const TurnedSurface& surface, double radius_mm, const InputLo
         throw InputError(where, "must be finite all over the part, is not at " + place(x, y));
       // At the centre a formula of r may have no slope, as that of a cone.
       if (i == 0) continue;
-      const Dual z = surface.gradient(x, y);
-      const double slope = std::hypot(z.dx, z.dy);
+      const Gradient z = surface.gradient(x, y);
+      const double slope = std::hypot(z.x, z.y);
       if (!(slope < kSteepestSlope))
         throw InputError(where, fmt::format("must have no vertical slope, at {} it is {}", place(x, y),
                                             std::isfinite(slope) ? "above 89 degrees" : "not finite"));

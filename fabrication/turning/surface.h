@@ -27,8 +27,8 @@ class TurnedSurface {
   TurnedSurface(Sag base, std::optional<Extrapolation> extrapolation, std::vector<Lenslet> lenslets,
                 const InputLocation& where);
 
-  /// z in mm with all derivatives that T carries (double, Dual, Jet2 or Series<double>); not finite where there is no
-  /// value.
+  /// z in mm with all derivatives that T carries (double, Gradient, Jet2 or Series<double>); not finite where there is
+  /// no value.
   template <class T>
   T evaluate(const T& x_mm, const T& y_mm) const;
 
@@ -38,7 +38,9 @@ class TurnedSurface {
 
   double height_mm(double x_mm, double y_mm) const { return evaluate(x_mm, y_mm); }
   /// Height and both slopes.
-  Dual gradient(double x_mm, double y_mm) const { return evaluate(Dual(x_mm, 1.0, 0.0), Dual(y_mm, 0.0, 1.0)); }
+  Gradient gradient(double x_mm, double y_mm) const {
+    return evaluate(Gradient(x_mm, 1.0, 0.0), Gradient(y_mm, 0.0, 1.0));
+  }
   Zone zone_at(double x_mm, double y_mm) const;
 
   const Sag& base() const { return base_; }
@@ -80,11 +82,11 @@ inline constexpr double kSteepestSlope = 57.28996163075943;
 void check_surface(const TurnedSurface& surface, double radius_mm, const InputLocation& where);
 
 extern template double TurnedSurface::evaluate(const double&, const double&) const;
-extern template Dual TurnedSurface::evaluate(const Dual&, const Dual&) const;
+extern template Gradient TurnedSurface::evaluate(const Gradient&, const Gradient&) const;
 extern template Jet2 TurnedSurface::evaluate(const Jet2&, const Jet2&) const;
 extern template Series<double> TurnedSurface::evaluate(const Series<double>&, const Series<double>&) const;
 extern template double TurnedSurface::evaluate_base(const double&, const double&) const;
-extern template Dual TurnedSurface::evaluate_base(const Dual&, const Dual&) const;
+extern template Gradient TurnedSurface::evaluate_base(const Gradient&, const Gradient&) const;
 extern template Jet2 TurnedSurface::evaluate_base(const Jet2&, const Jet2&) const;
 extern template Series<double> TurnedSurface::evaluate_base(const Series<double>&, const Series<double>&) const;
 

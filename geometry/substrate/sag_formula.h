@@ -4,12 +4,12 @@
 #include <string_view>
 
 #include "core/math/formula.h"
-#include "core/math/second_order.h"
+#include "core/math/partials.h"
 
 namespace retrace::geometry {
 
 /// A value with its first and second derivatives by x and y.
-using Jet = jets::SecondPartials;
+using Jet = jets::Partials<2>;
 
 /// A function of x and y as a text, as parse_formula() reads it, with exact derivatives.
 class Formula {

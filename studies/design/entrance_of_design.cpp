@@ -31,8 +31,8 @@ class TurnedEntrance : public geometry::EntranceSurface {
 
   Place at(const Vec2& p) const override {
     const Vec2 place = p - origin_mm_.head<2>();
-    const turning::Dual z = surface_.gradient(place.x(), place.y());
-    if (std::isfinite(z.dx) && std::isfinite(z.dy)) return {origin_mm_.z() + z.v, {z.dx, z.dy}};
+    const turning::Gradient z = surface_.gradient(place.x(), place.y());
+    if (std::isfinite(z.x) && std::isfinite(z.y)) return {origin_mm_.z() + z.value, {z.x, z.y}};
     return {origin_mm_.z() + surface_.height_mm(place.x(), place.y()), slope_across(place)};
   }
   double finest_mm() const override { return finest_mm_; }

@@ -256,11 +256,11 @@ TEST(Blend, ReachesAnExtrapolatedBase) {
       extrapolated += surface.zone_at(p.x(), p.y()) == Zone::extrapolation ? 1 : 0;
       const Vec2 q = at + 0.12 * Vec2(std::cos(angle), std::sin(angle));
       const Jet2 along = surface.evaluate(Jet2(q.x(), 0.6, 0.0), Jet2(q.y(), 0.8, 0.0));
-      const Dual slopes = surface.gradient(q.x(), q.y());
-      EXPECT_NEAR(along.v, slopes.v, 1e-14);
-      EXPECT_NEAR(along.a, 0.6 * slopes.dx + 0.8 * slopes.dy, 1e-11);
+      const Gradient slopes = surface.gradient(q.x(), q.y());
+      EXPECT_NEAR(along[0], slopes.value, 1e-14);
+      EXPECT_NEAR(along[1], 0.6 * slopes.x + 0.8 * slopes.y, 1e-11);
       const auto height = [&](double t) { return surface.height_mm(q.x() + 0.6 * t, q.y() + 0.8 * t); };
-      EXPECT_NEAR(along.a, (height(1e-5) - height(-1e-5)) / 2e-5, 1e-6);
+      EXPECT_NEAR(along[1], (height(1e-5) - height(-1e-5)) / 2e-5, 1e-6);
     }
   EXPECT_GT(extrapolated, 20);
   EXPECT_LT(extrapolated, 34) << "of the first, a part lies within the boundary";
@@ -276,10 +276,10 @@ TEST(Surface, GradientIsThatOfItsValues) {
       const double y = (s == &surface ? -0.7 : 0.0) + (s == &surface ? 0.5 : 1.3) * std::cos(0.73 * i);
       if (s->zone_at(x + 2 * h, y) != s->zone_at(x - 2 * h, y) || s->zone_at(x, y + 2 * h) != s->zone_at(x, y - 2 * h))
         continue;
-      const Dual z = s->gradient(x, y);
-      EXPECT_NEAR(z.v, s->height_mm(x, y), 1e-14);
-      EXPECT_NEAR(z.dx, (s->height_mm(x + h, y) - s->height_mm(x - h, y)) / (2 * h), 2e-8 * (1 + std::abs(z.dx)));
-      EXPECT_NEAR(z.dy, (s->height_mm(x, y + h) - s->height_mm(x, y - h)) / (2 * h), 2e-8 * (1 + std::abs(z.dy)));
+      const Gradient z = s->gradient(x, y);
+      EXPECT_NEAR(z.value, s->height_mm(x, y), 1e-14);
+      EXPECT_NEAR(z.x, (s->height_mm(x + h, y) - s->height_mm(x - h, y)) / (2 * h), 2e-8 * (1 + std::abs(z.x)));
+      EXPECT_NEAR(z.y, (s->height_mm(x, y + h) - s->height_mm(x, y - h)) / (2 * h), 2e-8 * (1 + std::abs(z.y)));
     }
   }
 }
@@ -300,8 +300,8 @@ TEST(Lenslet, TiltedSphereIsASphere) {
     const double y = 0.25 + 0.9 * std::cos(2.3 * i);
     const double square = radius * radius - (x - centre.x()) * (x - centre.x()) - (y - centre.y()) * (y - centre.y());
     EXPECT_NEAR(lenslet.evaluate(x, y), centre.z() + std::sqrt(square), 1e-12);
-    const Dual z = lenslet.evaluate(Dual(x, 1, 0), Dual(y, 0, 1));
-    EXPECT_NEAR(z.dx, -(x - centre.x()) / std::sqrt(square), 1e-12);
+    const Gradient z = lenslet.evaluate(Gradient(x, 1, 0), Gradient(y, 0, 1));
+    EXPECT_NEAR(z.x, -(x - centre.x()) / std::sqrt(square), 1e-12);
     const Series<double> along = lenslet.evaluate(line_series(x, 1.0, 3), line_series(y, 0.0, 3));
     EXPECT_NEAR(2.0 * along[2], -(square + std::pow(x - centre.x(), 2)) / std::pow(square, 1.5), 1e-10);
   }

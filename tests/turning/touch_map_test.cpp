@@ -32,7 +32,7 @@ Sag sphere(double curvature_per_mm) {
 
 /// The largest second derivative in any direction, from those in three.
 double concavity_bound(const std::function<Jet2(const Jet2&, const Jet2&)>& z, const Vec2& p) {
-  const auto along = [&](double c, double s) { return 2.0 * z(Jet2(p.x(), c, 0.0), Jet2(p.y(), s, 0.0)).b; };
+  const auto along = [&](double c, double s) { return 2.0 * z(Jet2(p.x(), c, 0.0), Jet2(p.y(), s, 0.0))[2]; };
   const double xx = along(1.0, 0.0);
   const double yy = along(0.0, 1.0);
   const double xy = 0.5 * (along(1.0, 1.0) - xx - yy);

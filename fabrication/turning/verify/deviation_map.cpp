@@ -95,8 +95,8 @@ class PixelProbe {
 std::optional<double> deviation_nm(const Envelope& envelope, const TurnedSurface& design, const Vec2& p) {
   const auto height = envelope.height_mm(p.x(), p.y());
   if (!height) return std::nullopt;
-  const Dual z = design.gradient(p.x(), p.y());
-  return (*height - z.v) / std::sqrt(1.0 + z.dx * z.dx + z.dy * z.dy) * kNmPerMm;
+  const Gradient z = design.gradient(p.x(), p.y());
+  return (*height - z.value) / std::sqrt(1.0 + z.x * z.x + z.y * z.y) * kNmPerMm;
 }
 
 std::pair<double, double> largest_between(const std::function<double(double)>& f, double a, double b, int steps) {

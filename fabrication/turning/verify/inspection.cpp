@@ -28,11 +28,11 @@ double predicted_nm(const TurnedSurface& design, TurningTool tool, const Vec2& a
   // A spiral leads inwards, which adds to the skew.
   if (is_spiral) tool.skew_deg += std::atan(feed_mm / (2.0 * std::numbers::pi * at.norm())) * 180.0 / std::numbers::pi;
   const Series<double> z = design.evaluate(line_series(at.x(), outward.x(), 2), line_series(at.y(), outward.y(), 2));
-  const Dual g = design.gradient(at.x(), at.y());
+  const Gradient g = design.gradient(at.x(), at.y());
   const double length = std::sqrt(1.0 + z[1] * z[1]);
   const double curvature = 2.0 * z[2] / (length * length * length);
   const FinishFigures f = finish_figures(effective_radius_mm(tool), feed_mm * length, curvature);
-  return f.peak_to_valley_nm * length / std::sqrt(1.0 + g.dx * g.dx + g.dy * g.dy);
+  return f.peak_to_valley_nm * length / std::sqrt(1.0 + g.x * g.x + g.y * g.y);
 }
 
 struct Extreme {
