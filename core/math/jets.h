@@ -36,7 +36,8 @@ struct Length<kAnyOrder> {
 };
 
 /// The start of a Taylor series: c[0] + c[1] t + ... + c[order] t^order. Results are as long as the shorter operand.
-/// Of an order that the type fixes it is quicker, as the compiler writes the loops out.
+/// Of an order that the type fixes it is quicker, as the compiler writes the loops out; order 2, where paths and proofs
+/// spend their time, is written out here, which leaves it in registers.
 template <class T, int N = kAnyOrder>
 struct Series : Length<N> {
   std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMostOrder : N) + 1> c{};  ///< the first order + 1 count
@@ -84,24 +85,28 @@ double value_of(const Series<T, N>& a) {
 
 template <class T, int N>
 Series<T, N> operator-(const Series<T, N>& a) {
+  if constexpr (N == 2) return {-a[0], -a[1], -a[2]};
   Series<T, N> r(a.order);
   for (int k = 0; k <= r.order; ++k) r[k] = -a[k];
   return r;
 }
 template <class T, int N>
 Series<T, N> operator+(const Series<T, N>& a, const Series<T, N>& b) {
+  if constexpr (N == 2) return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
   Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) r[k] = a[k] + b[k];
   return r;
 }
 template <class T, int N>
 Series<T, N> operator-(const Series<T, N>& a, const Series<T, N>& b) {
+  if constexpr (N == 2) return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) r[k] = a[k] - b[k];
   return r;
 }
 template <class T, int N>
 Series<T, N> operator*(const Series<T, N>& a, const Series<T, N>& b) {
+  if constexpr (N == 2) return {a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[1] * b[1] + a[2] * b[0]};
   Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) {
     T sum = a[0] * b[k];
@@ -112,6 +117,11 @@ Series<T, N> operator*(const Series<T, N>& a, const Series<T, N>& b) {
 }
 template <class T, int N>
 Series<T, N> operator/(const Series<T, N>& a, const Series<T, N>& b) {
+  if constexpr (N == 2) {
+    const T value = a[0] / b[0];
+    const T first = (a[1] - value * b[1]) / b[0];
+    return {value, first, (a[2] - value * b[2] - first * b[1]) / b[0]};
+  }
   Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) {
     T sum = a[k];
@@ -140,6 +150,7 @@ Series<T, N> operator-(double a, const Series<T, N>& b) {
 }
 template <class T, int N>
 Series<T, N> operator*(Series<T, N> a, double b) {
+  if constexpr (N == 2) return {a[0] * b, a[1] * b, a[2] * b};
   for (int k = 0; k <= a.order; ++k) a[k] = a[k] * b;
   return a;
 }
@@ -156,9 +167,19 @@ Series<T, N> operator/(double a, const Series<T, N>& b) {
   return constant_like(b, a) / b;
 }
 
+/// f(a) with the first and the second derivative of f there.
+template <class T>
+Series<T, 2> chained(const Series<T, 2>& a, const T& value, const T& first, const T& second) {
+  return {value, first * a[1], first * a[2] + 0.5 * second * (a[1] * a[1])};
+}
 template <class T, int N>
 Series<T, N> sqrt(const Series<T, N>& a) {
   using std::sqrt;
+  if constexpr (N == 2) {
+    const T root = sqrt(a[0]);
+    const T first = 0.5 / root;
+    return chained<T>(a, root, first, -0.5 * first / a[0]);
+  }
   Series<T, N> r(a.order);
   r[0] = sqrt(a[0]);
   for (int k = 1; k <= a.order; ++k) {
@@ -171,6 +192,10 @@ Series<T, N> sqrt(const Series<T, N>& a) {
 template <class T, int N>
 Series<T, N> exp(const Series<T, N>& a) {
   using std::exp;
+  if constexpr (N == 2) {
+    const T e = exp(a[0]);
+    return chained<T>(a, e, e, e);
+  }
   Series<T, N> r(a.order);
   r[0] = exp(a[0]);
   for (int k = 1; k <= a.order; ++k) {
@@ -224,6 +249,12 @@ void sin_cos(const Series<T, N>& a, Series<T, N>& s, Series<T, N>& c) {
 }
 template <class T, int N>
 Series<T, N> sin(const Series<T, N>& a) {
+  using std::cos;
+  using std::sin;
+  if constexpr (N == 2) {
+    const T value = sin(a[0]);
+    return chained<T>(a, value, cos(a[0]), -value);
+  }
   Series<T, N> s;
   Series<T, N> c;
   sin_cos(a, s, c);
@@ -231,6 +262,12 @@ Series<T, N> sin(const Series<T, N>& a) {
 }
 template <class T, int N>
 Series<T, N> cos(const Series<T, N>& a) {
+  using std::cos;
+  using std::sin;
+  if constexpr (N == 2) {
+    const T value = cos(a[0]);
+    return chained<T>(a, value, -sin(a[0]), -value);
+  }
   Series<T, N> s;
   Series<T, N> c;
   sin_cos(a, s, c);
@@ -241,6 +278,12 @@ Series<T, N> atan2(const Series<T, N>& y, const Series<T, N>& x) {
   using std::atan2;
   const Series<T, N> slope = (x * derivative(y) - y * derivative(x)) / (x * x + y * y);
   return integral(atan2(y[0], x[0]), slope, std::min(x.order, y.order));
+}
+
+inline double binomial(int n, int k) {
+  double b = 1.0;
+  for (int i = 1; i <= k; ++i) b = b * (n - k + i) / i;
+  return b;
 }
 
 /// a to a whole power >= 0, exact where a is 0.

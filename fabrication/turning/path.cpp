@@ -6,11 +6,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/numbers.h"
+#include "core/angle.h"
+#include "core/math/jets.h"
+#include "core/math/partials.h"
 #include "fabrication/turning/polynomial_spiral.h"
 
 namespace retrace::fabrication::turning {
 namespace {
+
+using geometry::FreeformSurface;
+using jets::Gradient;
+using jets::Jet2;
 
 using geometry::Vec2;
 constexpr std::size_t kMostPoints = std::size_t{1} << 26;
@@ -52,7 +58,7 @@ class TouchForecast {
   std::array<double, 3> angles_{};  // the last first
 };
 
-Pass spiral(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o, const InputLocation& where) {
+Pass spiral(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, const InputLocation& where) {
   if (const auto pass = polynomial_spiral(surface, tool, o)) return *pass;
   const NoseCompensation nose(surface, tool, TouchMap(surface, tool, o.radius_mm + o.overrun_mm));
   const double skew = tool.skew_deg * kDegree;
@@ -81,7 +87,7 @@ Pass spiral(const TurnedSurface& surface, const TurningTool& tool, const PathOpt
   return pass;
 }
 
-std::vector<Pass> raster(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o,
+std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o,
                          const InputLocation& where) {
   const double lines = std::floor(o.height_mm / o.feed_mm + 1e-9) + 1.0;
   const double points = std::max(1.0, std::ceil(o.width_mm / o.arc_mm - 1e-9));
@@ -145,7 +151,7 @@ void share_with_servo(Pass& pass, int points_per_turn) {
 
 }  // namespace
 
-NoseCompensation::NoseCompensation(const TurnedSurface& surface, const TurningTool& tool, TouchMap map)
+NoseCompensation::NoseCompensation(const FreeformSurface& surface, const TurningTool& tool, TouchMap map)
     : surface_(surface),
       map_(std::move(map)),
       radius_mm_(tool.nose_radius_mm),
@@ -214,7 +220,7 @@ double NoseCompensation::height_mm(double x_mm, double y_mm, const Vec2& across,
   return height;
 }
 
-std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& options,
+std::vector<Pass> make_path(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& options,
                             const InputLocation& where) {
   if (options.strategy == Strategy::raster) return raster(surface, tool, options, where);
   std::vector<Pass> passes;
@@ -223,7 +229,7 @@ std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& too
   return passes;
 }
 
-std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOptions& options) {
+std::vector<SlopeSample> slopes_along(const FreeformSurface& surface, const PathOptions& options) {
   std::vector<SlopeSample> samples;
   const auto add = [&](double x, double y, const Vec2& outward, const Vec2& cut) {
     const Gradient z = surface.gradient(x, y);

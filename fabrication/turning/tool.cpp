@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angle.h"
 #include "core/number_format.h"
-#include "fabrication/turning/numbers.h"
 
 namespace retrace::fabrication::turning {
 namespace {

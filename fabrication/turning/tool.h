@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/angle.h"
-#include "fabrication/turning/numbers.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication::turning {

@@ -78,10 +78,14 @@ const std::map<std::string, Names>& fabrication_rooms() {
 const std::map<std::string, Names>& inner_rooms() {
   static const std::map<std::string, Names> rooms = {
       {"fabrication/planing/verify/", {"fabrication/planing/part.h"}},
-      {"fabrication/turning/verify/",
-       {"fabrication/turning/boundary.h", "fabrication/turning/finish.h", "fabrication/turning/lenslet.h",
-        "fabrication/turning/numbers.h", "fabrication/turning/periodic_spline.h", "fabrication/turning/sag.h",
-        "fabrication/turning/surface.h", "fabrication/turning/tool.h"}}};
+      {"fabrication/turning/verify/", {"fabrication/turning/finish.h", "fabrication/turning/tool.h"}}};
+  return rooms;
+}
+
+/// Rooms of studies/ that see fabrication/, themselves or through what they include. A design knows of no tool.
+const Names& rooms_that_see_fabrication() {
+  static const Names rooms = {"closed_loop", "fabrication", "forces",    "optimise", "planing",
+                              "quantity",    "sweep",       "tolerance", "turning"};
   return rooms;
 }
 
@@ -234,6 +238,7 @@ class Checker {
     }
     check_order(path, include, target);
     check_inner_room(path, include);
+    check_fabrication(path, include);
     // Types of a library must not reach files that may not include it through a header either.
     if (!(place_of(path) == target))
       for (const Library* library : leaked_by(include.target))
@@ -265,6 +270,14 @@ class Checker {
         if (header.starts_with(around) && !header.starts_with(room) && !seen.contains(header))
           report(path, include.line, room + " may not see " + header);
     }
+  }
+
+  void check_fabrication(const std::string& path, const Include& include) {
+    const Place from = place_of(path);
+    if (from.folder != "studies" || rooms_that_see_fabrication().contains(from.room)) return;
+    for (const std::string& header : reached_from(include.target))
+      if (header.starts_with("fabrication/"))
+        report(path, include.line, "studies/" + from.room + "/ may not see " + header);
   }
 
   /// What including `path` brings: itself and all that it includes.

@@ -82,12 +82,22 @@ TEST_F(SyntheticTree, ChecksSeeNothingOfThePlannerAroundThem) {
   add("fabrication/planing/verify/mill.cpp",
       "#include \"fabrication/planing/verify/check.h\"\n#include \"fabrication/planing/zone_profile.h\"\n");
   add("fabrication/turning/path.h", "#pragma once\n");
-  add("fabrication/turning/surface.h", "#pragma once\n#include \"fabrication/turning/path.h\"\n");
-  add("fabrication/turning/verify/inspection.cpp", "#include \"fabrication/turning/surface.h\"\n");
+  add("fabrication/turning/tool.h", "#pragma once\n#include \"fabrication/turning/path.h\"\n");
+  add("fabrication/turning/verify/inspection.cpp", "#include \"fabrication/turning/tool.h\"\n");
   EXPECT_EQ(found(), (Lines{"fabrication/planing/verify/mill.cpp:2: fabrication/planing/verify/ may not see "
                             "fabrication/planing/zone_profile.h",
                             "fabrication/turning/verify/inspection.cpp:1: fabrication/turning/verify/ may not see "
                             "fabrication/turning/path.h"}));
+}
+
+TEST_F(SyntheticTree, DesignsKnowNothingOfHowTheyAreMade) {
+  add("fabrication/job/job.h", "#pragma once\n");
+  add("studies/fabrication/job_maker.h", "#pragma once\n#include \"fabrication/job/job.h\"\n");
+  add("studies/design/mask.cpp", "#include \"fabrication/job/job.h\"\n");
+  add("studies/rre/rre.cpp", "#include \"studies/fabrication/job_maker.h\"\n");
+  EXPECT_EQ(found(), (Lines{"studies/design/mask.cpp:1: studies/design/ may not see fabrication/job/job.h",
+                            "studies/rre/rre.cpp:1: studies/rre/ may not include studies/fabrication/job_maker.h",
+                            "studies/rre/rre.cpp:1: studies/rre/ may not see fabrication/job/job.h"}));
 }
 
 TEST_F(SyntheticTree, InOrderPasses) {

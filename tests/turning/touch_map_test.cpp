@@ -5,14 +5,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/concavity_bound.h"
 #include "fabrication/turning/path.h"
+#include "geometry/surface/concavity_bound.h"
 
 // What is proved of the surface's curvature against samples of it, and paths that rely on it against those that search
 // the whole arc at every point.
 
 namespace retrace::fabrication::turning::touch_map_test {
 namespace {
+
+using namespace geometry;
+using namespace jets;
 
 using geometry::Vec2;
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -50,7 +53,7 @@ struct Kind {
 };
 
 Lenslet lenslet_at(const Kind& kind, const Vec2& at) {
-  const TurnedSurface bare(sphere(kind.base_curvature_per_mm), std::nullopt, {}, kHere);
+  const FreeformSurface bare(sphere(kind.base_curvature_per_mm), std::nullopt, {}, kHere);
   Lenslet lenslet;
   lenslet.sag.asphere = {kind.curvature_per_mm, -0.5, {1e-3}};
   lenslet.blend_order = kind.blend_order;
@@ -68,7 +71,7 @@ Lenslet lenslet_at(const Kind& kind, const Vec2& at) {
   return lenslet;
 }
 
-TurnedSurface array_of(const Kind& kind, int side = 4) {
+FreeformSurface array_of(const Kind& kind, int side = 4) {
   std::vector<Lenslet> lenslets;
   for (int i = 0; i < side; ++i)
     for (int k = 0; k < side; ++k)
@@ -87,7 +90,7 @@ const Kind kKinds[] = {{},
                        {0.9, -4e-3, 2, true, true, 0.25}};
 
 /// Hollowest place of a lenslet's inside and of its blend, sampled.
-std::pair<double, double> sampled(const TurnedSurface& surface, const Lenslet& lenslet) {
+std::pair<double, double> sampled(const FreeformSurface& surface, const Lenslet& lenslet) {
   const auto z = [&](const Jet2& x, const Jet2& y) { return surface.evaluate(x, y); };
   double inside = -1e300;
   double blend = -1e300;
@@ -112,7 +115,7 @@ TEST(Hollowness, WhatIsProvedHoldsAndIsNotFarFromTheTruth) {
     for (const Vec2& at : {Vec2(0.0, 0.0), Vec2(0.9, -0.6)}) {
       const Lenslet lenslet = lenslet_at(kind, at);
       const Sag base = sphere(kind.base_curvature_per_mm);
-      const TurnedSurface surface(base, std::nullopt, {lenslet}, kHere);
+      const FreeformSurface surface(base, std::nullopt, {lenslet}, kHere);
       const auto [inside, blend] = sampled(surface, lenslet);
       EXPECT_FALSE(is_blend_concavity_bounded(lenslet, base, 0.999 * blend));
       EXPECT_TRUE(is_blend_concavity_bounded(lenslet, base, 1.6 * blend)) << blend;
@@ -167,7 +170,7 @@ PathOptions spiral() {
 
 /// Largest difference of a path's heights from those found by searching the whole arc at every point. \param once,
 /// searched how many points of either sort there were
-double largest_difference(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o, int& once,
+double largest_difference(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, int& once,
                           int& searched) {
   const NoseCompensation slow(surface, tool);
   const TouchMap map(surface, tool, o.radius_mm);
@@ -205,7 +208,7 @@ TEST(TouchMap, SearchesRoundWhatIsHollowerThanTheNose) {
   for (const double x : {-0.25, 0.25})
     for (const double y : {-0.25, 0.25}) lenslets.push_back(lenslet_at({}, {x, y}));
   lenslets.front() = lenslet_at({-0.8, 20e-3, 2}, {-0.25, -0.25});
-  const TurnedSurface surface(sphere(-0.02), std::nullopt, lenslets, kHere);
+  const FreeformSurface surface(sphere(-0.02), std::nullopt, lenslets, kHere);
   const TurningTool tool = nose(0.03);
   int once = 0;
   int searched = 0;
@@ -220,7 +223,7 @@ TEST(TouchMap, SearchesRoundWhatIsHollowerThanTheNose) {
 }
 
 TEST(TouchMap, KnowsNothingBeyondABoundaryAndOfToolsWithRake) {
-  const TurnedSurface surface(sphere(-0.1), Extrapolation{circle_boundary({0.1, 0.0}, 0.4), 2}, {}, kHere);
+  const FreeformSurface surface(sphere(-0.1), Extrapolation{circle_boundary({0.1, 0.0}, 0.4), 2}, {}, kHere);
   const TouchMap map(surface, nose(0.02), 0.6);
   EXPECT_TRUE(map.touches_once(0.1, 0.3));
   EXPECT_FALSE(map.touches_once(0.1, 0.39)) << "the edge reaches beyond";

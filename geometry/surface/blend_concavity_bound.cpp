@@ -5,25 +5,27 @@
 #include <optional>
 #include <vector>
 
-#include "fabrication/turning/concavity_bound.h"
-#include "fabrication/turning/interval.h"
-#include "fabrication/turning/numbers.h"
+#include "core/angle.h"
+#include "core/math/interval.h"
+#include "core/math/jets.h"
+#include "geometry/surface/concavity_bound.h"
 
 // Between its two boundaries a blend is a polynomial of the share v of the way. In Bernstein's form its values lie
 // between its coefficients and those of its derivatives between their differences (G. Farin, Curves and Surfaces for
 // CAGD, 5th ed., sections 5.3 and 6.3), which are enclosed over pieces of the azimuth.
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
+
+using jets::binomial;
+using jets::constant_like;
+using jets::horner;
+using jets::Jet2;
+using jets::line_series;
+using jets::Series;
 
 constexpr int kMostDegree = 2 * kMostBlendOrder + 1;
 constexpr int kHalvings = 4;
-
-double binomial(int n, int k) {
-  double b = 1.0;
-  for (int i = 1; i <= k; ++i) b = b * (n - k + i) / i;
-  return b;
-}
 
 /// A spline's coefficients on one piece.
 struct Piece {
@@ -65,7 +67,7 @@ struct Enclosed {
 };
 std::optional<Enclosed> enclosed_height(const Lenslet& lenslet, const Interval& x, const Interval& y) {
   const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
-  const geometry::Vec3& o = lenslet.origin_mm;
+  const Vec3& o = lenslet.origin_mm;
   const double middle = lenslet.evaluate(median(x) + o.x(), median(y) + o.y()) - o.z();
   if (!std::isfinite(middle)) return std::nullopt;
   const auto residual_and_slope = [&](const Interval& z) {
@@ -104,7 +106,7 @@ std::optional<Series<Enclosure, N>> on_lenslet(const Lenslet& lenslet, const Ser
     const Series<Enclosure, N> v = px * r(0, 1) + py * r(1, 1) + z * r(2, 1);
     Series<Enclosure, N> residual =
         px * r(0, 2) + py * r(1, 2) + z * r(2, 2) - lenslet.sag.evaluate_without_formula(u, v);
-    for (int k = std::max(0, order - kOrdersOfAzimuth); k <= std::min(order, z.order); ++k)
+    for (int k = std::max(0, order - kOrdersOfAzimuth); k <= std::min<int>(order, z.order); ++k)
       z[k][order - k] = -(residual[k][order - k] / start->slope);
   }
   return z + lenslet.origin_mm.z();
@@ -124,7 +126,7 @@ std::optional<Ray<C>> ray_of_order(const Lenslet& lenslet, const Sag& base, cons
   ray.inner = radius(inner);
   const T far = radius(outer);
   ray.width = far - ray.inner;
-  const geometry::Vec2& centre = lenslet.outer.centre_mm;
+  const Vec2& centre = lenslet.outer.centre_mm;
   const auto line = [&](const T& at, const T& direction, double c) {
     return line_series<T, N>(T(at * direction + c), direction, d);
   };
@@ -268,4 +270,4 @@ bool is_blend_concavity_bounded(const Lenslet& lenslet, const Sag& base, double 
   return true;
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

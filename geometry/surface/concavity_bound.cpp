@@ -1,15 +1,16 @@
-#include "fabrication/turning/concavity_bound.h"
+#include "geometry/surface/concavity_bound.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/interval.h"
+#include "core/math/interval.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
 
-using geometry::Vec2;
+using jets::Series;
+
 using Enclosure = Series<Interval, 2>;
 
 constexpr int kDeepest = 6;  ///< halvings of a box along each side
@@ -112,4 +113,4 @@ bool is_concavity_bounded(const Lenslet& lenslet, double limit_per_mm) {
   return is_proved;
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

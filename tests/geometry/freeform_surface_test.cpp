@@ -1,4 +1,4 @@
-#include "fabrication/turning/surface.h"
+#include "geometry/surface/freeform_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -7,14 +7,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angle.h"
+
 // Extrapolation, blending and lenslets: orders of continuity, values, and closed forms.
 
-namespace retrace::fabrication::turning::surface_test {
+namespace retrace::geometry::freeform_surface_test {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
-constexpr double kTurn = 2.0 * std::numbers::pi;
+using namespace jets;
+
 const InputLocation kHere{"part.toml", 3, "lenslets"};
 
 /// A polynomial of degree 6 that grows quickly, as in Fig. 8 of Naples and Yi.
@@ -41,7 +42,7 @@ TEST(Extrapolation, HasTheOrderItIsAskedFor) {
   const Vec2 centre(0.1, -0.05);
   for (int n = 1; n <= 6; ++n) {
     const Extrapolation extrapolation{wavy_boundary(centre, 1.0), n};
-    const TurnedSurface surface(steep_polynomial(), extrapolation, {}, kHere);
+    const FreeformSurface surface(steep_polynomial(), extrapolation, {}, kHere);
     const auto base = [&](const Series<double>& x, const Series<double>& y) { return surface.base().evaluate(x, y); };
     const auto whole = [&](const Series<double>& x, const Series<double>& y) { return surface.evaluate(x, y); };
     double jump = 0.0;
@@ -65,7 +66,7 @@ TEST(Extrapolation, DifferenceQuotientsAreTheExactDerivatives) {
   const Vec2 centre(0.0, 0.0);
   for (int n = 1; n <= 4; ++n) {
     const Extrapolation extrapolation{wavy_boundary(centre, 1.0), n};
-    const TurnedSurface surface(steep_polynomial(), extrapolation, {}, kHere);
+    const FreeformSurface surface(steep_polynomial(), extrapolation, {}, kHere);
     const auto base = [&](const Series<double>& x, const Series<double>& y) { return surface.base().evaluate(x, y); };
     const double angle = 0.8;
     const double edge = extrapolation.boundary.radius_mm.evaluate(angle);
@@ -91,7 +92,7 @@ TEST(Extrapolation, DifferenceQuotientsAreTheExactDerivatives) {
 }
 
 TEST(Extrapolation, IsTheDesignWithin) {
-  const TurnedSurface surface(steep_polynomial(), Extrapolation{wavy_boundary({0, 0}, 1.0), 3}, {}, kHere);
+  const FreeformSurface surface(steep_polynomial(), Extrapolation{wavy_boundary({0, 0}, 1.0), 3}, {}, kHere);
   for (int i = 0; i < 500; ++i) {
     const double r = 0.78 * std::sqrt(i / 500.0);
     const double x = r * std::cos(2.4 * i);
@@ -107,7 +108,7 @@ TEST(Extrapolation, IsTheDesignWithin) {
 /// Third derivative in azimuth on either side of every knot of the boundary, at a radius outside: the largest jump.
 double azimuth_jump(int degree, int order) {
   const Boundary boundary = wavy_boundary({0, 0}, 1.0, degree);
-  const TurnedSurface surface(steep_polynomial(), Extrapolation{boundary, 4}, {}, kHere);
+  const FreeformSurface surface(steep_polynomial(), Extrapolation{boundary, 4}, {}, kHere);
   double jump = 0.0;
   for (const double knot : boundary.radius_mm.knots_rad()) {
     double side[2];
@@ -163,10 +164,10 @@ TEST(Blend, SolvesTheHermiteSystem) {
 }
 
 /// One tilted lenslet on a curved base.
-TurnedSurface lens_on_base(int d, bool tilted = true) {
+FreeformSurface lens_on_base(int d, bool tilted = true) {
   Sag base;
   base.asphere.curvature_per_mm = -0.08;
-  const TurnedSurface bare(base, std::nullopt, {}, kHere);
+  const FreeformSurface bare(base, std::nullopt, {}, kHere);
   Lenslet lenslet;
   lenslet.sag.asphere = {-0.9, -0.5, {0.02}};
   lenslet.sag.formula = parse_formula("0.05*x^3-0.02*x*y", sag_variables(), kHere);
@@ -180,7 +181,7 @@ TurnedSurface lens_on_base(int d, bool tilted = true) {
 TEST(Blend, HasItsOrderAtBothBoundaries) {
   const Vec2 centre(1.2, -0.7);
   for (int d = 1; d <= kMostBlendOrder; ++d) {
-    const TurnedSurface surface = lens_on_base(d);
+    const FreeformSurface surface = lens_on_base(d);
     const Lenslet& lenslet = surface.lenslets().front();
     const auto on_lenslet = [&](const Series<double>& x, const Series<double>& y) { return lenslet.evaluate(x, y); };
     const auto on_base = [&](const Series<double>& x, const Series<double>& y) {
@@ -208,7 +209,7 @@ TEST(Blend, HasItsOrderAtBothBoundaries) {
 }
 
 TEST(Blend, StaysBetweenItsBoundaries) {
-  const TurnedSurface surface = lens_on_base(3);
+  const FreeformSurface surface = lens_on_base(3);
   const Lenslet& lenslet = surface.lenslets().front();
   int blended = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -232,7 +233,7 @@ TEST(Blend, StaysBetweenItsBoundaries) {
 TEST(Blend, ReachesAnExtrapolatedBase) {
   // One lenslet across the base's boundary, one beyond it.
   const Extrapolation extrapolation{wavy_boundary({0.1, -0.05}, 1.0, 5), 4};
-  const TurnedSurface bare(steep_polynomial(), extrapolation, {}, kHere);
+  const FreeformSurface bare(steep_polynomial(), extrapolation, {}, kHere);
   std::vector<Lenslet> lenslets(2);
   const Vec2 places[] = {{1.2, 0.1}, {-0.9, -1.1}};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -242,7 +243,7 @@ TEST(Blend, ReachesAnExtrapolatedBase) {
     lenslets[i].inner = circle_boundary(places[i], 0.1);
     lenslets[i].outer = circle_boundary(places[i], 0.15);
   }
-  const TurnedSurface surface(steep_polynomial(), extrapolation, lenslets, kHere);
+  const FreeformSurface surface(steep_polynomial(), extrapolation, lenslets, kHere);
   const auto whole = [&](const Series<double>& x, const Series<double>& y) { return surface.evaluate(x, y); };
   int extrapolated = 0;
   for (const Vec2& at : places)
@@ -267,11 +268,11 @@ TEST(Blend, ReachesAnExtrapolatedBase) {
 }
 
 TEST(Surface, GradientIsThatOfItsValues) {
-  const TurnedSurface surface = lens_on_base(2);
-  const TurnedSurface extended(steep_polynomial(), Extrapolation{wavy_boundary({0, 0}, 1.0), 3}, {}, kHere);
+  const FreeformSurface surface = lens_on_base(2);
+  const FreeformSurface extended(steep_polynomial(), Extrapolation{wavy_boundary({0, 0}, 1.0), 3}, {}, kHere);
   for (int i = 0; i < 400; ++i) {
     const double h = 1e-6;
-    for (const TurnedSurface* s : {&surface, &extended}) {
+    for (const FreeformSurface* s : {&surface, &extended}) {
       const double x = (s == &surface ? 1.2 : 0.0) + (s == &surface ? 0.5 : 1.3) * std::sin(1.37 * i);
       const double y = (s == &surface ? -0.7 : 0.0) + (s == &surface ? 0.5 : 1.3) * std::cos(0.73 * i);
       if (s->zone_at(x + 2 * h, y) != s->zone_at(x - 2 * h, y) || s->zone_at(x, y + 2 * h) != s->zone_at(x, y - 2 * h))
@@ -287,7 +288,7 @@ TEST(Surface, GradientIsThatOfItsValues) {
 TEST(Lenslet, TiltedSphereIsASphere) {
   Sag base;
   base.formula = parse_formula("0.3*x-0.2*y", sag_variables(), kHere);
-  const TurnedSurface bare(base, std::nullopt, {}, kHere);
+  const FreeformSurface bare(base, std::nullopt, {}, kHere);
   Lenslet lenslet;
   const double radius = 2.0;
   lenslet.sag.asphere.curvature_per_mm = -1.0 / radius;
@@ -310,7 +311,7 @@ TEST(Lenslet, TiltedSphereIsASphere) {
 TEST(Surface, FindsTheLensletOfAPlace) {
   Sag base;
   std::vector<Lenslet> lenslets;
-  const TurnedSurface bare(base, std::nullopt, {}, kHere);
+  const FreeformSurface bare(base, std::nullopt, {}, kHere);
   for (int i = 0; i < 12; ++i)
     for (int k = 0; k < 9; ++k) {
       Lenslet lenslet;
@@ -320,7 +321,7 @@ TEST(Surface, FindsTheLensletOfAPlace) {
       lenslet.outer = circle_boundary({0.5 * i, 0.5 * k}, 0.2);
       lenslets.push_back(lenslet);
     }
-  const TurnedSurface surface(base, std::nullopt, lenslets, kHere);
+  const FreeformSurface surface(base, std::nullopt, lenslets, kHere);
   for (int i = 0; i < 5000; ++i) {
     const double x = 3.0 + 3.5 * std::sin(1.37 * i);
     const double y = 2.0 + 2.5 * std::cos(0.73 * i);
@@ -330,16 +331,16 @@ TEST(Surface, FindsTheLensletOfAPlace) {
     EXPECT_EQ(surface.zone_at(x, y), expected) << x << " " << y;
   }
   lenslets[5].outer = circle_boundary({0.0, 2.5}, 0.4);
-  EXPECT_THROW(TurnedSurface(base, std::nullopt, lenslets, kHere), InputError);
+  EXPECT_THROW(FreeformSurface(base, std::nullopt, lenslets, kHere), InputError);
   lenslets[5].outer = circle_boundary({0.0, 2.5}, 0.2);
-  EXPECT_NO_THROW(TurnedSurface(base, Extrapolation{circle_boundary({0, 0}, 3.0), 2}, lenslets, kHere));
+  EXPECT_NO_THROW(FreeformSurface(base, Extrapolation{circle_boundary({0, 0}, 3.0), 2}, lenslets, kHere));
 }
 
 std::string refusal(const std::string& formula, double radius) {
   Sag base;
   base.formula = parse_formula(formula, sag_variables(), kHere);
   try {
-    check_surface(TurnedSurface(base, std::nullopt, {}, kHere), radius, kHere);
+    check_surface(FreeformSurface(base, std::nullopt, {}, kHere), radius, kHere);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -355,4 +356,4 @@ TEST(Surface, SaysWhereItHasNoHeightOrAVerticalSlope) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning::surface_test
+}  // namespace retrace::geometry::freeform_surface_test

@@ -1,14 +1,18 @@
-#include "fabrication/turning/sag.h"
+#include "geometry/surface/sag.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "core/math/jets.h"
+
 // Sags against closed forms and difference quotients.
 
-namespace retrace::fabrication::turning::sag_test {
+namespace retrace::geometry::sag_test {
 namespace {
+
+using namespace jets;
 
 const InputLocation kHere{"part.toml", 7, "base.formula"};
 
@@ -96,4 +100,4 @@ TEST(Formula, UsesPolarVariablesOnlyWhereItSaysSo) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning::sag_test
+}  // namespace retrace::geometry::sag_test

@@ -1,15 +1,17 @@
-#include "fabrication/turning/boundary.h"
+#include "geometry/surface/boundary.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace retrace::fabrication::turning::boundary_test {
+#include "core/angle.h"
+
+namespace retrace::geometry::boundary_test {
 namespace {
 
-using geometry::Vec2;
-constexpr double kTurn = 2.0 * std::numbers::pi;
+using namespace jets;
+
 const InputLocation kHere{"part.toml", 9, "boundary.points_mm"};
 
 /// Uneven sites and values of a wavy curve.
@@ -194,4 +196,4 @@ TEST(Boundary, RefusesARadiusThatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning::boundary_test
+}  // namespace retrace::geometry::boundary_test

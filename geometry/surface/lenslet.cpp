@@ -1,10 +1,17 @@
-#include "fabrication/turning/lenslet.h"
+#include "geometry/surface/lenslet.h"
 
 #include <cmath>
 #include <limits>
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
+
+using jets::constant_like;
+using jets::Gradient;
+using jets::Jet2;
+using jets::line_series;
+using jets::Series;
+using jets::value_of;
 
 /// The height z over the origin solves F(z) = w - sag(u, v) = 0 with (u, v, w) the point in the lenslet's frame.
 template <class T>
@@ -91,6 +98,9 @@ template double Lenslet::evaluate(const double&, const double&) const;
 template Gradient Lenslet::evaluate(const Gradient&, const Gradient&) const;
 template Jet2 Lenslet::evaluate(const Jet2&, const Jet2&) const;
 template Series<double> Lenslet::evaluate(const Series<double>&, const Series<double>&) const;
+template Series<double, 1> Lenslet::evaluate(const Series<double, 1>&, const Series<double, 1>&) const;
+template Series<double, 3> Lenslet::evaluate(const Series<double, 3>&, const Series<double, 3>&) const;
+template Series<double, 4> Lenslet::evaluate(const Series<double, 4>&, const Series<double, 4>&) const;
 template Series<Gradient> Lenslet::evaluate(const Series<Gradient>&, const Series<Gradient>&) const;
 template Series<Jet2> Lenslet::evaluate(const Series<Jet2>&, const Series<Jet2>&) const;
 template Series<Series<double>> Lenslet::evaluate(const Series<Series<double>>&, const Series<Series<double>>&) const;
@@ -99,4 +109,4 @@ template Series<Jet2, 2> Lenslet::evaluate(const Series<Jet2, 2>&, const Series<
 template Series<Jet2, 3> Lenslet::evaluate(const Series<Jet2, 3>&, const Series<Jet2, 3>&) const;
 template Series<Jet2, 4> Lenslet::evaluate(const Series<Jet2, 4>&, const Series<Jet2, 4>&) const;
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry
