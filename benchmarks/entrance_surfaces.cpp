@@ -20,19 +20,12 @@ constexpr double kSize = 2.0;
 constexpr double kThickness = 1.0;
 
 /// Bumps of 0.02 mm, ten along a side.
-class Bumps : public geometry::EntranceSurface {
- public:
-  Place at(const Vec2& p) const override {
-    const double k = 10.0 * 3.14159265358979 / kSize;
-    const double a = 0.02;
-    const double sx = std::sin(k * p.x());
-    const double cx = std::cos(k * p.x());
-    const double sy = std::sin(k * p.y());
-    const double cy = std::cos(k * p.y());
-    return {kThickness + a * cx * cy, {-a * k * sx * cy, -a * k * cx * sy}};
-  }
-  double finest_mm() const override { return 0.1 * kSize; }
-};
+std::shared_ptr<const geometry::EntranceSurface> bumps_surface() {
+  geometry::Sag sag;
+  sag.formula = parse_formula("0.02 * cos(15.707963267949 * x) * cos(15.707963267949 * y)", {"x", "y"}, {});
+  return std::make_shared<const geometry::EntranceSurface>(geometry::FreeformSurface(sag, std::nullopt, {}, {}),
+                                                           Vec3(0.0, 0.0, kThickness), 0.1 * kSize);
+}
 
 geometry::Entrance meshed(const geometry::EntranceSurface& surface, std::uint32_t cells,
                           const geometry::Polygon& outline) {
@@ -43,7 +36,7 @@ geometry::Entrance meshed(const geometry::EntranceSurface& surface, std::uint32_
 /// Args: 0 a plane entrance face, 1 an exact surface, 2 its mesh of 20,000 triangles.
 void entrance_paths(benchmark::State& state) {
   const geometry::Part plate = geometry::build_plate({kSize, kSize}, kThickness);
-  const auto bumps = std::make_shared<const Bumps>();
+  const auto bumps = bumps_surface();
   const geometry::Entrance exact = bumps;
   const geometry::Entrance mesh = meshed(*bumps, 100, plate.outline);
   const geometry::Entrance* const entrances[] = {nullptr, &exact, &mesh};

@@ -10,6 +10,7 @@ namespace retrace::benchmarks::turning_benchmark {
 namespace {
 
 using namespace retrace::fabrication::turning;
+using namespace retrace::geometry;
 
 TurningTool tool() {
   TurningTool result;
@@ -23,7 +24,7 @@ void polynomial_path(benchmark::State& state) {
   for (int i = 0; i <= 6; ++i)
     for (int j = 0; i + j <= 6; ++j) p.coefficients[p.index(i, j)] = 1e-3 / (1 + i + 2 * j);
   sag.polynomial = p;
-  const TurnedSurface surface(sag, std::nullopt, {}, {});
+  const FreeformSurface surface(sag, std::nullopt, {}, {});
   PathOptions options;
   options.radius_mm = 1.0;
   options.feed_mm = 1e-3;
@@ -34,10 +35,10 @@ void polynomial_path(benchmark::State& state) {
 }
 
 /// 32 x 32 aspheres on a sphere, each tilted to its normal, C2 blends.
-TurnedSurface lenslet_array() {
+FreeformSurface lenslet_array() {
   Sag base;
   base.asphere.curvature_per_mm = -0.02;
-  const TurnedSurface bare(base, std::nullopt, {}, {});
+  const FreeformSurface bare(base, std::nullopt, {}, {});
   std::vector<Lenslet> lenslets;
   for (int i = 0; i < 32; ++i)
     for (int k = 0; k < 32; ++k) {
@@ -53,7 +54,7 @@ TurnedSurface lenslet_array() {
 }
 
 void lenslet_path(benchmark::State& state) {
-  const TurnedSurface surface = lenslet_array();
+  const FreeformSurface surface = lenslet_array();
   PathOptions options;
   options.radius_mm = 4.5;
   options.feed_mm = 0.02;
@@ -65,13 +66,13 @@ void lenslet_path(benchmark::State& state) {
 
 /// What a path pays once: that the nose touches this array in one place at a time.
 void lenslet_proof(benchmark::State& state) {
-  const TurnedSurface surface = lenslet_array();
+  const FreeformSurface surface = lenslet_array();
   for (auto _ : state) benchmark::DoNotOptimize(TouchMap(surface, tool(), 4.5).touches_once(0.0, 0.0));
 }
 
 /// The same points with the whole arc searched at each.
 void lenslet_search(benchmark::State& state) {
-  const TurnedSurface surface = lenslet_array();
+  const FreeformSurface surface = lenslet_array();
   const NoseCompensation nose(surface, tool());
   double angle = 0.0;
   double c = 0.0;

@@ -4,6 +4,9 @@
 
 namespace retrace {
 
+inline constexpr double kTurn = 2.0 * std::numbers::pi;      ///< rad
+inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< rad
+
 /// An angle that knows its unit: degrees at every file and command boundary, radians inside.
 class Angle {
  public:

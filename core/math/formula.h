@@ -45,7 +45,7 @@ class Formula {
   std::vector<Node> nodes;  ///< operands stand before what uses them; all that are needed, the value last
 
   /// The value for those values of the variables, which are numbers or jets (core/math/jets.h,
-  /// core/math/second_order.h). Not finite where the formula is not. core/math/formula_evaluation.h defines it.
+  /// core/math/partials.h). Not finite where the formula is not. core/math/formula_evaluation.h defines it.
   template <class T>
   T evaluate(const T* variables) const;
 

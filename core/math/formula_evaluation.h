@@ -9,7 +9,7 @@
 
 #include "core/math/formula.h"
 #include "core/math/jets.h"
-#include "core/math/second_order.h"
+#include "core/math/partials.h"
 
 namespace retrace {
 namespace formula_steps {

@@ -1,112 +1,61 @@
 #pragma once
 
-// Automatic differentiation: a dual number with the two partial derivatives, and truncated Taylor series in one
-// variable, both over the elementary functions of formulas (A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed.,
-// SIAM 2008, tables 13.1 and 13.2). They nest: Series<Dual> is a series whose coefficients carry their own derivatives.
-// second_order.h has short series and second partial derivatives.
+// Automatic differentiation along a line: truncated Taylor series in one variable over the elementary functions of
+// formulas (A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, tables 13.1 and 13.2). Coefficients
+// are doubles, intervals for proofs, or numbers that carry derivatives of their own: they nest. partials.h has the
+// derivatives by two variables.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
+#include <utility>
 
 namespace retrace::jets {
 
 /// Most derivatives that a series carries.
 inline constexpr int kMostOrder = 9;
-
-/// A value with its partial derivatives with respect to x and y.
-struct Dual {
-  double v = 0.0;
-  double dx = 0.0;
-  double dy = 0.0;
-
-  Dual() = default;
-  Dual(double value) : v(value) {}  // NOLINT: constants are numbers too
-  Dual(double value, double by_x, double by_y) : v(value), dx(by_x), dy(by_y) {}
-};
-
-inline double value_of(double a) {
-  return a;
-}
-inline double value_of(const Dual& a) {
-  return a.v;
-}
-
-inline Dual operator-(const Dual& a) {
-  return {-a.v, -a.dx, -a.dy};
-}
-inline Dual operator+(const Dual& a, const Dual& b) {
-  return {a.v + b.v, a.dx + b.dx, a.dy + b.dy};
-}
-inline Dual operator-(const Dual& a, const Dual& b) {
-  return {a.v - b.v, a.dx - b.dx, a.dy - b.dy};
-}
-inline Dual operator*(const Dual& a, const Dual& b) {
-  return {a.v * b.v, a.dx * b.v + a.v * b.dx, a.dy * b.v + a.v * b.dy};
-}
-inline Dual operator/(const Dual& a, const Dual& b) {
-  const double v = a.v / b.v;
-  return {v, (a.dx - v * b.dx) / b.v, (a.dy - v * b.dy) / b.v};
-}
-
-/// Chain rule: f(a) with the derivative of f there.
-inline Dual chained(const Dual& a, double value, double slope) {
-  return {value, slope * a.dx, slope * a.dy};
-}
-inline Dual sqrt(const Dual& a) {
-  const double root = std::sqrt(a.v);
-  return chained(a, root, 0.5 / root);
-}
-inline Dual exp(const Dual& a) {
-  return chained(a, std::exp(a.v), std::exp(a.v));
-}
-inline Dual log(const Dual& a) {
-  return chained(a, std::log(a.v), 1.0 / a.v);
-}
-inline Dual sin(const Dual& a) {
-  return chained(a, std::sin(a.v), std::cos(a.v));
-}
-inline Dual cos(const Dual& a) {
-  return chained(a, std::cos(a.v), -std::sin(a.v));
-}
-inline Dual atan2(const Dual& y, const Dual& x) {
-  const double square = x.v * x.v + y.v * y.v;
-  return {std::atan2(y.v, x.v), (x.v * y.dx - y.v * x.dx) / square, (x.v * y.dy - y.v * x.dy) / square};
-}
-
-/// For Series: the order is known when it runs only.
+/// Of a series: the order is known when it runs only.
 inline constexpr int kAnyOrder = -1;
 
-/// The start of a Taylor series: c[0] + c[1] t + ... + c[order] t^order. Results are as long as the shorter operand.
-/// Of an order that the type fixes it is quicker, as the compiler writes the loops out.
-template <class T, int N = kAnyOrder>
-struct Series {
-  std::array<T, static_cast<std::size_t>(N) + 1> c{};
+/// How many derivatives a series has.
+template <int N>
+struct Length {
   static constexpr int order = N;
 
-  Series() = default;
-  explicit Series(int) {}
-  T& operator[](int k) { return c[static_cast<std::size_t>(k)]; }
-  const T& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
+  Length() = default;
+  explicit Length(int) {}
 };
-template <class T>
-struct Series<T, kAnyOrder> {
-  std::array<T, static_cast<std::size_t>(kMostOrder) + 1> c{};  ///< the first order + 1 of them count
+template <>
+struct Length<kAnyOrder> {
   int order = 0;
 
+  Length() = default;
+  explicit Length(int length) : order(length) {}
+};
+
+/// The start of a Taylor series: c[0] + c[1] t + ... + c[order] t^order. Results are as long as the shorter operand.
+/// Of an order that the type fixes it is quicker, as the compiler writes the loops out; order 2, where paths and proofs
+/// spend their time, is written out here, which leaves it in registers.
+template <class T, int N = kAnyOrder>
+struct Series : Length<N> {
+  std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMostOrder : N) + 1> c{};  ///< the first order + 1 count
+
   Series() = default;
-  explicit Series(int length) : order(length) {}
+  explicit Series(int length) : Length<N>(length) {}
+  Series(const T& value, const T& first, const T& second) requires(N == 2) : c{{value, first, second}} {}
   T& operator[](int k) { return c[static_cast<std::size_t>(k)]; }
   const T& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
 };
 
+/// A path's look at a surface: height, slope and bend along a line.
+using Jet2 = Series<double, 2>;
+
 /// A constant that is as long as `like`.
-inline double constant_like(double, double value) {
-  return value;
-}
-inline Dual constant_like(const Dual&, double value) {
-  return value;
+template <std::constructible_from<double> T>
+T constant_like(const T&, double value) {
+  return T(value);
 }
 template <class T, int N>
 Series<T, N> constant_like(const Series<T, N>& like, double value) {
@@ -126,6 +75,9 @@ Series<T, N> line_series(const T& value, const T& slope, int order) {
   return s;
 }
 
+inline double value_of(double a) {
+  return a;
+}
 template <class T, int N>
 double value_of(const Series<T, N>& a) {
   return value_of(a[0]);
@@ -133,24 +85,28 @@ double value_of(const Series<T, N>& a) {
 
 template <class T, int N>
 Series<T, N> operator-(const Series<T, N>& a) {
+  if constexpr (N == 2) return {-a[0], -a[1], -a[2]};
   Series<T, N> r(a.order);
   for (int k = 0; k <= r.order; ++k) r[k] = -a[k];
   return r;
 }
 template <class T, int N>
 Series<T, N> operator+(const Series<T, N>& a, const Series<T, N>& b) {
+  if constexpr (N == 2) return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
   Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) r[k] = a[k] + b[k];
   return r;
 }
 template <class T, int N>
 Series<T, N> operator-(const Series<T, N>& a, const Series<T, N>& b) {
+  if constexpr (N == 2) return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) r[k] = a[k] - b[k];
   return r;
 }
 template <class T, int N>
 Series<T, N> operator*(const Series<T, N>& a, const Series<T, N>& b) {
+  if constexpr (N == 2) return {a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[1] * b[1] + a[2] * b[0]};
   Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) {
     T sum = a[0] * b[k];
@@ -161,6 +117,11 @@ Series<T, N> operator*(const Series<T, N>& a, const Series<T, N>& b) {
 }
 template <class T, int N>
 Series<T, N> operator/(const Series<T, N>& a, const Series<T, N>& b) {
+  if constexpr (N == 2) {
+    const T value = a[0] / b[0];
+    const T first = (a[1] - value * b[1]) / b[0];
+    return {value, first, (a[2] - value * b[2] - first * b[1]) / b[0]};
+  }
   Series<T, N> r(std::min(a.order, b.order));
   for (int k = 0; k <= r.order; ++k) {
     T sum = a[k];
@@ -189,6 +150,7 @@ Series<T, N> operator-(double a, const Series<T, N>& b) {
 }
 template <class T, int N>
 Series<T, N> operator*(Series<T, N> a, double b) {
+  if constexpr (N == 2) return {a[0] * b, a[1] * b, a[2] * b};
   for (int k = 0; k <= a.order; ++k) a[k] = a[k] * b;
   return a;
 }
@@ -205,9 +167,19 @@ Series<T, N> operator/(double a, const Series<T, N>& b) {
   return constant_like(b, a) / b;
 }
 
+/// f(a) with the first and the second derivative of f there.
+template <class T>
+Series<T, 2> chained(const Series<T, 2>& a, const T& value, const T& first, const T& second) {
+  return {value, first * a[1], first * a[2] + 0.5 * second * (a[1] * a[1])};
+}
 template <class T, int N>
 Series<T, N> sqrt(const Series<T, N>& a) {
   using std::sqrt;
+  if constexpr (N == 2) {
+    const T root = sqrt(a[0]);
+    const T first = 0.5 / root;
+    return chained<T>(a, root, first, -0.5 * first / a[0]);
+  }
   Series<T, N> r(a.order);
   r[0] = sqrt(a[0]);
   for (int k = 1; k <= a.order; ++k) {
@@ -220,6 +192,10 @@ Series<T, N> sqrt(const Series<T, N>& a) {
 template <class T, int N>
 Series<T, N> exp(const Series<T, N>& a) {
   using std::exp;
+  if constexpr (N == 2) {
+    const T e = exp(a[0]);
+    return chained<T>(a, e, e, e);
+  }
   Series<T, N> r(a.order);
   r[0] = exp(a[0]);
   for (int k = 1; k <= a.order; ++k) {
@@ -273,6 +249,12 @@ void sin_cos(const Series<T, N>& a, Series<T, N>& s, Series<T, N>& c) {
 }
 template <class T, int N>
 Series<T, N> sin(const Series<T, N>& a) {
+  using std::cos;
+  using std::sin;
+  if constexpr (N == 2) {
+    const T value = sin(a[0]);
+    return chained<T>(a, value, cos(a[0]), -value);
+  }
   Series<T, N> s;
   Series<T, N> c;
   sin_cos(a, s, c);
@@ -280,6 +262,12 @@ Series<T, N> sin(const Series<T, N>& a) {
 }
 template <class T, int N>
 Series<T, N> cos(const Series<T, N>& a) {
+  using std::cos;
+  using std::sin;
+  if constexpr (N == 2) {
+    const T value = cos(a[0]);
+    return chained<T>(a, value, -sin(a[0]), -value);
+  }
   Series<T, N> s;
   Series<T, N> c;
   sin_cos(a, s, c);
@@ -290,6 +278,12 @@ Series<T, N> atan2(const Series<T, N>& y, const Series<T, N>& x) {
   using std::atan2;
   const Series<T, N> slope = (x * derivative(y) - y * derivative(x)) / (x * x + y * y);
   return integral(atan2(y[0], x[0]), slope, std::min(x.order, y.order));
+}
+
+inline double binomial(int n, int k) {
+  double b = 1.0;
+  for (int i = 1; i <= k; ++i) b = b * (n - k + i) / i;
+  return b;
 }
 
 /// a to a whole power >= 0, exact where a is 0.

@@ -68,7 +68,7 @@ class Names {
         Value word;
         if (source.shape_of(name) == Shape::text) word = *source.text(name);
         document_.set(path_in(path, name), std::move(word), source.where(name), source.is_overridden(name));
-      } else {
+      } else if (!table.is_open) {
         source.fail(name, unknown_name(table, name, source.shape_of(name) == Shape::table, path.empty()));
       }
     }

@@ -208,6 +208,7 @@ struct Table {
   std::string_view shape = {};          ///< what it must be, for messages, if not a table or tables
   std::string_view otherwise = "none";  ///< what holds without an optional table
   When when = {};
+  bool is_open = false;  ///< names that it does not have are another reader's and let pass
 };
 
 struct Format {

@@ -1,5 +1,5 @@
 #include "fabrication/turning/finish.h"
-#include "fabrication/turning/numbers.h"
+#include "core/angle.h"
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>

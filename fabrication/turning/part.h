@@ -5,15 +5,16 @@
 #include <vector>
 
 #include "fabrication/turning/path_options.h"
-#include "fabrication/turning/surface.h"
+#include "fabrication/turning/plan/path.h"
 #include "fabrication/turning/tool.h"
+#include "geometry/surface/freeform_surface.h"
 
 namespace retrace::fabrication::turning {
 
 /// A part to be turned: its surface, the tool, the path, the machine and what is asked of the result.
 struct TurnedPart {
   std::string title;
-  TurnedSurface surface;
+  geometry::FreeformSurface surface;
   TurningTool tool;
   bool skew_is_least = false;  ///< the file asks for the least skew that clears; `tool` has it
   PathOptions path;

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angle.h"
 #include "core/number_format.h"
-#include "fabrication/turning/numbers.h"
 
 namespace retrace::fabrication::turning {
 namespace {
@@ -67,11 +67,11 @@ Angle clearance_along_cut(Angle clearance, Angle skew) {
   return Angle::from_rad(std::asin(std::sin(clearance.rad()) / std::cos(skew.rad())));
 }
 
-std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOptions& options) {
+std::vector<SlopeSample> slopes_along(const geometry::FreeformSurface& surface, const PathOptions& options) {
   std::vector<SlopeSample> samples;
   const auto add = [&](double x, double y, const geometry::Vec2& outward, const geometry::Vec2& cut) {
-    const Dual z = surface.gradient(x, y);
-    samples.push_back({{x, y}, z.dx * outward.x() + z.dy * outward.y(), z.dx * cut.x() + z.dy * cut.y()});
+    const jets::Gradient z = surface.gradient(x, y);
+    samples.push_back({{x, y}, z.x * outward.x() + z.y * outward.y(), z.x * cut.x() + z.y * cut.y()});
   };
   constexpr int kAcross = 200;
   constexpr int kAlong = 720;
@@ -86,7 +86,7 @@ std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOp
   for (int i = 1; i <= kAcross; ++i)
     for (int k = 0; k < kAlong; ++k) {
       const double r = options.radius_mm * i / kAcross;
-      const double theta = 2.0 * std::numbers::pi * k / kAlong;
+      const double theta = kTurn * k / kAlong;
       const geometry::Vec2 outward(std::cos(theta), std::sin(theta));
       add(r * outward.x(), r * outward.y(), outward, geometry::Vec2(outward.y(), -outward.x()));
     }

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "core/angle.h"
-#include "fabrication/turning/numbers.h"
 #include "fabrication/turning/path_options.h"
-#include "fabrication/turning/surface.h"
+#include "geometry/surface/freeform_surface.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication::turning {
@@ -74,7 +73,7 @@ struct SlopeSample {
 };
 
 /// The slopes that a tool meets along a path: every place once, sampled on circles or lines.
-std::vector<SlopeSample> slopes_along(const TurnedSurface& surface, const PathOptions& options);
+std::vector<SlopeSample> slopes_along(const geometry::FreeformSurface& surface, const PathOptions& options);
 
 ClearanceFigures clearance_figures(const TurningTool& tool, const std::vector<SlopeSample>& samples);
 

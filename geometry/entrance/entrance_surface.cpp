@@ -132,6 +132,26 @@ EntranceRange range_of(const EntranceSurface& surface, const Polygon& outline) {
 
 }  // namespace
 
+EntranceSurface::EntranceSurface(FreeformSurface surface, const Vec3& origin_mm, double finest_mm)
+    : surface_(std::move(surface)), origin_mm_(origin_mm), finest_mm_(finest_mm) {
+  for (const Lenslet& lenslet : surface_.lenslets()) finest_mm_ = std::min(finest_mm_, lenslet.outer.least_mm);
+}
+
+EntranceSurface::Place EntranceSurface::at(const Vec2& point_mm) const {
+  const Vec2 place = point_mm - origin_mm_.head<2>();
+  const jets::Gradient z = surface_.gradient(place.x(), place.y());
+  if (std::isfinite(z.x) && std::isfinite(z.y)) return {origin_mm_.z() + z.value, {z.x, z.y}};
+  return {origin_mm_.z() + surface_.height_mm(place.x(), place.y()), slope_across(place)};
+}
+
+/// A formula of r has no slope at the very centre, though its surface may be smooth there: from both sides.
+Vec2 EntranceSurface::slope_across(const Vec2& p) const {
+  constexpr double kStep = 1e-5;
+  return Vec2(surface_.height_mm(p.x() + kStep, p.y()) - surface_.height_mm(p.x() - kStep, p.y()),
+              surface_.height_mm(p.x(), p.y() + kStep) - surface_.height_mm(p.x(), p.y() - kStep)) /
+         (2.0 * kStep);
+}
+
 int cells_to_show(const EntranceSurface& surface, const Polygon& outline) {
   const Rectangle box = bounding_box(outline);
   const double size_mm = box.size().maxCoeff();

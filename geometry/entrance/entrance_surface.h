@@ -1,32 +1,42 @@
 #pragma once
 
+// Curved faces through which light enters a part, and what they are like over its outline.
+
 #include <array>
+#include <limits>
 #include <memory>
 #include <variant>
 
 #include "geometry/part/surface_patch.h"
 #include "geometry/polygon.h"
+#include "geometry/surface/freeform_surface.h"
 #include "geometry/vec.h"
 
 namespace retrace::geometry {
 
-/// A curved face through which light enters a part, in the part's frame: one height over every place, with a slope that
-/// does not jump; the material lies below it.
+/// A curved face through which light enters a part, in the part's frame: a freeform surface whose origin has a place
+/// there; the material lies below it.
 class EntranceSurface {
  public:
   struct Place {
     double height_mm = 0.0;
-    Vec2 slope = Vec2::Zero();  ///< of the height along x and y
+    Vec2 slope = Vec2::Zero();  ///< of the height along x and y; it does not jump
   };
-  EntranceSurface() = default;
-  EntranceSurface(const EntranceSurface&) = delete;
-  EntranceSurface& operator=(const EntranceSurface&) = delete;
-  virtual ~EntranceSurface() = default;
+  /// \param finest_mm size of features that are known beside its lenslets
+  EntranceSurface(FreeformSurface surface, const Vec3& origin_mm,
+                  double finest_mm = std::numeric_limits<double>::infinity());
 
   /// Not finite where there is no surface. Safe to call from many threads.
-  virtual Place at(const Vec2& point_mm) const = 0;
+  Place at(const Vec2& point_mm) const;
   /// Size of its finest features, such as lenslets; infinite where none is known.
-  virtual double finest_mm() const = 0;
+  double finest_mm() const { return finest_mm_; }
+
+ private:
+  Vec2 slope_across(const Vec2& place) const;
+
+  FreeformSurface surface_;
+  Vec3 origin_mm_;
+  double finest_mm_;
 };
 
 /// The front of a part: an exact surface, or the triangles of a mesh that all look towards +z.

@@ -6,7 +6,6 @@
 #include "core/overloaded.h"
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
-#include "geometry/substrate/sag_formula.h"
 
 namespace retrace::geometry {
 namespace {
@@ -54,10 +53,10 @@ void set_axis(Substrate& substrate, const Value& value) {
 }
 
 Value get_sag(const Substrate& substrate) {
-  return std::get<FormulaSubstrate>(substrate.shape).sag_mm->text();
+  return std::get<FormulaSubstrate>(substrate.shape).sag_mm->text;
 }
 void set_sag(Substrate& substrate, const Value& value) {
-  std::get<FormulaSubstrate>(substrate.shape).sag_mm = std::make_shared<const Formula>(std::get<std::string>(value));
+  substrate.shape = formula_substrate(std::get<std::string>(value));
 }
 
 void set_parallel(Substrate& substrate, const Value&) {

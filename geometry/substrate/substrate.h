@@ -1,11 +1,14 @@
 #pragma once
 
+// What elements stand on in place of a plane, as a designer says it.
+
 #include <memory>
+#include <string_view>
 #include <variant>
 
-namespace retrace::geometry {
+#include "core/math/formula.h"
 
-class Formula;
+namespace retrace::geometry {
 
 /// A plane that rises by `incline_deg` towards `azimuth_deg`, from +x towards +y.
 struct PlaneSubstrate {
@@ -28,6 +31,8 @@ struct SphereSubstrate {
 struct FormulaSubstrate {
   std::shared_ptr<const Formula> sag_mm;  ///< never null
 };
+/// \throw InputError saying where the text is no formula of x and y
+FormulaSubstrate formula_substrate(std::string_view sag_mm);
 
 using SubstrateShape = std::variant<PlaneSubstrate, CylinderSubstrate, SphereSubstrate, FormulaSubstrate>;
 

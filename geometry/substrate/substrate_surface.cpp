@@ -12,69 +12,60 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/angle.h"
 #include "core/error.h"
 #include "core/overloaded.h"
 
 namespace retrace::geometry {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 // Of a radius: how far from the middle circles are followed; beyond, only what the border cuts away stands.
 constexpr double kMostSine = 0.999;
 
 Eigen::Matrix3d turn_of(const PlaneSubstrate& plane) {
-  const double azimuth = plane.azimuth_deg * kDeg;
+  const double azimuth = plane.azimuth_deg * kDegree;
   // About the horizontal line across the azimuth, so that the plane rises towards it.
   const Vec3 axis(std::sin(azimuth), -std::cos(azimuth), 0.0);
-  return Eigen::AngleAxisd(plane.incline_deg * kDeg, axis).toRotationMatrix();
+  return Eigen::AngleAxisd(plane.incline_deg * kDegree, axis).toRotationMatrix();
 }
 
-Jet jet_of(const PlaneSubstrate& plane, const Vec2& p) {
-  const double rise = std::tan(plane.incline_deg * kDeg);
-  const double azimuth = plane.azimuth_deg * kDeg;
-  const Vec2 gradient(rise * std::cos(azimuth), rise * std::sin(azimuth));
-  return {gradient.dot(p), gradient.x(), gradient.y(), 0.0, 0.0, 0.0};
+Sag sag_of(const PlaneSubstrate& plane) {
+  const double rise = std::tan(plane.incline_deg * kDegree);
+  const double azimuth = plane.azimuth_deg * kDegree;
+  Sag sag;
+  sag.polynomial = XyPolynomial{1.0, 1, {0.0, rise * std::sin(azimuth), rise * std::cos(azimuth)}};
+  return sag;
 }
 
-/// A circle's height at t from its pole, without the cancellation of R - sqrt(R^2 - t^2).
-double sag(double radius, double t2) {
-  const double r2 = radius * radius;
-  const double root = std::sqrt(r2 - std::min(t2, kMostSine * kMostSine * r2));
-  return -t2 / (radius + std::copysign(root, radius));
+Sag sag_of(const CylinderSubstrate& cylinder) {
+  Sag sag;
+  sag.asphere.curvature_per_mm = -1.0 / cylinder.radius_mm;
+  sag.asphere.across = cylinder.axis_is_x ? Asphere::Across::y : Asphere::Across::x;
+  return sag;
 }
 
-Jet jet_of(const CylinderSubstrate& cylinder, const Vec2& p) {
-  const double r = cylinder.radius_mm;
-  const double t = cylinder.axis_is_x ? p.y() : p.x();
-  const double root = std::sqrt(r * r - std::min(t * t, kMostSine * kMostSine * r * r));
-  const double slope = std::copysign(1.0, -r) * t / root;
-  const double bend = std::copysign(1.0, -r) * r * r / (root * root * root);
-  Jet jet;
-  jet.value = sag(r, t * t);
-  (cylinder.axis_is_x ? jet.y : jet.x) = slope;
-  (cylinder.axis_is_x ? jet.yy : jet.xx) = bend;
-  return jet;
+Sag sag_of(const SphereSubstrate& sphere) {
+  Sag sag;
+  sag.asphere.curvature_per_mm = -1.0 / sphere.radius_mm;
+  return sag;
 }
 
-Jet jet_of(const SphereSubstrate& sphere, const Vec2& p) {
-  const double r = sphere.radius_mm;
-  const double root = std::sqrt(r * r - std::min(p.squaredNorm(), kMostSine * kMostSine * r * r));
-  const double sign = std::copysign(1.0, -r);
-  const double cube = root * root * root;
-  return {sag(r, p.squaredNorm()),     sign * p.x() / root,
-          sign * p.y() / root,         sign * (root * root + p.x() * p.x()) / cube,
-          sign * p.x() * p.y() / cube, sign * (root * root + p.y() * p.y()) / cube};
+Sag sag_of(const FormulaSubstrate& formula) {
+  Sag sag;
+  sag.formula = *formula.sag_mm;
+  return sag;
 }
 
-/// Straight on beyond the part where a formula has no value or stands up; only cells that the border cuts reach there.
-Jet jet_of(const FormulaSubstrate& formula, const Vec2& p, const Vec2& half_mm) {
-  constexpr double kSteepBeyond = 4.0;
-  const Vec2 inside = p.cwiseMax(-half_mm).cwiseMin(half_mm);
-  Jet jet = formula.sag_mm->at(p.x(), p.y());
-  if (inside == p || (jet.is_finite() && std::hypot(jet.x, jet.y) < kSteepBeyond)) return jet;
-  jet = formula.sag_mm->at(inside.x(), inside.y());
-  jet.value += jet.x * (p.x() - inside.x()) + jet.y * (p.y() - inside.y());
-  return jet;
+/// The nearest place that is not so far from the middle that a circle stands up there.
+Vec2 short_of_upright(const SubstrateShape& shape, const Vec2& p) {
+  if (const auto* const c = std::get_if<CylinderSubstrate>(&shape)) {
+    const double most = kMostSine * std::abs(c->radius_mm);
+    const Vec2 clamped = p.cwiseMax(-most).cwiseMin(most);
+    return c->axis_is_x ? Vec2(p.x(), clamped.y()) : Vec2(clamped.x(), p.y());
+  }
+  const auto* const sphere = std::get_if<SphereSubstrate>(&shape);
+  const double most = sphere != nullptr ? kMostSine * std::abs(sphere->radius_mm) : INFINITY;
+  return p.norm() <= most ? p : Vec2(p * (most / p.norm()));
 }
 
 double arc_of_chord(double radius, double t) {
@@ -85,6 +76,14 @@ double arc_of_chord(double radius, double t) {
 double chord_of_arc(double radius, double s) {
   const double r = std::abs(radius);
   return r * std::sin(std::clamp(s / r, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
+}
+
+/// Slopes of the line x = 0, and of the line with that y.
+auto middle_slope(const SubstrateSurface& surface) {
+  return [&surface](double y) { return surface.at({0.0, y}).y; };
+}
+auto row_slope(const SubstrateSurface& surface, double y) {
+  return [&surface, y](double x) { return surface.at({x, y}).x; };
 }
 
 /// Arc length along a curve z(t) by its slope, from t = 0, and back.
@@ -166,21 +165,14 @@ struct SubstrateSurface::ArcTables {
   ArcTables(const SubstrateSurface& surface, double size_mm)
       : step_mm(std::max(0.5 * size_mm, surface.half_mm_.maxCoeff() / kMostSteps)),
         beyond_mm(8.0 * size_mm),
-        along_y(surface.half_mm_.y(), beyond_mm, step_mm, [&surface](double y) {
-          return surface.at({0.0, y}).y;
-        }) {}
+        along_y(surface.half_mm_.y(), beyond_mm, step_mm, middle_slope(surface)) {}
 
   /// Tables of rows are kept: all elements of a row need the same.
   const ArcTable& row(const SubstrateSurface& surface, double y) {
     const auto key = static_cast<std::int64_t>(std::llround(y / (1e-9 * step_mm)));
     if (const auto known = rows.find(key); known != rows.end()) return known->second;
     if (rows.size() >= kMostRows) rows.clear();
-    return rows
-        .emplace(key, ArcTable(surface.half_mm_.x(), beyond_mm, step_mm,
-                               [&surface, y](double x) {
-                                 return surface.at({x, y}).x;
-                               }))
-        .first->second;
+    return rows.emplace(key, ArcTable(surface.half_mm_.x(), beyond_mm, step_mm, row_slope(surface, y))).first->second;
   }
 
   static constexpr double kMostSteps = 20000.0;
@@ -191,8 +183,15 @@ struct SubstrateSurface::ArcTables {
   std::unordered_map<std::int64_t, ArcTable> rows;
 };
 
+FormulaSubstrate formula_substrate(std::string_view sag_mm) {
+  return {std::make_shared<const Formula>(parse_formula(std::string(sag_mm), {"x", "y"}, InputLocation{}))};
+}
+
 SubstrateSurface::SubstrateSurface(const Substrate& substrate, const Vec2& half_mm, double size_mm)
-    : substrate_(substrate), half_mm_(half_mm), size_mm_(size_mm) {}
+    : substrate_(substrate),
+      sag_(std::visit([](const auto& shape) { return sag_of(shape); }, substrate.shape)),
+      half_mm_(half_mm),
+      size_mm_(size_mm) {}
 
 SubstrateSurface::ArcTables& SubstrateSurface::tables() const {
   if (tables_ == nullptr) tables_ = std::make_unique<ArcTables>(*this, size_mm_);
@@ -202,10 +201,18 @@ SubstrateSurface::ArcTables& SubstrateSurface::tables() const {
 SubstrateSurface::~SubstrateSurface() = default;
 SubstrateSurface::SubstrateSurface(SubstrateSurface&&) noexcept = default;
 
+// Straight on beyond where a circle stands up, and beyond the part where a formula has no value or stands up; only
+// cells that the border cuts reach there.
 Jet SubstrateSurface::at(const Vec2& plan) const {
-  return std::visit(Overloaded{[&](const FormulaSubstrate& f) { return jet_of(f, plan, half_mm_); },
-                               [&](const auto& closed) { return jet_of(closed, plan); }},
-                    substrate_.shape);
+  constexpr double kSteepBeyond = 4.0;
+  Vec2 from = short_of_upright(substrate_.shape, plan);
+  Jet jet = jet_at(from);
+  if (sag_.formula && (!jet.is_finite() || std::hypot(jet.x, jet.y) >= kSteepBeyond)) {
+    from = plan.cwiseMax(-half_mm_).cwiseMin(half_mm_);
+    jet = jet_at(from);
+  }
+  jet.value += jet.x * (plan.x() - from.x()) + jet.y * (plan.y() - from.y());
+  return jet;
 }
 
 Vec3 SubstrateSurface::normal_at(const Vec2& plan) const {
@@ -227,9 +234,8 @@ Vec2 SubstrateSurface::plan_of(const Vec2& arc) const {
                    return Vec2(row > 0.0 ? chord_of_arc(row, arc.x()) : 0.0, y);
                  },
                  [&](const FormulaSubstrate&) {
-                   const double y = tables().along_y.place_at(arc.y(), [&](double t) { return at({0.0, t}).y; });
-                   const double x = tables().row(*this, y).place_at(arc.x(), [&](double t) { return at({t, y}).x; });
-                   return Vec2(x, y);
+                   const double y = tables().along_y.place_at(arc.y(), middle_slope(*this));
+                   return Vec2(tables().row(*this, y).place_at(arc.x(), row_slope(*this, y)), y);
                  }},
       substrate_.shape);
 }
@@ -248,15 +254,8 @@ Vec2 SubstrateSurface::arc_of(const Vec2& plan) const {
             return Vec2(row > 0.0 ? arc_of_chord(row, plan.x()) : 0.0, arc_of_chord(s.radius_mm, plan.y()));
           },
           [&](const FormulaSubstrate&) {
-            return Vec2(tables()
-                            .row(*this, plan.y())
-                            .arc(plan.x(),
-                                 [&](double t) {
-                                   return at({t, plan.y()}).x;
-                                 }),
-                        tables().along_y.arc(plan.y(), [&](double t) {
-                          return at({0.0, t}).y;
-                        }));
+            return Vec2(tables().row(*this, plan.y()).arc(plan.x(), row_slope(*this, plan.y())),
+                        tables().along_y.arc(plan.y(), middle_slope(*this)));
           }},
       substrate_.shape);
 }
@@ -342,7 +341,7 @@ SubstrateMeasures measure_substrate(const SubstrateSurface& substrate, const Vec
       area += weight(i) * weight(j) * std::hypot(1.0, rise);
     }
   measures.area_mm2 = area * half_mm.prod() * 4.0 / (9.0 * kSteps * kSteps);
-  measures.steepest_deg = std::atan(steepness) / kDeg;
+  measures.steepest_deg = std::atan(steepness) / kDegree;
   measures.least_radius_mm = curvature > 0.0 ? 1.0 / curvature : std::numeric_limits<double>::infinity();
   return measures;
 }

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "geometry/polygon.h"
-#include "geometry/substrate/sag_formula.h"
 #include "geometry/substrate/substrate.h"
+#include "geometry/surface/sag.h"
 #include "geometry/vec.h"
 
 namespace retrace::geometry {
@@ -31,7 +31,7 @@ class SubstrateSurface {
   ~SubstrateSurface();
   SubstrateSurface(SubstrateSurface&&) noexcept;
 
-  /// Height over the part's xy plane and its derivatives; a formula without value beyond the part goes on straight.
+  /// Height over the part's xy plane and its derivatives; what has no value beyond the part goes on straight.
   Jet at(const Vec2& plan) const;
   Vec3 normal_at(const Vec2& plan) const;
 
@@ -54,7 +54,10 @@ class SubstrateSurface {
   struct ArcTables;
   ArcTables& tables() const;
 
+  Jet jet_at(const Vec2& plan) const { return sag_.evaluate(Jet(plan.x(), 1.0, 0.0), Jet(plan.y(), 0.0, 1.0)); }
+
   Substrate substrate_;
+  Sag sag_;
   Vec2 half_mm_;
   double size_mm_;
   mutable std::unique_ptr<ArcTables> tables_;  ///< of formulas, from when they are needed: not to be shared by threads

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
 #include "studies/design/design.h"
@@ -11,9 +8,8 @@ namespace retrace::studies {
 
 /// The curved front of a design, read from its file, in the frame of the part: the heights of the file count from
 /// z = thickness_mm, its origin lies over EntranceFile::centre_mm. It covers the part, within what the file says is
-/// turned, and lies above the highest place of the part's back. \param warnings gets what the user should know of a
-/// turned part; null: not wanted \throw InputError naming file and line \pre design.entrance
-geometry::Entrance entrance_of_design(const Design& design, const geometry::Part& part,
-                                      std::vector<std::string>* warnings);
+/// turned, and lies above the highest place of the part's back. \throw InputError naming file and line \pre
+/// design.entrance
+geometry::Entrance entrance_of_design(const Design& design, const geometry::Part& part);
 
 }  // namespace retrace::studies

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fabrication/job/io/mask_image.h"
 #include "geometry/elements/whole_elements.h"
+#include "geometry/io/mask_image.h"
 
 namespace retrace::studies {
 namespace {
@@ -40,8 +40,8 @@ geometry::FacetPlanes elements_of_mask(const Design& design) {
   const auto& element = std::get<RtpElement>(spec.element);
   geometry::ArrayLayout array = spec.array;
   const geometry::PrismBlock block = geometry::prism_block(array, element);
-  array.pattern = fabrication::mask_pattern(design.mask()->file, design.mask()->threshold, block.counts,
-                                            design.where("array.mask"));
+  array.pattern =
+      geometry::mask_pattern(design.mask()->file, design.mask()->threshold, block.counts, design.where("array.mask"));
   std::vector<geometry::ElementPlanes> elements;
   for (const geometry::WholeElement& at : geometry::whole_elements(array, spec.element))
     if (at.is_there) elements.push_back(element_at(spec, block.corner_mm(at.row, at.column), at.is_rotated));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/number_format.h"
+#include "core/overloaded.h"
 #include "materials/io/spectrum_reader.h"
 #include "studies/design/entrance_of_design.h"
 #include "studies/design/part_of_design.h"
@@ -236,7 +237,7 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
                      "a [front] is taken by retrace rre, photometry and inspect alone");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
-  if (design.entrance) model.entrance = entrance_of_design(design, model.part, &model.warnings);
+  if (design.entrance) model.entrance = entrance_of_design(design, model.part);
   return model;
 }
 

@@ -8,11 +8,11 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "fabrication/job/io/job_files.h"
-#include "fabrication/job/io/mask_image.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "geometry/elements/whole_elements.h"
+#include "geometry/io/mask_image.h"
 #include "geometry/part/part.h"
 #include "studies/fabrication/reachable.h"
 
@@ -197,9 +197,9 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.machine = machine_of(request);
   job.process = fabrication::load_process(request.process, {"", 0, "--process"});
   if (design.mask())
-    job.array.pattern = fabrication::mask_pattern(design.mask()->file, design.mask()->threshold,
-                                                  geometry::prism_block(job.array, fabrication::prism_of(job)).counts,
-                                                  design.where("array.mask"));
+    job.array.pattern = geometry::mask_pattern(design.mask()->file, design.mask()->threshold,
+                                               geometry::prism_block(job.array, fabrication::prism_of(job)).counts,
+                                               design.where("array.mask"));
   fabrication::check_job(job, {design.source_name(), 0, ""});
   made.elements = static_cast<std::int64_t>(fabrication::cut_elements(job).size());
   add_warnings(design, made);

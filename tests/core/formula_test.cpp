@@ -16,15 +16,15 @@
 namespace retrace::formula_test {
 namespace {
 
-using jets::SecondPartials;
+using Jet = jets::Partials<2>;
 using jets::Series;
 
 Formula formula(const std::string& text) {
   return parse_formula(text, {"x", "y"}, InputLocation{});
 }
 
-SecondPartials at(const Formula& f, double x, double y) {
-  const std::array<SecondPartials, 2> variables = {SecondPartials{x, 1.0}, SecondPartials{y, 0.0, 1.0}};
+Jet at(const Formula& f, double x, double y) {
+  const std::array<Jet, 2> variables = {Jet{x, 1.0}, Jet{y, 0.0, 1.0}};
   return f.evaluate(variables.data());
 }
 
@@ -38,7 +38,7 @@ TEST(Formula, BindsPowersBeforeSignsAndToTheRight) {
 
 // The sag of a conic: R - sqrt(R^2 - r^2), differentiated by hand.
 TEST(Formula, DifferentiatesASphereExactly) {
-  const SecondPartials jet = at(formula("10 - sqrt(10^2 - x^2 - y^2)"), 3.0, -2.0);
+  const Jet jet = at(formula("10 - sqrt(10^2 - x^2 - y^2)"), 3.0, -2.0);
   const double root = std::sqrt(100.0 - 9.0 - 4.0);
   EXPECT_NEAR(jet.value, 10.0 - root, 1e-14);
   EXPECT_NEAR(jet.x, 3.0 / root, 1e-15);
@@ -56,7 +56,7 @@ TEST(Formula, DerivativesAgreeWithDifferences) {
     const Formula f = formula(text);
     const double x = 0.7;
     const double y = 0.4;
-    const SecondPartials jet = at(f, x, y);
+    const Jet jet = at(f, x, y);
     const auto near_by = [&](double dx, double dy) { return at(f, x + dx * h, y + dy * h).value; };
     const double near = 1e-6;
     EXPECT_NEAR(jet.x, (near_by(1, 0) - near_by(-1, 0)) / (2.0 * h), near) << text;
@@ -69,7 +69,7 @@ TEST(Formula, DerivativesAgreeWithDifferences) {
 }
 
 TEST(Formula, PowersHaveDerivativesAtZero) {
-  const SecondPartials jet = at(formula("x^2 + y^1"), 0.0, 0.0);
+  const Jet jet = at(formula("x^2 + y^1"), 0.0, 0.0);
   EXPECT_TRUE(jet.is_finite());
   EXPECT_EQ(jet.xx, 2.0);
   EXPECT_EQ(jet.y, 1.0);
@@ -110,7 +110,7 @@ TEST(Formula, IsTheSameByEveryNumber) {
   for (const char* const text :
        {"exp(0.3*x)*sin(y)", "x^-3 + (1+y)^2.5", "atan2(y, x)*tanh(x-y)", "abs(-x)/y", "2^x"}) {
     const Formula f = formula(text);
-    const SecondPartials whole = at(f, 0.7, 0.4);
+    const Jet whole = at(f, 0.7, 0.4);
     const std::array<double, 2> numbers = {0.7, 0.4};
     EXPECT_NEAR(f.evaluate(numbers.data()), whole.value, 1e-15 * std::abs(whole.value)) << text;
     const std::array<Series<double>, 2> line = {jets::line_series(0.7, 0.6, 5), jets::line_series(0.4, -0.8, 5)};
@@ -138,7 +138,7 @@ TEST(Formula, WorksOutWhatIsConstant) {
 }
 
 TEST(Formula, TangentsDoNotOverflow) {
-  const SecondPartials far = at(formula("tanh(1000*x) + tanh(-1000*y)"), 1.0, 1.0);
+  const Jet far = at(formula("tanh(1000*x) + tanh(-1000*y)"), 1.0, 1.0);
   EXPECT_TRUE(far.is_finite());
   EXPECT_EQ(far.value, 0.0);
 }

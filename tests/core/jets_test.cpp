@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/math/second_order.h"
+#include "core/math/partials.h"
 
 // Automatic differentiation against identities and against each other.
 
@@ -48,10 +48,10 @@ T mixture(const T& x, const T& y) {
 TEST(Jet, ShortSeriesAreTheStartOfLongOnes) {
   const Series<double> whole = mixture(line(0.7, 0.6, 4), line(-0.2, 1.1, 4));
   const Jet2 second = mixture(Jet2(0.7, 0.6, 0.0), Jet2(-0.2, 1.1, 0.0));
-  EXPECT_NEAR(second.v, whole[0], 1e-15);
-  EXPECT_NEAR(second.a, whole[1], 1e-15);
-  EXPECT_NEAR(second.b, whole[2], 1e-14);
-  const SecondPartials partials = mixture(SecondPartials{0.7, 1.0}, SecondPartials{-0.2, 0.0, 1.0});
+  EXPECT_NEAR(second[0], whole[0], 1e-15);
+  EXPECT_NEAR(second[1], whole[1], 1e-15);
+  EXPECT_NEAR(second[2], whole[2], 1e-14);
+  const Partials<2> partials = mixture(Partials<2>{0.7, 1.0}, Partials<2>{-0.2, 0.0, 1.0});
   EXPECT_NEAR(partials.value, whole[0], 1e-15);
   EXPECT_NEAR(0.6 * partials.x + 1.1 * partials.y, whole[1], 1e-15);
   EXPECT_NEAR(0.18 * partials.xx + 0.66 * partials.xy + 0.605 * partials.yy, whole[2], 1e-14);

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/substrate/sag_formula.h"
 #include "tests/fabrication/chiseling_jobs.h"
 
 namespace retrace::fabrication::test {
@@ -24,7 +23,7 @@ inline Substrate sphere_substrate(double radius_mm, geometry::ElementAxes elemen
   return {geometry::SphereSubstrate{radius_mm}, element_axes};
 }
 inline Substrate formula_substrate(const std::string& text, geometry::ElementAxes element_axes) {
-  return {geometry::FormulaSubstrate{std::make_shared<const geometry::Formula>(text)}, element_axes};
+  return {geometry::formula_substrate(text), element_axes};
 }
 
 /// n x n prisms side by side on a substrate, with room for elements that lean.

@@ -21,10 +21,10 @@ bool differ(double a, double b) {
 void evaluate(const retrace::Formula& formula) {
   using namespace retrace::jets;
   const std::array<double, 2> numbers = {0.7, -1.3};
-  const std::array<Dual, 2> duals = {Dual(0.7, 1.0, 0.0), Dual(-1.3, 0.0, 1.0)};
+  const std::array<Gradient, 2> slopes = {Gradient(0.7, 1.0, 0.0), Gradient(-1.3, 0.0, 1.0)};
   const std::array<Series<double>, 2> series = {line_series(0.7, 1.0, 5), line_series(-1.3, 0.5, 5)};
   const double value = formula.evaluate(numbers.data());
-  if (differ(value, formula.evaluate(duals.data()).v) || differ(value, formula.evaluate(series.data())[0]))
+  if (differ(value, formula.evaluate(slopes.data()).value) || differ(value, formula.evaluate(series.data())[0]))
     std::abort();
 }
 

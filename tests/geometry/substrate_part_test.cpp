@@ -26,7 +26,7 @@ namespace {
 constexpr double kDeg = std::numbers::pi / 180.0;
 
 Substrate formula(const std::string& text, ElementAxes element_axes = ElementAxes::normal) {
-  return {FormulaSubstrate{std::make_shared<const Formula>(text)}, element_axes};
+  return {formula_substrate(text), element_axes};
 }
 
 PartSpec spec_of(const Element& element, Arrangement arrangement, double x_length_mm, double y_length_mm) {

@@ -84,6 +84,13 @@ Side side_of(const std::string& path) {
   return lies_in("/check/") || lies_in("/read/") ? Side::judges : Side::neither;
 }
 
+/// Rooms of studies/ that see fabrication/, themselves or through what they include. A design knows of no tool.
+const Names& rooms_that_see_fabrication() {
+  static const Names rooms = {"closed_loop", "fabrication", "forces",    "optimise", "planing",
+                              "quantity",    "sweep",       "tolerance", "turning"};
+  return rooms;
+}
+
 /// The rooms of a folder that has such; null for others.
 const std::map<std::string, Names>* rooms_of(const std::string& folder) {
   if (folder == "studies") return &study_rooms();
@@ -233,6 +240,7 @@ class Checker {
     }
     check_order(path, include, target);
     check_side(path, include);
+    check_fabrication(path, include);
     // Types of a library must not reach files that may not include it through a header either.
     if (!(place_of(path) == target))
       for (const Library* library : leaked_by(include.target))
@@ -263,6 +271,14 @@ class Checker {
       if (const Side other = side_of(header); other != Side::neither && other != side)
         report(path, include.line,
                std::string(side == Side::plans ? "what plans" : "what judges") + " may not see " + header);
+  }
+
+  void check_fabrication(const std::string& path, const Include& include) {
+    const Place from = place_of(path);
+    if (from.folder != "studies" || rooms_that_see_fabrication().contains(from.room)) return;
+    for (const std::string& header : reached_from(include.target))
+      if (header.starts_with("fabrication/"))
+        report(path, include.line, "studies/" + from.room + "/ may not see " + header);
   }
 
   /// What including `path` brings: itself and all that it includes.

@@ -95,6 +95,16 @@ TEST_F(SyntheticTree, PlannersAndJudgesDoNotSeeEachOther) {
                    "fabrication/turning/plan/path.h"}));
 }
 
+TEST_F(SyntheticTree, DesignsKnowNothingOfHowTheyAreMade) {
+  add("fabrication/job/job.h", "#pragma once\n");
+  add("studies/fabrication/job_maker.h", "#pragma once\n#include \"fabrication/job/job.h\"\n");
+  add("studies/design/mask.cpp", "#include \"fabrication/job/job.h\"\n");
+  add("studies/rre/rre.cpp", "#include \"studies/fabrication/job_maker.h\"\n");
+  EXPECT_EQ(found(), (Lines{"studies/design/mask.cpp:1: studies/design/ may not see fabrication/job/job.h",
+                            "studies/rre/rre.cpp:1: studies/rre/ may not include studies/fabrication/job_maker.h",
+                            "studies/rre/rre.cpp:1: studies/rre/ may not see fabrication/job/job.h"}));
+}
+
 TEST_F(SyntheticTree, InOrderPasses) {
   add("geometry/part/part.h", "#include \"core/error.h\"\n#include <Eigen/Core>\n");
   add("geometry/check/closed.cpp", "#include <CGAL/Surface_mesh.h>\n#include \"geometry/check/closed.h\"\n");

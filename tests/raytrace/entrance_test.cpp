@@ -322,13 +322,7 @@ TEST(Entrance, WavesFinerThanTheFirstGridAreNotPassedBy) {
   const Part plate = build_plate({2.0, 2.0}, 0.5);
   for (const double waves : {31.7, 32.0, 64.0}) {
     const double k = 2.0 * std::numbers::pi * waves / 2.0;
-    const Entrance front = entrance_of(
-        [=](double x, double y) {
-          return EntranceSurface::Place{
-              1.0 + 0.005 * std::cos(k * x) * std::cos(k * y),
-              {-0.005 * k * std::sin(k * x) * std::cos(k * y), -0.005 * k * std::cos(k * x) * std::sin(k * y)}};
-        },
-        INFINITY);
+    const Entrance front = egg_box_entrance(1.0, 0.005, k, INFINITY);
     const EntranceSurface& surface = *std::get<0>(front);
     const auto face = make_entrance_face(front, plate, Vec2::Zero());
     std::mt19937 random(7);
@@ -342,10 +336,8 @@ TEST(Entrance, WavesFinerThanTheFirstGridAreNotPassedBy) {
       EXPECT_NEAR(hit->hit.t, t, 1e-9) << waves << " " << i;
     }
   }
-  const auto fine = [](double x, double) {
-    return EntranceSurface::Place{1.0 + 1e-3 * std::cos(9e3 * x), {-9.0 * std::sin(9e3 * x), 0.0}};
-  };
-  EXPECT_THROW(make_entrance_face(entrance_of(fine, INFINITY), plate, Vec2::Zero()), InputError);
+  const Entrance fine = formula_entrance("1 + 1e-3 * cos(9e3 * x)");
+  EXPECT_THROW(make_entrance_face(fine, plate, Vec2::Zero()), InputError);
 }
 
 // Steep lenslets in front of prisms: light goes from lenslet to lenslet and in again. All of it is booked, none is

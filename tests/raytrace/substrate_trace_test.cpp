@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/substrate/sag_formula.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
@@ -28,7 +27,7 @@ using namespace raytrace;
 constexpr double kDeg = std::numbers::pi / 180.0;
 
 Substrate formula(const std::string& text, ElementAxes element_axes = ElementAxes::normal) {
-  return {FormulaSubstrate{std::make_shared<const geometry::Formula>(text)}, element_axes};
+  return {formula_substrate(text), element_axes};
 }
 
 PartSpec on(const Substrate& substrate, PartSpec spec) {

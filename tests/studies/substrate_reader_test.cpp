@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "geometry/substrate/sag_formula.h"
 #include "studies/design/io/design_json.h"
 #include "studies/design/io/design_reader.h"
 #include "tests/support/refusals.h"

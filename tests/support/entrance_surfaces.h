@@ -1,60 +1,53 @@
 #pragma once
 
-#include <cmath>
-#include <functional>
+// Entrance surfaces for tests: planes, caps and waves.
+
+#include <fmt/format.h>
+
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 
+#include "core/error.h"
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/triangle_mesh.h"
 
 namespace retrace::testing {
 
-/// An entrance surface from functions.
-class FormulaEntrance : public geometry::EntranceSurface {
- public:
-  using Function = std::function<Place(double, double)>;
-  explicit FormulaEntrance(Function place, double finest_mm = std::numeric_limits<double>::infinity())
-      : place_(std::move(place)), finest_mm_(finest_mm) {}
-  Place at(const geometry::Vec2& p) const override { return place_(p.x(), p.y()); }
-  double finest_mm() const override { return finest_mm_; }
-
- private:
-  Function place_;
-  double finest_mm_;
-};
-
-inline geometry::Entrance entrance_of(FormulaEntrance::Function place,
+inline geometry::Entrance entrance_of(geometry::Sag sag, const geometry::Vec3& origin_mm,
                                       double finest_mm = std::numeric_limits<double>::infinity()) {
-  return std::make_shared<const FormulaEntrance>(std::move(place), finest_mm);
+  return std::make_shared<const geometry::EntranceSurface>(
+      geometry::FreeformSurface(std::move(sag), std::nullopt, {}, {}), origin_mm, finest_mm);
+}
+
+/// A surface from a formula of x and y.
+inline geometry::Entrance formula_entrance(const std::string& height_mm,
+                                           double finest_mm = std::numeric_limits<double>::infinity()) {
+  geometry::Sag sag;
+  sag.formula = parse_formula(height_mm, {"x", "y"}, {});
+  return entrance_of(std::move(sag), geometry::Vec3::Zero(), finest_mm);
 }
 
 inline geometry::Entrance plane_entrance(double height_mm, double slope_x = 0.0, double slope_y = 0.0) {
-  return entrance_of([=](double x, double y) {
-    return geometry::EntranceSurface::Place{height_mm + slope_x * x + slope_y * y, {slope_x, slope_y}};
-  });
+  geometry::Sag sag;
+  sag.polynomial = geometry::XyPolynomial{1.0, 1, {0.0, slope_y, slope_x}};
+  return entrance_of(std::move(sag), {0.0, 0.0, height_mm});
 }
 
 /// A cap of a sphere whose highest place, of height `top_mm`, lies over a point.
 inline geometry::Entrance sphere_entrance(double radius_mm, double top_mm, const geometry::Vec2& over_mm) {
-  return entrance_of([=](double x, double y) {
-    const double u = x - over_mm.x();
-    const double v = y - over_mm.y();
-    const double w = std::sqrt(radius_mm * radius_mm - u * u - v * v);
-    return geometry::EntranceSurface::Place{top_mm - radius_mm + w, {-u / w, -v / w}};
-  });
+  geometry::Sag sag;
+  sag.asphere.curvature_per_mm = -1.0 / radius_mm;
+  return entrance_of(std::move(sag), {over_mm.x(), over_mm.y(), top_mm});
 }
 
-/// Bumps and hollows: a cos(k x) cos(k y) about a height.
+/// Bumps and hollows: a cos(k x) cos(k y) about a height. \param finest_mm that is told
+inline geometry::Entrance egg_box_entrance(double height_mm, double a, double k, double finest_mm) {
+  return formula_entrance(fmt::format("{} + {} * cos({} * x) * cos({} * y)", height_mm, a, k, k), finest_mm);
+}
 inline geometry::Entrance egg_box_entrance(double height_mm, double a, double k) {
-  return entrance_of(
-      [=](double x, double y) {
-        return geometry::EntranceSurface::Place{
-            height_mm + a * std::cos(k * x) * std::cos(k * y),
-            {-a * k * std::sin(k * x) * std::cos(k * y), -a * k * std::cos(k * x) * std::sin(k * y)}};
-      },
-      3.14159265358979 / k);
+  return egg_box_entrance(height_mm, a, k, 3.14159265358979 / k);
 }
 
 /// A surface as triangles on a grid over a square.

@@ -11,6 +11,9 @@
 namespace retrace::fabrication::turning {
 namespace {
 
+using geometry::FreeformSurface;
+using jets::Gradient;
+
 using geometry::Vec2;
 constexpr double kNmPerMm = 1e6;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -29,7 +32,7 @@ struct Pixel {
 /// Draws places and takes what is found there into a pixel.
 class PixelProbe {
  public:
-  PixelProbe(const Envelope& envelope, const TurnedSurface& design, const InspectedRegion& region, const Vec2& low,
+  PixelProbe(const Envelope& envelope, const FreeformSurface& design, const InspectedRegion& region, const Vec2& low,
              double side, std::uint32_t number)
       : envelope_(envelope), design_(design), region_(region), low_(low), side_(side), number_(number) {}
 
@@ -82,7 +85,7 @@ class PixelProbe {
   }
 
   const Envelope& envelope_;
-  const TurnedSurface& design_;
+  const FreeformSurface& design_;
   const InspectedRegion& region_;
   Vec2 low_;
   double side_;
@@ -92,11 +95,11 @@ class PixelProbe {
 
 }  // namespace
 
-std::optional<double> deviation_nm(const Envelope& envelope, const TurnedSurface& design, const Vec2& p) {
+std::optional<double> deviation_nm(const Envelope& envelope, const FreeformSurface& design, const Vec2& p) {
   const auto height = envelope.height_mm(p.x(), p.y());
   if (!height) return std::nullopt;
-  const Dual z = design.gradient(p.x(), p.y());
-  return (*height - z.v) / std::sqrt(1.0 + z.dx * z.dx + z.dy * z.dy) * kNmPerMm;
+  const Gradient z = design.gradient(p.x(), p.y());
+  return (*height - z.value) / std::sqrt(1.0 + z.x * z.x + z.y * z.y) * kNmPerMm;
 }
 
 std::pair<double, double> largest_between(const std::function<double(double)>& f, double a, double b, int steps) {
@@ -129,8 +132,8 @@ bool is_inspected(const InspectedRegion& region, const Vec2& p) {
   return std::abs(p.x()) <= region.half_height_mm - rim && std::abs(p.y()) <= region.half_width_mm - rim;
 }
 
-void fill_map(Inspection& result, const Envelope& envelope, const TurnedSurface& design, const InspectedRegion& region,
-              std::size_t pixels) {
+void fill_map(Inspection& result, const Envelope& envelope, const FreeformSurface& design,
+              const InspectedRegion& region, std::size_t pixels) {
   result.columns = pixels;
   result.map_width_mm =
       2.0 * (region.is_round ? region.radius_mm : std::max(region.half_height_mm, region.half_width_mm));

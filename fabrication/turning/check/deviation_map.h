@@ -9,7 +9,8 @@
 namespace retrace::fabrication::turning {
 
 /// Square to the surface, in nm; nothing where no cut passes.
-std::optional<double> deviation_nm(const Envelope& envelope, const TurnedSurface& design, const geometry::Vec2& p);
+std::optional<double> deviation_nm(const Envelope& envelope, const geometry::FreeformSurface& design,
+                                   const geometry::Vec2& p);
 
 /// Where f is largest between a and b, and its value there; golden section.
 std::pair<double, double> largest_between(const std::function<double(double)>& f, double a, double b, int steps);
@@ -22,7 +23,7 @@ bool is_inspected(const InspectedRegion& region, const geometry::Vec2& p);
 /// pixels smaller than a quarter of a feed, the greatest at places drawn within them. So cusps finer than pixels do not
 /// show as waves that are not there. The rms is that of one place drawn in each pixel. \throw InputError if the
 /// programs leave a place of the region uncut
-void fill_map(Inspection& result, const Envelope& envelope, const TurnedSurface& design, const InspectedRegion& region,
-              std::size_t pixels);
+void fill_map(Inspection& result, const Envelope& envelope, const geometry::FreeformSurface& design,
+              const InspectedRegion& region, std::size_t pixels);
 
 }  // namespace retrace::fabrication::turning

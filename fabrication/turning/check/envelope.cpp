@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/angle.h"
 #include "core/error.h"
-#include "fabrication/turning/numbers.h"
 
 namespace retrace::fabrication::turning {
 namespace {

@@ -16,6 +16,12 @@
 namespace retrace::fabrication::turning {
 namespace {
 
+using geometry::FreeformSurface;
+using geometry::Zone;
+using jets::Gradient;
+using jets::line_series;
+using jets::Series;
+
 using geometry::Vec2;
 constexpr int kGoldenSteps = 40;
 /// Nearer to the centre the cut turns so much from one end of a cusp to the other that closed forms do not hold.
@@ -23,16 +29,16 @@ constexpr double kCentreFeeds = 20.0;
 
 /// Height of cusps square to the surface: in the plane across the cuts they are those of circle against circle, seen
 /// along the slope and then along z.
-double predicted_nm(const TurnedSurface& design, TurningTool tool, const Vec2& at, const Vec2& outward, double feed_mm,
-                    bool is_spiral) {
+double predicted_nm(const FreeformSurface& design, TurningTool tool, const Vec2& at, const Vec2& outward,
+                    double feed_mm, bool is_spiral) {
   // A spiral leads inwards, which adds to the skew.
   if (is_spiral) tool.skew_deg += std::atan(feed_mm / (2.0 * std::numbers::pi * at.norm())) * 180.0 / std::numbers::pi;
   const Series<double> z = design.evaluate(line_series(at.x(), outward.x(), 2), line_series(at.y(), outward.y(), 2));
-  const Dual g = design.gradient(at.x(), at.y());
+  const Gradient g = design.gradient(at.x(), at.y());
   const double length = std::sqrt(1.0 + z[1] * z[1]);
   const double curvature = 2.0 * z[2] / (length * length * length);
   const FinishFigures f = finish_figures(effective_radius_mm(tool), feed_mm * length, curvature);
-  return f.peak_to_valley_nm * length / std::sqrt(1.0 + g.dx * g.dx + g.dy * g.dy);
+  return f.peak_to_valley_nm * length / std::sqrt(1.0 + g.x * g.x + g.y * g.y);
 }
 
 struct Extreme {
@@ -43,7 +49,7 @@ struct Extreme {
 
 }  // namespace
 
-std::optional<CuspSample> cusps_at(const Envelope& envelope, const TurnedSurface& design, const TurningTool& tool,
+std::optional<CuspSample> cusps_at(const Envelope& envelope, const FreeformSurface& design, const TurningTool& tool,
                                    const Vec2& at_mm, const Vec2& outward, double feed_mm, bool is_spiral) {
   constexpr int kPerFeed = 16;
   constexpr int kFeeds = 3;
@@ -127,7 +133,7 @@ std::vector<std::pair<Vec2, Vec2>> profile_places(const InspectedRegion& region)
 
 }  // namespace
 
-Inspection inspect(const Envelope& envelope, const TurnedSurface& design, const TurningTool& tool,
+Inspection inspect(const Envelope& envelope, const FreeformSurface& design, const TurningTool& tool,
                    const InspectedRegion& region, std::size_t pixels) {
   Inspection result;
   fill_map(result, envelope, design, region, pixels);

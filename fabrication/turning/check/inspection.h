@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fabrication/turning/check/envelope.h"
-#include "fabrication/turning/surface.h"
+#include "geometry/surface/freeform_surface.h"
 
 namespace retrace::fabrication::turning {
 
@@ -46,13 +46,13 @@ struct Inspection {
 };
 
 /// \param pixels of the map on a side \throw InputError if the programs leave a place of the region uncut
-Inspection inspect(const Envelope& envelope, const TurnedSurface& design, const TurningTool& tool,
+Inspection inspect(const Envelope& envelope, const geometry::FreeformSurface& design, const TurningTool& tool,
                    const InspectedRegion& region, std::size_t pixels);
 
 /// One profile across the cuts from a place outwards (raster: along x), three feeds long. Nothing where the design
 /// changes from one zone to another along it, or a cut is missing.
-std::optional<CuspSample> cusps_at(const Envelope& envelope, const TurnedSurface& design, const TurningTool& tool,
-                                   const geometry::Vec2& at_mm, const geometry::Vec2& outward, double feed_mm,
-                                   bool is_spiral);
+std::optional<CuspSample> cusps_at(const Envelope& envelope, const geometry::FreeformSurface& design,
+                                   const TurningTool& tool, const geometry::Vec2& at_mm, const geometry::Vec2& outward,
+                                   double feed_mm, bool is_spiral);
 
 }  // namespace retrace::fabrication::turning

@@ -12,6 +12,8 @@
 namespace retrace::fabrication::turning {
 namespace {
 
+using geometry::FreeformSurface;
+
 using geometry::Vec3;
 
 /// Rays: about as far apart at half the radius as circles are.
@@ -20,7 +22,7 @@ std::uint32_t rays_of(int rings) {
 }
 
 /// The centre and the crossings, ring by ring, at the heights that are left.
-std::vector<Vec3> back_of(const Envelope& envelope, const TurnedSurface& design, const InspectedRegion& region,
+std::vector<Vec3> back_of(const Envelope& envelope, const FreeformSurface& design, const InspectedRegion& region,
                           int rings) {
   const std::uint32_t rays = rays_of(rings);
   const double rim = kRimFeeds * region.feed_mm;
@@ -44,7 +46,7 @@ std::vector<Vec3> back_of(const Envelope& envelope, const TurnedSurface& design,
 
 }  // namespace
 
-geometry::BoundaryMesh machined_mesh(const Envelope& envelope, const TurnedSurface& design,
+geometry::BoundaryMesh machined_mesh(const Envelope& envelope, const FreeformSurface& design,
                                      const InspectedRegion& region, int rings, double thickness_mm) {
   const std::uint32_t rays = rays_of(rings);
   geometry::BoundaryMesh mesh;

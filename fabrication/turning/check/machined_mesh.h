@@ -1,8 +1,8 @@
 #pragma once
 
 #include "fabrication/turning/check/inspection.h"
-#include "fabrication/turning/surface.h"
 #include "geometry/part/closed_boundary.h"
+#include "geometry/surface/freeform_surface.h"
 
 namespace retrace::fabrication::turning {
 
@@ -11,7 +11,7 @@ namespace retrace::fabrication::turning {
 /// feeds of the centre, where the edge turns on the spot. A closed mesh that looks outward.
 /// \param rings circles, 2 or more, out to 4 feeds inside of the rim \param thickness_mm from the highest place of the
 /// back to the entrance face; > 0 \pre a round region \throw InputError if the programs leave one of the places uncut
-geometry::BoundaryMesh machined_mesh(const Envelope& envelope, const TurnedSurface& design,
+geometry::BoundaryMesh machined_mesh(const Envelope& envelope, const geometry::FreeformSurface& design,
                                      const InspectedRegion& region, int rings, double thickness_mm);
 
 }  // namespace retrace::fabrication::turning

@@ -8,18 +8,12 @@
 #include "core/number_format.h"
 #include "core/schema/reader.h"
 #include "fabrication/turning/finish.h"
-#include "fabrication/turning/io/lenslet_tables.h"
-#include "fabrication/turning/io/sag_tables.h"
+#include "geometry/io/surface_tables.h"
 
 namespace retrace::fabrication::turning {
 namespace {
 
 using schema::Document;
-
-std::optional<Extrapolation> read_extrapolation(const Document& file) {
-  if (!file.has("boundary")) return std::nullopt;
-  return Extrapolation{read_boundary(file), static_cast<int>(file.number("extrapolation.order"))};
-}
 
 TurningTool read_tool(const Document& file) {
   return {file.number("tool.nose_radius_mm"), file.number("tool.window_deg"), file.number("tool.clearance_deg"),
@@ -110,15 +104,12 @@ void settle_skew(TurnedPart& part, const InputLocation& where) {
 
 TurnedPart parse_turned_part(std::string_view text, const std::string& source_name) {
   const Document file = schema::read_document(turned_part_format(), text, source_name);
-  const Sag base = read_sag(file, "base");
-  std::optional<Extrapolation> extrapolation = read_extrapolation(file);
+  geometry::FreeformSurface surface = geometry::read_surface(file);
+  const InputLocation surface_where = geometry::surface_place(file);
   const TurningTool tool = read_tool(file);
   const PathOptions path = read_path(file, tool);
-  const TurnedSurface bare(base, extrapolation, {}, file.where("base.kind"));
-  std::vector<Lenslet> lenslets = read_lenslets(file, bare);
-  const InputLocation surface_where = file.where(lenslets.empty() ? "base" : "lenslets");
   TurnedPart part{file.text_if("title"),
-                  TurnedSurface(base, std::move(extrapolation), std::move(lenslets), surface_where),
+                  std::move(surface),
                   tool,
                   file.flag("tool.find_least_skew"),
                   path,
@@ -128,7 +119,7 @@ TurnedPart parse_turned_part(std::string_view text, const std::string& source_na
                   file.number_if("inspect.mesh_thickness_mm"),
                   static_cast<int>(file.number("inspect.mesh_rings")),
                   {}};
-  check_surface(part.surface, reach_mm(part.path, part.tool), surface_where);
+  geometry::check_surface(part.surface, reach_mm(part.path, part.tool), surface_where);
   settle_skew(part, file.where("tool.clearance_deg"));
   part.warnings = tool_warnings(part.tool);
   return part;

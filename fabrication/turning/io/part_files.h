@@ -9,8 +9,6 @@
 
 namespace retrace::fabrication::turning {
 
-inline constexpr std::size_t kMostLenslets = 100000;
-
 /// The format of part files (retrace.turned_part/1).
 const schema::Format& turned_part_format();
 

@@ -1,108 +1,24 @@
 #include "fabrication/turning/io/part_files.h"
 
-#include <algorithm>
-#include <array>
-#include <utility>
+#include <iterator>
+#include <span>
+#include <vector>
 
 #include "core/schema/conditions.h"
-#include "fabrication/turning/lenslet.h"
-#include "fabrication/turning/periodic_spline.h"
-#include "fabrication/turning/surface.h"
+#include "geometry/io/surface_tables.h"
 
 namespace retrace::fabrication::turning {
 namespace {
 
 using namespace schema;
 
-constexpr NumberRange kCoefficient{.low = -1e9, .high = 1e9};
 constexpr NumberRange kPlace{.low = -1e4, .high = 1e4};
 constexpr NumberRange kSize{.low = 0.0, .low_included = false, .high = 1e4};
 constexpr Kind kPositiveMm = Number{kSize};
 constexpr Kind kPositive = Number{{.low = 0.0, .low_included = false, .high = 1e9}};
-constexpr Kind kShare = Number{{.low = 0.01, .high = 10.0}};
-constexpr Kind kSplineDegree = Whole{{.low = 2.0, .high = kMostSplineDegree}};
-constexpr Kind kSamples = Whole{{.low = 16.0, .high = 4000.0}};
-constexpr Kind kTerms = NumberRows{3, kCoefficient, 1, 200, "terms"};
 
-constexpr Words kSags = {"plane", "conic", "asphere", "xy_polynomial", "zernike", "formula"};
-constexpr Words kCurves = {"circle", "rectangle", "points", "formula"};
-constexpr Words kSampled = {"rectangle", "formula"};
-constexpr Words kBoundaries = {"circle", "intersection"};
-constexpr Words kStrategies = {"spiral", "raster"};
 constexpr Words kSamplings = {"angle", "arc"};
 constexpr Words kServos = {"slow", "fast"};
-
-constexpr Condition kOfConics[] = {is("kind", only(kSags, "conic", "asphere"))};
-constexpr Condition kOfAsphere[] = {is("kind", only(kSags, "asphere"))};
-constexpr Condition kOfPolynomial[] = {is("kind", only(kSags, "xy_polynomial"))};
-constexpr Condition kOfZernike[] = {is("kind", only(kSags, "zernike"))};
-constexpr Condition kOfPolynomials[] = {is("kind", only(kSags, "xy_polynomial", "zernike"))};
-constexpr Condition kOfFormula[] = {is("kind", only(kSags, "formula"))};
-constexpr Condition kWithRadius[] = {beside("radius_mm")};
-
-constexpr Row kSagRows[] = {
-    {"kind", Word{kSags}, kRequired, "What gives the height."},
-    {"radius_mm", Number{kCoefficient}, kRequired, "Not 0; negative: the middle is the highest place.", Access(),
-     kOfConics},
-    {"radius_mm", Number{kCoefficient}, kNone, "Likewise, of a conic below the polynomial.", kOfPolynomials},
-    {"conic", Number{kCoefficient}, 0.0, "0 is a sphere, -1 a paraboloid.", kWithRadius},
-    {"even", NumberRows{2, kCoefficient, 1, 200, "terms"}, kRequired,
-     "Rows `[power, coefficient]` of r^4, r^6, ... r^20, in mm.", kOfAsphere},
-    {"terms", kTerms, kRequired, "Rows `[i, j, c]` of c (x / s)^i (y / s)^j, of a degree of at most 16.", Access(),
-     kOfPolynomial},
-    {"terms", kTerms, kRequired, "Rows `[n, m, c]` of orthonormal terms, of sin for m < 0.", kOfZernike},
-    {"scale_mm", kPositiveMm, 1.0, "The s of the terms.", kOfPolynomial},
-    {"aperture_radius_mm", kPositiveMm, kRequired, "Of the terms' disc.", kOfZernike},
-    {"formula", Text{"a formula"}, kRequired, "Of `x`, `y`, `r`, `theta` and, for lenslets, their place `cx`, `cy`.",
-     kOfFormula}};
-
-constexpr Condition kCircleOnly[] = {is("kind", only(kCurves, "circle"))};
-constexpr Condition kRectangleOnly[] = {is("kind", only(kCurves, "rectangle"))};
-constexpr Condition kPointsOnly[] = {is("kind", only(kCurves, "points"))};
-constexpr Condition kSampledOnly[] = {is("kind", kSampled)};
-constexpr Row kBoundaryRows[] = {
-    {"kind", Word{kCurves}, kRequired, "What gives the curve."},
-    {"radius_mm", kPositiveMm, kRequired, "Of the circle.", kCircleOnly},
-    {"size_mm", Numbers{2, kSize}, kRequired, "`[width, height]`.", kRectangleOnly},
-    {"corner_mm", kPositiveMm, kRequired, "Radius of the corners.", kRectangleOnly},
-    {"points_mm", NumberRows{2, kPlace, 1, 4000, "points"}, kRequired, "In their order along the curve.", Access(),
-     kPointsOnly},
-    {"scattered", Flag{}, false, "Whether they come in any order.", kPointsOnly},
-    {"formula", Text{"a formula"}, kRequired, "The radius, of `theta`.", kOfFormula},
-    {"centre_mm", Numbers{2, kPlace}, Computed{"0, 0; of points their mean"}, "Of the polar form."},
-    {"degree", kSplineDegree, 3.0, "Of the periodic spline: C^(degree - 1) in azimuth."},
-    {"samples", kSamples, 180.0, "Of the curve.", kSampledOnly}};
-
-constexpr Row kExtrapolationRows[] = {{"order", Whole{{.low = 1.0, .high = kMostOrder}}, 2.0,
-                                       "n: C^n along radial lines; smooth all round with a `degree` of n + 1."}};
-
-constexpr Condition kGridOnly[] = {without("positions_mm")};
-constexpr Condition kCirclesOnly[] = {is("boundary", only(kBoundaries, "circle"))};
-constexpr Condition kIntersectionsOnly[] = {is("boundary", only(kBoundaries, "intersection"))};
-constexpr Row kPlacedRows[] = {
-    {"positions_mm", NumberRows{2, kPlace, 1, kMostLenslets, "places"}, kNone, "Rows `[x, y]`."},
-    {"hexagonal_pitch_mm", kPositiveMm, kNone, "Of a hexagonal grid."},
-    {"square_pitch_mm", kPositiveMm, kNone, "Of a square grid."},
-    {"within_mm", kPositiveMm, kRequired, "Radius within which the grid has places.", kGridOnly},
-    {"height_mm", Number{kPlace}, 0.0, "Of the origin of a lenslet above the base, along the normal."},
-    {"tilted", Flag{}, true, "Whether lenslets are tilted to the base's normal."},
-    {"boundary", Word{kBoundaries}, kRequired, "A circle, or where lenslet and base meet."},
-    {"boundary_radius_mm", kPositiveMm, kRequired, "Of the circle.", kCirclesOnly},
-    {"search_mm", kPositiveMm, kRequired, "How far the intersection is searched.", kIntersectionsOnly},
-    {"inner_share", kShare, kRequired, "Of the boundary's radius, where the blend leaves the lenslet."},
-    {"outer_share", kShare, kRequired, "The same where it reaches the base; above `inner_share`."},
-    {"blend_order", Whole{{.low = 1.0, .high = kMostBlendOrder}}, 2.0, "d: C^d at both ends."},
-    {"degree", kSplineDegree, 3.0, "Of the boundary's spline."},
-    {"samples", kSamples, 60.0, "Of the intersection.", kIntersectionsOnly}};
-constexpr std::string_view kPlaceKeys[] = {"positions_mm", "hexagonal_pitch_mm", "square_pitch_mm"};
-constexpr Rule kPlaceRules[] = {
-    OneOf{kPlaceKeys, "must have one of positions_mm, hexagonal_pitch_mm and square_pitch_mm"}};
-
-constexpr auto kLensletRows =
-    []<std::size_t... sag, std::size_t... place>(std::index_sequence<sag...>, std::index_sequence<place...>) {
-  return std::array{kSagRows[sag]..., kPlacedRows[place]...};
-}
-(std::make_index_sequence<std::size(kSagRows)>{}, std::make_index_sequence<std::size(kPlacedRows)>{});
 
 constexpr Condition kNoLeastSkew[] = {without("find_least_skew")};
 constexpr Row kToolRows[] = {
@@ -115,18 +31,18 @@ constexpr Row kToolRows[] = {
      "Turn about the shank: of a spiral made by moving along Y, of a raster by C = -skew.", kNoLeastSkew},
     {"find_least_skew", Flag{}, false, "Whether to take the skew nearest to 0 that clears, within +-60."}};
 
-constexpr Condition kSpiralOnly[] = {is("strategy", only(kStrategies, "spiral"))};
-constexpr Condition kRasterOnly[] = {is("strategy", only(kStrategies, "raster"))};
+using geometry::kRasterOnly;
+using geometry::kSpiralOnly;
 constexpr Condition kAngleOnly[] = {is("sampling", only(kSamplings, "angle"))};
 constexpr Condition kArcOnly[] = {is("sampling", only(kSamplings, "arc"))};
 constexpr Kind kArcUm = Number{{.low = 0.1, .high = 1e4}};
 constexpr Row kPathRows[] = {
-    {"strategy", Word{kStrategies}, "spiral", "How the tool goes over the part."},
+    geometry::kStrategyRow,
     {"feed_um", Number{{.low = 1e-3, .high = 1e4}}, kNone, "A turn, or from line to line."},
     {"scallop_nm", Number{{.low = 1e-3, .high = 1e6}}, kNone,
      "In its place: the feed whose cusps on a flat are so high."},
     {"clear_mm", Number{{.low = 0.01, .high = 1e3}}, 1.0, "Above the part, for moves without cutting."},
-    {"radius_mm", kPositiveMm, kRequired, "From the part's rim to the centre.", kSpiralOnly},
+    geometry::kRegionRadiusRow,
     {"overrun_mm", Number{{.low = 0.0, .high = 1e3}}, 0.0,
      "Beyond the rim, where a spiral starts: on a surface that falls outwards the nose touches inside of its lowest "
      "point.",
@@ -144,7 +60,7 @@ constexpr Row kPathRows[] = {
      "`\"fast\"`: Z follows the mean over a turn, the rest is the stroke in `servo.csv`.", kAngleOnly},
     {"servo", Word{only(kServos, "slow")}, "slow", "A fast tool servo goes by the spindle's angle.", Access(),
      kArcOnly},
-    {"size_mm", Numbers{2, kSize}, kRequired, "`[across the lines (X), along them (Y)]`.", kRasterOnly},
+    geometry::kRegionSizeRow,
     {"cutting_mm_per_min", Number{{.low = 0.1, .high = 1e5}}, kRequired, "Along the lines.", kRasterOnly}};
 constexpr std::string_view kFeedKeys[] = {"feed_um", "scallop_nm"};
 constexpr Rule kPathRules[] = {OneOf{kFeedKeys, "must have either feed_um or scallop_nm"}};
@@ -161,7 +77,7 @@ constexpr Table kAxes[] = {limits("x", "Limits of X."), limits("y", "Limits of Y
                            limits("servo", "Limits of a fast tool servo.")};
 
 constexpr Condition kRoundOnly[] = {
-    is("path.strategy", only(kStrategies, "spiral"), "must not be given for a raster: meshes are round")};
+    is("path.strategy", only(geometry::kStrategies, "spiral"), "must not be given for a raster: meshes are round")};
 constexpr Row kInspectRows[] = {
     {"form_tolerance_nm", kPositive, 10.0, "Larger form errors, and cuts below the surface, fail."},
     {"map_pixels", Whole{{.low = 11.0, .high = 2001.0}}, 101.0,
@@ -172,24 +88,8 @@ constexpr Row kInspectRows[] = {
      kRoundOnly},
     {"mesh_rings", Whole{{.low = 2.0, .high = 1000.0}}, 100.0, "Circles of that mesh."}};
 
-constexpr Condition kBeyondBoundary[] = {beside("boundary", "needs a [boundary] beyond which to extrapolate")};
 constexpr Row kRows[] = {{"title", Text{}, kNone, "One line."}};
-constexpr Table kTables[] = {{.name = "base", .meaning = "The sag.", .rows = kSagRows},
-                             {.name = "boundary",
-                              .meaning = "Within which the surface is the sag.",
-                              .rows = kBoundaryRows,
-                              .presence = Presence::optional},
-                             {.name = "extrapolation",
-                              .meaning = "How the surface goes on beyond it.",
-                              .rows = kExtrapolationRows,
-                              .presence = Presence::optional,
-                              .when = kBeyondBoundary},
-                             {.name = "lenslets",
-                              .meaning = "Lenslets on the base, each a sag in its own frame.",
-                              .rows = kLensletRows,
-                              .rules = kPlaceRules,
-                              .presence = Presence::optional},
-                             {.name = "tool", .meaning = "The diamond.", .rows = kToolRows},
+constexpr Table kTables[] = {{.name = "tool", .meaning = "The diamond.", .rows = kToolRows},
                              {.name = "path", .meaning = "How it moves.", .rows = kPathRows, .rules = kPathRules},
                              {.name = "machine",
                               .meaning = "Limits of the machine; what is not given is not limited.",
@@ -201,15 +101,23 @@ constexpr Table kTables[] = {{.name = "base", .meaning = "The sag.", .rows = kSa
                               .rows = kInspectRows,
                               .presence = Presence::implied}};
 
-constexpr Format kFormat = {"turned_part",
-                            "retrace.turned_part/1",
-                            "Freeform surface, turned",
-                            {"", "A surface, the tool, its path, the machine and the inspection.", kRows, kTables}};
+/// Those of the surface, then those of how it is made.
+std::vector<Table> all_tables() {
+  const std::span<const Table> of_surface = geometry::surface_tables();
+  std::vector<Table> tables(of_surface.begin(), of_surface.end());
+  tables.insert(tables.end(), std::begin(kTables), std::end(kTables));
+  return tables;
+}
 
 }  // namespace
 
 const Format& turned_part_format() {
-  return kFormat;
+  static const std::vector<Table> tables = all_tables();
+  static const Format format = {"turned_part",
+                                geometry::kTurnedPartId,
+                                "Freeform surface, turned",
+                                {"", "A surface, the tool, its path, the machine and the inspection.", kRows, tables}};
+  return format;
 }
 
 }  // namespace retrace::fabrication::turning

@@ -6,11 +6,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/numbers.h"
+#include "core/angle.h"
+#include "core/math/jets.h"
+#include "core/math/partials.h"
 #include "fabrication/turning/plan/polynomial_spiral.h"
 
 namespace retrace::fabrication::turning {
 namespace {
+
+using geometry::FreeformSurface;
+using jets::Gradient;
+using jets::Jet2;
 
 using geometry::Vec2;
 constexpr std::size_t kMostPoints = std::size_t{1} << 26;
@@ -52,7 +58,7 @@ class TouchForecast {
   std::array<double, 3> angles_{};  // the last first
 };
 
-Pass spiral(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o, const InputLocation& where) {
+Pass spiral(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, const InputLocation& where) {
   if (const auto pass = polynomial_spiral(surface, tool, o)) return *pass;
   const NoseCompensation nose(surface, tool, TouchMap(surface, tool, o.radius_mm + o.overrun_mm));
   const double skew = tool.skew_deg * kDegree;
@@ -81,7 +87,7 @@ Pass spiral(const TurnedSurface& surface, const TurningTool& tool, const PathOpt
   return pass;
 }
 
-std::vector<Pass> raster(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o,
+std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o,
                          const InputLocation& where) {
   const double lines = std::floor(o.height_mm / o.feed_mm + 1e-9) + 1.0;
   const double points = std::max(1.0, std::ceil(o.width_mm / o.arc_mm - 1e-9));
@@ -145,7 +151,7 @@ void share_with_servo(Pass& pass, int points_per_turn) {
 
 }  // namespace
 
-NoseCompensation::NoseCompensation(const TurnedSurface& surface, const TurningTool& tool, TouchMap map)
+NoseCompensation::NoseCompensation(const FreeformSurface& surface, const TurningTool& tool, TouchMap map)
     : surface_(surface),
       map_(std::move(map)),
       radius_mm_(tool.nose_radius_mm),
@@ -175,14 +181,14 @@ NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, con
     const Jet2 f =
         surface_.evaluate(aside * across.x() - back * cut.x() + x_mm, aside * across.y() - back * cut.y() + y_mm) -
         lift * cos_rake_;
-    touch.height_mm = f.v;
+    touch.height_mm = f[0];
     // Where the surface is hollower than the nose there is no maximum here: another start finds it.
-    if (!(f.b < 0.0)) return touch;
-    const double change = std::clamp(-0.5 * f.a / f.b, -0.5, 0.5);
+    if (!(f[2] < 0.0)) return touch;
+    const double change = std::clamp(-0.5 * f[1] / f[2], -0.5, 0.5);
     const double next = std::clamp(angle + change, -end_rad_, end_rad_);
     const double done = next - angle;
     angle = next;
-    touch.height_mm = f.v + done * (f.a + done * f.b);
+    touch.height_mm = f[0] + done * (f[1] + done * f[2]);
     touch.is_found = std::abs(done) < kSmallStep;
     if (touch.is_found) return touch;
   }
@@ -214,7 +220,7 @@ double NoseCompensation::height_mm(double x_mm, double y_mm, const Vec2& across,
   return height;
 }
 
-std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& options,
+std::vector<Pass> make_path(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& options,
                             const InputLocation& where) {
   if (options.strategy == Strategy::raster) return raster(surface, tool, options, where);
   std::vector<Pass> passes;

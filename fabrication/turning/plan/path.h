@@ -6,8 +6,8 @@
 #include "core/error.h"
 #include "fabrication/turning/path_options.h"
 #include "fabrication/turning/plan/touch_map.h"
-#include "fabrication/turning/surface.h"
 #include "fabrication/turning/tool.h"
+#include "geometry/surface/freeform_surface.h"
 
 namespace retrace::fabrication::turning {
 
@@ -30,8 +30,8 @@ using Pass = std::vector<PathPoint>;
 /// C = -skew: the rake face stays square to Y. Nose radius
 /// compensation is along Z alone: the tool is raised by what it would otherwise cut too much, so that X, Y and C stay
 /// smooth. \throw InputError at `where` for a path of more than 2^26 points
-std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& options,
-                            const InputLocation& where);
+std::vector<Pass> make_path(const geometry::FreeformSurface& surface, const TurningTool& tool,
+                            const PathOptions& options, const InputLocation& where);
 
 /// Height of the tool's lowest edge point over (x, y) of the part at which its edge touches the surface: the maximum
 /// over the sharp arc of z at an edge point less the point's own height. The edge lies along `across` and leans against
@@ -39,7 +39,7 @@ std::vector<Pass> make_path(const TurnedSurface& surface, const TurningTool& too
 class NoseCompensation {
  public:
   /// \param map where one touching place is known to be the only one; elsewhere the whole arc is searched for others
-  NoseCompensation(const TurnedSurface& surface, const TurningTool& tool, TouchMap map = {});
+  NoseCompensation(const geometry::FreeformSurface& surface, const TurningTool& tool, TouchMap map = {});
 
   /// \param across, cut unit vectors in the part \param start angle on the nose where the search starts; where it ends
   double height_mm(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut,
@@ -58,7 +58,7 @@ class NoseCompensation {
                  double& angle) const;
   double sampled(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut, double angle) const;
 
-  const TurnedSurface& surface_;
+  const geometry::FreeformSurface& surface_;
   TouchMap map_;
   double radius_mm_;
   double sin_rake_;

@@ -1,5 +1,5 @@
 #include "fabrication/turning/plan/polynomial_spiral.h"
-#include "fabrication/turning/numbers.h"
+#include "core/angle.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,11 @@
 
 namespace retrace::fabrication::turning {
 namespace {
+
+using geometry::FreeformSurface;
+using geometry::kMostPolynomialDegree;
+using geometry::Sag;
+using geometry::XyPolynomial;
 
 /// The surface along the radial line at one angle: coefficients by the distance from the centre, and the angle on the
 /// nose at which the turn before touched there, as sideways distance.
@@ -75,7 +80,7 @@ double touching_height(RadialPolynomial& line, int degree, double r, double nose
 
 }  // namespace
 
-std::optional<Pass> polynomial_spiral(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o) {
+std::optional<Pass> polynomial_spiral(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o) {
   const int even = static_cast<int>(surface.base().asphere.even.size());
   const int degree =
       std::max({1, surface.base().polynomial ? surface.base().polynomial->degree : 0, even > 0 ? 2 * even + 2 : 0});

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fabrication/turning/plan/concavity_bound.h"
+#include "geometry/surface/concavity_bound.h"
 
 namespace retrace::fabrication::turning {
 namespace {
+
+using geometry::Boundary;
+using geometry::FreeformSurface;
+using geometry::Lenslet;
+using geometry::PlanBox;
 
 using geometry::Vec2;
 
@@ -23,7 +28,7 @@ std::pair<double, double> distances(const PlanBox& box, const Vec2& from) {
 
 }  // namespace
 
-TouchMap::TouchMap(const TurnedSurface& surface, const TurningTool& tool, double reach_mm) {
+TouchMap::TouchMap(const FreeformSurface& surface, const TurningTool& tool, double reach_mm) {
   // A rake adds the slope to the condition, which is not enclosed here.
   if (tool.rake_deg != 0.0) return;
   const double nose_mm = tool.nose_radius_mm;

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "fabrication/turning/surface.h"
 #include "fabrication/turning/tool.h"
+#include "geometry/surface/freeform_surface.h"
 
 namespace retrace::fabrication::turning {
 
@@ -16,7 +16,7 @@ class TouchMap {
   TouchMap() = default;
   /// What interval arithmetic can prove: of bases and lenslets without a formula, inside of the base's boundary, for
   /// tools without rake. \param reach_mm how far from the origin the edge gets
-  TouchMap(const TurnedSurface& surface, const TurningTool& tool, double reach_mm);
+  TouchMap(const geometry::FreeformSurface& surface, const TurningTool& tool, double reach_mm);
 
   /// The edge of a tool whose lowest point stands over (x, y) touches in one place.
   bool touches_once(double x_mm, double y_mm) const {

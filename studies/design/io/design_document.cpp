@@ -2,7 +2,6 @@
 
 #include "core/overloaded.h"
 #include "core/schema/writer.h"
-#include "geometry/substrate/sag_formula.h"
 #include "studies/design/io/design_format.h"
 
 namespace retrace::studies {
@@ -111,7 +110,7 @@ void set_substrate(Document& document, const Substrate& substrate) {
                           keys.set_word("axis", cylinder.axis_is_x ? "x" : "y");
                         },
                         [&](const SphereSubstrate& sphere) { keys.set("radius_mm", sphere.radius_mm); },
-                        [&](const FormulaSubstrate& formula) { keys.set_word("sag_mm", formula.sag_mm->text()); }},
+                        [&](const FormulaSubstrate& formula) { keys.set_word("sag_mm", formula.sag_mm->text); }},
              substrate.shape);
   keys.set_word("elements", substrate.element_axes == ElementAxes::normal ? "normal" : "parallel");
 }

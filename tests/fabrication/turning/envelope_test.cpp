@@ -15,10 +15,13 @@
 namespace retrace::fabrication::turning::envelope_test {
 namespace {
 
+using namespace geometry;
+using namespace jets;
+
 constexpr double kDegree = std::numbers::pi / 180.0;
 const InputLocation kHere{"part.toml", 3, "path"};
 
-Envelope cut(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o, double lower_nm = 0.0) {
+Envelope cut(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, double lower_nm = 0.0) {
   std::vector<Pass> passes = make_path(surface, tool, o, kHere);
   for (Pass& pass : passes)
     for (PathPoint& p : pass) p.z_mm -= 1e-6 * lower_nm;
@@ -36,7 +39,7 @@ InspectedRegion rectangle(const PathOptions& o) {
       .is_round = false, .half_width_mm = 0.5 * o.width_mm, .half_height_mm = 0.5 * o.height_mm, .feed_mm = o.feed_mm};
 }
 
-TurnedSurface sphere(double curvature_per_mm) {
+FreeformSurface sphere(double curvature_per_mm) {
   Sag sag;
   sag.asphere.curvature_per_mm = curvature_per_mm;
   return {sag, std::nullopt, {}, kHere};
@@ -90,7 +93,7 @@ TEST(TurningEnvelope, CuspsOfARasterWithSkewAndRake) {
   const InspectedRegion region = rectangle(o);
   Sag tilted;
   tilted.formula = parse_formula("0.1*x-0.15*y-0.1*x^2-0.05*x*y", sag_variables(), kHere);
-  const TurnedSurface surface(tilted, std::nullopt, {}, kHere);
+  const FreeformSurface surface(tilted, std::nullopt, {}, kHere);
   for (const double skew : {35.0, -50.0})
     for (const double rake : {0.0, -15.0}) {
       SCOPED_TRACE(skew);
@@ -120,7 +123,7 @@ TEST(TurningEnvelope, ARasterWithSkewIsThatOfEdgesLaidOutOneByOne) {
   o.arc_mm = 0.005;
   Sag sag;
   sag.formula = parse_formula("0.1*x^2+0.3*x*y", sag_variables(), kHere);
-  const TurnedSurface surface(sag, std::nullopt, {}, kHere);
+  const FreeformSurface surface(sag, std::nullopt, {}, kHere);
   const std::vector<Pass> passes = make_path(surface, tool, o, kHere);
   const Envelope envelope = cut(surface, tool, o);
   for (int s = 0; s < 6; ++s) {
@@ -181,23 +184,23 @@ TEST(TurningEnvelope, FormOfALensletThatReachesTheExtrapolatedBase) {
   Sag base;
   base.asphere.curvature_per_mm = -0.2;
   const Extrapolation extrapolation{circle_boundary({0.0, 0.0}, 0.2, 5), 4};
-  const TurnedSurface bare(base, extrapolation, {}, kHere);
+  const FreeformSurface bare(base, extrapolation, {}, kHere);
   Lenslet lenslet;
   lenslet.sag.asphere.curvature_per_mm = -0.7;
   lenslet.blend_order = 3;
   place_on_base(lenslet, bare, 0.16, 0.05, 0.002, true, kHere);
   lenslet.inner = circle_boundary({0.16, 0.05}, 0.06, 4);
   lenslet.outer = circle_boundary({0.16, 0.05}, 0.11, 4);
-  const TurnedSurface design(base, extrapolation, {lenslet}, kHere);
+  const FreeformSurface design(base, extrapolation, {lenslet}, kHere);
   const Inspection i = inspect(cut(design, tool, o), design, tool, disc(o), 31);
   expect_cusps(i, 60);
 }
 
 /// Lenslets of their own form, tilted to a curved base.
-TurnedSurface lenslet_array() {
+FreeformSurface lenslet_array() {
   Sag base;
   base.asphere.curvature_per_mm = -0.2;
-  const TurnedSurface bare(base, std::nullopt, {}, kHere);
+  const FreeformSurface bare(base, std::nullopt, {}, kHere);
   std::vector<Lenslet> lenslets;
   for (int k = 0; k < 3; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / 3.0;
@@ -221,7 +224,7 @@ TEST(TurningEnvelope, CuspsAndFormOfALensletArray) {
   o.sampling = Sampling::arc;
   // The chord of a block sags by arc^2 k / 8: 0.3 nm at k = 2 per mm.
   o.arc_mm = 0.001;
-  const TurnedSurface design = lenslet_array();
+  const FreeformSurface design = lenslet_array();
   const Inspection i = inspect(cut(design, tool, o), design, tool, disc(o), 31);
   expect_cusps(i, 60);
 }
@@ -276,7 +279,7 @@ TEST(TurningEnvelope, IsThatOfEdgesLaidOutOneByOne) {
   PathOptions o = spiral_of(0.2, 0.02);
   Sag sag;
   sag.formula = parse_formula("0.1*x^2+0.3*x*y", sag_variables(), kHere);
-  const TurnedSurface surface(sag, std::nullopt, {}, kHere);
+  const FreeformSurface surface(sag, std::nullopt, {}, kHere);
   const std::vector<Pass> passes = make_path(surface, tool, o, kHere);
   const Envelope envelope = cut(surface, tool, o);
   const Pass& pass = passes.front();

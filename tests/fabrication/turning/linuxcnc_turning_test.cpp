@@ -14,9 +14,12 @@
 namespace retrace::fabrication::turning::linuxcnc_turning_test {
 namespace {
 
+using namespace geometry;
+using namespace jets;
+
 const InputLocation kHere{"part.toml", 3, "path"};
 
-TurnedSurface wavy() {
+FreeformSurface wavy() {
   Sag sag;
   sag.formula = parse_formula("0.1*x^2-0.05*y^3+0.02*sin(5*x)*y", sag_variables(), kHere);
   return {sag, std::nullopt, {}, kHere};

@@ -16,6 +16,9 @@
 namespace retrace::fabrication::turning::path_test {
 namespace {
 
+using namespace geometry;
+using namespace jets;
+
 using geometry::Vec2;
 constexpr double kDegree = std::numbers::pi / 180.0;
 const InputLocation kHere{"part.toml", 3, "path"};
@@ -26,7 +29,7 @@ Sag formula_sag(const std::string& text) {
   return sag;
 }
 
-TurnedSurface plain(const Sag& sag) {
+FreeformSurface plain(const Sag& sag) {
   return {sag, std::nullopt, {}, kHere};
 }
 
@@ -72,7 +75,7 @@ TEST(TurningPath, NoseOnASphereRunsOnALargerSphere) {
 }
 
 TEST(TurningPath, EdgeNeverLiesBelowTheSurface) {
-  const TurnedSurface surface = plain(formula_sag("0.1*sin(4*x)*cos(3*y)+0.05*x^2"));
+  const FreeformSurface surface = plain(formula_sag("0.1*sin(4*x)*cos(3*y)+0.05*x^2"));
   for (const double rake : {0.0, -20.0, 10.0}) {
     TurningTool tool = nose(0.15);
     tool.rake_deg = rake;
@@ -107,7 +110,7 @@ TEST(TurningPath, PolynomialsTakeTheQuickWayToTheSamePath) {
   p.coefficients[p.index(0, 5)] = -0.02;
   p.coefficients[p.index(1, 0)] = 0.07;
   quick.polynomial = p;
-  const TurnedSurface slow = plain(formula_sag("0.1*x^2-0.05*x*y+0.03*x^3*y^3-0.02*y^5+0.07*x"));
+  const FreeformSurface slow = plain(formula_sag("0.1*x^2-0.05*x*y+0.03*x^3*y^3-0.02*y^5+0.07*x"));
   ASSERT_TRUE(polynomial_spiral(plain(quick), nose(0.2), small_spiral()).has_value());
   ASSERT_FALSE(polynomial_spiral(slow, nose(0.2), small_spiral()).has_value());
   const Pass a = make_path(plain(quick), nose(0.2), small_spiral(), kHere).front();
@@ -178,7 +181,7 @@ TEST(TurningKinematics, OfAnInclinedPlaneAreThoseOfASine) {
 }
 
 /// Ten turns of a spiral at one turn a second, 5 um apart: the exact acceleration of Z by a series in time.
-double acceleration(const TurnedSurface& surface, double c) {
+double acceleration(const FreeformSurface& surface, double c) {
   const double w = 2.0 * std::numbers::pi;
   const Series<double> angle = line_series(c, -w, 2);
   const Series<double> radius = line_series(0.65 + 0.005 * c / w, -0.005, 2);
@@ -189,7 +192,7 @@ double acceleration(const TurnedSurface& surface, double c) {
 double acceleration_jump(int order) {
   const Sag base = formula_sag("0.4*x^6-0.5*x^4*y^2+0.3*x^2*y^4-0.2*y^6");
   const Boundary rectangle = rectangle_boundary({0, 0}, 1.2, 0.8, 0.15, {order + 1, 128}, kHere);
-  const TurnedSurface surface(base, Extrapolation{rectangle, order}, {}, kHere);
+  const FreeformSurface surface(base, Extrapolation{rectangle, order}, {}, kHere);
   const double w = 2.0 * std::numbers::pi;
   double jump = 0.0;
   bool was_inside = false;
@@ -215,7 +218,7 @@ TEST(TurningKinematics, QuarticExtrapolationTakesTheJumpsOutOfTheAcceleration) {
 
 TEST(TurningServo, SharesOfTheStrokeAddUp) {
   PathOptions o = small_spiral();
-  const TurnedSurface surface = plain(formula_sag("0.1*r^2+0.02*x"));
+  const FreeformSurface surface = plain(formula_sag("0.1*r^2+0.02*x"));
   const Pass slow = make_path(surface, nose(0.1), o, kHere).front();
   o.servo = Servo::fast;
   const Pass fast = make_path(surface, nose(0.1), o, kHere).front();

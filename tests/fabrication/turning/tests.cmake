@@ -1,6 +1,5 @@
 retrace_test(fabrication_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/sag_test.cpp ${CMAKE_CURRENT_LIST_DIR}/boundary_test.cpp ${CMAKE_CURRENT_LIST_DIR}/surface_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/tool_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/tool_test.cpp
   LIBRARIES retrace::turning_plan retrace::turning_check)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/path_test.cpp ${CMAKE_CURRENT_LIST_DIR}/envelope_test.cpp

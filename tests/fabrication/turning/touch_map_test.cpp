@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/plan/concavity_bound.h"
 #include "fabrication/turning/plan/path.h"
+#include "geometry/surface/concavity_bound.h"
 #include "tests/fabrication/turning/paths.h"
 
 // What is proved of the surface's curvature against samples of it, and paths that rely on it against those that search
@@ -14,6 +14,9 @@
 
 namespace retrace::fabrication::turning::touch_map_test {
 namespace {
+
+using namespace geometry;
+using namespace jets;
 
 using geometry::Vec2;
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -33,7 +36,7 @@ Sag sphere(double curvature_per_mm) {
 
 /// The largest second derivative in any direction, from those in three.
 double concavity_bound(const std::function<Jet2(const Jet2&, const Jet2&)>& z, const Vec2& p) {
-  const auto along = [&](double c, double s) { return 2.0 * z(Jet2(p.x(), c, 0.0), Jet2(p.y(), s, 0.0)).b; };
+  const auto along = [&](double c, double s) { return 2.0 * z(Jet2(p.x(), c, 0.0), Jet2(p.y(), s, 0.0))[2]; };
   const double xx = along(1.0, 0.0);
   const double yy = along(0.0, 1.0);
   const double xy = 0.5 * (along(1.0, 1.0) - xx - yy);
@@ -51,7 +54,7 @@ struct Kind {
 };
 
 Lenslet lenslet_at(const Kind& kind, const Vec2& at) {
-  const TurnedSurface bare(sphere(kind.base_curvature_per_mm), std::nullopt, {}, kHere);
+  const FreeformSurface bare(sphere(kind.base_curvature_per_mm), std::nullopt, {}, kHere);
   Lenslet lenslet;
   lenslet.sag.asphere = {kind.curvature_per_mm, -0.5, {1e-3}};
   lenslet.blend_order = kind.blend_order;
@@ -69,7 +72,7 @@ Lenslet lenslet_at(const Kind& kind, const Vec2& at) {
   return lenslet;
 }
 
-TurnedSurface array_of(const Kind& kind, int side = 4) {
+FreeformSurface array_of(const Kind& kind, int side = 4) {
   std::vector<Lenslet> lenslets;
   for (int i = 0; i < side; ++i)
     for (int k = 0; k < side; ++k)
@@ -88,7 +91,7 @@ const Kind kKinds[] = {{},
                        {0.9, -4e-3, 2, true, true, 0.25}};
 
 /// Hollowest place of a lenslet's inside and of its blend, sampled.
-std::pair<double, double> sampled(const TurnedSurface& surface, const Lenslet& lenslet) {
+std::pair<double, double> sampled(const FreeformSurface& surface, const Lenslet& lenslet) {
   const auto z = [&](const Jet2& x, const Jet2& y) { return surface.evaluate(x, y); };
   double inside = -1e300;
   double blend = -1e300;
@@ -113,7 +116,7 @@ TEST(Hollowness, WhatIsProvedHoldsAndIsNotFarFromTheTruth) {
     for (const Vec2& at : {Vec2(0.0, 0.0), Vec2(0.9, -0.6)}) {
       const Lenslet lenslet = lenslet_at(kind, at);
       const Sag base = sphere(kind.base_curvature_per_mm);
-      const TurnedSurface surface(base, std::nullopt, {lenslet}, kHere);
+      const FreeformSurface surface(base, std::nullopt, {lenslet}, kHere);
       const auto [inside, blend] = sampled(surface, lenslet);
       EXPECT_FALSE(is_blend_concavity_bounded(lenslet, base, 0.999 * blend));
       EXPECT_TRUE(is_blend_concavity_bounded(lenslet, base, 1.6 * blend)) << blend;
@@ -164,7 +167,7 @@ PathOptions spiral() {
 
 /// Largest difference of a path's heights from those found by searching the whole arc at every point. \param once,
 /// searched how many points of either sort there were
-double largest_difference(const TurnedSurface& surface, const TurningTool& tool, const PathOptions& o, int& once,
+double largest_difference(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, int& once,
                           int& searched) {
   const NoseCompensation slow(surface, tool);
   const TouchMap map(surface, tool, o.radius_mm);
@@ -202,7 +205,7 @@ TEST(TouchMap, SearchesRoundWhatIsHollowerThanTheNose) {
   for (const double x : {-0.25, 0.25})
     for (const double y : {-0.25, 0.25}) lenslets.push_back(lenslet_at({}, {x, y}));
   lenslets.front() = lenslet_at({-0.8, 20e-3, 2}, {-0.25, -0.25});
-  const TurnedSurface surface(sphere(-0.02), std::nullopt, lenslets, kHere);
+  const FreeformSurface surface(sphere(-0.02), std::nullopt, lenslets, kHere);
   const TurningTool tool = nose(0.03);
   int once = 0;
   int searched = 0;
@@ -217,7 +220,7 @@ TEST(TouchMap, SearchesRoundWhatIsHollowerThanTheNose) {
 }
 
 TEST(TouchMap, KnowsNothingBeyondABoundaryAndOfToolsWithRake) {
-  const TurnedSurface surface(sphere(-0.1), Extrapolation{circle_boundary({0.1, 0.0}, 0.4), 2}, {}, kHere);
+  const FreeformSurface surface(sphere(-0.1), Extrapolation{circle_boundary({0.1, 0.0}, 0.4), 2}, {}, kHere);
   const TouchMap map(surface, nose(0.02), 0.6);
   EXPECT_TRUE(map.touches_once(0.1, 0.3));
   EXPECT_FALSE(map.touches_once(0.1, 0.39)) << "the edge reaches beyond";

@@ -1,15 +1,17 @@
 #pragma once
 
+// Proofs that a surface is nowhere hollower than a limit.
+
 #include <functional>
 
-#include "fabrication/turning/lenslet.h"
+#include "geometry/surface/lenslet.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 
 /// A rectangle of plan.
 struct PlanBox {
-  geometry::Vec2 low_mm = geometry::Vec2::Zero();
-  geometry::Vec2 high_mm = geometry::Vec2::Zero();
+  Vec2 low_mm = Vec2::Zero();
+  Vec2 high_mm = Vec2::Zero();
 };
 
 /// Calls `holds` for a box, and for its quarters where it says no, down to `depth` halvings; those of them where it
@@ -30,4 +32,4 @@ bool is_concavity_bounded(const Lenslet& lenslet, double limit_per_mm);
 /// The same of the blend between a lenslet and the base.
 bool is_blend_concavity_bounded(const Lenslet& lenslet, const Sag& base, double limit_per_mm);
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

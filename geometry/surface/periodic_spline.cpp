@@ -1,12 +1,16 @@
-#include "fabrication/turning/periodic_spline.h"
+#include "geometry/surface/periodic_spline.h"
 
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <stdexcept>
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
+
+using jets::constant_like;
+using jets::line_series;
+using jets::Series;
 
 constexpr double kPeriod = 2.0 * std::numbers::pi;
 
@@ -144,4 +148,4 @@ std::size_t PeriodicSpline::piece_at(double angle_rad) const {
   return piece;
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

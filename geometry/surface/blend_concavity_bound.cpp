@@ -5,25 +5,27 @@
 #include <optional>
 #include <vector>
 
-#include "fabrication/turning/interval.h"
-#include "fabrication/turning/numbers.h"
-#include "fabrication/turning/plan/concavity_bound.h"
+#include "core/angle.h"
+#include "core/math/interval.h"
+#include "core/math/jets.h"
+#include "geometry/surface/concavity_bound.h"
 
 // Between its two boundaries a blend is a polynomial of the share v of the way. In Bernstein's form its values lie
 // between its coefficients and those of its derivatives between their differences (G. Farin, Curves and Surfaces for
 // CAGD, 5th ed., sections 5.3 and 6.3), which are enclosed over pieces of the azimuth.
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
+
+using jets::binomial;
+using jets::constant_like;
+using jets::horner;
+using jets::Jet2;
+using jets::line_series;
+using jets::Series;
 
 constexpr int kMostDegree = 2 * kMostBlendOrder + 1;
 constexpr int kHalvings = 4;
-
-double binomial(int n, int k) {
-  double b = 1.0;
-  for (int i = 1; i <= k; ++i) b = b * (n - k + i) / i;
-  return b;
-}
 
 /// A spline's coefficients on one piece.
 struct Piece {
@@ -44,9 +46,9 @@ Piece piece_of(const PeriodicSpline& spline, double angle_rad) {
 /// azimuth.
 template <class C>
 struct Ray {
-  SecondOrder<C> inner;
-  SecondOrder<C> width;
-  std::array<SecondOrder<C>, kMostDegree + 1> node;  ///< Bernstein coefficients of z
+  Series<C, 2> inner;
+  Series<C, 2> width;
+  std::array<Series<C, 2>, kMostDegree + 1> node;  ///< Bernstein coefficients of z
 };
 
 /// Heights on the lenslet along a line over doubles; nothing is enclosed, so that it always is there.
@@ -55,7 +57,7 @@ std::optional<Series<Jet2, N>> on_lenslet(const Lenslet& lenslet, const Series<J
   return lenslet.evaluate(x, y);
 }
 
-using Enclosure = SecondOrder<Interval>;
+using Enclosure = Series<Interval, 2>;
 
 /// Where the lenslet's surface is over a box of plan: Newton's rule for intervals (R. E. Moore, Methods and
 /// Applications of Interval Analysis, SIAM 1979, section 5.2), which also proves that there is one such height near.
@@ -65,14 +67,14 @@ struct Enclosed {
 };
 std::optional<Enclosed> enclosed_height(const Lenslet& lenslet, const Interval& x, const Interval& y) {
   const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
-  const geometry::Vec3& o = lenslet.origin_mm;
+  const Vec3& o = lenslet.origin_mm;
   const double middle = lenslet.evaluate(median(x) + o.x(), median(y) + o.y()) - o.z();
   if (!std::isfinite(middle)) return std::nullopt;
   const auto residual_and_slope = [&](const Interval& z) {
     const Enclosure u(x * r(0, 0) + y * r(1, 0) + z * r(2, 0), Interval(r(2, 0)), Interval(0.0));
     const Enclosure v(x * r(0, 1) + y * r(1, 1) + z * r(2, 1), Interval(r(2, 1)), Interval(0.0));
     const Enclosure sag = lenslet.sag.evaluate_without_formula(u, v);
-    return Enclosed{x * r(0, 2) + y * r(1, 2) + z * r(2, 2) - sag.v, r(2, 2) - sag.a};
+    return Enclosed{x * r(0, 2) + y * r(1, 2) + z * r(2, 2) - sag[0], r(2, 2) - sag[1]};
   };
   const Enclosed at_middle = residual_and_slope(Interval(middle));
   double reach = 1.5 * norm(at_middle.z) / r(2, 2) + 1e-15;
@@ -86,11 +88,6 @@ std::optional<Enclosed> enclosed_height(const Lenslet& lenslet, const Interval& 
   return std::nullopt;
 }
 
-/// The k-th of the three coefficients.
-Interval& coefficient(Enclosure& e, int k) {
-  return k == 0 ? e.v : k == 1 ? e.a : e.b;
-}
-
 /// Derivatives follow order by order, as those of the residual must vanish: each is linear in its own.
 template <int N>
 std::optional<Series<Enclosure, N>> on_lenslet(const Lenslet& lenslet, const Series<Enclosure, N>& x,
@@ -99,18 +96,18 @@ std::optional<Series<Enclosure, N>> on_lenslet(const Lenslet& lenslet, const Ser
   const Series<Enclosure, N> px = x - lenslet.origin_mm.x();
   const Series<Enclosure, N> py = y - lenslet.origin_mm.y();
   if (r(2, 2) == 1.0) return lenslet.sag.evaluate_without_formula(px, py) + lenslet.origin_mm.z();
-  const auto start = enclosed_height(lenslet, px[0].v, py[0].v);
+  const auto start = enclosed_height(lenslet, px[0][0], py[0][0]);
   if (!start) return std::nullopt;
   Series<Enclosure, N> z = constant_like(px, 0.0);
-  z[0].v = start->z;
+  z[0][0] = start->z;
   constexpr int kOrdersOfAzimuth = 2;
   for (int order = 1; order <= z.order + kOrdersOfAzimuth; ++order) {
     const Series<Enclosure, N> u = px * r(0, 0) + py * r(1, 0) + z * r(2, 0);
     const Series<Enclosure, N> v = px * r(0, 1) + py * r(1, 1) + z * r(2, 1);
     Series<Enclosure, N> residual =
         px * r(0, 2) + py * r(1, 2) + z * r(2, 2) - lenslet.sag.evaluate_without_formula(u, v);
-    for (int k = std::max(0, order - kOrdersOfAzimuth); k <= std::min(order, z.order); ++k)
-      coefficient(z[k], order - k) = -(coefficient(residual[k], order - k) / start->slope);
+    for (int k = std::max(0, order - kOrdersOfAzimuth); k <= std::min<int>(order, z.order); ++k)
+      z[k][order - k] = -(residual[k][order - k] / start->slope);
   }
   return z + lenslet.origin_mm.z();
 }
@@ -118,18 +115,18 @@ std::optional<Series<Enclosure, N>> on_lenslet(const Lenslet& lenslet, const Ser
 template <int N, class C>
 std::optional<Ray<C>> ray_of_order(const Lenslet& lenslet, const Sag& base, const C& angle_rad, const Piece& inner,
                                    const Piece& outer) {
-  using T = SecondOrder<C>;
+  using T = Series<C, 2>;
   constexpr int d = N;
   constexpr int n = 2 * d + 1;
   const T angle(angle_rad, C(1.0), C(0.0));
   const T cosine = cos(angle);
   const T sine = sin(angle);
-  const auto radius = [&](const Piece& p) { return horner(p.coefficients, p.count, T(angle - p.start_rad)); };
+  const auto radius = [&](const Piece& p) { return horner(p.coefficients, p.count, angle - p.start_rad); };
   Ray<C> ray;
   ray.inner = radius(inner);
   const T far = radius(outer);
   ray.width = far - ray.inner;
-  const geometry::Vec2& centre = lenslet.outer.centre_mm;
+  const Vec2& centre = lenslet.outer.centre_mm;
   const auto line = [&](const T& at, const T& direction, double c) {
     return line_series<T, N>(T(at * direction + c), direction, d);
   };
@@ -137,9 +134,9 @@ std::optional<Ray<C>> ray_of_order(const Lenslet& lenslet, const Sag& base, cons
   if (!first) return std::nullopt;
   const Series<T, N> second = base.evaluate_without_formula(line(far, cosine, centre.x()), line(far, sine, centre.y()));
   for (int j = 0; j <= d; ++j) {
-    T from_first(0.0);
-    T from_second(0.0);
-    T scale(1.0);
+    T from_first = constant_like(angle, 0.0);
+    T from_second = constant_like(angle, 0.0);
+    T scale = constant_like(angle, 1.0);
     for (int k = 0; k <= j; ++k) {
       const double share = binomial(j, k) / binomial(n, k);
       from_first = from_first + (*first)[k] * scale * share;
@@ -169,7 +166,7 @@ std::optional<Ray<C>> ray_at(const Lenslet& lenslet, const Sag& base, const C& a
 
 /// The second difference of the nodes as a derivative by the radius.
 template <class C>
-SecondOrder<C> second_by_radius(const Ray<C>& ray, int degree, std::size_t j) {
+Series<C, 2> second_by_radius(const Ray<C>& ray, int degree, std::size_t j) {
   const double factor = static_cast<double>(degree * (degree - 1));
   return (ray.node[j + 2] - ray.node[j + 1] * 2.0 + ray.node[j]) / (ray.width * ray.width) * factor;
 }
@@ -197,27 +194,27 @@ double largest_bend(const Ray<Interval>& ray, const Ray<double>& middle, double 
   Interval zrr = Interval::empty(), zv = zrr, slope = zrr, twist = zrr, bend = zrr;
   std::array<double, kMostDegree> upper{};
   for (int j = 0; j <= degree; ++j) {
-    slope = hull(slope, ray.node[at(j)].a);
-    bend = hull(bend, 2.0 * ray.node[at(j)].b);
+    slope = hull(slope, ray.node[at(j)][1]);
+    bend = hull(bend, 2.0 * ray.node[at(j)][2]);
     if (j + 1 > degree) continue;
-    zv = hull(zv, static_cast<double>(degree) * (ray.node[at(j + 1)].v - ray.node[at(j)].v));
-    twist = hull(twist, static_cast<double>(degree) * (ray.node[at(j + 1)].a - ray.node[at(j)].a));
+    zv = hull(zv, static_cast<double>(degree) * (ray.node[at(j + 1)][0] - ray.node[at(j)][0]));
+    twist = hull(twist, static_cast<double>(degree) * (ray.node[at(j + 1)][1] - ray.node[at(j)][1]));
     if (j + 2 > degree) continue;
     const Jet2 centre = second_by_radius(middle, degree, at(j));
     const Enclosure whole = second_by_radius(ray, degree, at(j));
-    const Interval second = intersect(whole.v, centre.v + centre.a * turn + whole.b * turn_squared);
+    const Interval second = intersect(whole[0], centre[0] + centre[1] * turn + whole[2] * turn_squared);
     zrr = hull(zrr, second);
     upper[at(j)] = second.upper();
   }
   // v = (radius - inner) / width changes with the azimuth where the boundaries are no circles.
-  const Interval& w = ray.width.v;
-  const Interval v_t = -(ray.inner.a + share * ray.width.a) / w;
-  const Interval v_tt = -(2.0 * (ray.inner.b + share * ray.width.b)) / w - 2.0 * ray.width.a * v_t / w;
+  const Interval& w = ray.width[0];
+  const Interval v_t = -(ray.inner[1] + share * ray.width[1]) / w;
+  const Interval v_tt = -(2.0 * (ray.inner[2] + share * ray.width[2])) / w - 2.0 * ray.width[1] * v_t / w;
   const Interval zvv = zrr * w * w;
   const Interval z_t = slope + zv * v_t;
   const Interval z_tt = bend + 2.0 * twist * v_t + zvv * v_t * v_t + zv * v_tt;
-  const Interval z_rt = twist / w + zvv * v_t / w - zv * ray.width.a / (w * w);
-  const Interval radius = hull(ray.inner.v, ray.inner.v + w);
+  const Interval z_rt = twist / w + zvv * v_t / w - zv * ray.width[1] / (w * w);
+  const Interval radius = hull(ray.inner[0], ray.inner[0] + w);
   const Interval across = zv / w / radius + z_tt / (radius * radius);
   const Interval mixed = z_rt / radius - z_t / (radius * radius);
   // Bernstein's polynomials are nowhere below 0, so that those of the upper ends lie above the others.
@@ -231,7 +228,7 @@ bool is_proved_between(const Lenslet& lenslet, const Sag& base, double limit_per
   const Piece inner = piece_of(lenslet.inner.radius_mm, middle);
   const Piece outer = piece_of(lenslet.outer.radius_mm, middle);
   const auto ray = ray_at(lenslet, base, Interval(from_rad, to_rad), inner, outer);
-  if (ray && ray->inner.v.lower() > 0.0 && ray->width.v.lower() > 0.0) {
+  if (ray && ray->inner[0].lower() > 0.0 && ray->width[0].lower() > 0.0) {
     const auto centre = ray_at(lenslet, base, middle, inner, outer);
     if (largest_bend(*ray, *centre, 0.5 * (to_rad - from_rad), 2 * lenslet.blend_order + 1) < limit_per_mm) return true;
   }
@@ -273,4 +270,4 @@ bool is_blend_concavity_bounded(const Lenslet& lenslet, const Sag& base, double 
   return true;
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

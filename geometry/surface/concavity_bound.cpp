@@ -1,16 +1,17 @@
-#include "fabrication/turning/plan/concavity_bound.h"
+#include "geometry/surface/concavity_bound.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/turning/interval.h"
+#include "core/math/interval.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
 
-using geometry::Vec2;
-using Enclosure = SecondOrder<Interval>;
+using jets::Series;
+
+using Enclosure = Series<Interval, 2>;
 
 constexpr int kDeepest = 6;  ///< halvings of a box along each side
 
@@ -36,8 +37,8 @@ Bend bend_over(const Sag& sag, const Interval& x, const Interval& y) {
   };
   const Enclosure by_x = along(1.0, 0.0);
   const Enclosure by_y = along(0.0, 1.0);
-  const Interval xy = along(1.0, 1.0).b - by_x.b - by_y.b;
-  return {by_x.v, by_x.a, by_y.a, largest_eigenvalue(2.0 * by_x.b, xy, 2.0 * by_y.b)};
+  const Interval xy = along(1.0, 1.0)[2] - by_x[2] - by_y[2];
+  return {by_x[0], by_x[1], by_y[1], largest_eigenvalue(2.0 * by_x[2], xy, 2.0 * by_y[2])};
 }
 
 Interval along_x(const PlanBox& box) {
@@ -57,7 +58,7 @@ std::optional<double> covering(const Lenslet& lenslet, double reach_mm) {
   for (int attempt = 0; attempt < 4; ++attempt, rho *= 1.3) {
     const Interval span(-rho, rho);
     const Enclosure u(span, Interval(0.0), Interval(0.0));
-    if (cosine * rho - sine * norm(lenslet.sag.evaluate_without_formula(u, u).v) > reach_mm) return rho;
+    if (cosine * rho - sine * norm(lenslet.sag.evaluate_without_formula(u, u)[0]) > reach_mm) return rho;
   }
   return std::nullopt;
 }
@@ -112,4 +113,4 @@ bool is_concavity_bounded(const Lenslet& lenslet, double limit_per_mm) {
   return is_proved;
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

@@ -1,19 +1,23 @@
-#include "fabrication/turning/surface.h"
+#include "geometry/surface/freeform_surface.h"
 
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angle.h"
 #include "core/number_format.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
+using jets::Gradient;
+using jets::Jet2;
+using jets::kAnyOrder;
+using jets::line_series;
+using jets::Series;
+using jets::value_of;
 
 /// A place in polar coordinates about a centre.
 template <class T>
@@ -40,8 +44,8 @@ std::string place(double x_mm, double y_mm) {
 
 }  // namespace
 
-TurnedSurface::TurnedSurface(Sag base, std::optional<Extrapolation> extrapolation, std::vector<Lenslet> lenslets,
-                             const InputLocation& where)
+FreeformSurface::FreeformSurface(Sag base, std::optional<Extrapolation> extrapolation, std::vector<Lenslet> lenslets,
+                                 const InputLocation& where)
     : base_(std::move(base)), extrapolation_(std::move(extrapolation)), lenslets_(std::move(lenslets)) {
   if (!lenslets_.empty()) sort_into_grid(where);
 }
@@ -77,7 +81,7 @@ T blend_at(const Lenslet& lenslet, const Polar<T>& p, const Base& base) {
 }  // namespace
 
 template <class T>
-T TurnedSurface::extrapolated(const T& x_mm, const T& y_mm) const {
+T FreeformSurface::extrapolated(const T& x_mm, const T& y_mm) const {
   const Boundary& boundary = extrapolation_->boundary;
   const Polar<T> p = polar(x_mm, y_mm, boundary.centre_mm);
   const T edge = boundary.radius_mm.evaluate(p.angle);
@@ -90,20 +94,20 @@ T TurnedSurface::extrapolated(const T& x_mm, const T& y_mm) const {
 }
 
 template <class T>
-T TurnedSurface::evaluate_base(const T& x_mm, const T& y_mm) const {
+T FreeformSurface::evaluate_base(const T& x_mm, const T& y_mm) const {
   if (!extrapolation_ || extrapolation_->boundary.contains(value_of(x_mm), value_of(y_mm)))
     return base_.evaluate(x_mm, y_mm);
   return extrapolated(x_mm, y_mm);
 }
 
 template <class T>
-T TurnedSurface::evaluate_blend(const Lenslet& lenslet, const T& x_mm, const T& y_mm) const {
+T FreeformSurface::evaluate_blend(const Lenslet& lenslet, const T& x_mm, const T& y_mm) const {
   const Polar<T> p = polar(x_mm, y_mm, lenslet.outer.centre_mm);
-  const TurnedSurface& self = *this;
+  const FreeformSurface& self = *this;
   const auto base = [&self](const auto& x, const auto& y) { return self.base_.evaluate(x, y); };
   if (!lenslet.ends_on_base)
     return blend_at<kAnyOrder>(lenslet, p, [&self](const auto& x, const auto& y) { return self.evaluate_base(x, y); });
-  if constexpr (std::is_same_v<T, Jet2>) {
+  if constexpr (std::is_same_v<T, Jet2> || std::is_same_v<T, double>) {
     // Paths spend most of their time here.
     if (lenslet.blend_order == 1) return blend_at<1>(lenslet, p, base);
     if (lenslet.blend_order == 2) return blend_at<2>(lenslet, p, base);
@@ -114,29 +118,29 @@ T TurnedSurface::evaluate_blend(const Lenslet& lenslet, const T& x_mm, const T& 
 }
 
 template <class T>
-T TurnedSurface::evaluate(const T& x_mm, const T& y_mm) const {
+T FreeformSurface::evaluate(const T& x_mm, const T& y_mm) const {
   const Lenslet* const lenslet = lenslet_at(value_of(x_mm), value_of(y_mm));
   if (lenslet == nullptr) return evaluate_base(x_mm, y_mm);
   if (lenslet->inner.contains(value_of(x_mm), value_of(y_mm))) return lenslet->evaluate(x_mm, y_mm);
   return evaluate_blend(*lenslet, x_mm, y_mm);
 }
 
-template double TurnedSurface::evaluate(const double&, const double&) const;
-template Dual TurnedSurface::evaluate(const Dual&, const Dual&) const;
-template Jet2 TurnedSurface::evaluate(const Jet2&, const Jet2&) const;
-template Series<double> TurnedSurface::evaluate(const Series<double>&, const Series<double>&) const;
-template double TurnedSurface::evaluate_base(const double&, const double&) const;
-template Dual TurnedSurface::evaluate_base(const Dual&, const Dual&) const;
-template Jet2 TurnedSurface::evaluate_base(const Jet2&, const Jet2&) const;
-template Series<double> TurnedSurface::evaluate_base(const Series<double>&, const Series<double>&) const;
+template double FreeformSurface::evaluate(const double&, const double&) const;
+template Gradient FreeformSurface::evaluate(const Gradient&, const Gradient&) const;
+template Jet2 FreeformSurface::evaluate(const Jet2&, const Jet2&) const;
+template Series<double> FreeformSurface::evaluate(const Series<double>&, const Series<double>&) const;
+template double FreeformSurface::evaluate_base(const double&, const double&) const;
+template Gradient FreeformSurface::evaluate_base(const Gradient&, const Gradient&) const;
+template Jet2 FreeformSurface::evaluate_base(const Jet2&, const Jet2&) const;
+template Series<double> FreeformSurface::evaluate_base(const Series<double>&, const Series<double>&) const;
 
-Zone TurnedSurface::zone_at(double x_mm, double y_mm) const {
+Zone FreeformSurface::zone_at(double x_mm, double y_mm) const {
   if (const Lenslet* const lenslet = lenslet_at(x_mm, y_mm))
     return lenslet->inner.contains(x_mm, y_mm) ? Zone::lenslet : Zone::blend;
   return !extrapolation_ || extrapolation_->boundary.contains(x_mm, y_mm) ? Zone::base : Zone::extrapolation;
 }
 
-const Lenslet* TurnedSurface::lenslet_at(double x_mm, double y_mm) const {
+const Lenslet* FreeformSurface::lenslet_at(double x_mm, double y_mm) const {
   if (cells_.empty()) return nullptr;
   const double column = (x_mm - grid_low_.x()) / cell_mm_;
   const double row = (y_mm - grid_low_.y()) / cell_mm_;
@@ -157,9 +161,8 @@ void check_apart(const std::vector<Lenslet>& lenslets, std::uint32_t a, std::uin
   if ((first.centre_mm - second.centre_mm).norm() > first.most_mm + second.most_mm) return;
   constexpr int kAngles = 360;
   for (int i = 0; i < kAngles; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kAngles;
-    const double r = first.radius_mm.evaluate(angle);
-    const Vec2 p = first.centre_mm + r * Vec2(std::cos(angle), std::sin(angle));
+    const double angle = kTurn * i / kAngles;
+    const Vec2 p = first.point_mm(angle);
     if (second.contains(p.x(), p.y()))
       throw InputError(where, fmt::format("must leave room between blends, lenslets {} and {} cross at {}", a + 1,
                                           b + 1, place(p.x(), p.y())));
@@ -170,8 +173,8 @@ void check_apart(const std::vector<Lenslet>& lenslets, std::uint32_t a, std::uin
 bool is_inside(const Boundary& inner, const Boundary& outer) {
   constexpr int kAngles = 360;
   for (int i = 0; i < kAngles; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kAngles;
-    const Vec2 p = inner.centre_mm + inner.radius_mm.evaluate(angle) * Vec2(std::cos(angle), std::sin(angle));
+    const double angle = kTurn * i / kAngles;
+    const Vec2 p = inner.point_mm(angle);
     if (!outer.contains(p.x(), p.y())) return false;
   }
   return true;
@@ -179,7 +182,7 @@ bool is_inside(const Boundary& inner, const Boundary& outer) {
 
 }  // namespace
 
-void TurnedSurface::sort_into_grid(const InputLocation& where) {
+void FreeformSurface::sort_into_grid(const InputLocation& where) {
   Vec2 low = lenslets_.front().outer.centre_mm;
   Vec2 high = low;
   cell_mm_ = 0.0;
@@ -208,37 +211,37 @@ void TurnedSurface::sort_into_grid(const InputLocation& where) {
   }
 }
 
-void place_on_base(Lenslet& lenslet, const TurnedSurface& base, double x_mm, double y_mm, double height_mm, bool tilted,
-                   const InputLocation& where) {
-  const Dual z = base.gradient(x_mm, y_mm);
-  if (!std::isfinite(z.v) || !std::isfinite(z.dx) || !std::isfinite(z.dy))
+void place_on_base(Lenslet& lenslet, const FreeformSurface& base, double x_mm, double y_mm, double height_mm,
+                   bool tilted, const InputLocation& where) {
+  const Gradient z = base.gradient(x_mm, y_mm);
+  if (!std::isfinite(z.value) || !std::isfinite(z.x) || !std::isfinite(z.y))
     throw InputError(where, "must lie where the base has a height and slope, got " + place(x_mm, y_mm));
-  const Vec3 normal = Vec3(-z.dx, -z.dy, 1.0).normalized();
-  lenslet.origin_mm = Vec3(x_mm, y_mm, z.v) + height_mm * (tilted ? normal : Vec3(Vec3::UnitZ()));
+  const Vec3 normal = Vec3(-z.x, -z.y, 1.0).normalized();
+  lenslet.origin_mm = Vec3(x_mm, y_mm, z.value) + height_mm * (tilted ? normal : Vec3(Vec3::UnitZ()));
   lenslet.part_from_lenslet = Eigen::Matrix3d::Identity();
-  if (tilted && (z.dx != 0.0 || z.dy != 0.0))
+  if (tilted && (z.x != 0.0 || z.y != 0.0))
     lenslet.part_from_lenslet = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
 }
 
-void check_surface(const TurnedSurface& surface, double radius_mm, const InputLocation& where) {
+void check_surface(const FreeformSurface& surface, double radius_mm, const InputLocation& where) {
   constexpr int kCircles = 128;
   constexpr int kAngles = 180;
   for (int i = 0; i <= kCircles; ++i)
     for (int k = 0; k < (i == 0 ? 1 : kAngles); ++k) {
       const double r = radius_mm * i / kCircles;
-      const double angle = 2.0 * std::numbers::pi * k / kAngles;
+      const double angle = kTurn * k / kAngles;
       const double x = r * std::cos(angle);
       const double y = r * std::sin(angle);
       if (!std::isfinite(surface.height_mm(x, y)))
         throw InputError(where, "must be finite all over the part, is not at " + place(x, y));
       // At the centre a formula of r may have no slope, as that of a cone.
       if (i == 0) continue;
-      const Dual z = surface.gradient(x, y);
-      const double slope = std::hypot(z.dx, z.dy);
+      const Gradient z = surface.gradient(x, y);
+      const double slope = std::hypot(z.x, z.y);
       if (!(slope < kSteepestSlope))
         throw InputError(where, fmt::format("must have no vertical slope, at {} it is {}", place(x, y),
                                             std::isfinite(slope) ? "above 89 degrees" : "not finite"));
     }
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

@@ -1,17 +1,15 @@
-#include "fabrication/turning/boundary.h"
+#include "geometry/surface/boundary.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <numbers>
 
+#include "core/angle.h"
 #include "core/number_format.h"
-#include "fabrication/turning/numbers.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
-
-using geometry::Vec2;
 
 std::string degrees(double angle_rad) {
   return fixed(std::remainder(angle_rad, kTurn) * 180.0 / std::numbers::pi, 2);
@@ -206,4 +204,4 @@ void check_nested(const Boundary& inner, const Boundary& outer, const InputLocat
   }
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

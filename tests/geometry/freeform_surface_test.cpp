@@ -1,5 +1,4 @@
-#include "fabrication/turning/surface.h"
-#include "tests/support/refusals.h"
+#include "geometry/surface/freeform_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -8,14 +7,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angle.h"
+
 // Extrapolation, blending and lenslets: orders of continuity, values, and closed forms.
 
-namespace retrace::fabrication::turning::surface_test {
+namespace retrace::geometry::freeform_surface_test {
 namespace {
 
-using geometry::Vec2;
-using geometry::Vec3;
-constexpr double kTurn = 2.0 * std::numbers::pi;
+using namespace jets;
+
 const InputLocation kHere{"part.toml", 3, "lenslets"};
 
 /// A polynomial of degree 6 that grows quickly, as in Fig. 8 of Naples and Yi.
@@ -42,7 +42,7 @@ TEST(Extrapolation, HasTheOrderItIsAskedFor) {
   const Vec2 centre(0.1, -0.05);
   for (int n = 1; n <= 6; ++n) {
     const Extrapolation extrapolation{wavy_boundary(centre, 1.0), n};
-    const TurnedSurface surface(steep_polynomial(), extrapolation, {}, kHere);
+    const FreeformSurface surface(steep_polynomial(), extrapolation, {}, kHere);
     const auto base = [&](const Series<double>& x, const Series<double>& y) { return surface.base().evaluate(x, y); };
     const auto whole = [&](const Series<double>& x, const Series<double>& y) { return surface.evaluate(x, y); };
     double jump = 0.0;
@@ -66,7 +66,7 @@ TEST(Extrapolation, DifferenceQuotientsAreTheExactDerivatives) {
   const Vec2 centre(0.0, 0.0);
   for (int n = 1; n <= 4; ++n) {
     const Extrapolation extrapolation{wavy_boundary(centre, 1.0), n};
-    const TurnedSurface surface(steep_polynomial(), extrapolation, {}, kHere);
+    const FreeformSurface surface(steep_polynomial(), extrapolation, {}, kHere);
     const auto base = [&](const Series<double>& x, const Series<double>& y) { return surface.base().evaluate(x, y); };
     const double angle = 0.8;
     const double edge = extrapolation.boundary.radius_mm.evaluate(angle);
@@ -92,7 +92,7 @@ TEST(Extrapolation, DifferenceQuotientsAreTheExactDerivatives) {
 }
 
 TEST(Extrapolation, IsTheDesignWithin) {
-  const TurnedSurface surface(steep_polynomial(), Extrapolation{wavy_boundary({0, 0}, 1.0), 3}, {}, kHere);
+  const FreeformSurface surface(steep_polynomial(), Extrapolation{wavy_boundary({0, 0}, 1.0), 3}, {}, kHere);
   for (int i = 0; i < 500; ++i) {
     const double r = 0.78 * std::sqrt(i / 500.0);
     const double x = r * std::cos(2.4 * i);
@@ -108,7 +108,7 @@ TEST(Extrapolation, IsTheDesignWithin) {
 /// Third derivative in azimuth on either side of every knot of the boundary, at a radius outside: the largest jump.
 double azimuth_jump(int degree, int order) {
   const Boundary boundary = wavy_boundary({0, 0}, 1.0, degree);
-  const TurnedSurface surface(steep_polynomial(), Extrapolation{boundary, 4}, {}, kHere);
+  const FreeformSurface surface(steep_polynomial(), Extrapolation{boundary, 4}, {}, kHere);
   double jump = 0.0;
   for (const double knot : boundary.radius_mm.knots_rad()) {
     double side[2];
@@ -164,10 +164,10 @@ TEST(Blend, SolvesTheHermiteSystem) {
 }
 
 /// One tilted lenslet on a curved base.
-TurnedSurface lens_on_base(int d, bool tilted = true) {
+FreeformSurface lens_on_base(int d, bool tilted = true) {
   Sag base;
   base.asphere.curvature_per_mm = -0.08;
-  const TurnedSurface bare(base, std::nullopt, {}, kHere);
+  const FreeformSurface bare(base, std::nullopt, {}, kHere);
   Lenslet lenslet;
   lenslet.sag.asphere = {-0.9, -0.5, {0.02}};
   lenslet.sag.formula = parse_formula("0.05*x^3-0.02*x*y", sag_variables(), kHere);
@@ -181,7 +181,7 @@ TurnedSurface lens_on_base(int d, bool tilted = true) {
 TEST(Blend, HasItsOrderAtBothBoundaries) {
   const Vec2 centre(1.2, -0.7);
   for (int d = 1; d <= kMostBlendOrder; ++d) {
-    const TurnedSurface surface = lens_on_base(d);
+    const FreeformSurface surface = lens_on_base(d);
     const Lenslet& lenslet = surface.lenslets().front();
     const auto on_lenslet = [&](const Series<double>& x, const Series<double>& y) { return lenslet.evaluate(x, y); };
     const auto on_base = [&](const Series<double>& x, const Series<double>& y) {
@@ -209,7 +209,7 @@ TEST(Blend, HasItsOrderAtBothBoundaries) {
 }
 
 TEST(Blend, StaysBetweenItsBoundaries) {
-  const TurnedSurface surface = lens_on_base(3);
+  const FreeformSurface surface = lens_on_base(3);
   const Lenslet& lenslet = surface.lenslets().front();
   int blended = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -233,7 +233,7 @@ TEST(Blend, StaysBetweenItsBoundaries) {
 TEST(Blend, ReachesAnExtrapolatedBase) {
   // One lenslet across the base's boundary, one beyond it.
   const Extrapolation extrapolation{wavy_boundary({0.1, -0.05}, 1.0, 5), 4};
-  const TurnedSurface bare(steep_polynomial(), extrapolation, {}, kHere);
+  const FreeformSurface bare(steep_polynomial(), extrapolation, {}, kHere);
   std::vector<Lenslet> lenslets(2);
   const Vec2 places[] = {{1.2, 0.1}, {-0.9, -1.1}};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -243,7 +243,7 @@ TEST(Blend, ReachesAnExtrapolatedBase) {
     lenslets[i].inner = circle_boundary(places[i], 0.1);
     lenslets[i].outer = circle_boundary(places[i], 0.15);
   }
-  const TurnedSurface surface(steep_polynomial(), extrapolation, lenslets, kHere);
+  const FreeformSurface surface(steep_polynomial(), extrapolation, lenslets, kHere);
   const auto whole = [&](const Series<double>& x, const Series<double>& y) { return surface.evaluate(x, y); };
   int extrapolated = 0;
   for (const Vec2& at : places)
@@ -257,30 +257,30 @@ TEST(Blend, ReachesAnExtrapolatedBase) {
       extrapolated += surface.zone_at(p.x(), p.y()) == Zone::extrapolation ? 1 : 0;
       const Vec2 q = at + 0.12 * Vec2(std::cos(angle), std::sin(angle));
       const Jet2 along = surface.evaluate(Jet2(q.x(), 0.6, 0.0), Jet2(q.y(), 0.8, 0.0));
-      const Dual slopes = surface.gradient(q.x(), q.y());
-      EXPECT_NEAR(along.v, slopes.v, 1e-14);
-      EXPECT_NEAR(along.a, 0.6 * slopes.dx + 0.8 * slopes.dy, 1e-11);
+      const Gradient slopes = surface.gradient(q.x(), q.y());
+      EXPECT_NEAR(along[0], slopes.value, 1e-14);
+      EXPECT_NEAR(along[1], 0.6 * slopes.x + 0.8 * slopes.y, 1e-11);
       const auto height = [&](double t) { return surface.height_mm(q.x() + 0.6 * t, q.y() + 0.8 * t); };
-      EXPECT_NEAR(along.a, (height(1e-5) - height(-1e-5)) / 2e-5, 1e-6);
+      EXPECT_NEAR(along[1], (height(1e-5) - height(-1e-5)) / 2e-5, 1e-6);
     }
   EXPECT_GT(extrapolated, 20);
   EXPECT_LT(extrapolated, 34) << "of the first, a part lies within the boundary";
 }
 
 TEST(Surface, GradientIsThatOfItsValues) {
-  const TurnedSurface surface = lens_on_base(2);
-  const TurnedSurface extended(steep_polynomial(), Extrapolation{wavy_boundary({0, 0}, 1.0), 3}, {}, kHere);
+  const FreeformSurface surface = lens_on_base(2);
+  const FreeformSurface extended(steep_polynomial(), Extrapolation{wavy_boundary({0, 0}, 1.0), 3}, {}, kHere);
   for (int i = 0; i < 400; ++i) {
     const double h = 1e-6;
-    for (const TurnedSurface* s : {&surface, &extended}) {
+    for (const FreeformSurface* s : {&surface, &extended}) {
       const double x = (s == &surface ? 1.2 : 0.0) + (s == &surface ? 0.5 : 1.3) * std::sin(1.37 * i);
       const double y = (s == &surface ? -0.7 : 0.0) + (s == &surface ? 0.5 : 1.3) * std::cos(0.73 * i);
       if (s->zone_at(x + 2 * h, y) != s->zone_at(x - 2 * h, y) || s->zone_at(x, y + 2 * h) != s->zone_at(x, y - 2 * h))
         continue;
-      const Dual z = s->gradient(x, y);
-      EXPECT_NEAR(z.v, s->height_mm(x, y), 1e-14);
-      EXPECT_NEAR(z.dx, (s->height_mm(x + h, y) - s->height_mm(x - h, y)) / (2 * h), 2e-8 * (1 + std::abs(z.dx)));
-      EXPECT_NEAR(z.dy, (s->height_mm(x, y + h) - s->height_mm(x, y - h)) / (2 * h), 2e-8 * (1 + std::abs(z.dy)));
+      const Gradient z = s->gradient(x, y);
+      EXPECT_NEAR(z.value, s->height_mm(x, y), 1e-14);
+      EXPECT_NEAR(z.x, (s->height_mm(x + h, y) - s->height_mm(x - h, y)) / (2 * h), 2e-8 * (1 + std::abs(z.x)));
+      EXPECT_NEAR(z.y, (s->height_mm(x, y + h) - s->height_mm(x, y - h)) / (2 * h), 2e-8 * (1 + std::abs(z.y)));
     }
   }
 }
@@ -288,7 +288,7 @@ TEST(Surface, GradientIsThatOfItsValues) {
 TEST(Lenslet, TiltedSphereIsASphere) {
   Sag base;
   base.formula = parse_formula("0.3*x-0.2*y", sag_variables(), kHere);
-  const TurnedSurface bare(base, std::nullopt, {}, kHere);
+  const FreeformSurface bare(base, std::nullopt, {}, kHere);
   Lenslet lenslet;
   const double radius = 2.0;
   lenslet.sag.asphere.curvature_per_mm = -1.0 / radius;
@@ -301,8 +301,8 @@ TEST(Lenslet, TiltedSphereIsASphere) {
     const double y = 0.25 + 0.9 * std::cos(2.3 * i);
     const double square = radius * radius - (x - centre.x()) * (x - centre.x()) - (y - centre.y()) * (y - centre.y());
     EXPECT_NEAR(lenslet.evaluate(x, y), centre.z() + std::sqrt(square), 1e-12);
-    const Dual z = lenslet.evaluate(Dual(x, 1, 0), Dual(y, 0, 1));
-    EXPECT_NEAR(z.dx, -(x - centre.x()) / std::sqrt(square), 1e-12);
+    const Gradient z = lenslet.evaluate(Gradient(x, 1, 0), Gradient(y, 0, 1));
+    EXPECT_NEAR(z.x, -(x - centre.x()) / std::sqrt(square), 1e-12);
     const Series<double> along = lenslet.evaluate(line_series(x, 1.0, 3), line_series(y, 0.0, 3));
     EXPECT_NEAR(2.0 * along[2], -(square + std::pow(x - centre.x(), 2)) / std::pow(square, 1.5), 1e-10);
   }
@@ -311,7 +311,7 @@ TEST(Lenslet, TiltedSphereIsASphere) {
 TEST(Surface, FindsTheLensletOfAPlace) {
   Sag base;
   std::vector<Lenslet> lenslets;
-  const TurnedSurface bare(base, std::nullopt, {}, kHere);
+  const FreeformSurface bare(base, std::nullopt, {}, kHere);
   for (int i = 0; i < 12; ++i)
     for (int k = 0; k < 9; ++k) {
       Lenslet lenslet;
@@ -321,7 +321,7 @@ TEST(Surface, FindsTheLensletOfAPlace) {
       lenslet.outer = circle_boundary({0.5 * i, 0.5 * k}, 0.2);
       lenslets.push_back(lenslet);
     }
-  const TurnedSurface surface(base, std::nullopt, lenslets, kHere);
+  const FreeformSurface surface(base, std::nullopt, lenslets, kHere);
   for (int i = 0; i < 5000; ++i) {
     const double x = 3.0 + 3.5 * std::sin(1.37 * i);
     const double y = 2.0 + 2.5 * std::cos(0.73 * i);
@@ -331,15 +331,20 @@ TEST(Surface, FindsTheLensletOfAPlace) {
     EXPECT_EQ(surface.zone_at(x, y), expected) << x << " " << y;
   }
   lenslets[5].outer = circle_boundary({0.0, 2.5}, 0.4);
-  EXPECT_THROW(TurnedSurface(base, std::nullopt, lenslets, kHere), InputError);
+  EXPECT_THROW(FreeformSurface(base, std::nullopt, lenslets, kHere), InputError);
   lenslets[5].outer = circle_boundary({0.0, 2.5}, 0.2);
-  EXPECT_NO_THROW(TurnedSurface(base, Extrapolation{circle_boundary({0, 0}, 3.0), 2}, lenslets, kHere));
+  EXPECT_NO_THROW(FreeformSurface(base, Extrapolation{circle_boundary({0, 0}, 3.0), 2}, lenslets, kHere));
 }
 
 std::string refusal(const std::string& formula, double radius) {
   Sag base;
   base.formula = parse_formula(formula, sag_variables(), kHere);
-  return refusal_of([&] { check_surface(TurnedSurface(base, std::nullopt, {}, kHere), radius, kHere); }, "taken");
+  try {
+    check_surface(FreeformSurface(base, std::nullopt, {}, kHere), radius, kHere);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "taken";
 }
 
 TEST(Surface, SaysWhereItHasNoHeightOrAVerticalSlope) {
@@ -351,4 +356,4 @@ TEST(Surface, SaysWhereItHasNoHeightOrAVerticalSlope) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning::surface_test
+}  // namespace retrace::geometry::freeform_surface_test

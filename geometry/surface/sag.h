@@ -1,20 +1,27 @@
 #pragma once
 
+// Heights z(x, y) as closed forms, polynomials and formulas, written once for all numbers that carry derivatives.
+
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "fabrication/turning/numbers.h"
+#include "core/math/formula.h"
+#include "core/math/partials.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
+
+/// Height with its first and second derivatives by x and y.
+using Jet = jets::Partials<2>;
 
 /// Conic of revolution with an even polynomial: c s / (1 + sqrt(1 - (1 + k) c^2 s)) + sum A_i s^(i + 2), s = r^2
 /// (ISO 10110-12).
 struct Asphere {
   double curvature_per_mm = 0.0;
-  double conic = 0.0;        ///< k: 0 a sphere, -1 a paraboloid
-  std::vector<double> even;  ///< A_0 of r^4 in mm^-3, A_1 of r^6, ...
+  double conic = 0.0;                                          ///< k: 0 a sphere, -1 a paraboloid
+  std::vector<double> even;                                    ///< A_0 of r^4 in mm^-3, A_1 of r^6, ...
+  enum class Across { radius, x, y } across = Across::radius;  ///< what takes the place of r: x or y of a cylinder
 };
 
 /// sum C_ij (x / scale)^i (y / scale)^j over i + j <= degree; C in mm.
@@ -62,7 +69,7 @@ std::vector<std::string> sag_variables();
 
 /// Sags that are polynomials, for which lines have coefficients.
 inline bool is_polynomial(const Sag& sag) {
-  return !sag.formula && sag.asphere.curvature_per_mm == 0.0;
+  return !sag.formula && sag.asphere.curvature_per_mm == 0.0 && sag.asphere.across == Asphere::Across::radius;
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

@@ -1,4 +1,4 @@
-#include "fabrication/job/io/mask_image.h"
+#include "geometry/io/mask_image.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "core/pictures.h"
 #include "geometry/elements/whole_elements.h"
 
-namespace retrace::fabrication {
+namespace retrace::geometry {
 namespace {
 
 /// Grey 0..255 of a pixel with `channels` channels of 0..255.
@@ -26,8 +26,8 @@ long grey_of(const std::uint8_t* pixel, std::size_t channels, int alpha_channel)
 
 }  // namespace
 
-std::vector<std::string> mask_pattern(const std::filesystem::path& file, double threshold,
-                                      const geometry::CellCounts& cells, const InputLocation& where) {
+std::vector<std::string> mask_pattern(const std::filesystem::path& file, double threshold, const CellCounts& cells,
+                                      const InputLocation& where) {
   const std::string name = printable(file.string(), std::string::npos);
   const auto unreadable = [&](const std::string& why) -> InputError {
     return {where, fmt::format("{}: cannot be read as a picture: {}", name, printable(why, 200))};
@@ -62,4 +62,4 @@ std::vector<std::string> mask_pattern(const std::filesystem::path& file, double 
   return pattern;
 }
 
-}  // namespace retrace::fabrication
+}  // namespace retrace::geometry

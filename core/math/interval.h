@@ -2,7 +2,7 @@
 
 #include <boost/numeric/interval.hpp>
 
-namespace retrace::fabrication::turning {
+namespace retrace {
 
 /// Enclosures of real numbers, for proofs. Their ends are not rounded outwards: what rounding adds, below 1e-9 of the
 /// figures at hand, is left to the margins of what is proved with them. Only for .cpp files.
@@ -11,4 +11,4 @@ using Interval = boost::numeric::interval<
                                                        boost::numeric::interval_lib::rounded_transc_exact<double>>,
                                                    boost::numeric::interval_lib::checking_base<double>>>;
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace

@@ -1,14 +1,17 @@
 #pragma once
 
+// Splines of an angle, for curves round a centre.
+
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "fabrication/turning/numbers.h"
+#include "core/math/jets.h"
+#include "core/math/partials.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 
-inline constexpr int kMostSplineDegree = kMostOrder;
+inline constexpr int kMostSplineDegree = jets::kMostOrder;
 
 /// An interpolating spline of period 2 pi: degree p, C^(p - 1) everywhere, the seam included (C. de Boor, A Practical
 /// Guide to Splines, Springer 1978, ch. IX and XIII). Knots are the sites for odd degrees and lie midway between them
@@ -32,10 +35,10 @@ class PeriodicSpline {
   /// The value at any angle, with all derivatives that T carries.
   template <class T>
   T evaluate(const T& angle_rad) const {
-    const double turns = std::floor((value_of(angle_rad) - knots_.front()) / (2.0 * std::numbers::pi));
-    const std::size_t piece = piece_at(value_of(angle_rad) - turns * 2.0 * std::numbers::pi);
+    const double turns = std::floor((jets::value_of(angle_rad) - knots_.front()) / (2.0 * std::numbers::pi));
+    const std::size_t piece = piece_at(jets::value_of(angle_rad) - turns * 2.0 * std::numbers::pi);
     const T local = angle_rad - (knots_[piece] + turns * 2.0 * std::numbers::pi);
-    return horner(&coefficients_[piece * stride()], degree_ + 1, local);
+    return jets::horner(&coefficients_[piece * stride()], degree_ + 1, local);
   }
 
   /// Coefficients of the piece that starts at that knot, in powers of the angle from it.
@@ -52,4 +55,4 @@ class PeriodicSpline {
   std::vector<std::size_t> buckets_;  // piece at the start of each equal part of the period
 };
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

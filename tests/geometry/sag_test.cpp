@@ -1,14 +1,18 @@
-#include "fabrication/turning/sag.h"
+#include "geometry/surface/sag.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "core/math/jets.h"
+
 // Sags against closed forms and difference quotients.
 
-namespace retrace::fabrication::turning::sag_test {
+namespace retrace::geometry::sag_test {
 namespace {
+
+using namespace jets;
 
 const InputLocation kHere{"part.toml", 7, "base.formula"};
 
@@ -16,17 +20,17 @@ Series<double> line(double x, double slope, int order = kMostOrder) {
   return line_series(x, slope, order);
 }
 
-/// Gradient by Dual and second derivative by Series against central differences of values.
+/// Gradient by Gradient and second derivative by Series against central differences of values.
 void expect_derivatives(const Sag& sag, double x, double y) {
   const double h = 1e-4;
-  const Dual z = sag.evaluate(Dual(x, 1.0, 0.0), Dual(y, 0.0, 1.0));
-  EXPECT_EQ(z.v, sag.evaluate(x, y));
-  EXPECT_NEAR(z.dx, (sag.evaluate(x + h, y) - sag.evaluate(x - h, y)) / (2 * h), 1e-6);
-  EXPECT_NEAR(z.dy, (sag.evaluate(x, y + h) - sag.evaluate(x, y - h)) / (2 * h), 1e-6);
+  const Gradient z = sag.evaluate(Gradient(x, 1.0, 0.0), Gradient(y, 0.0, 1.0));
+  EXPECT_EQ(z.value, sag.evaluate(x, y));
+  EXPECT_NEAR(z.x, (sag.evaluate(x + h, y) - sag.evaluate(x - h, y)) / (2 * h), 1e-6);
+  EXPECT_NEAR(z.y, (sag.evaluate(x, y + h) - sag.evaluate(x, y - h)) / (2 * h), 1e-6);
   const double c = std::cos(0.4);
   const double s = std::sin(0.4);
   const Series<double> along = sag.evaluate(line(x, c), line(y, s));
-  EXPECT_NEAR(along[1], z.dx * c + z.dy * s, 1e-12);
+  EXPECT_NEAR(along[1], z.x * c + z.y * s, 1e-12);
   const double second =
       (sag.evaluate(x + h * c, y + h * s) - 2 * sag.evaluate(x, y) + sag.evaluate(x - h * c, y - h * s)) / (h * h);
   EXPECT_NEAR(2.0 * along[2], second, 1e-5);
@@ -90,10 +94,10 @@ TEST(Sag, ZernikeTermsAreOrthonormal) {
 TEST(Formula, UsesPolarVariablesOnlyWhereItSaysSo) {
   Sag sag;
   sag.formula = parse_formula("0.1*x^2+0.2*y^2", sag_variables(), kHere);
-  EXPECT_EQ(sag.evaluate(Dual(0.0, 1.0, 0.0), Dual(0.0, 0.0, 1.0)).dx, 0.0);
+  EXPECT_EQ(sag.evaluate(Gradient(0.0, 1.0, 0.0), Gradient(0.0, 0.0, 1.0)).x, 0.0);
   EXPECT_FALSE(sag.formula->uses(2));
   EXPECT_TRUE(parse_formula("r^2", sag_variables(), kHere).uses(2));
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning::sag_test
+}  // namespace retrace::geometry::sag_test

@@ -1,16 +1,17 @@
-#include "fabrication/turning/boundary.h"
-#include "tests/support/refusals.h"
+#include "geometry/surface/boundary.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace retrace::fabrication::turning::boundary_test {
+#include "core/angle.h"
+
+namespace retrace::geometry::boundary_test {
 namespace {
 
-using geometry::Vec2;
-constexpr double kTurn = 2.0 * std::numbers::pi;
+using namespace jets;
+
 const InputLocation kHere{"part.toml", 9, "boundary.points_mm"};
 
 /// Uneven sites and values of a wavy curve.
@@ -135,7 +136,12 @@ TEST(Boundary, RefusesCurvesThatAreNotOne) {
   }
   std::vector<Vec2> outside = ellipse_points(30, {10.0, 0.0});
   const auto message = [](const std::vector<Vec2>& points, std::optional<Vec2> centre) -> std::string {
-    return refusal_of([&] { boundary_from_points(points, centre, false, 3, kHere); }, "taken");
+    try {
+      boundary_from_points(points, centre, false, 3, kHere);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "taken";
   };
   for (const auto& points : {eight, twice, dented, outside}) {
     const std::string text = message(points, Vec2(0.0, 0.0));
@@ -190,4 +196,4 @@ TEST(Boundary, RefusesARadiusThatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace retrace::fabrication::turning::boundary_test
+}  // namespace retrace::geometry::boundary_test

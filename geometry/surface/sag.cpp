@@ -1,13 +1,20 @@
-#include "fabrication/turning/sag.h"
+#include "geometry/surface/sag.h"
 
 #include <array>
 #include <cmath>
 
 #include "core/math/formula_evaluation.h"
-#include "fabrication/turning/interval.h"
+#include "core/math/interval.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
+
+using jets::binomial;
+using jets::constant_like;
+using jets::Gradient;
+using jets::horner;
+using jets::Jet2;
+using jets::Series;
 
 double factorial(int n) {
   double f = 1.0;
@@ -15,14 +22,10 @@ double factorial(int n) {
   return f;
 }
 
-double ring_binomial(int n, int k) {
-  return factorial(n) / (factorial(k) * factorial(n - k));
-}
-
 /// Adds value * x^i y^j (x^2 + y^2)^power.
 void add_ring(XyPolynomial& p, int i, int j, int power, double value) {
   for (int k = 0; k <= power; ++k)
-    p.coefficients[p.index(i + 2 * (power - k), j + 2 * k)] += value * ring_binomial(power, k);
+    p.coefficients[p.index(i + 2 * (power - k), j + 2 * k)] += value * binomial(power, k);
 }
 
 /// Adds one term: its radial polynomial times the real or imaginary part of (x + i y)^|m|.
@@ -35,7 +38,7 @@ void add_term(XyPolynomial& p, const ZernikeTerm& term) {
     const int power = (term.n - m) / 2 - k;
     for (int j = term.m < 0 ? 1 : 0; j <= m; j += 2) {
       const double sign = (j / 2) % 2 == 0 ? 1.0 : -1.0;
-      add_ring(p, m - j, j, power, term.coefficient_mm * norm * radial * sign * ring_binomial(m, j));
+      add_ring(p, m - j, j, power, term.coefficient_mm * norm * radial * sign * binomial(m, j));
     }
   }
 }
@@ -43,7 +46,8 @@ void add_term(XyPolynomial& p, const ZernikeTerm& term) {
 template <class T>
 T evaluate_asphere(const Asphere& a, const T& x, const T& y) {
   using std::sqrt;
-  const T s = x * x + y * y;
+  using Across = Asphere::Across;
+  const T s = a.across == Across::radius ? x * x + y * y : a.across == Across::x ? x * x : y * y;
   T z = s * a.curvature_per_mm;
   if (a.curvature_per_mm != 0.0 && a.conic != -1.0)
     z = z / (sqrt(1.0 - s * ((1.0 + a.conic) * a.curvature_per_mm * a.curvature_per_mm)) + 1.0);
@@ -103,38 +107,50 @@ T Sag::evaluate(const T& x, const T& y) const {
   return formula ? z + evaluate_formula(*formula, x, y, place_mm) : z;
 }
 
+/// What heights are evaluated with: numbers of lenslets, blends and extrapolations, and of proofs.
+template <class T>
+using Line = Series<T>;
+template <class T>
+using Upward = Series<T, 1>;
+template <int N>
+using Along = Series<double, N>;
+template <int N>
+using Blend = Series<Jet2, N>;
+using Enclosure = Series<Interval, 2>;
+template <int N>
+using EnclosedBlend = Series<Enclosure, N>;
 template double Sag::evaluate(const double&, const double&) const;
-template Dual Sag::evaluate(const Dual&, const Dual&) const;
-template Jet2 Sag::evaluate(const Jet2&, const Jet2&) const;
-template Series<double> Sag::evaluate(const Series<double>&, const Series<double>&) const;
-template Series<Dual> Sag::evaluate(const Series<Dual>&, const Series<Dual>&) const;
-template Series<Jet2> Sag::evaluate(const Series<Jet2>&, const Series<Jet2>&) const;
-template Series<Series<double>> Sag::evaluate(const Series<Series<double>>&, const Series<Series<double>>&) const;
-template Series<Series<Dual>> Sag::evaluate(const Series<Series<Dual>>&, const Series<Series<Dual>>&) const;
-template Series<Series<Jet2>> Sag::evaluate(const Series<Series<Jet2>>&, const Series<Series<Jet2>>&) const;
-template Series<Series<Series<double>>> Sag::evaluate(const Series<Series<Series<double>>>&,
-                                                      const Series<Series<Series<double>>>&) const;
-template Series<Jet2, 1> Sag::evaluate(const Series<Jet2, 1>&, const Series<Jet2, 1>&) const;
-template Series<Jet2, 2> Sag::evaluate(const Series<Jet2, 2>&, const Series<Jet2, 2>&) const;
-template Series<Jet2, 3> Sag::evaluate(const Series<Jet2, 3>&, const Series<Jet2, 3>&) const;
-template Series<Jet2, 4> Sag::evaluate(const Series<Jet2, 4>&, const Series<Jet2, 4>&) const;
-template SecondOrder<Interval> Sag::evaluate_without_formula(const SecondOrder<Interval>&,
-                                                             const SecondOrder<Interval>&) const;
-template Series<Jet2, 1> Sag::evaluate_without_formula(const Series<Jet2, 1>&, const Series<Jet2, 1>&) const;
-template Series<Jet2, 2> Sag::evaluate_without_formula(const Series<Jet2, 2>&, const Series<Jet2, 2>&) const;
-template Series<Jet2, 3> Sag::evaluate_without_formula(const Series<Jet2, 3>&, const Series<Jet2, 3>&) const;
-template Series<Jet2, 4> Sag::evaluate_without_formula(const Series<Jet2, 4>&, const Series<Jet2, 4>&) const;
-template Series<SecondOrder<Interval>, 1> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 1>&,
-                                                                        const Series<SecondOrder<Interval>, 1>&) const;
-template Series<SecondOrder<Interval>, 2> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 2>&,
-                                                                        const Series<SecondOrder<Interval>, 2>&) const;
-template Series<SecondOrder<Interval>, 3> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 3>&,
-                                                                        const Series<SecondOrder<Interval>, 3>&) const;
-template Series<SecondOrder<Interval>, 4> Sag::evaluate_without_formula(const Series<SecondOrder<Interval>, 4>&,
-                                                                        const Series<SecondOrder<Interval>, 4>&) const;
+template Gradient Sag::evaluate(const Gradient&, const Gradient&) const;
+template Jet Sag::evaluate(const Jet&, const Jet&) const;
+template Along<1> Sag::evaluate(const Along<1>&, const Along<1>&) const;
+template Along<2> Sag::evaluate(const Along<2>&, const Along<2>&) const;
+template Along<3> Sag::evaluate(const Along<3>&, const Along<3>&) const;
+template Along<4> Sag::evaluate(const Along<4>&, const Along<4>&) const;
+template Line<double> Sag::evaluate(const Line<double>&, const Line<double>&) const;
+template Line<Gradient> Sag::evaluate(const Line<Gradient>&, const Line<Gradient>&) const;
+template Line<Jet2> Sag::evaluate(const Line<Jet2>&, const Line<Jet2>&) const;
+template Line<Line<double>> Sag::evaluate(const Line<Line<double>>&, const Line<Line<double>>&) const;
+template Line<Line<Gradient>> Sag::evaluate(const Line<Line<Gradient>>&, const Line<Line<Gradient>>&) const;
+template Line<Line<Jet2>> Sag::evaluate(const Line<Line<Jet2>>&, const Line<Line<Jet2>>&) const;
+template Line<Line<Line<double>>> Sag::evaluate(const Line<Line<Line<double>>>&, const Line<Line<Line<double>>>&) const;
+template Upward<Gradient> Sag::evaluate(const Upward<Gradient>&, const Upward<Gradient>&) const;
+template Upward<Line<double>> Sag::evaluate(const Upward<Line<double>>&, const Upward<Line<double>>&) const;
+template Blend<1> Sag::evaluate(const Blend<1>&, const Blend<1>&) const;
+template Blend<2> Sag::evaluate(const Blend<2>&, const Blend<2>&) const;
+template Blend<3> Sag::evaluate(const Blend<3>&, const Blend<3>&) const;
+template Blend<4> Sag::evaluate(const Blend<4>&, const Blend<4>&) const;
+template Enclosure Sag::evaluate_without_formula(const Enclosure&, const Enclosure&) const;
+template Blend<1> Sag::evaluate_without_formula(const Blend<1>&, const Blend<1>&) const;
+template Blend<2> Sag::evaluate_without_formula(const Blend<2>&, const Blend<2>&) const;
+template Blend<3> Sag::evaluate_without_formula(const Blend<3>&, const Blend<3>&) const;
+template Blend<4> Sag::evaluate_without_formula(const Blend<4>&, const Blend<4>&) const;
+template EnclosedBlend<1> Sag::evaluate_without_formula(const EnclosedBlend<1>&, const EnclosedBlend<1>&) const;
+template EnclosedBlend<2> Sag::evaluate_without_formula(const EnclosedBlend<2>&, const EnclosedBlend<2>&) const;
+template EnclosedBlend<3> Sag::evaluate_without_formula(const EnclosedBlend<3>&, const EnclosedBlend<3>&) const;
+template EnclosedBlend<4> Sag::evaluate_without_formula(const EnclosedBlend<4>&, const EnclosedBlend<4>&) const;
 
 std::vector<std::string> sag_variables() {
   return {"x", "y", "r", "theta", "cx", "cy"};
 }
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

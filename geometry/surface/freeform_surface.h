@@ -1,15 +1,17 @@
 #pragma once
 
+// Freeform surfaces z(x, y) with exact derivatives: what is turned on a lathe, and what light enters through.
+
 #include <optional>
 #include <vector>
 
 #include "core/error.h"
-#include "fabrication/turning/boundary.h"
-#include "fabrication/turning/lenslet.h"
-#include "fabrication/turning/sag.h"
+#include "geometry/surface/boundary.h"
+#include "geometry/surface/lenslet.h"
+#include "geometry/surface/sag.h"
 #include "geometry/vec.h"
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 
 /// How the base goes on outside of the region in which it is defined.
 struct Extrapolation {
@@ -20,15 +22,15 @@ struct Extrapolation {
 /// What defines the surface at a place.
 enum class Zone { base, extrapolation, lenslet, blend };
 
-/// The explicit surface z(x, y) of a turned part, material below it: a base with its extrapolation and lenslets.
-class TurnedSurface {
+/// The explicit surface z(x, y) of a part, material below it: a base with its extrapolation and lenslets.
+class FreeformSurface {
  public:
   /// \throw InputError at `where` for lenslets whose blends overlap
-  TurnedSurface(Sag base, std::optional<Extrapolation> extrapolation, std::vector<Lenslet> lenslets,
-                const InputLocation& where);
+  FreeformSurface(Sag base, std::optional<Extrapolation> extrapolation, std::vector<Lenslet> lenslets,
+                  const InputLocation& where);
 
-  /// z in mm with all derivatives that T carries (double, Dual, Jet2 or Series<double>); not finite where there is no
-  /// value.
+  /// z in mm with all derivatives that T carries (double, jets::Gradient, jets::Jet2 or jets::Series<double>); not
+  /// finite where there is no value.
   template <class T>
   T evaluate(const T& x_mm, const T& y_mm) const;
 
@@ -38,7 +40,9 @@ class TurnedSurface {
 
   double height_mm(double x_mm, double y_mm) const { return evaluate(x_mm, y_mm); }
   /// Height and both slopes.
-  Dual gradient(double x_mm, double y_mm) const { return evaluate(Dual(x_mm, 1.0, 0.0), Dual(y_mm, 0.0, 1.0)); }
+  jets::Gradient gradient(double x_mm, double y_mm) const {
+    return evaluate(jets::Gradient(x_mm, 1.0, 0.0), jets::Gradient(y_mm, 0.0, 1.0));
+  }
   Zone zone_at(double x_mm, double y_mm) const;
 
   const Sag& base() const { return base_; }
@@ -60,7 +64,7 @@ class TurnedSurface {
   std::optional<Extrapolation> extrapolation_;
   std::vector<Lenslet> lenslets_;
   // Square cells, each with the lenslets that reach into it.
-  geometry::Vec2 grid_low_ = geometry::Vec2::Zero();
+  Vec2 grid_low_ = Vec2::Zero();
   double cell_mm_ = 1.0;
   long columns_ = 0;
   long rows_ = 0;
@@ -69,23 +73,14 @@ class TurnedSurface {
 
 /// Puts the lenslet's frame on the base at (x, y): its origin `height_mm` above the base along its normal, its z axis
 /// the normal if `tilted`. \throw InputError where the base has no finite slope
-void place_on_base(Lenslet& lenslet, const TurnedSurface& base, double x_mm, double y_mm, double height_mm, bool tilted,
-                   const InputLocation& where);
+void place_on_base(Lenslet& lenslet, const FreeformSurface& base, double x_mm, double y_mm, double height_mm,
+                   bool tilted, const InputLocation& where);
 
 /// Slopes above this are taken for vertical: 89 degrees.
 inline constexpr double kSteepestSlope = 57.28996163075943;
 
 /// \throw InputError naming the place within `radius_mm` of the origin where the surface has no finite height or a
 /// vertical slope, sampled on circles
-void check_surface(const TurnedSurface& surface, double radius_mm, const InputLocation& where);
+void check_surface(const FreeformSurface& surface, double radius_mm, const InputLocation& where);
 
-extern template double TurnedSurface::evaluate(const double&, const double&) const;
-extern template Dual TurnedSurface::evaluate(const Dual&, const Dual&) const;
-extern template Jet2 TurnedSurface::evaluate(const Jet2&, const Jet2&) const;
-extern template Series<double> TurnedSurface::evaluate(const Series<double>&, const Series<double>&) const;
-extern template double TurnedSurface::evaluate_base(const double&, const double&) const;
-extern template Dual TurnedSurface::evaluate_base(const Dual&, const Dual&) const;
-extern template Jet2 TurnedSurface::evaluate_base(const Jet2&, const Jet2&) const;
-extern template Series<double> TurnedSurface::evaluate_base(const Series<double>&, const Series<double>&) const;
-
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

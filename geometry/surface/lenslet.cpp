@@ -1,29 +1,50 @@
-#include "fabrication/turning/lenslet.h"
+#include "geometry/surface/lenslet.h"
 
 #include <cmath>
 #include <limits>
 
-namespace retrace::fabrication::turning {
+namespace retrace::geometry {
 namespace {
+
+using jets::constant_like;
+using jets::Gradient;
+using jets::Jet2;
+using jets::line_series;
+using jets::Series;
+using jets::value_of;
+
+/// The height z over the origin solves F(z) = w - sag(u, v) = 0 with (u, v, w) the point in the lenslet's frame.
+template <class T>
+T residual(const Lenslet& lenslet, const T& x, const T& y, const T& z) {
+  const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
+  const T u = x * r(0, 0) + y * r(1, 0) + z * r(2, 0);
+  const T v = x * r(0, 1) + y * r(1, 1) + z * r(2, 1);
+  return x * r(0, 2) + y * r(1, 2) + z * r(2, 2) - lenslet.sag.evaluate(u, v);
+}
+
+/// F and its slope by z, with the derivatives that T carries.
+template <class T>
+Series<T, 1> residual_and_slope(const Lenslet& lenslet, const T& x, const T& y, const T& z) {
+  const T none = constant_like(x, 0.0);
+  return residual(lenslet, line_series<T, 1>(x, none, 1), line_series<T, 1>(y, none, 1),
+                  line_series<T, 1>(z, constant_like(x, 1.0), 1));
+}
 
 /// A place on the lenslet, from its origin along the part's axes.
 struct Root {
   double z = 0.0;      ///< not a number under an overhang
-  double slope = 0.0;  ///< of F, below, by z
+  double slope = 0.0;  ///< of F by z
 };
 
-/// The height z over the origin solves F(z) = w - sag(u, v) = 0 with (u, v, w) the point in the lenslet's frame.
 Root root_at(const Lenslet& lenslet, double x, double y) {
   const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
   Root root{-(x * r(0, 2) + y * r(1, 2)) / r(2, 2), r(2, 2)};
   constexpr int kMostSteps = 50;
   double last = 1e300;
   for (int step = 0; step < kMostSteps; ++step) {
-    const double u = x * r(0, 0) + y * r(1, 0) + root.z * r(2, 0);
-    const double v = x * r(0, 1) + y * r(1, 1) + root.z * r(2, 1);
-    const Dual s = lenslet.sag.evaluate(Dual(u, 1.0, 0.0), Dual(v, 0.0, 1.0));
-    root.slope = r(2, 2) - s.dx * r(2, 0) - s.dy * r(2, 1);
-    const double change = (x * r(0, 2) + y * r(1, 2) + root.z * r(2, 2) - s.v) / root.slope;
+    const Series<double, 1> f = residual_and_slope(lenslet, x, y, root.z);
+    root.slope = f[1];
+    const double change = f[0] / f[1];
     root.z -= change;
     if (!(std::abs(change) > 1e-16 * (std::abs(root.z) + 1e-3)) ||
         (std::abs(change) < 1e-12 && std::abs(change) >= last))
@@ -33,28 +54,6 @@ Root root_at(const Lenslet& lenslet, double x, double y) {
   // F falling there would be the underside of an overhang.
   if (!(root.slope > 0.0)) root.z = std::numeric_limits<double>::quiet_NaN();
   return root;
-}
-
-/// F at a height.
-template <class T>
-T residual(const Lenslet& lenslet, const T& x, const T& y, const T& z) {
-  const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
-  const T u = x * r(0, 0) + y * r(1, 0) + z * r(2, 0);
-  const T v = x * r(0, 1) + y * r(1, 1) + z * r(2, 1);
-  return x * r(0, 2) + y * r(1, 2) + z * r(2, 2) - lenslet.sag.evaluate(u, v);
-}
-
-/// The slope of F by z, with the derivatives that T carries: from a series of first order along z.
-template <class S, class T>
-T slope_of(const Lenslet& lenslet, const T& x, const T& y, const T& z) {
-  const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
-  const auto along = [&](Eigen::Index axis) {
-    S line(1);
-    line[0] = x * r(0, axis) + y * r(1, axis) + z * r(2, axis);
-    line[1] = constant_like(x, r(2, axis));
-    return line;
-  };
-  return r(2, 2) - lenslet.sag.evaluate(along(0), along(1))[1];
 }
 
 double height_over(const Lenslet& lenslet, double x, double y) {
@@ -69,7 +68,7 @@ T corrected(const Lenslet& lenslet, const T& x, const T& y, int orders) {
   for (int order = 0; order < orders; ++order) z = z - residual(lenslet, x, y, z) / root.slope;
   return z;
 }
-Dual height_over(const Lenslet& lenslet, const Dual& x, const Dual& y) {
+Gradient height_over(const Lenslet& lenslet, const Gradient& x, const Gradient& y) {
   return corrected(lenslet, x, y, 1);
 }
 Jet2 height_over(const Lenslet& lenslet, const Jet2& x, const Jet2& y) {
@@ -81,8 +80,7 @@ template <class T, int N>
 Series<T, N> height_over(const Lenslet& lenslet, const Series<T, N>& x, const Series<T, N>& y) {
   Series<T, N> z = constant_like(x, 0.0);
   z[0] = height_over(lenslet, x[0], y[0]);
-  using Line = Series<T, N == kAnyOrder ? kAnyOrder : 1>;
-  const T slope = slope_of<Line>(lenslet, x[0], y[0], z[0]);
+  const T slope = residual_and_slope(lenslet, x[0], y[0], z[0])[1];
   for (int k = 1; k <= z.order; ++k) z[k] = -(residual(lenslet, x, y, z)[k] / slope);
   return z;
 }
@@ -97,10 +95,13 @@ T Lenslet::evaluate(const T& x_mm, const T& y_mm) const {
   return height_over(*this, px, py) + origin_mm.z();
 }
 template double Lenslet::evaluate(const double&, const double&) const;
-template Dual Lenslet::evaluate(const Dual&, const Dual&) const;
+template Gradient Lenslet::evaluate(const Gradient&, const Gradient&) const;
 template Jet2 Lenslet::evaluate(const Jet2&, const Jet2&) const;
 template Series<double> Lenslet::evaluate(const Series<double>&, const Series<double>&) const;
-template Series<Dual> Lenslet::evaluate(const Series<Dual>&, const Series<Dual>&) const;
+template Series<double, 1> Lenslet::evaluate(const Series<double, 1>&, const Series<double, 1>&) const;
+template Series<double, 3> Lenslet::evaluate(const Series<double, 3>&, const Series<double, 3>&) const;
+template Series<double, 4> Lenslet::evaluate(const Series<double, 4>&, const Series<double, 4>&) const;
+template Series<Gradient> Lenslet::evaluate(const Series<Gradient>&, const Series<Gradient>&) const;
 template Series<Jet2> Lenslet::evaluate(const Series<Jet2>&, const Series<Jet2>&) const;
 template Series<Series<double>> Lenslet::evaluate(const Series<Series<double>>&, const Series<Series<double>>&) const;
 template Series<Jet2, 1> Lenslet::evaluate(const Series<Jet2, 1>&, const Series<Jet2, 1>&) const;
@@ -108,4 +109,4 @@ template Series<Jet2, 2> Lenslet::evaluate(const Series<Jet2, 2>&, const Series<
 template Series<Jet2, 3> Lenslet::evaluate(const Series<Jet2, 3>&, const Series<Jet2, 3>&) const;
 template Series<Jet2, 4> Lenslet::evaluate(const Series<Jet2, 4>&, const Series<Jet2, 4>&) const;
 
-}  // namespace retrace::fabrication::turning
+}  // namespace retrace::geometry

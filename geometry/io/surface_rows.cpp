@@ -1,0 +1,125 @@
+// What the tables of a file say that describe a surface.
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include "geometry/io/surface_tables.h"
+#include "geometry/surface/lenslet.h"
+#include "geometry/surface/periodic_spline.h"
+
+namespace retrace::geometry {
+namespace {
+
+using namespace schema;
+
+constexpr NumberRange kCoefficient{.low = -1e9, .high = 1e9};
+constexpr NumberRange kPlace{.low = -1e4, .high = 1e4};
+constexpr NumberRange kSize{.low = 0.0, .low_included = false, .high = 1e4};
+constexpr Kind kPositiveMm = Number{kSize};
+constexpr Kind kShare = Number{{.low = 0.01, .high = 10.0}};
+constexpr Kind kSplineDegree = Whole{{.low = 2.0, .high = kMostSplineDegree}};
+constexpr Kind kSamples = Whole{{.low = 16.0, .high = 4000.0}};
+constexpr Kind kTerms = NumberRows{3, kCoefficient, 1, 200, "terms"};
+
+constexpr Words kSags = {"plane", "conic", "asphere", "xy_polynomial", "zernike", "formula"};
+constexpr Words kCurves = {"circle", "rectangle", "points", "formula"};
+constexpr Words kSampled = {"rectangle", "formula"};
+constexpr Words kBoundaries = {"circle", "intersection"};
+
+constexpr Condition kOfConics[] = {is("kind", only(kSags, "conic", "asphere"))};
+constexpr Condition kOfAsphere[] = {is("kind", only(kSags, "asphere"))};
+constexpr Condition kOfPolynomial[] = {is("kind", only(kSags, "xy_polynomial"))};
+constexpr Condition kOfZernike[] = {is("kind", only(kSags, "zernike"))};
+constexpr Condition kOfPolynomials[] = {is("kind", only(kSags, "xy_polynomial", "zernike"))};
+constexpr Condition kOfFormula[] = {is("kind", only(kSags, "formula"))};
+constexpr Condition kWithRadius[] = {beside("radius_mm")};
+
+constexpr Row kSagRows[] = {
+    {"kind", Word{kSags}, kRequired, "What gives the height."},
+    {"radius_mm", Number{kCoefficient}, kRequired, "Not 0; negative: the middle is the highest place.", Access(),
+     kOfConics},
+    {"radius_mm", Number{kCoefficient}, kNone, "Likewise, of a conic below the polynomial.", kOfPolynomials},
+    {"conic", Number{kCoefficient}, 0.0, "0 is a sphere, -1 a paraboloid.", kWithRadius},
+    {"even", NumberRows{2, kCoefficient, 1, 200, "terms"}, kRequired,
+     "Rows `[power, coefficient]` of r^4, r^6, ... r^20, in mm.", kOfAsphere},
+    {"terms", kTerms, kRequired, "Rows `[i, j, c]` of c (x / s)^i (y / s)^j, of a degree of at most 16.", Access(),
+     kOfPolynomial},
+    {"terms", kTerms, kRequired, "Rows `[n, m, c]` of orthonormal terms, of sin for m < 0.", kOfZernike},
+    {"scale_mm", kPositiveMm, 1.0, "The s of the terms.", kOfPolynomial},
+    {"aperture_radius_mm", kPositiveMm, kRequired, "Of the terms' disc.", kOfZernike},
+    {"formula", Text{"a formula"}, kRequired, "Of `x`, `y`, `r`, `theta` and, for lenslets, their place `cx`, `cy`.",
+     kOfFormula}};
+
+constexpr Condition kCircleOnly[] = {is("kind", only(kCurves, "circle"))};
+constexpr Condition kRectangleOnly[] = {is("kind", only(kCurves, "rectangle"))};
+constexpr Condition kPointsOnly[] = {is("kind", only(kCurves, "points"))};
+constexpr Condition kSampledOnly[] = {is("kind", kSampled)};
+constexpr Row kBoundaryRows[] = {
+    {"kind", Word{kCurves}, kRequired, "What gives the curve."},
+    {"radius_mm", kPositiveMm, kRequired, "Of the circle.", kCircleOnly},
+    {"size_mm", Numbers{2, kSize}, kRequired, "`[width, height]`.", kRectangleOnly},
+    {"corner_mm", kPositiveMm, kRequired, "Radius of the corners.", kRectangleOnly},
+    {"points_mm", NumberRows{2, kPlace, 1, 4000, "points"}, kRequired, "In their order along the curve.", Access(),
+     kPointsOnly},
+    {"scattered", Flag{}, false, "Whether they come in any order.", kPointsOnly},
+    {"formula", Text{"a formula"}, kRequired, "The radius, of `theta`.", kOfFormula},
+    {"centre_mm", Numbers{2, kPlace}, Computed{"0, 0; of points their mean"}, "Of the polar form."},
+    {"degree", kSplineDegree, 3.0, "Of the periodic spline: C^(degree - 1) in azimuth."},
+    {"samples", kSamples, 180.0, "Of the curve.", kSampledOnly}};
+
+constexpr Row kExtrapolationRows[] = {{"order", Whole{{.low = 1.0, .high = jets::kMostOrder}}, 2.0,
+                                       "n: C^n along radial lines; smooth all round with a `degree` of n + 1."}};
+
+constexpr Condition kGridOnly[] = {without("positions_mm")};
+constexpr Condition kCirclesOnly[] = {is("boundary", only(kBoundaries, "circle"))};
+constexpr Condition kIntersectionsOnly[] = {is("boundary", only(kBoundaries, "intersection"))};
+constexpr Row kPlacedRows[] = {
+    {"positions_mm", NumberRows{2, kPlace, 1, kMostLenslets, "places"}, kNone, "Rows `[x, y]`."},
+    {"hexagonal_pitch_mm", kPositiveMm, kNone, "Of a hexagonal grid."},
+    {"square_pitch_mm", kPositiveMm, kNone, "Of a square grid."},
+    {"within_mm", kPositiveMm, kRequired, "Radius within which the grid has places.", kGridOnly},
+    {"height_mm", Number{kPlace}, 0.0, "Of the origin of a lenslet above the base, along the normal."},
+    {"tilted", Flag{}, true, "Whether lenslets are tilted to the base's normal."},
+    {"boundary", Word{kBoundaries}, kRequired, "A circle, or where lenslet and base meet."},
+    {"boundary_radius_mm", kPositiveMm, kRequired, "Of the circle.", kCirclesOnly},
+    {"search_mm", kPositiveMm, kRequired, "How far the intersection is searched.", kIntersectionsOnly},
+    {"inner_share", kShare, kRequired, "Of the boundary's radius, where the blend leaves the lenslet."},
+    {"outer_share", kShare, kRequired, "The same where it reaches the base; above `inner_share`."},
+    {"blend_order", Whole{{.low = 1.0, .high = kMostBlendOrder}}, 2.0, "d: C^d at both ends."},
+    {"degree", kSplineDegree, 3.0, "Of the boundary's spline."},
+    {"samples", kSamples, 60.0, "Of the intersection.", kIntersectionsOnly}};
+constexpr std::string_view kPlaceKeys[] = {"positions_mm", "hexagonal_pitch_mm", "square_pitch_mm"};
+constexpr Rule kPlaceRules[] = {
+    OneOf{kPlaceKeys, "must have one of positions_mm, hexagonal_pitch_mm and square_pitch_mm"}};
+
+constexpr auto kLensletRows =
+    []<std::size_t... sag, std::size_t... place>(std::index_sequence<sag...>, std::index_sequence<place...>) {
+  return std::array{kSagRows[sag]..., kPlacedRows[place]...};
+}
+(std::make_index_sequence<std::size(kSagRows)>{}, std::make_index_sequence<std::size(kPlacedRows)>{});
+
+constexpr Condition kBeyondBoundary[] = {beside("boundary", "needs a [boundary] beyond which to extrapolate")};
+constexpr Table kTables[] = {{.name = "base", .meaning = "The sag.", .rows = kSagRows},
+                             {.name = "boundary",
+                              .meaning = "Within which the surface is the sag.",
+                              .rows = kBoundaryRows,
+                              .presence = Presence::optional},
+                             {.name = "extrapolation",
+                              .meaning = "How the surface goes on beyond it.",
+                              .rows = kExtrapolationRows,
+                              .presence = Presence::optional,
+                              .when = kBeyondBoundary},
+                             {.name = "lenslets",
+                              .meaning = "Lenslets on the base, each a sag in its own frame.",
+                              .rows = kLensletRows,
+                              .rules = kPlaceRules,
+                              .presence = Presence::optional}};
+
+}  // namespace
+
+std::span<const Table> surface_tables() {
+  return kTables;
+}
+
+}  // namespace retrace::geometry
