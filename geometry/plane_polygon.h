@@ -8,4 +8,7 @@ namespace retrace::geometry {
 /// The part of a convex polygon where one plane is at least as high as another; empty if it has no area.
 Polygon where_higher(const Polygon& polygon, const HeightPlane& plane, const HeightPlane& other);
 
+/// Of several planes over an outline each where it is the highest; those that are nowhere have an empty outline.
+std::vector<CellFacet> highest_of(const Polygon& outline, std::vector<CellFacet> planes);
+
 }  // namespace retrace::geometry

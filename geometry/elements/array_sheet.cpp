@@ -148,7 +148,7 @@ Rectangle ArraySheet::arcs_of_border() const {
 
 void ArraySheet::measure_cells() {
   for (const Cell& cell : lattice.cells) {
-    middles_mm.push_back(cell.is_element ? place_of(*spec, cell) : bounding_box(cell.outline).middle());
+    middles_mm.push_back(place_of(*spec, cell));
     rims_mm.push_back(cell.is_element ? rim_heights(cell, spec->element)
                                       : std::vector<double>(cell.outline.size(), 0.0));
   }

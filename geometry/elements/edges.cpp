@@ -26,6 +26,16 @@ Polygon where_higher(const Polygon& polygon, const HeightPlane& plane, const Hei
   return kept;
 }
 
+std::vector<CellFacet> highest_of(const Polygon& outline, std::vector<CellFacet> planes) {
+  for (CellFacet& facet : planes) {
+    facet.outline = outline;
+    for (const CellFacet& other : planes)
+      if (&other != &facet && !facet.outline.empty())
+        facet.outline = where_higher(facet.outline, facet.plane, other.plane);
+  }
+  return planes;
+}
+
 namespace {
 
 // Of an element's size: what is narrower cannot be told from rounding, and no edge of that width is built.
@@ -63,14 +73,8 @@ bool is_sliver(const Polygon& polygon, double width_mm) {
 
 /// Of several planes the highest at every place of an outline.
 std::vector<CellFacet> upper_envelope(const Polygon& outline, const std::vector<CellFacet>& planes, double sliver_mm) {
-  std::vector<CellFacet> facets;
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    CellFacet facet = planes[i];
-    facet.outline = outline;
-    for (std::size_t j = 0; j < planes.size() && !facet.outline.empty(); ++j)
-      if (j != i) facet.outline = where_higher(facet.outline, planes[i].plane, planes[j].plane);
-    if (!is_sliver(facet.outline, sliver_mm)) facets.push_back(std::move(facet));
-  }
+  std::vector<CellFacet> facets = highest_of(outline, planes);
+  std::erase_if(facets, [&](const CellFacet& facet) { return is_sliver(facet.outline, sliver_mm); });
   return facets;
 }
 

@@ -80,38 +80,32 @@ double cube_spacing_mm(const Element& element) {
 }
 
 Vec2 place_of(const PartSpec& spec, const Cell& cell) {
-  if (!std::holds_alternative<RtpElement>(spec.element)) return cell.at_mm;
-  const Rectangle box = bounding_box(cell.outline);
-  return 0.5 * (box.lower + box.upper);
+  if (cell.is_element && !std::holds_alternative<RtpElement>(spec.element)) return cell.at_mm;
+  return bounding_box(cell.outline).middle();
 }
 
 Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm) {
-  std::vector<HeightPlane> planes = element.planes;
-  for (HeightPlane& plane : planes) plane.height_mm -= plane.slope.dot(centre_mm);
-  std::vector<HeightPlane> caps;
-  for (const std::optional<HeightPlane>& cap : element.caps)
-    if (cap) caps.push_back({cap->height_mm - cap->slope.dot(centre_mm), cap->slope});
-  const bool has_caps = caps.size() == planes.size();
-  if (!has_caps) caps.clear();
+  const auto own_plane = [&](HeightPlane plane) {
+    plane.height_mm -= plane.slope.dot(centre_mm);
+    return plane;
+  };
   Cell own = cell;
   own.facets.clear();
-  for (std::size_t k = 0; k < planes.size(); ++k) {
-    CellFacet facet;
-    facet.plane = planes[k];
-    facet.outline = cell.outline;
-    for (std::size_t other = 0; other < planes.size() && !facet.outline.empty(); ++other)
-      if (other != k) facet.outline = where_higher(facet.outline, planes[k], planes[other]);
-    if (has_caps && !facet.outline.empty()) facet.outline = where_higher(facet.outline, planes[k], caps[k]);
-    if (!facet.outline.empty()) own.facets.push_back(std::move(facet));
-  }
+  for (const HeightPlane& plane : element.planes) own.facets.push_back({{}, own_plane(plane)});
+  own.facets = highest_of(cell.outline, std::move(own.facets));
+  std::vector<CellFacet> caps;
+  for (const std::optional<HeightPlane>& cap : element.caps)
+    if (cap) caps.push_back({{}, own_plane(*cap)});
+  if (caps.size() != own.facets.size()) caps.clear();
   for (std::size_t k = 0; k < caps.size(); ++k) {
-    CellFacet cap;
-    cap.plane = caps[k];
-    cap.outline = where_higher(cell.outline, caps[k], planes[k]);
-    for (std::size_t other = 0; other < caps.size() && !cap.outline.empty(); ++other)
-      if (other != k) cap.outline = where_higher(cap.outline, caps[other], caps[k]);
-    if (!cap.outline.empty()) own.facets.push_back(std::move(cap));
+    CellFacet& facet = own.facets[k];
+    caps[k].outline = where_higher(cell.outline, caps[k].plane, facet.plane);
+    for (std::size_t other = 0; other < caps.size() && !caps[k].outline.empty(); ++other)
+      if (other != k) caps[k].outline = where_higher(caps[k].outline, caps[other].plane, caps[k].plane);
+    if (!facet.outline.empty()) facet.outline = where_higher(facet.outline, facet.plane, caps[k].plane);
   }
+  own.facets.insert(own.facets.end(), caps.begin(), caps.end());
+  std::erase_if(own.facets, [](const CellFacet& facet) { return facet.outline.empty(); });
   return own;
 }
 

@@ -57,7 +57,7 @@ class FacetPlanes {
   std::map<Key, std::size_t> places_;
 };
 
-/// What ElementPlanes::centre_mm is of an element's cell.
+/// What ElementPlanes::centre_mm is of an element's cell, and the middle of land.
 Vec2 place_of(const PartSpec& spec, const Cell& cell);
 
 /// The element in the place of `cell`, its facets in planes of their own: they meet where the planes do.

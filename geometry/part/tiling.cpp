@@ -81,16 +81,6 @@ FacetRole role_of(const Cell& cell, const CellFacet& facet) {
   return cell.is_element || facet.is_edge ? FacetRole::retro_facet : FacetRole::flat_back;
 }
 
-/// Each facet stands where its plane is the highest.
-void cut_by_each_other(Cell& cell) {
-  for (CellFacet& facet : cell.facets) {
-    facet.outline = cell.outline;
-    for (const CellFacet& other : cell.facets)
-      if (&other != &facet && !facet.outline.empty())
-        facet.outline = where_higher(facet.outline, facet.plane, other.plane);
-  }
-}
-
 class Tiler {
  public:
   Tiler(Part& part, const ArraySheet& sheet, const FacetPlanes* planes)
@@ -285,7 +275,7 @@ class Tiler {
       facet.plane = placed_plane(facet.plane, place.frame);
     }
     cell.outline = place.outline;
-    cut_by_each_other(cell);
+    cell.facets = highest_of(cell.outline, std::move(cell.facets));
     return with_edges(cell, spec_);
   }
 

@@ -36,29 +36,25 @@ std::optional<Vec2> first_element_there(const Part& part, const Vec2& size) {
 void measure_prisms(ArrayFigures& a, const Design& design, const Part& part) {
   const PartSpec& spec = part.spec;
   const auto& element = std::get<RtpElement>(spec.element);
-  const geometry::PrismBlock block = geometry::prism_block(spec.array, element);
+  geometry::PrismBlock block = geometry::prism_block(spec.array, element);
   a.size_mm = {element.base_mm, element.width_mm};
   a.pitch_mm = block.pitch_mm;
   a.block_mm = a.extent_mm;
   if (spec.array.extent == Extent::infinite) {
     a.count = {INFINITY, INFINITY};
-    a.shift_mm =
-        spec.array.arrangement == Arrangement::offset ? 0.01 * spec.array.overlap_percent * element.base_mm : 0.0;
+    if (spec.array.arrangement == Arrangement::offset)
+      block.shift_mm = 0.01 * spec.array.overlap_percent * element.base_mm;
   } else if (spec.array.arrangement != Arrangement::single) {
     a.count = {static_cast<double>(block.counts.columns), static_cast<double>(block.counts.rows)};
-    a.block_mm = {a.extent_mm.lower + block.filled.lower, a.extent_mm.lower + block.filled.upper};
-    a.shift_mm = block.shift_mm;
+    a.block_mm = geometry::moved(block.filled, a.extent_mm.lower);
   }
-  const auto is_shifted = [&](double row) {
-    return a.shift_mm > 0.0 &&
-           (std::fmod(std::round(row), 2.0) == 0.0) == (spec.array.shifted_rows == geometry::RowParity::odd);
-  };
-  a.element_is_shifted = is_shifted(0.0);
+  a.shift_mm = block.shift_mm;
+  a.element_is_shifted = block.is_shifted(0);
   a.element_mm = a.block_mm.lower + Vec2(a.element_is_shifted ? a.shift_mm : 0.0, 0.0);
   if (design.mask() || design.facet_planes())
     if (const auto there = first_element_there(part, a.size_mm)) {
       a.element_mm = *there;
-      a.element_is_shifted = is_shifted((there->y() - a.block_mm.lower.y()) / a.pitch_mm.y());
+      a.element_is_shifted = block.is_shifted(std::llround((there->y() - a.block_mm.lower.y()) / a.pitch_mm.y()));
     }
   a.root_mm = a.element_mm + 0.5 * a.size_mm;
 }

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/whole_elements.h"
 #include "geometry/part/faceted_solid.h"
 #include "tests/geometry/part_checks.h"
 #include "tests/support/part_specs.h"
@@ -123,6 +124,32 @@ TEST(SubstratePart, OnEverySubstrateAndOfEveryKindIsAClosedSolid) {
                    std::to_string(static_cast<int>(spec.array.arrangement)));
       expect_solid(spec);
     }
+}
+
+/// What place() says of elements is what the part has.
+void expect_placed(const PartSpec& spec) {
+  const Part part = build_part(spec);
+  std::int64_t whole = 0;
+  std::int64_t cut = 0;
+  double lowest = 0.0;
+  for (const PlacedElement& at : place(spec)) {
+    ++(at.standing == Standing::whole ? whole : cut);
+    if (at.standing != Standing::whole) continue;
+    lowest = std::min(lowest, (at.frame.origin - element_depth_mm(spec.element) * at.frame.normal).z());
+  }
+  EXPECT_EQ(whole, part.elements_full);
+  EXPECT_EQ(cut, part.elements_partial);
+  EXPECT_GE(lowest, -part.element_depth_mm - 1e-12) << "the roots of whole elements lie in the part";
+}
+
+TEST(SubstratePart, PlacesTheElementsThatPartsHave) {
+  for (PartSpec spec : arrays()) {
+    expect_placed(spec);
+    for (const Substrate& substrate : substrates()) {
+      spec.substrate = substrate;
+      expect_placed(spec);
+    }
+  }
 }
 
 TEST(SubstratePart, APlaneGivenAsAFormulaIsThePlanarArray) {
