@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "fabrication/chisel/check/error_field.h"
+#include "fabrication/chisel/check/simulation/error_field.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"

@@ -15,8 +15,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "fabrication/chisel/check/dexel.h"
-#include "fabrication/chisel/check/error_field.h"
+#include "fabrication/chisel/check/simulation/dexel.h"
+#include "fabrication/chisel/check/simulation/error_field.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/chisel/plan/plan.h"

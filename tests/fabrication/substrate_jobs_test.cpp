@@ -14,7 +14,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "fabrication/chisel/check/dexel.h"
+#include "fabrication/chisel/check/simulation/dexel.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/chisel/check/workpiece.h"
 #include "fabrication/chisel/plan/plan.h"

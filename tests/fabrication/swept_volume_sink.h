@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fabrication/chisel/check/dexel.h"
+#include "fabrication/chisel/check/simulation/dexel.h"
 #include "fabrication/chisel/check/verify.h"
 
 namespace retrace::fabrication::test {

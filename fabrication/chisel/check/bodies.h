@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fabrication/chisel/check/swept_volume.h"
+#include "fabrication/chisel/check/simulation/swept_volume.h"
 #include "fabrication/machine/machine.h"
 #include "geometry/vec.h"
 

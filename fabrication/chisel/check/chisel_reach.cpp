@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "fabrication/chisel/check/groove.h"
-#include "fabrication/chisel/check/swept_volume.h"
+#include "fabrication/chisel/check/simulation/swept_volume.h"
 #include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {

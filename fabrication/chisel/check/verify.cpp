@@ -12,9 +12,9 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "fabrication/chisel/check/nose.h"
 #include "fabrication/chisel/check/program_check.h"
 #include "fabrication/chisel/check/rim_overcut.h"
+#include "fabrication/chisel/check/simulation/nose.h"
 #include "fabrication/chisel/check/visits.h"
 #include "fabrication/chisel/check/workpiece.h"
 #include "fabrication/job/substrate_cells.h"

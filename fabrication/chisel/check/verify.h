@@ -8,7 +8,7 @@
 #include "core/progress.h"
 #include "fabrication/check/findings.h"
 #include "fabrication/check/program_time.h"
-#include "fabrication/chisel/check/facet_figures.h"
+#include "fabrication/chisel/check/simulation/facet_figures.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_program.h"

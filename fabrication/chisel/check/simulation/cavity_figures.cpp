@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "core/angle.h"
-#include "fabrication/chisel/check/facet_figures.h"
-#include "fabrication/chisel/check/plane_fit.h"
+#include "fabrication/chisel/check/simulation/facet_figures.h"
+#include "fabrication/chisel/check/simulation/plane_fit.h"
 
 namespace retrace::fabrication {
 namespace {

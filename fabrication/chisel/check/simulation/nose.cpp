@@ -1,4 +1,4 @@
-#include "fabrication/chisel/check/nose.h"
+#include "fabrication/chisel/check/simulation/nose.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "fabrication/chisel/check/error_field.h"
+#include "fabrication/chisel/check/simulation/error_field.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -11,9 +11,9 @@
 
 #include "core/error.h"
 #include "fabrication/check/findings.h"
-#include "fabrication/chisel/check/dexel.h"
 #include "fabrication/chisel/check/groove.h"
 #include "fabrication/chisel/check/program_check.h"
+#include "fabrication/chisel/check/simulation/dexel.h"
 #include "fabrication/chisel/check/verify.h"
 
 namespace retrace::fabrication {

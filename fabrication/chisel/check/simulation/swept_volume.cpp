@@ -1,4 +1,4 @@
-#include "fabrication/chisel/check/swept_volume.h"
+#include "fabrication/chisel/check/simulation/swept_volume.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

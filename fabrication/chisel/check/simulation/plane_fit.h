@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "fabrication/chisel/check/facet_figures.h"
+#include "fabrication/chisel/check/simulation/facet_figures.h"
 
 namespace retrace::fabrication {
 

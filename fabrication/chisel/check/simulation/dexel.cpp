@@ -1,4 +1,4 @@
-#include "fabrication/chisel/check/dexel.h"
+#include "fabrication/chisel/check/simulation/dexel.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

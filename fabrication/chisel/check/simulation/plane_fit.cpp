@@ -1,4 +1,4 @@
-#include "fabrication/chisel/check/plane_fit.h"
+#include "fabrication/chisel/check/simulation/plane_fit.h"
 
 namespace retrace::fabrication {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "fabrication/chisel/check/swept_volume.h"
+#include "fabrication/chisel/check/simulation/swept_volume.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication {

@@ -1,9 +1,9 @@
-#include "fabrication/chisel/check/facet_figures.h"
+#include "fabrication/chisel/check/simulation/facet_figures.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fabrication/chisel/check/plane_fit.h"
+#include "fabrication/chisel/check/simulation/plane_fit.h"
 
 namespace retrace::fabrication {
 namespace {
