@@ -15,8 +15,6 @@ namespace {
 
 using geometry::Vec3;
 
-constexpr std::uint8_t kLinearBits = 0b00111;
-
 std::uint8_t rotary_bits(const Machine& machine) {
   const auto bit = [](char axis) { return 1U << kNcAxisLetters.find(axis); };
   return static_cast<std::uint8_t>(bit(machine.tilt_letter()) | bit('C'));

@@ -13,7 +13,6 @@ namespace {
 
 using geometry::Vec3;
 
-constexpr std::uint8_t kLinearBits = 0b00111;
 /// Share of the process's clearance that rapid moves must keep from the blank's face.
 constexpr double kClearanceShare = 0.9;
 

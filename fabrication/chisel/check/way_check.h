@@ -3,6 +3,7 @@
 // The tool on its way between cuts, and what stands around it: rapid moves, turns of the axes, holder and fixtures.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,6 +15,9 @@
 #include "fabrication/read/nc_motion.h"
 
 namespace retrace::fabrication {
+
+/// X, Y and Z in NcMotion::moved and known.
+inline constexpr std::uint8_t kLinearBits = 0b00111;
 
 /// Adds what it finds to a list. Workpiece and wedge must outlive it. `back` leads from the frame of the machine to the
 /// workpiece's.
