@@ -74,7 +74,7 @@ ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
   studies::Optimum optimum;
   std::optional<studies::MadeJob> made;
   ResultFiles files(common, inputs_of(options, study), "optimum.json");
-  files.add("front.csv", [&] { return studies::entrance_csv(study, optimum); });
+  files.add("front.csv", [&] { return studies::front_csv(study, optimum); });
   files.add_named("--job", options.job, [&] { return made ? job_text_at(*made, options.job) : ""; });
   const std::filesystem::path file = files.reserve("optimum.sqlite");
   files.prepare();

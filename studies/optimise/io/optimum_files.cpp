@@ -76,7 +76,7 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
   return result_text("retrace.optimum/1", json, {}, optimum.complete);
 }
 
-std::string entrance_csv(const Study& study, const Optimum& optimum) {
+std::string front_csv(const Study& study, const Optimum& optimum) {
   CsvWriter csv;
   for (const Parameter& parameter : study.parameters) csv.add(parameter.name);
   for (const auto& quantity : study.quantities) csv.add(quantity->name());

@@ -10,7 +10,7 @@ namespace retrace::studies {
 std::string optimum_json(const Study& study, const OptimiseRequest& request, const Optimum& optimum, double elapsed_s);
 
 /// The front, one design a line.
-std::string entrance_csv(const Study& study, const Optimum& optimum);
+std::string front_csv(const Study& study, const Optimum& optimum);
 
 /// The chosen design, what it was chosen from and its tolerance bands, for the terminal.
 std::string optimum_text(const Study& study, const OptimiseRequest& request, const Optimum& optimum);
