@@ -1,5 +1,7 @@
 #pragma once
 
+// Turns argc and argv into a call of one command, with all its options read and checked.
+
 #include <functional>
 #include <span>
 #include <string>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Everything that commands print or write: checks of the output files before the work, the files themselves after it,
+// and lines on standard error.
+
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,7 @@
 #pragma once
 
+// JSON documents as text in one fixed form, so that the same result always gives the same bytes.
+
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Pictures of bytes or floats, and the interface to the module that reads every format OpenImageIO knows and writes PNG
+// and OpenEXR.
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Interfaces between long work and its caller: a request to stop, and reports of the share that is done.
+
 #include <atomic>
 
 namespace retrace {

@@ -1,5 +1,8 @@
 #pragma once
 
+// TOML files with checked values and messages that name file, line and key. toml++ stays behind this header; formats
+// are read through core/schema/ on top of it.
+
 #include <compare>
 #include <cstddef>
 #include <memory>

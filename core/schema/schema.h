@@ -1,5 +1,8 @@
 #pragma once
 
+// What a file format is, as constant data: its keys, what each may be, and where it goes. Readers, writers, JSON Schema
+// and the tables of the documentation walk these rows.
+
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -10,9 +13,6 @@
 #include <vector>
 
 #include "core/number_range.h"
-
-// What a file format is, as constant data: its keys, what each may be, and where it goes. Readers, writers, JSON Schema
-// and the tables of the documentation walk these rows.
 
 namespace retrace::schema {
 

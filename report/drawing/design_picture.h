@@ -1,5 +1,7 @@
 #pragma once
 
+// The three-dimensional picture of a design as PNG.
+
 #include <string>
 
 #include "studies/drawing/design_view.h"

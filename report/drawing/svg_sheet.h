@@ -1,5 +1,7 @@
 #pragma once
 
+// Builds SVG drawings from groups of lines, faces and texts that know the room they take on the sheet.
+
 #include <string>
 #include <string_view>
 #include <utility>

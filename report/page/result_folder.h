@@ -1,5 +1,7 @@
 #pragma once
 
+// Collects what the page of `retrace report` is made from: all result documents and pictures in a folder.
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>

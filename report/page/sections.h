@@ -1,5 +1,7 @@
 #pragma once
 
+// Composes the page of `retrace report` from the documents of a result folder.
+
 #include "report/page/page.h"
 #include "report/page/result_folder.h"
 
