@@ -1,5 +1,7 @@
 #pragma once
 
+// Parts whose back surface is one patch, as exports and closed boundaries need it.
+
 #include "geometry/part/part.h"
 
 namespace retrace::geometry {

@@ -1,5 +1,8 @@
 #pragma once
 
+// The inner loops of the cell engine over many rays at once in SIMD lanes: distances to planes, refraction, branching,
+// sums.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The cell engine: moves streams of rays from column to column of an endless array and books where their power ends.
+
 #include <cstdint>
 #include <optional>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The ledger: the accounts in which all incident power ends, with their names in files.
+
 #include <array>
 #include <cstddef>
 #include <string_view>

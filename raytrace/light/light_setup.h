@@ -1,5 +1,8 @@
 #pragma once
 
+// What all tracers share: the part's bounding planes, the light that enters, acceptance cones, and the sums of power
+// they keep.
+
 #include <cstdint>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Stokes parameters: power and polarisation of a beam.
+
 #include <array>
 
 namespace retrace::raytrace {

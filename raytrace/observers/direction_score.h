@@ -1,5 +1,7 @@
 #pragma once
 
+// Sums over the directions in which light leaves: intensity towards receivers, power by bins of angle.
+
 #include <cstddef>
 #include <optional>
 #include <vector>

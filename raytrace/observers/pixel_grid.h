@@ -1,5 +1,7 @@
 #pragma once
 
+// Pixels over the plane of the part, and the exact area that a polygon covers of each.
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>

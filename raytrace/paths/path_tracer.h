@@ -1,5 +1,7 @@
 #pragma once
 
+// Follows one light path through any part: which face comes next, refraction, reflection, branching and booking.
+
 #include <cstdint>
 #include <optional>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Rays at rough facets: Fresnel's branches, each split into specular and scattered light.
+
 #include <array>
 #include <cstddef>
 

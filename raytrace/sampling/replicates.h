@@ -1,5 +1,7 @@
 #pragma once
 
+// Rounds and replicates of Monte-Carlo runs: how many rays are traced, and the standard error from their spread.
+
 #include <array>
 #include <cstdint>
 #include <functional>
