@@ -1,5 +1,8 @@
 #pragma once
 
+// Fabrication jobs as data: elements and array, workpiece, chisel or V-shaped tool, strategy and process, and the
+// elements that a job cuts.
+
 #include <cstdint>
 #include <optional>
 #include <string>

@@ -1,5 +1,8 @@
 #pragma once
 
+// The kinematics of five-axis machines whose table or head tilts: axes with limits and speeds, forward and inverse
+// transformation, and poses that bring a facet to the tool.
+
 #include <array>
 #include <cstddef>
 #include <string>

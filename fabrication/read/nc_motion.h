@@ -1,5 +1,7 @@
 #pragma once
 
+// Carries out an NC program that was read: calls, modal settings and axis words become straight moves and dwells.
+
 #include <cstdint>
 #include <optional>
 #include <string>

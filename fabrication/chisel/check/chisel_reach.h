@@ -1,5 +1,8 @@
 #pragma once
 
+// How much of a cube corner a chisel with a straight edge can cut: the share it reaches and the core it leaves over the
+// apex.
+
 #include <array>
 
 #include "core/error.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Plans a chisel job for a machine: poses, stages and programs, with the time that they take.
+
 #include <cstdint>
 #include <optional>
 #include <string>

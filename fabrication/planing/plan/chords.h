@@ -1,5 +1,7 @@
 #pragma once
 
+// Replaces a profile by few straight chords within a tolerance, for lathes that move in straight lines.
+
 #include <cstddef>
 #include <vector>
 
