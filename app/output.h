@@ -93,7 +93,7 @@ void ResultFiles::add_drawing(const std::string& name, Plot plot) {
 ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohmann::ordered_json content,
                     const std::string& text);
 
-/// One line on standard error, free of control characters. That nobody can read it is no reason to stop.
+/// One line on standard error, free of control characters. A closed standard error is no failure.
 void say(std::string_view text);
 
 /// Warnings on standard error, one line each, unless `--quiet`.

@@ -16,7 +16,7 @@
 
 namespace retrace::schema {
 
-/// Numbers or words by names that whoever writes the file may choose.
+/// Numbers or words under names that the file chooses freely.
 using Named = std::map<std::string, std::variant<double, std::string>>;
 
 /// A value of a file. A word is its text, a whole number a double, nothing a key that is not given.

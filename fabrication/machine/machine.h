@@ -16,7 +16,7 @@ namespace retrace::fabrication {
 
 /// Where a value of a machine comes from.
 enum class Basis {
-  measured,  ///< `source` says by whom
+  measured,  ///< `source` names the publication or measurement
   assumed    ///< `source` says why
 };
 
