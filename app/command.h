@@ -1,5 +1,8 @@
 #pragma once
 
+// A command as data: name, manual text, formats that it reads and writes, and its options. The command line, --help,
+// the manual page and shell completion are all made from these entries.
+
 #include <cstdint>
 #include <functional>
 #include <limits>

@@ -97,7 +97,7 @@ std::string in_words(std::span<const Command> all) {
   return text;
 }
 
-/// What to say if a command or what it needs is missing: a word that nobody knows explains it better.
+/// The message if a command or one of its arguments is missing: where a word was not recognised, it names that word.
 std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::vector<std::string> unknown = app.remaining(true);
   for (const std::string& word : unknown)
@@ -114,7 +114,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// Whether there is something to run; else what was asked for is printed. \throw InputError
+/// Whether there is something to run; else what was requested is printed. \throw InputError
 bool parse(CLI::App& app, int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);

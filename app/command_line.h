@@ -1,5 +1,7 @@
 #pragma once
 
+// Turns argc and argv into a call of one command, with all its options read and checked.
+
 #include <functional>
 #include <span>
 #include <string>
@@ -8,7 +10,7 @@
 
 namespace retrace::app {
 
-/// Reads the command line. \return what runs the command; nothing if help or the version was asked for: that is printed
+/// Reads the command line. \return what runs the command; nothing if help or the version was requested: that is printed
 /// \throw InputError for a usage error
 std::function<ExitCode()> read_command_line(int argc, const char* const* argv);
 

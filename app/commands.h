@@ -1,5 +1,7 @@
 #pragma once
 
+// The list of all commands of the program, each defined in a file of its own in app/commands/.
+
 #include <span>
 
 #include "app/command.h"

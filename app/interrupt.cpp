@@ -31,7 +31,8 @@ extern "C" void end_now(int) {
 }
 
 extern "C" void on_interrupt(int) {
-  // Work that nobody stops in order, such as waiting for standard input, must not swallow the interrupt.
+  // Work outside of an OrderlyInterrupt, such as waiting for standard input, ends at once; so does any at the second
+  // interrupt.
   if (!is_orderly.load() || cancellation_asked.requested()) end_now(0);
   cancellation_asked.request();
   set_deadline(kPatience);

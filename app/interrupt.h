@@ -1,5 +1,7 @@
 #pragma once
 
+// What happens on Ctrl-C and SIGTERM: long work stops in order and keeps its finished results, other work ends at once.
+
 #include <functional>
 #include <optional>
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Options and texts shared by the commands that make a fabrication job of a design: `retrace job`, and `retrace
+// optimize` with --job.
+
 #include <filesystem>
 #include <optional>
 #include <string>

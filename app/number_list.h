@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads lists of angles and lengths from the command line, such as 0:40:5 or -40:40:auto.
+
 #include <string>
 #include <string_view>
 #include <vector>

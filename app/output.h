@@ -1,5 +1,8 @@
 #pragma once
 
+// Everything that commands print or write: checks of the output files before the work, the files themselves after it,
+// and lines on standard error.
+
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -90,7 +93,7 @@ void ResultFiles::add_drawing(const std::string& name, Plot plot) {
 ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohmann::ordered_json content,
                     const std::string& text);
 
-/// One line on standard error, free of control characters. That nobody can read it is no reason to stop.
+/// One line on standard error, free of control characters. A closed standard error is no failure.
 void say(std::string_view text);
 
 /// Warnings on standard error, one line each, unless `--quiet`.

@@ -1,5 +1,8 @@
 #pragma once
 
+// The common course of `retrace sweep` and `retrace tolerance`: compute the points of a study that its store lacks,
+// alone or under MPI, then write the result.
+
 #include <functional>
 #include <optional>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Progress of long work as a bar on the terminal.
+
 #include <chrono>
 #include <string>
 

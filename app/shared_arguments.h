@@ -1,13 +1,14 @@
 #pragma once
 
+// Arguments that several commands have, each with one name and one help text: design, job and part files, engine, dye,
+// and how a study treats an existing store.
+
 #include <string>
 
 #include "app/command.h"
 #include "studies/store/store.h"
 
 namespace retrace::app {
-
-// Arguments that several commands have.
 
 /// DESIGN, a design file.
 Argument design_argument(std::string& design);

@@ -1,5 +1,7 @@
 #pragma once
 
+// Angles that know their unit, degrees at borders and radians inside, and the constants to convert between them.
+
 #include <numbers>
 
 namespace retrace {

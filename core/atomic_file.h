@@ -1,5 +1,7 @@
 #pragma once
 
+// Files as a whole: outputs that appear completely or not at all, and inputs that are read up to a limit on their size.
+
 #include <cstddef>
 #include <filesystem>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Tables of comma-separated values, read with messages that name line and column, and written with full precision.
+
 #include <fmt/format.h>
 
 #include <concepts>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Where the data that retrace ships lies: materials, machines, processes, limits, and the JSON Schemas of its file
+// formats.
+
 #include <filesystem>
 #include <string_view>
 #include <vector>

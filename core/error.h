@@ -1,5 +1,7 @@
 #pragma once
 
+// The exceptions of retrace and the exit codes of the process that they lead to.
+
 #include <stdexcept>
 #include <string>
 #include <string_view>

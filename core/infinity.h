@@ -1,5 +1,7 @@
 #pragma once
 
+// Infinity as a double, under one short name.
+
 #include <limits>
 
 namespace retrace {

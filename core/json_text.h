@@ -1,5 +1,7 @@
 #pragma once
 
+// JSON documents as text in one fixed form, so that the same result always gives the same bytes.
+
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -13,7 +15,7 @@ namespace retrace {
 std::string to_text(const nlohmann::ordered_json& document);
 
 /// The document of a result: its schema, what it holds, and what every result says of itself at its end: the program's
-/// version, warnings, and whether all that was asked for is there.
+/// version, warnings, and whether all that was requested is there.
 std::string result_text(std::string_view schema, nlohmann::ordered_json content,
                         const std::vector<std::string>& warnings, bool complete = true);
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Texts of messages: foreign text made safe to print on one line, lists of what is allowed, and the nearest known name
+// for a "did you mean".
+
 #include <cstddef>
 #include <span>
 #include <string>

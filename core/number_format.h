@@ -1,5 +1,7 @@
 #pragma once
 
+// Numbers as text, independent of the locale: the shortest text that reads back equal, or a fixed number of digits.
+
 #include <string>
 
 namespace retrace {

@@ -1,5 +1,7 @@
 #pragma once
 
+// The range of values that a number of a file may have, and its words for messages.
+
 #include <limits>
 #include <string>
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Pictures of bytes or floats, and the interface to the module that reads every format OpenImageIO knows and writes PNG
+// and OpenEXR.
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -48,7 +51,7 @@ class PictureFiles {
 
 /// The library behind PictureFiles, OpenImageIO, brings some 250 others with it, whose loading would take a quarter of
 /// a second and 120 MiB of every run. So it is a module of its own, lib/retrace/retrace_pictures.so beside the
-/// program's bin/ folder, loaded when first asked for. \throw OutputError if the module cannot be loaded, as in a build
+/// program's bin/ folder, loaded at its first use. \throw OutputError if the module cannot be loaded, as in a build
 /// without OpenImageIO
 const PictureFiles& picture_files();
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Interfaces between long work and its caller: a request to stop, and reports of the share that is done.
+
 #include <atomic>
 
 namespace retrace {
@@ -14,7 +16,7 @@ class Cancellation {
   std::atomic<bool> requested_{false};
 };
 
-/// Whether there is somebody who may stop work, and did.
+/// Whether work was asked to stop. \param cancel null: it cannot be stopped
 inline bool is_cancelled(const Cancellation* cancel) {
   return cancel != nullptr && cancel->requested();
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+// Random numbers that depend on a key and a counter alone, so that results do not depend on the number of threads.
+
 #include <Random123/philox.h>
 
 #include <cstdint>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Small operations on text: trimming, splitting, numbers independent of the locale, and the length of UTF-8 characters.
+
 #include <cstddef>
 #include <optional>
 #include <string_view>

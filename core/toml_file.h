@@ -1,5 +1,8 @@
 #pragma once
 
+// TOML files with checked values and messages that name file, line and key. toml++ stays behind this header; formats
+// are read through core/schema/ on top of it.
+
 #include <compare>
 #include <cstddef>
 #include <memory>
@@ -24,7 +27,7 @@ struct TomlItem {
   std::string shown;  ///< as a message shows it
 };
 
-/// One table of a TOML file. It checks every value it hands out and remembers which keys were asked for. A table that
+/// One table of a TOML file. It checks every value it hands out and remembers which keys were requested. A table that
 /// is not there reads as empty. Cheap to copy; copies share that memory. Every function throws InputError with file,
 /// line and key if what was given is not what is allowed; numbers are finite.
 class TomlTable {
@@ -92,7 +95,8 @@ class TomlTable {
   };
   Position position(std::string_view key) const;
 
-  /// Throws for the first key, in file order, that nobody has asked for; likewise in the tables that were handed out.
+  /// Throws for the first key, in file order, that no function was called for: it is unknown. Likewise in the tables
+  /// that were handed out.
   void finish() const;
 
   struct Hidden;  ///< toml++ stays inside core/io/

@@ -1,5 +1,7 @@
 #pragma once
 
+// Where one plane lies above another over a polygon: what decides which facet of a cell is seen.
+
 #include "geometry/elements/element_cells.h"
 #include "geometry/polygon.h"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Convex polygons and rectangles in the plane: area, clipping, bounds.
+
 #include <vector>
 
 #include "geometry/vec.h"

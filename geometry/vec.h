@@ -1,5 +1,7 @@
 #pragma once
 
+// Vectors of the plane and of space, from Eigen.
+
 #include <Eigen/Core>
 
 namespace retrace::geometry {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Refractive index of transparent materials over wavelength, by dispersion formula, and relative to air.
+
 #include <string>
 #include <variant>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Fresnel's formulas: reflection and transmission amplitudes of plane interfaces between dielectrics and at metals.
+
 #include <complex>
 
 namespace retrace::materials {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Complex refractive index of metals from the Lorentz-Drude model, for facets that are aluminised.
+
 #include <complex>
 #include <string>
 #include <vector>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Light of many wavelengths: spectra of lamps weighted by the eye, and the few wavelengths, by Gauss quadrature, that
+// are traced in their place.
+
 #include <cstddef>
 #include <vector>
 

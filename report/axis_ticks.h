@@ -1,5 +1,7 @@
 #pragma once
 
+// Arithmetic of plot axes: ranges, round tick positions with their labels, and scales from values to drawing units.
+
 #include <optional>
 #include <span>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Colours for values and luminances: the cubehelix scale, tone mapping for displays, and sRGB bytes.
+
 #include <array>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Plots of pictures: irradiance and luminance maps with scale bars and colour bars, side by side.
+
 #include <cstddef>
 #include <string>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Plots of a part in plan, to scale, with regions coloured by a value, such as the active regions of its entrance face.
+
 #include <array>
 #include <string>
 #include <vector>

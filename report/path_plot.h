@@ -1,5 +1,7 @@
 #pragma once
 
+// Plots of a tool path in a section of the part, to scale.
+
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Line plots: curves with error bars over one pair of axes, such as RRE over incidence.
+
 #include <optional>
 #include <string>
 #include <vector>

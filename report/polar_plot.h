@@ -1,5 +1,7 @@
 #pragma once
 
+// Plots of a quantity over directions as coloured discs, such as far fields with the test points of a standard.
+
 #include <cstddef>
 #include <string>
 #include <vector>

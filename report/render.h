@@ -1,5 +1,7 @@
 #pragma once
 
+// Turns plots of every kind into SVG or PNG; each kind brings its own render().
+
 #include <string>
 
 namespace retrace::report {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Plots of measured surfaces: height maps with colour bars, and spectra over logarithmic axes.
+
 #include <cstddef>
 #include <string>
 #include <variant>

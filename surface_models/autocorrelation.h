@@ -1,5 +1,7 @@
 #pragma once
 
+// Autocorrelation of a height map and the correlation length of its roughness.
+
 #include <cstddef>
 #include <optional>
 #include <vector>

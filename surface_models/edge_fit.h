@@ -1,5 +1,7 @@
 #pragma once
 
+// Radius or chamfer of the edge between two facets, fitted to a measured profile across it.
+
 #include <vector>
 
 #include "surface_models/height_map.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Removes the form of a measured surface, a plane or a polynomial, before its texture is judged.
+
 #include "surface_models/height_map.h"
 
 namespace retrace::surface_models {

@@ -1,12 +1,13 @@
 #pragma once
 
+// Splits a height map into waviness and roughness by the linear areal Gaussian filter of ISO 16610-61 (ISO 16610-21 for
+// a profile), with the weighting function
+//   s(x, y) = exp(-pi (x^2 + y^2) / (a^2 L^2)) / (a^2 L^2),  a = sqrt(ln 2 / pi),
+// which passes half of the amplitude of waves as long as the cut-off L.
+
 #include "surface_models/height_map.h"
 
 namespace retrace::surface_models {
-
-// The linear areal Gaussian filter of ISO 16610-61 (ISO 16610-21 for a profile), with the weighting function
-//   s(x, y) = exp(-pi (x^2 + y^2) / (a^2 L^2)) / (a^2 L^2),  a = sqrt(ln 2 / pi),
-// which passes half of the amplitude of waves as long as the cut-off L.
 
 /// Which share of the amplitude of waves of `frequency_per_um` passes: exp(-pi (a L f)^2) = 2^-(L f)^2.
 double gaussian_transmission(double frequency_per_um, double cutoff_um);

@@ -1,5 +1,7 @@
 #pragma once
 
+// Measured heights on a regular grid, areal or as a profile: what all of surface metrology here works on.
+
 #include <cstddef>
 #include <limits>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Height parameters of surface texture (Sa, Sq, Sz, Ssk, Sku), and mean and spread of repeated measurements.
+
 #include <cstddef>
 #include <span>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Finds scratches and ridges in a measured surface: straight lines that stand out of its roughness.
+
 #include <vector>
 
 #include "surface_models/height_map.h"

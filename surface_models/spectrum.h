@@ -1,5 +1,8 @@
 #pragma once
 
+// Power spectral densities of height maps, along an axis or averaged over directions, and the periodic waves that stand
+// out of them.
+
 #include <vector>
 
 #include "surface_models/height_map.h"

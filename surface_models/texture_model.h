@@ -1,5 +1,8 @@
 #pragma once
 
+// From a measured map to the four numbers of a design's [surface]: roughness with its correlation length, waviness with
+// its period.
+
 #include <optional>
 
 #include "surface_models/gaussian_filter.h"

@@ -28,7 +28,7 @@ constexpr std::chrono::seconds kPreview{10};
 // Written by previews too.
 constexpr const char* kCameraPng = "camera.png";
 
-/// Options of `retrace image`. Exactly one kind of picture is asked for.
+/// Options of `retrace image`. Exactly one of the kinds of picture is given.
 struct ImageOptions {
   std::string design;
   bool detector = false;

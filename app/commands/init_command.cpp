@@ -49,7 +49,7 @@ std::string schema_line(const std::string& kind) {
 ExitCode run(const InitOptions& options, const CommonOptions& common) {
   std::string text = studies::design_template(options.kind);
   if (options.editor) text = schema_line(options.kind) + text;
-  // Somebody's design may be there: starting afresh is not worth losing it.
+  // Never overwrites: the file that is there may be a design that was worked on.
   if (!common.out.empty() &&
       std::filesystem::symlink_status(common.out).type() != std::filesystem::file_type::not_found)
     throw OutputError(common.out + ": is there already; not overwritten");

@@ -55,7 +55,7 @@ toml::table parse_override(const std::string& text, const std::string& label) {
   const auto refuse = [&](std::string_view why) { return InputError(InputLocation{label, 0, ""}, why); };
   const auto is_control = [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f; };
   if (text.size() > kLongestOverride) throw refuse(fmt::format("at most {} characters are allowed", kLongestOverride));
-  // One line only: a second one would be a second assignment that nobody sees.
+  // One line only: a second line could hold a second assignment that messages do not show.
   if (std::any_of(text.begin(), text.end(), is_control)) throw refuse("must be one line of the form KEY=VALUE");
   try {
     toml::table table = toml::parse(text, std::string_view(label));

@@ -1,5 +1,8 @@
 #pragma once
 
+// Numerical derivatives with an error estimate, for functions whose values carry noise, such as ray-traced
+// efficiencies.
+
 #include <cmath>
 #include <functional>
 #include <limits>

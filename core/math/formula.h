@@ -1,5 +1,8 @@
 #pragma once
 
+// Formulas that users write into files, such as a sag z(x, y): parsed once, then evaluated on numbers or on jets with
+// exact derivatives.
+
 #include <string>
 #include <vector>
 

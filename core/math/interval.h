@@ -1,5 +1,7 @@
 #pragma once
 
+// Interval arithmetic from Boost, for proofs that a function keeps within a bound over a whole region.
+
 #include <boost/numeric/interval.hpp>
 
 namespace retrace {

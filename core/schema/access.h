@@ -1,10 +1,11 @@
 #pragma once
 
+// Makes the functions by which rows and tables of a format get and set members of C++ objects, from pointers to members
+// or from functions of the object's type.
+
 #include <type_traits>
 
 #include "core/schema/schema.h"
-
-// Makes the functions of rows and tables from members and from functions of an object's own type.
 
 namespace retrace::schema {
 

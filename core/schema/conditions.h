@@ -1,11 +1,11 @@
 #pragma once
 
+// Short names for the conditions under which a key or table of a format means something. `refusal` is the
+// message for one that was given although its condition does not hold; empty: a message made from the condition.
+
 #include <algorithm>
 
 #include "core/schema/schema.h"
-
-// Conditions of rows and tables. `refusal` is what is said of one that was given all the same, if that needs more than
-// the condition does.
 
 namespace retrace::schema {
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// A file as it was read: its values by the paths of their keys, with the line that each came from, so that later checks
+// can still point at it.
+
 #include <filesystem>
 #include <map>
 #include <optional>

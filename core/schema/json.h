@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents as JSON, as results quote the files they were made from, and back to TOML text.
+
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// JSON Schema of a file format, for editors that complete and check TOML files while they are written.
+
 #include <nlohmann/json_fwd.hpp>
 
 #include "core/schema/schema.h"

@@ -403,7 +403,7 @@ Document unchecked_names(const Format& format, std::string_view text, const std:
   Document document(format.root, {source_name, 0, ""}, std::filesystem::path(source_name).parent_path());
   try {
     Names(document).take(format.root, parse_toml(text, source_name, most_bytes, overrides), "");
-  } catch (const Error&) {  // told by whoever reads it as a document
+  } catch (const Error&) {  // read_document() reports it
   }
   return document;
 }

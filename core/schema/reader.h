@@ -1,5 +1,8 @@
 #pragma once
 
+// Reads TOML text against the rows of a format into a document or a C++ object, and checks keys, values and rules on
+// the way.
+
 #include <cstddef>
 #include <span>
 #include <string>

@@ -1,5 +1,8 @@
 #pragma once
 
+// What a file format is, as constant data: its keys, what each may be, and where it goes. Readers, writers, JSON Schema
+// and the tables of the documentation walk these rows.
+
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -11,12 +14,9 @@
 
 #include "core/number_range.h"
 
-// What a file format is, as constant data: its keys, what each may be, and where it goes. Readers, writers, JSON Schema
-// and the tables of the documentation walk these rows.
-
 namespace retrace::schema {
 
-/// Numbers or words by names that whoever writes the file may choose.
+/// Numbers or words under names that the file chooses freely.
 using Named = std::map<std::string, std::variant<double, std::string>>;
 
 /// A value of a file. A word is its text, a whole number a double, nothing a key that is not given.

@@ -1,5 +1,7 @@
 #pragma once
 
+// Writes documents and C++ objects as TOML files of their format; the way back from core/schema/reader.h.
+
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>

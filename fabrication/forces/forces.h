@@ -1,5 +1,7 @@
 #pragma once
 
+// A mechanistic model of cutting forces in plunging and ploughing, calibrated on published measurements.
+
 #include <array>
 #include <optional>
 #include <string>

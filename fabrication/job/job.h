@@ -1,5 +1,8 @@
 #pragma once
 
+// Fabrication jobs as data: elements and array, workpiece, chisel or V-shaped tool, strategy and process, and the
+// elements that a job cuts.
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -95,7 +98,7 @@ struct Job {
   std::string machine = "ideal";  ///< name of a shipped machine, or a file
   Strategy strategy = Strategy::two_step;
   Process process;
-  std::vector<std::string> notes;  ///< remarks of whoever made the job, such as on what it leaves out
+  std::vector<std::string> notes;  ///< remarks from when the job was made, such as on what it leaves out
 };
 
 /// One element that is cut. In the workpiece frame: x_w = y_part, y_w = -x_part, origin at the centre of the extent on

@@ -1,5 +1,7 @@
 #pragma once
 
+// Jobs on a substrate: where their elements stand, and the face of the blank before it is cut.
+
 #include <optional>
 #include <string>
 #include <vector>

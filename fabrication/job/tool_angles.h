@@ -1,5 +1,7 @@
 #pragma once
 
+// Clearance and rake angle of a chisel against the facet that it cuts.
+
 #include "fabrication/job/job.h"
 
 namespace retrace::fabrication {

@@ -1,5 +1,8 @@
 #pragma once
 
+// Geometry of V-shaped tools at cube corners: edges of the tool's body, size of the cavity, and whether the tool
+// reaches all of it.
+
 #include <array>
 
 #include "core/schema/schema.h"

@@ -1,5 +1,8 @@
 #pragma once
 
+// The kinematics of five-axis machines whose table or head tilts: axes with limits and speeds, forward and inverse
+// transformation, and poses that bring a facet to the tool.
+
 #include <array>
 #include <cstddef>
 #include <string>
@@ -13,7 +16,7 @@ namespace retrace::fabrication {
 
 /// Where a value of a machine comes from.
 enum class Basis {
-  measured,  ///< `source` says by whom
+  measured,  ///< `source` names the publication or measurement
   assumed    ///< `source` says why
 };
 

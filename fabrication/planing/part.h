@@ -1,5 +1,7 @@
 #pragma once
 
+// Flat lenses of zones as data, with the planing mill or lathe that is to make them.
+
 #include <cstdint>
 #include <optional>
 #include <string>

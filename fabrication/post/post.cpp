@@ -45,7 +45,7 @@ class FileWriter {
   void operator()(const Comment& comment) { add(dialect_.comment, comment.text); }
   void operator()(const Message& message) { add(dialect_.message, message.text); }
   void operator()(const OptionalStop&) {
-    // The chips stay where they fell while somebody looks.
+    // Mist off during an optional stop: chips stay where they fell, for inspection.
     const bool had_mist = mist_on_;
     mist(false);
     text_ += "M1\n";

@@ -1,5 +1,8 @@
 #pragma once
 
+// The readers of NC text by dialect (RS274NGC, Sinumerik, Fanuc, Power PMAC), each written from its published rules and
+// apart from the writers in post/.
+
 #include <string>
 #include <string_view>
 
@@ -7,9 +10,6 @@
 #include "fabrication/read/nc_text.h"
 
 namespace retrace::fabrication {
-
-// Readers of NC text: one function a dialect, written from its published rules. Lines that start and stop the spindle
-// are PMAC's alone. \throw InputError as parse_nc()
 
 /// NIST RS274NGC as LinuxCNC has it: `o101 sub` ... `o101 endsub`, `o101 call`.
 /// (Kramer, Proctor, Messina: The NIST RS274NGC Interpreter, NISTIR 6556, 2000; LinuxCNC G-code reference)

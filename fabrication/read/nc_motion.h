@@ -1,5 +1,7 @@
 #pragma once
 
+// Carries out an NC program that was read: calls, modal settings and axis words become straight moves and dwells.
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -63,7 +65,7 @@ inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
 
 /// Carries out a program: calls, modal settings, absolute and incremental words.
 /// \throw InputError naming file and line: a linear move under inverse time without F > 0, axes that move before G0 or
-/// G1, an incremental word for an axis whose position nobody has set, subroutines that call each other without end
+/// G1, an incremental word for an axis whose position is not yet known, subroutines that call each other without end
 NcEnd run_nc(const NcProgram& program, NcSink& sink);
 
 }  // namespace retrace::fabrication

@@ -1,5 +1,7 @@
 #pragma once
 
+// NC programs as read from text, in terms that all dialects share: blocks with axis words, modal settings and calls.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Tools of the NC readers: lines, numbers, words, and the G and M codes that dialects of ISO 6983 share.
+
 #include <cstddef>
 #include <cstdint>
 #include <span>

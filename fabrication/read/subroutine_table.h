@@ -1,5 +1,7 @@
 #pragma once
 
+// Numbers the subroutines of an NC program while it is read, called or defined first.
+
 #include <cstdint>
 #include <map>
 #include <string>

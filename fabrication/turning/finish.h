@@ -1,5 +1,7 @@
 #pragma once
 
+// Closed forms of surface finish in turning: cusp height, Ra and Rq from nose radius, feed and curvature.
+
 #include "fabrication/turning/tool.h"
 
 namespace retrace::fabrication::turning {

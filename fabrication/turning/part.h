@@ -1,5 +1,7 @@
 #pragma once
 
+// Turned parts as data: freeform surface, tool, path, machine and tolerances.
+
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Turning tools as mounted, and whether they clear a surface: clearance of the flank and sharp arc of the nose at every
+// slope.
+
 #include <functional>
 #include <optional>
 #include <string>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Checks that a triangle mesh bounds a solid, by CGAL with exact predicates: for meshes that users bring, and for what
+// retrace builds itself.
+
 #include "geometry/part/closed_boundary.h"
 
 namespace retrace::geometry {

@@ -1,9 +1,10 @@
 #pragma once
 
+// How elements are repeated over a part - arrangement, gaps, offsets, shifted rows, partial elements: what designs and
+// fabrication jobs say alike.
+
 #include <string>
 #include <vector>
-
-// How elements are repeated over a part: what designs and fabrication jobs say alike.
 
 namespace retrace::geometry {
 

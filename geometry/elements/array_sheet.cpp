@@ -14,7 +14,7 @@ namespace {
 
 /// Lengths this close to a whole number of elements (relative) are whole.
 constexpr double kWhole = 1e-9;
-// Far beyond all that is asked for.
+// Size of an endless sheet, in periods and in reaches of the sheet: far more than any tracer or drawing looks at.
 constexpr double kEndlessPeriods = 1e3;
 constexpr double kEndlessReaches = 10.0;
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Lays out the cells of an array on a sheet, which lies on what the part stands on: the plane z = 0 or a curved
+// substrate. The back surface is tiled from it.
+
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -10,8 +13,6 @@
 #include "geometry/elements/whole_elements.h"
 #include "geometry/polygon.h"
 #include "geometry/substrate/substrate_surface.h"
-
-// Where the cells of an array stand: laid out on a sheet, which lies on what the part stands on.
 
 namespace retrace::geometry {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "geometry/elements/element_cells.h"
+// Rounds and chamfers the roots and rims of elements, as strips of plane facets.
 
-// Rounded and chamfered roots and rims, as strips of facets.
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::geometry {
 

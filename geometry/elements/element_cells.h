@@ -1,12 +1,13 @@
 #pragma once
 
+// The elements themselves, seen from above: prisms and cube corners as planes over polygons, with their errors of angle
+// and cant.
+
 #include <cstdint>
 #include <vector>
 
 #include "geometry/elements/part_spec.h"
 #include "geometry/polygon.h"
-
-// Elements seen from above: facets as planes over polygons.
 
 namespace retrace::geometry {
 

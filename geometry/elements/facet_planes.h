@@ -1,5 +1,8 @@
 #pragma once
 
+// Elements whose facets each have a plane of their own, as measured or as a simulated program left them, and the part
+// that they make.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

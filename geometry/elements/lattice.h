@@ -1,10 +1,10 @@
 #pragma once
 
+// The periodic tiling of the plane by cells that an arrangement of elements repeats.
+
 #include <vector>
 
 #include "geometry/elements/element_cells.h"
-
-// Elements repeated to fill the plane.
 
 namespace retrace::geometry {
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// What a designer says of a part, as data: the kind and sizes of its elements, errors of angle, edges, scratches,
+// array, substrate and plate.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

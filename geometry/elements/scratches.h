@@ -1,8 +1,8 @@
 #pragma once
 
-#include "geometry/elements/element_cells.h"
+// Cuts V-shaped grooves and ridges, as a chipped tool leaves them, into the facets of prisms.
 
-// Grooves up the facets of prisms.
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::geometry {
 

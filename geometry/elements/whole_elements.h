@@ -1,14 +1,14 @@
 #pragma once
 
+// Counts and places the elements of a finite array, on the plane z = 0 or on a substrate. Drawings, masks, tables of
+// facets and jobs take it; parts have the same cells by the same sheet (array_sheet.h).
+
 #include <cstdint>
 #include <vector>
 
 #include "geometry/elements/part_spec.h"
 #include "geometry/polygon.h"
 #include "geometry/substrate/substrate_surface.h"
-
-// Where the elements of a finite array stand, on the plane z = 0 or on a substrate. Drawings, masks, tables of facets
-// and jobs take it; parts have the same cells by the same sheet (array_sheet.h).
 
 namespace retrace::geometry {
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Entrance surfaces given as triangle meshes: which triangles light enters through, and whether they cover the part
+// without holes, overlaps or steps.
+
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/triangle_mesh.h"
 

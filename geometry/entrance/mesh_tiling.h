@@ -1,5 +1,7 @@
 #pragma once
 
+// Tests whether triangles cover a convex outline exactly once, and names the first place where they do not.
+
 #include <array>
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads a picture as a mask of an array: dark pixels are elements that are cut, light ones are left out.
+
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Writes boundary meshes as Wavefront OBJ.
+
 #include <string>
 #include <string_view>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Writes faceted solids as STEP, for CAD programs; OpenCASCADE does it in a module of its own.
+
 #include <string>
 
 #include "geometry/part/faceted_solid.h"

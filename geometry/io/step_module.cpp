@@ -110,7 +110,7 @@ void name_product(const Handle(StepData_StepModel) & model, const std::string& n
   }
 }
 
-/// Who wrote it, and when: never, so that the same solid gives the same file.
+/// The header of the file, without author and with a fixed time stamp, so that the same solid gives the same file.
 void set_header(const Handle(StepData_StepModel) & model, const std::string& name) {
   APIHeaderSection_MakeHeader header(model);
   header.SetName(text_of(name));

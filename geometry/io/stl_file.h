@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads and writes triangle meshes as STL.
+
 #include <cstddef>
 #include <string>
 #include <string_view>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The table [base] of design and job files as rows: the shape of a substrate and how elements stand on it.
+
 #include <span>
 #include <string_view>
 

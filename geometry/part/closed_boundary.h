@@ -1,5 +1,7 @@
 #pragma once
 
+// The whole boundary of a part as one closed triangle mesh, for export, figures and checks.
+
 #include <array>
 #include <cstdint>
 #include <vector>

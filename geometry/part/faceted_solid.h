@@ -1,5 +1,7 @@
 #pragma once
 
+// Triangle meshes as solids with plane polygonal faces, as CAD formats have them, and the volume and area of meshes.
+
 #include <cstdint>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Makes a traceable part of a closed triangle mesh from a file, and closes openings of meshes that are not.
+
 #include "geometry/part/closed_boundary.h"
 #include "geometry/part/part.h"
 #include "geometry/part/triangle_mesh.h"

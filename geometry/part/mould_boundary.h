@@ -1,5 +1,7 @@
 #pragma once
 
+// The mould of a part as a closed triangle mesh: the block whose upper face is the part's back surface.
+
 #include "geometry/part/closed_boundary.h"
 
 namespace retrace::geometry {

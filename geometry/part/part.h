@@ -1,5 +1,7 @@
 #pragma once
 
+// The part that is traced: a plate with its back surface of elements, stored as few distinct patches in many places.
+
 #include <cstdint>
 #include <optional>
 #include <vector>

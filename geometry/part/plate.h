@@ -1,5 +1,7 @@
 #pragma once
 
+// Parts without elements: plane-parallel plates and boxes.
+
 #include "geometry/part/part.h"
 #include "geometry/part/triangle_mesh.h"
 

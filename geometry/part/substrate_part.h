@@ -1,9 +1,10 @@
 #pragma once
 
+// Parts whose elements stand on a substrate: whether it can carry them, and how much wall stands open between
+// neighbours.
+
 #include "geometry/part/part.h"
 #include "geometry/substrate/substrate_surface.h"
-
-// What is asked of parts on substrates: whether these carry their elements, and what stands open between neighbours.
 
 namespace retrace::geometry {
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Welds facets of neighbouring cells into a watertight piece of the back surface, with vertical walls where heights
+// differ.
+
 #include <array>
 #include <cstdint>
 #include <vector>

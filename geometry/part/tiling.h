@@ -1,10 +1,10 @@
 #pragma once
 
+// Internal to geometry: builds the back surface of a part from cells that stand on a plane or on a substrate.
+
 #include "geometry/elements/array_sheet.h"
 #include "geometry/elements/facet_planes.h"
 #include "geometry/part/part.h"
-
-// Internal to geometry: the back surface of a part, from cells that stand on a plane or on a substrate.
 
 namespace retrace::geometry {
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The plain triangle mesh, as read from files and handed between the rooms of geometry.
+
 #include <array>
 #include <cstdint>
 #include <vector>

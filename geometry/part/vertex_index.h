@@ -1,5 +1,7 @@
 #pragma once
 
+// Numbers points of the plane so that those nearer than a tolerance share a number: welding of vertices.
+
 #include <cstdint>
 #include <unordered_map>
 #include <vector>

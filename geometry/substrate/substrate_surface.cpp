@@ -160,7 +160,7 @@ class ArcTable {
 
 }  // namespace
 
-/// Arc lengths of a formula: along x = 0, and along the rows that were asked for.
+/// Arc lengths of a formula: along x = 0, and along the rows that were requested.
 struct SubstrateSurface::ArcTables {
   ArcTables(const SubstrateSurface& surface, double size_mm)
       : step_mm(std::max(0.5 * size_mm, surface.half_mm_.maxCoeff() / kMostSteps)),

@@ -1,5 +1,8 @@
 #pragma once
 
+// Substrates as surfaces that elements stand on: height, normal and local frame at every place, and the arc lengths by
+// which an array is laid out on them.
+
 #include <cstdint>
 #include <memory>
 

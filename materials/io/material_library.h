@@ -1,5 +1,8 @@
 #pragma once
 
+// Reads the library of optical materials and metals (data/materials.toml), in which designs look up their substance by
+// name.
+
 #include <filesystem>
 #include <string_view>
 #include <vector>

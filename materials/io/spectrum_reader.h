@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads tables over wavelength: the CIE's V and illuminants, spectral power of lamps, absorption of dyes.
+
 #include <filesystem>
 #include <string>
 #include <string_view>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Closed forms for retroreflecting balls: return error, paraxial focus, share of the aperture that comes back, packing.
+
 #include <optional>
 
 #include "raytrace/balls/ball_layer.h"

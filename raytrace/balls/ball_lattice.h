@@ -1,5 +1,7 @@
 #pragma once
 
+// Places of the balls in a layer, and the search for the ball that a ray in the air above them meets.
+
 #include <cstdint>
 #include <optional>
 

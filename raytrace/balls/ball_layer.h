@@ -1,5 +1,7 @@
 #pragma once
 
+// What a ball retroreflector is: diameter, mirror, spacer and pitch.
+
 #include <algorithm>
 #include <cmath>
 #include <optional>

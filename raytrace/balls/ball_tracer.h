@@ -1,5 +1,7 @@
 #pragma once
 
+// Monte-Carlo tracing of ball retroreflectors: RRE and ledger, with standard errors.
+
 #include <vector>
 
 #include "raytrace/balls/ball_layer.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Follows one light path through balls and their mirrors, from sphere to sphere in closed form.
+
 #include <cstdint>
 #include <vector>
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// An endless array as columns over convex cells, in which a ray finds its next facet or neighbour without a search
+// tree.
+
 #include <optional>
 #include <vector>
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// The inner loops of the cell engine over many rays at once in SIMD lanes: distances to planes, refraction, branching,
+// sums.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -138,7 +141,7 @@ struct Arrivals {
   double absorbed = 0.0;  ///< power, on the way up
 };
 /// \param reflected at the entrance \param returned one for each cone, and one for outside all
-/// \param left what leaves through the entrance; null: nobody asks
+/// \param left gets what leaves through the entrance; null: it is not kept
 Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeting, const Entrance& entrance,
                        const Rays& reflected, std::span<Stokes> returned, const Rays* left);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The cell engine: moves streams of rays from column to column of an endless array and books where their power ends.
+
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -16,7 +18,7 @@ namespace retrace::raytrace {
 
 /// Follows light through an endless array, column by column, many rays at once: all that are over one column, or under
 /// its surface, wait in one stream and are moved in SIMD lanes, the fullest stream first. Rays that leave the inner
-/// piece of a finite part are handed over to whoever traces its borders. One walker serves one thread.
+/// piece of a finite part are handed over to PathWalker, which traces its borders. One walker serves one thread.
 class CellWalker {
  public:
   /// A ray that the walker does not follow any more.

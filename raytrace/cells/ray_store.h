@@ -1,5 +1,7 @@
 #pragma once
 
+// Memory for many rays as one array per number, padded for SIMD lanes.
+
 #include <algorithm>
 #include <array>
 #include <cstddef>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Beams of the exact tracer: parallel light with a polygonal cross-section, its path length and where it entered.
+
 #include <Eigen/Geometry>
 #include <boost/container/small_vector.hpp>
 #include <cstdint>

@@ -1,5 +1,8 @@
 #pragma once
 
+// The exact engine: follows polygonal beams through a part without sampling, and tells RRE, ledger and every returned
+// beam.
+
 #include <cstdint>
 #include <functional>
 #include <memory>

@@ -1,5 +1,7 @@
 #pragma once
 
+// One run of the exact engine: which facets a beam meets, which hide others, and what becomes of its pieces.
+
 #include <cmath>
 #include <utility>
 #include <vector>

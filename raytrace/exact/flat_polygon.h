@@ -1,5 +1,7 @@
 #pragma once
 
+// Convex polygons across a beam, with the clipping and subtraction that split beams at facets.
+
 #include <algorithm>
 #include <boost/container/small_vector.hpp>
 #include <utility>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Lays convex polygons with values over each other into disjoint pieces with summed values, as the footprint needs it.
+
 #include <memory>
 #include <vector>
 

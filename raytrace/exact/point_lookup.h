@@ -1,5 +1,7 @@
 #pragma once
 
+// Finds values at points again within a tolerance, such as beams of the same direction.
+
 #include <array>
 #include <cmath>
 #include <cstdint>

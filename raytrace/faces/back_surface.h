@@ -1,5 +1,7 @@
 #pragma once
 
+// The search for the facet of the back that a ray meets: Embree finds the boxes, double precision decides.
+
 #include <memory>
 #include <optional>
 

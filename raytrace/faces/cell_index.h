@@ -1,5 +1,7 @@
 #pragma once
 
+// A grid over the cells of the back surface, by which the exact engine finds those under a beam.
+
 #include <cmath>
 #include <cstdint>
 #include <vector>

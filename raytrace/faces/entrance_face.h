@@ -1,13 +1,14 @@
 #pragma once
 
+// Curved entrance faces as rays meet them: the interface that height fields (height_field.h) and meshes
+// (mesh_entrance.h) fulfil.
+
 #include <memory>
 #include <optional>
 
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
 #include "raytrace/faces/surface_ray.h"
-
-// A curved face through which light enters, as rays meet it.
 
 namespace retrace::raytrace {
 

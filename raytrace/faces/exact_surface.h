@@ -1,5 +1,7 @@
 #pragma once
 
+// Intersection of rays with the planes and outlines of the back surface in double precision.
+
 #include <optional>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The boxes round cells and facets that Embree searches.
+
 #include <cstdint>
 #include <vector>
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Rays against a smooth entrance surface z(x, y): a grid of cells with bounds on height and curvature, and within a
+// cell steps that cannot miss the surface.
+
 #include <array>
 #include <memory>
 #include <optional>

@@ -1,10 +1,10 @@
 #pragma once
 
+// Rays against an entrance surface given as triangles, by the same search as that of the back of a part.
+
 #include "geometry/entrance/entrance_mesh.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/faces/entrance_face.h"
-
-// Entrance surfaces of triangles.
 
 namespace retrace::raytrace {
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Rays that look for a surface, and the facets that they start from and hit.
+
 #include <cstdint>
 #include <limits>
 

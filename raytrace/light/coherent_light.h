@@ -1,5 +1,8 @@
 #pragma once
 
+// Light with its complex field (Jones matrix) beside its Stokes parameters, for diffraction and interference in the far
+// field.
+
 #include <Eigen/Core>
 #include <cmath>
 #include <complex>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Interface for what records every path that leaves through the entrance face, such as detectors.
+
 #include "raytrace/faces/surface_ray.h"
 
 namespace retrace::raytrace {

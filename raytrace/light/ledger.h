@@ -1,5 +1,7 @@
 #pragma once
 
+// The ledger: the accounts in which all incident power ends, with their names in files.
+
 #include <array>
 #include <cstddef>
 #include <string_view>
@@ -13,7 +15,7 @@ enum class Account : std::size_t {
   scattered_out,       ///< left through the entrance face outside the cone after a non-specular event
   returned_elsewhere,  ///< the rest that left through the entrance face
   side_exit,           ///< left through sides and border walls
-  transmitted,         ///< left through facets, inner gables and flat backs
+  transmitted,         ///< left through facets, inner walls and flat backs
   absorbed,
   truncated,  ///< below the weight cut-off or past the bounce cap
   lost        ///< missed every face from inside: 0 in a sound run

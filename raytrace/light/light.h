@@ -1,5 +1,8 @@
 #pragma once
 
+// Polarised light at interfaces: Stokes parameters in the plane of incidence, reflected and transmitted by Fresnel's
+// formulas.
+
 #include <Eigen/Geometry>
 #include <cmath>
 #include <complex>

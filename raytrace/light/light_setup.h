@@ -1,5 +1,8 @@
 #pragma once
 
+// What all tracers share: the part's bounding planes, the light that enters, acceptance cones, and the sums of power
+// they keep.
+
 #include <cstdint>
 #include <vector>
 
@@ -30,7 +33,7 @@ struct LightSetup {
   double top_mm = 0.0;
   std::vector<Side> sides;  ///< empty for an infinite part
   Vec3 to_source = Vec3::UnitZ();
-  const DirectionScore* score = nullptr;  ///< of the directions in which light leaves; none: nobody asks
+  const DirectionScore* score = nullptr;  ///< sums over the directions in which light leaves; null: none are kept
   std::vector<double> cone_chord2;  ///< squared distance of unit vectors at each cone's edge from the one to the source
 
   bool infinite() const { return sides.empty(); }
@@ -74,7 +77,7 @@ struct Tally {
 };
 
 /// The first axis of the Stokes parameters of light that comes from or goes into a direction above the part: +x, seen
-/// across it. The second is `direction` x it, so that both are those of someone at the source.
+/// across it. The second is `direction` x it, so that both axes are as seen from the source.
 /// \pre direction not along x
 Vec3 source_axis(const Vec3& direction);
 
@@ -90,7 +93,6 @@ Stokes seen_from_above(Light light, const Vec3& direction);
 /// Where light is booked that left the part for good through a face of this role. \pre not the entrance
 Account account_of_exit(geometry::FacetRole role);
 
-/// Amplitudes of a perfect mirror.
 /// What a face of the back surface makes of light on its way, inside the part or outside.
 materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::FacetRole role, bool inside,
                                                double cos_incidence);

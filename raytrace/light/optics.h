@@ -1,5 +1,7 @@
 #pragma once
 
+// The optical properties of a part at one wavelength, and the direction and polarisation of the incident beam.
+
 #include <complex>
 #include <optional>
 

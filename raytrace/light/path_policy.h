@@ -1,5 +1,7 @@
 #pragma once
 
+// When Monte-Carlo paths split in two and when they end.
+
 #include <cstdint>
 
 namespace retrace::raytrace {

@@ -1,11 +1,13 @@
 #pragma once
 
+// Stokes parameters: power and polarisation of a beam.
+
 #include <array>
 
 namespace retrace::raytrace {
 
 /// Stokes parameters of a beam, in units of the incident power. Between interfaces they refer to the axes (s, p) of a
-/// Light; in results to the axes of source_axis(). v > 0 is right-handed: clockwise for whom the light reaches (Born
+/// Light; in results to the axes of source_axis(). v > 0 is right-handed: clockwise as seen against the light (Born
 /// and Wolf, Principles of Optics, 7th ed., 1.4).
 struct Stokes {
   double i = 0.0;  ///< power

@@ -1,5 +1,7 @@
 #pragma once
 
+// The finite discs of source and receiver in photometry, as a weight over the angle between two directions.
+
 #include <vector>
 
 #include "core/angle.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Pictures of a lit part as an eye or a camera sees it, traced backwards from the pupil.
+
 #include <cstdint>
 #include <memory>
 #include <optional>

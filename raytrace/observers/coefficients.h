@@ -1,5 +1,7 @@
 #pragma once
 
+// Coefficients of retroreflection of CIE 54.2 and ASTM E808 (R_A, R_L) from intensities.
+
 #include <cmath>
 
 #include "core/angle.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Detector maps: where on the entrance face light leaves and entered, and in which directions it comes back.
+
 #include <cstdint>
 #include <vector>
 

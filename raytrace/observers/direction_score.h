@@ -1,5 +1,7 @@
 #pragma once
 
+// Sums over the directions in which light leaves: intensity towards receivers, power by bins of angle.
+
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -36,7 +38,7 @@ class DirectionGrid {
 };
 
 /// What is asked of the directions in which light leaves the entrance face: the intensity that receivers see, and how
-/// much power goes into the bins of a grid. Sums are kept by whoever traces, one vector for each of his tallies.
+/// much power goes into the bins of a grid. Tracers keep the sums, one vector for each Tally.
 struct DirectionScore {
   ReturnFrame frame;
   ApertureKernel kernel;

@@ -1,5 +1,8 @@
 #pragma once
 
+// The far field of returned light with Fraunhofer diffraction at the cells' apertures, from the beams of the exact
+// engine.
+
 #include <cstdint>
 #include <map>
 #include <optional>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The goniometer angles of photometric standards, and their conversion into directions in the part frame.
+
 #include "core/angle.h"
 #include "geometry/vec.h"
 #include "raytrace/observers/return_frame.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Pixels over the plane of the part, and the exact area that a polygon covers of each.
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -9,8 +11,8 @@
 
 namespace retrace::raytrace {
 
-/// Equal pixels over a rectangle of the part's plane: row 0 at the largest y, column 0 at the smallest x, as one who
-/// looks at the entrance face sees them with +x to the right.
+/// Equal pixels over a rectangle of the part's plane: row 0 at the largest y, column 0 at the smallest x, as
+/// they look from above the entrance face with +x to the right.
 class PixelGrid {
  public:
   /// \pre bounds not empty, columns and rows > 0

@@ -1,5 +1,7 @@
 #pragma once
 
+// Fourier transform of a polygonal aperture in closed form: its diffraction pattern.
+
 #include <complex>
 #include <vector>
 

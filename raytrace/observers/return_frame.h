@@ -1,5 +1,7 @@
 #pragma once
 
+// Angles to the right and upwards around the direction back to the source: the axes of far fields and angular maps.
+
 #include <Eigen/Geometry>
 #include <cmath>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Single light paths as polylines with the events on them, for pictures that explain a part.
+
 #include <cstddef>
 #include <string>
 #include <vector>

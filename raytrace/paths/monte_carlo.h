@@ -1,5 +1,7 @@
 #pragma once
 
+// The Monte-Carlo engine: RRE and ledger of a part with standard errors, by Embree or, for arrays, cell by cell.
+
 #include <cstdint>
 #include <functional>
 #include <memory>

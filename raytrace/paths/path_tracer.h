@@ -1,5 +1,7 @@
 #pragma once
 
+// Follows one light path through any part: which face comes next, refraction, reflection, branching and booking.
+
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -34,7 +36,7 @@ struct PathSetup : LightSetup {
 /// both matter, one chosen at random with the whole power where not. One walker serves one thread.
 class PathWalker {
  public:
-  /// \param observer told of all that leaves through the entrance face from within; null: nobody
+  /// \param observer told of all that leaves through the entrance face from within; null: none
   PathWalker(const PathSetup& setup, Tally& tally, ExitObserver* observer = nullptr)
       : setup_(setup), tally_(tally), observer_(observer) {}
 

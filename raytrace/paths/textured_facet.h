@@ -1,5 +1,7 @@
 #pragma once
 
+// Rays at rough facets: Fresnel's branches, each split into specular and scattered light.
+
 #include <array>
 #include <cstddef>
 
@@ -20,7 +22,7 @@ struct Ray {
 enum class Branch { reflected, transmitted, both };
 
 /// Both branches of light at an interface while each has at least `split_power`, else one by its share of the power,
-/// which it gets whole: nothing is lost or made. \param uniform gives a number in [0, 1), asked for if there is a
+/// which it gets whole: nothing is lost or made. \param uniform gives a number in [0, 1), called if there is a
 /// choice
 template <class Uniform>
 Branch choose_branch(Light& reflected, Light& transmitted, double split_power, const Uniform& uniform) {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Maps points of the unit square to entry points spread evenly over the entrance face.
+
 #include <array>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Sets the processor to flush denormal numbers within a task, as Embree asks for.
+
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 

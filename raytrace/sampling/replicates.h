@@ -1,5 +1,7 @@
 #pragma once
 
+// Rounds and replicates of Monte-Carlo runs: how many rays are traced, and the standard error from their spread.
+
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -32,7 +34,7 @@ bool trace_replicates(std::uint32_t from, std::uint32_t until, std::vector<Tally
 /// Adds rays from..until-1 of every replicate. False if cancelled.
 using TraceRange = std::function<bool(std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates)>;
 
-/// Doubles the rays round by round until the target error is reached, or as many are traced as are asked for.
+/// Doubles the rays round by round until the target error is reached, or as many are traced as are requested.
 class Rounds {
  public:
   Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::size_t score_size, TraceRange trace_range);

@@ -1,5 +1,7 @@
 #pragma once
 
+// Owen-scrambled Sobol points in the unit square: the low-discrepancy sample of entry points.
+
 #include <array>
 #include <cstdint>
 

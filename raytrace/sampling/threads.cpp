@@ -28,8 +28,7 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
   std::atomic<unsigned> handed_out{0};
   std::atomic<unsigned> handed_back{0};
   handed_out.fetch_add(1, std::memory_order_release);
-  // A thread that waits for the others helps with this work alone: not with that of a caller, who may share out as
-  // well.
+  // A thread that waits for the others takes pieces of this loop alone, not of an outer parallel loop around it.
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
       static_cast<void>(handed_out.load(std::memory_order_acquire));

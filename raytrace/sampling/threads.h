@@ -1,5 +1,7 @@
 #pragma once
 
+// Runs work on a limited number of threads, and loops in parallel.
+
 #include <cstddef>
 #include <functional>
 

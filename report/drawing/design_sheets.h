@@ -1,5 +1,7 @@
 #pragma once
 
+// The drawing sheets of a design as SVG: plan and section with dimension lines.
+
 #include <string>
 
 #include "studies/drawing/design_drawing.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Places dimension lines round a figure so that no text collides with a line or another text.
+
 #include <array>
 #include <string>
 #include <utility>

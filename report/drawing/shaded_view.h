@@ -1,5 +1,7 @@
 #pragma once
 
+// A small software renderer: a triangle mesh, shaded, with its edges, by a depth buffer.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

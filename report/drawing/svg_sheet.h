@@ -1,5 +1,7 @@
 #pragma once
 
+// Builds SVG drawings from groups of lines, faces and texts that know the room they take on the sheet.
+
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,7 +50,7 @@ class SvgSheet {
  public:
   /// Puts the group's origin at a place of the sheet. \param attributes of its element, such as "data-x-mm=\"0\""
   void add(const SvgGroup& group, Point origin, std::string_view id, std::string_view attributes = "");
-  /// \param description for who cannot see it
+  /// \param description of what is drawn, for screen readers
   std::string finish(Size size, std::string_view title, std::string_view description) const;
 
  private:

@@ -1,5 +1,7 @@
 #pragma once
 
+// Pictures of results as files: linear values as OpenEXR, displayed colours as PNG.
+
 #include <cstddef>
 #include <string>
 #include <vector>

@@ -1,5 +1,8 @@
 #pragma once
 
+// The contents of the HTML page of `retrace report` - sections, tables, charts, figures, the view in three dimensions -
+// and their HTML.
+
 #include <array>
 #include <cstdint>
 #include <optional>

@@ -48,7 +48,7 @@ void add_document(ResultFolder& result, const fs::path& file, const std::string&
   try {
     document.json = nlohmann::ordered_json::parse(text);
   } catch (const nlohmann::json::exception&) {
-    if (text.find("retrace.") == std::string::npos) return;  // somebody else's
+    if (text.find("retrace.") == std::string::npos) return;  // a file of another program
     throw InputError({file.string(), 0, ""},
                      "not valid JSON; a run that was cut off leaves no such file, write it anew");
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+// Collects what the page of `retrace report` is made from: all result documents and pictures in a folder.
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,7 +11,7 @@ namespace retrace::report {
 
 /// A document that a command of retrace wrote.
 struct ResultDocument {
-  std::string name;  ///< file, from the folder that was asked for
+  std::string name;  ///< file, relative to the folder that is reported
   std::string kind;  ///< of its schema: "rre" of "retrace.rre/1"
   std::size_t bytes = 0;
   nlohmann::ordered_json json;
@@ -17,7 +19,7 @@ struct ResultDocument {
 
 /// A picture beside the documents.
 struct ResultPicture {
-  std::string name;  ///< file, from the folder that was asked for
+  std::string name;  ///< file, relative to the folder that is reported
   std::string media_type;
   std::string bytes;
 };

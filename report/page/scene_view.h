@@ -1,5 +1,7 @@
 #pragma once
 
+// Prepares the part with its light paths for the interactive view of the page.
+
 #include "report/page/page.h"
 #include "studies/scene/scene.h"
 

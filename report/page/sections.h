@@ -1,12 +1,14 @@
 #pragma once
 
+// Composes the page of `retrace report` from the documents of a result folder.
+
 #include "report/page/page.h"
 #include "report/page/result_folder.h"
 
 namespace retrace::report {
 
 /// What the page says of a folder's results, the summary first and where everything comes from last. Documents that
-/// lack what they should have give less, not an error. The view in three dimensions is left to whoever has one.
+/// lack values that they should have are shown without them, not refused. Page::scene is left empty for the caller.
 /// \param title empty: that of the design
 Page study_page(const ResultFolder& folder, const std::string& title);
 

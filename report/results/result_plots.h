@@ -46,7 +46,7 @@ LinePlot rre_plot(const studies::RreResult& result);
 inline constexpr std::size_t kMostFootprintPanels = 24;
 
 /// The active regions of the entrance face, one panel a direction, coloured by their efficiency in percent.
-/// \pre a footprint was asked for
+/// \pre a footprint was requested
 MapPlot footprint_plot(const studies::RreResult& result);
 
 /// RRE over the Sa of the roughness: a curve for each correlation length, and measured facets as points.

@@ -83,7 +83,7 @@ LinePlot rre_plot(const RreResult& result) {
   plot.x_label = axis == Axis::azimuth ? "Azimuth (°)"
                  : axis == Axis::cone  ? "Acceptance half angle (°)"
                                        : "Incidence angle (°)";
-  // Angles may have been asked for in any order; a curve runs from left to right.
+  // Angles may have been requested in any order; a curve runs from left to right.
   std::vector<const RrePoint*> points;
   for (const RrePoint& p : result.points) points.push_back(&p);
   std::map<CurveKey, std::size_t> series_of;

@@ -1,5 +1,8 @@
 #pragma once
 
+// From verified NC programs back to optics: the part that they leave, with its facet tilts, edges and texture, as a
+// design that can be traced.
+
 #include <array>
 #include <optional>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The study behind `retrace verify`: reads a job with its NC programs and carries them out against the design.
+
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,5 +1,8 @@
 #pragma once
 
+// What is designed: shape, substance, surface, light and detector, checked, with its defaults filled in. Every study
+// begins with a Design.
+
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -14,8 +17,6 @@
 #include "geometry/elements/part_spec.h"
 #include "raytrace/balls/ball_layer.h"
 #include "raytrace/light/stokes.h"
-
-// What is designed: shape, substance, surface, light and detector, checked, with its defaults filled in.
 
 namespace retrace::studies {
 
@@ -196,7 +197,7 @@ struct Design {
   /// \pre elements()
   const geometry::PartSpec& part() const { return std::get<ElementArray>(shape).part; }
   geometry::PartSpec& part() { return std::get<ElementArray>(shape).part; }
-  /// Whether it goes on for ever. Balls are asked by their pitch.
+  /// Whether its array is infinite. False for balls, whose layer is infinite if it has a pitch.
   bool is_endless() const { return elements() != nullptr && part().array.extent == geometry::Extent::infinite; }
   /// Of its plate, as the design gives it; 0 if it does not.
   double thickness_mm() const;

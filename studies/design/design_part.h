@@ -1,5 +1,7 @@
 #pragma once
 
+// The part of a design of elements, with its mask and its table of facet planes applied.
+
 #include "geometry/part/part.h"
 #include "studies/design/design.h"
 

@@ -109,7 +109,7 @@ geometry::Entrance entrance_of_design(const Design& design, const geometry::Part
     check_room(entrance, part, file.file.string());
     return entrance;
   } catch (const InputError& error) {
-    throw InputError(design.where(design.entrance_key()), error.what());  // which does not know who named the file
+    throw InputError(design.where(design.entrance_key()), error.what());  // adds the key that names the file
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The curved entrance surface that a design names, read from its file and put over the part.
+
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
 #include "studies/design/design.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Applies the mask of a design: which elements of its array are there.
+
 #include "geometry/elements/facet_planes.h"
 #include "studies/design/design.h"
 

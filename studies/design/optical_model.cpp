@@ -64,7 +64,7 @@ std::optional<surface_models::HeightMap> facet_map(const Design& design, std::ve
   try {
     return levelled_map(*texture, design.source_name(), warnings);
   } catch (const InputError& error) {
-    throw InputError(design.where_texture(), error.what());  // which does not know who named the file
+    throw InputError(design.where_texture(), error.what());  // adds the key that names the file
   }
 }
 
@@ -174,7 +174,7 @@ materials::Spectrum wavelengths_to_trace(const Design& design) {
     return light.kind == LightSpectrum::Kind::lines ? flux : materials::traced_spectrum(flux);
   } catch (const InputError& error) {
     throw InputError(design.where("light.spectrum"),
-                     error.what());  // which may know file and line, but not who named it
+                     error.what());  // adds the key that names the file
   }
 }
 

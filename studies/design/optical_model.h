@@ -1,5 +1,7 @@
 #pragma once
 
+// Makes a design ready to trace: its part, its refractive indices, and the wavelengths that stand for its light.
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,8 +35,8 @@ struct OpticalModel {
 enum class Entrances { plane, any };
 
 /// Builds the part, looks up the material and resolves the spectrum of the light. \throw InputError naming file and
-/// line for an unknown material, a spectrum that cannot be read, or a wavelength at which the material has no index
-/// and for balls, which are no part, or a curved front unless `fronts` lets it pass
+/// line for an unknown material, a spectrum that cannot be read, a wavelength at which the material has no index,
+/// balls, which are no part, or a curved entrance surface unless `entrances` is any
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library,
                         Entrances entrances = Entrances::plane);
 

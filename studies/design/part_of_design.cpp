@@ -76,7 +76,7 @@ geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::str
       throw InputError({name, 0, ""}, error.what());
     }
   } catch (const InputError& error) {
-    throw InputError(design.where("part.mesh"), error.what());  // which does not know who named the file
+    throw InputError(design.where("part.mesh"), error.what());  // adds the key that names the file
   }
 }
 

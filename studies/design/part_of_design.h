@@ -1,5 +1,7 @@
 #pragma once
 
+// The part of any design, built from elements or from a plate, or read from a mesh and checked.
+
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Limits of total internal reflection of prisms and cube corners over incidence and azimuth, in closed form.
+
 #include <optional>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Positions and pitches of an array that its drawing shows and dimensions.
+
 #include "geometry/part/part.h"
 #include "studies/design/design.h"
 

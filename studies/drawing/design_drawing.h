@@ -1,5 +1,8 @@
 #pragma once
 
+// The content of a design's drawing: plan and section with their dimensions and remarks, before anything is put on
+// paper.
+
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The mesh of a design for its three-dimensional picture, cut down to a piece where the array is too large.
+
 #include <array>
 #include <cstdint>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Projections of a part for drawings: the faces of its back in plan, and its outline in a section.
+
 #include <cstddef>
 #include <optional>
 #include <utility>

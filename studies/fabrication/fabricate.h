@@ -1,5 +1,7 @@
 #pragma once
 
+// The study behind `retrace fabricate`: plans a job and tells the tool path through one element.
+
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -141,7 +141,7 @@ void check_element(const Design& design, const JobRequest& request) {
 
 namespace {
 
-/// The tool as it was asked for. \throw InputError if it does not fit the element
+/// The tool as it was requested. \throw InputError if it does not fit the element
 fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
   fabrication::Tool tool;
   tool.width_mm = request.tool_width_mm;

@@ -1,5 +1,7 @@
 #pragma once
 
+// Makes a fabrication job of a design: which elements are cut, with which tool, machine and process.
+
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// What a straight-edged chisel leaves of a design of cube corners, as a design that can be traced.
+
 #include <string>
 
 #include "fabrication/chisel/check/chisel_reach.h"

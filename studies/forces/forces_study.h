@@ -1,5 +1,7 @@
 #pragma once
 
+// The study behind `retrace forces`: cutting forces over one cycle of a job.
+
 #include <string>
 #include <vector>
 
@@ -8,7 +10,7 @@
 
 namespace retrace::studies {
 
-/// Which cut's forces are asked for.
+/// Which cut's forces are requested.
 struct ForcesRequest {
   std::string job;                         ///< file
   std::string configuration = "isolated";  ///< a word of fabrication::kConfigurationWords

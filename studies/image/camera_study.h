@@ -1,5 +1,7 @@
 #pragma once
 
+// Pictures of a part in the light of a lamp as an eye sees it: `retrace image` with a camera.
+
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -48,7 +50,7 @@ struct CameraResult {
   double viewing_deg = 0.0;
   double elapsed_s = 0.0;
   std::vector<std::string> warnings;
-  bool complete = true;  ///< false: fewer passes than asked for
+  bool complete = true;  ///< false: fewer passes than requested
 };
 
 /// A checked request, ready to run.

@@ -1,5 +1,7 @@
 #pragma once
 
+// Maps of the light that comes back over face and angles: `retrace image` with a detector.
+
 #include <cstdint>
 #include <optional>
 #include <string>

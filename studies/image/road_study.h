@@ -1,5 +1,7 @@
 #pragma once
 
+// Reflectors of a car as the driver behind it sees them at night: `retrace image` on a road.
+
 #include <array>
 #include <cstdint>
 #include <string>

@@ -1,11 +1,11 @@
 #pragma once
 
+// Figures of a curved entrance surface for `retrace inspect`: heights, profiles, steepest slope.
+
 #include <vector>
 
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
-
-// Figures of a curved entrance surface for retrace inspect.
 
 namespace retrace::studies {
 

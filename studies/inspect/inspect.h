@@ -1,5 +1,8 @@
 #pragma once
 
+// What a design is like before it is traced: sizes, areas, counts, angles, and where total reflection ends. The study
+// behind `retrace inspect`.
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,8 +14,6 @@
 #include "studies/design/optical_model.h"
 #include "studies/design/total_reflection.h"
 #include "studies/inspect/entrance_report.h"
-
-// What a design is like before it is traced: sizes, areas, counts, angles, and where total reflection ends.
 
 namespace retrace::studies {
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Measured height maps: roughness, waviness and edge radii in the terms that designs take. The study behind `retrace
+// metrology`.
+
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -14,8 +17,6 @@
 #include "surface_models/scratches.h"
 #include "surface_models/spectrum.h"
 #include "surface_models/texture_model.h"
-
-// Measured height maps: roughness, waviness and edge radii as a design has them.
 
 namespace retrace::studies {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/optimise.
+// Internal to studies/optimise: tolerance bands of single keys about the best design.
 
 #include "studies/optimise/optimise.h"
 

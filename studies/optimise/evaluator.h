@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/optimise.
+// Internal to studies/optimise: computes and judges candidates for all stages of the search, each point only once.
 
 #include <map>
 #include <mutex>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Searches the parameters of a study for the best candidate under constraints, and how far each parameter may be off
+// before the objective suffers.
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,8 +14,6 @@
 #include "studies/quantity/constraint.h"
 #include "studies/quantity/study.h"
 #include "studies/store/store.h"
-
-// Searches the parameters of a study for the best candidate, and how far each may go from there.
 
 namespace retrace::studies {
 
@@ -32,7 +33,7 @@ struct OptimiseRequest {
   std::vector<Constraint> constraints;
   std::vector<FrontAxis> front;
   std::size_t scan = 65;              ///< designs of the first look, for each combination of discrete values
-  std::vector<std::string> bands_of;  ///< keys whose tolerance bands are asked for
+  std::vector<std::string> bands_of;  ///< keys whose tolerance bands are requested
   double band_loss = 0.01;            ///< relative loss of the objective that ends a band
 };
 

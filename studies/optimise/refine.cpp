@@ -37,7 +37,7 @@ class Problem {
       if (study.parameters[k].interval) continuous_.push_back(k);
   }
 
-  std::exception_ptr thrown;  ///< by the last evaluation that NLopt asked for
+  std::exception_ptr thrown;  ///< by the last evaluation that NLopt requested
 
   std::size_t dimensions() const { return continuous_.size(); }
 

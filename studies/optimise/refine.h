@@ -1,6 +1,7 @@
 #pragma once
 
-// Internal to studies/optimise: NLopt stays behind this file.
+// Internal to studies/optimise: refines the best candidate of the scan by local optimisation. NLopt stays behind this
+// file.
 
 #include "studies/optimise/evaluator.h"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Searches for the smallest change of a design that makes it pass its photometric standard.
+
 #include <functional>
 #include <optional>
 #include <vector>

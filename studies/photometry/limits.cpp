@@ -31,7 +31,7 @@ bool is_of_class(const std::vector<std::string>& classes, const std::string& nam
   return classes.empty() || holds(classes, name);
 }
 
-/// The one that was asked for, or the only one. \param option that chooses
+/// The one that was requested, or the only one. \param option that chooses
 std::string choice(const std::vector<std::string>& there_are, const std::optional<std::string>& asked,
                    const std::string& option, std::string_view of_what) {
   if (there_are.empty()) {

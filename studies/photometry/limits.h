@@ -1,5 +1,8 @@
 #pragma once
 
+// Photometric limits as data, with their units and how well each is confirmed, and the test points of one class and
+// colour.
+
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +18,7 @@ enum class PhotometricUnit {
   cd_per_lx_per_m2,  ///< R_A
 };
 
-/// How far a limit is to be trusted.
+/// How well a limit is confirmed.
 enum class LimitStatus {
   confirmed,  ///< checked against the standard's text
   read,       ///< seen in a secondary source

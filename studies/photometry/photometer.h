@@ -1,5 +1,7 @@
 #pragma once
 
+// A goniophotometer in software: R_A and R_L of a design for given directions of light and observation.
+
 #include <optional>
 #include <string>
 #include <vector>

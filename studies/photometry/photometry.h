@@ -1,5 +1,8 @@
 #pragma once
 
+// Coefficients of retroreflection at the test points of a standard, and the verdict. The study behind `retrace
+// photometry`.
+
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,8 +15,6 @@
 #include "studies/design/design.h"
 #include "studies/photometry/limits.h"
 #include "studies/rre/rre.h"
-
-// Coefficients of retroreflection at the test points of a standard, and the verdict.
 
 namespace retrace::studies {
 

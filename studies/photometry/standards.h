@@ -1,5 +1,7 @@
 #pragma once
 
+// The photometric standards whose limits are shipped, with their apertures and rotations.
+
 #include <span>
 #include <string_view>
 #include <vector>

@@ -9,7 +9,7 @@
 namespace retrace::studies {
 namespace {
 
-/// \throw InputError for a spindle that nobody could start in that dialect
+/// \throw InputError for a lathe without spindle_start in a dialect that has no words for the spindle (pmac)
 void check_spindle(const fabrication::PlanedPart& part, const std::string& dialect) {
   if (!part.lathe || dialect != fabrication::kNcDialectWords[static_cast<std::size_t>(fabrication::NcDialect::pmac)])
     return;

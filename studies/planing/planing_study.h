@@ -1,5 +1,7 @@
 #pragma once
 
+// The study behind `retrace plane`: plans a flat lens, writes its programs, and checks their text.
+
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// A design at one point of a study, with the settings of its analysis and what several quantities compute only once.
+
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -35,12 +37,12 @@ class Candidate {
   const Design& design() const { return design_; }
   const AnalysisSettings& analysis() const { return analysis_; }
   const MachiningProcess& machining() const { return machining_; }
-  /// Built when it is first asked for. \throw InputError as part_of()
+  /// Built when it is first requested. \throw InputError as part_of()
   const geometry::Part& part() const {
     if (!part_) part_ = part_of(design_);
     return *part_;
   }
-  /// What several quantities need, made when it is first asked for. \param key says what it is, with its type \param
+  /// What several quantities need, made when it is first requested. \param key says what it is, with its type \param
   /// make gives a shared pointer to it
   template <class Value, class Make>
   std::shared_ptr<const Value> shared(const std::string& key, Make make) const {

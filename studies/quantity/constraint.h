@@ -1,5 +1,7 @@
 #pragma once
 
+// Limits on quantities, for optimisation and tolerance studies.
+
 #include <optional>
 #include <string>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Machining time and roughness of prisms by closed forms, quick enough to be computed at every point of a study.
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +33,7 @@ struct MachiningProcess {
 /// Areal roughness Sa that the process leaves on facets, in nm: studies/closed_loop, predicted_texture().
 double process_sa_nm(const MachiningProcess& process);
 
-/// The surface that the process leaves, as texts of --set for a design; empty unless it is asked for.
+/// The surface that the process leaves, as texts of --set for a design; empty unless surface_as_cut is set.
 std::vector<std::string> surface_overrides(const MachiningProcess& process);
 
 /// Roughing cuts of a facet: its length less what is left for finishing, by the depth of a cut.

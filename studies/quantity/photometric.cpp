@@ -52,7 +52,7 @@ class PhotometricQuantity final : public Quantity {
     return result.complete ? Points{result.points, result.measured, result.reason} : Points{};
   }
 
-  /// A margin without the diffraction that was asked for would be taken for a verdict.
+  /// A margin without the diffraction that was requested would be taken for a verdict.
   Measured margin_of(const PhotometricPoint& point, const std::string& reason) const {
     if (point.lacks_diffraction && table_->request.diffraction)
       throw BudgetError(fmt::format("the margin of the photometry is undetermined: {}", reason));

@@ -1,5 +1,7 @@
 #pragma once
 
+// Quantities of studies that come from photometric standards, such as the margin to a limit.
+
 #include <cstddef>
 #include <memory>
 #include <optional>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Quantities that a study computes of each candidate design, such as RRE, areas or machining time, behind one
+// interface.
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,8 +10,6 @@
 
 #include "core/progress.h"
 #include "studies/quantity/candidate.h"
-
-// What a study computes of each candidate design.
 
 namespace retrace::studies {
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Studies as data: base design, parameters with their values, intervals or distributions, and the quantities to
+// compute.
+
 #include <cstdint>
 #include <map>
 #include <memory>

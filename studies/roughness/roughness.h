@@ -1,5 +1,8 @@
 #pragma once
 
+// Retroreflective efficiency of a design over the roughness and waviness of its facets. The study behind `retrace
+// roughness`.
+
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -8,8 +11,6 @@
 
 #include "core/progress.h"
 #include "studies/design/design.h"
-
-// Retroreflective efficiency of a design over the roughness and waviness of its facets.
 
 namespace retrace::studies {
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Chooses the angles at which a curve of RRE is computed, denser where it bends or has kinks.
+
 #include <cstddef>
 #include <map>
 #include <vector>

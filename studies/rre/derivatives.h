@@ -1,5 +1,7 @@
 #pragma once
 
+// Derivatives of RRE by the parameters of a design, from the exact engine.
+
 #include <optional>
 #include <string>
 #include <string_view>

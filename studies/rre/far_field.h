@@ -1,5 +1,7 @@
 #pragma once
 
+// The discrete directions in which light leaves a part, gathered from the beams of the exact engine.
+
 #include <cstdint>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The active regions of the entrance face, gathered from the beams of the exact engine.
+
 #include <array>
 #include <vector>
 

@@ -163,7 +163,7 @@ RreStudy::~RreStudy() = default;
 
 namespace {
 
-/// Says so if a cut-off took more than the error that was asked for, or than shows in a table where none was.
+/// Says so if a cut-off took more than the error that was requested, or than shows in a table where none was.
 void warn_of_truncation(const RreRequest& request, RreResult& result) {
   constexpr double kShows = 1e-6;
   const double allowed = request.cutoff ? kShows : std::max(kShows, target_error_of(request));

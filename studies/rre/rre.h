@@ -1,5 +1,8 @@
 #pragma once
 
+// Retroreflective efficiency of designs over directions of the light, and where all other power goes. The study behind
+// `retrace rre`.
+
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -17,12 +20,10 @@
 #include "studies/rre/far_field.h"
 #include "studies/rre/footprint.h"
 
-// Retroreflective efficiency of designs over directions of the light, and where all other power goes.
-
 namespace retrace::studies {
 
-/// Which tracer is asked for. `automatic` is exact where beams are expected to reach the error that is asked for before
-/// rays do, else Monte Carlo, for each direction and wavelength; `montecarlo` is `cell` where that serves, else
+/// The tracer of a request. `automatic` is exact where beams are expected to reach the target error before rays do,
+/// else Monte Carlo, for each direction and wavelength; `montecarlo` is `cell` where that serves, else
 /// `embree`.
 enum class Engine { automatic, exact, montecarlo, cell, embree };
 
@@ -32,18 +33,18 @@ Engine engine_from_name(std::string_view name);
 raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
-/// Of RRE as a fraction, where none is asked for.
+/// Default of RreRequest::target_error, of RRE as a fraction.
 inline constexpr double kUsualTargetError = 1e-4;
 /// Of RRE as a fraction: how far straight lines between chosen incidences may miss it, if target_error is less.
 inline constexpr double kCurveTolerance = 1e-3;
 /// The engine of what several have found.
 inline constexpr std::string_view kMixedEngines = "mixed";
 
-/// What is asked: retroreflective efficiency over a grid of directions.
+/// A request for retroreflective efficiency over a grid of directions.
 struct RreRequest {
   std::vector<double> incidence_deg = {0.0};  ///< each in (-90, 90)
   /// Pieces in (-90, 90) over which incidences are chosen besides, the same for all designs and azimuths, until
-  /// straight lines between the points are within target_error or kCurveTolerance; those asked for then come in
+  /// straight lines between the points are within target_error or kCurveTolerance; those requested then come in
   /// ascending order.
   std::vector<CurveSpan> incidence_spans;
   std::vector<double> azimuth_deg = {0.0};
@@ -51,7 +52,7 @@ struct RreRequest {
   std::optional<std::uint64_t> rays;  ///< per point; else until target_error is reached
   /// Of RRE as a fraction: the standard error of Monte Carlo, and the power that the exact engine may leave in
   /// `truncated`. By default kUsualTargetError, or half of kCurveTolerance where incidences are chosen; 1e-10 where the
-  /// exact engine is asked for by name, or what only it can tell.
+  /// exact engine is requested by name, or what only it can tell.
   std::optional<double> target_error;
   raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< plain: on Embree
   /// Least power followed, as a share of the incident. By default 1e-10 (Monte Carlo), or as little as target_error
@@ -88,11 +89,11 @@ struct RrePoint {
   raytrace::Ledger ledger;
   std::uint64_t beams = 0;                      ///< exact engine: followed for this point
   std::uint32_t depth = 0;                      ///< exact engine: interfaces on the longest path
-  std::vector<RreDerivative> derivatives = {};  ///< if they were asked for
+  std::vector<RreDerivative> derivatives = {};  ///< if they were requested
   std::vector<SpectralRre> by_wavelength = {};  ///< designs with a spectrum: what the point is the mean of
 };
 
-/// What was asked for beyond RRE, for one direction.
+/// What was requested beyond RRE, for one direction.
 struct ReturnedLight {
   RrePoint at;  ///< of the widest acceptance cone
   std::optional<Footprint> footprint;

@@ -1,5 +1,7 @@
 #pragma once
 
+// Averages results of single wavelengths over a spectrum.
+
 #include <vector>
 
 #include "studies/rre/rre.h"

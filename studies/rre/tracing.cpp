@@ -26,7 +26,7 @@ constexpr SegmentCost kCellOfFinite{220.0, 25.0};
 constexpr SegmentCost kEmbree{350.0, 25.0};
 /// Straight pieces of a first round of Monte Carlo, before there was one.
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
-/// What beams may take below the error that was asked for: some 3 ms.
+/// What beams may take below the error that was requested: some 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
 /// Share of what rays are expected to take that beams may take, however long they are expected to.
 constexpr double kHedge = 0.2;
@@ -39,7 +39,7 @@ raytrace::Illumination illumination_of(const RrePoint& at, const Design& design)
 
 /// The sampling of one wavelength. Rays are shared in proportion to the weights w: variances v / (w N) of the estimates
 /// then make w^2 v / (w N) each and v / N in all, as if all N rays were of one wavelength. A target t becomes
-/// t / sqrt(w) in the same way. Seeds differ, so that the estimates are independent; the first is the one asked for.
+/// t / sqrt(w) in the same way. Seeds differ, so that the estimates are independent; the first is the one requested.
 raytrace::Sampling sampling_of(const RreRequest& request, double weight, std::size_t wavelength) {
   constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
   raytrace::Sampling sampling;
@@ -94,7 +94,7 @@ bool asks_for_more(const RreRequest& request) {
   return request.footprint || request.far_field || request.derivatives;
 }
 
-/// How far beams are followed: as far as is asked for, and to the finest goal where the exact engine was asked for by
+/// How far beams are followed: as far as is requested, and to the finest goal where the exact engine was requested by
 /// name and nothing else.
 raytrace::BeamPolicy beam_policy(const RreRequest& request) {
   raytrace::BeamPolicy policy;
@@ -105,7 +105,7 @@ raytrace::BeamPolicy beam_policy(const RreRequest& request) {
   return policy;
 }
 
-/// Gathers the returned beams of one direction, as far as they were asked for.
+/// Gathers the returned beams of one direction, as far as they were requested.
 class Collector {
  public:
   Collector(const RreRequest& request, const OpticalModel& model, std::size_t cones,

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/rre: tracing the directions of a request, each by the engine that was asked for or that is
+// Internal to studies/rre: tracing the directions of a request, each by the engine that was requested or that is
 // faster.
 
 #include <memory>
@@ -23,7 +23,7 @@ struct Direction {
   std::optional<FarField> far_field;
 };
 
-/// Whether beams may be followed: not where rays or plain sampling are asked for ...
+/// Whether beams may be followed: not where rays or plain sampling are requested ...
 bool may_be_exact(const RreRequest& request);
 /// ... nor where facets are rough, the front is curved, or the part is of balls.
 bool may_be_exact(const Design& design, const OpticalModel& model, const RreRequest& request);

@@ -1,5 +1,7 @@
 #pragma once
 
+// A part with paths of light through it, to be shown in three dimensions on the page of `retrace report`.
+
 #include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -8,8 +10,6 @@
 #include "geometry/part/closed_boundary.h"
 #include "raytrace/paths/light_path.h"
 #include "studies/design/optical_model.h"
-
-// A part with paths of light through it, to be shown in three dimensions.
 
 namespace retrace::studies {
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Elements, parts and moulds as closed solids that CAD and other programs read. The study behind `retrace export`.
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,8 +9,6 @@
 
 #include "geometry/part/closed_boundary.h"
 #include "studies/design/design.h"
-
-// Elements, parts and moulds as solids that other programs read.
 
 namespace retrace::studies {
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Tells which of several processes that share a store are still alive, by file locks.
+
 #include <cstdint>
 #include <filesystem>
 

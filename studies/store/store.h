@@ -1,5 +1,7 @@
 #pragma once
 
+// Results of a study point by point in an SQLite database, so that an interrupted run goes on where it was cut off.
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -8,8 +10,6 @@
 #include <string_view>
 #include <variant>
 #include <vector>
-
-// Results of a study point by point in a database, so that it goes on where it was cut off.
 
 namespace retrace::studies {
 

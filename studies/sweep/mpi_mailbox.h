@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/sweep.
+// Internal to studies/sweep: messages between the ranks of an MPI job. MPI stays behind this file and its .cpp.
 
 #include <chrono>
 #include <memory>
@@ -17,8 +17,8 @@ struct Letter {
 };
 
 /// Letters between the ranks of a job. All of MPI happens on a thread of its own, which also tells the others that this
-/// rank is at work: whatever becomes of a rank, and whatever MPI makes of its end, nobody here waits for MPI without a
-/// limit. One thread reads; any thread may post.
+/// rank is at work: whatever becomes of a rank, and whatever MPI makes of its end, no call
+/// here waits for MPI without a limit. One thread reads; any thread may post.
 class MpiMailbox {
  public:
   using Clock = std::chrono::steady_clock;

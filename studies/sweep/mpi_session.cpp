@@ -31,13 +31,13 @@ using MessageJson = nlohmann::json;
 /// A rank of which nothing is heard for so long is given up, unless the environment says otherwise.
 constexpr double kSilenceS = 15.0;
 constexpr const char* kSilenceVariable = "RETRACE_MPI_SILENCE_S";
-/// So long rank 0 waits for the others to leave, and everybody for MPI to end.
+/// How long rank 0 waits for the others to leave, and every rank for MPI to end.
 constexpr std::chrono::seconds kPatience{10};
 // And for those that are interrupted, within the second that an interrupt may take.
 constexpr std::chrono::milliseconds kLastCall{500};
 constexpr std::chrono::milliseconds kWaitForRanks{50};
 constexpr std::chrono::milliseconds kLook{20};
-/// Batches that take less are asked for while the one before is computed.
+/// Batches that take less are requested while the one before is computed.
 constexpr std::chrono::seconds kQuick{1};
 
 enum Tag : int {
@@ -129,7 +129,7 @@ struct MpiSession::State {
   void end_other();
 };
 
-/// Everybody is sent away; who does not answer in time is given up.
+/// Tells all ranks to end; ranks that do not answer within kPatience are given up.
 void MpiSession::State::end_rank_0() {
   for (const int rank : there) mailbox.post(rank, Tag::go, lost_ranks ? "" : std::string(kAllAreThere));
   const auto deadline = Clock::now() + kPatience;
@@ -197,7 +197,7 @@ std::vector<std::string> MpiSession::remarks() const {
 
 namespace {
 
-/// Points to be dealt and who has which. Safe to call from the thread that deals and those that compute.
+/// Points to be dealt, and which rank has which. Safe to call from the thread that deals and those that compute.
 class Dealer {
  public:
   Dealer(const Sweep& sweep, ResultStore& store, SweepObserver* observer)
@@ -397,7 +397,8 @@ void MpiSession::serve(const Sweep& sweep, std::size_t slots, const Cancellation
       return;
     }
     const std::vector<std::uint64_t> points = points_of(*letter);
-    // With the next points on their way nobody waits for letters; slow points are better kept for who is free.
+    // The next batch of quick points is requested before this one is computed, to hide the latency of messages. Slow
+    // points are left with rank 0 until some rank is idle.
     if (is_quick) ask();
     const auto start = Clock::now();
     raytrace::for_each_in_parallel(points.size(), [&](std::size_t k) {

@@ -1,5 +1,7 @@
 #pragma once
 
+// One sweep on several machines under MPI: rank 0 deals out points, the others compute them.
+
 #include <memory>
 #include <string>
 #include <vector>

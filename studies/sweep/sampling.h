@@ -1,5 +1,7 @@
 #pragma once
 
+// Sample points of the unit cube for parameter studies: Sobol, Latin hypercube, plain Monte Carlo.
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>

@@ -196,7 +196,7 @@ std::vector<std::uint64_t> unfinished(const Sweep& sweep, const ResultStore& sto
 
 namespace {
 
-/// Computes those of the points that nobody else has. \return how many
+/// Computes those of the points that no other process has claimed. \return how many
 std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& points, ResultStore& store,
                      SweepCount& count, const Cancellation* cancel) {
   std::atomic<std::size_t> next{0};

@@ -1,5 +1,7 @@
 #pragma once
 
+// Quantities of a study at every point of a grid or a sample, on one machine or many. The study behind `retrace sweep`.
+
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -10,8 +12,6 @@
 #include "studies/quantity/study.h"
 #include "studies/store/store.h"
 #include "studies/sweep/sampling.h"
-
-// Quantities of a study at every point of a grid or a sample, on one machine or many.
 
 namespace retrace::studies {
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Statistics of tolerance studies: Sobol indices, yield and spread, with confidence intervals.
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Spread and yield of quantities when parameters vary as manufacture lets them, and which parameters cause it. The
+// study behind `retrace tolerance`.
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -9,8 +12,6 @@
 #include "studies/quantity/constraint.h"
 #include "studies/sweep/sweep.h"
 #include "studies/tolerance/indices.h"
-
-// How quantities spread where parameters do, and which of these it hangs on.
 
 namespace retrace::studies {
 
@@ -55,7 +56,7 @@ struct QuantityTolerance {
   std::size_t without = 0;  ///< that could not be computed, or have none
   std::optional<Spread> spread;
   std::vector<std::pair<double, double>> percentiles;  ///< share, value
-  std::vector<SobolIndex> indices;  ///< by parameter; empty if they were not asked for or do not exist
+  std::vector<SobolIndex> indices;  ///< by parameter; empty if they were not requested or do not exist
   std::size_t rows = 0;             ///< that they rest on
   /// Root mean square of the standard errors of the values over their deviation: what of the spread is noise.
   std::optional<double> noise;
@@ -75,7 +76,7 @@ struct ToleranceResult {
   std::size_t parts = 0;   ///< that were made
   std::size_t failed = 0;  ///< of those that could not be computed: no good parts
   std::vector<std::string> warnings;
-  bool is_enough = true;  ///< false: the yield is below the least that was asked for
+  bool is_enough = true;  ///< false: the yield is below the least that was requested
 };
 
 /// \param points of `sweep`, which tolerance_sweep() made for this request; may be incomplete

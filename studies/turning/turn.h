@@ -1,5 +1,7 @@
 #pragma once
 
+// The study behind `retrace turn`: plans a turned part, writes its programs, and inspects what their text leaves.
+
 #include <array>
 #include <string>
 #include <vector>

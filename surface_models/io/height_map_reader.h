@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads height maps of instruments: text grids and point lists, SDF, and Gwyddion's GSF and GWY.
+
 #include <cstddef>
 #include <filesystem>
 #include <optional>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The ABG model of scatter: a BSDF fitted to measurements, where nothing is known of the surface itself.
+
 #include <string>
 #include <vector>
 

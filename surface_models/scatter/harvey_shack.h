@@ -1,5 +1,7 @@
 #pragma once
 
+// Scatter from roughness and waviness given by their statistics, by the generalized Harvey-Shack theory.
+
 #include <string>
 #include <vector>
 

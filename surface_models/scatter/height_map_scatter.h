@@ -1,5 +1,8 @@
 #pragma once
 
+// Scatter from a measured height map: by diffraction at its own spectrum, or by its slopes where it is high against the
+// wavelength.
+
 #include <memory>
 #include <string>
 #include <vector>

@@ -1,5 +1,8 @@
 #pragma once
 
+// Scatter from surfaces that are rough on a scale far above the wavelength, by geometrical optics of tilted
+// microfacets.
+
 #include <string>
 #include <vector>
 

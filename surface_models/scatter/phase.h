@@ -1,5 +1,7 @@
 #pragma once
 
+// Closed forms that link rms height and scatter: phase of the reflected wave, specular share, total integrated scatter.
+
 #include <cmath>
 #include <numbers>
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// The scattered lobe of generalized Harvey-Shack theory as a sum over orders of diffraction: what harvey_shack.h and
+// height_map_scatter.h have in common.
+
 #include <functional>
 #include <optional>
 

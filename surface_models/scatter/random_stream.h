@@ -1,5 +1,7 @@
 #pragma once
 
+// The random numbers of one scatter event, from counters, for models that sample by rejection.
+
 #include <cstdint>
 
 #include "core/random.h"

@@ -1,5 +1,8 @@
 #pragma once
 
+// The terms in which tracers and scatter models speak: incident light in the local frame, the facet it meets, and the
+// direction that is drawn.
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,8 @@
 #pragma once
 
+// The interface of all scatter models to the tracers: draw a facet, draw a direction, tell specular shares, BSDF and
+// range of validity.
+
 #include <string>
 #include <variant>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Slopes of rough surfaces (Beckmann, GGX) with Smith's masking, for facets that act as small mirrors.
+
 #include "surface_models/scatter/random_stream.h"
 #include "surface_models/scatter/scatter_event.h"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The scatter model of facets without texture: all light goes on in the specular direction.
+
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Collisions between tool, holder, table and fixtures as convex bodies along straight moves.
+
 #include <span>
 #include <string>
 #include <vector>

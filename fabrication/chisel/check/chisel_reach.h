@@ -1,5 +1,8 @@
 #pragma once
 
+// How much of a cube corner a chisel with a straight edge can cut: the share it reaches and the core it leaves over the
+// apex.
+
 #include <array>
 
 #include "core/error.h"
@@ -15,7 +18,7 @@ struct ChiselCap {
   geometry::Vec3 point_mm = geometry::Vec3::Zero();  ///< on it, from the apex
 };
 
-/// What of a cube corner plunges along its facets reach, with the edge level and passes as close as one likes
+/// The part of a cube corner that plunges along its facets reach, with the edge level and passes infinitely close
 /// (docs/theory/micro_chiseling.md). Facet k lies between the dihedral edges at 120 k and 120 (k + 1) degrees.
 struct ChiselReach {
   double facet_area_mm2 = 0.0;    ///< of one facet

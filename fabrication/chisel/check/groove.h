@@ -1,5 +1,8 @@
 #pragma once
 
+// The elements that a job asks for, as grooves and cavities of the blank in the workpiece frame, and which of them a
+// point belongs to.
+
 #include <array>
 #include <cstddef>
 #include <optional>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Errors that the axes of a machine cannot avoid, worked out apart from any program and taken off what is judged.
+
 #include <array>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// How deep neighbouring cuts go under a rim where elements on a substrate stand at different heights.
+
 #include <vector>
 
 #include "fabrication/chisel/check/groove.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// The verdict on NC programs of a chisel job: carries them out, cuts the blank, and compares it with the design.
+
 #include <array>
 #include <cstdint>
 #include <string>

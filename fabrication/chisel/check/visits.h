@@ -1,5 +1,7 @@
 #pragma once
 
+// Assigns cutting moves to elements where neighbouring cuts overlap, as on curved and inclined blanks.
+
 #include <cstddef>
 #include <optional>
 #include <vector>

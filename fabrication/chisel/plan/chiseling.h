@@ -1,5 +1,8 @@
 #pragma once
 
+// Planning of diamond micro chiseling of cube corners (docs/theory/micro_chiseling.md): a V-shaped tool, tilted by B
+// until its leading edge lies in the facet, goes down one dihedral edge to the apex and up the other one.
+
 #include <array>
 #include <string>
 #include <vector>
@@ -8,9 +11,6 @@
 #include "fabrication/chisel/plan/section.h"
 
 namespace retrace::fabrication {
-
-// Diamond micro chiseling of cube corners (docs/theory/micro_chiseling.md): a V-shaped tool, tilted by B until its
-// leading edge lies in the facet, goes down one dihedral edge to the apex and up the other one.
 
 /// Outward normal of facet 1, 2 or 3 of a cube corner, in the workpiece frame.
 geometry::Vec3 cube_facet_normal(const FacetChoice& facet);

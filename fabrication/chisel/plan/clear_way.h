@@ -1,5 +1,7 @@
 #pragma once
 
+// Decides whether rapid moves between elements keep clear of a curved or inclined blank.
+
 #include "fabrication/chisel/plan/section.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/machine/machine.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Machining time of single moves, from rapid speeds, feeds and accelerations of the axes.
+
 #include "fabrication/machine/machine.h"
 #include "fabrication/program/program.h"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The order in which a pose visits its elements, so that moves between them stay short.
+
 #include <cstdint>
 #include <map>
 #include <utility>

@@ -39,7 +39,7 @@ std::string plain(std::string_view text) {
   return result;
 }
 
-/// Leaves the stages that were asked for. \throw InputError for a phase that the job does not have
+/// Leaves the stages that were requested. \throw InputError for a phase that the job does not have
 void choose_stages(Plan& plan, const PlanOptions& options) {
   if (options.phase == "all") return;
   const bool and_after = options.phase.ends_with('+');

@@ -1,5 +1,7 @@
 #pragma once
 
+// Plans a chisel job for a machine: poses, stages and programs, with the time that they take.
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -53,7 +55,7 @@ inline constexpr int kFirstSubroutine = 101;
 struct Plan {
   std::vector<CutElement> elements;
   std::vector<CuttingPose> poses;
-  std::vector<Stage> stages;  ///< that were asked for
+  std::vector<Stage> stages;  ///< that were requested
   std::vector<Subroutine> subroutines;
   int cuts_per_facet = 0;
   int passes = 1;                  ///< side by side, for elements wider than the tool

@@ -15,7 +15,7 @@ using geometry::Vec2;
 
 /// A whole number of cuts or passes is not made one more by rounding.
 constexpr double kWholeTolerance = 1e-9;
-// Of a facet: more are a mistake in a unit, and a program that nobody waits for.
+// Most cuts of a facet: more come from a depth of cut in a wrong unit.
 constexpr int kMostCuts = 100'000;
 constexpr double kFitToleranceMm = 1e-6;
 

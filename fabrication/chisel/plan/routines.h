@@ -1,5 +1,7 @@
 #pragma once
 
+// Subroutines that cut one prism: plunges along one facet, ploughs along the other, layer by layer.
+
 #include "fabrication/chisel/plan/section.h"
 #include "fabrication/program/program.h"
 

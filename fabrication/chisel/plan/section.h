@@ -1,5 +1,8 @@
 #pragma once
 
+// Poses of the rotary axes that bring a facet to the tool, and the section across the element's root that the tool sees
+// in them.
+
 #include <cstdint>
 #include <string>
 

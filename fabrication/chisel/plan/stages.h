@@ -1,5 +1,7 @@
 #pragma once
 
+// The sequence of a plan: which facet is cut in which pose by which routine.
+
 #include <vector>
 
 #include "fabrication/chisel/plan/plan.h"

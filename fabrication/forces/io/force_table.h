@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads the table of measured cutting forces that the force model is calibrated on.
+
 #include <string>
 #include <string_view>
 #include <vector>

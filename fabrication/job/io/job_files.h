@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads, checks and writes fabrication jobs (retrace.job/1).
+
 #include <filesystem>
 #include <string>
 #include <string_view>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads cutting processes (retrace.process/1), the shipped ones included: depths, feeds, dwells.
+
 #include <string>
 #include <string_view>
 #include <vector>

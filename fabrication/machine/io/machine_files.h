@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads machine files (retrace.machine/1), the shipped ones included.
+
 #include <string>
 #include <string_view>
 #include <vector>

@@ -12,7 +12,7 @@
 
 namespace retrace::fabrication {
 
-/// A sample of the profile: what is asked for and what programs leave, as depths below the face.
+/// A sample of the profile: the design's depth and that which programs leave, in mm below the face.
 struct ProfileSample {
   double x_mm = 0.0;
   double design_mm = 0.0;

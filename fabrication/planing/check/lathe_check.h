@@ -1,5 +1,7 @@
 #pragma once
 
+// Judges the lathe programs of a flat lens: spindle and feeds, and the profile that the nose leaves.
+
 #include <vector>
 
 #include "fabrication/check/control_check.h"

@@ -1,5 +1,8 @@
 #pragma once
 
+// Judges the planing-mill programs of a flat lens: single-axis moves on the machine's grid, and the profile that the
+// strokes leave.
+
 #include "fabrication/planing/check/check.h"
 #include "fabrication/planing/check/phase_profile.h"
 #include "fabrication/read/nc_motion.h"

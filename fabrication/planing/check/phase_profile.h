@@ -1,5 +1,8 @@
 #pragma once
 
+// The profile that a zone lens should have, from its optical path condition alone: the reference of the checks,
+// independent of the planner's formulas.
+
 #include <vector>
 
 #include "fabrication/planing/part.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// What a round tool nose leaves in a section: envelopes of circles along a line, and distances between sections.
+
 #include <vector>
 
 namespace retrace::fabrication {

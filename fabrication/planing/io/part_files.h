@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads the files of flat lenses that are planed or turned (retrace.planed_part/1).
+
 #include <filesystem>
 #include <string>
 #include <string_view>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Replaces a profile by few straight chords within a tolerance, for lathes that move in straight lines.
+
 #include <cstddef>
 #include <vector>
 
@@ -22,9 +24,9 @@ Chords longest_chords(const std::vector<ProfilePoint>& profile, double tolerance
 /// The fewest chords that there are; of equally many, those of the longest first ones. \pre as longest_chords()
 Chords fewest_chords(const std::vector<ProfilePoint>& profile, double tolerance_mm);
 
+class ZoneProfile;
 /// The points of a flat lens of zones, steps included as upright lines. \param spacing_mm of points within a zone, at
 /// most
-class ZoneProfile;
 std::vector<ProfilePoint> points_of(const ZoneProfile& profile, double spacing_mm);
 
 }  // namespace retrace::fabrication

@@ -1,5 +1,8 @@
 #pragma once
 
+// Moves of a planing mill that can only move one axis at a time, never less than a least distance, split into programs
+// of limited time.
+
 #include <array>
 #include <cstdint>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The path of a round tool nose that touches a zone profile, and the largest nose that fits between its walls.
+
 #include <vector>
 
 #include "fabrication/planing/plan/chords.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Plans the programs of a flat lens, for a planing mill by strokes along the zones, for a lathe by chords.
+
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Strokes along the zones of a milled lens, so placed that no more than the tolerance is left between them.
+
 #include <cstdint>
 #include <optional>
 #include <vector>

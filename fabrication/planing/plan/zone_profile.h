@@ -1,5 +1,7 @@
 #pragma once
 
+// The stepped profile of a zone lens: depth, slope and steps by the hyperbola of each zone.
+
 #include <cstddef>
 #include <vector>
 

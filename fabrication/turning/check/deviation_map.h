@@ -1,5 +1,7 @@
 #pragma once
 
+// The map of deviations of a turned surface from its design, with rms and deepest cut.
+
 #include <functional>
 #include <optional>
 #include <utility>

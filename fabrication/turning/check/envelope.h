@@ -1,5 +1,8 @@
 #pragma once
 
+// The surface that a turning tool's arc leaves along the cuts of NC text: the lower envelope of its edge over every
+// place.
+
 #include <array>
 #include <optional>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Inspects what turning programs leave: cusps against their closed form, form error, interference, rms.
+
 #include <optional>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The turned surface with its cusps as a mesh of the part that is moulded in it, to be traced.
+
 #include "fabrication/turning/check/inspection.h"
 #include "geometry/part/closed_boundary.h"
 #include "geometry/surface/freeform_surface.h"

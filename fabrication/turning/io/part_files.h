@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads the files of parts that are turned (retrace.turned_part/1).
+
 #include <cstddef>
 #include <string>
 #include <string_view>

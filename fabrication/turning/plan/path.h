@@ -1,5 +1,7 @@
 #pragma once
 
+// The tool path of freeform turning with compensation of the nose radius, and speed, acceleration and jerk of its axes.
+
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// A fast special case of the turning path: spirals over polynomial surfaces.
+
 #include <optional>
 
 #include "fabrication/turning/plan/path.h"

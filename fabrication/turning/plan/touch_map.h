@@ -1,5 +1,8 @@
 #pragma once
 
+// Where the tool's nose provably touches the surface in one place only, so that compensation may skip its global
+// search.
+
 #include <vector>
 
 #include "fabrication/turning/tool.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Writes a turning path as a neutral program of machine words.
+
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace verify`.
+
 #include <string>
 
 #include "studies/closed_loop/verification.h"

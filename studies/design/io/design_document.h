@@ -1,5 +1,7 @@
 #pragma once
 
+// Writes designs as documents and files: the way back from design_reader.h.
+
 #include "core/schema/document.h"
 #include "studies/design/design.h"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The format of design files (retrace.design/1), as the rows that readers, writers and documentation walk.
+
 #include "core/schema/schema.h"
 
 namespace retrace::studies {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Designs as results quote them in JSON, and their short names for legends.
+
 #include <nlohmann/json_fwd.hpp>
 
 #include "studies/design/design.h"

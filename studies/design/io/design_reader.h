@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads design files, applies --set overrides, and varies designs that were read.
+
 #include <filesystem>
 #include <span>
 #include <string>

@@ -1,11 +1,11 @@
 #pragma once
 
+// Internal to studies/design: the rows of the tables of design files, and the words and ranges that they share.
+
 #include <span>
 #include <string_view>
 
 #include "core/schema/conditions.h"
-
-// Internal to studies/design: the rows of the tables of design files, and what they share.
 
 namespace retrace::studies {
 

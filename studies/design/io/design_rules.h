@@ -1,10 +1,10 @@
 #pragma once
 
+// The rules between keys of design files, such as sizes that must fit into each other.
+
 #include <span>
 
 #include "core/schema/schema.h"
-
-// The rules of design files.
 
 namespace retrace::studies {
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads and writes tables of facet planes (CSV), by which single elements of an array differ from the nominal one.
+
 #include <cstddef>
 #include <string>
 #include <string_view>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Commented example files of every kind of design, for `retrace init`.
+
 #include <span>
 #include <string>
 #include <string_view>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads the shape of a design - elements with their array, or balls - from its document.
+
 #include "core/schema/document.h"
 #include "geometry/elements/part_spec.h"
 #include "raytrace/balls/ball_layer.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace job` and `retrace fabricate`.
+
 #include <string>
 
 #include "studies/fabrication/fabricate.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace forces`.
+
 #include <string>
 
 #include "studies/forces/forces_study.h"

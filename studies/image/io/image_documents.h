@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace image`.
+
 #include <string>
 
 #include "studies/image/camera_study.h"

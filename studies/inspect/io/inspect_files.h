@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace inspect`.
+
 #include <string>
 
 #include "studies/inspect/inspect.h"

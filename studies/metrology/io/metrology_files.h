@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace metrology`, and the [surface] of a design that fits the measurement.
+
 #include <string>
 
 #include "studies/metrology/metrology.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads what a study file asks of an optimisation: objective, constraints, Pareto front, tolerance bands.
+
 #include "studies/optimise/optimise.h"
 
 namespace retrace::studies {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace optimize`.
+
 #include <string>
 
 #include "studies/optimise/optimise.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads tables of photometric limits (CSV): test points of a standard by class and colour.
+
 #include <filesystem>
 #include <string>
 #include <string_view>

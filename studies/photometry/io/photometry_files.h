@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace photometry`.
+
 #include <string>
 
 #include "studies/photometry/photometry.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Turns the name of a standard with class, colour and dye into a photometry request.
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,7 +10,7 @@
 
 namespace retrace::studies {
 
-/// How a standard is asked for, by the words of the command line or of a study.
+/// How a standard is requested, by the words of the command line or of a study.
 struct StandardChoice {
   std::string standard;  ///< of shipped_standards(), or a limits file
   std::optional<std::string> part_class;

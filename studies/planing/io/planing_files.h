@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace plane`.
+
 #include <string>
 
 #include "studies/planing/planing_study.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads the constraints of a study file.
+
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// A point of a study as overrides of its design and study files, which is how a candidate is made.
+
 #include <filesystem>
 #include <span>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads the quantities of a study file.
+
 #include <filesystem>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The format of study files, as the rows that readers and documentation walk.
+
 #include "core/schema/schema.h"
 
 namespace retrace::studies {

@@ -107,7 +107,7 @@ Distribution read_distribution(const Document& document, const std::string& at) 
     if (!within.contains(distribution.mean))
       document.fail(at + ".mode", fmt::format("must be {}, got {}", within.text(), shortest(distribution.mean)));
   }
-  // A cut that leaves nothing of the distribution would have all its values in a tail nobody meant.
+  // With the mean outside the cut-off range all values would come from a tail of the distribution: surely a mistake.
   if (normal && distribution.range &&
       (distribution.range->from > distribution.mean || distribution.range->to < distribution.mean))
     document.fail(at + ".mean", fmt::format("must lie between from and to, got {}", shortest(distribution.mean)));
@@ -191,7 +191,7 @@ void check_keys_once(const Study& study) {
       throw InputError({"--set " + printable(text), 0, ""}, "the study varies this key");
 }
 
-/// FNV-1a: tells whether a file was changed, not by whom.
+/// FNV-1a: tells whether a file was changed; no protection against forgery.
 std::string fingerprint(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;

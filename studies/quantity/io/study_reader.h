@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads study files - parameters, quantities, analysis - and makes the candidate of a point.
+
 #include <cstdint>
 #include <filesystem>
 #include <span>

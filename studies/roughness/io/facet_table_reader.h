@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads tables of measured facet roughness (CSV), grouped by process.
+
 #include <filesystem>
 #include <string>
 #include <string_view>

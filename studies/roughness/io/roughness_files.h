@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace roughness`.
+
 #include <string>
 
 #include "studies/roughness/roughness.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Writes solids as STL, OBJ or STEP, and the document of `retrace export`.
+
 #include <string>
 
 #include "studies/solids/solids.h"

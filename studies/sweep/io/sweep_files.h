@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace sweep`.
+
 #include <string>
 
 #include "studies/sweep/sweep.h"

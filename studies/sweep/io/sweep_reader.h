@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads what a study file says of its sweep: grid or sample.
+
 #include "studies/sweep/sweep.h"
 
 namespace retrace::studies {

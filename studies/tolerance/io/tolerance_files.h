@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace tolerance`.
+
 #include <string>
 
 #include "studies/tolerance/tolerance.h"

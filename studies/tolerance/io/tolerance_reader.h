@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads what a study file asks of a tolerance analysis.
+
 #include "studies/tolerance/tolerance.h"
 
 namespace retrace::studies {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Documents and tables of `retrace turn`.
+
 #include <string>
 
 #include "studies/turning/turn.h"

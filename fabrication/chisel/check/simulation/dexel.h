@@ -1,5 +1,8 @@
 #pragma once
 
+// A dexel model of the blank: lengths that cuts remove from parallel lines. A second, independent way to cut, for
+// checks and pictures.
+
 #include <cstddef>
 #include <span>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The map of height errors that programs leave on a part, seen from above.
+
 #include <cstddef>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Measures every facet that the cuts of an element leave: distance, angle, root residue and volume against the design.
+
 #include <array>
 #include <cstdint>
 #include <span>

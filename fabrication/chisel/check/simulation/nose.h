@@ -1,5 +1,7 @@
 #pragma once
 
+// V-shaped tools with a rounded nose: their body, and the strip and ridge that they leave along dihedral edges.
+
 #include <span>
 
 #include "fabrication/chisel/check/groove.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Least-squares plane through the measured heights of a facet: its mean offset and tilts.
+
 #include <vector>
 
 #include "fabrication/chisel/check/simulation/facet_figures.h"

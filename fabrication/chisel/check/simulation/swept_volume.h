@@ -1,5 +1,8 @@
 #pragma once
 
+// The tool as a convex wedge, and what it removes along a line while it moves straight: the kernel of the exact cutting
+// simulation.
+
 #include <cstddef>
 #include <cstdint>
 #include <limits>
