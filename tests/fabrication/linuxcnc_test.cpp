@@ -139,9 +139,12 @@ TEST(Dialects, AreComplete) {
 TEST(Dialects, WriteNumbersInFixedPoint) {
   Program program;
   program.subroutines.push_back({101, "a routine", {increment(Motion::plunge, {0, -1, 2000000}, 12.5)}});
-  const auto rapid = [](const Words& to) { return Move{Motion::rapid, to, 0.0, 0.0}; };
-  program.items = {rapid({{}, {}, 5000000, {}, {}}), rapid({{}, {}, {}, -1, 450000000}),
-                   Visit{3, 0, {-123, 1000000000, 7}}};
+  Move up;
+  up.to[kZ] = 5000000;
+  Move turn;
+  turn.to[kTilt] = -1;
+  turn.to[kC] = 450000000;
+  program.items = {up, turn, Visit{3, 0, {-123, 1000000000, 7}}};
   const std::string text = nc_text(program, "rs274ngc");
   EXPECT_NE(text.find("G1 Y-0.000001 Z2.000000 F12.500\n"), std::string::npos) << text;
   EXPECT_NE(text.find("G0 A-0.0000001 C45.0000000\n"), std::string::npos) << text;

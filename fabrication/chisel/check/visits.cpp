@@ -1,5 +1,7 @@
 #include "fabrication/chisel/check/visits.h"
 
+#include "fabrication/chisel/check/way_check.h"
+
 namespace retrace::fabrication {
 
 using geometry::Vec3;
@@ -8,9 +10,8 @@ VisitFinder::VisitFinder(const Machine& machine, const std::vector<Groove>& groo
     : machine_(machine), grooves_(grooves), map_(grooves), tip_mm_(tip_mm) {}
 
 std::optional<std::size_t> CutRuns::of(const NcMotion& motion) {
-  constexpr unsigned kLinearBits = 0b00111;
   if (motion.moved == 0 && !is_open_) return std::nullopt;
-  const bool turns = (motion.moved & ~kLinearBits) != 0;
+  const bool turns = (motion.moved & ~unsigned{kLinearBits}) != 0;
   if (motion.move == NcMove::rapid || turns || (motion.known & kLinearBits) != kLinearBits) {
     is_open_ = is_open_ && motion.moved == 0;
     return std::nullopt;
