@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/number_format.h"
 #include "core/schema/reader.h"
@@ -224,21 +225,26 @@ std::optional<Extrapolation> read_extrapolation(const Document& file) {
   return Extrapolation{read_boundary(file), static_cast<int>(file.number("extrapolation.order"))};
 }
 
+/// A table whose keys are not read here.
+constexpr schema::Table left_to_others(std::string_view name) {
+  return {.name = name, .meaning = "How it is made.", .presence = schema::Presence::optional, .is_open = true};
+}
+constexpr schema::Row kTitle[] = {{"title", schema::Text{}, schema::kNone, "One line."}};
 constexpr schema::Row kRegionRows[] = {kStrategyRow, kRegionRadiusRow, kRegionSizeRow};
-constexpr schema::Table kPath = {.name = "path", .meaning = "How it moves.", .rows = kRegionRows, .is_open = true};
+constexpr schema::Table kMade[] = {left_to_others("tool"),
+                                   {.name = "path", .meaning = "How it moves.", .rows = kRegionRows, .is_open = true},
+                                   left_to_others("machine"),
+                                   left_to_others("inspect")};
 
-/// Of the format of turned parts what is read here; the rest is let pass.
+/// Of the format of turned parts what is read here.
 const schema::Format& front_format() {
   static const std::vector<schema::Table> tables = [] {
     std::vector<schema::Table> all(surface_tables().begin(), surface_tables().end());
-    all.push_back(kPath);
+    all.insert(all.end(), std::begin(kMade), std::end(kMade));
     return all;
   }();
   static const schema::Format format = {
-      "turned_part",
-      kTurnedPartId,
-      "Freeform surface, turned",
-      {.name = "", .meaning = "Its surface and region.", .tables = tables, .is_open = true}};
+      "turned_part", kTurnedPartId, "Freeform surface, turned", {"", "Its surface and region.", kTitle, tables}};
   return format;
 }
 
