@@ -50,7 +50,7 @@ Words linear_words(const Place& place);
 void go_to(Words& at, const Words& to);
 
 /// What a move is for. A rapid one is as fast as the axes go.
-enum class Motion : std::uint8_t { rapid, plunge, plough, retract, translate };
+enum class Motion : std::uint8_t { plunge, plough, retract, translate, rapid };
 
 /// One straight move: to positions, in subroutines by increments.
 struct Move {

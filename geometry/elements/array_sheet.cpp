@@ -177,12 +177,12 @@ bool ArraySheet::repeats_along(std::size_t axis) const {
   return !surface || (axis == 0 ? surface->repeats_along_u() : surface->repeats_along_v());
 }
 
-SheetPiece::SheetPiece(const ArraySheet& sheet, std::int64_t i, std::int64_t j)
+SheetPiece::SheetPiece(const ArraySheet& sheet, std::int64_t i, std::int64_t j, bool is_alone)
     : sheet_(&sheet), at_(sheet.at_mm(i, j)), origin_(at_) {
   if (sheet.surface) {
     const Vec3 origin = sheet.surface->frame_at(at_ - sheet.middle_mm).origin;
     if (!sheet.is_upright) origin_ = sheet.middle_mm + origin.head<2>();
-    height_ = origin.z();
+    height_ = is_alone ? sheet.top_mm : origin.z();
   }
   part_ = moved(sheet.part_mm, -origin_);
   reach_ = moved(sheet.reach_mm, -at_);

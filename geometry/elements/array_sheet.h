@@ -75,7 +75,8 @@ struct CellPlace {
 /// A piece of a sheet, told from the origin of one of the lattice's periods, so that like pieces are equal.
 class SheetPiece {
  public:
-  SheetPiece(const ArraySheet& sheet, std::int64_t i, std::int64_t j);
+  /// \param is_alone the only piece of the sheet, which is told in heights of the part
+  SheetPiece(const ArraySheet& sheet, std::int64_t i, std::int64_t j, bool is_alone);
 
   CellPlace place(std::size_t cell, const Vec2& shift_mm) const;
   Standing standing(const CellPlace& place) const;

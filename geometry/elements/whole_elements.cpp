@@ -18,7 +18,7 @@ constexpr double kWholeShare = 1e-9;
 /// Goes through the elements of a sheet.
 class Walk {
  public:
-  explicit Walk(ArraySheet sheet) : sheet_(std::move(sheet)), piece_(sheet_, 0, 0) {
+  explicit Walk(ArraySheet sheet) : sheet_(std::move(sheet)), piece_(sheet_, 0, 0, false) {
     for (std::size_t c = 0; c < sheet_.lattice.cells.size(); ++c)
       if (sheet_.lattice.cells[c].is_element) rows_[sheet_.middles_mm[c].y()][sheet_.middles_mm[c].x()] = c;
   }

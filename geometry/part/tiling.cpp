@@ -89,6 +89,7 @@ class Tiler {
   void add_all(const Vec2& origin_mm, double elements_per_patch) {
     const IndexRange all = sheet_.indices();
     const std::array<std::int64_t, 2> step = patch_size(all, elements_per_patch);
+    is_one_ = step[0] >= all.upper[0] - all.lower[0] && step[1] >= all.upper[1] - all.lower[1];
     for (std::int64_t j = all.lower[1]; j < all.upper[1]; j += step[1])
       for (std::int64_t i = all.lower[0]; i < all.upper[0]; i += step[0])
         add_piece({{i, j}, {std::min(i + step[0], all.upper[0]), std::min(j + step[1], all.upper[1])}}, origin_mm);
@@ -121,7 +122,7 @@ class Tiler {
   }
 
   void add_piece(const IndexRange& range, const Vec2& origin_mm) {
-    here_.emplace(sheet_, range.lower[0], range.lower[1]);
+    here_.emplace(sheet_, range.lower[0], range.lower[1], is_one_);
     // No piece is like another.
     if (planes_ != nullptr || spec_.random_tilts.sigma_arcmin > 0.0) known_.clear();
     const auto [it, is_new] = known_.try_emplace(key_of(range));
@@ -301,6 +302,7 @@ class Tiler {
   const PartSpec& spec_;
   const FacetPlanes* planes_;
   std::map<Key, Piece> known_;
+  bool is_one_ = false;             ///< a single piece is the whole array
   std::optional<SheetPiece> here_;  ///< the piece at work
   std::vector<Tile> tiles_;         ///< its tiles
   double covered_mm2_ = 0.0;

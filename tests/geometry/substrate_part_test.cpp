@@ -97,6 +97,9 @@ void expect_solid(const PartSpec& spec) {
   const bool is_curved = !std::holds_alternative<PlaneSubstrate>(spec.substrate->shape);
   EXPECT_TRUE(report.is_manifold || (four_meet && is_curved));
   EXPECT_TRUE(report.ok() || !report.is_manifold);
+  double lowest_mm = 0.0;
+  for (const Vec3& p : mesh.vertices) lowest_mm = std::min(lowest_mm, p.z());
+  EXPECT_NEAR(lowest_mm, -part.element_depth_mm, 1e-12);
   EXPECT_NEAR(volume_mm3(mesh), part.entrance_area_mm2 * part.thickness_mm + volume_below(part), 1e-9);
 }
 

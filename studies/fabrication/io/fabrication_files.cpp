@@ -94,7 +94,7 @@ std::string job_table(const MadeJob& made) {
 namespace {
 
 const char* word_of(fabrication::Motion motion) {
-  constexpr std::array kWords = {"rapid", "plunge", "plough", "retract", "translate"};
+  constexpr std::array kWords = {"plunge", "plough", "retract", "translate", "rapid"};
   return kWords[static_cast<std::size_t>(motion)];
 }
 

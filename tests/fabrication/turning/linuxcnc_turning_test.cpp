@@ -26,7 +26,7 @@ FreeformSurface wavy() {
 }
 
 /// A path as it is printed, from one point to the next in the time of the point.
-void expect_path(const Path& path, Words at, const std::vector<test::CanonicalMove>& moves, std::size_t& next) {
+void expect_path(const Path& path, Words& at, const std::vector<test::CanonicalMove>& moves, std::size_t& next) {
   constexpr double kPrinted = 1e-4;  // four decimals
   for (const Move& move : path.moves) {
     ASSERT_LT(next, moves.size());
