@@ -285,21 +285,11 @@ void Canvas::marker(Point centre, Marker shape, double radius, Colour colour) {
   };
   cairo_new_path(context);
   switch (shape) {
-    case Marker::circle:
-      cairo_arc(context, centre.x, centre.y, radius, 0.0, 2.0 * std::numbers::pi);
-      break;
-    case Marker::square:
-      polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}});
-      break;
-    case Marker::triangle:
-      polygon({{0.0, -1.3}, {1.15, 0.75}, {-1.15, 0.75}});
-      break;
-    case Marker::diamond:
-      polygon({{0.0, -1.35}, {1.2, 0.0}, {0.0, 1.35}, {-1.2, 0.0}});
-      break;
-    case Marker::inverted_triangle:
-      polygon({{0.0, 1.3}, {1.15, -0.75}, {-1.15, -0.75}});
-      break;
+    case Marker::circle: cairo_arc(context, centre.x, centre.y, radius, 0.0, 2.0 * std::numbers::pi); break;
+    case Marker::square: polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}); break;
+    case Marker::triangle: polygon({{0.0, -1.3}, {1.15, 0.75}, {-1.15, 0.75}}); break;
+    case Marker::diamond: polygon({{0.0, -1.35}, {1.2, 0.0}, {0.0, 1.35}, {-1.2, 0.0}}); break;
+    case Marker::inverted_triangle: polygon({{0.0, 1.3}, {1.15, -0.75}, {-1.15, -0.75}}); break;
   }
   // A thin white rim keeps markers apart where curves cross.
   hidden_->set(colour);

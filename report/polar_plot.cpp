@@ -82,12 +82,9 @@ struct PolarMarkStyle {
 
 PolarMarkStyle style_of(PolarMark::Kind kind) {
   switch (kind) {
-    case PolarMark::Kind::holds:
-      return {};
-    case PolarMark::Kind::open:
-      return {Marker::square, 5.2, 3.8, kSkyBlue};
-    case PolarMark::Kind::fails:
-      return {Marker::triangle, 6.2, 4.6, kOrange};
+    case PolarMark::Kind::holds: return {};
+    case PolarMark::Kind::open: return {Marker::square, 5.2, 3.8, kSkyBlue};
+    case PolarMark::Kind::fails: return {Marker::triangle, 6.2, 4.6, kOrange};
   }
   return {};
 }

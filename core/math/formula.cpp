@@ -130,10 +130,8 @@ bool is_binary(Formula::Step step) {
     case Step::multiply:
     case Step::divide:
     case Step::power:
-    case Step::atan2:
-      return true;
-    default:
-      return false;
+    case Step::atan2: return true;
+    default: return false;
   }
 }
 

@@ -89,49 +89,28 @@ T one_step(const Formula::Node& node, const T* v, const T* variables, const std:
   const T& b = v[index(node.b)];
   const T one = constant_like(a, 1.0);
   switch (node.step) {
-    case Step::add:
-      return a + b;
-    case Step::subtract:
-      return a - b;
-    case Step::multiply:
-      return a * b;
-    case Step::divide:
-      return a / b;
-    case Step::negate:
-      return -a;
-    case Step::power:
-      return to_the_power(a, b, nodes[index(node.b)]);
-    case Step::sqrt:
-      return sqrt(a);
-    case Step::exp:
-      return exp(a);
-    case Step::log:
-      return log(a);
-    case Step::sin:
-      return sin(a);
-    case Step::cos:
-      return cos(a);
-    case Step::tan:
-      return sin(a) / cos(a);
-    case Step::asin:
-      return atan2(a, sqrt(one - a * a));
-    case Step::acos:
-      return atan2(sqrt(one - a * a), a);
-    case Step::atan:
-      return arc_tangent(a);
-    case Step::atan2:
-      return atan2(a, b);
-    case Step::sinh:
-      return hyperbolic_sine(a);
-    case Step::cosh:
-      return hyperbolic_cosine(a);
-    case Step::tanh:
-      return hyperbolic_tangent(a);
-    case Step::abs:
-      return absolute(a);
+    case Step::add: return a + b;
+    case Step::subtract: return a - b;
+    case Step::multiply: return a * b;
+    case Step::divide: return a / b;
+    case Step::negate: return -a;
+    case Step::power: return to_the_power(a, b, nodes[index(node.b)]);
+    case Step::sqrt: return sqrt(a);
+    case Step::exp: return exp(a);
+    case Step::log: return log(a);
+    case Step::sin: return sin(a);
+    case Step::cos: return cos(a);
+    case Step::tan: return sin(a) / cos(a);
+    case Step::asin: return atan2(a, sqrt(one - a * a));
+    case Step::acos: return atan2(sqrt(one - a * a), a);
+    case Step::atan: return arc_tangent(a);
+    case Step::atan2: return atan2(a, b);
+    case Step::sinh: return hyperbolic_sine(a);
+    case Step::cosh: return hyperbolic_cosine(a);
+    case Step::tanh: return hyperbolic_tangent(a);
+    case Step::abs: return absolute(a);
     case Step::constant:
-    case Step::variable:
-      break;
+    case Step::variable: break;
   }
   return one;
 }

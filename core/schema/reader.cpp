@@ -240,30 +240,21 @@ std::string refusal(const Condition& condition) {
   if (!condition.refusal.empty()) return std::string(condition.refusal);
   const std::string_view key = condition.key.substr(condition.key.rfind('.') + 1);
   switch (condition.is) {
-    case Is::one_of:
-      return fmt::format("only allowed for {} = {}", key, alternatives(condition.words));
-    case Is::none_of:
-      return fmt::format("not allowed for {} = {}", key, alternatives(condition.words));
-    case Is::given:
-      return fmt::format("only allowed with {}", key);
-    case Is::absent:
-      break;
+    case Is::one_of: return fmt::format("only allowed for {} = {}", key, alternatives(condition.words));
+    case Is::none_of: return fmt::format("not allowed for {} = {}", key, alternatives(condition.words));
+    case Is::given: return fmt::format("only allowed with {}", key);
+    case Is::absent: break;
   }
   return fmt::format("not allowed together with {}", key);
 }
 
 Form form_of(Shape shape) {
   switch (shape) {
-    case Shape::text:
-      return Form::text;
-    case Shape::number:
-      return Form::number;
-    case Shape::list:
-      return Form::list;
-    case Shape::table:
-      return Form::table;
-    default:
-      return Form::other;
+    case Shape::text: return Form::text;
+    case Shape::number: return Form::number;
+    case Shape::list: return Form::list;
+    case Shape::table: return Form::table;
+    default: return Form::other;
   }
 }
 

@@ -153,14 +153,10 @@ template <class C>
 std::optional<Ray<C>> ray_at(const Lenslet& lenslet, const Sag& base, const C& angle_rad, const Piece& inner,
                              const Piece& outer) {
   switch (lenslet.blend_order) {
-    case 1:
-      return ray_of_order<1>(lenslet, base, angle_rad, inner, outer);
-    case 2:
-      return ray_of_order<2>(lenslet, base, angle_rad, inner, outer);
-    case 3:
-      return ray_of_order<3>(lenslet, base, angle_rad, inner, outer);
-    default:
-      return ray_of_order<kMostBlendOrder>(lenslet, base, angle_rad, inner, outer);
+    case 1: return ray_of_order<1>(lenslet, base, angle_rad, inner, outer);
+    case 2: return ray_of_order<2>(lenslet, base, angle_rad, inner, outer);
+    case 3: return ray_of_order<3>(lenslet, base, angle_rad, inner, outer);
+    default: return ray_of_order<kMostBlendOrder>(lenslet, base, angle_rad, inner, outer);
   }
 }
 

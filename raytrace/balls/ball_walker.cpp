@@ -57,12 +57,9 @@ void BallWalker::keep_branches(Ray one, Ray other) {
 void BallWalker::follow(const Ray& ray) {
   ++tally_.segments;
   switch (ray.medium) {
-    case Medium::air:
-      return follow_in_air(ray);
-    case Medium::ball:
-      return follow_in_ball(ray);
-    case Medium::spacer:
-      return follow_in_spacer(ray);
+    case Medium::air: return follow_in_air(ray);
+    case Medium::ball: return follow_in_ball(ray);
+    case Medium::spacer: return follow_in_spacer(ray);
   }
 }
 

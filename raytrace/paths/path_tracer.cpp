@@ -88,19 +88,14 @@ bool PathWalker::advance(State& state) {
     state.light.scale(kept);
   }
   switch (step.end) {
-    case End::facet:
-      return meet_facet(state, step.hit);
+    case End::facet: return meet_facet(state, step.hit);
     case End::entrance:
       return setup_.entrance_face == nullptr ? meet_entrance(state)
                                              : meet_entrance_face(state, step.hit, step.entrance_normal);
-    case End::side:
-      return meet_side(state, setup_.sides[step.side].normal);
-    case End::escape:
-      return escape(state);
-    case End::trapped:
-      return finish(state, Account::truncated);
-    case End::miss:
-      break;
+    case End::side: return meet_side(state, setup_.sides[step.side].normal);
+    case End::escape: return escape(state);
+    case End::trapped: return finish(state, Account::truncated);
+    case End::miss: break;
   }
   ++tally_.misses;
   return finish(state, Account::lost);

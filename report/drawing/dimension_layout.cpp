@@ -66,27 +66,19 @@ class SideLayout {
   double along_of(Point p) const { return runs_across() ? p.x : p.y; }
   double away_of(Point p) const {
     switch (side_) {
-      case DimensionSide::below:
-        return p.y - upper_.y;
-      case DimensionSide::above:
-        return lower_.y - p.y;
-      case DimensionSide::left:
-        return lower_.x - p.x;
-      case DimensionSide::right:
-        return p.x - upper_.x;
+      case DimensionSide::below: return p.y - upper_.y;
+      case DimensionSide::above: return lower_.y - p.y;
+      case DimensionSide::left: return lower_.x - p.x;
+      case DimensionSide::right: return p.x - upper_.x;
     }
     return 0.0;
   }
   Point point(double along, double away) const {
     switch (side_) {
-      case DimensionSide::below:
-        return {along, upper_.y + away};
-      case DimensionSide::above:
-        return {along, lower_.y - away};
-      case DimensionSide::left:
-        return {lower_.x - away, along};
-      case DimensionSide::right:
-        return {upper_.x + away, along};
+      case DimensionSide::below: return {along, upper_.y + away};
+      case DimensionSide::above: return {along, lower_.y - away};
+      case DimensionSide::left: return {lower_.x - away, along};
+      case DimensionSide::right: return {upper_.x + away, along};
     }
     return {};
   }

@@ -21,16 +21,12 @@ constexpr Colour kEdge{0.13, 0.2, 0.28};
 
 Colour colour_of(FacetRole role) {
   switch (role) {
-    case FacetRole::retro_facet:
-      return {0.45, 0.66, 0.86};
-    case FacetRole::flat_back:
-      return {0.80, 0.79, 0.75};
+    case FacetRole::retro_facet: return {0.45, 0.66, 0.86};
+    case FacetRole::flat_back: return {0.80, 0.79, 0.75};
     case FacetRole::inner_wall:
-    case FacetRole::border_wall:
-      return {0.92, 0.70, 0.45};
+    case FacetRole::border_wall: return {0.92, 0.70, 0.45};
     case FacetRole::entrance:
-    case FacetRole::side:
-      return {0.72, 0.80, 0.87};
+    case FacetRole::side: return {0.72, 0.80, 0.87};
   }
   return kEdge;
 }

@@ -13,18 +13,12 @@ using geometry::FacetRole, raytrace::PathEvent;
 
 std::string face_name(FacetRole role) {
   switch (role) {
-    case FacetRole::entrance:
-      return "the entrance face";
-    case FacetRole::retro_facet:
-      return "a facet";
-    case FacetRole::flat_back:
-      return "the flat back";
-    case FacetRole::inner_wall:
-      return "a wall between elements";
-    case FacetRole::border_wall:
-      return "a wall on the border";
-    case FacetRole::side:
-      return "a side of the plate";
+    case FacetRole::entrance: return "the entrance face";
+    case FacetRole::retro_facet: return "a facet";
+    case FacetRole::flat_back: return "the flat back";
+    case FacetRole::inner_wall: return "a wall between elements";
+    case FacetRole::border_wall: return "a wall on the border";
+    case FacetRole::side: return "a side of the plate";
   }
   return "";
 }
@@ -34,24 +28,17 @@ std::string words_of(const raytrace::PathStep& step) {
   const std::string at = fmt::format("at {} deg", fixed(step.incidence_deg, 1));
   const std::string left = fmt::format("{} % goes on", fixed(100.0 * step.power, 1));
   switch (step.event) {
-    case PathEvent::enters:
-      return fmt::format("Enters {} {}; {}.", face, at, left);
-    case PathEvent::total_reflection:
-      return fmt::format("Total reflection at {} {}.", face, at);
-    case PathEvent::reflection:
-      return fmt::format("Reflected by {} {}; {}.", face, at, left);
+    case PathEvent::enters: return fmt::format("Enters {} {}; {}.", face, at, left);
+    case PathEvent::total_reflection: return fmt::format("Total reflection at {} {}.", face, at);
+    case PathEvent::reflection: return fmt::format("Reflected by {} {}; {}.", face, at, left);
     case PathEvent::leaves:
       return fmt::format("Leaves through {}; {} % of what fell in.", face, fixed(100.0 * step.power, 1));
-    case PathEvent::exits:
-      return fmt::format("Leaves through {} {}, no total reflection; {}.", face, at, left);
-    case PathEvent::enters_again:
-      return fmt::format("Enters again through {} {}; {}.", face, at, left);
+    case PathEvent::exits: return fmt::format("Leaves through {} {}, no total reflection; {}.", face, at, left);
+    case PathEvent::enters_again: return fmt::format("Enters again through {} {}; {}.", face, at, left);
     case PathEvent::leaves_side:
       return fmt::format("Leaves through {}; {} % of what fell in.", face, fixed(100.0 * step.power, 1));
-    case PathEvent::escapes:
-      return "Is lost behind the part.";
-    case PathEvent::ends:
-      break;
+    case PathEvent::escapes: return "Is lost behind the part.";
+    case PathEvent::ends: break;
   }
   return "Ends: what is left is faint.";
 }

@@ -13,12 +13,9 @@ namespace {
 PolarMark::Kind mark_of(studies::Verdict verdict) {
   switch (verdict) {
     case studies::Verdict::pass:
-    case studies::Verdict::unconfirmed:
-      return PolarMark::Kind::holds;
-    case studies::Verdict::undetermined:
-      return PolarMark::Kind::open;
-    case studies::Verdict::fail:
-      return PolarMark::Kind::fails;
+    case studies::Verdict::unconfirmed: return PolarMark::Kind::holds;
+    case studies::Verdict::undetermined: return PolarMark::Kind::open;
+    case studies::Verdict::fail: return PolarMark::Kind::fails;
   }
   return PolarMark::Kind::open;
 }

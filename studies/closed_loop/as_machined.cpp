@@ -42,11 +42,9 @@ double sa_of(const Job& job) {
   switch (job.strategy) {
     case Strategy::unidirectional:
       return std::sqrt(0.5 * (p.plough_sa_nm * p.plough_sa_nm + p.roughing_plunge_sa_nm * p.roughing_plunge_sa_nm));
-    case Strategy::bidirectional:
-      return p.roughing_plunge_sa_nm;
+    case Strategy::bidirectional: return p.roughing_plunge_sa_nm;
     case Strategy::two_step:
-    case Strategy::dmc:
-      return p.finishing_plunge_sa_nm;
+    case Strategy::dmc: return p.finishing_plunge_sa_nm;
   }
   return 0.0;
 }

@@ -151,14 +151,10 @@ materials::Spectrum flux_of(const Design& design) {
   const materials::CieTable cie = materials::shipped_cie_table();
   const materials::SpectralCurve* const efficiency = light.photopic ? &cie.photopic_efficiency : nullptr;
   switch (light.kind) {
-    case Kind::illuminant_a:
-      return materials::resolved_spectrum(cie.illuminant_a, efficiency);
-    case Kind::illuminant_d65:
-      return materials::resolved_spectrum(cie.illuminant_d65, efficiency);
-    case Kind::file:
-      return materials::resolved_spectrum(materials::read_spectral_power(light.file), efficiency);
-    case Kind::lines:
-      break;
+    case Kind::illuminant_a: return materials::resolved_spectrum(cie.illuminant_a, efficiency);
+    case Kind::illuminant_d65: return materials::resolved_spectrum(cie.illuminant_d65, efficiency);
+    case Kind::file: return materials::resolved_spectrum(materials::read_spectral_power(light.file), efficiency);
+    case Kind::lines: break;
   }
   std::vector<materials::SpectralLine> lines;
   for (const LightSpectrum::Line& line : light.lines) lines.push_back({line.wavelength_nm, line.power});

@@ -102,40 +102,29 @@ void refuse_doubles(const LimitTable& table, const std::vector<TestPoint>& point
 
 std::string_view unit_name(PhotometricUnit unit) {
   switch (unit) {
-    case PhotometricUnit::mcd_per_lx:
-      return "mcd/lx";
-    case PhotometricUnit::cd_per_lx:
-      return "cd/lx";
-    case PhotometricUnit::cd_per_fc:
-      return "cd/fc";
-    case PhotometricUnit::cd_per_lx_per_m2:
-      return "cd/lx/m2";
+    case PhotometricUnit::mcd_per_lx: return "mcd/lx";
+    case PhotometricUnit::cd_per_lx: return "cd/lx";
+    case PhotometricUnit::cd_per_fc: return "cd/fc";
+    case PhotometricUnit::cd_per_lx_per_m2: return "cd/lx/m2";
   }
   return {};
 }
 
 std::string_view status_name(LimitStatus status) {
   switch (status) {
-    case LimitStatus::confirmed:
-      return "confirmed";
-    case LimitStatus::read:
-      return "read";
-    case LimitStatus::recalled:
-      return "recalled";
+    case LimitStatus::confirmed: return "confirmed";
+    case LimitStatus::read: return "read";
+    case LimitStatus::recalled: return "recalled";
   }
   return {};
 }
 
 double in_mcd_per_lx(double value, PhotometricUnit unit, double area_cm2) {
   switch (unit) {
-    case PhotometricUnit::mcd_per_lx:
-      return value;
-    case PhotometricUnit::cd_per_lx:
-      return 1e3 * value;
-    case PhotometricUnit::cd_per_fc:
-      return 1e3 * value / kLuxPerFootCandle;
-    case PhotometricUnit::cd_per_lx_per_m2:
-      return 1e3 * value * 1e-4 * area_cm2;
+    case PhotometricUnit::mcd_per_lx: return value;
+    case PhotometricUnit::cd_per_lx: return 1e3 * value;
+    case PhotometricUnit::cd_per_fc: return 1e3 * value / kLuxPerFootCandle;
+    case PhotometricUnit::cd_per_lx_per_m2: return 1e3 * value * 1e-4 * area_cm2;
   }
   return 0.0;
 }

@@ -166,14 +166,10 @@ std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photomet
 
 std::string_view verdict_name(Verdict verdict) {
   switch (verdict) {
-    case Verdict::pass:
-      return "pass";
-    case Verdict::unconfirmed:
-      return "unconfirmed";
-    case Verdict::undetermined:
-      return "undetermined";
-    case Verdict::fail:
-      return "fail";
+    case Verdict::pass: return "pass";
+    case Verdict::unconfirmed: return "unconfirmed";
+    case Verdict::undetermined: return "undetermined";
+    case Verdict::fail: return "fail";
   }
   return {};
 }

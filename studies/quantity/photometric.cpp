@@ -62,12 +62,9 @@ class PhotometricQuantity final : public Quantity {
   Measured figure_of(const Points& points, std::size_t k) const {
     const PhotometricPoint& point = points.measured.at(k);
     switch (figure_) {
-      case PhotometricFigure::margin:
-        return margin_of(points.judged.at(k), points.reason);
-      case PhotometricFigure::r_i_mcd_per_lx:
-        return {point.r_i_mcd_per_lx, point.std_error_mcd_per_lx};
-      case PhotometricFigure::r_a:
-        break;
+      case PhotometricFigure::margin: return margin_of(points.judged.at(k), points.reason);
+      case PhotometricFigure::r_i_mcd_per_lx: return {point.r_i_mcd_per_lx, point.std_error_mcd_per_lx};
+      case PhotometricFigure::r_a: break;
     }
     const double per_r_i = point.r_i_mcd_per_lx > 0.0 ? point.r_a / point.r_i_mcd_per_lx : 0.0;
     return {point.r_a, point.std_error_mcd_per_lx * per_r_i};

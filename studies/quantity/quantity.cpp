@@ -164,40 +164,30 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
   constexpr double um_per_mm = 1e3;
   const geometry::PartSpec& spec = candidate.design().part();
   switch (which) {
-    case PlainQuantity::elements_full:
-      return static_cast<double>(candidate.part().elements_full);
-    case PlainQuantity::elements_partial:
-      return static_cast<double>(candidate.part().elements_partial);
+    case PlainQuantity::elements_full: return static_cast<double>(candidate.part().elements_full);
+    case PlainQuantity::elements_partial: return static_cast<double>(candidate.part().elements_partial);
     case PlainQuantity::element_depth_mm:
       // A part on a base is deeper than its elements.
       return candidate.design().part().substrate
                  ? geometry::element_depth_mm(candidate.part().spec.element, candidate.part().spec.angle_errors)
                  : candidate.part().element_depth_mm;
-    case PlainQuantity::lens_thickness_mm:
-      return candidate.part().element_depth_mm + candidate.part().thickness_mm;
-    case PlainQuantity::facet_area_mm2:
-      return candidate.part().retro_facet_area_mm2;
+    case PlainQuantity::lens_thickness_mm: return candidate.part().element_depth_mm + candidate.part().thickness_mm;
+    case PlainQuantity::facet_area_mm2: return candidate.part().retro_facet_area_mm2;
     case PlainQuantity::effective_area_mm2:
       return static_cast<double>(candidate.part().elements_full) * facets_of_element_mm2(spec);
-    case PlainQuantity::entrance_area_mm2:
-      return candidate.part().entrance_area_mm2;
+    case PlainQuantity::entrance_area_mm2: return candidate.part().entrance_area_mm2;
     case PlainQuantity::full_element_share:
       return static_cast<double>(candidate.part().elements_full) * full_element_area_mm2(spec) /
              candidate.part().entrance_area_mm2;
-    case PlainQuantity::tir_limit_deg:
-      return total_reflection_limit_deg(candidate);
-    case PlainQuantity::tool_fit_mm:
-      return tool_fit_mm(candidate);
-    case PlainQuantity::machining_time_h:
-      return machining_time_h(candidate);
+    case PlainQuantity::tir_limit_deg: return total_reflection_limit_deg(candidate);
+    case PlainQuantity::tool_fit_mm: return tool_fit_mm(candidate);
+    case PlainQuantity::machining_time_h: return machining_time_h(candidate);
     case PlainQuantity::machining_time_per_element_s:
       return seconds_per_element(prism_of(candidate), candidate.machining());
     case PlainQuantity::area_rate_mm2_per_h:
       return 3600.0 * full_element_area_mm2(spec) / seconds_per_element(prism_of(candidate), candidate.machining());
-    case PlainQuantity::process_sa_nm:
-      return process_sa_nm(candidate.machining());
-    case PlainQuantity::root_radius_um:
-      return um_per_mm * spec.edges.root_radius_mm;
+    case PlainQuantity::process_sa_nm: return process_sa_nm(candidate.machining());
+    case PlainQuantity::root_radius_um: return um_per_mm * spec.edges.root_radius_mm;
   }
   return std::nullopt;
 }

@@ -40,12 +40,9 @@ double Interval::at(double share) const {
 
 double Distribution::quantile(double u) const {
   switch (kind) {
-    case Kind::normal:
-      return normal_quantile(*this, u);
-    case Kind::uniform:
-      return range->at(u);
-    case Kind::triangular:
-      break;
+    case Kind::normal: return normal_quantile(*this, u);
+    case Kind::uniform: return range->at(u);
+    case Kind::triangular: break;
   }
   return triangular_quantile(range->from, mean, range->to, u);
 }

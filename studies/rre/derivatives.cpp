@@ -88,18 +88,12 @@ DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
   // An error of an angle turns light away by some three times as much: out of a narrow cone soon.
   const double angle_step = std::min(0.05 * wider, 0.1 * at.design.detector.acceptance_half_angle_deg.front());
   switch (parameter) {
-    case RreParameter::size_mm:
-      return {relative_step * value, kOpen * value};
-    case RreParameter::apex_angle_deg:
-      return {angle_step, 60.0, 120.0};
-    case RreParameter::dihedral_error_deg:
-      return {angle_step};
-    case RreParameter::refractive_index:
-      return {relative_step, 1.0};
-    case RreParameter::thickness_mm:
-      return {relative_step * value, at.model.part.top_mm + kOpen * value};
-    case RreParameter::incidence_deg:
-      return {0.25 * wider, -90.0 + kOpen, 90.0 - kOpen};
+    case RreParameter::size_mm: return {relative_step * value, kOpen * value};
+    case RreParameter::apex_angle_deg: return {angle_step, 60.0, 120.0};
+    case RreParameter::dihedral_error_deg: return {angle_step};
+    case RreParameter::refractive_index: return {relative_step, 1.0};
+    case RreParameter::thickness_mm: return {relative_step * value, at.model.part.top_mm + kOpen * value};
+    case RreParameter::incidence_deg: return {0.25 * wider, -90.0 + kOpen, 90.0 - kOpen};
   }
   return {};
 }
@@ -227,18 +221,12 @@ std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDi
 
 std::string_view parameter_name(RreParameter parameter) {
   switch (parameter) {
-    case RreParameter::size_mm:
-      return "size_mm";
-    case RreParameter::apex_angle_deg:
-      return "apex_angle_deg";
-    case RreParameter::dihedral_error_deg:
-      return "dihedral_error_deg";
-    case RreParameter::refractive_index:
-      return "refractive_index";
-    case RreParameter::thickness_mm:
-      return "thickness_mm";
-    case RreParameter::incidence_deg:
-      return "incidence_deg";
+    case RreParameter::size_mm: return "size_mm";
+    case RreParameter::apex_angle_deg: return "apex_angle_deg";
+    case RreParameter::dihedral_error_deg: return "dihedral_error_deg";
+    case RreParameter::refractive_index: return "refractive_index";
+    case RreParameter::thickness_mm: return "thickness_mm";
+    case RreParameter::incidence_deg: return "incidence_deg";
   }
   return "";
 }
@@ -254,16 +242,11 @@ std::vector<std::string> keys_of(RreParameter parameter, const Design& design) {
     case RreParameter::size_mm:
       if (std::holds_alternative<RtpElement>(design.part().element)) return {"element.base_mm", "element.width_mm"};
       return {"element.aperture_mm"};
-    case RreParameter::apex_angle_deg:
-      return {"element.apex_angle_deg"};
-    case RreParameter::dihedral_error_deg:
-      return {"surface.dihedral_error_arcmin"};
-    case RreParameter::refractive_index:
-      return {"body.refractive_index"};
-    case RreParameter::thickness_mm:
-      return {"body.thickness_mm"};
-    case RreParameter::incidence_deg:
-      break;
+    case RreParameter::apex_angle_deg: return {"element.apex_angle_deg"};
+    case RreParameter::dihedral_error_deg: return {"surface.dihedral_error_arcmin"};
+    case RreParameter::refractive_index: return {"body.refractive_index"};
+    case RreParameter::thickness_mm: return {"body.thickness_mm"};
+    case RreParameter::incidence_deg: break;
   }
   return {};
 }

@@ -59,12 +59,9 @@ UnitSamples::UnitSamples(Kind kind, std::size_t dimensions, std::uint64_t count,
 
 std::vector<double> UnitSamples::at(std::uint64_t point) const {
   switch (kind_) {
-    case Kind::sobol:
-      return sobol(point);
-    case Kind::latin_hypercube:
-      return latin_hypercube(point);
-    case Kind::monte_carlo:
-      break;
+    case Kind::sobol: return sobol(point);
+    case Kind::latin_hypercube: return latin_hypercube(point);
+    case Kind::monte_carlo: break;
   }
   return monte_carlo(point);
 }

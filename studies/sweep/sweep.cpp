@@ -23,15 +23,11 @@ constexpr std::chrono::milliseconds kWaitForOthers{50};
 /// Nothing for points that are not sampled.
 std::optional<UnitSamples::Kind> samples_of(Combine combine) {
   switch (combine) {
-    case Combine::sobol:
-      return UnitSamples::Kind::sobol;
-    case Combine::latin_hypercube:
-      return UnitSamples::Kind::latin_hypercube;
-    case Combine::monte_carlo:
-      return UnitSamples::Kind::monte_carlo;
+    case Combine::sobol: return UnitSamples::Kind::sobol;
+    case Combine::latin_hypercube: return UnitSamples::Kind::latin_hypercube;
+    case Combine::monte_carlo: return UnitSamples::Kind::monte_carlo;
     case Combine::grid:
-    case Combine::zipped:
-      break;
+    case Combine::zipped: break;
   }
   return std::nullopt;
 }

@@ -31,30 +31,16 @@ void skip_value(const Source& source, ByteReader& bytes, char type) {
   };
   switch (type) {
     case 'b':
-    case 'c':
-      bytes.take(1);
-      return;
-    case 'i':
-      bytes.take(4);
-      return;
+    case 'c': bytes.take(1); return;
+    case 'i': bytes.take(4); return;
     case 'q':
-    case 'd':
-      bytes.take(8);
-      return;
+    case 'd': bytes.take(8); return;
     case 's':
-    case 'o':
-      skip_one(type);
-      return;
-    case 'C':
-      bytes.take(bytes.u32());
-      return;
-    case 'I':
-      bytes.take(std::uint64_t{4} * bytes.u32());
-      return;
+    case 'o': skip_one(type); return;
+    case 'C': bytes.take(bytes.u32()); return;
+    case 'I': bytes.take(std::uint64_t{4} * bytes.u32()); return;
     case 'Q':
-    case 'D':
-      bytes.take(std::uint64_t{8} * bytes.u32());
-      return;
+    case 'D': bytes.take(std::uint64_t{8} * bytes.u32()); return;
     case 'S':
     case 'O':
       for (std::uint32_t left = bytes.u32(); left > 0; --left) skip_one(type == 'S' ? 's' : 'o');

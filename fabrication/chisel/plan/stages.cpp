@@ -45,8 +45,7 @@ class StageMaker {
         add_plunges("finishing", job_.process.finishing_cuts, job_.process.finishing_depth_um,
                     job_.process.finishing_feed_mm_per_min, true);
         break;
-      case Strategy::dmc:
-        break;
+      case Strategy::dmc: break;
     }
     return std::move(starts_);
   }

@@ -11,14 +11,10 @@ namespace {
 
 double position_of(const PathPoint& p, int axis) {
   switch (axis) {
-    case 0:
-      return p.x_mm;
-    case 1:
-      return p.y_mm;
-    case 2:
-      return p.z_mm;
-    default:
-      return p.servo_mm;
+    case 0: return p.x_mm;
+    case 1: return p.y_mm;
+    case 2: return p.z_mm;
+    default: return p.servo_mm;
   }
 }
 

@@ -97,16 +97,14 @@ std::string rows_of(const std::vector<PhotometricPoint>& points) {
 /// \param reason of a verdict that is undetermined
 std::string verdict_text(Verdict verdict, const TestProgramme& programme, const std::string& reason = {}) {
   switch (verdict) {
-    case Verdict::pass:
-      return "verdict: pass\n";
+    case Verdict::pass: return "verdict: pass\n";
     case Verdict::unconfirmed:
       return programme.is_complete
                  ? "verdict: unconfirmed - every point holds, but not every limit is confirmed\n"
                  : "verdict: unconfirmed - every point holds, but the table is not all that the standard asks\n";
     case Verdict::undetermined:
       return reason.empty() ? "verdict: undetermined\n" : fmt::format("verdict: undetermined - {}\n", reason);
-    case Verdict::fail:
-      return "verdict: FAIL\n";
+    case Verdict::fail: return "verdict: FAIL\n";
   }
   return {};
 }

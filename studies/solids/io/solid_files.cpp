@@ -54,8 +54,7 @@ std::string solid_text(const Solid& solid, SolidFormat format) {
       return geometry::stl_text(solid.mesh, "retrace " + std::string(kVersion) + ", mm: " + title_of(solid));
     case SolidFormat::obj:
       return geometry::obj_text(solid.mesh, "retrace " + std::string(kVersion) + ": " + title_of(solid));
-    case SolidFormat::step:
-      break;
+    case SolidFormat::step: break;
   }
   if (!solid.is_manifold)
     throw InputError({solid.design.source_name(), 0, ""},

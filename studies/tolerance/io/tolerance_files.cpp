@@ -48,12 +48,9 @@ Json quantity_json(const Study& study, const QuantityTolerance& quantity) {
 
 const char* sampling_name(UnitSamples::Kind kind) {
   switch (kind) {
-    case UnitSamples::Kind::sobol:
-      return "sobol";
-    case UnitSamples::Kind::latin_hypercube:
-      return "latin_hypercube";
-    case UnitSamples::Kind::monte_carlo:
-      break;
+    case UnitSamples::Kind::sobol: return "sobol";
+    case UnitSamples::Kind::latin_hypercube: return "latin_hypercube";
+    case UnitSamples::Kind::monte_carlo: break;
   }
   return "monte_carlo";
 }
