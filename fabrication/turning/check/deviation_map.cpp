@@ -15,7 +15,7 @@ using geometry::FreeformSurface;
 using jets::Gradient;
 
 using geometry::Vec2;
-constexpr double kNmPerMm = 1e6;
+constexpr double kNanometresAMm = 1e6;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUncut = std::numeric_limits<double>::infinity();
 constexpr int kMostSamples = 12;
@@ -99,7 +99,7 @@ std::optional<double> deviation_nm(const Envelope& envelope, const FreeformSurfa
   const auto height = envelope.height_mm(p.x(), p.y());
   if (!height) return std::nullopt;
   const Gradient z = design.gradient(p.x(), p.y());
-  return (*height - z.value) / std::sqrt(1.0 + z.x * z.x + z.y * z.y) * kNmPerMm;
+  return (*height - z.value) / std::sqrt(1.0 + z.x * z.x + z.y * z.y) * kNanometresAMm;
 }
 
 std::pair<double, double> largest_between(const std::function<double(double)>& f, double a, double b, int steps) {
