@@ -26,6 +26,10 @@ NcDialect dialect_of(const std::string& word, std::string_view text, const std::
   return static_cast<NcDialect>(found - std::begin(kNcDialectWords));
 }
 
+NcTexts nc_texts_of(const Control& control) {
+  return {"", "", control.mist_on, control.mist_off, control.optional_stop};
+}
+
 }  // namespace
 
 VerificationRun run_verification(const VerificationRequest& request, const Cancellation* cancellation) {
@@ -34,11 +38,11 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
   VerificationRun run;
   run.request = request;
   run.job = read_job(request.job);
-  run.machine = load_machine(run.job.machine, {request.job, 0, "machine"});
+  run.machine = load_machine(run.job.machine, run.job.where("machine"));
   for (const std::string& file : request.programs) {
     const std::string text = read_file(file, kMostDataBytes);
     run.dialects.push_back(dialect_of(request.dialect, text, file));
-    run.programs.push_back(parse_nc(text, file, run.dialects.back()));
+    run.programs.push_back(parse_nc(text, file, run.dialects.back(), nc_texts_of(run.machine.control)));
   }
   VerifyOptions options;
   options.tolerance_nm = request.tolerance_nm;

@@ -345,7 +345,7 @@ RC_GTEST_PROP(Moves, AreSafe, ()) {
   for (const PlannedMove& move : moves_of(plan)) {
     const Words& to = move.at;
     if (move.is_rotary()) {
-      RC_ASSERT(at[kZ] == std::llround(plan.safe_z_mm * 1e6));
+      RC_ASSERT(at[kZ] >= std::llround(plan.safe_z_mm * 1e6));
     } else if (move.is_rapid() && at[kZ] && at[kX] && to[kX]) {
       const bool down = *to[kZ] < *at[kZ];
       const bool across = to[kX] != at[kX] || to[kY] != at[kY];

@@ -210,7 +210,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   FindingList findings;
   ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));
   for (const NcProgram& program : programs) {
-    check.begin(program.file);
+    check.begin(program);
     check.end(run_nc(program, check));
   }
   check.finish();

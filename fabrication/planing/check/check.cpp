@@ -6,9 +6,9 @@
 namespace retrace::fabrication {
 namespace {
 
-NcSpindleTexts spindle_texts_of(const PlanedPart& part) {
+NcTexts spindle_texts_of(const PlanedPart& part) {
   if (!part.lathe) return {};
-  return {part.lathe->spindle_start, part.lathe->spindle_stop};
+  return {part.lathe->spindle_start, part.lathe->spindle_stop, "", "", ""};
 }
 
 }  // namespace

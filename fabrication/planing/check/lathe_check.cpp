@@ -48,11 +48,13 @@ SectionLine along(const SectionLine& line, double spacing_mm) {
 }
 
 /// A PMAC is told by lines of the part's file, which say nothing of sense and speed that could be read.
-SpindleRule spindle_of(const PlaningLathe& lathe, NcDialect dialect) {
-  const auto rpm = static_cast<double>(lathe.spindle_rpm);
-  if (dialect == NcDialect::pmac) return {NcSpindle::started_by_text, rpm};
+ControlRule rule_of(const PlaningLathe& lathe, NcDialect dialect) {
+  ControlRule rule;
   const bool is_clockwise = lathe.spindle_direction == SpindleDirection::clockwise;
-  return {is_clockwise ? NcSpindle::clockwise : NcSpindle::counterclockwise, rpm};
+  rule.spindle.rpm = static_cast<double>(lathe.spindle_rpm);
+  rule.spindle.turns = is_clockwise ? NcSpindle::clockwise : NcSpindle::counterclockwise;
+  if (dialect == NcDialect::pmac) rule.spindle.turns = NcSpindle::started_by_text;
+  return rule;
 }
 
 bool goes_outwards(const std::vector<PathPlace>& path) {
@@ -63,7 +65,7 @@ bool goes_outwards(const std::vector<PathPlace>& path) {
 }  // namespace
 
 LatheCheck::LatheCheck(const PlanedPart& part, NcDialect dialect, FindingList& findings, PlaningCheck& result)
-    : part_(part), control_(findings, spindle_of(*part.lathe, dialect)), result_(result) {}
+    : part_(part), control_(findings, rule_of(*part.lathe, dialect)), result_(result) {}
 
 void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   if (motion.move == NcMove::rapid) {
@@ -72,7 +74,7 @@ void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
     feeding_ = false;
     return;
   }
-  control_.spindle(settings, motion.place);
+  control_.cut(settings, motion.place);
   if (now_.empty()) now_.push_back({motion.from.x_mm, motion.from.z_mm});
   now_.push_back({motion.to.x_mm, motion.to.z_mm});
   feeding_ = true;
