@@ -56,6 +56,7 @@ ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
 
 void ProgramCheck::begin(const NcProgram& program) {
   findings_.begin(program.file);
+  ++programs_begun_;
   control_.begin(program.dialect);
 }
 
@@ -111,6 +112,7 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   SweptVolume sweep;
   sweep.pose = static_cast<std::uint32_t>(pose_index(rotary_pose(machine_, motion.to)));
   sweep.place = motion.place;
+  sweep.program = programs_begun_ - 1;
   sweep.is_rapid = motion.move == NcMove::rapid;
   sweep.from_mm = machine_point(machine_, motion.from) + wedge_.tip_mm;
   sweep.to_mm = machine_point(machine_, motion.to) + wedge_.tip_mm;

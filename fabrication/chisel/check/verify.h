@@ -24,8 +24,7 @@ struct VerifyOptions {
 /// One element that a program leaves.
 struct ElementResult {
   ElementFigures figures;
-  /// Of each facet's normal to the design's, what ploughing must leave taken off; none if it is not cut.
-  std::vector<double> facet_angle_arcmin;
+  std::vector<double> facet_angle_arcmin;  ///< of each facet's normal to the design's; none if it is not cut
   double apex_error_arcmin = 0.0;  ///< of the angle between the facets, positive opens it; of a cube corner the largest
 };
 
@@ -36,11 +35,15 @@ struct Verification {
   double tolerance_nm = 0.0;
   double facet_distance_nm_max = 0.0;
   double facet_angle_arcmin_max = 0.0;
+  double facet_angle_arcmin_predicted =
+      0.0;                             ///< tilt along the root that ploughing with a tilted edge makes unavoidable
   double apex_error_arcmin_max = 0.0;  ///< of the largest size
   double root_residual_nm_max = 0.0;
   double root_residual_nm_predicted = 0.0;
   double wall_overcut_nm_max = 0.0;
   double wall_overcut_nm_predicted = 0.0;
+  double chip_um_max = 0.0;      ///< that a cut takes along a line square to the plane that its edge sweeps
+  double chip_share_max = 0.0;   ///< of what is borne there: above 1 it is found
   double root_radius_um = 0.0;   ///< that the tool's edge leaves at the root
   double root_chamfer_um = 0.0;  ///< width across the strips that the nose of a V leaves beside dihedral edges
   double root_ridge_um = 0.0;    ///< height of the ridge that stays between them, over the edge
