@@ -181,6 +181,52 @@ TEST_P(ControlState, FeedsAreThoseOfTheMachine) {
   EXPECT_GE(tried, 3);
 }
 
+/// Feeds of finishing are those of finishing: told from where the edge sweeps, not from the name of the stage.
+TEST_P(ControlState, FeedsAreThoseOfTheStage) {
+  const double finishing = job_.process.finishing_feed_mm_per_min;
+  const std::string feed = fmt::format(" F{:.3f}", finishing);
+  int tried = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const std::size_t at = lines_[i].find(feed);
+    if (!is_feed(lines_[i]) || at == std::string::npos) continue;
+    Lines spoilt = lines_;
+    spoilt[i] = lines_[i].substr(0, at) + fmt::format(" F{:.3f}", job_.process.roughing_feed_mm_per_min);
+    EXPECT_NE(kinds_in(spoilt).find("feed_too_high"), std::string::npos) << lines_[i];
+    ++tried;
+  }
+  EXPECT_EQ(tried, 2);
+}
+
+TEST_P(ControlState, DwellsInTheMaterial) {
+  const std::string dwell = is_pmac()                            ? "dwell 100"
+                            : GetParam() == NcDialect::sinumerik ? "G4 F0.100"
+                            : GetParam() == NcDialect::fanuc     ? "G4 P100"
+                                                                 : "G4 P0.100";
+  const auto as_long_as = [&](const std::string& text, double factor) {
+    const std::size_t digits = text.find_first_of("0123456789", 3);
+    const double value = factor * std::stod(text.substr(digits));
+    return text.substr(0, digits) +
+           (text.find('.') == std::string::npos ? fmt::format("{:.0f}", value) : fmt::format("{:.3f}", value));
+  };
+  int tried = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    if (lines_[i] != dwell) continue;
+    Lines spoilt = lines_;
+    spoilt[i] = as_long_as(dwell, 1000.0);
+    EXPECT_EQ(kinds_in(spoilt), "dwell_too_long");
+    spoilt[i] = as_long_as(dwell, 2.5);
+    EXPECT_EQ(kinds_in(spoilt), "");
+    spoilt[i] = as_long_as(dwell, 0.5);
+    EXPECT_EQ(kinds_in(spoilt), "missing_dwell");
+    ++tried;
+  }
+  EXPECT_GE(tried, 3);
+  // Above the part a rest harms nothing.
+  Lines rests = lines_;
+  rests.insert(rests.begin() + static_cast<std::ptrdiff_t>(first_move()) + 1, as_long_as(dwell, 1000.0));
+  EXPECT_EQ(kinds_in(rests), "");
+}
+
 INSTANTIATE_TEST_SUITE_P(Dialects, ControlState,
                          ::testing::Values(NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc,
                                            NcDialect::pmac),

@@ -24,7 +24,7 @@ ChiselingCheck::ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& we
 }
 
 void ChiselingCheck::move(const CutMove& cut) {
-  check_feed(cut.motion);
+  check_feed(cut);
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   if (travel.dot(wedge_.sides[0].outward) > kMostSlip * travel.norm()) find_clearance_face(cut);
   const bool goes_down = workpiece_.grooves[cut.element].axis.dot(cut.back.direction(travel)) < 0.0;

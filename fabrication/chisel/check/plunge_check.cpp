@@ -41,7 +41,7 @@ void PlungeCheck::check_dwell() {
 void PlungeCheck::plunge(const CutMove& cut) {
   const auto& [motion, sweep, there, back, element] = cut;
   close();
-  check_feed(motion);
+  check_feed(cut);
   const Groove& groove = workpiece_.grooves[element];
   const Vec3 upright = there.direction(groove.facets[0].normal);
   OpenPlunge plunge;
@@ -67,7 +67,7 @@ void PlungeCheck::plunge(const CutMove& cut) {
 }
 
 void PlungeCheck::plough(const CutMove& cut) {
-  check_feed(cut.motion);
+  check_feed(cut);
   if (!open_ || open_->element != cut.element) return;
   check_dwell();
   const double length_mm = (cut.sweep.to_mm - cut.sweep.from_mm).norm();

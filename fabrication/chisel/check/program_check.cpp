@@ -79,8 +79,15 @@ std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
   return poses_.size() - 1;
 }
 
-void ProgramCheck::dwell(double seconds, const NcPlace&, const AxisPositions&) {
+void ProgramCheck::dwell(double seconds, const NcPlace& place, const AxisPositions&) {
   time_.dwell_s += seconds;
+  // A tool that rests in its cut longer than it must marks it, and rubs once the mist has gone.
+  const double most_s = 2.0 * workpiece_.job->process.dwell_s + 0.1;
+  if (is_in_blank_ && seconds > most_s * (1.0 + 1e-9))
+    findings_.add("dwell_too_long", place.line,
+                  fmt::format("the tool rests in the material for {} s, at most {} are allowed", shortest(seconds),
+                              shortest(most_s)),
+                  seconds, most_s);
   cuts_->dwell(seconds);
 }
 
@@ -101,6 +108,7 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   const std::optional<std::size_t> run = visits_.empty() ? std::nullopt : runs_.of(motion);
   if (motion.moved == 0) return;
   const std::uint8_t rotary = rotary_bits(machine_);
+  is_in_blank_ = false;
   if ((motion.moved & rotary) != 0) {
     cuts_->close();
     return way_.turn(motion);
@@ -118,6 +126,7 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   sweep.to_mm = machine_point(machine_, motion.to) + wedge_.tip_mm;
   const RigidMotion& back = back_[sweep.pose];
   const std::optional<std::size_t> element = run ? visits_[*run] : element_of(sweep);
+  is_in_blank_ = way_.face().height_mm(back.point(sweep.to_mm)) < 0.0;
   find_corners(sweep, element);
   way_.fixtures(motion, standing_[sweep.pose]);
   if (sweep.is_rapid) way_.rapid(motion, back, element);

@@ -70,6 +70,7 @@ class ProgramCheck : public NcSink {
   std::vector<geometry::Vec3> corners_;
   ProgramTime time_;
   double deepest_wall_mm_ = 0.0;
+  bool is_in_blank_ = false;  ///< where the last move ended
   std::uint32_t programs_begun_ = 0;
 };
 
