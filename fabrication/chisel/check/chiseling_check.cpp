@@ -101,7 +101,7 @@ void ChiselingCheck::finish() {
     const State& state = states_[i];
     const auto [least, most] = std::minmax_element(state.left_mm.begin(), state.left_mm.end());
     if (state.last.line == 0 || *most - *least <= workpiece_.tolerance_mm) continue;
-    find("chip_not_separated", state.last, i, "the last layer was not cut on all three facets: its chip hangs on",
+    find("layer_unfinished", state.last, i, "the last layer was not cut on all three facets: its chip hangs on",
          1e3 * (*most - *least), 1e3 * workpiece_.tolerance_mm);
   }
 }

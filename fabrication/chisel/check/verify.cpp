@@ -224,18 +224,33 @@ ChipFigures chips_of(const Workpiece3d& workpiece, const BlankFace& face, std::s
 
 }  // namespace
 
+std::string_view Verification::verdict() const {
+  if (passes()) return "pass";
+  // Kinds that say what is left, and nothing of how the rest was cut.
+  constexpr std::array<std::string_view, 4> kUnfinished = {"excess", "element_missing", "root_residual",
+                                                           "layer_unfinished"};
+  const bool is_unfinished = std::all_of(findings.begin(), findings.end(), [&](const Finding& finding) {
+    return std::find(kUnfinished.begin(), kUnfinished.end(), finding.kind) != kUnfinished.end();
+  });
+  return is_unfinished ? "incomplete" : "fail";
+}
+
 Verification verify_programs(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                              const VerifyOptions& options, const std::vector<Machine>& others,
                              const Cancellation* cancellation) {
   const Workpiece3d workpiece = workpiece_of(job, machine, options.tolerance_nm);
   FindingList findings;
   ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));
-  for (const NcProgram& program : programs) {
-    check.begin(program);
-    check.end(run_nc(program, check));
+  ProgramTime standing_time;
+  for (std::size_t k = 0; k < programs.size(); ++k) {
+    check.begin(programs[k]);
+    check.end(run_nc(programs[k], check));
+    if (k + 1 != options.standing) continue;
+    findings.take();
+    standing_time = check.time();
   }
   check.finish();
-  const std::string first = programs.empty() ? std::string() : programs.front().file;
+  const std::string first = programs.size() <= options.standing ? std::string() : programs[options.standing].file;
   Verification result;
   result.tolerance_nm = options.tolerance_nm;
   const std::vector<RigidMotion> poses = check.poses();
@@ -269,6 +284,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
     result.chip_um_max = std::max(result.chip_um_max, 1e3 * figures.thickest_mm);
     result.chip_share_max = std::max(result.chip_share_max, figures.thickest_share);
     for (std::size_t k = 0; k < figures.findings.size(); ++k) {
+      if (figures.programs[k] < options.standing) continue;
       Finding finding = figures.findings[k];
       finding.program = programs[figures.programs[k]].file;
       findings.add(std::move(finding));
@@ -294,7 +310,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   else
     result.root_radius_um = job.tool.edge_radius_um;
   result.free_tool_length_mm = check.least_free_tool_mm();
-  result.time = check.time();
+  result.time = check.time() - standing_time;
   result.findings = findings.take();
   return result;
 }

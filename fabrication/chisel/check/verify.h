@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/progress.h"
@@ -19,6 +20,7 @@ namespace retrace::fabrication {
 
 struct VerifyOptions {
   double tolerance_nm = 10.0;  ///< of facet planes; > 0
+  std::size_t standing = 0;    ///< so many of the programs, from the first, are not judged: they made what stands
 };
 
 /// One element that a program leaves.
@@ -59,6 +61,8 @@ struct Verification {
   std::vector<RotaryPose> poses;  ///< of the programs, in the order in which tools came down in them
 
   bool passes() const { return findings.empty(); }
+  /// "pass"; "incomplete" if nothing is wrong but that material is left which later programs can cut; "fail"
+  std::string_view verdict() const;
 };
 
 /// Carries out the programs one after the other, cuts the blank and compares. Nothing of planner or writers is used:

@@ -39,29 +39,43 @@ std::string plain(std::string_view text) {
   return result;
 }
 
+/// Whether a stage is the one of that name, or of the group of that name.
+bool is_named(const Stage& stage, std::string_view name) {
+  return stage.name == name || (name == "roughing" && stage.roughs) ||
+         (name == "finishing" && stage.name.starts_with(name));
+}
+
+[[noreturn]] void refuse_phase(const Plan& plan, const std::string& option, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Stage& stage : plan.stages) names.push_back(stage.name);
+  constexpr std::size_t kMostNamed = 12;
+  if (names.size() > kMostNamed) {
+    names.resize(kMostNamed);
+    names.emplace_back("...");
+  }
+  throw InputError(
+      {"", 0, option},
+      fmt::format("must be {}roughing, finishing or one of {}{}, got {}", option == "--phase" ? "all, " : "",
+                  fmt::join(names, ", "), option == "--phase" ? " (with + for all after it too)" : "", plain(name)));
+}
+
 /// Leaves the stages that were requested. \throw InputError for a phase that the job does not have
 void choose_stages(Plan& plan, const PlanOptions& options) {
+  if (!options.before.empty()) {
+    const auto first = std::find_if(plan.stages.begin(), plan.stages.end(),
+                                    [&](const Stage& stage) { return is_named(stage, options.before); });
+    if (first == plan.stages.end()) refuse_phase(plan, "--standing", options.before);
+    if (first == plan.stages.begin())
+      throw InputError({"", 0, "--standing"}, "must be a stage before which something is cut, got the first");
+    plan.stages.erase(first, plan.stages.end());
+  }
   if (options.phase == "all") return;
   const bool and_after = options.phase.ends_with('+');
   const std::string name = options.phase.substr(0, options.phase.size() - (and_after ? 1 : 0));
   std::vector<Stage> chosen;
-  for (const Stage& stage : plan.stages) {
-    const bool group = (name == "roughing" && stage.roughs) || (name == "finishing" && stage.name.starts_with(name));
-    if ((and_after && !chosen.empty()) || group || stage.name == name) chosen.push_back(stage);
-  }
-  if (chosen.empty()) {
-    std::vector<std::string> names;
-    for (const Stage& stage : plan.stages) names.push_back(stage.name);
-    constexpr std::size_t kMostNamed = 12;
-    if (names.size() > kMostNamed) {
-      names.resize(kMostNamed);
-      names.emplace_back("...");
-    }
-    throw InputError({"", 0, "--phase"},
-                     fmt::format("must be all, roughing, finishing or one of {} (with + for all after "
-                                 "it too), got {}",
-                                 fmt::join(names, ", "), plain(options.phase)));
-  }
+  for (const Stage& stage : plan.stages)
+    if ((and_after && !chosen.empty()) || is_named(stage, name)) chosen.push_back(stage);
+  if (chosen.empty()) refuse_phase(plan, "--phase", options.phase);
   plan.stages = std::move(chosen);
 }
 
@@ -411,8 +425,8 @@ void check_options(const PlanOptions& options, std::size_t elements) {
 void check_process(const Job& job, const Machine& machine, const ProcessFacts& facts) {
   if (facts.is_finished && job.process.finishing_depth_um > job.process.roughing_depth_um)
     throw InputError(job.where("process.finishing_depth_um"),
-                     fmt::format("must be at most roughing_depth_um, {}, got {}", shortest(job.process.roughing_depth_um),
-                                 shortest(job.process.finishing_depth_um)));
+                     fmt::format("must be at most roughing_depth_um, {}, got {}",
+                                 shortest(job.process.roughing_depth_um), shortest(job.process.finishing_depth_um)));
   double most = machine.x.max_feed_mm_per_min.value;
   for (const LinearAxis* const axis : {&machine.y, &machine.z}) most = std::min(most, axis->max_feed_mm_per_min.value);
   const Process& p = job.process;

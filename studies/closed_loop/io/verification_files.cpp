@@ -55,7 +55,7 @@ std::string place_of(const Finding& finding) {
 
 std::string verification_json(const VerificationRun& run, double elapsed_s) {
   const Verification& r = run.result;
-  const Json json = {{"verdict", r.passes() ? "pass" : "fail"},
+  const Json json = {{"verdict", r.verdict()},
                      {"job", run.request.job},
                      {"machine", run.machine.name},
                      {"programs", programs_json(run)},
@@ -92,8 +92,7 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
 
 std::string verification_table(const VerificationRun& run) {
   const Verification& r = run.result;
-  std::string text =
-      fmt::format("{} on machine {}: {}\n", run.request.job, run.machine.name, r.passes() ? "pass" : "fail");
+  std::string text = fmt::format("{} on machine {}: {}\n", run.request.job, run.machine.name, r.verdict());
   const auto row = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<28} {}\n", name, value);
   };
