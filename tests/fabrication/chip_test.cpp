@@ -180,6 +180,30 @@ RC_GTEST_PROP(Chips, RightProgramsOfAnyPrismsPass, ()) {
   RC_ASSERT(v.chip_share_max <= 1.0 + 1e-9);
 }
 
+/// Blanks whose faces are curved or inclined, and stand over the rims of elements in parallel.
+RC_GTEST_PROP(Chips, RightProgramsOnAnyBasePass, ()) {
+  const ElementAxes axes = *rc::gen::element(ElementAxes::normal, ElementAxes::parallel);
+  const double radius_mm = *rc::gen::element(12.0, -12.0, 30.0, -30.0, 200.0);
+  const double incline_deg = 0.1 * *rc::gen::inRange(0, 100);
+  const bool is_plane = *rc::gen::arbitrary<bool>();
+  const bool is_prism = *rc::gen::arbitrary<bool>();
+  const Substrate base = is_plane   ? plane_substrate(incline_deg, is_prism ? 0.0 : 40.0, axes)
+                         : is_prism ? cylinder_substrate(radius_mm, false, axes)
+                                    : sphere_substrate(radius_mm, axes);
+  Job job = is_prism ? prisms_on(base, 2) : cubes_on(base, *rc::gen::arbitrary<bool>());
+  if (is_prism) job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
+  job.process.roughing_depth_um = *rc::gen::element(10.0, 15.0, 30.0);
+  job.process.finishing_depth_um = *rc::gen::element(2.0, 5.0);
+  job.process.finishing_cuts = *rc::gen::inRange(1, 4);
+  const std::string name = is_prism ? *rc::gen::element<std::string>("ideal", "paper") : "ideal-dmc";
+  try {
+    const Verification v = verified(job, machine(name));
+    if (!v.passes()) RC_FAIL(listed(v));
+  } catch (const InputError&) {
+    RC_TAG("refused");
+  }
+}
+
 RC_GTEST_PROP(Chips, RightProgramsOfAnyCubesPass, ()) {
   Job job = cube_job(*rc::gen::arbitrary<bool>(), *rc::gen::element(0.15, 0.2));
   job.array = {};
