@@ -163,6 +163,8 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
       {"\nwidth_mm = 0.451\nwedge", "\nwidth_mm = 0.46\nwedge",
        "tool.width_mm: must be <= 0.451, the element's width, got 0.46"},
       {"wedge_deg = 50", "wedge_deg = 80", "tool.wedge_deg: with clearance_deg must be <= 77.5 for chips"},
+      {"wedge_deg = 50", "wedge_deg = 41",
+       "tool.wedge_deg: with clearance_deg must be >= 45, half the apex angle, or a fin of 2 degrees"},
       {"side_clearance_deg = 2", "side_clearance_deg = 25", "tool.side_clearance_deg: must be > 0 and <= 20, got 25"},
       {"\nwidth_mm = 0.451\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 2",
        "\nwidth_mm = 0.1\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 9",
