@@ -380,7 +380,7 @@ TEST_F(ChiselingFaults, ElementDroppedFromALayer) {
   EXPECT_EQ(kinds(without_line(text_, "o104 call")), "chip_too_thick") << "by the next layer";
   const std::size_t last = text_.rfind(" call");
   const std::string found = kinds(without_line(text_, " call", last));
-  EXPECT_NE(found.find("chip_not_separated"), std::string::npos) << found;
+  EXPECT_NE(found.find("layer_unfinished"), std::string::npos) << found;
 }
 
 TEST_F(ChiselingFaults, ElementDroppedAltogether) {

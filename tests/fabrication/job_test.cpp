@@ -132,6 +132,8 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   job.workpiece.kind = *rc::gen::element(WorkpieceKind::mould, WorkpieceKind::direct);
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
   job.tool.width_mm = real(0.1, 0.451);
+  // No fin stays between plunges, and chips have their room.
+  job.tool.wedge_deg = std::max(50.0, 0.5 * prism_of(job).apex_angle_deg);
   job.tool.edge_radius_um = real(0.0, 5.0);
   job.tool.side_clearance_deg = real(0.1, 1.0);
   if (*rc::gen::arbitrary<bool>()) job.tool.edge_chips = {{real(-20.0, 0.0), 3.0, real(0.1, 1.5)}, {20.0, 5.0, 0.25}};

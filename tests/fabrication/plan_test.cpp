@@ -281,7 +281,8 @@ TEST(Order, TravelBetweenElementsIsShort) {
   const Machine m = machine("ideal");
   for (const Arrangement arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
     const Job job = square_job(20, arrangement);
-    const Plan plan = make_plan(job, m, {.phase = "roughing", .from_element = {}, .stop_every = {}, .split_hours = {}});
+    const Plan plan =
+        make_plan(job, m, {.phase = "roughing", .from_element = {}, .stop_every = {}, .split_hours = {}, .before = {}});
     double travel_mm = 0.0;
     int lines = 0;
     std::optional<geometry::Vec2> last;
