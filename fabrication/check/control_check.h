@@ -1,10 +1,17 @@
 #pragma once
 
-// What every process asks of a program, whatever it cuts: modal settings, spindle, feeds, and axes within their limits.
+// What every process asks of a program, whatever it cuts: what it must say before it moves, how it must begin, modal
+// settings at every cut, spindle, mist, feeds, and axes within their limits.
+
+#include <cstdint>
+#include <limits>
+#include <set>
+#include <string>
 
 #include "fabrication/check/findings.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_motion.h"
+#include "fabrication/read/nc_program.h"
 
 namespace retrace::fabrication {
 
@@ -16,30 +23,48 @@ struct SpindleRule {
   bool is_by_text() const { return turns == NcSpindle::started_by_text; }
 };
 
-/// Follows programs and adds what it finds to a list.
+/// What a process asks of the control.
+struct ControlRule {
+  SpindleRule spindle;
+  bool needs_mist = false;    ///< while it cuts
+  bool may_blend = false;     ///< blocks need no exact stop
+  std::uint8_t axes = 0b111;  ///< bit i: axis i of kNcAxisLetters must be known before the tool comes down
+  /// Z, alone, goes there or higher first, and no lower before all those axes are known.
+  double safe_z_mm = -std::numeric_limits<double>::infinity();
+};
+
+/// Follows programs and adds what it finds to a list. What is wrong with a modal setting is found once, and again if it
+/// was mended in between.
 class ControlCheck {
  public:
-  ControlCheck(FindingList& findings, const SpindleRule& spindle) : findings_(findings), spindle_(spindle) {}
+  ControlCheck(FindingList& findings, const ControlRule& rule, const Control& control = {})
+      : findings_(findings), rule_(rule), control_(control) {}
 
   /// A program begins.
-  void begin();
-  /// Settings that a program must make itself, looked at once, when the tool first cuts.
-  void settings(const NcSettings& settings, const NcPlace& place);
-  /// Of a spindle that turns, at every cutting move; the first fault of a program stands for all that follow.
-  void spindle(const NcSettings& settings, const NcPlace& place);
+  void begin(NcDialect dialect);
+  /// Of every move: before the first one, what the program must say itself; Z first, and alone.
+  void way(const NcSettings& settings, const NcMotion& motion);
+  /// Of every move in the material: exact stops, spindle, mist.
+  void cut(const NcSettings& settings, const NcPlace& place);
   void spindle_at_end(const NcEnd& end);
-  /// That the machine has the axes that move, and that they stay within their limits.
+  /// That the machine has the axes that move, that they stay within their limits and are not fed faster than they go.
   void axes(const Machine& machine, const NcMotion& motion);
   /// Of a cutting move. \param most_mm_per_min that the process allows; 0: only that there is one
   void feed(const NcMotion& motion, double most_mm_per_min);
 
  private:
-  void find_spindle(std::int32_t line, const std::string& message, double rpm);
+  void first_move(const NcSettings& settings, const NcMotion& motion);
+  bool is_within_turn(const LimitExcess& excess) const;
+  void axis_speeds(const Machine& machine, const NcMotion& motion);
+  void spindle(const NcSettings& settings, const NcPlace& place);
+  /// A modal setting: a finding where it becomes wrong. \return whether it has just become so
+  bool turns_wrong(const char* kind, bool holds);
 
   FindingList& findings_;
-  SpindleRule spindle_;
-  bool settings_are_checked_ = false;
-  bool has_spindle_fault_ = false;
+  ControlRule rule_;
+  Control control_;
+  NcDialect dialect_ = NcDialect::rs274ngc;
+  std::set<std::string> wrong_;  ///< kinds of settings that are wrong now
 };
 
 }  // namespace retrace::fabrication

@@ -14,6 +14,9 @@ struct ProgramTime {
   double rotary_s = 0.0;
   double dwell_s = 0.0;
   double total_s() const { return feed_s + rapid_s + rotary_s + dwell_s; }
+  ProgramTime operator-(const ProgramTime& other) const {
+    return {feed_s - other.feed_s, rapid_s - other.rapid_s, rotary_s - other.rotary_s, dwell_s - other.dwell_s};
+  }
 
   /// Adds a move. Ways of linear axes whose position is not known yet count nothing; rotary axes start at 0.
   void add(const Machine& machine, const NcMotion& motion);

@@ -14,9 +14,13 @@ double blank_scale(const Workpiece& workpiece) {
   return 1.0 + 0.01 * workpiece.shrinkage_percent;
 }
 
+InputLocation Job::where(std::string_view key) const {
+  return document ? document->where(key) : InputLocation{source, 0, std::string(key)};
+}
+
 const geometry::RtpElement& prism_of(const Job& job) {
   const auto* const prism = std::get_if<geometry::RtpElement>(&job.element);
-  if (prism == nullptr) throw InputError({job.source, 0, "element.kind"}, "must be \"rtp\" for this");
+  if (prism == nullptr) throw InputError(job.where("element.kind"), "must be \"rtp\" for this");
   return *prism;
 }
 

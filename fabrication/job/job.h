@@ -4,11 +4,14 @@
 // elements that a job cuts.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/error.h"
+#include "core/schema/document.h"
 #include "geometry/elements/part_spec.h"
 #include "geometry/vec.h"
 
@@ -76,6 +79,7 @@ struct Process {
   bool shortest_plough = false;  ///< plough only until the chip is free instead of plough_length_mm (thesis 4.4)
   double plough_lift_um = 0.0;   ///< by which the tool leaves the facet once the chip is free; 0: it does not
   double slow_retract_um = 0.0;  ///< of bidirectional cuts: this much straight up at cutting feed first (thesis 4.4)
+  bool mist = true;              ///< while the tool cuts, to keep chips off and the edge cool
   double rotary_clearance_mm = 5.0;  ///< above all that the turning blank can reach, before a rotary move
   /// Areal roughness Sa that the motions leave on facets. Milliken 2017 and Hamilton et al. 2017, as measured.
   double plough_sa_nm = 468.0;
@@ -99,6 +103,10 @@ struct Job {
   Strategy strategy = Strategy::two_step;
   Process process;
   std::vector<std::string> notes;  ///< remarks from when the job was made, such as on what it leaves out
+  std::shared_ptr<const schema::Document> document;  ///< what the file says; none of a job that was made
+
+  /// Where a key was given, or would be missed.
+  InputLocation where(std::string_view key) const;
 };
 
 /// One element that is cut. In the workpiece frame: x_w = y_part, y_w = -x_part, origin at the centre of the extent on

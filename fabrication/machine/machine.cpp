@@ -155,4 +155,14 @@ std::vector<LimitExcess> limit_excesses(const Machine& machine, const AxisPositi
   return excesses;
 }
 
+Increments increments_of(IncrementSystem system) {
+  switch (system) {
+    case IncrementSystem::b: return {1000, 10000};
+    case IncrementSystem::c: return {100, 1000};
+    case IncrementSystem::d: return {10, 100};
+    case IncrementSystem::e: break;
+  }
+  return {1, 10};
+}
+
 }  // namespace retrace::fabrication

@@ -3,6 +3,7 @@
 // The kinematics of five-axis machines whose table or head tilts: axes with limits and speeds, forward and inverse
 // transformation, and poses that bring a facet to the tool.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "core/angle.h"
+#include "fabrication/machine/control.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication {
@@ -100,6 +102,13 @@ struct Machine {
   RotaryAxis a;  ///< the axis that tilts: A, or B of a head, whose point is told from the tool reference point at B = 0
   RotaryAxis c;
   std::vector<MachineBody> bodies;
+  /// Least Z to which the first move of a program goes, away from the part wherever the other axes stand; above the
+  /// limit of Z: that limit.
+  Sourced<double> safe_z_mm = {1e9, Basis::assumed, "the upper limit of Z, as for every machine that names none"};
+  Control control;
+  Increments increments;  ///< to which positions are rounded when programs are planned
+
+  double first_z_mm() const { return std::min(safe_z_mm.value, z.limits_mm.value.high); }
 
   /// Letter of the axis that tilts.
   char tilt_letter() const { return tilt == Tilt::table ? 'A' : 'B'; }

@@ -6,56 +6,71 @@ namespace retrace::fabrication {
 namespace {
 
 /// RS274/NGC as LinuxCNC's interpreter reads it (T. Kramer et al., NISTIR 6556, 2000; LinuxCNC's o-word subroutines).
-constexpr DialectWords kRs274ngc = {.dialect = {"rs274ngc", ".ngc", "RS274/NGC as LinuxCNC reads it: the reference"},
-                                    .subroutines_first = true,
-                                    .file_ends = "%\n",
-                                    .main_begin = "",
-                                    .main_end = "M2\n",
-                                    .prepare = "G17 G21 G40 G49 G80 G90 G94\nG54 G61 G92.1\nM5\n",
-                                    .spindle_start = "G97 S{0} {1}\n",  // S is no cutting speed
-                                    .spindle_stop = "M5\n",
-                                    .comment = "({})\n",
-                                    .message = "(MSG, {})\n",
-                                    .subroutine_begin = "({1})\no{0} sub\nG91\n",
-                                    .subroutine_end = "G90\no{0} endsub\n",
-                                    .call = "o{} call\n",
-                                    .rapid = "G0",
-                                    .linear = "G1",
-                                    .dwell = "G4 P{0:.3f}\n",
-                                    .path_begin = "G64\nG93\n",
-                                    .path_time = " F{0:.6f}",
-                                    .path_end = "G94\nG61\n"};
+constexpr DialectWords kRs274ngc = {
+    .dialect = {"rs274ngc", ".ngc", "RS274/NGC as LinuxCNC reads it: the reference"},
+    .subroutines_first = true,
+    .file_ends = "%\n",
+    .main_begin = "",
+    .main_end = "M2\n",
+    .needs =
+        "Needs: G54 without rotation (R of G10 L2), axes without kinematics of the control,\n"
+        "X as a radius (G8), axes A to C in degrees without wrapping",
+    .prepare = "G17 G21 G40 G49 G80 G90 G94\nG54 G61.1 G92.1\nM5\n",
+    .spindle_start = "G97 S{0} {1}\n",  // S is no cutting speed
+    .spindle_stop = "M5\n",
+    .comment = "({})\n",
+    .message = "(MSG, {})\n",
+    .subroutine_begin = "({1})\no{0} sub\nG91\n",
+    .subroutine_end = "G90\no{0} endsub\n",
+    .call = "o{} call\n",
+    .rapid = "G0",
+    .linear = "G1",
+    .dwell = "G4 P{0:.3f}\n",
+    // Without Q blocks are merged as far as P allows.
+    .path_begin = "G64 P{0:.6f} Q0.000000\nG93\n",
+    .path_time = " F{0:.6f}",
+    .path_end = "G94\nG61.1\n"};
 
 /// Siemens Sinumerik 840D (programming manuals Fundamentals and Job Planning). Routines are sections of the main
-/// program behind its end, called by CALL BLOCK, so that one file runs alone.
+/// program behind its end, carried out by REPEAT, so that one file runs alone. On modulo axes absolute words go the way
+/// that their sign says unless DC tells to go the shortest (MD30455), and negative ones are alarm 16830.
 constexpr DialectWords kSinumerik = {.dialect = {"sinumerik", ".mpf", "Siemens Sinumerik 840D"},
                                      .subroutines_first = false,
                                      .file_ends = "",
                                      .main_begin = "",
                                      .main_end = "M30\n",
-                                     .prepare = "TRAFOOF\nTRANS\nG17 G710 G40 G90 G94\nG54 G60 D0\nM5\n",
+                                     .needs =
+                                         "Needs: DRF, the basic frame and G500 at zero, for they stay under G54,\n"
+                                         "X as a radius (DIAMOF), rotary axes as modulo axes where words are DC or IC",
+                                     .prepare = "TRAFOOF\nTRANS\nG17 G710 G40 G90 G94\nG54 G60 G601 D0\nM5\n",
                                      .spindle_start = "S{0} {1}\n",
                                      .spindle_stop = "M5\n",
                                      .comment = "; {}\n",
                                      .message = "MSG(\"{}\")\n",
                                      .subroutine_begin = "; {1}\nRT{0}:\nG91\n",
                                      .subroutine_end = "G90\nRE{0}:\n",
-                                     .call = "CALL BLOCK RT{0} TO RE{0}\n",
+                                     .call = "REPEAT RT{0} RE{0}\n",
                                      .rapid = "G0",
                                      .linear = "G1",
                                      .dwell = "G4 F{0:.3f}\n",
                                      .path_begin = "G64\nG93\n",
                                      .path_time = " F{0:.6f}",
-                                     .path_end = "G94\nG60\n"};
+                                     .path_end = "G94\nG60\n",
+                                     .shortest = " {0}=DC({1})",
+                                     .increment = " {0}=IC({1})"};
 
-/// Fanuc 30i (operator's manual B-63944). Six decimals ask for increment system IS-E or a setting as fine. Messages are
-/// comments: #3006 would stop the machine. Program numbers have four digits.
+/// Fanuc 30i (operator's manual B-63944). The machine's file says how many decimals words have. Messages are comments:
+/// #3006 would stop the machine. Program numbers have four digits. C of a path may turn further than words reach, so
+/// that paths are incremental: differences of rounded positions, which do not drift.
 constexpr DialectWords kFanuc = {.dialect = {"fanuc", ".nc", "Fanuc, 30i series"},
                                  .subroutines_first = false,
                                  .file_ends = "%\n",
                                  .main_begin = "O0001\n",
                                  .main_end = "M30\n",
-                                 .prepare = "G17 G21 G40 G49 G80 G90 G94\nG54 G61 G69\nM5\n",
+                                 .needs =
+                                     "Needs: increment system IS-{1}, X as a radius (1006#3), the external work zero "
+                                     "offset at zero",
+                                 .prepare = "G17 G21 G40 G49 G80 G90 G94\nG54 G61{2}\nM5\n",
                                  .spindle_start = "G97 S{0} {1}\n",
                                  .spindle_stop = "M5\n",
                                  .comment = "({})\n",
@@ -66,21 +81,23 @@ constexpr DialectWords kFanuc = {.dialect = {"fanuc", ".nc", "Fanuc, 30i series"
                                  .rapid = "G0",
                                  .linear = "G1",
                                  .dwell = "G4 P{1}\n",
-                                 .path_begin = "G64\nG93\n",
+                                 .path_begin = "G64\nG93\nG91\n",
                                  .path_time = " F{0:.6f}",
-                                 .path_end = "G94\nG61\n"};
+                                 .path_end = "G90\nG94\nG61\n",
+                                 .has_increment_systems = true,
+                                 .has_incremental_paths = true};
 
 /// Power PMAC script (Power PMAC user's and software reference manuals): no G codes, an explicit prelude, dwells in ms.
-/// Coordinate system 1 is to have the axes X, Y, Z in mm and A, C in degrees. M codes are subprograms of the
-/// integrator's, and one that is missing is skipped without a word: what starts and stops a spindle is told from
-/// outside.
+/// M codes are subprograms of the integrator's, and one that is missing is skipped without a word: what starts a
+/// spindle or mist is told from outside.
 constexpr DialectWords kPmac = {
     .dialect = {"pmac", ".pmc", "Omron (Delta Tau) Power PMAC"},
     .subroutines_first = true,
     .file_ends = "",
     .main_begin = "open prog 1\n",
     .main_end = "close\n",
-    .prepare = "Coord[1].FeedTime=60000\nCoord[1].NoBlend=1\nCoord[1].SegMoveTime=0\nfrax(X,Y,Z)\nccmode0\nabs\nM5\n",
+    .needs = "Needs: coordinate system {0} with X, Y, Z in mm and A, B, C in degrees, the spindle stopped",
+    .prepare = "Coord[{0}].FeedTime=60000\nCoord[{0}].NoBlend=1\nCoord[{0}].SegMoveTime=0\nfrax(X,Y,Z)\nccmode0\nabs\n",
     .spindle_start = "{2}\n",
     .spindle_stop = "{}\n",
     .comment = "// {}\n",
@@ -91,9 +108,13 @@ constexpr DialectWords kPmac = {
     .rapid = "rapid",
     .linear = "linear",
     .dwell = "dwell {1}\n",
-    .path_begin = "Coord[1].NoBlend=0\nta0 ts0\n",
+    .path_begin = "Coord[{1}].NoBlend=0\nta0 ts0\n",
     .path_time = " tm{1:.6f}",
-    .path_end = "Coord[1].NoBlend=1\n"};
+    .path_end = "Coord[{0}].NoBlend=1\n",
+    .mist_on = "{0}\n",
+    .mist_off = "{0}\n",
+    .optional_stop = "{0}\n",
+    .has_own_texts = true};
 
 constexpr std::array kDialects = {kRs274ngc, kSinumerik, kFanuc, kPmac};
 

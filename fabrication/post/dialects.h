@@ -10,15 +10,17 @@
 namespace retrace::fabrication {
 
 /// The words of a dialect. Texts are whole lines, with their ends; those with {} are formats (fmt) of what is named
-/// behind them, counted from {0}.
+/// behind them, counted from {0}; "control" stands for {0} its coordinate system, {1} the letter of its increment
+/// system, {2} the codes that it needs beyond those of all.
 struct DialectWords {
   Dialect dialect;
   bool subroutines_first = false;     ///< before the main part, or after it
   std::string_view file_ends;         ///< first and last line of the file
   std::string_view main_begin;        ///< what precedes the first line of the main part
   std::string_view main_end;          ///< what follows its last one
+  std::string_view needs;             ///< what must hold that no program can say: lines for people; control
   std::string_view prepare;           ///< plane, mm, absolute words, feed per minute, compensations and blending off,
-                                      ///< exact stop, first zero offset, spindle off
+                                      ///< exact stop, first zero offset, spindle off; control
   std::string_view spindle_start;     ///< turns per minute; M3 or M4; the program's own text
   std::string_view spindle_stop;      ///< the program's own text
   std::string_view comment;           ///< text
@@ -29,9 +31,17 @@ struct DialectWords {
   std::string_view rapid;             ///< word before those of the axes
   std::string_view linear;
   std::string_view dwell;       ///< seconds; milliseconds
-  std::string_view path_begin;  ///< a path without stops, its moves timed
+  std::string_view path_begin;  ///< a path without stops, its moves timed; mm that it may be left by; control
   std::string_view path_time;   ///< moves like this in a minute; milliseconds
-  std::string_view path_end;    ///< exact stop and feeds per minute again
+  std::string_view path_end;    ///< exact stop and feeds per minute again; control
+  std::string_view mist_on = "M7\n";
+  std::string_view mist_off = "M9\n";
+  std::string_view optional_stop = "M1\n";
+  std::string_view shortest = {};   ///< of a modulo axis: letter; degrees within a turn
+  std::string_view increment = {};  ///< of a modulo axis within a path: letter; degrees
+  bool has_own_texts = false;       ///< mist and stops are lines of the machine's file
+  bool has_increment_systems = false;
+  bool has_incremental_paths = false;  ///< all words of a path are increments
 };
 
 /// All dialects, the reference first.

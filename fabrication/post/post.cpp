@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -18,6 +19,7 @@ class FileWriter {
  public:
   FileWriter(const DialectWords& dialect, const Program& program) : dialect_(dialect), program_(program) {
     for (const Subroutine& subroutine : program.subroutines) reach_.push_back(reach_of(subroutine).end);
+    increments_ = word_increments(dialect.dialect.name, program.control);
   }
 
   std::string run() {
@@ -30,7 +32,7 @@ class FileWriter {
       text_ += dialect_.main_begin;
       header();
     }
-    text_ += dialect_.prepare;
+    add_for_control(dialect_.prepare);
     if (const auto& spindle = program_.spindle)
       add(dialect_.spindle_start, spindle->rpm, spindle->is_clockwise ? "M3" : "M4", spindle->start_text);
     for (const Item& item : program_.items) std::visit(*this, item);
@@ -48,7 +50,7 @@ class FileWriter {
     // Mist off during an optional stop: chips stay where they fell, for inspection.
     const bool had_mist = mist_on_;
     mist(false);
-    text_ += "M1\n";
+    add(dialect_.optional_stop, program_.control.optional_stop);
     mist(had_mist);
   }
   void operator()(const Move& move) {
@@ -59,12 +61,14 @@ class FileWriter {
     go_to(at_, move.to);
   }
   void operator()(const Path& path) {
-    text_ += dialect_.path_begin;
+    add(dialect_.path_begin, path.blend_mm, program_.control.coordinate_system);
+    is_in_path_ = true;
     for (const Move& move : path.moves) {
       write(move);
       go_to(at_, move.to);
     }
-    text_ += dialect_.path_end;
+    is_in_path_ = false;
+    add_for_control(dialect_.path_end);
   }
   void operator()(const Visit& visit) {
     add(dialect_.comment, fmt::format("element {}", visit.element));
@@ -81,17 +85,35 @@ class FileWriter {
     fmt::format_to(std::back_inserter(text_), fmt::runtime(format), values...);
   }
 
+  std::string for_control(std::string_view format) const {
+    const Control& control = program_.control;
+    const std::string codes =
+        std::string(control.has_rotation ? " G69" : "") + (control.has_mirror ? "\nG50.1 X0. Y0. Z0." : "");
+    return fmt::format(fmt::runtime(format), control.coordinate_system,
+                       kIncrementSystemWords[static_cast<std::size_t>(control.increment_system)], codes);
+  }
+
+  void add_for_control(std::string_view format) { text_ += for_control(format); }
+
   void header() {
     for (const std::string& line : program_.header) add(dialect_.comment, line);
+    const std::string needs = for_control(dialect_.needs);
+    for (std::size_t begin = 0; begin < needs.size();) {
+      const std::size_t end = std::min(needs.find('\n', begin), needs.size());
+      add(dialect_.comment, in_comment(needs.substr(begin, end - begin)));
+      begin = end + 1;
+    }
   }
 
   void mist(bool on) {
-    if (on == mist_on_ || !program_.has_mist) return;
-    text_ += on ? "M7\n" : "M9\n";
+    const bool has_words = !dialect_.has_own_texts || !program_.control.mist_on.empty();
+    if (on == mist_on_ || !program_.has_mist || !has_words) return;
+    add(on ? dialect_.mist_on : dialect_.mist_off, on ? program_.control.mist_on : program_.control.mist_off);
     mist_on_ = on;
   }
 
   void subroutines() {
+    is_in_subroutine_ = true;
     for (const Subroutine& subroutine : program_.subroutines) {
       add(dialect_.subroutine_begin, subroutine.number, subroutine.title);
       for (const Step& step : subroutine.steps)
@@ -101,13 +123,21 @@ class FileWriter {
           write(std::get<Move>(step));
       add(dialect_.subroutine_end, subroutine.number);
     }
+    is_in_subroutine_ = false;
+  }
+
+  /// Comments of RS274/NGC and Fanuc end at their first bracket.
+  static std::string in_comment(std::string text) {
+    std::replace(text.begin(), text.end(), '(', '[');
+    std::replace(text.begin(), text.end(), ')', ']');
+    return text;
   }
 
   void write(const Move& move) {
     text_ += move.motion == Motion::rapid ? dialect_.rapid : dialect_.linear;
     const std::array letters = {'X', 'Y', 'Z', program_.tilt_letter, 'C'};
     for (std::size_t axis = 0; axis < kAxes; ++axis)
-      if (move.to[axis]) word(letters[axis], *move.to[axis], axis < kTilt ? 6 : 7);
+      if (move.to[axis]) word(axis, letters[axis], *move.to[axis]);
     if (move.seconds > 0.0)
       add(dialect_.path_time, 60.0 / move.seconds, 1e3 * move.seconds);
     else if (move.motion != Motion::rapid)
@@ -115,19 +145,74 @@ class FileWriter {
     text_ += '\n';
   }
 
-  /// " X1.000000": six decimals of a mm, seven of a degree.
-  void word(char letter, std::int64_t value, int decimals) {
-    std::uint64_t unit = 1;
-    for (int k = 0; k < decimals; ++k) unit *= 10;
-    const auto bits = static_cast<std::uint64_t>(value);
-    const std::uint64_t size = value < 0 ? 0 - bits : bits;
-    fmt::format_to(std::back_inserter(text_), " {}{}{}.{:0{}}", letter, value < 0 ? "-" : "", size / unit, size % unit,
-                   decimals);
+  /// A word of an axis, in one of the ways that the dialect has.
+  void word(std::size_t axis, char letter, std::int64_t value) {
+    const bool is_rotary = axis >= kTilt;
+    const std::int64_t step = is_rotary ? increments_.rotary_units : increments_.linear_nm;
+    const int decimals = (is_rotary ? 7 : 6) - digits_of(step);
+    const std::int64_t steps = rounded(value, step);
+    const bool is_modulo = is_rotary && program_.control.modulo_axes.find(letter) != std::string::npos;
+    const std::int64_t increment = steps - rounded(at_[axis].value_or(0), step);
+    if (is_in_path_ && dialect_.has_incremental_paths)
+      plain_word(letter, increment, decimals);
+    else if (is_in_path_ && is_modulo && !dialect_.increment.empty())
+      add(dialect_.increment, letter, number(increment, decimals));
+    else if (is_modulo && !is_in_subroutine_ && !dialect_.shortest.empty())
+      add(dialect_.shortest, letter, number(within_turn(steps, decimals), decimals));
+    else
+      plain_word(letter, steps, decimals);
+  }
+
+  void plain_word(char letter, std::int64_t steps, int decimals) {
+    constexpr std::int64_t kMostSteps = 999'999'999;
+    if (dialect_.has_increment_systems && (steps > kMostSteps || steps < -kMostSteps))
+      refuse(fmt::format("{}{}", letter, number(steps, decimals)));
+    fmt::format_to(std::back_inserter(text_), " {}{}", letter, number(steps, decimals));
+  }
+
+  /// "-1.000000"
+  static std::string number(std::int64_t steps, int decimals) {
+    const std::uint64_t unit = power_of_ten(decimals);
+    const auto bits = static_cast<std::uint64_t>(steps);
+    const std::uint64_t size = steps < 0 ? 0 - bits : bits;
+    return fmt::format("{}{}.{:0{}}", steps < 0 ? "-" : "", size / unit, size % unit, decimals);
+  }
+
+  static std::uint64_t power_of_ten(int exponent) {
+    std::uint64_t power = 1;
+    for (int k = 0; k < exponent; ++k) power *= 10;
+    return power;
+  }
+  static int digits_of(std::int64_t step) {
+    int digits = 0;
+    for (; step >= 10; step /= 10) ++digits;
+    return digits;
+  }
+  static std::int64_t rounded(std::int64_t value, std::int64_t step) {
+    return step == 1 ? value : to_step(static_cast<double>(value), step) / step;
+  }
+  static std::int64_t within_turn(std::int64_t steps, int decimals) {
+    const auto turn = static_cast<std::int64_t>(360 * power_of_ten(decimals));
+    return (steps % turn + turn) % turn;
+  }
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw InputError(
+        {"", 0, "--dialect"},
+        fmt::format("{} cannot say {} in increment system IS-{}, which has nine digits", dialect_.dialect.name, what,
+                    kIncrementSystemWords[static_cast<std::size_t>(program_.control.increment_system)]));
   }
 
   void feed(double mm_per_min) {
     const long long thousandths = std::llround(mm_per_min * 1e3);
+    if (dialect_.has_increment_systems && thousandths > most_feed_thousandths())
+      refuse(fmt::format("F{}.{:03}", thousandths / 1000, thousandths % 1000));
     fmt::format_to(std::back_inserter(text_), " F{}.{:03}", thousandths / 1000, thousandths % 1000);
+  }
+  /// Greatest feeds of IS-B to IS-E (parameter 1422).
+  long long most_feed_thousandths() const {
+    constexpr std::array kMost = {999'000'000, 99'999'900, 9'999'990, 999'999};
+    return kMost[static_cast<std::size_t>(program_.control.increment_system)];
   }
 
   const DialectWords& dialect_;
@@ -136,6 +221,9 @@ class FileWriter {
   std::string text_;
   Words at_{};
   bool mist_on_ = false;
+  bool is_in_path_ = false;
+  bool is_in_subroutine_ = false;
+  Increments increments_;
 };
 
 const DialectWords& words_of(std::string_view dialect) {
@@ -158,8 +246,30 @@ std::span<const Dialect> dialects() {
   return all;
 }
 
+void check_words(const Program& program, std::string_view dialect) {
+  const DialectWords& words = words_of(dialect);
+  if (!words.has_own_texts) return;
+  const auto need = [&](const std::string& text, std::string_view key, std::string_view otherwise) {
+    if (text.empty())
+      throw InputError({"", 0, "--dialect"},
+                       fmt::format("{} has no words of its own for it: the machine file must give "
+                                   "control.{}, or {}",
+                                   dialect, key, otherwise));
+  };
+  if (program.needs_mist) need(program.control.mist_on, "mist_on", "the job say process.mist = false");
+  if (program.needs_mist) need(program.control.mist_off, "mist_off", "the job say process.mist = false");
+  for (const Item& item : program.items)
+    if (std::holds_alternative<OptionalStop>(item))
+      need(program.control.optional_stop, "optional_stop", "--stop-every be left out");
+}
+
 std::string nc_text(const Program& program, std::string_view dialect) {
+  check_words(program, dialect);
   return FileWriter(words_of(dialect), program).run();
+}
+
+Increments word_increments(std::string_view dialect, const Control& control) {
+  return words_of(dialect).has_increment_systems ? increments_of(control.increment_system) : Increments{};
 }
 
 std::string_view ending_of(std::string_view dialect) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "fabrication/machine/control.h"
 #include "fabrication/program/program.h"
 
 namespace retrace::fabrication {
@@ -24,6 +25,13 @@ std::span<const Dialect> dialects();
 /// \pre a spindle has its texts where the dialect has no words for it
 /// \throw InputError for a dialect that is not known
 std::string nc_text(const Program& program, std::string_view dialect);
+
+/// That the control has words for all that the program says. \throw InputError naming the key of the machine file
+void check_words(const Program& program, std::string_view dialect);
+
+/// To what a control takes words in that dialect: positions are best rounded to it before others are solved.
+/// \throw InputError likewise
+Increments word_increments(std::string_view dialect, const Control& control);
 
 /// The ending of a dialect's files. \throw InputError likewise
 std::string_view ending_of(std::string_view dialect);

@@ -3,6 +3,7 @@
 // A program between planner and writers, free of any dialect: what is done in which order, in whole units.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "fabrication/machine/control.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication {
@@ -30,6 +32,10 @@ inline double degrees(RotaryUnits units) {
   return static_cast<double>(units) / kRotaryUnitsPerDeg;
 }
 RotaryUnits rotary_units(double deg);
+/// The nearest whole multiple of a step.
+inline std::int64_t to_step(double units, std::int64_t step) {
+  return std::llround(units / static_cast<double>(step)) * step;
+}
 
 /// X, Y and Z in whole nanometres.
 using Place = Eigen::Matrix<Nanometres, 3, 1>;
@@ -98,9 +104,10 @@ struct Visit {
   std::uint32_t subroutine = 0;  ///< index in Program::subroutines
   Place start = Place::Zero();
 };
-/// Timed moves that follow each other without stopping.
+/// Timed moves that follow each other without stopping. They begin where the axes are.
 struct Path {
   std::vector<Move> moves;
+  double blend_mm = 1e-4;  ///< by which a control may leave the path where moves meet, if it can be told
 };
 /// The operator may stop here.
 struct OptionalStop {};
@@ -121,10 +128,12 @@ struct Program {
   std::string name;  ///< of the file, without its ending
   std::vector<std::string> header;
   std::optional<Spindle> spindle;  ///< turns from before the first item to behind the last; nothing: stands still
-  bool has_mist = true;            ///< from the first cut to the next rapid move of Z alone
+  bool has_mist = true;            ///< from the first cut to the next rapid move of Z alone, if the control has words
+  bool needs_mist = false;         ///< it must have them
   std::vector<Subroutine> subroutines;
   std::vector<Item> items;
   char tilt_letter = 'A';  ///< of the axis that tilts
+  Control control;
 };
 
 /// The rapid moves that bring the tool to the start of a visit: Z alone first where it rises, last where it falls.

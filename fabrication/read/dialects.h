@@ -13,18 +13,18 @@ namespace retrace::fabrication {
 
 /// NIST RS274NGC as LinuxCNC has it: `o101 sub` ... `o101 endsub`, `o101 call`.
 /// (Kramer, Proctor, Messina: The NIST RS274NGC Interpreter, NISTIR 6556, 2000; LinuxCNC G-code reference)
-NcProgram parse_rs274ngc(NcLines lines, const NcSpindleTexts&);
+NcProgram parse_rs274ngc(NcLines lines, const NcTexts&);
 
 /// Siemens Sinumerik 840D: labels with CALL BLOCK ... TO ..., MSG, TRAFOOF. (Programming Manual Fundamentals)
-NcProgram parse_sinumerik(NcLines lines, const NcSpindleTexts&);
+NcProgram parse_sinumerik(NcLines lines, const NcTexts&);
 
 /// Fanuc series 30i: O numbers, M98 P, M99. Axis words need a decimal point: without one they are least increments,
 /// whose size the text does not tell. (Operator's Manual B-63944)
-NcProgram parse_fanuc(NcLines lines, const NcSpindleTexts&);
+NcProgram parse_fanuc(NcLines lines, const NcTexts&);
 
 /// Omron/Delta Tau Power PMAC: open prog ... close, rapid, linear, abs, inc, dwell in ms, call.
 /// (Power PMAC User's Manual; Software Reference)
-NcProgram parse_pmac(NcLines lines, const NcSpindleTexts& spindle);
+NcProgram parse_pmac(NcLines lines, const NcTexts& texts);
 
 /// What a text that stopped in the middle of its last line leaves: the error that this gave, as a remark.
 /// Runs `read`, and turns an InputError in an open last line into NcProgram::truncated.

@@ -19,12 +19,13 @@ constexpr NcCode kFanucCodes[] = {
     {19, 2, kNone},
     {20, 6, kInch},
     {21, 6, kMillimetre},
-    {40, 7, kCompensationOff},
-    {49, 8, kCompensationOff},
-    {54, 14, kWorkpieceOffset},
+    {40, 7, kSays<nc_said::kRadiusOff>},
+    {49, 8, kSays<nc_said::kLengthOff>},
+    {54, 14, kSays<nc_said::kWorkOffset>},
     {61, 15, kExactStop},
     {64, 15, kBlending},
-    {69, 16, kNone},  // turned coordinates cancelled
+    {50.1, 18, kSays<nc_said::kMirrorOff>},
+    {69, 16, kSays<nc_said::kRotationOff>},
     {80, 9, kNone},
     {90, 3, kAbsolute},
     {91, 3, kIncremental},
@@ -33,13 +34,14 @@ constexpr NcCode kFanucCodes[] = {
     {97, 17, kNone},  // S counts turns per minute
 };
 
-/// The line without its comments ( ... ).
-std::string without_comments(std::string_view line, const NcLines& lines) {
+/// The line with a mark for each of its comments ( ... ).
+std::string with_marked_comments(std::string_view line, const NcLines& lines) {
   std::string result;
   while (!line.empty()) {
     const std::size_t open = line.find('(');
     result += line.substr(0, open);
     if (open == std::string_view::npos) break;
+    result += kNcCommentMark;
     const std::size_t close = line.find(')', open);
     if (close == std::string_view::npos) lines.fail("has a comment that does not end");
     line.remove_prefix(close + 1);
@@ -66,7 +68,7 @@ class FanucReader {
   NcProgram run() {
     std::string_view line;
     while (percent_signs_ < 2 && lines_.next(line))
-      read_line_that_may_be_cut(lines_, program_, [&] { read(without_comments(line, lines_)); });
+      read_line_that_may_be_cut(lines_, program_, [&] { read(with_marked_comments(line, lines_)); });
     program_.lines = lines_.number();
     close_part();
     if (table_.is_open() && !program_.truncated) program_.truncated = "a subprogram has no M99";
@@ -76,6 +78,7 @@ class FanucReader {
 
  private:
   void read(std::string_view text) {
+    skip_comment_marks(text);
     if (text.empty()) return;
     if (text == "%") {
       ++percent_signs_;
@@ -86,7 +89,7 @@ class FanucReader {
     Line line;
     line.block.line = lines_.number();
     IsoBlock iso(lines_, line.block);
-    while (!text.empty()) read_word(take_word(text, lines_), iso, line);
+    for (; !text.empty(); skip_comment_marks(text)) read_word(take_word(text, lines_), iso, line);
     finish(iso, line);
   }
 
@@ -129,6 +132,8 @@ class FanucReader {
       if (line.p_has_point) lines_.fail("P of a dwell counts milliseconds and takes no decimal point");
       iso.set_dwell(*line.p / 1000.0);
     }
+    // The words of G50.1 name axes and move none.
+    if ((line.block.says & nc_said::kMirrorOff) != 0) line.block.axes = 0;
     iso.finish();
     if ((line.has_call || line.has_return) && line.block.axes != 0) lines_.fail("a call or return must not move axes");
     if (line.p && !iso.wants_dwell() && !line.has_call) lines_.fail("P is not understood here");
@@ -160,7 +165,7 @@ class FanucReader {
 
 }  // namespace
 
-NcProgram parse_fanuc(NcLines lines, const NcSpindleTexts&) {
+NcProgram parse_fanuc(NcLines lines, const NcTexts&) {
   return FanucReader(std::move(lines)).run();
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "core/error.h"
@@ -10,7 +11,7 @@
 namespace retrace::fabrication {
 namespace {
 
-constexpr std::size_t kLinearAxes = 3;
+constexpr double kTurnDeg = 360.0;
 
 template <class Value>
 void take_over(std::optional<Value>& setting, const Setting<Value>& given) {
@@ -36,14 +37,37 @@ class Runner {
         continue;
       }
       const NcBlock& block = program_.blocks[next_++];
+      if (stops_before(block)) return {};
       if (++carried_out_ > kMostNcBlocks)
         fail(block, fmt::format("the program carries out more than {} lines", kMostNcBlocks));
       carry_out(block);
       if (block.call >= 0 && !call(block)) return missing_subroutine(block);
       if (block.returns && !calls_.empty()) go_back();
       if (block.ends) return end();
+      if (program_.stop_line > 0 && !stops_in_main() && block.line == program_.stop_line) return {};
     }
+    if (program_.stop_line > 0) return {};
     return {false, program_.lines, program_.truncated.value_or("the program does not end"), {}};
+  }
+
+  bool stops_in_main() const {
+    const std::size_t first = program_.main_first;
+    const std::size_t last = program_.main_last;
+    return first < last && program_.stop_line >= program_.blocks[first].line &&
+           program_.stop_line <= program_.blocks[last - 1].line;
+  }
+  /// Main programs run from line to line, and what a stopped line calls still runs.
+  bool stops_before(const NcBlock& block) const {
+    return program_.stop_line > 0 && calls_.empty() && stops_in_main() && block.line > program_.stop_line;
+  }
+
+  static std::uint16_t said_by(const NcBlock& block) {
+    unsigned said = block.says;
+    if (block.unit_mm) said |= nc_said::kUnit;
+    if (block.absolute) said |= nc_said::kDistance;
+    if (block.feed_time_s) said |= nc_said::kFeedTime;
+    if (block.exact_stop == true) said |= nc_said::kExactStop;
+    return static_cast<std::uint16_t>(said);
   }
 
   struct Call {
@@ -89,8 +113,9 @@ class Runner {
     take_over(settings_.unit_mm, block.unit_mm);
     take_over(settings_.feed_time_s, block.feed_time_s);
     take_over(settings_.exact_stop, block.exact_stop);
-    take_over(settings_.workpiece_offset, block.workpiece_offset);
-    take_over(settings_.compensation_off, block.compensation_off);
+    // What is said of blending holds until blending is asked for again.
+    if (block.exact_stop) settings_.blend_mm = block.blend_mm;
+    settings_.said = static_cast<std::uint16_t>(settings_.said | said_by(block));
     take_over(settings_.spindle, block.spindle);
     take_over(settings_.spindle_rpm, block.spindle_rpm);
     take_over(settings_.mist_on, block.mist_on);
@@ -110,6 +135,7 @@ class Runner {
     NcMotion motion;
     motion.move = *move_;
     motion.place = place_of(block);
+    motion.before = motions_++;
     motion.known = known_;
     motion.from = axes_of(position_);
     for (std::size_t axis = 0; axis < kNcAxes; ++axis)
@@ -134,11 +160,13 @@ class Runner {
 
   void move_axis(const NcBlock& block, std::size_t axis, NcMotion& motion) {
     const auto bit = static_cast<std::uint8_t>(1U << axis);
-    const bool is_absolute = settings_.absolute.value_or(true);
-    const double unit = axis < kLinearAxes ? settings_.unit_mm.value_or(1.0) : 1.0;
+    const bool is_increment = (block.increments & bit) != 0;
+    const bool is_absolute = settings_.absolute.value_or(true) && !is_increment;
+    const double unit = axis < kFirstRotaryAxis ? settings_.unit_mm.value_or(1.0) : 1.0;
     if (!is_absolute && (known_ & bit) == 0)
       fail(block, fmt::format("{} moves by an increment before its position is known", kNcAxisLetters[axis]));
-    const double to = block.words[axis] * unit + (is_absolute ? 0.0 : position_[axis]);
+    double to = block.words[axis] * unit + (is_absolute ? 0.0 : position_[axis]);
+    if ((block.shortest & bit) != 0) to += kTurnDeg * std::round((position_[axis] - to) / kTurnDeg);
     if ((known_ & bit) == 0 || to != position_[axis]) motion.moved = static_cast<std::uint8_t>(motion.moved | bit);
     position_[axis] = to;
     known_ = static_cast<std::uint8_t>(known_ | bit);
@@ -151,6 +179,7 @@ class Runner {
   std::size_t next_ = 0;
   std::vector<Call> calls_;
   std::int64_t carried_out_ = 0;
+  std::int32_t motions_ = 0;
   NcSettings settings_;
   std::optional<NcMove> move_;
   double feed_ = 0.0;

@@ -28,6 +28,7 @@ struct NcMotion {
   double feed_mm_per_min = 0.0;  ///< of a linear move; 0: none was given
   double duration_s = 0.0;       ///< of a linear move whose time is given instead of a feed; 0: by the feed
   bool is_exact_stop = true;     ///< the move ends in its end point
+  std::int32_t before = 0;       ///< motions of the program before this one
 };
 
 /// Modal settings that a program has made so far. Nothing: it has not, and relies on what the controller starts with.
@@ -36,8 +37,8 @@ struct NcSettings {
   std::optional<double> unit_mm;
   std::optional<double> feed_time_s;
   std::optional<bool> exact_stop;
-  std::optional<bool> workpiece_offset;
-  std::optional<bool> compensation_off;
+  std::optional<double> blend_mm;  ///< of blending: by which the path may be left; nothing: the program does not say
+  std::uint16_t said = 0;          ///< bits of nc_said
   std::optional<NcSpindle> spindle;
   std::optional<double> spindle_rpm;
   std::optional<bool> mist_on;

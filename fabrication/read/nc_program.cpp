@@ -12,9 +12,9 @@ constexpr std::array kReaders = {parse_rs274ngc, parse_sinumerik, parse_fanuc, p
 
 }  // namespace
 
-NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect, const NcSpindleTexts& spindle) {
+NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect, const NcTexts& texts) {
   NcLines lines(text, file);
-  return kReaders[static_cast<std::size_t>(dialect)](std::move(lines), spindle);
+  return kReaders[static_cast<std::size_t>(dialect)](std::move(lines), texts);
 }
 
 NcDialect recognise_dialect(std::string_view text, const std::string& file) {

@@ -21,17 +21,39 @@ inline constexpr std::string_view kNcDialectWords[] = {"rs274ngc", "sinumerik", 
 /// Axes in the order of words here: X, Y, Z, A, C, B. Which of A and B there is, the machine says.
 inline constexpr std::size_t kNcAxes = 6;
 inline constexpr std::string_view kNcAxisLetters = "XYZACB";
+inline constexpr std::size_t kFirstRotaryAxis = 3;
 
 enum class NcMove : std::uint8_t { rapid, linear };
 
-/// What a program asks of the spindle: M5, M3, M4, or the lines of an NcSpindleTexts.
+/// What a program asks of the spindle: M5, M3, M4, or the lines of an NcTexts.
 enum class NcSpindle : std::uint8_t { stopped, clockwise, counterclockwise, started_by_text, stopped_by_text };
 
-/// Lines that start and stop the spindle of a control that has no words of its own for it. Empty: there is none.
-struct NcSpindleTexts {
-  std::string start;
-  std::string stop;
+/// Lines of a Power PMAC's program that the integrator of the machine has given a meaning. Empty: there is none.
+struct NcTexts {
+  std::string spindle_start;
+  std::string spindle_stop;
+  std::string mist_on;
+  std::string mist_off;
+  std::string optional_stop;
 };
+
+/// What a program says of the control's state, whose value is nothing that moves depend on: a bit each.
+namespace nc_said {
+inline constexpr std::uint16_t kWorkOffset = 1U << 0U;         ///< the first work offset is chosen
+inline constexpr std::uint16_t kShiftOff = 1U << 1U;           ///< other shifts of the zero are cancelled
+inline constexpr std::uint16_t kRadiusOff = 1U << 2U;          ///< compensation of the tool's radius
+inline constexpr std::uint16_t kLengthOff = 1U << 3U;          ///< offsets of the tool's length
+inline constexpr std::uint16_t kTransformationOff = 1U << 4U;  ///< the control's own kinematics
+inline constexpr std::uint16_t kRotationOff = 1U << 5U;        ///< turned coordinates
+inline constexpr std::uint16_t kMirrorOff = 1U << 6U;          ///< mirrored coordinates
+inline constexpr std::uint16_t kFineStop = 1U << 7U;           ///< exact stops wait for the axes, not for their targets
+inline constexpr std::uint16_t kFeedAxes = 1U << 8U;           ///< feeds are those of X, Y and Z together
+// Those that have a value too.
+inline constexpr std::uint16_t kUnit = 1U << 9U;
+inline constexpr std::uint16_t kDistance = 1U << 10U;  ///< absolute or incremental
+inline constexpr std::uint16_t kFeedTime = 1U << 11U;
+inline constexpr std::uint16_t kExactStop = 1U << 12U;
+}  // namespace nc_said
 
 /// A setting that a block may make. Nothing: the block does not say.
 template <class Value>
@@ -45,14 +67,16 @@ struct NcBlock {
   std::array<double, kNcAxes> words{};
   Setting<NcMove> move;
   Setting<bool> absolute;
-  Setting<double> unit_mm;         ///< of linear words: 1 or 25.4
-  Setting<double> feed;            ///< as written
-  Setting<double> feed_time_s;     ///< time that a feed is per: 60 for mm/min
-  Setting<bool> inverse_time;      ///< feeds are one over the time of their move, per minute
-  Setting<double> move_time_s;     ///< time of this and the following moves, until a feed says otherwise
-  Setting<bool> exact_stop;        ///< false: blocks are blended
-  Setting<bool> workpiece_offset;  ///< G54 chosen
-  Setting<bool> compensation_off;  ///< of the tool's radius or length
+  Setting<double> unit_mm;      ///< of linear words: 1 or 25.4
+  Setting<double> feed;         ///< as written
+  Setting<double> feed_time_s;  ///< time that a feed is per: 60 for mm/min
+  Setting<bool> inverse_time;   ///< feeds are one over the time of their move, per minute
+  Setting<double> move_time_s;  ///< time of this and the following moves, until a feed says otherwise
+  Setting<bool> exact_stop;     ///< false: blocks are blended
+  Setting<double> blend_mm;     ///< by which blended blocks may leave the path at most
+  std::uint16_t says = 0;       ///< bits of nc_said; those with a value follow from it
+  std::uint8_t shortest = 0;    ///< bit i: axis i goes the shortest way to its word, which lies within a turn
+  std::uint8_t increments = 0;  ///< bit i: axis i moves by its word, whatever the mode is
   Setting<NcSpindle> spindle;
   Setting<double> spindle_rpm;  ///< S
   Setting<bool> mist_on;
@@ -60,6 +84,8 @@ struct NcBlock {
   std::int32_t call = -1;  ///< index of a subroutine
   bool returns = false;
   bool ends = false;
+
+  void say(std::uint16_t what) { says = static_cast<std::uint16_t>(says | what); }
 };
 
 struct NcSubroutine {
@@ -78,6 +104,8 @@ struct NcProgram {
   std::size_t main_first = 0;
   std::size_t main_last = 0;  ///< block behind the last of the main program
   std::int32_t lines = 0;
+  /// Behind which the operator stopped it, the first time that it was carried out; 0: it ran to its end.
+  std::int32_t stop_line = 0;
   /// What is missing of a file that stops in the middle; nothing if it is whole.
   std::optional<std::string> truncated;
 };
@@ -87,10 +115,10 @@ inline constexpr std::size_t kLongestNcLine = 1024;
 inline constexpr std::size_t kLongestNcBytes = std::size_t{1} << 30;
 
 /// Reads the text of a program. Whatever the dialect's rules do not cover here is refused, never skipped.
-/// \param file names it in messages \param spindle lines that a PMAC is to take as they are, letter by letter
+/// \param file names it in messages \param texts lines of a Power PMAC, letter by letter
 /// \throw InputError naming file and line: a word that is not understood, a line that is too long, text that is none
 NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect,
-                   const NcSpindleTexts& spindle = {});
+                   const NcTexts& texts = {});
 
 /// The dialect that a text is written in, from the words that only one of them has.
 /// \throw InputError if the text is empty, binary, or shows none

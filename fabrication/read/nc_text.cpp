@@ -112,6 +112,11 @@ std::string without_blanks(std::string_view text) {
   return result;
 }
 
+void skip_comment_marks(std::string_view& text) {
+  while (text.starts_with(kNcCommentMark)) text.remove_prefix(1);
+  while (text.ends_with(kNcCommentMark)) text.remove_suffix(1);
+}
+
 bool starts_with_word(std::string_view text, std::string_view word) {
   if (!text.starts_with(word)) return false;
   return text.size() == word.size() || text[word.size()] == ' ' || text[word.size()] == '\t';

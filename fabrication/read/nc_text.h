@@ -56,6 +56,11 @@ NcWord take_word(std::string_view& text, const NcLines& lines);
 /// `text` without blanks and tabs, in capitals.
 std::string without_blanks(std::string_view text);
 
+/// Stands for a comment within a line, so that it ends a word.
+inline constexpr char kNcCommentMark = '(';
+/// Words may have comments between them, and at both ends of the line.
+void skip_comment_marks(std::string_view& text);
+
 bool starts_with_word(std::string_view text, std::string_view word);
 
 /// A code of a dialect.
@@ -71,8 +76,8 @@ inline constexpr auto kRapid = [](NcBlock& b) { b.move = NcMove::rapid; };
 inline constexpr auto kLinear = [](NcBlock& b) { b.move = NcMove::linear; };
 inline constexpr auto kInch = [](NcBlock& b) { b.unit_mm = 25.4; };
 inline constexpr auto kMillimetre = [](NcBlock& b) { b.unit_mm = 1.0; };
-inline constexpr auto kCompensationOff = [](NcBlock& b) { b.compensation_off = true; };
-inline constexpr auto kWorkpieceOffset = [](NcBlock& b) { b.workpiece_offset = true; };
+template <std::uint16_t what>
+inline constexpr auto kSays = [](NcBlock& b) { b.say(what); };
 inline constexpr auto kExactStop = [](NcBlock& b) { b.exact_stop = true; };
 inline constexpr auto kBlending = [](NcBlock& b) { b.exact_stop = false; };
 inline constexpr auto kAbsolute = [](NcBlock& b) { b.absolute = true; };

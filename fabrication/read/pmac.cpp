@@ -18,8 +18,7 @@ std::string_view take_name(std::string_view& text) {
 
 class PmacReader {
  public:
-  PmacReader(NcLines lines, const NcSpindleTexts& spindle)
-      : lines_(std::move(lines)), spindle_(spindle), table_(program_) {
+  PmacReader(NcLines lines, const NcTexts& texts) : lines_(std::move(lines)), texts_(texts), table_(program_) {
     program_.file = lines_.file();
     program_.dialect = NcDialect::pmac;
   }
@@ -27,7 +26,7 @@ class PmacReader {
   NcProgram run() {
     std::string_view line;
     while (lines_.next(line))
-      if (!read_spindle_text(trimmed(line)))
+      if (!read_text(trimmed(line)))
         read_line_that_may_be_cut(lines_, program_, [&] { read(line.substr(0, line.find("//"))); });
     program_.lines = lines_.number();
     if (is_in_main_) end_main();
@@ -36,12 +35,21 @@ class PmacReader {
   }
 
  private:
-  bool read_spindle_text(std::string_view text) {
-    if (text.empty() || (text != spindle_.start && text != spindle_.stop)) return false;
-    if (!is_in_main_) lines_.fail("starts or stops the spindle outside of open prog ... close");
-    NcBlock& block = program_.blocks.emplace_back();
+  /// A line that the integrator has given a meaning.
+  bool read_text(std::string_view text) {
+    if (text.empty()) return false;
+    NcBlock block;
     block.line = lines_.number();
-    block.spindle = text == spindle_.start ? NcSpindle::started_by_text : NcSpindle::stopped_by_text;
+    if (text == texts_.spindle_start)
+      block.spindle = NcSpindle::started_by_text;
+    else if (text == texts_.spindle_stop)
+      block.spindle = NcSpindle::stopped_by_text;
+    else if (text == texts_.mist_on || text == texts_.mist_off)
+      block.mist_on = text == texts_.mist_on;
+    else if (text != texts_.optional_stop)
+      return false;
+    if (!is_in_main_) lines_.fail("stands outside of open prog ... close");
+    program_.blocks.push_back(block);
     return true;
   }
 
@@ -104,7 +112,7 @@ class PmacReader {
   }
 
   void read_statement(std::string_view& text, IsoBlock& iso, NcBlock& block) {
-    if (text.starts_with("COORD[1].")) return read_coordinate_system(text, block);
+    if (text.starts_with("COORD[")) return read_coordinate_system(text, block);
     const std::string_view whole = text;
     const std::string_view name = take_name(text);
     if (name.size() == 1) {
@@ -126,9 +134,9 @@ class PmacReader {
     else if (name == "CALL")
       read_call(text, block);
     else if (name == "FRAX")
-      read_feed_axes(text);
+      read_feed_axes(text, block);
     else if (name == "CCMODE" && number_behind(text) == 0)
-      block.compensation_off = true;
+      block.say(nc_said::kRadiusOff);
     else
       lines_.fail("is not understood from " + in_quotes(whole));
   }
@@ -163,14 +171,20 @@ class PmacReader {
   }
 
   /// Feeds are those of the three linear axes together.
-  void read_feed_axes(std::string_view& text) {
+  void read_feed_axes(std::string_view& text, NcBlock& block) {
     constexpr std::string_view all = "(X,Y,Z)";
     if (!text.starts_with(all)) lines_.fail("frax must name X, Y and Z");
     text.remove_prefix(all.size());
+    block.say(nc_said::kFeedAxes);
   }
 
   void read_coordinate_system(std::string_view& text, NcBlock& block) {
-    text.remove_prefix(9);
+    text.remove_prefix(6);
+    const std::string number = whole_number(text);
+    if (coordinate_system_.empty()) coordinate_system_ = number;
+    if (number != coordinate_system_) lines_.fail("speaks of a second coordinate system");
+    if (!text.starts_with("].")) lines_.fail("Coord must be followed by [number] and a point");
+    text.remove_prefix(2);
     const std::string_view name = take_name(text);
     if (!text.starts_with('=')) lines_.fail("needs = and a number");
     text.remove_prefix(1);
@@ -180,9 +194,9 @@ class PmacReader {
     else if (name == "FEEDTIME" && value > 0)
       block.feed_time_s = value / 1000.0;  // in ms
     else if (name == "SEGMOVETIME" && value == 0)
-      block.compensation_off = true;  // no kinematics of the controller's own between the ends of a move
+      block.say(nc_said::kTransformationOff);  // no kinematics of the controller's own between the ends of a move
     else
-      lines_.fail("Coord[1]." + printable(name) + " with that value is not understood");
+      lines_.fail("Coord[" + number + "]." + printable(name) + " with that value is not understood");
   }
 
   void read_word(const NcWord& word, IsoBlock& iso) {
@@ -191,17 +205,18 @@ class PmacReader {
   }
 
   NcLines lines_;
-  const NcSpindleTexts& spindle_;
+  const NcTexts& texts_;
   NcProgram program_;
   SubroutineTable table_;
+  std::string coordinate_system_;  ///< that the program sets
   bool is_in_main_ = false;
   bool has_main_ = false;
 };
 
 }  // namespace
 
-NcProgram parse_pmac(NcLines lines, const NcSpindleTexts& spindle) {
-  return PmacReader(std::move(lines), spindle).run();
+NcProgram parse_pmac(NcLines lines, const NcTexts& texts) {
+  return PmacReader(std::move(lines), texts).run();
 }
 
 }  // namespace retrace::fabrication

@@ -19,23 +19,23 @@ constexpr NcCode kRs274ngcCodes[] = {
     {19, 2, kNone},
     {20, 6, kInch},
     {21, 6, kMillimetre},
-    {40, 7, kCompensationOff},
-    {49, 8, kCompensationOff},
-    {54, 12, kWorkpieceOffset},
+    {40, 7, kSays<nc_said::kRadiusOff>},
+    {49, 8, kSays<nc_said::kLengthOff>},
+    {54, 12, kSays<nc_said::kWorkOffset>},
     {61, 13, kExactStop},
     {61.1, 13, kExactStop},
     {64, 13, kBlending},
     {80, 1, kNone},
     {90, 3, kAbsolute},
     {91, 3, kIncremental},
-    {92.1, 0, kNone},  // shifts of G92 cancelled
+    {92.1, 0, kSays<nc_said::kShiftOff>},
     {93, 5, kInverseTime},
     {94, 5, kFeedPerMinute},
     {97, 14, kNone},  // S counts turns per minute
 };
 
-/// The line without comments: ( ... ), which do not nest, and what follows a semicolon.
-std::string without_rs274ngc_comments(std::string_view line, const NcLines& lines) {
+/// The line without what follows a semicolon, and with a mark for each comment ( ... ); they do not nest.
+std::string with_marked_rs274ngc_comments(std::string_view line, const NcLines& lines) {
   std::string result;
   while (!line.empty() && line.front() != ';') {
     if (line.front() == ')') lines.fail("has a ) without a (");
@@ -47,6 +47,7 @@ std::string without_rs274ngc_comments(std::string_view line, const NcLines& line
     const std::size_t end = line.find_first_of("()", 1);
     if (end == std::string_view::npos || line[end] == '(')
       lines.fail("has a comment that does not end, or a nested one");
+    result += kNcCommentMark;
     line.remove_prefix(end + 1);
   }
   return without_blanks(result);
@@ -62,7 +63,7 @@ class Rs274Reader {
   NcProgram run() {
     std::string_view line;
     while (!is_over_ && lines_.next(line))
-      read_line_that_may_be_cut(lines_, program_, [&] { read(without_rs274ngc_comments(line, lines_)); });
+      read_line_that_may_be_cut(lines_, program_, [&] { read(with_marked_rs274ngc_comments(line, lines_)); });
     program_.lines = lines_.number();
     program_.main_last = program_.blocks.size();
     // Of a file that stops within a subroutine there is no main program to carry out.
@@ -74,6 +75,7 @@ class Rs274Reader {
 
  private:
   void read(std::string_view text) {
+    skip_comment_marks(text);
     if (text.empty()) return;
     if (text == "%") {
       is_over_ = ++percent_signs_ == 2;
@@ -135,26 +137,50 @@ class Rs274Reader {
     NcBlock block;
     block.line = lines_.number();
     IsoBlock iso(lines_, block);
-    while (!text.empty()) read_word(take_word(text, lines_), iso);
-    iso.finish();
+    words_ = {};
+    for (; !text.empty(); skip_comment_marks(text)) read_word(take_word(text, lines_), iso);
+    finish(iso, block);
     program_.blocks.push_back(block);
   }
 
   void read_word(const NcWord& word, IsoBlock& iso) {
-    if (word.letter == 'P') return iso.set_dwell(word.number.value);  // seconds
-    if (!iso.set(word, kRs274ngcCodes)) lines_.fail(fmt::format("a word {} is not understood", word.letter));
+    if (word.letter == 'P' || word.letter == 'Q') {
+      Setting<double>& given = word.letter == 'P' ? words_.p : words_.q;
+      if (given) lines_.fail(fmt::format("has two words {}", word.letter));
+      given = word.number.value;
+    } else if (!iso.set(word, kRs274ngcCodes)) {
+      lines_.fail(fmt::format("a word {} is not understood", word.letter));
+    }
   }
+
+  /// P is the time of a dwell in seconds, or how far blending may leave the path; Q of blending, how far blocks that
+  /// are merged into one may.
+  void finish(IsoBlock& iso, NcBlock& block) {
+    const bool blends = block.exact_stop == false;
+    if (words_.p && !blends) iso.set_dwell(*words_.p);
+    if (words_.q && !(blends && words_.p)) lines_.fail("Q is not understood here");
+    // Without Q blocks are merged as far as P allows, so that both errors may add up.
+    if (words_.p && blends) block.blend_mm = *words_.p + words_.q.value_or(*words_.p);
+    if (block.blend_mm && (*words_.p < 0.0 || *block.blend_mm < 0.0)) lines_.fail("P and Q of G64 must be >= 0");
+    iso.finish();
+  }
+
+  struct Words {
+    Setting<double> p;
+    Setting<double> q;
+  };
 
   NcLines lines_;
   NcProgram program_;
   SubroutineTable table_;
   int percent_signs_ = 0;
   bool is_over_ = false;
+  Words words_;  ///< of the line
 };
 
 }  // namespace
 
-NcProgram parse_rs274ngc(NcLines lines, const NcSpindleTexts&) {
+NcProgram parse_rs274ngc(NcLines lines, const NcTexts&) {
   return Rs274Reader(std::move(lines)).run();
 }
 

@@ -14,10 +14,22 @@ using namespace nc_effects;
 
 /// G groups of the Programming Manual Fundamentals, section Tables.
 constexpr NcCode kSinumerikCodes[] = {
-    {0, 1, kRapid},           {1, 1, kLinear},     {4, 2, nullptr},           {17, 6, kNone},
-    {18, 6, kNone},           {19, 6, kNone},      {40, 7, kCompensationOff}, {54, 8, kWorkpieceOffset},
-    {60, 10, kExactStop},     {64, 10, kBlending}, {601, 12, kNone},          {700, 13, kInch},
-    {710, 13, kMillimetre},   {90, 14, kAbsolute}, {91, 14, kIncremental},    {93, 15, kInverseTime},
+    {0, 1, kRapid},
+    {1, 1, kLinear},
+    {4, 2, nullptr},
+    {17, 6, kNone},
+    {18, 6, kNone},
+    {19, 6, kNone},
+    {40, 7, kSays<nc_said::kRadiusOff>},
+    {54, 8, kSays<nc_said::kWorkOffset>},
+    {60, 10, kExactStop},
+    {64, 10, kBlending},
+    {601, 12, kSays<nc_said::kFineStop>},
+    {700, 13, kInch},
+    {710, 13, kMillimetre},
+    {90, 14, kAbsolute},
+    {91, 14, kIncremental},
+    {93, 15, kInverseTime},
     {94, 15, kFeedPerMinute},
 };
 
@@ -71,6 +83,7 @@ class SinumerikReader {
     if (text.empty()) return;
     if (text.front() == '/') lines_.fail("a line that a switch of the controller may leave out is not understood");
     if (text.starts_with("MSG(")) return check_message(text);
+    if (starts_with_word(text, "REPEAT")) return read_repeat(trimmed(text.substr(6)));
     if (starts_with_word(text, "CALL")) return read_call(trimmed(text.substr(4)));
     read_words(text);
   }
@@ -110,6 +123,19 @@ class SinumerikReader {
     const std::string first(trimmed(text.substr(0, to)));
     const std::string last(trimmed(text.substr(to + 4)));
     if (!is_name(first) || !is_name(last)) refuse();
+    call(first, last);
+  }
+
+  void read_repeat(std::string_view text) {
+    const std::size_t gap = text.find(' ');
+    const std::string first(text.substr(0, gap));
+    const std::string last(gap == std::string_view::npos ? text : trimmed(text.substr(gap)));
+    // With one label alone the section ends where the program calls it, which would be without end.
+    if (gap == std::string_view::npos || !is_name(first) || !is_name(last)) lines_.fail("must be REPEAT label label");
+    call(first, last);
+  }
+
+  void call(const std::string& first, const std::string& last) {
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.call = table_.index_of(first + " TO " + last);
@@ -123,16 +149,17 @@ class SinumerikReader {
     Setting<NcWord> feed;
     while (!text.empty()) {
       if (starts_with_word(text, "TRAFOOF")) {
-        block.compensation_off = true;
+        block.say(nc_said::kTransformationOff);
         text = trimmed(text.substr(7));
         continue;
       }
       // Alone it cancels what frames a program before left; with words it would shift the zero.
       if (text == "TRANS") {
+        block.say(nc_said::kShiftOff);
         text = {};
         continue;
       }
-      const NcWord word = take_assignment(text);
+      const NcWord word = take_assignment(text, block);
       if (word.letter == 'F') {
         if (feed) lines_.fail("has two words F");
         feed = word;
@@ -149,8 +176,25 @@ class SinumerikReader {
     program_.blocks.push_back(block);
   }
 
-  /// X1.5 or X=1.5
-  NcWord take_assignment(std::string_view& text) {
+  /// X1.5 or X=1.5; of rotary axes C=DC(1.5), the shortest way; of all X=IC(1.5), by so much.
+  NcWord take_assignment(std::string_view& text, NcBlock& block) {
+    if (text.size() > 5 && text[1] == '=' && (text.substr(2, 3) == "DC(" || text.substr(2, 3) == "IC(")) {
+      const std::size_t axis = axis_index(text[0]);
+      const bool is_shortest = text[2] == 'D';
+      if (axis == kNcAxes || (is_shortest && axis < kFirstRotaryAxis))
+        lines_.fail("is not understood from " + in_quotes(text));
+      NcWord word{text[0], {}};
+      text.remove_prefix(5);
+      word.number = take_number(text, lines_);
+      if (!text.starts_with(')')) lines_.fail("has a ( that does not end");
+      text = trimmed(text.substr(1));
+      constexpr double turn_deg = 360.0;
+      if (is_shortest && !(word.number.value >= 0.0 && word.number.value < turn_deg))
+        lines_.fail(fmt::format("DC must be within 0 and 360 degrees, got {}", word.number.value));
+      std::uint8_t& bits = is_shortest ? block.shortest : block.increments;
+      bits = static_cast<std::uint8_t>(bits | 1U << axis);
+      return word;
+    }
     if (text.size() > 2 && text[1] == '=') {
       const std::string joined = std::string(1, text[0]) + std::string(text.substr(2));
       std::string_view rest = joined;
@@ -166,7 +210,7 @@ class SinumerikReader {
   void read_word(const NcWord& word, IsoBlock& iso, NcBlock& block) {
     if (word.letter == 'D') {
       if (word.number.value != 0) lines_.fail("D must be 0: offsets of the tool are not understood");
-      block.compensation_off = true;
+      block.say(nc_said::kLengthOff);
     } else if (!iso.set(word, kSinumerikCodes)) {
       lines_.fail(fmt::format("a word {} is not understood", word.letter));
     }
@@ -194,7 +238,7 @@ class SinumerikReader {
 
 }  // namespace
 
-NcProgram parse_sinumerik(NcLines lines, const NcSpindleTexts&) {
+NcProgram parse_sinumerik(NcLines lines, const NcTexts&) {
   return SinumerikReader(std::move(lines)).run();
 }
 

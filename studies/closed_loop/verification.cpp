@@ -14,6 +14,10 @@ namespace {
 
 using namespace fabrication;
 
+NcTexts nc_texts_of(const Control& control) {
+  return {"", "", control.mist_on, control.mist_off, control.optional_stop};
+}
+
 }  // namespace
 
 VerificationRun run_verification(const VerificationRequest& request, const Cancellation* cancellation) {
@@ -22,8 +26,8 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
   VerificationRun run;
   run.request = request;
   run.job = read_job(request.job);
-  run.machine = load_machine(run.job.machine, {request.job, 0, "machine"});
-  run.programs = read_programs(request.programs, request.dialect);
+  run.machine = load_machine(run.job.machine, run.job.where("machine"));
+  run.programs = read_programs(request.programs, request.dialect, nc_texts_of(run.machine.control));
   VerifyOptions options;
   options.tolerance_nm = request.tolerance_nm;
   run.result = verify_programs(run.job, run.machine, run.programs, options, shipped_machines(), cancellation);

@@ -52,8 +52,10 @@ FabricationResult fabricate(const FabricationRequest& request) {
   result.dialect = dialect.name;
   result.file_ending = dialect.ending;
   result.job = fabrication::read_job(request.job_file);
-  result.machine = fabrication::load_machine(result.job.machine, {result.job.source, 0, "machine"});
+  result.machine = fabrication::load_machine(result.job.machine, result.job.where("machine"));
+  result.machine.increments = fabrication::word_increments(dialect.name, result.machine.control);
   result.plan = fabrication::make_plan(result.job, result.machine, request.options);
+  for (const fabrication::Program& program : result.plan.programs) fabrication::check_words(program, dialect.name);
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -53,12 +54,20 @@ void write_programs(TurningResult& r) {
   r.servo_csv = csv.text();
 }
 
+/// Sums of increments differ in their last digits, and C of a Fanuc has a digit less than that of others.
+constexpr double kSameMm = 1e-9;
+constexpr double kSameRad = 1e-8;
+
+bool near(const std::vector<double>& a, const std::vector<double>& b, double most) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [most](double one, double other) { return std::abs(one - other) <= most; });
+}
+
 bool same_cuts(const std::vector<turning::CutPass>& a, const std::vector<turning::CutPass>& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if (a[i].x_mm != b[i].x_mm || a[i].y_mm != b[i].y_mm || a[i].z_mm != b[i].z_mm || a[i].c_rad != b[i].c_rad)
-      return false;
-  return true;
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& other) {
+    return near(one.x_mm, other.x_mm, kSameMm) && near(one.y_mm, other.y_mm, kSameMm) &&
+           near(one.z_mm, other.z_mm, kSameMm) && near(one.c_rad, other.c_rad, kSameRad);
+  });
 }
 
 /// The cuts of the reference's text; the others must read as the same.

@@ -85,6 +85,10 @@ TEST(Fabricate, EveryDialectHasItsEnding) {
   const TemporaryFolder folder;
   folder.write("d.toml", design("single", 0));
   ASSERT_EQ(retrace(folder, with(kJob, {"-o", "j.toml"})).code, 0);
+  const Outcome refused = retrace(folder, {"fabricate", "j.toml", "--dialect", "pmac"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("the machine file must give control.mist_on"), std::string::npos) << refused.err;
+  give_mist_lines(folder, "j.toml");
   const std::pair<std::string, std::string> dialects[] = {
       {"rs274ngc", "program.ngc"}, {"sinumerik", "program.mpf"}, {"fanuc", "program.nc"}, {"pmac", "program.pmc"}};
   for (const auto& [dialect, file] : dialects) {
@@ -256,9 +260,9 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
       {{"fabricate", "d.toml"}, "d.toml: schema: missing"},
       {{"fabricate", "doc0.toml"}, "doc0.toml:42: process.roughing_depth_um: must be > 0 and <= 1000, got 0"},
       {{"fabricate", "wide.toml"}, "wide.toml:32: tool.width_mm: must be <= 0.451, the element's width, got 0.5"},
-      {{"fabricate", "far.toml"}, "far.toml: machine: element 0: axis X of machine ideal would go to -0.451"},
+      {{"fabricate", "far.toml"}, "far.toml:7: machine: element 0: axis X of machine ideal would go to -0.451"},
       {{"fabricate", "zero.toml"}, "zero_axis.toml:"},
-      {{"fabricate", "unknown.toml"}, "unknown.toml: machine: must be"},
+      {{"fabricate", "unknown.toml"}, "unknown.toml:7: machine: must be"},
       {{"fabricate", "j.toml", "--phase", "polishing"}, "--phase: must be all, roughing, finishing or one of roughing"},
       {{"fabricate", "j.toml", "--from-element", "8"}, "--from-element: must be 0 to 7, got 8"},
       {{"fabricate", "j.toml", "--stop-every", "0"}, "--stop-every: must be a whole number from 1"},

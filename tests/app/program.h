@@ -114,4 +114,14 @@ std::string without_texture(const std::string& design);
 /// A result without its line or member on elapsed time, the only thing that may differ from run to run.
 std::string without_elapsed(const std::string& json);
 
+/// Gives the shipped machine of a job lines for mist, which a Power PMAC has no words of its own for.
+inline void give_mist_lines(const TemporaryFolder& folder, const std::string& job_file) {
+  std::string job = folder.read(job_file);
+  const std::size_t begin = job.find("machine = \"") + 11;
+  const std::string name = job.substr(begin, job.find('"', begin) - begin);
+  folder.write("machine.toml", read_text(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml") +
+                                   "\n[control]\nmist_on = \"P100=1\"\nmist_off = \"P100=0\"\n");
+  folder.write(job_file, job.replace(begin, name.size(), "machine.toml"));
+}
+
 }  // namespace retrace::test

@@ -39,6 +39,7 @@ TEST_F(SubstrateJob, OfTheExampleVerifiesInEveryDialect) {
   const Outcome job =
       retrace(folder_, {"job", example(kExample), "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet"});
   ASSERT_EQ(job.code, 0) << job.err;
+  give_mist_lines(folder_, "job.toml");
   for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"}) {
     const Json json = verified(dialect);
     EXPECT_EQ(json["verdict"], "pass") << json.dump().substr(0, 1000);

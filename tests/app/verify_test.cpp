@@ -50,6 +50,7 @@ class VerifyCommand : public ::testing::Test {
 
 TEST_F(VerifyCommand, CorrectProgramsOfEveryDialectPass) {
   make("paper", "two-step");
+  give_mist_lines(folder_, "job.toml");
   for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"}) {
     const std::string file = program(dialect);
     const Json json = verified({file}, 0);

@@ -27,6 +27,7 @@
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/part.h"
 #include "tests/fabrication/chiseling_jobs.h"
+#include "tests/fabrication/controls.h"
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/swept_volume_sink.h"
 
@@ -54,12 +55,12 @@ Machine crooked_machine() {
 }
 
 std::string text_of(const Job& job, const Machine& m, std::string_view dialect = "rs274ngc") {
-  return nc_text(make_plan(job, m).programs.front(), dialect);
+  return nc_text(make_plan(job, for_dialect(m, dialect)).programs.front(), dialect);
 }
 
 Verification verified(const Job& job, const Machine& m, const std::string& text,
                       NcDialect dialect = NcDialect::rs274ngc) {
-  return verify_programs(job, m, {parse_nc(text, "p.ngc", dialect)}, {},
+  return verify_programs(job, m, {parse_nc(text, "p.ngc", dialect, control_texts())}, {},
                          {machine("ideal"), machine("paper"), machine("thesis"), machine()});
 }
 
@@ -379,7 +380,7 @@ TEST_F(ChiselingFaults, ElementDroppedFromALayer) {
   EXPECT_EQ(kinds(without_line(text_, "o104 call")), "chip_too_thick") << "by the next layer";
   const std::size_t last = text_.rfind(" call");
   const std::string found = kinds(without_line(text_, " call", last));
-  EXPECT_NE(found.find("chip_not_separated"), std::string::npos) << found;
+  EXPECT_NE(found.find("layer_unfinished"), std::string::npos) << found;
 }
 
 TEST_F(ChiselingFaults, ElementDroppedAltogether) {
@@ -428,9 +429,9 @@ TEST_F(ChiselingFaults, SignFlippedInASubroutine) {
   EXPECT_NE(found, "");
 }
 
-TEST_F(ChiselingFaults, ClearanceOfZero) {
+TEST_F(ChiselingFaults, ClearanceOfAQuarter) {
   Job flat = job_;
-  flat.process.clearance_mm = 0.0;
+  flat.process.clearance_mm = 0.05;
   EXPECT_NE(kinds(text_of(flat, machine())).find("clearance"), std::string::npos);
 }
 

@@ -132,6 +132,8 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   job.workpiece.kind = *rc::gen::element(WorkpieceKind::mould, WorkpieceKind::direct);
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
   job.tool.width_mm = real(0.1, 0.451);
+  // No fin stays between plunges, and chips have their room.
+  job.tool.wedge_deg = std::max(50.0, 0.5 * prism_of(job).apex_angle_deg);
   job.tool.edge_radius_um = real(0.0, 5.0);
   job.tool.side_clearance_deg = real(0.1, 1.0);
   if (*rc::gen::arbitrary<bool>()) job.tool.edge_chips = {{real(-20.0, 0.0), 3.0, real(0.1, 1.5)}, {20.0, 5.0, 0.25}};
@@ -163,6 +165,8 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
       {"\nwidth_mm = 0.451\nwedge", "\nwidth_mm = 0.46\nwedge",
        "tool.width_mm: must be <= 0.451, the element's width, got 0.46"},
       {"wedge_deg = 50", "wedge_deg = 80", "tool.wedge_deg: with clearance_deg must be <= 77.5 for chips"},
+      {"wedge_deg = 50", "wedge_deg = 41",
+       "tool.wedge_deg: with clearance_deg must be >= 45, half the apex angle, or a fin of 2 degrees"},
       {"side_clearance_deg = 2", "side_clearance_deg = 25", "tool.side_clearance_deg: must be > 0 and <= 20, got 25"},
       {"\nwidth_mm = 0.451\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 2",
        "\nwidth_mm = 0.1\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 9",

@@ -181,34 +181,34 @@ std::string refusal(const std::string& from, const std::string& to) {
 
 TEST(MachineFile, BadInputIsRefusedOnOneLine) {
   EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 0, 0]"),
-            "m.toml:30: a.direction.value: must be a vector of a length above 0, got [0, 0, 0]");
+            "m.toml:31: a.direction.value: must be a vector of a length above 0, got [0, 0, 0]");
   EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 1]"),
-            "m.toml:30: a.direction.value: must be a list of 3 numbers, got 2 of them");
+            "m.toml:31: a.direction.value: must be a list of 3 numbers, got 2 of them");
   EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[nan, 0, 0]"),
-            "m.toml:30: a.direction.value: must be a finite number, got nan");
-  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 0, 1]"), "m.toml:36: c: C must lie across A");
+            "m.toml:31: a.direction.value: must be a finite number, got nan");
+  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 0, 1]"), "m.toml:37: c: C must lie across A");
   EXPECT_EQ(refusal("value = [-120, 120]", "value = [120, -120]"),
-            "m.toml:9: x.limits_mm.value: must rise, got [120, -120]");
+            "m.toml:10: x.limits_mm.value: must rise, got [120, -120]");
   EXPECT_EQ(refusal("value = 10,", "value = 0,"),
-            "m.toml:33: a.speed_deg_per_s.value: must be > 0 and <= 1e+06, got 0");
-  EXPECT_EQ(refusal("sign = { value = 1,", "sign = { value = 2,"), "m.toml:31: a.sign.value: must be 1 or -1, got 2");
+            "m.toml:34: a.speed_deg_per_s.value: must be > 0 and <= 1e+06, got 0");
+  EXPECT_EQ(refusal("sign = { value = 1,", "sign = { value = 2,"), "m.toml:32: a.sign.value: must be 1 or -1, got 2");
   EXPECT_EQ(refusal("assumed = \"square guideways\"", "assumed = \"\""),
-            "m.toml:8: x.direction: must name its source, got \"\"");
+            "m.toml:9: x.direction: must name its source, got \"\"");
   EXPECT_EQ(refusal(", assumed = \"square guideways\"", ""),
-            "m.toml:8: x.direction: must say either measured = \"source\" or assumed = \"why\"");
+            "m.toml:9: x.direction: must say either measured = \"source\" or assumed = \"why\"");
   EXPECT_EQ(refusal("[z]", "[w]"),
-            "m.toml:21: w: unknown table, did you mean \"x\"? (allowed: x, y, z, a, b, c, body)");
+            "m.toml:22: w: unknown table, did you mean \"x\"? (allowed: safe_z_mm, x, y, z, a, b, c, control, body)");
   EXPECT_EQ(refusal("moves_with = \"tool\"", "moves_with = \"spindle\""),
-            "m.toml:51: body[2].moves_with: must be \"workpiece\", \"cradle\" or \"tool\", got \"spindle\"");
+            "m.toml:52: body[2].moves_with: must be \"workpiece\", \"cradle\" or \"tool\", got \"spindle\"");
   const std::string box = "box_mm = { value = [-60, -60, -40, 60, 60, -15]";
   EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]"),
-            "m.toml:47: body[1].points_mm.value: must be 4 to 1000 points, got 3");
+            "m.toml:48: body[1].points_mm.value: must be 4 to 1000 points, got 3");
   EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]"),
-            "m.toml:47: body[1].points_mm.value: must be points that do not lie in one plane");
+            "m.toml:48: body[1].points_mm.value: must be points that do not lie in one plane");
   EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0], [1, 0], [0, 1], [1, 1]]"),
-            "m.toml:47: body[1].points_mm.value: must be a list of lists of 3 numbers, got one of 2");
+            "m.toml:48: body[1].points_mm.value: must be a list of lists of 3 numbers, got one of 2");
   EXPECT_EQ(refusal(box, "points_mm = { value = 5"),
-            "m.toml:47: body[1].points_mm.value: must be a list of lists of 3 numbers, got 5");
+            "m.toml:48: body[1].points_mm.value: must be a list of lists of 3 numbers, got 5");
   EXPECT_EQ(refusal("retrace.machine/1", "retrace.machine/2"),
             "m.toml:3: schema: must be \"retrace.machine/1\", got \"retrace.machine/2\"");
 }

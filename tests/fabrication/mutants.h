@@ -152,13 +152,13 @@ inline PlainProgram plain_program(const std::string& text) {
         if (value == 91) is_absolute = false;
         if (value == 93) now.is_timed = true;
         if (value == 94) now.is_timed = false;
-        if (value == 61) now.is_stop = true;
+        if (value == 61 || value == 61.1) now.is_stop = true;
         if (value == 64) now.is_stop = false;
         if (value == 90) said |= 1U;
         if (value == 94) said |= 2U;
-        if (value == 61) said |= 4U;
+        if (value == 61 || value == 61.1) said |= 4U;
         if (value == 40) said |= 8U;
-      } else {
+      } else if (letter != 'P' && letter != 'Q') {
         program.is_odd = true;
       }
     }

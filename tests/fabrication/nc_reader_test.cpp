@@ -213,7 +213,7 @@ struct NoSink : NcSink {
   void dwell(double, const NcPlace&, const AxisPositions&) override {}
 };
 
-NcSettings settings_after(const std::string& text, NcDialect dialect, const NcSpindleTexts& spindle = {}) {
+NcSettings settings_after(const std::string& text, NcDialect dialect, const NcTexts& spindle = {}) {
   NoSink sink;
   return run_nc(parse_nc(text, "p", dialect, spindle), sink).settings;
 }
@@ -233,7 +233,7 @@ TEST(NcReader, WhatTheSpindleDoes) {
 }
 
 TEST(NcReader, APmacsSpindleIsTakenLetterByLetter) {
-  const NcSpindleTexts texts = {"send1\"go 800\"", "M105"};
+  const NcTexts texts = {"send1\"go 800\"", "M105", "", "", ""};
   const std::string text = "open prog 1\nM5\n  send1\"go 800\"\nclose\n";
   EXPECT_EQ(settings_after(text, NcDialect::pmac, texts).spindle, NcSpindle::started_by_text);
   EXPECT_EQ(settings_after(with_replaced(text, "close", "M105\nclose"), NcDialect::pmac, texts).spindle,

@@ -30,9 +30,9 @@ struct Record : NcSink {
   NcEnd end;
 };
 
-inline Record record_of(std::string_view text, NcDialect dialect) {
+inline Record record_of(std::string_view text, NcDialect dialect, const NcTexts& texts = {}) {
   Record record;
-  record.end = run_nc(parse_nc(text, "p", dialect), record);
+  record.end = run_nc(parse_nc(text, "p", dialect, texts), record);
   return record;
 }
 

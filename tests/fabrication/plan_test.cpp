@@ -281,7 +281,8 @@ TEST(Order, TravelBetweenElementsIsShort) {
   const Machine m = machine("ideal");
   for (const Arrangement arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
     const Job job = square_job(20, arrangement);
-    const Plan plan = make_plan(job, m, {.phase = "roughing", .from_element = {}, .stop_every = {}, .split_hours = {}});
+    const Plan plan =
+        make_plan(job, m, {.phase = "roughing", .from_element = {}, .stop_every = {}, .split_hours = {}, .before = {}});
     double travel_mm = 0.0;
     int lines = 0;
     std::optional<geometry::Vec2> last;
@@ -345,7 +346,7 @@ RC_GTEST_PROP(Moves, AreSafe, ()) {
   for (const PlannedMove& move : moves_of(plan)) {
     const Words& to = move.at;
     if (move.is_rotary()) {
-      RC_ASSERT(at[kZ] == std::llround(plan.safe_z_mm * 1e6));
+      RC_ASSERT(at[kZ] >= std::llround(plan.safe_z_mm * 1e6));
     } else if (move.is_rapid() && at[kZ] && at[kX] && to[kX]) {
       const bool down = *to[kZ] < *at[kZ];
       const bool across = to[kX] != at[kX] || to[kY] != at[kY];

@@ -206,7 +206,7 @@ TEST(OnSubstrate, SplitProgramsVerifyTogether) {
   PlanOptions options;
   options.split_hours = 0.05;
   options.stop_every = 5;
-  const Plan plan = make_plan(job, machine("ideal-dmc"), options);
+  const Plan plan = make_plan(job, for_dialect(machine("ideal-dmc"), "fanuc"), options);
   ASSERT_GT(plan.programs.size(), 2U);
   std::vector<NcProgram> programs;
   for (const Program& program : plan.programs) {
@@ -260,9 +260,11 @@ TEST(OnSubstrate, EveryDialectCutsTheSame) {
                                         std::pair{"fanuc", NcDialect::fanuc}, std::pair{"pmac", NcDialect::pmac}}) {
       const Verification v = verified(job, text_of(job, name), dialect);
       EXPECT_TRUE(v.passes()) << name << "\n" << listed(v);
-      EXPECT_EQ(v.facet_distance_nm_max, first.facet_distance_nm_max) << name;
-      EXPECT_EQ(v.removed_volume_mm3, first.removed_volume_mm3) << name;
-      EXPECT_NEAR(v.time.total_s(), first.time.total_s(), 1e-6) << name;
+      // A Fanuc's poses have a digit less; a modulo axis turns the shorter way, through sums of its words.
+      const bool is_fanuc = dialect == NcDialect::fanuc;
+      EXPECT_NEAR(v.facet_distance_nm_max, first.facet_distance_nm_max, is_fanuc ? 0.5 : 1e-6) << name;
+      EXPECT_NEAR(v.removed_volume_mm3, first.removed_volume_mm3, is_fanuc ? 1e-6 : 1e-12) << name;
+      EXPECT_NEAR(v.time.total_s(), first.time.total_s(), 1e-3 * first.time.total_s()) << name;
     }
   }
 }

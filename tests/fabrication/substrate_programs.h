@@ -12,6 +12,7 @@
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
+#include "tests/fabrication/controls.h"
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/substrate_jobs.h"
 
@@ -25,11 +26,11 @@ inline Machine machine_of(const Job& job) {
 }
 
 inline std::string text_of(const Job& job, std::string_view dialect = "rs274ngc") {
-  return nc_text(make_plan(job, machine_of(job)).programs.front(), dialect);
+  return nc_text(make_plan(job, for_dialect(machine_of(job), dialect)).programs.front(), dialect);
 }
 
 inline Verification verified(const Job& job, const std::string& text, NcDialect dialect = NcDialect::rs274ngc) {
-  return verify_programs(job, machine_of(job), {parse_nc(text, "p", dialect)}, {}, {});
+  return verify_programs(job, machine_of(job), {parse_nc(text, "p", dialect, control_texts())}, {}, {});
 }
 
 inline std::string kinds_of(const Verification& v) {

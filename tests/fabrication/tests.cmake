@@ -20,10 +20,13 @@ retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/read_back_test.cpp
   LIBRARIES retrace::chisel_plan retrace::post retrace::nc_read rapidcheck)
 retrace_test(fabrication_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/cutting_test.cpp ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/control_state_test.cpp ${CMAKE_CURRENT_LIST_DIR}/partial_programs_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/cutting_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
   LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check rapidcheck)
 retrace_test(fabrication_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp ${CMAKE_CURRENT_LIST_DIR}/chip_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/chip_faults_test.cpp
   LIBRARIES retrace::chisel_plan retrace::post retrace::nc_read retrace::chisel_check rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/forces_test.cpp

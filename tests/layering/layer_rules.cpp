@@ -62,14 +62,14 @@ const std::map<std::string, Names>& study_rooms() {
 const std::map<std::string, Names>& fabrication_rooms() {
   static const std::map<std::string, Names> rooms = {{"job", {}},
                                                      {"machine", {}},
-                                                     {"program", {}},
-                                                     {"post", {"program"}},
+                                                     {"program", {"machine"}},
+                                                     {"post", {"machine", "program"}},
                                                      {"read", {"machine"}},
                                                      {"check", {"machine", "read"}},
                                                      {"forces", {"job"}},
                                                      {"chisel", {"job", "machine", "program", "read", "check"}},
-                                                     {"planing", {"program", "read", "check"}},
-                                                     {"turning", {"program", "read", "check"}}};
+                                                     {"planing", {"machine", "program", "read", "check"}},
+                                                     {"turning", {"machine", "program", "read", "check"}}};
   return rooms;
 }
 

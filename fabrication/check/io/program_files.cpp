@@ -20,11 +20,11 @@ NcDialect dialect_of(const std::string& word, std::string_view text, const std::
 }
 
 std::vector<NcProgram> read_programs(const std::vector<std::string>& files, const std::string& dialect,
-                                     const NcSpindleTexts& spindle) {
+                                     const NcTexts& texts) {
   std::vector<NcProgram> programs;
   for (const std::string& file : files) {
     const std::string text = read_file(file, kMostDataBytes);
-    programs.push_back(parse_nc(text, file, dialect_of(dialect, text, file), spindle));
+    programs.push_back(parse_nc(text, file, dialect_of(dialect, text, file), texts));
   }
   return programs;
 }

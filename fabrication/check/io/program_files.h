@@ -14,9 +14,9 @@ namespace retrace::fabrication {
 /// \throw InputError for a word that is none, and for text that shows none
 NcDialect dialect_of(const std::string& word, std::string_view text, const std::string& file);
 
-/// Reads programs, in their order. \param spindle lines that a PMAC is to take as they are
+/// Reads programs, in their order. \param texts lines that a PMAC is to take as they are
 /// \throw InputError for a file that cannot be read or understood, with its line
 std::vector<NcProgram> read_programs(const std::vector<std::string>& files, const std::string& dialect,
-                                     const NcSpindleTexts& spindle = {});
+                                     const NcTexts& texts = {});
 
 }  // namespace retrace::fabrication

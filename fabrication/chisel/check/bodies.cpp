@@ -80,15 +80,13 @@ std::vector<PlacedBody> standing_bodies(const Machine& machine, const RotaryPose
 }
 
 std::vector<BodyContact> contacts(std::span<const PlacedBody> tool, std::span<const PlacedBody> standing,
-                                  const Vec3& from_mm, const Vec3& to_mm) {
+                                  Points tips_mm) {
   std::vector<BodyContact> found;
   std::vector<Vec3> swept;
   for (const PlacedBody& moving : tool) {
     swept.clear();
-    for (const Vec3& p : moving.points_mm) {
-      swept.push_back(from_mm + p);
-      swept.push_back(to_mm + p);
-    }
+    for (const Vec3& p : moving.points_mm)
+      for (const Vec3& tip : tips_mm) swept.push_back(tip + p);
     for (const PlacedBody& other : standing)
       if (hulls_meet(swept, other.points_mm)) found.push_back({moving.name, other.name});
   }

@@ -34,8 +34,9 @@ struct BodyContact {
   std::string tool;
   std::string other;
 };
-/// What a straight move of the tool's tip runs into; the swept hull of a convex body is exact.
+/// What the tool runs into while its tip goes anywhere within the hull of some places, such as the ends of a straight
+/// move: the swept hull of a convex body is exact.
 std::vector<BodyContact> contacts(std::span<const PlacedBody> tool, std::span<const PlacedBody> standing,
-                                  const geometry::Vec3& from_mm, const geometry::Vec3& to_mm);
+                                  std::span<const geometry::Vec3> tips_mm);
 
 }  // namespace retrace::fabrication

@@ -24,7 +24,7 @@ ChiselingCheck::ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& we
 }
 
 void ChiselingCheck::move(const CutMove& cut) {
-  check_feed(cut.motion);
+  check_feed(cut);
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   if (travel.dot(wedge_.sides[0].outward) > kMostSlip * travel.norm()) find_clearance_face(cut);
   const bool goes_down = workpiece_.grooves[cut.element].axis.dot(cut.back.direction(travel)) < 0.0;
@@ -59,13 +59,6 @@ void ChiselingCheck::open(const CutMove& move) {
 void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
   const double tip_mm = cut.tip_mm[cut.facet];
   const double chip_mm = state.left_mm[cut.facet] - tip_mm;
-  const double deepest_um = std::max(process_.roughing_depth_um, process_.finishing_depth_um);
-  const double limit_mm = 1e-3 * deepest_um + workpiece_.tolerance_mm;
-  if (chip_mm > limit_mm)
-    find("chip_too_thick", cut.place, cut.element,
-         fmt::format("the cut takes {} um at once, the process {} um: a layer before it is missing",
-                     fixed(1e3 * chip_mm, 3), shortest(deepest_um)),
-         1e3 * chip_mm, 1e3 * limit_mm);
   if (std::abs(chip_mm) < kSameTipMm) find("cut_twice", cut.place, cut.element, "this cut has been made before");
   for (std::size_t g = 0; g < 3; ++g) {
     if (g == cut.facet) continue;
@@ -108,7 +101,7 @@ void ChiselingCheck::finish() {
     const State& state = states_[i];
     const auto [least, most] = std::minmax_element(state.left_mm.begin(), state.left_mm.end());
     if (state.last.line == 0 || *most - *least <= workpiece_.tolerance_mm) continue;
-    find("chip_not_separated", state.last, i, "the last layer was not cut on all three facets: its chip hangs on",
+    find("layer_unfinished", state.last, i, "the last layer was not cut on all three facets: its chip hangs on",
          1e3 * (*most - *least), 1e3 * workpiece_.tolerance_mm);
   }
 }

@@ -10,7 +10,7 @@
 
 namespace retrace::fabrication {
 
-/// Follows the V-shaped motions of diamond micro chiseling: dwells, depths of cut, and whether chips come free
+/// Follows the V-shaped motions of diamond micro chiseling: dwells, and whether chips come free
 /// (docs/theory/micro_chiseling.md).
 class ChiselingCheck : public CutCheck {
  public:

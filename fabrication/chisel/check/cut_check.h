@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "fabrication/check/control_check.h"
+#include "fabrication/chisel/check/facet_cut.h"
 #include "fabrication/chisel/check/workpiece.h"
 #include "fabrication/read/nc_motion.h"
 
@@ -51,9 +52,11 @@ class CutCheck {
             double limit = 0.0) {
     findings_.add(std::move(kind), place.line, std::move(message), value, limit, static_cast<std::int64_t>(element));
   }
-  /// That a cut has a feed, and none above the process's.
-  void check_feed(const NcMotion& motion) {
-    control_.feed(motion, std::max(process_.roughing_feed_mm_per_min, process_.finishing_feed_mm_per_min));
+  /// That a cut has a feed, and none above that of its stage, which what it sweeps tells.
+  void check_feed(const CutMove& cut) {
+    const auto along = facet_cut(workpiece_.grooves[cut.element], wedge_, cut.sweep, cut.back);
+    const bool finishes = along && is_finishing(workpiece_, *along);
+    control_.feed(cut.motion, finishes ? process_.finishing_feed_mm_per_min : process_.roughing_feed_mm_per_min);
   }
   /// Whether a dwell is as long as the process asks for; a billionth is rounding of the text.
   bool is_long_enough(double seconds) const { return seconds >= process_.dwell_s - 1e-9; }

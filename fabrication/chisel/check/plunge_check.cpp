@@ -41,7 +41,7 @@ void PlungeCheck::check_dwell() {
 void PlungeCheck::plunge(const CutMove& cut) {
   const auto& [motion, sweep, there, back, element] = cut;
   close();
-  check_feed(motion);
+  check_feed(cut);
   const Groove& groove = workpiece_.grooves[element];
   const Vec3 upright = there.direction(groove.facets[0].normal);
   OpenPlunge plunge;
@@ -59,7 +59,6 @@ void PlungeCheck::plunge(const CutMove& cut) {
   // Where nothing was cut before, the blank's face ends the chip.
   plunge.chip_mm = std::min(state.surface_mm[plunge.facet] - plunge.tip_mm[plunge.facet],
                             groove.to_face_mm(tip, groove.facets[plunge.facet].normal));
-  check_chip_thickness(plunge);
   for (const auto& known : state.tips)
     if (known[3] == static_cast<double>(plunge.facet) && (Vec3(known[0], known[1], known[2]) - tip).norm() < kSameTipMm)
       find("cut_twice", motion.place, element, "this cut has been made before");
@@ -67,24 +66,8 @@ void PlungeCheck::plunge(const CutMove& cut) {
   open_ = plunge;
 }
 
-void PlungeCheck::check_chip_thickness(const OpenPlunge& plunge) {
-  const double deepest_mm =
-      1e-3 * std::max(process_.roughing_depth_um,
-                      workpiece_.job->strategy == Strategy::two_step ? process_.finishing_depth_um : 0.0);
-  // The first of nested V shells is a whole V, which both of its plunges take from the blank's face: two depths wide.
-  const bool is_first_shell =
-      workpiece_.job->strategy == Strategy::bidirectional && states_[plunge.element].surface_mm[plunge.facet] > 1e8;
-  const double limit_mm = (is_first_shell ? 2.0 : 1.0) * deepest_mm + workpiece_.tolerance_mm +
-                          workpiece_.prediction(plunge.element).root_mm;
-  if (plunge.chip_mm > limit_mm)
-    find("chip_too_thick", plunge.place, plunge.element,
-         fmt::format("the plunge takes {} um at once, the process {} um: a cut before it is missing",
-                     fixed(1e3 * plunge.chip_mm, 3), shortest(1e3 * deepest_mm)),
-         1e3 * plunge.chip_mm, 1e3 * limit_mm);
-}
-
 void PlungeCheck::plough(const CutMove& cut) {
-  check_feed(cut.motion);
+  check_feed(cut);
   if (!open_ || open_->element != cut.element) return;
   check_dwell();
   const double length_mm = (cut.sweep.to_mm - cut.sweep.from_mm).norm();

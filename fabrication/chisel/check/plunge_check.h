@@ -1,6 +1,6 @@
 #pragma once
 
-// Prisms, cut by plunging and ploughing: thickness of chips, dwells, and whether chips come free.
+// Prisms, cut by plunging and ploughing: dwells, and whether chips come free.
 
 #include <array>
 #include <optional>
@@ -44,7 +44,6 @@ class PlungeCheck : public CutCheck {
   void plunge(const CutMove& cut);
   void plough(const CutMove& cut);
   void check_dwell();
-  void check_chip_thickness(const OpenPlunge& plunge);
   void check_chip();
 
   std::vector<State> states_;

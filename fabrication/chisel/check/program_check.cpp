@@ -24,6 +24,14 @@ Vec3 interpolated(const Vec3& a, const Vec3& b, double a_height, double b_height
   return a + (b - a) * (a_height / (a_height - b_height));
 }
 
+ControlRule control_rule_of(const Job& job, const Machine& machine) {
+  ControlRule rule;
+  rule.needs_mist = job.process.mist;
+  rule.axes = static_cast<std::uint8_t>(kLinearBits | rotary_bits(machine));
+  rule.safe_z_mm = machine.first_z_mm();
+  return rule;
+}
+
 std::unique_ptr<CutCheck> cut_check_of(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control,
                                        FindingList& findings) {
   if (workpiece.job->strategy == Strategy::dmc)
@@ -41,14 +49,15 @@ ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
       map_(workpiece.grooves),
       visits_(std::move(visits)),
       wedge_(wedge_of(*workpiece.job, machine_)),
-      control_(findings, {}),
+      control_(findings, control_rule_of(*workpiece.job, machine_), machine_.control),
       way_(workpiece, wedge_, findings),
       cuts_(cut_check_of(workpiece, wedge_, control_, findings)),
       sweeps_(workpiece.grooves.size()) {}
 
-void ProgramCheck::begin(const std::string& program) {
-  findings_.begin(program);
-  control_.begin();
+void ProgramCheck::begin(const NcProgram& program) {
+  findings_.begin(program.file);
+  ++programs_begun_;
+  control_.begin(program.dialect);
 }
 
 std::vector<RigidMotion> ProgramCheck::poses() const {
@@ -56,7 +65,12 @@ std::vector<RigidMotion> ProgramCheck::poses() const {
 }
 
 std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
-  const auto [known, is_new] = known_poses_.try_emplace({pose.a_deg, pose.c_deg}, pose_words_.size());
+  // Whole turns of C, which a modulo axis gathers, are the same pose; rounding of sums is far below a unit.
+  constexpr double kUnitsPerDeg = 1e8;
+  constexpr auto kTurn = static_cast<std::int64_t>(360.0 * kUnitsPerDeg);
+  const auto units = [](double deg) { return std::llround(deg * kUnitsPerDeg); };
+  const auto [known, is_new] =
+      known_poses_.try_emplace({units(pose.a_deg), (units(pose.c_deg) % kTurn + kTurn) % kTurn}, pose_words_.size());
   if (!is_new) return known->second;
   pose_words_.push_back(pose);
   poses_.push_back(machine_from_workpiece(machine_, pose));
@@ -65,8 +79,15 @@ std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
   return poses_.size() - 1;
 }
 
-void ProgramCheck::dwell(double seconds, const NcPlace&, const AxisPositions&) {
+void ProgramCheck::dwell(double seconds, const NcPlace& place, const AxisPositions&) {
   time_.dwell_s += seconds;
+  // A tool that rests in its cut longer than it must marks it, and rubs once the mist has gone.
+  const double most_s = 2.0 * workpiece_.job->process.dwell_s + 0.1;
+  if (is_in_blank_ && seconds > most_s * (1.0 + 1e-9))
+    findings_.add("dwell_too_long", place.line,
+                  fmt::format("the tool rests in the material for {} s, at most {} are allowed", shortest(seconds),
+                              shortest(most_s)),
+                  seconds, most_s);
   cuts_->dwell(seconds);
 }
 
@@ -81,36 +102,40 @@ void ProgramCheck::end(const NcEnd& end) {
 }
 
 void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
+  control_.way(settings, motion);
   control_.axes(machine_, motion);
   time_.add(machine_, motion);
   const std::optional<std::size_t> run = visits_.empty() ? std::nullopt : runs_.of(motion);
   if (motion.moved == 0) return;
   const std::uint8_t rotary = rotary_bits(machine_);
+  is_in_blank_ = false;
   if ((motion.moved & rotary) != 0) {
     cuts_->close();
     return way_.turn(motion);
   }
-  // Before X, Y and Z are known nothing can be said; the settings are looked at when the first cut comes.
+  // Before all axes are known ControlCheck keeps the tool up.
   const auto all = static_cast<std::uint8_t>(kLinearBits | rotary);
   const auto known_after = static_cast<std::uint8_t>((motion.known | motion.moved) & all);
   if (known_after != all || (motion.known & kLinearBits) != kLinearBits) return;
   SweptVolume sweep;
   sweep.pose = static_cast<std::uint32_t>(pose_index(rotary_pose(machine_, motion.to)));
   sweep.place = motion.place;
+  sweep.program = programs_begun_ - 1;
   sweep.is_rapid = motion.move == NcMove::rapid;
   sweep.from_mm = machine_point(machine_, motion.from) + wedge_.tip_mm;
   sweep.to_mm = machine_point(machine_, motion.to) + wedge_.tip_mm;
   const RigidMotion& back = back_[sweep.pose];
   const std::optional<std::size_t> element = run ? visits_[*run] : element_of(sweep);
+  is_in_blank_ = way_.face().height_mm(back.point(sweep.to_mm)) < 0.0;
   find_corners(sweep, element);
-  way_.fixtures(sweep, standing_[sweep.pose]);
-  if (sweep.is_rapid) way_.rapid(motion, sweep, back, element);
+  way_.fixtures(motion, standing_[sweep.pose]);
+  if (sweep.is_rapid) way_.rapid(motion, back, element);
   if (corners_.empty()) {
     cuts_->close();
     if (!sweep.is_rapid && motion.feed_mm_per_min <= 0.0) control_.feed(motion, 0.0);
     return;
   }
-  control_.settings(settings, motion.place);
+  control_.cut(settings, motion.place);
   way_.holder(sweep, back);
   if (!element) {
     cuts_->close();

@@ -29,7 +29,7 @@ class ProgramCheck : public NcSink {
                std::vector<std::optional<std::size_t>> visits = {});
 
   /// What follows comes from that program.
-  void begin(const std::string& program);
+  void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace& place, const AxisPositions& position) override;
   void end(const NcEnd& end);
@@ -62,7 +62,7 @@ class ProgramCheck : public NcSink {
   WayCheck way_;
   std::unique_ptr<CutCheck> cuts_;
   std::vector<RotaryPose> pose_words_;
-  std::map<std::pair<double, double>, std::size_t> known_poses_;
+  std::map<std::pair<std::int64_t, std::int64_t>, std::size_t> known_poses_;
   std::vector<RigidMotion> poses_;
   std::vector<RigidMotion> back_;
   std::vector<std::vector<PlacedBody>> standing_;  ///< table, cradle and fixtures in each pose
@@ -70,6 +70,8 @@ class ProgramCheck : public NcSink {
   std::vector<geometry::Vec3> corners_;
   ProgramTime time_;
   double deepest_wall_mm_ = 0.0;
+  bool is_in_blank_ = false;  ///< where the last move ended
+  std::uint32_t programs_begun_ = 0;
 };
 
 }  // namespace retrace::fabrication

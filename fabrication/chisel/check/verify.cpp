@@ -9,9 +9,12 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <span>
+#include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/chisel/check/chip_check.h"
 #include "fabrication/chisel/check/program_check.h"
 #include "fabrication/chisel/check/rim_overcut.h"
 #include "fabrication/chisel/check/simulation/nose.h"
@@ -76,14 +79,13 @@ double dihedral_error_arcmin(const Groove& cavity, const ElementFigures& figures
   return largest;
 }
 
-ElementResult result_of(const Groove& groove, const ElementFigures& figures, const Prediction& prediction) {
+ElementResult result_of(const Groove& groove, const ElementFigures& figures) {
   ElementResult result;
   result.figures = figures;
   result.facet_angle_arcmin.resize(figures.facets.size());
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const FacetFigures& facet = figures.facets[f];
-    const double along = facet.slope_along - (facet.is_ploughed ? prediction.plough_slope[f] : 0.0);
-    result.facet_angle_arcmin[f] = std::atan(std::hypot(facet.slope_up, along)) * kArcminPerRad;
+    result.facet_angle_arcmin[f] = std::atan(std::hypot(facet.slope_up, facet.slope_along)) * kArcminPerRad;
     // A facet that rises above the design up its slope leans into the groove.
     result.apex_error_arcmin -= std::atan(facet.slope_up) * kArcminPerRad;
   }
@@ -106,6 +108,7 @@ class Judge {
     ++result_.elements_cut;
     for (std::size_t f = 0; f < element.figures.facets.size(); ++f)
       facet(element.figures.facets[f], f, number, program);
+    predict_angles(element.figures, workpiece_.prediction(index));
     for (const double angle : element.facet_angle_arcmin)
       result_.facet_angle_arcmin_max = std::max(result_.facet_angle_arcmin_max, angle);
     if (std::abs(element.apex_error_arcmin) > std::abs(result_.apex_error_arcmin_max))
@@ -113,6 +116,13 @@ class Judge {
   }
 
  private:
+  void predict_angles(const ElementFigures& figures, const Prediction& prediction) {
+    for (std::size_t f = 0; f < figures.facets.size(); ++f)
+      if (figures.facets[f].is_ploughed)
+        result_.facet_angle_arcmin_predicted = std::max(
+            result_.facet_angle_arcmin_predicted, std::atan(std::abs(prediction.plough_slope[f])) * kArcminPerRad);
+  }
+
   void facet(const FacetFigures& facet, std::size_t f, std::int64_t number, const std::string& program) {
     const double tolerance_nm = workpiece_.tolerance_mm * kNmPerMm;
     const double root_nm = workpiece_.prediction(static_cast<std::size_t>(number)).root_mm * kNmPerMm;
@@ -201,7 +211,29 @@ void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, cons
   }
 }
 
+/// What the cuts of an element take, one after the other, of the blank.
+ChipFigures chips_of(const Workpiece3d& workpiece, const BlankFace& face, std::size_t element,
+                     std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses, const ToolWedge& wedge) {
+  const Job& job = *workpiece.job;
+  StandingMaterial material(workpiece.grooves[element], face, workpiece.prediction(element).wall_mm, job.tool.width_mm,
+                            1e-3 * job.process.roughing_depth_um);
+  ChipCheck check(workpiece, element, material, wedge, poses);
+  for (const SweptVolume& sweep : sweeps) check.cut(sweep);
+  return check.finish();
+}
+
 }  // namespace
+
+std::string_view Verification::verdict() const {
+  if (passes()) return "pass";
+  // Kinds that say what is left, and nothing of how the rest was cut.
+  constexpr std::array<std::string_view, 4> kUnfinished = {"excess", "element_missing", "root_residual",
+                                                           "layer_unfinished"};
+  const bool is_unfinished = std::all_of(findings.begin(), findings.end(), [&](const Finding& finding) {
+    return std::find(kUnfinished.begin(), kUnfinished.end(), finding.kind) != kUnfinished.end();
+  });
+  return is_unfinished ? "incomplete" : "fail";
+}
 
 Verification verify_programs(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                              const VerifyOptions& options, const std::vector<Machine>& others,
@@ -209,12 +241,16 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   const Workpiece3d workpiece = workpiece_of(job, machine, options.tolerance_nm);
   FindingList findings;
   ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));
-  for (const NcProgram& program : programs) {
-    check.begin(program.file);
-    check.end(run_nc(program, check));
+  ProgramTime standing_time;
+  for (std::size_t k = 0; k < programs.size(); ++k) {
+    check.begin(programs[k]);
+    check.end(run_nc(programs[k], check));
+    if (k + 1 != options.standing) continue;
+    findings.take();
+    standing_time = check.time();
   }
   check.finish();
-  const std::string first = programs.empty() ? std::string() : programs.front().file;
+  const std::string first = programs.size() <= options.standing ? std::string() : programs[options.standing].file;
   Verification result;
   result.tolerance_nm = options.tolerance_nm;
   const std::vector<RigidMotion> poses = check.poses();
@@ -227,7 +263,9 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
 
   const bool ploughs = job.strategy == Strategy::unidirectional;
   const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(job.element);
+  const BlankFace face(job);
   result.elements.resize(workpiece.grooves.size());
+  std::vector<ChipFigures> chips(workpiece.grooves.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.elements.size()), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       if (cancellation != nullptr && cancellation->requested()) return;
@@ -237,10 +275,21 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
           groove.is_cube() ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses, check.wedge(),
                                             job.tool.nose_angle_deg, prediction)
                            : element_figures(groove, check.sweeps()[i], poses, check.wedge(), prediction, ploughs);
-      result.elements[i] = result_of(groove, figures, prediction);
+      result.elements[i] = result_of(groove, figures);
+      chips[i] = chips_of(workpiece, face, i, check.sweeps()[i], poses, check.wedge());
     }
   });
 
+  for (const ChipFigures& figures : chips) {
+    result.chip_um_max = std::max(result.chip_um_max, 1e3 * figures.thickest_mm);
+    result.chip_share_max = std::max(result.chip_share_max, figures.thickest_share);
+    for (std::size_t k = 0; k < figures.findings.size(); ++k) {
+      if (figures.programs[k] < options.standing) continue;
+      Finding finding = figures.findings[k];
+      finding.program = programs[figures.programs[k]].file;
+      findings.add(std::move(finding));
+    }
+  }
   Judge judge(workpiece, findings, result);
   for (std::size_t i = 0; i < result.elements.size(); ++i) {
     judge.element(i, first);
@@ -261,7 +310,7 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   else
     result.root_radius_um = job.tool.edge_radius_um;
   result.free_tool_length_mm = check.least_free_tool_mm();
-  result.time = check.time();
+  result.time = check.time() - standing_time;
   result.findings = findings.take();
   return result;
 }

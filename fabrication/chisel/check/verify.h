@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/progress.h"
@@ -19,13 +20,13 @@ namespace retrace::fabrication {
 
 struct VerifyOptions {
   double tolerance_nm = 10.0;  ///< of facet planes; > 0
+  std::size_t standing = 0;    ///< so many of the programs, from the first, are not judged: they made what stands
 };
 
 /// One element that a program leaves.
 struct ElementResult {
   ElementFigures figures;
-  /// Of each facet's normal to the design's, what ploughing must leave taken off; none if it is not cut.
-  std::vector<double> facet_angle_arcmin;
+  std::vector<double> facet_angle_arcmin;  ///< of each facet's normal to the design's; none if it is not cut
   double apex_error_arcmin = 0.0;  ///< of the angle between the facets, positive opens it; of a cube corner the largest
 };
 
@@ -36,11 +37,15 @@ struct Verification {
   double tolerance_nm = 0.0;
   double facet_distance_nm_max = 0.0;
   double facet_angle_arcmin_max = 0.0;
+  double facet_angle_arcmin_predicted =
+      0.0;                             ///< tilt along the root that ploughing with a tilted edge makes unavoidable
   double apex_error_arcmin_max = 0.0;  ///< of the largest size
   double root_residual_nm_max = 0.0;
   double root_residual_nm_predicted = 0.0;
   double wall_overcut_nm_max = 0.0;
   double wall_overcut_nm_predicted = 0.0;
+  double chip_um_max = 0.0;      ///< that a cut takes along a line square to the plane that its edge sweeps
+  double chip_share_max = 0.0;   ///< of what is borne there: above 1 it is found
   double root_radius_um = 0.0;   ///< that the tool's edge leaves at the root
   double root_chamfer_um = 0.0;  ///< width across the strips that the nose of a V leaves beside dihedral edges
   double root_ridge_um = 0.0;    ///< height of the ridge that stays between them, over the edge
@@ -56,6 +61,8 @@ struct Verification {
   std::vector<RotaryPose> poses;  ///< of the programs, in the order in which tools came down in them
 
   bool passes() const { return findings.empty(); }
+  /// "pass"; "incomplete" if nothing is wrong but that material is left which later programs can cut; "fail"
+  std::string_view verdict() const;
 };
 
 /// Carries out the programs one after the other, cuts the blank and compares. Nothing of planner or writers is used:

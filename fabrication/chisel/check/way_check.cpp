@@ -40,70 +40,130 @@ void WayCheck::turn(const NcMotion& motion) {
     findings_.add("turn_too_low", motion.place.line, "the table turns before Z is known");
     return;
   }
-  if (machine_.tilt == Tilt::head) return turn_of_head(motion);
-  const geometry::Vec2 half = 0.5 * blank_extent_mm(job_);
+  const auto rotary = static_cast<std::uint8_t>(motion.moved & ~kLinearBits);
+  if ((motion.known & rotary) != rotary) return turn_from_anywhere(motion);
   const Vec3 tip = machine_point(machine_, motion.from) + wedge_.tip_mm;
+  const bool knows_where = (motion.known & kLinearBits) == kLinearBits;
   double highest_mm = -std::numeric_limits<double>::infinity();
-  constexpr int steps = 24;
-  for (int i = 0; i <= steps; ++i) {
-    const double t = static_cast<double>(i) / steps;
-    const RotaryPose pose = {motion.from.a_deg + t * (motion.to.a_deg - motion.from.a_deg),
-                             motion.from.c_deg + t * (motion.to.c_deg - motion.from.c_deg)};
-    const RigidMotion turn = machine_from_workpiece(machine_, pose);
-    for (const double x : {-half.x(), half.x()})
-      for (const double y : {-half.y(), half.y()}) highest_mm = std::max(highest_mm, turn.point(Vec3(x, y, 0)).z());
-    if ((motion.known & kLinearBits) != kLinearBits) continue;
-    for (const BodyContact& contact : contacts(tool_bodies_, standing_bodies(machine_, pose), tip, tip))
+  double lowest_tip_mm = std::numeric_limits<double>::infinity();
+  for (const AxisPositions& axes : places_of_turn(motion)) {
+    const RotaryPose pose = rotary_pose(machine_, axes);
+    const RigidMotion there = machine_from_workpiece(machine_, pose);
+    const Vec3 at = machine_point(machine_, axes) + wedge_.tip_mm;
+    if (machine_.tilt == Tilt::head)
+      lowest_tip_mm = std::min(lowest_tip_mm, there.inverse().point(at).z());
+    else
+      highest_mm = std::max(highest_mm, highest_corner_mm(there));
+    if (!knows_where) continue;
+    const Vec3& stands = machine_.tilt == Tilt::head ? at : tip;
+    for (const BodyContact& contact :
+         contacts(tool_bodies_, standing_bodies(machine_, pose), std::span<const Vec3>(&stands, 1)))
       report_contact(contact, motion.place);
   }
-  const double z_mm = tip.z();
-  if (z_mm < highest_mm)
+  if (machine_.tilt == Tilt::table && tip.z() < highest_mm)
     findings_.add("turn_too_low", motion.place.line,
                   fmt::format("the turning blank comes up to Z {} mm while the tool stands at Z {} mm",
-                              fixed(highest_mm, 3), fixed(z_mm, 3)),
-                  z_mm, highest_mm);
+                              fixed(highest_mm, 3), fixed(tip.z(), 3)),
+                  tip.z(), highest_mm);
+  // The blank stays level, and a head that turns swings the tool about B: the tip must stay above the blank's face.
+  if (machine_.tilt == Tilt::head && lowest_tip_mm < 0.0)
+    findings_.add(
+        "turn_too_low", motion.place.line,
+        fmt::format("the tip comes to {} mm over the blank's face while the axes turn", fixed(lowest_tip_mm, 3)),
+        lowest_tip_mm, 0.0);
 }
 
-/// The blank stays level, and a head that turns swings the tool about B: the tip must stay above the blank's face.
-void WayCheck::turn_of_head(const NcMotion& motion) {
-  double lowest_mm = std::numeric_limits<double>::infinity();
-  constexpr int steps = 24;
+/// Where a rotary axis comes from is not known: only the machine's safe Z is clear of all ways.
+void WayCheck::turn_from_anywhere(const NcMotion& motion) {
+  constexpr double kSlackMm = 1e-9;
+  const double safe_mm = machine_.first_z_mm();
+  if (motion.from.z_mm < safe_mm - kSlackMm)
+    findings_.add("turn_too_low", motion.place.line,
+                  fmt::format("the axes turn from where they happen to be while Z stands at {} mm, below {} mm",
+                              shortest(motion.from.z_mm), shortest(safe_mm)),
+                  motion.from.z_mm, safe_mm);
+}
+
+/// Axes that turn at once each go at their own speed, unless the machine's rapid moves are straight.
+std::vector<AxisPositions> WayCheck::places_of_turn(const NcMotion& motion) const {
+  const AxisPositions& from = motion.from;
+  const AxisPositions& to = motion.to;
+  const auto between = [&](double tilt, double c) {
+    AxisPositions axes = from;
+    axes.a_deg += tilt * (to.a_deg - from.a_deg);
+    axes.b_deg += tilt * (to.b_deg - from.b_deg);
+    axes.c_deg += c * (to.c_deg - from.c_deg);
+    return axes;
+  };
+  std::vector<AxisPositions> places;
+  const bool is_box =
+      is_box_move(motion) && from.c_deg != to.c_deg && (from.a_deg != to.a_deg || from.b_deg != to.b_deg);
+  const int steps = is_box ? 8 : 24;
   for (int i = 0; i <= steps; ++i) {
     const double t = static_cast<double>(i) / steps;
-    AxisPositions axes = motion.from;
-    axes.b_deg += t * (motion.to.b_deg - motion.from.b_deg);
-    axes.c_deg += t * (motion.to.c_deg - motion.from.c_deg);
-    const RotaryPose pose = rotary_pose(machine_, axes);
-    const Vec3 tip = machine_point(machine_, axes) + wedge_.tip_mm;
-    lowest_mm = std::min(lowest_mm, machine_from_workpiece(machine_, pose).inverse().point(tip).z());
-    if ((motion.known & kLinearBits) != kLinearBits) continue;
-    for (const BodyContact& contact : contacts(tool_bodies_, standing_bodies(machine_, pose), tip, tip))
-      report_contact(contact, motion.place);
+    if (!is_box) places.push_back(between(t, t));
+    for (int k = 0; is_box && k <= steps; ++k) places.push_back(between(t, static_cast<double>(k) / steps));
   }
-  if (lowest_mm < 0.0)
-    findings_.add("turn_too_low", motion.place.line,
-                  fmt::format("the tip comes to {} mm over the blank's face while the axes turn", fixed(lowest_mm, 3)),
-                  lowest_mm, 0.0);
+  return places;
 }
 
-/// Least height of the tip over the blank on the way; over a flat one at an end of it.
-double WayCheck::lowest_over_blank_mm(const SweptVolume& sweep, const RigidMotion& back) const {
-  const Vec3 from = back.point(sweep.from_mm);
-  const Vec3 to = back.point(sweep.to_mm);
-  double lowest_mm = std::min(face_.height_mm(from), face_.height_mm(to));
+double WayCheck::highest_corner_mm(const RigidMotion& there) const {
+  const geometry::Vec2 half = 0.5 * blank_extent_mm(job_);
+  double highest_mm = -std::numeric_limits<double>::infinity();
+  for (const double x : {-half.x(), half.x()})
+    for (const double y : {-half.y(), half.y()}) highest_mm = std::max(highest_mm, there.point(Vec3(x, y, 0)).z());
+  return highest_mm;
+}
+
+bool WayCheck::is_box_move(const NcMotion& motion) const {
+  return motion.move == NcMove::rapid && !machine_.control.rapids_are_straight;
+}
+
+/// The edges of all that a move may pass: one from its begin to its end, or one for each axis of a box.
+std::vector<Vec3> WayCheck::edges_of_way(const NcMotion& motion) const {
+  const Vec3 from = machine_point(machine_, motion.from);
+  if (!is_box_move(motion)) return {machine_point(machine_, motion.to) - from};
+  std::vector<Vec3> edges;
+  for (double AxisPositions::*axis : {&AxisPositions::x_mm, &AxisPositions::y_mm, &AxisPositions::z_mm}) {
+    AxisPositions along = motion.from;
+    along.*axis = motion.to.*axis;
+    if (along.*axis != motion.from.*axis) edges.push_back(machine_point(machine_, along) - from);
+  }
+  return edges;
+}
+
+std::vector<Vec3> WayCheck::places_of_way(const NcMotion& motion) const {
+  std::vector<Vec3> corners = {machine_point(machine_, motion.from) + wedge_.tip_mm};
+  for (const Vec3& edge : edges_of_way(motion)) {
+    const std::size_t count = corners.size();
+    for (std::size_t i = 0; i < count; ++i) corners.push_back(corners[i] + edge);
+  }
+  return corners;
+}
+
+/// Least height of the tip over the blank on the way; over a flat one at a corner of it.
+double WayCheck::lowest_over_blank_mm(const NcMotion& motion, const RigidMotion& back) const {
+  double lowest_mm = std::numeric_limits<double>::infinity();
+  for (const Vec3& corner : places_of_way(motion)) lowest_mm = std::min(lowest_mm, face_.height_mm(back.point(corner)));
   if (face_.is_flat()) return lowest_mm;
   constexpr double kStepMm = 0.05;
   constexpr double kMostSteps = 4000.0;
-  const int steps = static_cast<int>(std::min(kMostSteps, std::ceil((to - from).norm() / kStepMm)));
-  for (int i = 1; i < steps; ++i)
-    lowest_mm = std::min(lowest_mm, face_.height_mm(from + (to - from) * (static_cast<double>(i) / steps)));
+  const std::vector<Vec3> edges = edges_of_way(motion);
+  const double most = std::floor(std::pow(kMostSteps, 1.0 / std::max<double>(1.0, static_cast<double>(edges.size()))));
+  std::vector<Vec3> places = {machine_point(machine_, motion.from) + wedge_.tip_mm};
+  for (const Vec3& edge : edges) {
+    const int steps = static_cast<int>(std::min(most, std::ceil(edge.norm() / kStepMm)));
+    const std::size_t count = places.size();
+    for (int k = 1; k <= steps; ++k)
+      for (std::size_t i = 0; i < count; ++i) places.push_back(places[i] + edge * (static_cast<double>(k) / steps));
+  }
+  for (const Vec3& place : places) lowest_mm = std::min(lowest_mm, face_.height_mm(back.point(place)));
   return lowest_mm;
 }
 
-void WayCheck::rapid(const NcMotion& motion, const SweptVolume& sweep, const RigidMotion& back,
-                     std::optional<std::size_t> element) {
+void WayCheck::rapid(const NcMotion& motion, const RigidMotion& back, std::optional<std::size_t> element) {
   const double clearance_mm = kClearanceShare * job_.process.clearance_mm;
-  const double lowest_mm = lowest_over_blank_mm(sweep, back);
+  const double lowest_mm = lowest_over_blank_mm(motion, back);
   const bool goes_down = motion.to.z_mm < motion.from.z_mm;
   if (lowest_mm < -tolerance_mm_)
     findings_.add("rapid_in_material", motion.place.line,
@@ -119,9 +179,9 @@ void WayCheck::rapid(const NcMotion& motion, const SweptVolume& sweep, const Rig
 }
 
 /// The tool against table, cradle and fixtures, all of them convex.
-void WayCheck::fixtures(const SweptVolume& sweep, std::span<const PlacedBody> standing) {
-  for (const BodyContact& contact : contacts(tool_bodies_, standing, sweep.from_mm, sweep.to_mm))
-    report_contact(contact, sweep.place);
+void WayCheck::fixtures(const NcMotion& motion, std::span<const PlacedBody> standing) {
+  const std::vector<Vec3> places = places_of_way(motion);
+  for (const BodyContact& contact : contacts(tool_bodies_, standing, places)) report_contact(contact, motion.place);
 }
 
 void WayCheck::report_contact(const BodyContact& contact, const NcPlace& place) {

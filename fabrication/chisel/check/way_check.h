@@ -28,11 +28,11 @@ class WayCheck {
   /// A move of rotary axes: alone, and with the tool above all that turns.
   void turn(const NcMotion& motion);
   /// A rapid move: above the blank's face by the process's clearance, and down along Z alone.
+  /// All of the box of its axes counts, unless the machine's rapid moves are straight.
   /// \param element where it goes; nothing: beside all
-  void rapid(const NcMotion& motion, const SweptVolume& sweep, const RigidMotion& back,
-             std::optional<std::size_t> element);
+  void rapid(const NcMotion& motion, const RigidMotion& back, std::optional<std::size_t> element);
   /// The tool against table, cradle and fixtures, all of them convex.
-  void fixtures(const SweptVolume& sweep, std::span<const PlacedBody> standing);
+  void fixtures(const NcMotion& motion, std::span<const PlacedBody> standing);
   /// What holds the tool against the blank.
   void holder(const SweptVolume& sweep, const RigidMotion& back);
   /// A cut beside all elements. \param corners of the tool within the blank
@@ -42,8 +42,15 @@ class WayCheck {
   double least_free_tool_mm() const { return least_free_tool_mm_; }
 
  private:
-  void turn_of_head(const NcMotion& motion);
-  double lowest_over_blank_mm(const SweptVolume& sweep, const RigidMotion& back) const;
+  void turn_from_anywhere(const NcMotion& motion);
+  std::vector<AxisPositions> places_of_turn(const NcMotion& motion) const;
+  /// Of the turned blank.
+  double highest_corner_mm(const RigidMotion& there) const;
+  bool is_box_move(const NcMotion& motion) const;
+  std::vector<geometry::Vec3> edges_of_way(const NcMotion& motion) const;
+  /// Of the tip: the ends of a straight move, or the corners of a box.
+  std::vector<geometry::Vec3> places_of_way(const NcMotion& motion) const;
+  double lowest_over_blank_mm(const NcMotion& motion, const RigidMotion& back) const;
   void report_contact(const BodyContact& contact, const NcPlace& place);
 
   const Job& job_;

@@ -70,12 +70,13 @@ int chiseling_layers(const Job& job, double stock_mm) {
   // The blank's face is 1 / sqrt(3) of the depth from the apex of each facet's normal.
   const double across_mm =
       (cavity_depth_mm(blank_element(job)) + stock_mm) / std::numbers::sqrt3 - chiseling_allowance_mm(job);
+  check_allowance(job, across_mm);
   return whole_cuts(job, across_mm / (1e-3 * job.process.roughing_depth_um));
 }
 
 CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
                            const Stance& stance) {
-  const InputLocation where{job.source, 0, "machine"};
+  const InputLocation where = job.where("machine");
   const double azimuth_deg = facet_azimuth_deg(facet);
   const Vec3 normal = stance.turn * cube_facet_normal(facet);
   CuttingPose pose;
@@ -87,14 +88,16 @@ CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetCh
   const RotaryPose near{machine.a.sign.value * tilt_deg, -machine.c.sign.value * azimuth_deg};
   const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
   pose.root_tilt = solved.root_tilt;
-  pose.a = rotary_units(solved.pose.a_deg);
-  pose.c = rotary_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()));
+  pose.a = to_step(solved.pose.a_deg * kRotaryUnitsPerDeg, machine.increments.rotary_units);
+  pose.c = to_step(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()) * kRotaryUnitsPerDeg,
+                   machine.increments.rotary_units);
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
   check_tilt(machine, pose.rounded.a_deg, where, stance.who());
   pose.section.depth_mm = cavity_depth_mm(blank_element(job));
   pose.section.stock_mm = stance.stock_mm;
   pose.section.start_mm = stance.start_mm;
   pose.section.apex = Angle::from_deg(90.0);
+  pose.section.step_nm = machine.increments.linear_nm;
   pose.rounded_along = in_words(machine, pose.rounded, normal);
   return pose;
 }
@@ -111,7 +114,7 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
   const double to_go_mm = (pose.section.depth_mm + pose.section.start_mm + job.process.clearance_mm - tip_mm) / up_axis;
   const Vec3 zero = words_of(machine, Vec3::Zero(), pose.rounded);
   const auto rounded = [&](const Vec3& from_apex) {
-    return rounded_words(words_of(machine, from_apex, pose.rounded) - zero, pose.rounded_along);
+    return rounded_words(words_of(machine, from_apex, pose.rounded) - zero, pose.rounded_along, pose.section.step_nm);
   };
   const Place start = rounded(tip + to_go_mm * down);
   const Place middle = rounded(tip);
@@ -128,7 +131,7 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
 
 void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, const Stance& stance) {
   if (stance.element < 0) return;
-  const InputLocation where{job.source, 0, "machine"};
+  const InputLocation where = job.where("machine");
   const VToolEdges edges = v_tool_edges(job.tool);
   std::array<Vec3, 3> spines;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -168,7 +171,7 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
   const double least_mm = 2.0 * up_facet_mm * std::sin(half_nose);
   if (job.tool.width_mm < least_mm - 1e-9)
     throw InputError(
-        {job.source, 0, "tool.width_mm"},
+        job.where("tool.width_mm"),
         fmt::format("{}must be >= {} for the cutting edges to reach from the apex to the blank's face, "
                     "got {}",
                     stance.who(), fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(job.tool.width_mm)));
@@ -195,9 +198,12 @@ ProcessFacts chiseling_facts(const Job& job, double stock_mm, std::size_t elemen
   return facts;
 }
 
-Place rounded_words(const Vec3& words_mm, const Vec3& along) {
-  const Vec3 exact = words_mm * kNanometresPerMm;
-  if (along == Vec3::Zero()) return {std::llround(exact.x()), std::llround(exact.y()), std::llround(exact.z())};
+Place rounded_words(const Vec3& words_mm, const Vec3& along, Nanometres step_nm) {
+  const Vec3 exact = words_mm * (kNanometresPerMm / static_cast<double>(step_nm));
+  const auto place_of = [&](const Vec3& steps) -> Place {
+    return Place(std::llround(steps.x()), std::llround(steps.y()), std::llround(steps.z())) * step_nm;
+  };
+  if (along == Vec3::Zero()) return place_of(exact);
   const Vec3 low = exact.array().floor();
   Vec3 best = low;
   double least = std::numeric_limits<double>::infinity();
@@ -210,7 +216,7 @@ Place rounded_words(const Vec3& words_mm, const Vec3& along) {
     least = measure;
     best = candidate;
   }
-  return {std::llround(best.x()), std::llround(best.y()), std::llround(best.z())};
+  return place_of(best);
 }
 
 }  // namespace retrace::fabrication

@@ -37,8 +37,8 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
                           double feed_mm_per_min);
 
-/// Words in whole nanometres: each rounded by itself where `along` is 0, else that of the eight neighbours with the
-/// least error along it.
-Place rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along);
+/// Words in whole steps: each rounded by itself where `along` is 0, else that of the eight neighbours with the least
+/// error along it.
+Place rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along, Nanometres step_nm);
 
 }  // namespace retrace::fabrication

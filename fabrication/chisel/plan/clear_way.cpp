@@ -13,7 +13,7 @@ using geometry::Vec3;
 /// Share of the clearance that rapid moves must keep; a verifier asks for a little less.
 constexpr double kShare = 0.95;
 constexpr double kStepShare = 0.25;
-constexpr int kMostSteps = 4000;
+constexpr int kMostSteps = 400;
 
 }  // namespace
 
@@ -37,19 +37,28 @@ double ClearWay::least_height_mm(const Place& at, const CuttingPose& pose) const
   return least;
 }
 
+/// Axes of a rapid move may arrive one after the other, so that anywhere in the box between its ends the tool may pass.
 bool ClearWay::is_clear_along(const Place& from, const Place& to, const CuttingPose& pose) const {
   const Vec3 by = millimetres(Place(to - from));
-  const int steps = std::clamp(static_cast<int>(std::ceil(by.norm() / step_mm_)), 1, kMostSteps);
-  for (int i = 0; i <= steps; ++i) {
-    Place at = from;
-    for (Eigen::Index k = 0; k < 3; ++k) at[k] += std::llround(static_cast<double>(to[k] - from[k]) * i / steps);
-    if (least_height_mm(at, pose) < clearance_mm_) return false;
-  }
+  Eigen::Vector3i steps;
+  for (Eigen::Index k = 0; k < 3; ++k)
+    steps[k] = by[k] == 0.0      ? 0
+               : face_.is_flat() ? 1
+                                 : std::clamp(static_cast<int>(std::ceil(std::abs(by[k]) / step_mm_)), 1, kMostSteps);
+  const auto part = [](Nanometres low, Nanometres high, int i, int count) {
+    return count == 0 ? low : low + std::llround(static_cast<double>(high - low) * i / count);
+  };
+  for (int i = 0; i <= steps.x(); ++i)
+    for (int j = 0; j <= steps.y(); ++j)
+      for (int k = 0; k <= steps.z(); ++k) {
+        const Place at(part(from.x(), to.x(), i, steps.x()), part(from.y(), to.y(), j, steps.y()),
+                       part(from.z(), to.z(), k, steps.z()));
+        if (least_height_mm(at, pose) < clearance_mm_) return false;
+      }
   return true;
 }
 
 bool ClearWay::is_clear(const Words& from, const Visit& visit, const CuttingPose& pose) const {
-  if (face_.is_flat()) return true;
   Words at = from;
   for (const Move& move : approach(from, visit)) {
     Words to = at;

@@ -9,8 +9,8 @@
 
 namespace retrace::fabrication {
 
-/// Whether rapid moves stay above a blank that is not flat: the tip, and the ends of a chisel's edge, are tried along
-/// the way at a quarter of an element's size. Between flat faces the L-shaped approach is always clear.
+/// Whether rapid moves stay above the blank: the tip, and the ends of a chisel's edge, are tried at the corners of the
+/// box that a move may pass through, over a blank that is not flat all through it at a quarter of an element's size.
 class ClearWay {
  public:
   ClearWay(const Job& job, const Machine& machine);

@@ -39,29 +39,43 @@ std::string plain(std::string_view text) {
   return result;
 }
 
+/// Whether a stage is the one of that name, or of the group of that name.
+bool is_named(const Stage& stage, std::string_view name) {
+  return stage.name == name || (name == "roughing" && stage.roughs) ||
+         (name == "finishing" && stage.name.starts_with(name));
+}
+
+[[noreturn]] void refuse_phase(const Plan& plan, const std::string& option, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Stage& stage : plan.stages) names.push_back(stage.name);
+  constexpr std::size_t kMostNamed = 12;
+  if (names.size() > kMostNamed) {
+    names.resize(kMostNamed);
+    names.emplace_back("...");
+  }
+  throw InputError(
+      {"", 0, option},
+      fmt::format("must be {}roughing, finishing or one of {}{}, got {}", option == "--phase" ? "all, " : "",
+                  fmt::join(names, ", "), option == "--phase" ? " (with + for all after it too)" : "", plain(name)));
+}
+
 /// Leaves the stages that were requested. \throw InputError for a phase that the job does not have
 void choose_stages(Plan& plan, const PlanOptions& options) {
+  if (!options.before.empty()) {
+    const auto first = std::find_if(plan.stages.begin(), plan.stages.end(),
+                                    [&](const Stage& stage) { return is_named(stage, options.before); });
+    if (first == plan.stages.end()) refuse_phase(plan, "--standing", options.before);
+    if (first == plan.stages.begin())
+      throw InputError({"", 0, "--standing"}, "must be a stage before which something is cut, got the first");
+    plan.stages.erase(first, plan.stages.end());
+  }
   if (options.phase == "all") return;
   const bool and_after = options.phase.ends_with('+');
   const std::string name = options.phase.substr(0, options.phase.size() - (and_after ? 1 : 0));
   std::vector<Stage> chosen;
-  for (const Stage& stage : plan.stages) {
-    const bool group = (name == "roughing" && stage.roughs) || (name == "finishing" && stage.name.starts_with(name));
-    if ((and_after && !chosen.empty()) || group || stage.name == name) chosen.push_back(stage);
-  }
-  if (chosen.empty()) {
-    std::vector<std::string> names;
-    for (const Stage& stage : plan.stages) names.push_back(stage.name);
-    constexpr std::size_t kMostNamed = 12;
-    if (names.size() > kMostNamed) {
-      names.resize(kMostNamed);
-      names.emplace_back("...");
-    }
-    throw InputError({"", 0, "--phase"},
-                     fmt::format("must be all, roughing, finishing or one of {} (with + for all after "
-                                 "it too), got {}",
-                                 fmt::join(names, ", "), plain(options.phase)));
-  }
+  for (const Stage& stage : plan.stages)
+    if ((and_after && !chosen.empty()) || is_named(stage, name)) chosen.push_back(stage);
+  if (chosen.empty()) refuse_phase(plan, "--phase", options.phase);
   plan.stages = std::move(chosen);
 }
 
@@ -95,7 +109,9 @@ class ProgramMaker {
         plan_(plan),
         way_(job, machine) {
     for (const Subroutine& subroutine : plan.subroutines) routine_times_.push_back(routine_time(machine, subroutine));
-    safe_z_nm_ = nanometres(plan.safe_z_mm);
+    const Nanometres step = machine.increments.linear_nm;
+    safe_z_nm_ = to_step(plan.safe_z_mm * kNanometresPerMm, step);
+    first_z_nm_ = std::max(safe_z_nm_, to_step(machine.first_z_mm() * kNanometresPerMm, step));
   }
 
   void run() {
@@ -136,7 +152,8 @@ class ProgramMaker {
     for (std::size_t k = 0; k < plan_.programs.size(); ++k) {
       plan_.programs[k].name = fmt::format("{}_{:03}", substrate_name(), k + 1);
       plan_.programs[k].header.insert(plan_.programs[k].header.begin(),
-                                      fmt::format("Part {} of {}", k + 1, plan_.programs.size()));
+                                      fmt::format("Part {} of {}{}", k + 1, plan_.programs.size(),
+                                                  k == 0 ? "" : ", to run when those before it have run"));
     }
   }
 
@@ -145,26 +162,31 @@ class ProgramMaker {
     program_seconds_ = 0.0;
     if (!job_.substrate) program_.subroutines = plan_.subroutines;
     program_.tilt_letter = machine_.tilt_letter();
-    at_ = {std::nullopt, std::nullopt, std::nullopt, 0, 0};
-    raise();
+    program_.control = machine_.control;
+    program_.has_mist = program_.needs_mist = job_.process.mist;
+    at_ = {};
+    raise_to(first_z_nm_);
   }
 
-  void raise() {
-    if (at_[kZ] != safe_z_nm_) {
-      const double up_mm = at_[kZ] ? millimetres(safe_z_nm_ - *at_[kZ]) : 0.0;
+  void raise() { raise_to(at_[kZ] ? std::max(*at_[kZ], safe_z_nm_) : safe_z_nm_); }
+
+  void raise_to(Nanometres z_nm) {
+    if (at_[kZ] != z_nm) {
+      const double up_mm = at_[kZ] ? millimetres(z_nm - *at_[kZ]) : 0.0;
       spend(nullptr, &TimeShares::fixed_s, linear_move_s(machine_, Vec3(0.0, 0.0, up_mm), std::nullopt));
       Move up;
-      up.to[kZ] = safe_z_nm_;
+      up.to[kZ] = z_nm;
       program_.items.emplace_back(up);
     }
-    at_[kZ] = safe_z_nm_;
+    at_[kZ] = z_nm;
     just_turned_ = true;
   }
 
   void turn(RotaryUnits a, RotaryUnits c) {
-    const RotaryUnits by_a = a - *at_[kTilt];
-    const RotaryUnits by_c = c - *at_[kC];
-    if (by_a == 0 && by_c == 0) return;
+    // Where the axes stand when a program begins is not known; most likely at 0, as programs leave them.
+    const RotaryUnits by_a = a - at_[kTilt].value_or(0);
+    const RotaryUnits by_c = c - at_[kC].value_or(0);
+    if (at_[kTilt] == a && at_[kC] == c) return;
     raise();
     constexpr double kRotationDeg = 45.0;
     if (std::abs(degrees(by_c)) > kRotationDeg) ++plan_.c_rotations;
@@ -205,7 +227,7 @@ class ProgramMaker {
       const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
       const auto& [start, reach] = starts_[stage.subroutine];
       const Visit visit{element, stage.subroutine,
-                        rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along) + start};
+                        rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along, pose.section.step_nm) + start};
       check_limits(visit, reach);
       clear_way(visit, pose);
       add(stage, visit, reach);
@@ -221,7 +243,7 @@ class ProgramMaker {
     if (way_.is_clear(at_, visit, pose)) return;
     raise();
     if (way_.is_clear(at_, visit, pose)) return;
-    throw InputError({job_.source, 0, "machine"},
+    throw InputError(job_.where("machine"),
                      fmt::format("element {}: the tool cannot come down to it at {}{} C{} without coming nearer to the "
                                  "blank than process.clearance_mm, {}",
                                  visit.element, machine_.tilt_letter(), fixed(pose.rounded.a_deg, 4),
@@ -297,7 +319,7 @@ class ProgramMaker {
     const double high_mm = millimetres(high_nm);
     if (limits.contains(low_mm) && limits.contains(high_mm)) return;
     const std::string who = element < 0 ? "the safe height" : fmt::format("element {}", element);
-    throw InputError({job_.source, 0, "machine"},
+    throw InputError(job_.where("machine"),
                      fmt::format("{}: axis {} of machine {} would go to {} mm, beyond its limits of {} to {}", who,
                                  axis, machine_.name, fixed(limits.contains(low_mm) ? high_mm : low_mm, 3),
                                  shortest(limits.low), shortest(limits.high)));
@@ -321,7 +343,7 @@ class ProgramMaker {
   }
 
   void end() {
-    check_axis('Z', safe_z_nm_, safe_z_nm_, machine_.z.limits_mm.value, -1);
+    check_axis('Z', safe_z_nm_, first_z_nm_, machine_.z.limits_mm.value, -1);
     finish_program();
   }
 
@@ -347,9 +369,26 @@ class ProgramMaker {
                                   pose.rounded.c_deg));
     if (plan_.poses.size() > kMostPoses)
       lines.push_back(fmt::format("And {} poses more, each where it begins", plan_.poses.size() - kMostPoses));
+    const auto point = [](const RotaryAxis& axis) {
+      const Vec3& at = axis.point_mm.value;
+      return fmt::format("X{} Y{} Z{}", shortest(at.x()), shortest(at.y()), shortest(at.z()));
+    };
+    lines.push_back(
+        fmt::format("{} is taken to turn about a line through {} from {}, C about one through {} from the work zero",
+                    tilt, point(machine_.a),
+                    machine_.tilt == Tilt::table ? "the work zero" : "the tool reference point", point(machine_.c)));
+    if (options_.phase != "all" || options_.from_element) lines.push_back(restart_text());
     const auto minutes = static_cast<std::int64_t>(std::ceil(program_seconds_ / 60.0));
     lines.push_back(fmt::format("Expected time: {} h {} min", minutes / 60, minutes % 60));
     return lines;
+  }
+
+  /// What must stand before a program that makes a part of the job.
+  std::string restart_text() const {
+    const Stage& first = plan_.stages.front();
+    const std::string from = options_.from_element ? fmt::format(" from element {}", *options_.from_element) : "";
+    return plain(fmt::format("A part of the job: begins with stage {}{}. All that comes before it must have been cut",
+                             first.name, from));
   }
 
   const Job& job_;
@@ -363,6 +402,7 @@ class ProgramMaker {
   double program_seconds_ = 0.0;
   Words at_{};
   Nanometres safe_z_nm_ = 0;
+  Nanometres first_z_nm_ = 0;  ///< of the first move
   bool just_turned_ = true;
   ClearWay way_;
   std::set<std::uint32_t> used_;  ///< subroutines that the program calls
@@ -382,11 +422,27 @@ void check_options(const PlanOptions& options, std::size_t elements) {
     throw InputError({"", 0, "--split-hours"}, "must be > 0, got " + shortest(*options.split_hours));
 }
 
+void check_process(const Job& job, const Machine& machine, const ProcessFacts& facts) {
+  if (facts.is_finished && job.process.finishing_depth_um > job.process.roughing_depth_um)
+    throw InputError(job.where("process.finishing_depth_um"),
+                     fmt::format("must be at most roughing_depth_um, {}, got {}",
+                                 shortest(job.process.roughing_depth_um), shortest(job.process.finishing_depth_um)));
+  double most = machine.x.max_feed_mm_per_min.value;
+  for (const LinearAxis* const axis : {&machine.y, &machine.z}) most = std::min(most, axis->max_feed_mm_per_min.value);
+  const Process& p = job.process;
+  for (const auto& [key, feed] : {std::pair{"process.roughing_feed_mm_per_min", p.roughing_feed_mm_per_min},
+                                  {"process.finishing_feed_mm_per_min", p.finishing_feed_mm_per_min},
+                                  {"process.retract_feed_mm_per_min", p.retract_feed_mm_per_min}})
+    if (feed > most)
+      throw InputError(job.where(key), fmt::format("must be at most the max_feed_mm_per_min of machine {}, {}, got {}",
+                                                   machine.name, shortest(most), shortest(feed)));
+}
+
 ProcessFacts facts_of(const Job& job, const Machine& machine, const Plan& plan) {
   ProcessFacts facts =
       (job.strategy == Strategy::dmc ? chiseling_facts : plunging_facts)(job, plan.stock_mm, plan.elements.size());
   if (facts.tilts == machine.tilt) return facts;
-  throw InputError({job.source, 0, "machine"}, fmt::format("{}, got {}", facts.machine_text, machine.name));
+  throw InputError(job.where("machine"), fmt::format("{}, got {}", facts.machine_text, machine.name));
 }
 
 }  // namespace
@@ -420,6 +476,7 @@ Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& option
   check_options(options, plan.elements.size());
   if (job.substrate) plan.stock_mm = stock_mm(job, plan.elements);
   const ProcessFacts facts = facts_of(job, machine, plan);
+  check_process(job, machine, facts);
   plan.cuts_per_facet = facts.cuts_per_facet;
   const std::vector<RoutineStart> starts = add_stages(job, machine, plan);
   plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);

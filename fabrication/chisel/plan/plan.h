@@ -23,6 +23,7 @@ struct PlanOptions {
   std::optional<std::int64_t> from_element;  ///< starts at the first visit of that element
   std::optional<std::int64_t> stop_every;    ///< an optional stop after so many visits of elements
   std::optional<double> split_hours;         ///< no program takes longer, if one visit does not
+  std::string before;  ///< only the stages before that one, or before all of its group; empty: all
 };
 
 /// Seconds by what they are spent on.

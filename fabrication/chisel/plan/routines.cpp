@@ -19,10 +19,11 @@ constexpr double kWholeTolerance = 1e-9;
 constexpr int kMostCuts = 100'000;
 constexpr double kFitToleranceMm = 1e-6;
 
-/// Puts points in whole nanometres in a row, as moves between them.
+/// Puts points in whole steps in a row, as moves between them.
 class SectionPath {
  public:
-  SectionPath(Routine& routine, const Vec2& start_mm) : routine_(routine), at_(place_of(start_mm)) {
+  SectionPath(Routine& routine, const Vec2& start_mm, Nanometres step_nm)
+      : routine_(routine), step_nm_(step_nm), at_(place_of(start_mm)) {
     routine.start = at_;
   }
 
@@ -39,9 +40,12 @@ class SectionPath {
   }
 
  private:
-  static Place place_of(const Vec2& point_mm) { return {0, nanometres(point_mm.x()), nanometres(point_mm.y())}; }
+  Place place_of(const Vec2& point_mm) const {
+    return {0, to_step(point_mm.x() * kNanometresPerMm, step_nm_), to_step(point_mm.y() * kNanometresPerMm, step_nm_)};
+  }
 
   Routine& routine_;
+  Nanometres step_nm_ = 1;
   Place at_;
 };
 
@@ -81,13 +85,23 @@ int cuts_per_facet(const Job& job, double stock_mm) {
   const double facet_mm = 0.5 * element.base_mm / std::sin(0.5 * apex_rad) + stock_mm / std::cos(0.5 * apex_rad);
   const double depth_mm = 1e-3 * job.process.roughing_depth_um;
   double across_mm = facet_mm * std::sin(apex_rad) - finishing_allowance_mm(job);
+  check_allowance(job, across_mm);
   if (job.strategy == Strategy::bidirectional) across_mm *= 0.5;
   return whole_cuts(job, across_mm / depth_mm);
 }
 
+void check_allowance(const Job& job, double left_mm) {
+  if (left_mm > 0.0) return;
+  throw InputError(
+      job.where("process.finishing_depth_um"),
+      fmt::format("must leave something to roughing: {} finishing cuts of {} um are {} um more than a facet is "
+                  "deep",
+                  job.process.finishing_cuts, shortest(job.process.finishing_depth_um), fixed(-1e3 * left_mm, 3)));
+}
+
 int whole_cuts(const Job& job, double cuts) {
   if (!(cuts <= kMostCuts))
-    throw InputError({job.source, 0, "process.roughing_depth_um"},
+    throw InputError(job.where("process.roughing_depth_um"),
                      fmt::format("must leave at most {} cuts a facet, {} um would make {:.3g}", kMostCuts,
                                  job.process.roughing_depth_um, cuts));
   return std::max(1, static_cast<int>(std::ceil(cuts - kWholeTolerance)));
@@ -105,7 +119,7 @@ Routine unidirectional_routine(const Job& job, const Section& section) {
     return section.wall_y * (left_mm + 1e-3 * process.roughing_depth_um * (cuts - cut));
   };
   Routine routine;
-  SectionPath path(routine, start_of_cut(section, wall_y(1), process.clearance_mm));
+  SectionPath path(routine, start_of_cut(section, wall_y(1), process.clearance_mm), section.step_nm);
   for (int cut = 1; cut <= cuts; ++cut) {
     const double y = wall_y(cut);
     const Vec2 root(y, section.floor_z(y, left_mm));
@@ -122,7 +136,7 @@ Routine plunge_routine(const Job& job, const Section& section, double left_mm, d
   const Process& process = job.process;
   const double y = section.wall_y * left_mm;
   Routine routine;
-  SectionPath path(routine, start_of_cut(section, y, process.clearance_mm));
+  SectionPath path(routine, start_of_cut(section, y, process.clearance_mm), section.step_nm);
   Vec2 at(y, section.floor_z(y, left_mm));
   path.to(at, Motion::plunge, feed_mm_per_min);
   path.dwell(process.dwell_s);

@@ -19,6 +19,9 @@ struct Routine {
 /// \param stock_mm by which the blank stands over the rims
 int cuts_per_facet(const Job& job, double stock_mm = 0.0);
 
+/// That finishing leaves something to roughing. \param left_mm of a facet's depth \throw InputError naming the key
+void check_allowance(const Job& job, double left_mm);
+
 /// So many cuts as a whole number, at least 1. \throw InputError at process.roughing_depth_um for more than 100,000
 int whole_cuts(const Job& job, double cuts);
 

@@ -23,10 +23,6 @@ Vec3 turned_back(const Vec3& v) {
   return {v.y(), -v.x(), v.z()};
 }
 
-RotaryUnits rounded_units(double deg) {
-  return std::llround(deg * kRotaryUnitsPerDeg);
-}
-
 /// (Y, Z) parts of a plane's normal when positions are words of the axes instead of points.
 Vec3 in_words(const Machine& machine, const Vec3& normal) {
   return {normal.dot(machine.x.direction.value), normal.dot(machine.y.direction.value),
@@ -105,7 +101,7 @@ void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& wh
 
 CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
                          const Stance& stance) {
-  const InputLocation where{job.source, 0, "machine"};
+  const InputLocation where = job.where("machine");
   const geometry::RtpElement element = blank_prism(job);
   const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
   const double nominal_c_deg = (facet.facet == 1 ? 0.0 : 180.0) + (facet.rotated ? 90.0 : 0.0);
@@ -118,8 +114,9 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   const RotaryPose near{machine.a.sign.value * 0.5 * element.apex_angle_deg, machine.c.sign.value * nominal_c_deg};
   const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
   pose.root_tilt = solved.root_tilt;
-  pose.a = rounded_units(solved.pose.a_deg);
-  pose.c = rounded_units(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()));
+  pose.a = to_step(solved.pose.a_deg * kRotaryUnitsPerDeg, machine.increments.rotary_units);
+  pose.c = to_step(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()) * kRotaryUnitsPerDeg,
+                   machine.increments.rotary_units);
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
   check_tilt(machine, pose.rounded.a_deg, where, stance.who());
   check_root(job, pose, where, stance);
@@ -144,6 +141,7 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   section.start_mm = stance.start_mm;
   section.edge_mm = 1e-3 * job.tool.edge_radius_um * (1.0 - std::sin(apex_rad) + std::cos(apex_rad));
   section.apex = Angle::from_rad(apex_rad);
+  section.step_nm = machine.increments.linear_nm;
   return pose;
 }
 

@@ -246,6 +246,12 @@ void check_chisel(const Job& job, const Refuse& refuse) {
     refuse("tool.wedge_deg", fmt::format("with clearance_deg must be <= {} for chips to leave between rake face "
                                          "and facet, got {}",
                                          shortest(apex_deg - kChipRoomDeg), shortest(taken_deg)));
+  // Where both facets are plunged, the rake faces of both cuts must meet above the root.
+  if (job.strategy != Strategy::unidirectional && 2.0 * taken_deg < apex_deg)
+    refuse("tool.wedge_deg",
+           fmt::format("with clearance_deg must be >= {}, half the apex angle, or a fin of {} degrees "
+                       "stays between the plunges of both facets, got {}",
+                       shortest(0.5 * apex_deg), shortest(apex_deg - 2.0 * taken_deg), shortest(taken_deg)));
   // The diamond narrows towards its shank and must still be there where it leaves the element.
   const double half_apex_rad = 0.5 * Angle::from_deg(apex_deg).rad();
   const double facet_mm = 0.5 * blank_prism(job).base_mm / std::sin(half_apex_rad);
@@ -395,7 +401,7 @@ void check_job(const Job& job, const InputLocation& where) {
 
 Job parse_job(std::string_view text, const std::string& source_name) {
   Job job;
-  read_object(kJobFormat, text, source_name, &job);
+  job.document = std::make_shared<const Document>(read_object(kJobFormat, text, source_name, &job));
   job.source = source_name;
   return job;
 }

@@ -59,6 +59,7 @@ constexpr schema::Row kRows[] = {
     {"rotary_clearance_mm", Number{kShortLength}, 5.0,
      "Distance above all that the turning blank can reach, before a rotary move.",
      access<&Process::rotary_clearance_mm>},
+    {"mist", schema::Flag{}, true, "Whether mist is on while the tool cuts.", access<&Process::mist>},
     {"plough_sa_nm", Number{kRoughness}, 468.0,
      "Areal roughness Sa that ploughing leaves, as measured by the thesis and the journal paper.",
      access<&Process::plough_sa_nm>},

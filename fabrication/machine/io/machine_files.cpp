@@ -172,6 +172,9 @@ constexpr auto kPositiveRows = sourced<double>(Number{kPositive}, access<&Source
 constexpr auto kPositiveRules = source_rules<double>();
 constexpr ValueTable kPositiveValue = {kPositiveRows, kPositiveRules};
 
+constexpr auto kHeightRows = sourced<double>(Number{kLength}, access<&Sourced<double>::value>);
+constexpr ValueTable kHeight = {kHeightRows, kPositiveRules};
+
 constexpr auto kSignRows = sourced<double>(Number{}, access<&Sourced<double>::value>);
 constexpr auto kSignRules = source_rules<double>(value_check<no_sign>("It is 1 or -1."));
 constexpr ValueTable kSign = {kSignRows, kSignRules};
@@ -262,15 +265,80 @@ constexpr Table rotary(std::string_view name, std::string_view meaning, Child ch
   return {.name = name, .meaning = meaning, .tables = kRotaryTables, .child = child, .presence = presence};
 }
 
+/// Lines of a Power PMAC's program are taken as they are, up to where a comment would begin.
+template <std::string Control::*line>
+std::string unfit_line(const Control& control) {
+  constexpr std::size_t most = 200;
+  const std::string& text = control.*line;
+  const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
+  if (text.size() <= most && is_plain && text.find("//") == std::string::npos) return {};
+  return "must be one line of up to 200 printable ASCII characters without //";
+}
+std::string unknown_modulo_axes(const Control& control) {
+  if (control.modulo_axes.find_first_not_of("ABC") == std::string::npos) return {};
+  return "must be letters of rotary axes, such as \"C\" or \"\", got " + in_quotes(control.modulo_axes);
+}
+
+constexpr Row kControlRows[] = {
+    {"increment_system", Word{kIncrementSystemWords}, "E",
+     "Of a Fanuc: words have 3, 4, 5 or 6 decimals, and at most nine digits.", access<&Control::increment_system>},
+    {"has_rotation", Flag{}, false, "Of a Fanuc: it can turn coordinates, which `G69` cancels.",
+     access<&Control::has_rotation>},
+    {"has_mirror", Flag{}, false, "Of a Fanuc: it can mirror coordinates, which `G50.1` cancels.",
+     access<&Control::has_mirror>},
+    {"modulo_axes", Text{}, "C",
+     "Of a Sinumerik: letters of the rotary axes that turn without end and are counted within a turn (MD30310).",
+     access<&Control::modulo_axes>},
+    {"coordinate_system", Whole{{.low = 1.0, .high = 127.0}}, 1.0, "Of a Power PMAC: the number of that of X to C.",
+     access<&Control::coordinate_system>},
+    {"mist_on", Text{}, kNone, "Of a Power PMAC: the line of a program that switches mist on.",
+     access<&Control::mist_on>},
+    {"mist_off", Text{}, kNone, "Of a Power PMAC: the line that switches it off.", access<&Control::mist_off>},
+    {"optional_stop", Text{}, kNone, "Of a Power PMAC: the line at which the operator may stop.",
+     access<&Control::optional_stop>},
+    {"rapids_are_straight", Flag{}, false,
+     "Whether the axes of a rapid move arrive together (Fanuc 1401#1, 840D `RTLIOF`), on a straight line; otherwise "
+     "all "
+     "of the box between its ends must be clear.",
+     access<&Control::rapids_are_straight>}};
+constexpr std::string_view kMistOnKeys[] = {"mist_on"};
+constexpr std::string_view kMistOffKeys[] = {"mist_off"};
+constexpr std::string_view kStopKeys[] = {"optional_stop"};
+constexpr std::string_view kModuloKeys[] = {"modulo_axes"};
+constexpr Rule kControlRules[] = {
+    Check{kMistOnKeys, "A line of up to 200 printable ASCII characters.", check_by<unfit_line<&Control::mist_on>>},
+    Check{kMistOffKeys, "Likewise.", check_by<unfit_line<&Control::mist_off>>},
+    Check{kStopKeys, "Likewise.", check_by<unfit_line<&Control::optional_stop>>},
+    Check{kModuloKeys, "Letters of rotary axes.", check_by<unknown_modulo_axes>}};
+
+/// Not written where it is the limit of Z.
+constexpr Child kSafeZ = {
+    [](const void* machine) -> std::size_t {
+      const auto& m = *static_cast<const Machine*>(machine);
+      return m.safe_z_mm.value <= m.z.limits_mm.value.high ? 1 : 0;
+    },
+    [](const void* machine, std::size_t) -> const void* { return &static_cast<const Machine*>(machine)->safe_z_mm; },
+    [](void* machine) -> void* { return &static_cast<Machine*>(machine)->safe_z_mm; }};
+
 constexpr Row kRows[] = {{"name", Text{}, kRequired, "What the machine is called.", access<&Machine::name>},
                          {"title", Text{}, kNone, "What it is, for people.", access<&Machine::title>}};
 constexpr Table kTables[] = {
+    value("safe_z_mm", kHeight, kSafeZ,
+          "Where the first move of a program brings Z, alone: clear of all that may stand on the table, wherever the "
+          "other axes are.",
+          "the upper limit of Z"),
     linear("x", "The linear axis X.", child<&Machine::x>),
     linear("y", "The linear axis Y.", child<&Machine::y>),
     linear("z", "The linear axis Z.", child<&Machine::z>),
     rotary("a", "The axis A about which the table tilts.", kTilting<Tilt::table>, Presence::optional),
     rotary("b", "The axis B about which the head tilts.", kTilting<Tilt::head>, Presence::optional),
     rotary("c", "The axis C of the table.", child<&Machine::c>, Presence::always),
+    {.name = "control",
+     .meaning = "What programs must know of the control; each dialect takes what concerns it.",
+     .rows = kControlRows,
+     .rules = kControlRules,
+     .child = child<&Machine::control>,
+     .presence = Presence::optional},
     {.name = "body",
      .meaning = "A convex body that might collide.",
      .rows = kBodyRows,

@@ -25,9 +25,9 @@ void follow(const std::vector<NcProgram>& programs, FindingList& findings, Plani
 
 }  // namespace
 
-NcSpindleTexts spindle_texts_of(const PlanedPart& part) {
+NcTexts spindle_texts_of(const PlanedPart& part) {
   if (!part.lathe) return {};
-  return {part.lathe->spindle_start, part.lathe->spindle_stop};
+  return {part.lathe->spindle_start, part.lathe->spindle_stop, "", "", ""};
 }
 
 PlaningCheck check_planing(const PlanedPart& part, const std::vector<NcProgram>& programs) {
@@ -36,7 +36,7 @@ PlaningCheck check_planing(const PlanedPart& part, const std::vector<NcProgram>&
   if (part.mill) {
     MillCheck mill(part, findings, result);
     follow(
-        programs, findings, result, mill, [&](const NcProgram& program) { mill.begin(program.file); },
+        programs, findings, result, mill, [&](const NcProgram& program) { mill.begin(program); },
         [&](const NcEnd& end) { mill.end(end); });
   } else {
     LatheCheck lathe(part, findings, result);
@@ -50,7 +50,7 @@ PlaningCheck check_planing(const PlanedPart& part, const std::vector<NcProgram>&
 
 PlaningCheck check_planing(const PlanedPart& part, const std::vector<PlaningText>& programs, NcDialect dialect) {
   std::vector<NcProgram> read;
-  const NcSpindleTexts spindle = spindle_texts_of(part);
+  const NcTexts spindle = spindle_texts_of(part);
   for (const PlaningText& program : programs) read.push_back(parse_nc(program.text, program.name, dialect, spindle));
   return check_planing(part, read);
 }

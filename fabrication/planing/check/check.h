@@ -46,7 +46,7 @@ struct PlaningText {
 };
 
 /// The lines of a part's file that start and stop the spindle of a PMAC.
-NcSpindleTexts spindle_texts_of(const PlanedPart& part);
+NcTexts spindle_texts_of(const PlanedPart& part);
 
 /// Judges programs, in the order in which they run, as they were read.
 /// \throw InputError for programs that no control can carry out

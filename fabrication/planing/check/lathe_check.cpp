@@ -46,12 +46,21 @@ SectionLine along(const SectionLine& line, double spacing_mm) {
   return places;
 }
 
+constexpr std::uint8_t kAxesXz = 0b101;
+/// Words of a feed have three decimals.
+constexpr double kFeedRounding = 5e-4;
+constexpr double kWordsMm = 2e-6;  // of positions that words of a nanometre give
+
 /// A PMAC is told by lines of the part's file, which say nothing of sense and speed that could be read.
-SpindleRule spindle_of(const PlaningLathe& lathe, NcDialect dialect) {
-  const auto rpm = static_cast<double>(lathe.spindle_rpm);
-  if (dialect == NcDialect::pmac) return {NcSpindle::started_by_text, rpm};
+ControlRule rule_of(const PlaningLathe& lathe, NcDialect dialect) {
+  ControlRule rule;
+  rule.axes = kAxesXz;
+  rule.safe_z_mm = lathe.clear_mm - kWordsMm;
   const bool is_clockwise = lathe.spindle_direction == SpindleDirection::clockwise;
-  return {is_clockwise ? NcSpindle::clockwise : NcSpindle::counterclockwise, rpm};
+  rule.spindle.rpm = static_cast<double>(lathe.spindle_rpm);
+  rule.spindle.turns = is_clockwise ? NcSpindle::clockwise : NcSpindle::counterclockwise;
+  if (dialect == NcDialect::pmac) rule.spindle.turns = NcSpindle::started_by_text;
+  return rule;
 }
 
 bool goes_outwards(const std::vector<SectionPoint>& path) {
@@ -67,10 +76,6 @@ double spacing_of(const PlanedPart& part) {
   return std::max(0.37 * part.tolerance_mm, end / 1e5);
 }
 
-/// Words of a feed have three decimals.
-constexpr double kFeedRounding = 5e-4;
-constexpr double kWordsMm = 2e-6;  // of positions that words of a nanometre give
-
 bool is_known(const NcMotion& motion, char axis) {
   return ((motion.known >> kNcAxisLetters.find(axis)) & 1U) != 0;
 }
@@ -82,15 +87,14 @@ LatheCheck::LatheCheck(const PlanedPart& part, FindingList& findings, PlaningChe
       spacing_mm_(spacing_of(part)),
       findings_(findings),
       result_(result),
-      start_(findings, 0b101, part.lathe->clear_mm),
+      known_(findings, kAxesXz),
       standing_(part.lens.half_width_mm, spacing_mm_, part.lathe->nose_radius_mm),
       before_run_(standing_.heights_mm()) {}
 
 void LatheCheck::begin(const NcProgram& program) {
   programs_.push_back(program.file);
-  control_.emplace(findings_, spindle_of(*part_.lathe, program.dialect));
-  control_->begin();
-  start_.begin();
+  control_.emplace(findings_, rule_of(*part_.lathe, program.dialect));
+  control_->begin(program.dialect);
 }
 
 std::int32_t LatheCheck::add_source(const NcMotion& motion) {
@@ -104,15 +108,15 @@ void LatheCheck::add(const char* kind, std::int32_t who, const char* message, do
 }
 
 void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
-  start_.motion(motion);
-  control_->settings(settings, motion.place);
+  known_.motion(motion);
+  control_->way(settings, motion);
   if (motion.move == NcMove::rapid) {
     end_run();
     follow_rapid(motion);
     return;
   }
   const PlaningLathe& lathe = *part_.lathe;
-  control_->spindle(settings, motion.place);
+  control_->cut(settings, motion.place);
   control_->feed(motion, lathe.feed_mm_per_min + kFeedRounding);
   const SectionPoint from{motion.from.x_mm, motion.from.z_mm};
   const SectionPoint to{motion.to.x_mm, motion.to.z_mm};

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fabrication/check/control_check.h"
-#include "fabrication/check/start_check.h"
+#include "fabrication/check/known_axes.h"
 #include "fabrication/planing/check/check.h"
 #include "fabrication/planing/check/standing_section.h"
 #include "fabrication/read/nc_motion.h"
@@ -46,7 +46,7 @@ class LatheCheck : public NcSink {
   double spacing_mm_;
   FindingList& findings_;
   PlaningCheck& result_;
-  StartCheck start_;
+  KnownAxes known_;
   std::optional<ControlCheck> control_;
   std::vector<std::string> programs_;
   std::vector<Source> sources_;

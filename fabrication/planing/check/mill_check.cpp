@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 #include "core/number_format.h"
 
@@ -16,6 +15,14 @@ namespace {
 constexpr double kRoundingMm = 1e-7;
 constexpr const char* kLetters = "XYZ";
 constexpr std::uint8_t kAxes = 0b111;
+
+/// It planes in rapid moves, so that each of them may be a cut.
+ControlRule rule_of(const PlaningMill& mill) {
+  ControlRule rule;
+  rule.axes = kAxes;
+  rule.safe_z_mm = mill.clear_mm - kRoundingMm;
+  return rule;
+}
 
 std::array<double, 3> linear(const AxisPositions& at) {
   return {at.x_mm, at.y_mm, at.z_mm};
@@ -28,24 +35,16 @@ MillCheck::MillCheck(const PlanedPart& part, FindingList& findings, PlaningCheck
       profile_(part.lens),
       findings_(findings),
       result_(result),
-      control_(findings, {}),
-      start_(findings, kAxes, part.mill->clear_mm) {
+      control_(findings, rule_of(*part.mill)),
+      known_(findings, kAxes) {
   result_.flank_slope = flank_slope_of(profile_, part.lens.half_width_mm);
 }
 
-void MillCheck::begin(const std::string& name) {
-  programs_.push_back(name);
+void MillCheck::begin(const NcProgram& program) {
+  programs_.push_back(program.file);
   std::fill(std::begin(is_placed_), std::end(is_placed_), false);
-  has_spindle_fault_ = false;
   height_mm_ = 0.0;
-  control_.begin();
-  start_.begin();
-}
-
-void MillCheck::check_spindle(const NcMotion& motion, const NcSettings& settings) {
-  if (settings.spindle.value_or(NcSpindle::stopped) != NcSpindle::stopped && !std::exchange(has_spindle_fault_, true))
-    findings_.add("spindle", motion.place.line, "the spindle turns while the tool planes",
-                  settings.spindle_rpm.value_or(0.0));
+  control_.begin(program.dialect);
 }
 
 void MillCheck::check_length(const NcMotion& motion, std::size_t axis, double length_mm) {
@@ -84,9 +83,9 @@ void MillCheck::check_place(const NcMotion& motion, std::size_t axis) {
 }
 
 void MillCheck::motion(const NcMotion& motion, const NcSettings& settings) {
-  control_.settings(settings, motion.place);
-  check_spindle(motion, settings);
-  start_.motion(motion);
+  control_.way(settings, motion);
+  control_.cut(settings, motion.place);
+  known_.motion(motion);
   height_mm_ = motion.to.z_mm;
   const std::array from = linear(motion.from);
   const std::array to = linear(motion.to);
@@ -116,7 +115,7 @@ void MillCheck::motion(const NcMotion& motion, const NcSettings& settings) {
 }
 
 void MillCheck::end(const NcEnd& end) {
-  control_.spindle_at_end(end);
+  if (end.settings.spindle) control_.spindle_at_end(end);
   const std::array travel = {part_.mill->travel_x_mm, part_.mill->travel_y_mm, part_.mill->travel_z_mm};
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (high_mm_[axis] - low_mm_[axis] > travel[axis] + kRoundingMm)

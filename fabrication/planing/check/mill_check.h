@@ -4,7 +4,7 @@
 // strokes leave.
 
 #include "fabrication/check/control_check.h"
-#include "fabrication/check/start_check.h"
+#include "fabrication/check/known_axes.h"
 #include "fabrication/planing/check/check.h"
 #include "fabrication/planing/check/phase_profile.h"
 #include "fabrication/read/nc_motion.h"
@@ -16,8 +16,8 @@ class MillCheck : public NcSink {
  public:
   MillCheck(const PlanedPart& part, FindingList& findings, PlaningCheck& result);
 
-  /// A program begins. \param name its file
-  void begin(const std::string& name);
+  /// A program begins.
+  void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace&, const AxisPositions&) override { result_.time_s.back() += seconds; }
   void end(const NcEnd& end);
@@ -35,7 +35,6 @@ class MillCheck : public NcSink {
   void check_length(const NcMotion& motion, std::size_t axis, double length_mm);
   void check_grid(const NcMotion& motion, std::size_t axis, double place_mm);
   void check_place(const NcMotion& motion, std::size_t axis);
-  void check_spindle(const NcMotion& motion, const NcSettings& settings);
   /// \param stroke the one that left it; null: none
   void measure_at(double x_mm, double left_mm, const Stroke* stroke);
 
@@ -44,10 +43,9 @@ class MillCheck : public NcSink {
   FindingList& findings_;
   PlaningCheck& result_;
   ControlCheck control_;
-  StartCheck start_;
+  KnownAxes known_;
   std::vector<std::string> programs_;
   std::vector<Stroke> strokes_;
-  bool has_spindle_fault_ = false;
   double height_mm_ = 0.0;
   double low_mm_[3] = {0.0, 0.0, 0.0};
   double high_mm_[3] = {0.0, 0.0, 0.0};

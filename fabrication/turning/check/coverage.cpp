@@ -17,7 +17,7 @@ namespace {
 constexpr double kPlacesMm = 3e-6;
 /// By which the tool may stand off the line of its skew.
 constexpr double kOffSkewMm = 1e-4;
-constexpr double kSameDeg = 1e-6;
+constexpr double kSameDeg = 2e-6;
 
 class CoverageCheck {
  public:

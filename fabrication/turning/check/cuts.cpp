@@ -10,7 +10,7 @@
 #include "core/csv.h"
 #include "core/number_format.h"
 #include "fabrication/check/control_check.h"
-#include "fabrication/check/start_check.h"
+#include "fabrication/check/known_axes.h"
 
 namespace retrace::fabrication::turning {
 namespace {
@@ -21,23 +21,29 @@ constexpr std::uint8_t kXyc = 0b10011;
 constexpr double kFeedRounding = 5e-4;
 constexpr double kWordMm = 1e-6;
 
+ControlRule rule_of_c_axis() {
+  ControlRule rule;
+  rule.axes = kAxesXyzc;
+  return rule;
+}
+
 /// Follows one program after another.
 class CutReader : public NcSink {
  public:
   CutReader(const TurnedPart& part, FindingList& findings)
-      : part_(part), findings_(findings), control_(findings, {}), start_(findings, kAxesXyzc, -1e300) {}
+      : part_(part), findings_(findings), control_(findings, rule_of_c_axis()), known_(findings, kAxesXyzc) {}
 
   void follow(const NcProgram& program) {
     cuts_.programs.push_back(program.file);
+    cuts_.dialects.push_back(program.dialect);
     cuts_.end_mm.push_back(0.0);
     findings_.begin(program.file);
-    control_.begin();
-    start_.begin();
-    has_spindle_fault_ = has_soft_start_ = false;
+    control_.begin(program.dialect);
+    has_soft_start_ = has_free_path_ = false;
     CutRecorder recorder;
     recorder_ = &recorder;
     const NcEnd end = run_nc(program, *this);
-    control_.spindle_at_end(end);
+    if (end.settings.spindle) control_.spindle_at_end(end);
     if (!end.is_complete) findings_.add("truncated", end.line, end.reason);
     for (const Finding& f : recorder.findings()) findings_.add(f.kind, f.line, f.message);
     for (CutPass& pass : recorder.take()) {
@@ -48,7 +54,7 @@ class CutReader : public NcSink {
   }
 
   void motion(const NcMotion& motion, const NcSettings& settings) override {
-    start_.motion(motion);
+    known_.motion(motion);
     check_state(motion, settings);
     follow_travel(motion);
     cuts_.end_mm.back() = motion.to.z_mm;
@@ -71,13 +77,15 @@ class CutReader : public NcSink {
 
  private:
   void check_state(const NcMotion& motion, const NcSettings& settings) {
-    // Paths run on without stopping, which is asked of them elsewhere.
+    control_.way(settings, motion);
+    // Paths run on without stopping, which is asked of them elsewhere; nothing is turned by the spindle at any time.
     NcSettings asked = settings;
-    if (motion.duration_s > 0.0) asked.exact_stop = true;
-    control_.settings(asked, motion.place);
-    if (settings.spindle.value_or(NcSpindle::stopped) != NcSpindle::stopped && !std::exchange(has_spindle_fault_, true))
-      findings_.add("spindle", motion.place.line, "the spindle turns while C positions it",
-                    settings.spindle_rpm.value_or(0.0));
+    if (motion.duration_s > 0.0 || motion.move == NcMove::rapid) asked.exact_stop = true;
+    control_.cut(asked, motion.place);
+    const bool is_free = cuts_.dialects.back() == NcDialect::rs274ngc && motion.duration_s > 0.0 &&
+                         !motion.is_exact_stop && !settings.blend_mm;
+    if (is_free && !std::exchange(has_free_path_, true))
+      findings_.add("blending", motion.place.line, "without P the path may be left by any distance where blocks meet");
   }
 
   void check_cut(const NcMotion& motion, bool is_approach) {
@@ -139,14 +147,14 @@ class CutReader : public NcSink {
   const TurnedPart& part_;
   FindingList& findings_;
   ControlCheck control_;
-  StartCheck start_;
+  KnownAxes known_;
   TurningCuts cuts_;
   CutRecorder* recorder_ = nullptr;
   bool is_placed_[3] = {false, false, false};
   Excess excess_[3];
   bool is_cutting_ = false;
-  bool has_spindle_fault_ = false;
   bool has_soft_start_ = false;
+  bool has_free_path_ = false;
 };
 
 bool begins_at(const CutPass& pass, const DownMove& move) {

@@ -31,6 +31,7 @@ struct DownMove {
 /// What programs do, one after another.
 struct TurningCuts {
   std::vector<std::string> programs;  ///< files
+  std::vector<NcDialect> dialects;    ///< by program
   std::vector<double> end_mm;         ///< by program: Z at its end
   std::vector<CutPass> passes;
   std::vector<FreeMove> free_moves;  ///< but for those that rise straight up

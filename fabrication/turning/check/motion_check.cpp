@@ -17,9 +17,12 @@ namespace {
 /// How far words may be from what was meant: half of their last decimal, of a length and of an angle; of times, in the
 /// coarsest dialect, half a nanosecond.
 constexpr double kHalfWordMm = 0.5e-6;
-constexpr double kHalfWordDeg = 0.5e-7;
 constexpr double kHalfWordS = 0.5e-9;
 constexpr double kDegreesPerTurn = 360.0;
+
+double half_word_deg(NcDialect dialect) {
+  return dialect == NcDialect::fanuc ? 0.5e-6 : 0.5e-7;
+}
 
 /// A figure that was measured, and how much of it rounding may have made.
 struct Figure {
@@ -170,7 +173,7 @@ void check_spindle(const TurnedPart& part, const TurningCuts& cuts, std::size_t 
   Worst acceleration(part.machine.c_acceleration_deg_per_s2);
   for_passes(cuts, program, [&](const CutPass& pass) {
     const Quotients q(
-        pass, [&](std::size_t i) { return pass.c_rad[i] / kDegree; }, kHalfWordDeg);
+        pass, [&](std::size_t i) { return pass.c_rad[i] / kDegree; }, half_word_deg(cuts.dialects[program]));
     for (std::size_t i = 0; i < pass.size(); ++i) {
       const std::int32_t line = pass.line[std::min(i + 1, pass.size() - 1)];
       if (i > 0) by_machine.add(q.velocity(i), pass.line[i]);

@@ -31,7 +31,7 @@ Json poses_json(const Verification& result, const Machine& machine) {
 
 std::string verification_json(const VerificationRun& run, double elapsed_s) {
   const Verification& r = run.result;
-  const Json json = {{"verdict", r.passes() ? "pass" : "fail"},
+  const Json json = {{"verdict", r.verdict()},
                      {"job", run.request.job},
                      {"machine", run.machine.name},
                      {"programs", programs_json(run)},
@@ -41,9 +41,12 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"elements_cut", r.elements_cut},
                      {"facet_distance_nm_max", r.facet_distance_nm_max},
                      {"facet_angle_arcmin_max", r.facet_angle_arcmin_max},
+                     {"facet_angle_arcmin_predicted", r.facet_angle_arcmin_predicted},
                      {"apex_error_arcmin_max", r.apex_error_arcmin_max},
                      {"root_residual_nm_max", r.root_residual_nm_max},
                      {"root_residual_nm_predicted", r.root_residual_nm_predicted},
+                     {"chip_um_max", r.chip_um_max},
+                     {"chip_share_max", r.chip_share_max},
                      {"root_radius_um", r.root_radius_um},
                      {"root_chamfer_um", r.root_chamfer_um},
                      {"root_ridge_um", r.root_ridge_um},
@@ -65,19 +68,20 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
 
 std::string verification_table(const VerificationRun& run) {
   const Verification& r = run.result;
-  std::string text =
-      fmt::format("{} on machine {}: {}\n", run.request.job, run.machine.name, r.passes() ? "pass" : "fail");
+  std::string text = fmt::format("{} on machine {}: {}\n", run.request.job, run.machine.name, r.verdict());
   const auto row = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<28} {}\n", name, value);
   };
   row("elements cut", fmt::format("{} of {}", r.elements_cut, r.elements.size()));
   row("facet distance", fixed(r.facet_distance_nm_max, 2) + " nm");
-  row("facet angle", fixed(r.facet_angle_arcmin_max, 4) + " arcmin");
+  row("facet angle", fmt::format("{} arcmin, {} unavoidable", fixed(r.facet_angle_arcmin_max, 4),
+                                 fixed(r.facet_angle_arcmin_predicted, 4)));
   row("apex error", fixed(r.apex_error_arcmin_max, 4) + " arcmin");
   row("left at the root",
       fmt::format("{} nm, {} unavoidable", fixed(r.root_residual_nm_max, 1), fixed(r.root_residual_nm_predicted, 1)));
   row("cut into walls",
       fmt::format("{} nm, {} unavoidable", fixed(r.wall_overcut_nm_max, 1), fixed(r.wall_overcut_nm_predicted, 1)));
+  row("thickest chip", fixed(r.chip_um_max, 3) + " um");
   row("removed", fixed(r.removed_volume_mm3, 6) + " mm3");
   if (r.border_overcut_mm3 > 0.0)
     row("beyond the apertures", fixed(r.border_overcut_mm3, 6) + " mm3, as triangular cavities must");

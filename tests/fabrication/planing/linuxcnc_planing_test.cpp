@@ -16,7 +16,7 @@ void expect_read(const std::string& part_file) {
   for (const PlannedProgram& planned : plan.programs) {
     SCOPED_TRACE(planned.program.name);
     const std::string printed = test::interpreted(nc_text(planned.program, "rs274ngc"));
-    EXPECT_NE(printed.find("SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)"), std::string::npos);
+    EXPECT_NE(printed.find("SET_MOTION_CONTROL_MODE(CANON_EXACT_STOP)"), std::string::npos);
     EXPECT_NE(printed.find("PROGRAM_END()"), std::string::npos);
     if (planned.program.spindle) {
       const std::size_t speed = printed.find("SET_SPINDLE_SPEED(0, 300");

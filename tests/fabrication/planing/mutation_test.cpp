@@ -91,6 +91,7 @@ std::string mill_fault(const PlanedPart& part, double slope, const std::vector<P
     if (!program.stops_spindle || program.spindle_is_left_on) return "spindle";
     for (const PlainMove& m : program.moves) {
       if (m.is_spindle_on) return "spindle";
+      if (!m.is_stop) return "blending";
       if (!m.is_rapid) return "no fast feed";
       if (m.named[3]) return "C";
       int moved = 0;
@@ -185,7 +186,7 @@ TEST(PlaningMutants, OfAMillAreFound) {
                     {'Z', 1.0, 2.0},
                     {'Z', 5.0, 0.0},
                     {'Z', -1.0, 0.0}},
-                   {"M3 S3000", "G91", "G20", "G1 F500."}, rule));
+                   {"M3 S3000", "G64", "G91", "G20", "G1 F500."}, rule));
 }
 
 /// A lathe: discs along the moves, place by place.
@@ -239,6 +240,7 @@ std::string lathe_fault(const PlanedPart& part, const std::vector<PlainProgram>&
         continue;
       }
       if (!(m.known[0] && m.known[2])) return "cuts before its place is known";
+      if (!m.is_stop) return "blending";
       if (!m.is_spindle_on || m.rpm != part.lathe->spindle_rpm) return "spindle";
       if (m.is_timed || m.feed <= 0.0 || m.feed > part.lathe->feed_mm_per_min * 1.001) return "feed";
       cut(m.from[0], m.from[2], m.at[0], m.at[2]);
@@ -279,7 +281,7 @@ TEST(PlaningMutants, OfALatheAreFound) {
                       {'Z', 1.0, -3.0},
                       {'F', 5.0, 0.0},
                       {'S', 1.1, 0.0}},
-                     {"M5", "S400", "G91", "G20", "G93"}, rule));
+                     {"M5", "S400", "G64", "G91", "G20", "G93"}, rule));
   }
 }
 

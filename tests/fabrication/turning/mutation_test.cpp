@@ -246,7 +246,7 @@ void judge_all(const std::string& file, const std::vector<fabrication::test::Num
   int missed = 0;
   int found_besides = 0;
   for (const fabrication::test::Mutant& mutant :
-       fabrication::test::mutants_of(text, changes, {"M3 S300", "G61", "G91", "G94", "G20"})) {
+       fabrication::test::mutants_of(text, changes, {"M3 S300", "G61", "G64", "G91", "G94", "G20"})) {
     const std::string fault = fault_of(plan.part, fabrication::test::plain_program(mutant.text));
     const bool found = is_found(plan.part, {mutant.text});
     ++tried;

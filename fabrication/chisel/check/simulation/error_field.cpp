@@ -81,12 +81,12 @@ ElementField field_of(const Groove& groove, std::span<const SweptVolume> sweeps,
 ErrorField error_field(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                        std::size_t pixels) {
   if (job.substrate)
-    throw InputError({job.source, 0, "base"}, "no map is drawn of elements on a base, only of flat arrays");
+    throw InputError(job.where("base"), "no map is drawn of elements on a base, only of flat arrays");
   const Workpiece3d workpiece = workpiece_of(job, machine);
   FindingList findings;
   ProgramCheck check(workpiece, findings);
   for (const NcProgram& program : programs) {
-    check.begin(program.file);
+    check.begin(program);
     check.end(run_nc(program, check));
   }
   const std::vector<RigidMotion> poses = check.poses();

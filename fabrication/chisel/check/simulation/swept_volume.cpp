@@ -119,6 +119,37 @@ std::optional<LineSpan> swept_span(const ToolWedge& wedge, const SweptVolume& sw
   return LineSpan{low, high, sweep.place.line};
 }
 
+std::vector<ToolWedge::Side> swept_sides(const ToolWedge& wedge, const SweptVolume& sweep) {
+  constexpr double kLevel = 1e-15;  // what a side gains per mm of travel along it
+  struct Bound {
+    ToolWedge::Side side;
+    double rate = 0.0;  ///< by which t moves the side outwards
+  };
+  const Vec3 travel = sweep.to_mm - sweep.from_mm;
+  std::vector<Bound> lower = {{{Vec3::Zero(), 0.0}, 1.0}};
+  std::vector<Bound> upper = {{{Vec3::Zero(), 1.0}, -1.0}};
+  std::vector<ToolWedge::Side> sides;
+  for (std::size_t k = 0; k < wedge.sides.size(); ++k) {
+    const ToolWedge::Side& side = wedge.sides[k];
+    if (k > 0 && side.outward == wedge.sides[k - 1].outward && side.bound_mm == wedge.sides[k - 1].bound_mm) continue;
+    const ToolWedge::Side placed{side.outward, side.bound_mm + side.outward.dot(sweep.from_mm)};
+    const double rate = side.outward.dot(travel);
+    if (std::abs(rate) <= kLevel)
+      sides.push_back(placed);
+    else
+      (rate > 0.0 ? lower : upper).push_back({placed, rate});
+  }
+  for (const Bound& below : lower)
+    for (const Bound& above : upper) {
+      const Vec3 outward = below.rate * above.side.outward - above.rate * below.side.outward;
+      const double length = outward.norm();
+      if (length <= kLevel) continue;
+      sides.push_back(
+          {outward / length, (below.rate * above.side.bound_mm - above.rate * below.side.bound_mm) / length});
+    }
+  return sides;
+}
+
 LineSurface surface_along(std::vector<LineSpan>& spans, double exit) {
   std::sort(spans.begin(), spans.end(), [](const LineSpan& a, const LineSpan& b) { return a.high > b.high; });
   LineSurface surface{exit, 0, exit, 0, exit};

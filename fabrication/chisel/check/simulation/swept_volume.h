@@ -55,7 +55,13 @@ struct SweptVolume {
   bool is_rapid = false;
   geometry::Vec3 from_mm = geometry::Vec3::Zero();
   geometry::Vec3 to_mm = geometry::Vec3::Zero();
+  std::uint32_t program = 0;  ///< which of those that are run, from 0
 };
+
+/// The half-spaces whose intersection is the body that a wedge sweeps, in the frame of the machine: those of the wedge
+/// at t travel, 0 <= t <= 1, of which t is eliminated (Fourier-Motzkin). Some may be redundant; of those that bound it
+/// `outward` has length 1.
+std::vector<ToolWedge::Side> swept_sides(const ToolWedge& wedge, const SweptVolume& sweep);
 
 /// Part of a line that a sweep removes.
 struct LineSpan {

@@ -7,14 +7,16 @@ O0001
 (Zero: centre of the array on the face of the blank, roof edges along X at A0 C0. Controller transformation off)
 (Tool: width 0.451 mm, wedge 50 deg, clearance 3 deg as mounted. Reference: middle of the edge)
 (Process golden: roughing 100 um, finishing 1 x 5 um, clearance 0.2 mm)
-(Pose: facet 1 A45.2501562 C-0.1200764)
-(Pose: facet 2 A45.3051684 C179.8978668)
+(Pose: facet 1 A45.2501560 C-0.1200760)
+(Pose: facet 2 A45.3051680 C179.8978670)
+(A is taken to turn about a line through X0 Y0 Z0 from the work zero, C about one through X0 Y0 Z0 from the work zero)
 (Expected time: 0 h 1 min)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
 G17 G21 G40 G49 G80 G90 G94
-G54 G61 G69
+G54 G61
 M5
-G0 Z5.426845
-G0 A45.2501562 C-0.1200764
+G0 Z100.000000
+G0 A45.250156 C-0.120076
 (Stage roughing)
 (element 0)
 G0 X0.000053 Y-0.146245
@@ -32,7 +34,7 @@ G0 Y0.158755
 M98 P0102
 M9
 G0 Z5.426845
-G0 A45.3051684 C179.8978668
+G0 A45.305168 C179.897867
 (Finishing cut 1 of 1 C-axis at 180)
 (element 0)
 G0 X0.000123 Y0.158755
@@ -41,7 +43,7 @@ M7
 M98 P0103
 M9
 G0 Z5.426845
-G0 A0.0000000 C0.0000000
+G0 A0.000000 C0.000000
 M30
 O0101
 (roughing: 4 cuts by plunging and ploughing)

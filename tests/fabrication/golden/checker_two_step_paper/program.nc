@@ -7,16 +7,18 @@ O0001
 (Zero: centre of the array on the face of the blank, roof edges along X at A0 C0. Controller transformation off)
 (Tool: width 0.451 mm, wedge 50 deg, clearance 3 deg as mounted. Reference: middle of the edge)
 (Process golden: roughing 100 um, finishing 1 x 5 um, clearance 0.2 mm)
-(Pose: facet 1 A45.0001554 C-0.1192461)
-(Pose: facet 1 of turned elements A45.0366315 C89.8621016)
-(Pose: facet 2 A45.0551675 C179.8985408)
-(Pose: facet 2 of turned elements A45.0186796 C269.9171674)
+(Pose: facet 1 A45.0001550 C-0.1192460)
+(Pose: facet 1 of turned elements A45.0366320 C89.8621020)
+(Pose: facet 2 A45.0551680 C179.8985410)
+(Pose: facet 2 of turned elements A45.0186800 C269.9171670)
+(A is taken to turn about a line through X0 Y0 Z0 from the work zero, C about one through X0 Y0 Z0 from the work zero)
 (Expected time: 0 h 2 min)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
 G17 G21 G40 G49 G80 G90 G94
-G54 G61 G69
+G54 G61
 M5
-G0 Z5.651727
-G0 A45.0001554 C-0.1192461
+G0 Z100.000000
+G0 A45.000155 C-0.119246
 (Stage roughing)
 (element 0)
 G0 X-0.225500 Y0.013905
@@ -40,7 +42,7 @@ G0 Z0.282920
 M98 P0102
 M9
 G0 Z5.651727
-G0 A45.0366315 C89.8621016
+G0 A45.036632 C89.862102
 (Stage roughing-turned)
 (element 1)
 G0 X0.225462 Y-0.305000
@@ -64,7 +66,7 @@ G0 X-0.225500 Y0.318905
 M98 P0104
 M9
 G0 Z5.651727
-G0 A45.0551675 C179.8985408
+G0 A45.055168 C179.898541
 (Finishing cut 1 of 1 C-axis at 180)
 (element 0)
 G0 X0.225750 Y0.000000
@@ -77,7 +79,7 @@ G0 X-0.225500 Y0.318905
 M98 P0105
 M9
 G0 Z5.651727
-G0 A45.0186796 C269.9171674
+G0 A45.018680 C269.917167
 (Finishing cut 1 of 1 C-axis at 270)
 (element 1)
 G0 Y0.318905
@@ -90,7 +92,7 @@ G0 Z0.283123
 M98 P0106
 M9
 G0 Z5.651727
-G0 A0.0000000 C0.0000000
+G0 A0.000000 C0.000000
 M30
 O0101
 (roughing: 4 cuts by plunging and ploughing)

@@ -8,16 +8,18 @@ O0001
 (Zero: centre of the array, as high as the highest place of the blank, roof edges along X at A0 C0. Controller transformation off)
 (Tool: width 0.451 mm, wedge 50 deg, clearance 3 deg as mounted. Reference: middle of the edge)
 (Process golden: roughing 100 um, finishing 1 x 5 um, clearance 0.2 mm)
-(Pose: facet 1 A47.5840397 C0.0000000)
-(Pose: facet 1 A42.4159603 C0.0000000)
-(Pose: facet 2 A42.4159603 C180.0000000)
-(Pose: facet 2 A47.5840397 C180.0000000)
+(Pose: facet 1 A47.5840400 C0.0000000)
+(Pose: facet 1 A42.4159600 C0.0000000)
+(Pose: facet 2 A42.4159600 C180.0000000)
+(Pose: facet 2 A47.5840400 C180.0000000)
+(A is taken to turn about a line through X0 Y0 Z0 from the work zero, C about one through X0 Y0 Z0 from the work zero)
 (Expected time: 0 h 2 min)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
 G17 G21 G40 G49 G80 G90 G94
-G54 G61 G69
+G54 G61
 M5
-G0 Z5.671197
-G0 A47.5840397 C0.0000000
+G0 Z100.000000
+G0 A47.584040 C0.000000
 (Stage roughing-tilt-1)
 (element 0)
 G0 X-0.225500 Y0.010256
@@ -41,7 +43,7 @@ G0 X0.225500 Y0.315256
 M98 P0102
 M9
 G0 Z5.671197
-G0 A42.4159603 C0.0000000
+G0 A42.415960 C0.000000
 (Stage roughing-tilt-2)
 (element 1)
 G0 X-0.225500 Y-0.308541
@@ -65,7 +67,7 @@ G0 X0.225500 Y-0.003541
 M98 P0104
 M9
 G0 Z5.671197
-G0 A42.4159603 C180.0000000
+G0 A42.415960 C180.000000
 (Finishing cut 1 of 1 C-axis at 180)
 (element 0)
 G0 Y-0.003541
@@ -78,7 +80,7 @@ G0 X-0.225500 Y-0.003541
 M98 P0105
 M9
 G0 Z5.671197
-G0 A47.5840397 C180.0000000
+G0 A47.584040 C180.000000
 (Finishing cut 1 of 1 C-axis at 180)
 (element 1)
 G0 X0.225500 Y0.315256
@@ -91,7 +93,7 @@ G0 X-0.225500 Y0.315256
 M98 P0106
 M9
 G0 Z5.671197
-G0 A0.0000000 C0.0000000
+G0 A0.000000 C0.000000
 M30
 O0101
 (roughing-tilt-1: 4 cuts by plunging and ploughing)

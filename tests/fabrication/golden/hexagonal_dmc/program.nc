@@ -7,19 +7,21 @@ O0001
 (Zero: centre of the array on the face of the blank, dihedral edges along -Y and 120 deg apart at B0 C0. Controller transformation off)
 (Tool: V of 50 deg, width 0.25 mm, wedge 65 deg, clearance 3 deg as mounted. Reference: the tip)
 (Process thesis-acrylic: roughing 30 um, finishing 2 x 5 um, clearance 0.2 mm)
-(Pose: facet 1 B35.2643897 C30.0000000)
-(Pose: facet 2 B35.2643897 C-90.0000000)
-(Pose: facet 3 B35.2643897 C-210.0000000)
+(Pose: facet 1 B35.2643900 C30.0000000)
+(Pose: facet 2 B35.2643900 C-90.0000000)
+(Pose: facet 3 B35.2643900 C-210.0000000)
+(B is taken to turn about a line through X0 Y0 Z100 from the tool reference point, C about one through X0 Y0 Z0 from the work zero)
 (Expected time: 0 h 7 min)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
 G17 G21 G40 G49 G80 G90 G94
-G54 G61 G69
+G54 G61
 M5
-G0 Z5.200000
-G0 B35.2643897 C30.0000000
+G0 Z100.000000
+G0 B35.264390 C30.000000
 (Stage layer-1-facet-1)
 (element 0)
 G0 X57.789959 Y-0.354952
-G0 Z-18.150341
+G0 Z-18.150342
 M7
 M98 P0101
 (element 1)
@@ -42,11 +44,11 @@ G0 X57.902459 Y-0.419904
 M98 P0101
 M9
 G0 Z5.200000
-G0 B35.2643897 C-90.0000000
+G0 B35.264390 C-90.000000
 (Stage layer-1-facet-2)
 (element 0)
 G0 Y-0.160096
-G0 Z-18.150341
+G0 Z-18.150342
 M7
 M98 P0102
 (element 1)
@@ -70,11 +72,11 @@ G0 Y-0.225048
 M98 P0102
 M9
 G0 Z5.200000
-G0 B35.2643897 C-210.0000000
+G0 B35.264390 C-210.000000
 (Stage layer-1-facet-3)
 (element 0)
 G0 X58.014959 Y-0.354952
-G0 Z-18.150341
+G0 Z-18.150342
 M7
 M98 P0103
 (element 1)
@@ -98,11 +100,11 @@ M98 P0103
 (Roughing 50 percent)
 M9
 G0 Z5.200000
-G0 B35.2643897 C30.0000000
+G0 B35.264390 C30.000000
 (Stage layer-2-facet-1)
 (element 0)
 G0 X57.826701 Y-0.418592
-G0 Z-18.150342
+G0 Z-18.150343
 M7
 M98 P0104
 (element 1)
@@ -125,11 +127,11 @@ G0 X57.939201 Y-0.483544
 M98 P0104
 M9
 G0 Z5.200000
-G0 B35.2643897 C-90.0000000
+G0 B35.264390 C-90.000000
 (Stage layer-2-facet-2)
 (element 0)
 G0 Y-0.223736
-G0 Z-18.150342
+G0 Z-18.150343
 M7
 M98 P0105
 (element 1)
@@ -153,11 +155,11 @@ G0 Y-0.288688
 M98 P0105
 M9
 G0 Z5.200000
-G0 B35.2643897 C-210.0000000
+G0 B35.264390 C-210.000000
 (Stage layer-2-facet-3)
 (element 0)
 G0 X58.051701 Y-0.418592
-G0 Z-18.150342
+G0 Z-18.150343
 M7
 M98 P0106
 (element 1)
@@ -181,11 +183,11 @@ M98 P0106
 (Roughing 100 percent)
 M9
 G0 Z5.200000
-G0 B35.2643897 C30.0000000
+G0 B35.264390 C30.000000
 (Finishing cut 1 of 2 C-axis at 30)
 (element 0)
 G0 X57.832825 Y-0.429198
-G0 Z-18.150341
+G0 Z-18.150342
 M7
 M98 P0107
 (element 1)
@@ -208,11 +210,11 @@ G0 X57.945325 Y-0.494150
 M98 P0107
 M9
 G0 Z5.200000
-G0 B35.2643897 C-90.0000000
+G0 B35.264390 C-90.000000
 (Finishing cut 1 of 2 C-axis at -90)
 (element 0)
 G0 Y-0.234342
-G0 Z-18.150341
+G0 Z-18.150342
 M7
 M98 P0108
 (element 1)
@@ -235,11 +237,11 @@ G0 Y-0.299294
 M98 P0108
 M9
 G0 Z5.200000
-G0 B35.2643897 C-210.0000000
+G0 B35.264390 C-210.000000
 (Finishing cut 1 of 2 C-axis at -210)
 (element 0)
 G0 X58.057825 Y-0.429198
-G0 Z-18.150341
+G0 Z-18.150342
 M7
 M98 P0109
 (element 1)
@@ -262,11 +264,11 @@ G0 X58.057825 Y-0.299294
 M98 P0109
 M9
 G0 Z5.200000
-G0 B35.2643897 C30.0000000
+G0 B35.264390 C30.000000
 (Finishing cut 2 of 2 C-axis at 30)
 (element 0)
 G0 X57.838949 Y-0.439805
-G0 Z-18.150341
+G0 Z-18.150342
 M7
 M98 P0110
 (element 1)
@@ -289,11 +291,11 @@ G0 X57.951449 Y-0.504757
 M98 P0110
 M9
 G0 Z5.200000
-G0 B35.2643897 C-90.0000000
+G0 B35.264390 C-90.000000
 (Finishing cut 2 of 2 C-axis at -90)
 (element 0)
 G0 Y-0.244949
-G0 Z-18.150341
+G0 Z-18.150342
 M7
 M98 P0111
 (element 1)
@@ -316,11 +318,11 @@ G0 Y-0.309901
 M98 P0111
 M9
 G0 Z5.200000
-G0 B35.2643897 C-210.0000000
+G0 B35.264390 C-210.000000
 (Finishing cut 2 of 2 C-axis at -210)
 (element 0)
 G0 X58.063949 Y-0.439805
-G0 Z-18.150341
+G0 Z-18.150342
 M7
 M98 P0112
 (element 1)
@@ -343,7 +345,7 @@ G0 X58.063949 Y-0.309901
 M98 P0112
 M9
 G0 Z5.200000
-G0 B0.0000000 C0.0000000
+G0 B0.000000 C0.000000
 M30
 O0101
 (layer-1-facet-1: down one edge, up the other)

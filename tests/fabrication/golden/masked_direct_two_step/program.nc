@@ -9,12 +9,14 @@ O0001
 (Process golden: roughing 100 um, finishing 1 x 5 um, clearance 0.2 mm)
 (Pose: facet 1 A45.0000000 C0.0000000)
 (Pose: facet 2 A45.0000000 C180.0000000)
-(Expected time: 0 h 1 min)
+(A is taken to turn about a line through X0 Y0 Z0 from the work zero, C about one through X0 Y0 Z0 from the work zero)
+(Expected time: 0 h 2 min)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
 G17 G21 G40 G49 G80 G90 G94
-G54 G61 G69
+G54 G61
 M5
-G0 Z5.775267
-G0 A45.0000000 C0.0000000
+G0 Z100.000000
+G0 A45.000000 C0.000000
 (Stage roughing)
 (element 0)
 G0 X-0.225500 Y0.173358
@@ -40,7 +42,7 @@ G0 Z0.282843
 M98 P0102
 M9
 G0 Z5.775267
-G0 A45.0000000 C180.0000000
+G0 A45.000000 C180.000000
 (Finishing cut 1 of 1 C-axis at 180)
 (element 0)
 G0 Y-0.159453
@@ -53,7 +55,7 @@ G0 X-0.225500 Y0.318905
 M98 P0103
 M9
 G0 Z5.775267
-G0 A0.0000000 C0.0000000
+G0 A0.000000 C0.000000
 M30
 O0101
 (roughing: 4 cuts by plunging and ploughing)

@@ -7,14 +7,16 @@ O0001
 (Zero: centre of the array on the face of the blank, roof edges along X at A0 C0. Controller transformation off)
 (Tool: width 0.451 mm, wedge 50 deg, clearance 3 deg as mounted. Reference: middle of the edge)
 (Process golden: roughing 80 um, finishing 2 x 5 um, clearance 0.2 mm)
-(Pose: facet 1 A45.0000025 C-0.0154922)
-(Pose: facet 2 A45.0000025 C179.9845078)
+(Pose: facet 1 A45.0000020 C-0.0154920)
+(Pose: facet 2 A45.0000020 C179.9845080)
+(A is taken to turn about a line through X0 Y0 Z0 from the work zero, C about one through X0 Y0 Z0 from the work zero)
 (Expected time: 0 h 2 min)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
 G17 G21 G40 G49 G80 G90 G94
-G54 G61 G69
+G54 G61
 M5
-G0 Z5.651309
-G0 A45.0000025 C-0.0154922
+G0 Z100.000000
+G0 A45.000002 C-0.015492
 (Stage roughing)
 (element 0)
 G0 X-0.225500 Y0.068905
@@ -48,7 +50,7 @@ G0 X-0.225570 Y-0.005000
 M98 P0102
 M9
 G0 Z5.651309
-G0 A45.0000025 C179.9845078
+G0 A45.000002 C179.984508
 (Finishing cut 1 of 2 C-axis at 180)
 (element 0)
 G0 X0.225430 Y-0.005000
@@ -65,7 +67,7 @@ G0 X0.225500 Y0.313905
 M98 P0103
 M9
 G0 Z5.651309
-G0 A45.0000025 C-0.0154922
+G0 A45.000002 C-0.015492
 (Finishing cut 2 of 2 C-axis at 0)
 (element 0)
 G0 X-0.225500 Y0.318905
@@ -82,7 +84,7 @@ G0 X-0.225570 Y0.000000
 M98 P0104
 M9
 G0 Z5.651309
-G0 A45.0000025 C179.9845078
+G0 A45.000002 C179.984508
 (Finishing cut 2 of 2 C-axis at 180)
 (element 0)
 G0 X0.225430 Y0.000000
@@ -99,7 +101,7 @@ G0 X0.225500 Y0.318905
 M98 P0105
 M9
 G0 Z5.651309
-G0 A0.0000000 C0.0000000
+G0 A0.000000 C0.000000
 M30
 O0101
 (roughing: 4 cuts by plunging and ploughing)

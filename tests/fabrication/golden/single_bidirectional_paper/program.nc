@@ -7,14 +7,16 @@ O0001
 (Zero: centre of the array on the face of the blank, roof edges along X at A0 C0. Controller transformation off)
 (Tool: width 0.451 mm, wedge 50 deg, clearance 3 deg as mounted. Reference: middle of the edge)
 (Process golden: roughing 50 um, finishing 0 x 5 um, clearance 0.2 mm)
-(Pose: facet 1 A45.0001554 C-0.1192461)
-(Pose: facet 2 A45.0551675 C179.8985408)
+(Pose: facet 1 A45.0001550 C-0.1192460)
+(Pose: facet 2 A45.0551680 C179.8985410)
+(A is taken to turn about a line through X0 Y0 Z0 from the work zero, C about one through X0 Y0 Z0 from the work zero)
 (Expected time: 0 h 3 min)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
 G17 G21 G40 G49 G80 G90 G94
-G54 G61 G69
+G54 G61
 M5
-G0 Z5.425864
-G0 A45.0001554 C-0.1192461
+G0 Z100.000000
+G0 A45.000155 C-0.119246
 (Layer 1 of 4 C-axis at 0)
 (element 0)
 G0 X0.000054 Y0.009453
@@ -23,7 +25,7 @@ M7
 M98 P0101
 M9
 G0 Z5.425864
-G0 A45.0551675 C179.8985408
+G0 A45.055168 C179.898541
 (Layer 1 of 4 C-axis at 180)
 (element 0)
 G0 X0.000125 Y0.009453
@@ -32,7 +34,7 @@ M7
 M98 P0102
 M9
 G0 Z5.425864
-G0 A45.0001554 C-0.1192461
+G0 A45.000155 C-0.119246
 (Layer 2 of 4 C-axis at 0)
 (element 0)
 G0 X0.000054 Y0.059453
@@ -41,7 +43,7 @@ M7
 M98 P0103
 M9
 G0 Z5.425864
-G0 A45.0551675 C179.8985408
+G0 A45.055168 C179.898541
 (Layer 2 of 4 C-axis at 180)
 (element 0)
 G0 X0.000125 Y0.059453
@@ -50,7 +52,7 @@ M7
 M98 P0104
 M9
 G0 Z5.425864
-G0 A45.0001554 C-0.1192461
+G0 A45.000155 C-0.119246
 (Layer 3 of 4 C-axis at 0)
 (element 0)
 G0 X0.000054 Y0.109453
@@ -59,7 +61,7 @@ M7
 M98 P0105
 M9
 G0 Z5.425864
-G0 A45.0551675 C179.8985408
+G0 A45.055168 C179.898541
 (Layer 3 of 4 C-axis at 180)
 (element 0)
 G0 X0.000125 Y0.109453
@@ -68,7 +70,7 @@ M7
 M98 P0106
 M9
 G0 Z5.425864
-G0 A45.0001554 C-0.1192461
+G0 A45.000155 C-0.119246
 (Layer 4 of 4 C-axis at 0)
 (element 0)
 G0 X0.000054 Y0.159453
@@ -77,7 +79,7 @@ M7
 M98 P0107
 M9
 G0 Z5.425864
-G0 A45.0551675 C179.8985408
+G0 A45.055168 C179.898541
 (Layer 4 of 4 C-axis at 180)
 (element 0)
 G0 X0.000125 Y0.159453
@@ -86,7 +88,7 @@ M7
 M98 P0108
 M9
 G0 Z5.425864
-G0 A0.0000000 C0.0000000
+G0 A0.000000 C0.000000
 M30
 O0101
 (layer-1-facet-1: one plunge)

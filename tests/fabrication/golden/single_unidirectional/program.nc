@@ -8,12 +8,14 @@ O0001
 (Tool: width 0.451 mm, wedge 50 deg, clearance 3 deg as mounted. Reference: middle of the edge)
 (Process golden: roughing 80 um, finishing 0 x 5 um, clearance 0.2 mm)
 (Pose: facet 1 A45.0000000 C0.0000000)
+(A is taken to turn about a line through X0 Y0 Z0 from the work zero, C about one through X0 Y0 Z0 from the work zero)
 (Expected time: 0 h 1 min)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
 G17 G21 G40 G49 G80 G90 G94
-G54 G61 G69
+G54 G61
 M5
-G0 Z5.425655
-G0 A45.0000000 C0.0000000
+G0 Z100.000000
+G0 A45.000000 C0.000000
 (Stage roughing)
 (element 0)
 G0 X0.000000 Y-0.080547
@@ -26,7 +28,7 @@ M98 P0101
 (Roughing 100 percent)
 M9
 G0 Z5.425655
-G0 A0.0000000 C0.0000000
+G0 A0.000000 C0.000000
 M30
 O0101
 (roughing: 4 cuts by plunging and ploughing)

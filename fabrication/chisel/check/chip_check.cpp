@@ -1,0 +1,168 @@
+#include "fabrication/chisel/check/chip_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/number_format.h"
+#include "fabrication/chisel/check/chip_limit.h"
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+/// A section says how thick a chip is if the lines square to the swept plane lie in it, within 30 degrees.
+constexpr double kLeastInPlane = 0.87;
+
+double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const Vec2& direction, double to_mm) {
+  double sum = 0.0;
+  for (const ConvexPiece& piece : pieces) sum += chord_mm(piece, foot, direction, 0.0, to_mm);
+  return sum;
+}
+
+/// Where the tip crosses a section at the end of its move that lies deeper; of a chisel the edge does.
+Vec2 deepest_place(const SectionPlane& plane, const Groove& groove, const ToolWedge& wedge, const SweptVolume& sweep,
+                   const RigidMotion& back) {
+  const Vec3 from = back.point(sweep.from_mm);
+  const Vec3 to = back.point(sweep.to_mm);
+  const Vec3 tip = groove.over_face_mm(from) < groove.over_face_mm(to) ? from : to;
+  const Vec3 edge = back.direction(wedge.edge);
+  const double across = plane.normal.dot(edge);
+  if (wedge.half_width_mm <= 0.0 || std::abs(across) < 0.5) return plane.point(tip);
+  const double by_mm = std::clamp(-plane.beside_mm(tip) / across, -wedge.half_width_mm, wedge.half_width_mm);
+  return plane.point(tip + by_mm * edge);
+}
+
+}  // namespace
+
+ChipCheck::ChipCheck(const Workpiece3d& workpiece, std::size_t element, StandingMaterial& material,
+                     const ToolWedge& wedge, std::span<const RigidMotion> poses)
+    : workpiece_(workpiece),
+      groove_(workpiece.grooves[element]),
+      element_(element),
+      material_(material),
+      wedge_(wedge),
+      poses_(poses),
+      allowance_mm_(finishing_allowance_mm(workpiece)) {
+  if (allowance_mm_ > 0.0) add_lines();
+}
+
+/// Away from the root, where the other facet's cuts take some of this one's layers, and from the rim, where the blank
+/// ends before them.
+void ChipCheck::add_lines() {
+  constexpr double kClearOfRoot = 6.0;  // allowances
+  const double least_mm = kClearOfRoot * (allowance_mm_ + workpiece_.prediction(element_).root_mm);
+  const std::vector<StandingSection>& sections = material_.sections();
+  for (std::size_t s = 0; s < sections.size(); ++s) {
+    const SectionPlane& plane = sections[s].plane;
+    // Of cubes, within the layers of the third facet.
+    if (groove_.is_cube() && (plane.origin_mm - groove_.root_mm).norm() < least_mm) continue;
+    for (std::size_t f = 0; f < groove_.facets.size(); ++f) {
+      const DesignFacet& facet = groove_.facets[f];
+      const Vec2 normal = plane.direction(facet.normal);
+      if (normal.norm() < kLeastInPlane) continue;
+      FacetLine line;
+      line.section = s;
+      line.facet = f;
+      line.direction = normal.normalized();
+      const Vec2 level(line.direction.y(), -line.direction.x());
+      const Vec2 up_slope = level.y() > 0.0 ? level : Vec2(-level);
+      for (const double share : {0.0, 0.15, 0.35, 0.6, 0.8, 0.97}) {
+        line.foot_mm = std::max(least_mm, share * groove_.facet_length_mm) * up_slope;
+        if (standing_mm(sections[s].pieces, line.foot_mm, line.direction, allowance_mm_) < allowance_mm_ - 1e-8)
+          continue;
+        lines_.push_back(line);
+      }
+    }
+  }
+}
+
+void ChipCheck::cut(const SweptVolume& sweep) {
+  const std::vector<ToolWedge::Side> sides = swept_sides(wedge_, sweep);
+  const RigidMotion& pose = poses_[sweep.pose];
+  std::vector<std::vector<ConvexPiece>> removed;
+  bool is_cut = false;
+  for (StandingSection& section : material_.sections()) {
+    removed.push_back(section.cut(sides, pose));
+    is_cut = is_cut || !removed.back().empty();
+  }
+  if (!is_cut || sweep.is_rapid) return;
+  const RigidMotion back = pose.inverse();
+  const std::optional<FacetCut> cut = facet_cut(groove_, wedge_, sweep, back);
+  check_chips(sweep, cut, back, removed);
+  if (cut && is_finishing(workpiece_, *cut)) count_finishing(sweep, *cut, removed);
+}
+
+void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetCut>& cut, const RigidMotion& back,
+                            std::span<const std::vector<ConvexPiece>> removed) {
+  const Vec3 normal = back.direction(swept_normal(wedge_, sweep));
+  const ChipLimit limit(workpiece_, element_, cut, wedge_, back);
+  double worst_mm = 0.0;
+  double allowed_mm = 0.0;
+  for (std::size_t s = 0; s < removed.size(); ++s) {
+    const SectionPlane& plane = material_.sections()[s].plane;
+    const Vec2 square = plane.direction(normal);
+    if (removed[s].empty() || square.norm() < kLeastInPlane) continue;
+    const Vec2 along = Vec2(-square.y(), square.x()).normalized();
+    const double deepest_mm = along.dot(deepest_place(plane, groove_, wedge_, sweep, back));
+    const double beside_mm = groove_.is_cube() ? std::min(std::abs(plane.beside_mm(back.point(sweep.from_mm))),
+                                                          std::abs(plane.beside_mm(back.point(sweep.to_mm))))
+                                               : 0.0;
+    std::vector<double> bends;
+    for (const double bend : limit.bends_mm())
+      for (const double side : {-1.0, 1.0}) bends.push_back(deepest_mm + side * (bend + 1e-9));
+    for (const LineLength& line : line_lengths(removed[s], along, bends)) {
+      const double most_mm = limit.at(std::abs(line.at_mm - deepest_mm), beside_mm);
+      figures_.thickest_mm = std::max(figures_.thickest_mm, line.length_mm);
+      figures_.thickest_share = std::max(figures_.thickest_share, line.length_mm / most_mm);
+      if (line.length_mm - most_mm <= worst_mm - allowed_mm) continue;
+      worst_mm = line.length_mm;
+      allowed_mm = most_mm;
+    }
+  }
+  constexpr double kRoundingMm = 1e-7;
+  if (worst_mm <= allowed_mm + kRoundingMm) return;
+  find("chip_too_thick", sweep,
+       fmt::format("the cut takes {} um at once, at a depth of cut of {} um {} are borne: a cut before it is missing",
+                   fixed(1e3 * worst_mm, 3), shortest(1e3 * limit.depth_mm()), fixed(1e3 * allowed_mm, 3)),
+       1e3 * worst_mm, 1e3 * allowed_mm);
+}
+
+void ChipCheck::count_finishing(const SweptVolume& sweep, const FacetCut& cut,
+                                std::span<const std::vector<ConvexPiece>> removed) {
+  const double least_mm = 5e-4 * workpiece_.job->process.finishing_depth_um;
+  for (FacetLine& line : lines_) {
+    if (line.facet != cut.facet || removed[line.section].empty()) continue;
+    if (standing_mm(removed[line.section], line.foot_mm, line.direction, allowance_mm_) < least_mm) continue;
+    ++line.finishing_cuts;
+    line.last = sweep;
+  }
+}
+
+void ChipCheck::find(const char* kind, const SweptVolume& sweep, std::string message, double value_um,
+                     double limit_um) {
+  figures_.findings.push_back(
+      {kind, "", sweep.place.line, static_cast<std::int64_t>(element_), std::move(message), value_um, limit_um, 1});
+  figures_.programs.push_back(sweep.program);
+}
+
+ChipFigures ChipCheck::finish() {
+  const Process& process = workpiece_.job->process;
+  for (const FacetLine& line : lines_) {
+    // Of a facet that is not finished yet what is left is told.
+    if (line.finishing_cuts == 0 || line.finishing_cuts >= process.finishing_cuts) continue;
+    if (standing_mm(material_.sections()[line.section].pieces, line.foot_mm, line.direction, allowance_mm_) >
+        workpiece_.tolerance_mm)
+      continue;
+    find("finishing_missing", line.last,
+         fmt::format("{} finishing cuts took the last {} um of facet {}, the process asks for {}", line.finishing_cuts,
+                     shortest(1e3 * allowance_mm_), line.facet + 1, process.finishing_cuts),
+         line.finishing_cuts, process.finishing_cuts);
+  }
+  return std::move(figures_);
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,85 @@
+#include "fabrication/chisel/check/chip_limit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// Over the facet of a V, by how much its flanks rise for each mm from the dihedral edges.
+double flank_slope(const Groove& cavity, std::size_t facet, const Vec3& spine) {
+  double slope = 1.0;
+  for (const std::size_t k : {facet, (facet + 1) % 3}) {
+    const double away = spine.dot(cavity.edges[k]);
+    if (away > 0.0) slope = std::max(slope, spine.dot(cavity.facets[facet].normal) / away);
+  }
+  return slope;
+}
+
+}  // namespace
+
+ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const std::optional<FacetCut>& cut,
+                     const ToolWedge& wedge, const RigidMotion& back) {
+  const Groove& groove = workpiece.grooves[element];
+  const Tool& tool = workpiece.job->tool;
+  depth_mm_ = depth_of_cut_mm(workpiece, cut);
+  slack_mm_ = workpiece.tolerance_mm + workpiece.prediction(element).root_mm;
+  if (groove.is_cube()) {
+    if (!cut) return;
+    kind_ = Kind::v_shaped;
+    const double depth_mm = depth_mm_ + slack_mm_;
+    share_ = flank_slope(groove, cut->facet, back.direction(wedge.rake_direction));
+    bends_mm_ = {depth_mm, depth_mm};
+    return;
+  }
+  const Angle rake = Angle::from_deg(tool.clearance_deg + tool.wedge_deg);
+  apex_ = Angle::from_rad(std::acos(-groove.facets[0].normal.dot(groove.facets[1].normal)));
+  rake_slope_ = std::tan(rake.rad());
+  const double sine = std::sin(apex_.rad());
+  const double cosine = std::cos(apex_.rad());
+  // The burr that plunges with tilted edges leave over the strip at the root.
+  const double across = rake_slope_ * sine + cosine;
+  if (across > 0.0)
+    slack_mm_ += workpiece.prediction(element).root_mm *
+                 std::max(0.0, (sine - rake_slope_ * cosine + rake_slope_) / across - 1.0);
+  const double depth_mm = depth_mm_ + slack_mm_;
+  if (!cut) {
+    const double half = 0.5 * apex_.rad();
+    share_ = std::max(0.0, std::tan(half - rake.rad())) / std::sin(half);
+  } else if (cut->is_by_clearance) {
+    kind_ = Kind::plunge;
+    // Where the other facet's last surface crosses the slab that this one takes, and where it leaves the rake face.
+    bends_mm_ = {depth_mm * (1.0 + cosine) / sine, depth_mm / std::max(1e-9, sine - rake_slope_ * cosine)};
+  } else {
+    kind_ = Kind::plough;
+    share_ = std::max(0.0, std::sin(apex_.rad() - rake.rad()) / std::sin(rake.rad()));
+  }
+}
+
+double ChipLimit::at(double from_tip_mm, double beside_mm) const {
+  const double depth_mm = depth_mm_ + slack_mm_;
+  switch (kind_) {
+    case Kind::plunge: return plunge_at(from_tip_mm);
+    case Kind::plough: return share_ * depth_mm + slack_mm_;
+    case Kind::between: return share_ * depth_mm + slack_mm_;
+    case Kind::v_shaped: return std::min(from_tip_mm, beside_mm) <= depth_mm ? share_ * depth_mm : depth_mm;
+  }
+  return 0.0;
+}
+
+/// Of the slab that the facet's last cut left, and of what stands on the other facet, below the rake face.
+double ChipLimit::plunge_at(double from_tip_mm) const {
+  const double depth_mm = depth_mm_ + slack_mm_;
+  const double sine = std::sin(apex_.rad());
+  const double cosine = std::cos(apex_.rad());
+  const double rake_mm = from_tip_mm * rake_slope_;
+  constexpr double kRight = 1e-9;
+  const double over_mm = from_tip_mm * sine - depth_mm;  // over the other facet's last surface, at the plunged one
+  if (cosine < -kRight) return std::max(depth_mm, std::min(rake_mm, over_mm / cosine));
+  if (cosine > kRight) return depth_mm + std::max(0.0, rake_mm - std::max(depth_mm, over_mm / cosine));
+  return over_mm <= slack_mm_ ? std::max(depth_mm, rake_mm) : depth_mm;
+}
+
+}  // namespace retrace::fabrication

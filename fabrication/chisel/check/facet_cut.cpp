@@ -1,0 +1,65 @@
+#include "fabrication/chisel/check/facet_cut.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec3;
+
+/// cos 10 degrees: axes of machines are off by minutes of arc, facets stand 60 degrees apart at least.
+constexpr double kAlongFacet = 0.985;
+/// Rounding of positions in the text.
+constexpr double kRoundingMm = 2e-6;
+
+}  // namespace
+
+Vec3 swept_normal(const ToolWedge& wedge, const SweptVolume& sweep) {
+  constexpr double kLeastMm = 1e-9;
+  const Vec3 normal = wedge.edge.cross(sweep.to_mm - sweep.from_mm);
+  return normal.norm() < kLeastMm ? Vec3(Vec3::Zero()) : Vec3(normal.normalized());
+}
+
+std::optional<FacetCut> facet_cut(const Groove& groove, const ToolWedge& wedge, const SweptVolume& sweep,
+                                  const RigidMotion& back) {
+  const Vec3 normal = back.direction(swept_normal(wedge, sweep));
+  const Vec3 clearance_face = back.direction(wedge.sides[0].outward);
+  std::optional<FacetCut> cut;
+  double most = kAlongFacet;
+  std::size_t by_clearance = 0;
+  for (std::size_t f = 0; f < groove.facets.size(); ++f) {
+    const Vec3& outward = groove.facets[f].normal;
+    if (clearance_face.dot(outward) < clearance_face.dot(groove.facets[by_clearance].normal)) by_clearance = f;
+    if (std::abs(normal.dot(outward)) <= most) continue;
+    most = std::abs(normal.dot(outward));
+    cut = FacetCut{f, 1e9, false};
+  }
+  if (!cut) return std::nullopt;
+  cut->is_by_clearance = cut->facet == by_clearance;
+  for (const Vec3& tip : {sweep.from_mm, sweep.to_mm})
+    for (const double side : {-1.0, 1.0})
+      cut->left_mm = std::min(
+          cut->left_mm, groove.facets[cut->facet].height_mm(back.point(tip + side * wedge.half_width_mm * wedge.edge)));
+  return cut;
+}
+
+double finishing_allowance_mm(const Workpiece3d& workpiece) {
+  const Process& process = workpiece.job->process;
+  const bool finishes = workpiece.job->strategy == Strategy::two_step || workpiece.job->strategy == Strategy::dmc;
+  return finishes ? 1e-3 * process.finishing_cuts * process.finishing_depth_um : 0.0;
+}
+
+bool is_finishing(const Workpiece3d& workpiece, const FacetCut& cut) {
+  const double slack_mm =
+      std::min(workpiece.tolerance_mm, 1e-4 * workpiece.job->process.finishing_depth_um) + kRoundingMm;
+  return cut.left_mm < finishing_allowance_mm(workpiece) - slack_mm;
+}
+
+double depth_of_cut_mm(const Workpiece3d& workpiece, const std::optional<FacetCut>& cut) {
+  const Process& process = workpiece.job->process;
+  return 1e-3 * (cut && is_finishing(workpiece, *cut) ? process.finishing_depth_um : process.roughing_depth_um);
+}
+
+}  // namespace retrace::fabrication

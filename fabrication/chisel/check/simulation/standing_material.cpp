@@ -1,0 +1,120 @@
+#include "fabrication/chisel/check/simulation/standing_material.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+/// Part of the blank that a section holds: across on either side, and below its origin.
+struct Extent {
+  double half_mm = 0.0;
+  double below_mm = 0.0;
+};
+
+/// The blank goes on beyond the rims by this share of the element, and below its root.
+constexpr double kBeyond = 0.2;
+/// Pieces into which the blank is divided under a face that is not flat.
+constexpr int kStrips = 12;
+
+/// How high the blank's face stands in a section.
+double face_height_mm(const SectionPlane& plane, const Groove& groove, const BlankFace& face, double across_mm) {
+  const Vec3 foot = plane.origin_mm + across_mm * plane.across;
+  double up_mm = groove.to_face_mm(foot, plane.up);
+  if (face.is_flat()) return up_mm;
+  constexpr int kRounds = 6;
+  constexpr double kLeastRise = 0.05;
+  for (int round = 0; round < kRounds; ++round) {
+    const BlankFace::Place under = face.under(foot + up_mm * plane.up);
+    up_mm -= under.height_mm / std::max(kLeastRise, under.normal.dot(plane.up));
+  }
+  return up_mm;
+}
+
+StandingSection section_of(const SectionPlane& plane, const Groove& groove, const BlankFace& face,
+                           const Extent& extent) {
+  StandingSection section;
+  section.plane = plane;
+  const int strips = face.is_flat() ? 1 : kStrips;
+  const auto corner = [&](int k) -> Vec2 {
+    const double u = extent.half_mm * (2.0 * k / strips - 1.0);
+    return {u, std::max(face_height_mm(plane, groove, face, u), -extent.below_mm)};
+  };
+  for (int k = 0; k < strips; ++k) {
+    const Vec2 a = corner(k);
+    const Vec2 b = corner(k + 1);
+    section.pieces.push_back({{a.x(), -extent.below_mm}, {b.x(), -extent.below_mm}, b, a});
+  }
+  return section;
+}
+
+/// Where sections cross a prism, along its root: near either end and so densely that each pass has two.
+std::vector<double> stations_mm(const Groove& groove, double wall_mm, double tool_width_mm) {
+  constexpr double kRoundingMm = 1e-5;
+  const double end_mm = std::max(0.5 * groove.half_width_mm, groove.half_width_mm - wall_mm - kRoundingMm);
+  const int count = 1 + 2 * static_cast<int>(std::ceil(2.0 * groove.half_width_mm / tool_width_mm - 1e-9));
+  std::vector<double> stations;
+  for (int k = 0; k < count; ++k) stations.push_back(end_mm * (2.0 * k / (count - 1) - 1.0));
+  return stations;
+}
+
+/// Where sections cross a dihedral edge, from the apex: the first layer begins at a third of its length, and a section
+/// just beyond is crossed by every layer, those nearer to the apex by the last ones.
+std::vector<double> places_mm(double edge_mm, double depth_mm) {
+  const double first = std::min(edge_mm / 3.0 + 1.5 * depth_mm, 0.45 * edge_mm);
+  return {0.12 * edge_mm, first, 0.6 * edge_mm};
+}
+
+}  // namespace
+
+std::vector<ConvexPiece> StandingSection::cut(std::span<const ToolWedge::Side> sides, const RigidMotion& pose) {
+  constexpr double kAcross = 1e-12;  // a side that the plane does not cross
+  const Vec3 u = pose.direction(plane.across);
+  const Vec3 v = pose.direction(plane.up);
+  const Vec3 origin = pose.point(plane.origin_mm);
+  std::vector<HalfPlane> body;
+  body.reserve(sides.size());
+  for (const ToolWedge::Side& side : sides) {
+    const Vec2 outward(side.outward.dot(u), side.outward.dot(v));
+    const double bound_mm = side.bound_mm - side.outward.dot(origin);
+    const double length = outward.norm();
+    if (length > kAcross)
+      body.push_back({outward / length, bound_mm / length});
+    else if (bound_mm < 0.0)
+      return {};
+  }
+  return take_away(pieces, body);
+}
+
+StandingMaterial::StandingMaterial(const Groove& groove, const BlankFace& face, double wall_mm, double tool_width_mm,
+                                   double depth_mm) {
+  if (!groove.is_cube()) {
+    const Vec3 across = groove.axis.cross(groove.root_direction);
+    const double rise = groove.axis.dot(groove.facets[0].up_slope);
+    const double slope = std::sqrt(1.0 - rise * rise) / rise;
+    const Extent extent{(1.0 + kBeyond) * (groove.half_base_mm + slope * groove.stock_mm), kBeyond * groove.depth_mm};
+    for (const double along : stations_mm(groove, wall_mm, tool_width_mm))
+      sections_.push_back(section_of(
+          {groove.root_mm + along * groove.root_direction, across, groove.axis, across.cross(groove.axis).normalized()},
+          groove, face, extent));
+    return;
+  }
+  const double edge_mm = std::numbers::sqrt3 * (groove.depth_mm + groove.stock_mm);
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const double place : places_mm(edge_mm, depth_mm)) {
+      const Vec3& first = groove.edges[(k + 1) % 3];
+      const Vec3& second = groove.edges[(k + 2) % 3];
+      const Vec3 up = (first + second).normalized();
+      const Vec3 across = (first - second).normalized();
+      const double half_mm = (edge_mm - place) / std::numbers::sqrt2 + 0.5 * kBeyond * edge_mm;
+      sections_.push_back(section_of({groove.root_mm + place * groove.edges[k], across, up, across.cross(up)}, groove,
+                                     face, {half_mm, 0.5 * kBeyond * edge_mm}));
+    }
+}
+
+}  // namespace retrace::fabrication

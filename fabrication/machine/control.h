@@ -1,0 +1,39 @@
+#pragma once
+
+// What programs must know of a machine's control: how finely it takes words, and what it has words for at all.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace retrace::fabrication {
+
+/// Least increments of words, in the units of programs: positions are rounded to whole multiples before they are
+/// solved, so that nothing is lost when they are written.
+struct Increments {
+  std::int64_t linear_nm = 1;
+  std::int64_t rotary_units = 1;  ///< of 1e-7 degrees
+};
+
+/// Words of machine files, in the order of the enumerators: least increments of 1e-3, 1e-4, 1e-5 and 1e-6 mm or
+/// degrees.
+enum class IncrementSystem : std::uint8_t { b, c, d, e };
+inline constexpr std::string_view kIncrementSystemWords[] = {"B", "C", "D", "E"};
+
+/// The control of a machine. Each dialect takes what concerns it.
+struct Control {
+  IncrementSystem increment_system = IncrementSystem::e;  ///< of a Fanuc
+  bool has_rotation = false;                              ///< of a Fanuc: G68 turns coordinates, G69 cancels it
+  bool has_mirror = false;                                ///< of a Fanuc: G51.1 mirrors them, G50.1 cancels it
+  std::string modulo_axes = "C";  ///< letters of rotary axes that a Sinumerik counts within a turn
+  int coordinate_system = 1;      ///< of a Power PMAC
+  std::string mist_on;            ///< lines of a Power PMAC; empty: it has none
+  std::string mist_off;
+  std::string optional_stop;
+  bool rapids_are_straight = false;  ///< axes arrive together; otherwise each goes at its own speed
+};
+
+/// Those of a Fanuc's increment system.
+Increments increments_of(IncrementSystem system);
+
+}  // namespace retrace::fabrication

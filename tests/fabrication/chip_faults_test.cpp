@@ -1,0 +1,299 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/chisel/plan/plan.h"
+#include "fabrication/job/v_tool.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/post/post.h"
+#include "tests/fabrication/chiseling_jobs.h"
+#include "tests/fabrication/findings_text.h"
+#include "tests/fabrication/swept_volume_sink.h"
+
+// Programs of every strategy with one line lost, doubled or another number in it, judged by a measure of chips of its
+// own: lines of dexels normal to the facets, cut move by move as polyhedra.
+
+namespace retrace::fabrication::test::chip_faults_test {
+namespace {
+
+using geometry::Vec3;
+
+Machine machine(const std::string& name) {
+  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
+}
+
+/// Lines normal to one facet of the first element: what earlier moves took of each, as parts that do not overlap.
+class DexelFacet {
+ public:
+  /// \param extents of the field from the root: along it, up the slope \param lines along the longer one
+  DexelFacet(const Groove& groove, std::size_t facet, const Vec3& low_mm, const Vec3& high_mm, std::size_t lines)
+      : groove_(groove), normal_(groove.facets[facet].normal), box_{low_mm, high_mm}, lines_(lines) {
+    // The field's axes: z along the normal, x and y in the facet.
+    const Vec3 y = groove.is_cube() ? groove.edges[(facet + 1) % 3] : groove.facets[facet].up_slope;
+    from_workpiece_.row(0) = y.cross(normal_).transpose();
+    from_workpiece_.row(1) = y.transpose();
+    from_workpiece_.row(2) = normal_.transpose();
+  }
+
+  struct Chip {
+    double length_mm = 0.0;
+    double left_mm = 0.0;  ///< over the facet, where the chip begins
+  };
+
+  /// The thickest that a move takes along the lines, which is a chip if it goes along the facet.
+  Chip cut(const SweptVolume& sweep, const RigidMotion& pose, const ToolWedge& wedge) {
+    RigidMotion from_field;
+    from_field.rotation = pose.rotation * from_workpiece_.transpose();
+    from_field.translation_mm = pose.point(groove_.root_mm);
+    SweptVolume alone = sweep;
+    alone.pose = 0;
+    const DexelField field = cut_dexels({&alone, 1}, {&from_field, 1}, wedge, box_, 2, lines_);
+    taken_.resize(field.removed_mm.size());
+    Chip chip;
+    for (std::size_t i = 0; i < field.removed_mm.size(); ++i) {
+      if (field.removed_mm[i] <= 0.0) continue;
+      const double low = field.lowest_mm[i];
+      const double high = std::min(low + field.removed_mm[i], face_mm(field, i));
+      const double length = take(taken_[i], low, high);
+      if (length > chip.length_mm) chip = {length, low};
+    }
+    const Vec3 travel = pose.rotation.transpose() * (sweep.to_mm - sweep.from_mm);
+    const Vec3 looks = pose.rotation.transpose() * wedge.sides[0].outward;
+    // Along the facet; of a V, which goes along two at once, with its clearance face towards it.
+    const bool goes_along = std::abs(travel.normalized().dot(normal_)) < 0.02;
+    return goes_along && (!groove_.is_cube() || looks.dot(normal_) < -0.9) ? chip : Chip{};
+  }
+
+ private:
+  /// Where a line leaves the blank, z = 0.
+  double face_mm(const DexelField& field, std::size_t i) const {
+    const Vec3 size = box_.high_mm - box_.low_mm;
+    const double x = (static_cast<double>(i % field.columns) + 0.5) / static_cast<double>(field.columns);
+    const double y = (static_cast<double>(i / field.columns) + 0.5) / static_cast<double>(field.rows);
+    const Vec3 foot(box_.low_mm.x() + x * size.x(), box_.low_mm.y() + y * size.y(), 0.0);
+    const Vec3 p = groove_.root_mm + from_workpiece_.transpose() * foot;
+    return -p.z() / normal_.z();
+  }
+
+  /// Adds a part to others, and says how much of it was new.
+  static double take(std::vector<std::pair<double, double>>& parts, double low, double high) {
+    double length = high - low;
+    if (length <= 0.0) return 0.0;
+    std::vector<std::pair<double, double>> others;
+    for (const auto& part : parts) {
+      if (part.second < low || part.first > high) {
+        others.push_back(part);
+        continue;
+      }
+      length -= std::min(part.second, high) - std::max(part.first, low);
+      low = std::min(low, part.first);
+      high = std::max(high, part.second);
+    }
+    others.emplace_back(low, high);
+    parts = others;
+    return length;
+  }
+
+  const Groove& groove_;
+  Vec3 normal_;
+  DexelBox box_;
+  std::size_t lines_;
+  Eigen::Matrix3d from_workpiece_;
+  std::vector<std::vector<std::pair<double, double>>> taken_;
+};
+
+/// Most that a chip may be, over the depth of cut, anywhere: by the formulas of the theory.
+double most_share(const Job& job) {
+  if (job.strategy == Strategy::dmc) {
+    const Vec3 spine = v_tool_edges(job.tool).spine;
+    return std::max({1.0, spine.z() / spine.x(), spine.z() / spine.y()});
+  }
+  const double apex = Angle::from_deg(prism_of(job).apex_angle_deg).rad();
+  const double rake = Angle::from_deg(job.tool.wedge_deg + job.tool.clearance_deg).rad();
+  return std::max(1.0, std::tan(rake) * (1.0 + std::cos(apex)) / std::sin(apex));
+}
+
+/// By how much the thickest chip of a program exceeds its limit, in um.
+double true_excess_um(const Job& job, const Machine& m, const std::string& text) {
+  SweptVolumeSink moves(m);
+  run_nc(parse_nc(text, "p.ngc", NcDialect::rs274ngc), moves);
+  const Workpiece3d workpiece = workpiece_of(job, m);
+  const Groove& groove = workpiece.grooves.front();
+  const ToolWedge wedge = wedge_of(job, m);
+  const double length_mm = groove.facet_length_mm;
+  const double allowance_um = job.strategy == Strategy::two_step || job.strategy == Strategy::dmc
+                                  ? job.process.finishing_cuts * job.process.finishing_depth_um
+                                  : 0.0;
+  std::vector<std::pair<std::size_t, DexelFacet>> fields;
+  for (std::size_t f = 0; f < groove.facets.size(); ++f) {
+    const double top = 3.0 * length_mm;
+    if (groove.is_cube()) {
+      fields.emplace_back(f, DexelFacet(groove, f, {0.0, 0.0, -0.1 * length_mm}, {length_mm, length_mm, top}, 24));
+      continue;
+    }
+    // One field over the facet, one close to the root.
+    fields.emplace_back(f, DexelFacet(groove, f, {-0.01, 0.0, -0.1}, {0.01, length_mm, top}, 60));
+    fields.emplace_back(f, DexelFacet(groove, f, {-0.01, 0.0, -0.1}, {0.01, 0.1, top}, 60));
+  }
+  double excess_um = -1e9;
+  for (std::size_t k = 0; k < moves.sweeps.size(); ++k)
+    for (auto& [f, field] : fields) {
+      SweptVolume sweep = moves.sweeps[k];
+      sweep.from_mm += wedge.tip_mm;
+      sweep.to_mm += wedge.tip_mm;
+      const DexelFacet::Chip chip = field.cut(sweep, moves.poses[k], wedge);
+      const double left_um = 1e3 * chip.left_mm;
+      const double depth_um =
+          left_um < allowance_um - 0.1 ? job.process.finishing_depth_um : job.process.roughing_depth_um;
+      excess_um = std::max(excess_um, 1e3 * chip.length_mm - most_share(job) * depth_um);
+    }
+  return excess_um;
+}
+
+/// Programs with one line changed, with what was done to them.
+std::vector<std::pair<std::string, std::string>> faults_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  std::vector<std::pair<std::string, std::string>> faults;
+  const auto add = [&](std::size_t i, const std::string& what, const std::vector<std::string>& instead) {
+    std::string changed;
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      if (k != i) {
+        changed += lines[k] + "\n";
+        continue;
+      }
+      for (const std::string& line : instead) changed += line + "\n";
+    }
+    faults.emplace_back(fmt::format("line {} {}: {}", i + 1, what, lines[i]), changed);
+  };
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string& line = lines[i];
+    if (line.empty() || line[0] == '(' || line[0] == '%') continue;
+    add(i, "lost", {});
+    add(i, "doubled", {line, line});
+    for (const char axis : {'X', 'Y', 'Z'}) {
+      const std::size_t word = line.find(std::string(" ") + axis);
+      if (word == std::string::npos) continue;
+      std::size_t read = 0;
+      const double value = std::stod(line.substr(word + 2), &read);
+      for (const double by_mm : {-0.06, 0.06, -0.006, 0.006})
+        add(i, fmt::format("{}{:+}", axis, by_mm),
+            {line.substr(0, word + 2) + fmt::format("{:.6f}", value + by_mm) + line.substr(word + 2 + read)});
+    }
+  }
+  return faults;
+}
+
+/// One element of each strategy with few and thick cuts, so that a program is short.
+Job short_job(Strategy strategy) {
+  Job job = strategy == Strategy::dmc ? cube_job(false, 0.3) : square_job(1);
+  if (strategy == Strategy::dmc) {
+    job.array = {};
+    job.array.arrangement = geometry::Arrangement::single;
+  }
+  job.strategy = strategy;
+  job.process.roughing_depth_um = strategy == Strategy::dmc ? 25.0 : 60.0;
+  job.process.finishing_depth_um = 10.0;
+  job.process.finishing_cuts = 2;
+  return job;
+}
+
+Verification verified(const Job& job, const Machine& m, const std::string& text) {
+  return verify_programs(job, m, {parse_nc(text, "p.ngc", NcDialect::rs274ngc)}, {}, {});
+}
+
+bool has_kind(const Verification& v, const std::string& kind) {
+  return std::any_of(v.findings.begin(), v.findings.end(), [&](const Finding& f) { return f.kind == kind; });
+}
+
+class ChipFaults : public ::testing::TestWithParam<Strategy> {};
+
+TEST_P(ChipFaults, EveryLineWhoseLossOrChangeThickensAChipIsFound) {
+  const Job job = short_job(GetParam());
+  const Machine m = machine(job.strategy == Strategy::dmc ? "ideal-dmc" : "ideal");
+  const std::string text = nc_text(make_plan(job, m).programs.front(), "rs274ngc");
+  EXPECT_LE(true_excess_um(job, m, text), 0.01);
+  int thick = 0;
+  int told = 0;
+  for (const auto& [what, changed] : faults_of(text)) {
+    try {
+      const double excess_um = true_excess_um(job, m, changed);
+      const Verification v = verified(job, m, changed);
+      if (excess_um < 0.05) continue;
+      ++thick;
+      EXPECT_FALSE(v.passes()) << what << " takes " << excess_um << " um too much\n" << listed(v);
+      told += has_kind(v, "chip_too_thick") ? 1 : 0;
+    } catch (const InputError&) {
+      continue;  // is refused
+    }
+  }
+  EXPECT_GT(thick, 50);
+  EXPECT_GT(told, thick * 4 / 5) << "the others cut beside the element";
+}
+
+/// The program with the visits of one subroutine left out, or moved along Z.
+std::string changed_stage(const Plan& plan, std::size_t subroutine, std::optional<Nanometres> by_nm) {
+  Program program = plan.programs.front();
+  const auto is_of_it = [&](const Item& item) {
+    const auto* const visit = std::get_if<Visit>(&item);
+    return visit != nullptr && visit->subroutine == subroutine;
+  };
+  if (!by_nm) std::erase_if(program.items, is_of_it);
+  for (Item& item : program.items)
+    if (is_of_it(item)) std::get<Visit>(item).start.z() += by_nm.value_or(0);
+  return nc_text(program, "rs274ngc");
+}
+
+TEST_P(ChipFaults, AStageThatIsGoneOrStandsTooHighIsFound) {
+  for (const int cuts : {1, 2, 3})
+    for (const char* name : {"ideal", "paper"}) {
+      Job job = short_job(GetParam());
+      job.process.finishing_cuts = cuts;
+      job.process.finishing_depth_um = 5.0;
+      const Machine m = machine(job.strategy == Strategy::dmc ? "ideal-dmc" : name);
+      const Plan plan = make_plan(job, m);
+      for (std::size_t k = 0; k < plan.subroutines.size(); ++k)
+        for (const std::optional<Nanometres> by_nm : {std::optional<Nanometres>(), {Nanometres{60'000}}}) {
+          const std::string text = changed_stage(plan, k, by_nm);
+          if (!verified(job, m, text).passes()) continue;
+          // A first layer may be so thin that the next takes it along.
+          const std::string& title = plan.subroutines[k].title;
+          EXPECT_TRUE(title.starts_with("layer-1") && true_excess_um(job, m, text) < 0.0) << title << " of " << cuts;
+        }
+    }
+}
+
+/// On a base the strip that a tilted edge leaves may be as wide as a cut is deep, and chips as much thicker: what was
+/// not finished is found by counting cuts.
+TEST(FinishingFaults, AFinishingCutThatIsMissingIsFoundWhereTheEdgeIsTilted) {
+  Job job = square_job(2, geometry::Arrangement::aligned);
+  job.substrate = {geometry::PlaneSubstrate{0.35, 90.0}, geometry::ElementAxes::normal};
+  const Machine m = machine("ideal");
+  const Plan plan = make_plan(job, m);
+  int counted = 0;
+  for (std::size_t k = 0; k < plan.subroutines.size(); ++k) {
+    const Verification v = verified(job, m, changed_stage(plan, k, std::nullopt));
+    EXPECT_FALSE(v.passes()) << plan.subroutines[k].title;
+    counted += has_kind(v, "finishing_missing") ? 1 : 0;
+  }
+  EXPECT_EQ(counted, 2) << "the first finishing cut of either facet";
+}
+
+INSTANTIATE_TEST_SUITE_P(Strategies, ChipFaults,
+                         ::testing::Values(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step,
+                                           Strategy::dmc));
+
+}  // namespace
+}  // namespace retrace::fabrication::test::chip_faults_test

@@ -1,0 +1,221 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/chisel/check/chip_check.h"
+#include "fabrication/chisel/check/simulation/convex_pieces.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/plan.h"
+#include "fabrication/job/v_tool.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/post/post.h"
+#include "tests/fabrication/findings_text.h"
+#include "tests/fabrication/substrate_jobs.h"
+
+// How much cuts take at once: the measure against geometry that is known, and right programs of jobs of every kind.
+
+namespace retrace::fabrication::test::chip_test {
+namespace {
+
+using geometry::Arrangement;
+using geometry::Vec2;
+using geometry::Vec3;
+
+Machine machine(const std::string& name) {
+  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
+}
+
+Verification verified(const Job& job, const Machine& m) {
+  std::vector<NcProgram> programs;
+  for (const Program& program : make_plan(job, m).programs)
+    programs.push_back(parse_nc(nc_text(program, "rs274ngc"), "p.ngc", NcDialect::rs274ngc));
+  return verify_programs(job, m, programs, {}, {});
+}
+
+double area(const ConvexPiece& piece) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    const Vec2& a = piece[i];
+    const Vec2& b = piece[(i + 1) % piece.size()];
+    sum += 0.5 * (a.x() * b.y() - a.y() * b.x());
+  }
+  return sum;
+}
+
+bool holds(const ConvexPiece& piece, const Vec2& p) {
+  bool inside = !piece.empty();
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    const Vec2 side = piece[(i + 1) % piece.size()] - piece[i];
+    inside = inside && side.x() * (p - piece[i]).y() - side.y() * (p - piece[i]).x() >= 0.0;
+  }
+  return inside;
+}
+
+int count_of(const std::vector<ConvexPiece>& pieces, const Vec2& p) {
+  return static_cast<int>(
+      std::count_if(pieces.begin(), pieces.end(), [&](const auto& piece) { return holds(piece, p); }));
+}
+
+/// What is taken and what is left make up what was there, without overlaps, and what is taken lies in the body.
+RC_GTEST_PROP(Chips, TakingAwayKeepsTheArea, ()) {
+  const auto number = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
+  std::vector<ConvexPiece> pieces = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  double taken_area = 0.0;
+  for (int cut = 0; cut < 6; ++cut) {
+    std::vector<HalfPlane> body;
+    const Vec2 middle(number(), number());
+    for (int side = 0; side < 4; ++side) {
+      const double angle = 0.5 * M_PI * side + number();
+      const Vec2 outward(std::cos(angle), std::sin(angle));
+      body.push_back({outward, outward.dot(middle) + 0.3 * std::abs(number())});
+    }
+    const std::vector<ConvexPiece> before = pieces;
+    const std::vector<ConvexPiece> taken = take_away(pieces, body);
+    for (const ConvexPiece& piece : taken) taken_area += area(piece);
+    for (int k = 0; k < 20; ++k) {
+      const Vec2 p(number(), number());
+      const double nearest = std::abs(std::max_element(body.begin(), body.end(), [&](const auto& a, const auto& b) {
+                                        return a.over_mm(p) < b.over_mm(p);
+                                      })->over_mm(p));
+      if (nearest < 1e-7 || count_of(before, p) == 0) continue;
+      const bool in_body =
+          std::all_of(body.begin(), body.end(), [&](const auto& side) { return side.over_mm(p) < 0.0; });
+      RC_ASSERT(count_of(in_body ? taken : pieces, p) >= 1);
+      RC_ASSERT(count_of(in_body ? pieces : taken, p) == 0);
+    }
+  }
+  double left_area = 0.0;
+  for (const ConvexPiece& piece : pieces) left_area += area(piece);
+  RC_ASSERT(std::abs(left_area + taken_area - 4.0) < 1e-7);
+}
+
+/// The half-spaces of a swept body against the part of a line within it.
+RC_GTEST_PROP(Chips, HalfSpacesOfASweepHoldItsLines, ()) {
+  const auto number = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
+  const auto vector = [&] { return Vec3(number(), number(), number()); };
+  Tool tool;
+  tool.width_mm = 0.5;
+  const ToolWedge wedge = *rc::gen::arbitrary<bool>() ? tool_wedge(tool, machine("ideal"), Angle::from_deg(90))
+                                                      : v_tool_wedge(Tool{}, machine("ideal-dmc"));
+  const SweptVolume sweep{0, {1, 0}, false, vector(), vector()};
+  const Vec3 point = vector();
+  const Vec3 direction = (vector() + Vec3(0, 0, 2)).normalized();
+  double low = -1e3;
+  double high = 1e3;
+  for (const ToolWedge::Side& side : swept_sides(wedge, sweep)) {
+    const double rate = side.outward.dot(direction);
+    const double room = side.bound_mm - side.outward.dot(point);
+    if (rate > 1e-9) high = std::min(high, room / rate);
+    if (rate < -1e-9) low = std::max(low, room / rate);
+    if (std::abs(rate) <= 1e-9 && room < 0.0) high = low;
+  }
+  const auto span = swept_span(wedge, sweep, point, direction);
+  if (!span) {
+    RC_ASSERT(high - low < 1e-6);
+    return;
+  }
+  RC_ASSERT(std::abs(std::max(span->low, -1e3) - low) < 1e-6);
+  RC_ASSERT(std::abs(std::min(span->high, 1e3) - high) < 1e-6);
+}
+
+/// Where a tip goes one depth past the other facet its rake face, 53 degrees from the wall, takes tan 53 of it.
+TEST(Chips, ThickestOfRightProgramsIsThatOfTheRakeFace) {
+  const double slope = std::tan(53.0 * M_PI / 180.0);
+  Job job = square_job(1);
+  job.strategy = Strategy::bidirectional;
+  EXPECT_NEAR(verified(job, machine("ideal")).chip_um_max, 15.0 * slope, 2e-3);
+  job.process.roughing_depth_um = 5.0;
+  EXPECT_NEAR(verified(job, machine("ideal")).chip_um_max, 5.0 * slope, 2e-3);
+  job.strategy = Strategy::unidirectional;
+  EXPECT_NEAR(verified(job, machine("ideal")).chip_um_max, 5.0, 2e-3);
+  job.strategy = Strategy::two_step;
+  EXPECT_NEAR(verified(job, machine("ideal")).chip_um_max, 5.0 * slope, 2e-3);
+}
+
+/// A prism job of any kind that the checks of jobs let through.
+Job any_prisms() {
+  Job job = square_job(*rc::gen::inRange(1, 3), *rc::gen::element(Arrangement::offset, Arrangement::checker));
+  geometry::RtpElement& prism = prism_of(job);
+  prism.apex_angle_deg = *rc::gen::weightedElement<double>({{3, 90.0}, {1, 0.01 * *rc::gen::inRange(6600, 12001)}});
+  job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
+  job.tool.clearance_deg = *rc::gen::inRange(2, 11);
+  const double widest_deg = std::min(prism.apex_angle_deg - 12.5 - job.tool.clearance_deg, 70.0);
+  // Rake faces of plunges along both facets that do not cross leave a fin over the root.
+  const double least_deg = job.strategy == Strategy::unidirectional
+                               ? 40.0
+                               : std::max(40.0, 0.5 * prism.apex_angle_deg + 2.0 - job.tool.clearance_deg);
+  job.tool.wedge_deg = std::min(widest_deg, least_deg + *rc::gen::inRange(0, 25));
+  job.tool.edge_radius_um = *rc::gen::element(0.0, 0.0, 0.5, 3.0);
+  job.tool.width_mm = *rc::gen::element(0.451, 0.451, 0.2, 0.3);
+  job.workpiece.kind = *rc::gen::element(WorkpieceKind::mould, WorkpieceKind::direct);
+  if (job.workpiece.kind == WorkpieceKind::mould) job.workpiece.shrinkage_percent = *rc::gen::element(0.0, 0.6, 2.0);
+  Process& process = job.process;
+  process.roughing_depth_um = *rc::gen::element(12.0, 15.0, 25.0, 40.0);
+  process.finishing_depth_um = *rc::gen::element(2.0, 5.0, 8.0);
+  process.finishing_cuts = *rc::gen::inRange(1, 4);
+  process.shortest_plough = *rc::gen::arbitrary<bool>();
+  process.plough_lift_um = *rc::gen::element(0.0, 2.0);
+  process.slow_retract_um = *rc::gen::element(0.0, 5.0);
+  return job;
+}
+
+RC_GTEST_PROP(Chips, RightProgramsOfAnyPrismsPass, ()) {
+  const Job job = any_prisms();
+  const Machine m = machine(*rc::gen::element<std::string>("ideal", "paper", "thesis"));
+  const Verification v = verified(job, m);
+  RC_TAG(v.chip_share_max > 0.99 ? "at the limit" : "below it");
+  if (!v.passes())
+    RC_FAIL(fmt::format("apex {} clearance {} wedge {} radius {} width {} strategy {} d {} f {} x {} machine {}\n{}",
+                        prism_of(job).apex_angle_deg, job.tool.clearance_deg, job.tool.wedge_deg,
+                        job.tool.edge_radius_um, job.tool.width_mm, static_cast<int>(job.strategy),
+                        job.process.roughing_depth_um, job.process.finishing_cuts, job.process.finishing_depth_um,
+                        m.name, listed(v)));
+  RC_ASSERT(v.chip_share_max <= 1.0 + 1e-9);
+}
+
+/// Blanks whose faces are curved or inclined, and stand over the rims of elements in parallel.
+RC_GTEST_PROP(Chips, RightProgramsOnAnyBasePass, ()) {
+  const ElementAxes axes = *rc::gen::element(ElementAxes::normal, ElementAxes::parallel);
+  const double radius_mm = *rc::gen::element(12.0, -12.0, 30.0, -30.0, 200.0);
+  const double incline_deg = 0.1 * *rc::gen::inRange(0, 100);
+  const bool is_plane = *rc::gen::arbitrary<bool>();
+  const bool is_prism = *rc::gen::arbitrary<bool>();
+  const Substrate base = is_plane   ? plane_substrate(incline_deg, is_prism ? 0.0 : 40.0, axes)
+                         : is_prism ? cylinder_substrate(radius_mm, false, axes)
+                                    : sphere_substrate(radius_mm, axes);
+  Job job = is_prism ? prisms_on(base, 2) : cubes_on(base, *rc::gen::arbitrary<bool>());
+  if (is_prism) job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
+  job.process.roughing_depth_um = *rc::gen::element(10.0, 15.0, 30.0);
+  job.process.finishing_depth_um = *rc::gen::element(2.0, 5.0);
+  job.process.finishing_cuts = *rc::gen::inRange(1, 4);
+  const std::string name = is_prism ? *rc::gen::element<std::string>("ideal", "paper") : "ideal-dmc";
+  try {
+    const Verification v = verified(job, machine(name));
+    if (!v.passes()) RC_FAIL(listed(v));
+  } catch (const InputError&) {
+    RC_TAG("refused");
+  }
+}
+
+RC_GTEST_PROP(Chips, RightProgramsOfAnyCubesPass, ()) {
+  Job job = cube_job(*rc::gen::arbitrary<bool>(), *rc::gen::element(0.15, 0.2));
+  job.array = {};
+  job.array.arrangement = Arrangement::single;
+  job.process.roughing_depth_um = *rc::gen::element(5.0, 10.0, 20.0);
+  job.process.finishing_depth_um = *rc::gen::element(2.0, 5.0);
+  job.process.finishing_cuts = *rc::gen::inRange(1, 4);
+  job.tool.wedge_deg = *rc::gen::inRange(60, 67);
+  const Verification v = verified(job, machine("ideal-dmc"));
+  if (!v.passes()) RC_FAIL(listed(v));
+  RC_ASSERT(v.chip_share_max <= 1.0 + 1e-9);
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::test::chip_test

@@ -1,0 +1,238 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/plan.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/post/post.h"
+#include "tests/fabrication/controls.h"
+#include "tests/fabrication/findings_text.h"
+#include "tests/fabrication/jobs.h"
+
+// Whatever an earlier program, a line typed in or a reset may have left: each word of the preparation is missed, and
+// what changes in the middle is found at the next cut. In every dialect.
+
+namespace retrace::fabrication::test::control_state_test {
+namespace {
+
+using geometry::Arrangement;
+
+using Lines = std::vector<std::string>;
+
+/// A machine whose control has all that a control may have.
+Machine full_machine(NcDialect dialect) {
+  const std::string file = std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml";
+  Machine machine = parse_machine(read_file(file), file);
+  machine.control.has_rotation = machine.control.has_mirror = true;
+  return for_dialect(machine, kNcDialectWords[static_cast<std::size_t>(dialect)]);
+}
+
+Job small_job() {
+  Job job = square_job(1, Arrangement::single);
+  job.strategy = Strategy::two_step;
+  job.process.roughing_depth_um = 100;
+  job.process.finishing_cuts = 1;
+  return job;
+}
+
+class ControlState : public ::testing::TestWithParam<NcDialect> {
+ protected:
+  ControlState() : machine_(full_machine(GetParam())) {
+    const Program program = make_plan(job_, machine_).programs.front();
+    const std::string text = nc_text(program, kNcDialectWords[static_cast<std::size_t>(GetParam())]);
+    std::size_t begin = 0;
+    for (std::size_t end = text.find('\n'); end != std::string::npos; begin = end + 1, end = text.find('\n', begin))
+      lines_.push_back(text.substr(begin, end - begin));
+  }
+
+  bool is_pmac() const { return GetParam() == NcDialect::pmac; }
+
+  /// Kinds of what is found, each once; "error" for a text that cannot be carried out.
+  std::string kinds_in(const Lines& lines) const {
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    std::vector<std::string> kinds;
+    try {
+      for (const Finding& f :
+           verify_programs(job_, machine_, {parse_nc(text, "p", GetParam(), control_texts())}, {}, {}).findings)
+        kinds.push_back(f.kind);
+    } catch (const InputError&) {
+      return "error";
+    }
+    std::sort(kinds.begin(), kinds.end());
+    kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
+    return fmt::format("{}", fmt::join(kinds, " "));
+  }
+
+  /// The first line of the main program that moves an axis.
+  std::size_t first_move() const {
+    const std::string rapid = is_pmac() ? "rapid " : "G0 ";
+    std::size_t i = 0;
+    while (!lines_[i].starts_with(rapid)) ++i;
+    return i;
+  }
+  bool is_feed(const std::string& line) const { return line.starts_with(is_pmac() ? "linear " : "G1 "); }
+
+  Job job_ = small_job();
+  Machine machine_;
+  Lines lines_;
+};
+
+TEST_P(ControlState, RightProgramsPass) {
+  EXPECT_EQ(kinds_in(lines_), "");
+}
+
+TEST_P(ControlState, EveryWordOfThePreparationIsAskedFor) {
+  // Planes and cycles change no straight move.
+  const Lines without_effect = {"G17", "G80", "M5", "X0.", "Y0.", "Z0."};
+  int asked = 0;
+  // The preparation is all that stands before the first move and is neither comment nor subroutine.
+  std::size_t begin = first_move();
+  const auto is_prepared = [&](const std::string& line) {
+    return line.starts_with("G") || line.starts_with("M5") || line.starts_with("T") || line.starts_with("Coord") ||
+           line.starts_with("frax") || line.starts_with("ccmode") || line == "abs";
+  };
+  while (begin > 0 && is_prepared(lines_[begin - 1])) --begin;
+  for (std::size_t i = begin; i < first_move(); ++i)
+    for (std::size_t at = 0; at < lines_[i].size();) {
+      const std::size_t end = std::min(lines_[i].find(' ', at), lines_[i].size());
+      const std::string word = lines_[i].substr(at, end - at);
+      Lines spoilt = lines_;
+      spoilt[i].erase(at, end - at);
+      const std::string kinds = kinds_in(spoilt);
+      if (word == "M5") {
+        EXPECT_EQ(kinds, "spindle");
+      } else if (std::find(without_effect.begin(), without_effect.end(), word) == without_effect.end()) {
+        EXPECT_TRUE(kinds.find("setup") != std::string::npos || kinds == "error") << word << ": " << kinds;
+      }
+      ++asked;
+      at = end + 1;
+    }
+  EXPECT_GE(asked, 6);
+}
+
+TEST_P(ControlState, WhatChangesInTheMiddleIsFound) {
+  const std::vector<std::pair<std::string, std::string>> changes =
+      is_pmac()
+          ? std::vector<std::pair<std::string, std::string>>{{"Coord[1].NoBlend=0", "blending"}, {"M3", "spindle"}}
+          : std::vector<std::pair<std::string, std::string>>{
+                {"M3 S3000", "spindle"}, {"M4 S3000", "spindle"}, {"G64", "blending"}, {"M9", "mist"}};
+  int tried = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    if (!is_feed(lines_[i])) continue;
+    for (const auto& [line, kind] : changes) {
+      Lines spoilt = lines_;
+      spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), line);
+      const std::string kinds = kinds_in(spoilt);
+      // Lines that lead a tool from one clearance to another cut nothing, and the next one does.
+      EXPECT_NE(kinds.find(kind), std::string::npos) << line << " before " << lines_[i] << ": " << kinds;
+      ++tried;
+    }
+  }
+  EXPECT_GE(tried, 10);
+}
+
+TEST_P(ControlState, MistThatNeverComesOn) {
+  Lines spoilt = lines_;
+  const std::string on = is_pmac() ? machine_.control.mist_on : "M7";
+  std::erase(spoilt, on);
+  EXPECT_EQ(kinds_in(spoilt), "mist");
+}
+
+/// Z alone, away from the part, and nothing lower before all axes are known.
+TEST_P(ControlState, TheFirstMoves) {
+  const std::size_t first = first_move();
+  const std::string feed = is_pmac() ? "linear Z-12. F2000." : "G1 Z-12. F2000.";
+  const auto with = [&](std::size_t at, const std::string& line) {
+    Lines spoilt = lines_;
+    spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(at), line);
+    return kinds_in(spoilt);
+  };
+  EXPECT_NE(with(first, feed).find("first_move"), std::string::npos);
+  EXPECT_NE(with(first + 1, feed).find("unknown_position"), std::string::npos);
+  EXPECT_NE(with(first + 2, feed).find("unknown_position"), std::string::npos);
+  Lines spoilt = lines_;
+  spoilt.erase(spoilt.begin() + static_cast<std::ptrdiff_t>(first));
+  EXPECT_NE(kinds_in(spoilt).find("first_move"), std::string::npos);
+  // X and Y, and the way down, in the other order.
+  spoilt = lines_;
+  std::size_t across = first + 1;
+  while (spoilt[across].find(" X") == std::string::npos) ++across;
+  std::swap(spoilt[across], spoilt[across + 1]);
+  EXPECT_NE(kinds_in(spoilt).find("unknown_position"), std::string::npos) << kinds_in(spoilt);
+}
+
+TEST_P(ControlState, FeedsAreThoseOfTheMachine) {
+  int tried = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const std::size_t feed = lines_[i].find(" F");
+    if (!is_feed(lines_[i]) || feed == std::string::npos) continue;
+    Lines spoilt = lines_;
+    spoilt[i] = lines_[i].substr(0, feed) + " F50000.";
+    EXPECT_NE(kinds_in(spoilt).find("feed_too_high"), std::string::npos) << lines_[i];
+    ++tried;
+  }
+  EXPECT_GE(tried, 3);
+}
+
+/// Feeds of finishing are those of finishing: told from where the edge sweeps, not from the name of the stage.
+TEST_P(ControlState, FeedsAreThoseOfTheStage) {
+  const double finishing = job_.process.finishing_feed_mm_per_min;
+  const std::string feed = fmt::format(" F{:.3f}", finishing);
+  int tried = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const std::size_t at = lines_[i].find(feed);
+    if (!is_feed(lines_[i]) || at == std::string::npos) continue;
+    Lines spoilt = lines_;
+    spoilt[i] = lines_[i].substr(0, at) + fmt::format(" F{:.3f}", job_.process.roughing_feed_mm_per_min);
+    EXPECT_NE(kinds_in(spoilt).find("feed_too_high"), std::string::npos) << lines_[i];
+    ++tried;
+  }
+  EXPECT_EQ(tried, 2);
+}
+
+TEST_P(ControlState, DwellsInTheMaterial) {
+  const std::string dwell = is_pmac()                            ? "dwell 100"
+                            : GetParam() == NcDialect::sinumerik ? "G4 F0.100"
+                            : GetParam() == NcDialect::fanuc     ? "G4 P100"
+                                                                 : "G4 P0.100";
+  const auto as_long_as = [&](const std::string& text, double factor) {
+    const std::size_t digits = text.find_first_of("0123456789", 3);
+    const double value = factor * std::stod(text.substr(digits));
+    return text.substr(0, digits) +
+           (text.find('.') == std::string::npos ? fmt::format("{:.0f}", value) : fmt::format("{:.3f}", value));
+  };
+  int tried = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    if (lines_[i] != dwell) continue;
+    Lines spoilt = lines_;
+    spoilt[i] = as_long_as(dwell, 1000.0);
+    EXPECT_EQ(kinds_in(spoilt), "dwell_too_long");
+    spoilt[i] = as_long_as(dwell, 2.5);
+    EXPECT_EQ(kinds_in(spoilt), "");
+    spoilt[i] = as_long_as(dwell, 0.5);
+    EXPECT_EQ(kinds_in(spoilt), "missing_dwell");
+    ++tried;
+  }
+  EXPECT_GE(tried, 3);
+  // Above the part a rest harms nothing.
+  Lines rests = lines_;
+  rests.insert(rests.begin() + static_cast<std::ptrdiff_t>(first_move()) + 1, as_long_as(dwell, 1000.0));
+  EXPECT_EQ(kinds_in(rests), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Dialects, ControlState,
+                         ::testing::Values(NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc,
+                                           NcDialect::pmac),
+                         [](const auto& dialect) {
+                           return std::string(kNcDialectWords[static_cast<std::size_t>(dialect.param)]);
+                         });
+
+}  // namespace
+}  // namespace retrace::fabrication::test::control_state_test

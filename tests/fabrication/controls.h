@@ -1,0 +1,29 @@
+#pragma once
+
+// Machines whose control has words for all that programs say, for tests.
+
+#include <string_view>
+#include <utility>
+
+#include "fabrication/machine/machine.h"
+#include "fabrication/program/program.h"
+#include "fabrication/read/nc_program.h"
+
+namespace retrace::fabrication::test {
+
+/// Lines of a Power PMAC.
+inline NcTexts control_texts() {
+  return {"", "", "P100=1", "P100=0", "P101=1"};
+}
+
+/// With those lines, and rounding positions as that dialect does.
+inline Machine for_dialect(Machine machine, std::string_view dialect) {
+  const NcTexts texts = control_texts();
+  machine.control.mist_on = texts.mist_on;
+  machine.control.mist_off = texts.mist_off;
+  machine.control.optional_stop = texts.optional_stop;
+  if (dialect == "fanuc") machine.increments = increments_of(machine.control.increment_system);
+  return machine;
+}
+
+}  // namespace retrace::fabrication::test
