@@ -25,8 +25,10 @@ ExitCode run(const TurnOptions& options, const CommonOptions& common) {
   files.add("path.csv", [&] { return studies::turning_path_csv(result); });
   files.add("cusps.csv", [&] { return studies::turning_cusps_csv(result); });
   files.add("acceleration.svg", [&] { return report::render_svg(report::turning_acceleration_plot(result)); });
-  files.add("profile.svg", [&] { return report::render_svg(report::turning_profile_plot(result)); });
-  files.add("maps.png", [&] { return report::render_png(report::turning_maps(result)); });
+  if (result.check.envelope) {
+    files.add("profile.svg", [&] { return report::render_svg(report::turning_profile_plot(result)); });
+    files.add("maps.png", [&] { return report::render_png(report::turning_maps(result)); });
+  }
   files.prepare();
   return files.write(studies::turning_json(result), studies::turning_table(result), result.part.warnings,
                      {.is_yes = result.passes_inspection()});

@@ -1,9 +1,15 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
+#include "core/message_text.h"
+#include "core/toml_file.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/read/nc_program.h"
 #include "raytrace/sampling/threads.h"
@@ -12,6 +18,10 @@
 #include "studies/closed_loop/io/verification_files.h"
 #include "studies/closed_loop/verification.h"
 #include "studies/design/io/facet_planes_reader.h"
+#include "studies/planing/io/planing_files.h"
+#include "studies/planing/planing_study.h"
+#include "studies/turning/io/turning_files.h"
+#include "studies/turning/turn.h"
 
 namespace retrace::app {
 namespace fs = std::filesystem;
@@ -19,8 +29,10 @@ namespace {
 
 struct VerifyOptions {
   studies::VerificationRequest request;
+  std::optional<double> tolerance_nm;
   std::string as_machined;  ///< design file to write; empty: none
   std::string map;          ///< PNG to write; empty: none
+  std::string servo;        ///< table of strokes to read; empty: none
 };
 
 Words dialects() {
@@ -30,23 +42,71 @@ Words dialects() {
 }
 
 std::vector<Argument> arguments(VerifyOptions& options) {
-  return {
-      job_argument(options.request.job),
-      {"PROGRAM", "NC programs, in the order in which they run", &options.request.programs, files("")},
-      {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc or pmac, or auto: told from the text", &options.request.dialect,
-       one_of(dialects)},
-      {"--tolerance-nm T", "that facet planes may differ from the design by", &options.request.tolerance_nm},
-      {"--map FILE", "draw what the programs leave over the facets to a PNG FILE", &options.map, files(".png")},
-      {"--as-machined FILE", "write the part that is left as a design to FILE", &options.as_machined, files(".toml")}};
+  return {{"JOB|PART", "job file, or the file of a planed or turned part", &options.request.job, files(".toml")},
+          {"PROGRAM", "NC programs, in the order in which they run", &options.request.programs, files("")},
+          {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc or pmac, or auto: told from the text",
+           &options.request.dialect, one_of(dialects)},
+          {"--tolerance-nm T", "of a job: that facet planes may differ from the design by; 10 unless it is given",
+           &options.tolerance_nm},
+          {"--map FILE", "of a job: draw what the programs leave over the facets to a PNG FILE", &options.map,
+           files(".png")},
+          {"--as-machined FILE", "of a job: write the part that is left as a design to FILE", &options.as_machined,
+           files(".toml")},
+          {"--servo FILE", "of a turned part with a fast tool servo: its strokes, servo.csv of `turn`", &options.servo,
+           files(".csv")}};
 }
 
-studies::VerificationRun verified(const studies::VerificationRequest& request, const CommonOptions& common,
-                                  double& elapsed_s) {
-  studies::VerificationRun run;
+/// What a run of `study` gives, and how long it takes.
+template <class Study>
+auto timed(const CommonOptions& common, double& elapsed_s, const Study& study) {
+  std::optional<decltype(study())> run;
   const auto start = std::chrono::steady_clock::now();
-  raytrace::run_with_threads(common.threads.value_or(0), [&] { run = studies::run_verification(request); });
+  raytrace::run_with_threads(common.threads.value_or(0), [&] { run = study(); });
   elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return run;
+  return *std::move(run);
+}
+
+/// What programs may be held to. A file without a schema is told by the tables of its machine.
+enum class Kind { job, planed_part, turned_part };
+constexpr std::string_view kSchemas[] = {"retrace.job/1", "retrace.planed_part/1", "retrace.turned_part/1"};
+
+Kind kind_of(const std::string& file) {
+  TomlTable table = parse_toml(read_file(file), file);
+  const std::optional<std::string> schema = table.text("schema");
+  if (!schema) return table.has("mill") || table.has("lathe") ? Kind::planed_part : Kind::job;
+  const auto* const found = std::find(std::begin(kSchemas), std::end(kSchemas), *schema);
+  if (found == std::end(kSchemas))
+    table.fail("schema", fmt::format("must be {}, got {}", alternatives(kSchemas), in_quotes(*schema)));
+  return static_cast<Kind>(found - std::begin(kSchemas));
+}
+
+/// Refuses options that a kind does not take.
+void refuse_others(const VerifyOptions& options, Kind kind) {
+  const auto refuse = [&](const char* option, const char* whom) {
+    throw InputError({"", 0, option}, fmt::format("is for {}; {} is none", whom, options.request.job));
+  };
+  if (kind != Kind::turned_part && !options.servo.empty()) refuse("--servo", "turned parts");
+  if (kind == Kind::job) return;
+  const std::pair<const char*, bool> of_jobs[] = {{"--tolerance-nm", options.tolerance_nm.has_value()},
+                                                  {"--map", !options.map.empty()},
+                                                  {"--as-machined", !options.as_machined.empty()}};
+  for (const auto& [option, is_given] : of_jobs)
+    if (is_given) refuse(option, "jobs");
+}
+
+/// Of a part: the run of a study, and what is said of it.
+template <class Study>
+ExitCode run_part(const VerifyOptions& options, const CommonOptions& common, const Study& study) {
+  std::vector<std::string> inputs = options.request.programs;
+  inputs.push_back(options.request.job);
+  if (!options.servo.empty()) inputs.push_back(options.servo);
+  const ResultFiles files(common, std::move(inputs), "verification.json");
+  files.check();
+  double elapsed_s = 0.0;
+  const auto run = timed(common, elapsed_s, study);
+  files.prepare();
+  return files.write(studies::verification_json(run, elapsed_s), studies::verification_table(run), run.part_warnings(),
+                     {.is_yes = run.passes()});
 }
 
 std::vector<std::string> inputs_of(const studies::VerificationRequest& request) {
@@ -62,7 +122,7 @@ fs::path facets_file_of(const fs::path& design) {
   return design.empty() ? fs::path() : design.parent_path() / (design.stem().string() + "_facets.csv");
 }
 
-ExitCode run(const VerifyOptions& options, const CommonOptions& common) {
+ExitCode run_job(const VerifyOptions& options, const CommonOptions& common) {
   const fs::path facets_file = facets_file_of(options.as_machined);
   studies::VerificationRun run;
   std::string design;
@@ -74,7 +134,9 @@ ExitCode run(const VerifyOptions& options, const CommonOptions& common) {
                   [&] { return report::render_png(report::error_map_plot(studies::error_map(run))); });
   files.check();
   double elapsed_s = 0.0;
-  run = verified(options.request, common, elapsed_s);
+  studies::VerificationRequest request = options.request;
+  request.tolerance_nm = options.tolerance_nm.value_or(request.tolerance_nm);
+  run = timed(common, elapsed_s, [&] { return studies::run_verification(request); });
   if (!options.as_machined.empty()) {
     const studies::AsMachined part = studies::as_machined(run);
     run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());
@@ -86,19 +148,38 @@ ExitCode run(const VerifyOptions& options, const CommonOptions& common) {
                      {.is_yes = run.result.passes()});
 }
 
+ExitCode run(const VerifyOptions& options, const CommonOptions& common) {
+  const studies::VerificationRequest& request = options.request;
+  const Kind kind = kind_of(request.job);
+  refuse_others(options, kind);
+  switch (kind) {
+    case Kind::job: break;
+    case Kind::planed_part:
+      return run_part(options, common,
+                      [&] { return studies::verify_planing(request.job, request.programs, request.dialect); });
+    case Kind::turned_part:
+      return run_part(options, common, [&] {
+        return studies::verify_turning({request.job, request.programs, request.dialect, options.servo});
+      });
+  }
+  return run_job(options, common);
+}
+
 }  // namespace
 
 Command verify_command() {
-  return {.name = "verify",
-          .summary = "what NC programs really cut, against their fabrication job",
-          .manual =
-              "Reads NC programs as a controller would, cuts the blank through the axes of the job's machine and "
-              "says, by line, what differs from the design. With `--as-machined` the part that is left is "
-              "written as a design, with `--map` it is drawn. Exits with 1 if anything was found.",
-          .reads = {"retrace.job/1", "retrace.machine/1", "NC programs"},
-          .writes = {"retrace.verification/1", "retrace.design/1"},
-          .refuses_set = "verify reads no design",
-          .begin = begins<VerifyOptions>(arguments, run)};
+  return {
+      .name = "verify",
+      .summary = "what NC programs really cut, against their fabrication job or part",
+      .manual =
+          "Reads NC programs as a controller would, cuts the blank through the axes of the job's machine and "
+          "says, by line, what differs from the design. With `--as-machined` the part that is left is "
+          "written as a design, with `--map` it is drawn. Programs of planed and turned parts are held to the "
+          "file of the part in the same way, wherever they come from. Exits with 1 if anything was found.",
+      .reads = {"retrace.job/1", "retrace.machine/1", "retrace.planed_part/1", "retrace.turned_part/1", "NC programs"},
+      .writes = {"retrace.verification/1", "retrace.design/1"},
+      .refuses_set = "verify reads no design",
+      .begin = begins<VerifyOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "fabrication/turning/path_options.h"
-#include "fabrication/turning/plan/path.h"
 #include "fabrication/turning/tool.h"
 #include "geometry/surface/freeform_surface.h"
 

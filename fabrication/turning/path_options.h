@@ -27,6 +27,9 @@ struct PathOptions {
   double spindle_rpm = 60.0;
   double cutting_mm_per_min = 60.0;  ///< raster
   double clear_mm = 1.0;             ///< above the highest point, for moves without cutting
+  double approach_mm_per_min = 5.0;  ///< down to where a cut begins
+  /// Of C, from a standstill to the spindle's speed and back at the ends of a spiral; nothing: at once.
+  std::optional<double> spin_deg_per_s2 = std::nullopt;
 };
 
 /// Limits of a machine; nothing: none.
@@ -40,7 +43,9 @@ struct AxisLimits {
 struct TurningMachine {
   std::array<AxisLimits, 3> axes;  ///< X, Y, Z
   std::optional<double> spindle_rpm;
-  AxisLimits servo;  ///< of a fast tool servo: its stroke
+  std::optional<double> c_acceleration_deg_per_s2;
+  std::optional<double> blocks_per_s;  ///< that the control carries out at most
+  AxisLimits servo;                    ///< of a fast tool servo: its stroke
 };
 
 }  // namespace retrace::fabrication::turning

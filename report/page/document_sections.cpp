@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/number_format.h"
 #include "report/page/document_view.h"
@@ -111,9 +112,15 @@ PageSection verification_section(const ResultDocument& document, const ResultFol
   const Json& findings = list(json, "findings");
   PageSection section = titled("Verification");
   section.facts = {{"Verdict", verdict, verdict_style(verdict)},
-                   {"Findings", std::to_string(findings.size()), findings.empty() ? "good" : "bad"},
-                   {"Facets off by at most", measured(number(json, "facet_distance_nm_max"), " nm"), ""},
-                   {"Angles off by at most", measured(number(json, "facet_angle_arcmin_max"), " arcmin"), ""}};
+                   {"Findings", std::to_string(findings.size()), findings.empty() ? "good" : "bad"}};
+  const std::tuple<const char*, const char*, const char*> figures[] = {
+      {"Facets off by at most", "facet_distance_nm_max", " nm"},
+      {"Angles off by at most", "facet_angle_arcmin_max", " arcmin"},
+      {"Form off by at most", "form_error_mm_max", " mm"},
+      {"Lowest block", "block_low_nm", " nm"}};
+  for (const auto& [name, key, unit] : figures)
+    if (const double value = number(json, key); std::isfinite(value))
+      section.facts.push_back({name, measured(value, unit), ""});
   section.paragraphs.push_back(
       "The text of the programs was read back, the machine's axes moved and the blank cut again; planner and writers "
       "take no part in it.");

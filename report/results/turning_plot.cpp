@@ -40,7 +40,7 @@ LinePlot turning_profile_plot(const studies::TurningResult& r) {
 }
 
 ImagePlot turning_maps(const studies::TurningResult& r) {
-  const auto& inspection = r.inspection;
+  const auto& inspection = r.check.inspection;
   const std::size_t n = inspection.columns;
   const double pixel = inspection.map_width_mm / static_cast<double>(n);
   std::vector<double> height(n * n, 0.0);

@@ -27,7 +27,6 @@ struct VerificationRun {
   VerificationRequest request;
   fabrication::Job job;
   fabrication::Machine machine;
-  std::vector<fabrication::NcDialect> dialects;  ///< of the programs
   std::vector<fabrication::NcProgram> programs;  ///< as they were read
   fabrication::Verification result;
   std::vector<std::string> warnings;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "fabrication/check/io/program_files.h"
 #include "fabrication/planing/io/part_files.h"
 #include "fabrication/post/post.h"
 
@@ -37,8 +38,18 @@ PlaningResult plane(const std::string& part_file, const std::string& dialect) {
   for (const PlannedProgram& planned : result.plan.programs)
     result.programs.push_back({planned.program.name + ending, nc_text(planned.program, dialect)});
   const auto word = std::find(std::begin(kNcDialectWords), std::end(kNcDialectWords), dialect);
-  result.check = check_planing(result.part, result.plan.flank_slope, result.programs,
-                               static_cast<NcDialect>(word - std::begin(kNcDialectWords)));
+  result.check =
+      check_planing(result.part, result.programs, static_cast<NcDialect>(word - std::begin(kNcDialectWords)));
+  return result;
+}
+
+PlaningVerification verify_planing(const std::string& part_file, const std::vector<std::string>& programs,
+                                   const std::string& dialect) {
+  using namespace fabrication;
+  PlaningVerification result;
+  result.part = read_planed_part(part_file);
+  result.programs = read_programs(programs, dialect, spindle_texts_of(result.part));
+  result.check = check_planing(result.part, result.programs);
   return result;
 }
 

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/csv.h"
+#include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/check/io/program_files.h"
 #include "fabrication/post/post.h"
-#include "fabrication/read/nc_motion.h"
 #include "fabrication/turning/check/machined_mesh.h"
 #include "fabrication/turning/io/part_files.h"
 #include "fabrication/turning/plan/turning_program.h"
@@ -51,17 +54,6 @@ void write_programs(TurningResult& r) {
   r.servo_csv = csv.text();
 }
 
-/// Adds the strokes of the servo's file to the heights that the slide's program reaches.
-void add_strokes(const std::string& csv, std::vector<turning::CutPass>& cuts, fabrication::FindingList& findings) {
-  if (csv.empty()) return;
-  std::vector<double>& z_mm = cuts.front().z_mm;
-  CsvReader strokes(csv, "servo.csv", csv.size());
-  while (strokes.next())
-    if (strokes.rows() <= z_mm.size()) z_mm[strokes.rows() - 1] += strokes.number(1);
-  if (strokes.rows() != z_mm.size())
-    findings.add("servo", 0, "the servo's file does not have one stroke for every point of the program");
-}
-
 /// Sums of increments differ in their last digits, and C of a Fanuc has a digit less than that of others.
 constexpr double kSameMm = 1e-9;
 constexpr double kSameRad = 1e-8;
@@ -79,45 +71,19 @@ bool same_cuts(const std::vector<turning::CutPass>& a, const std::vector<turning
 }
 
 /// The cuts of the reference's text; the others must read as the same.
-std::vector<turning::CutPass> read_back(const TurningResult& r, fabrication::FindingList& findings) {
-  std::vector<turning::CutPass> reference;
+turning::TurningCuts read_back(const TurningResult& r, fabrication::FindingList& findings) {
+  turning::TurningCuts reference;
   for (std::size_t d = 0; d < r.programs.size(); ++d) {
     const TurningText& program = r.programs[d];
-    turning::CutRecorder recorder;
-    findings.begin(program.file);
-    const fabrication::NcEnd end = fabrication::run_nc(
-        fabrication::parse_nc(program.text, program.file, static_cast<fabrication::NcDialect>(d)), recorder);
-    if (!end.is_complete) findings.add("truncated", 0, end.reason);
-    for (const fabrication::Finding& f : recorder.findings()) findings.add(f.kind, f.line, f.message);
-    std::vector<turning::CutPass> cuts = recorder.take();
+    turning::TurningCuts cuts = turning::read_cuts(
+        r.part, {fabrication::parse_nc(program.text, program.file, static_cast<fabrication::NcDialect>(d))}, findings);
     if (d == 0)
       reference = std::move(cuts);
-    else if (!same_cuts(reference, cuts))
-      findings.add("differs", 0, fmt::format("moves otherwise than {}", r.programs.front().file));
+    else if (!same_cuts(reference.passes, cuts.passes))
+      findings.add({"differs", program.file, 0, -1, fmt::format("moves otherwise than {}", r.programs.front().file),
+                    0.0, 0.0, 1});
   }
   return reference;
-}
-
-turning::InspectedRegion region_of(const turning::PathOptions& path) {
-  turning::InspectedRegion region;
-  region.is_round = path.strategy == turning::Strategy::spiral;
-  region.radius_mm = path.radius_mm;
-  region.half_width_mm = 0.5 * path.width_mm;
-  region.half_height_mm = 0.5 * path.height_mm;
-  region.feed_mm = path.feed_mm;
-  return region;
-}
-
-void judge(const TurningResult& r, fabrication::FindingList& findings) {
-  const double limit = r.part.form_tolerance_nm;
-  const auto check = [&](const char* kind, const char* what, double value) {
-    if (value > limit)
-      findings.add(kind, 0,
-                   fmt::format("{} of {} nm exceeds the tolerance of {} nm", what, fixed(value, 2), shortest(limit)),
-                   value, limit);
-  };
-  check("form", "a form error", r.inspection.form_error_nm);
-  check("gouge", "a cut below the surface", r.inspection.interference_nm);
 }
 
 /// Two turns round the largest jump of Z's acceleration.
@@ -170,23 +136,38 @@ TurningResult turn(const std::string& part_file) {
   r.finish = turning::finish_figures(turning::effective_radius_mm(part.tool), part.path.feed_mm);
   for (int axis = 0; axis < 4; ++axis) r.axes[static_cast<std::size_t>(axis)] = turning::axis_figures(r.passes, axis);
   fabrication::FindingList findings;
-  for (std::string& excess : turning::excesses(part.machine, r.passes, part.path))
-    findings.add("axis_limit", 0, std::move(excess));
   write_programs(r);
-  std::vector<turning::CutPass> cuts = read_back(r, findings);
-  findings.begin("");
-  add_strokes(r.servo_csv, cuts, findings);
-  const turning::Envelope envelope(part.tool, std::move(cuts));
-  r.inspection = turning::inspect(envelope, part.surface, part.tool, region_of(part.path), part.map_pixels);
-  if (part.mesh_thickness_mm)
-    r.machined_stl = geometry::stl_text(
-        turning::machined_mesh(envelope, part.surface, region_of(part.path), part.mesh_rings, *part.mesh_thickness_mm),
-        "what is moulded in a turned surface");
-  find_stretch(r);
-  find_profile(r, envelope);
-  judge(r, findings);
+  std::optional<turning::StrokeTable> strokes;
+  if (!r.servo_csv.empty()) strokes = {"servo.csv", r.servo_csv};
+  r.check = turning::check_turning(part, read_back(r, findings), strokes, findings);
   r.findings = findings.take();
+  find_stretch(r);
+  if (!r.check.envelope) return r;
+  const turning::Envelope& envelope = *r.check.envelope;
+  if (part.mesh_thickness_mm)
+    r.machined_stl = geometry::stl_text(turning::machined_mesh(envelope, part.surface, turning::region_of(part.path),
+                                                               part.mesh_rings, *part.mesh_thickness_mm),
+                                        "what is moulded in a turned surface");
+  find_profile(r, envelope);
   return r;
+}
+
+TurningVerification verify_turning(const TurningRequest& request) {
+  TurningVerification run{request, turning::parse_turned_part(read_file(request.part), request.part), {}, {}, {}};
+  const bool is_fast = run.part.path.servo == turning::Servo::fast;
+  if (is_fast && request.servo.empty())
+    throw InputError({"", 0, "--servo"},
+                     "must name the table of strokes, as the servo of " + request.part + " is fast");
+  if (!is_fast && !request.servo.empty())
+    throw InputError({"", 0, "--servo"}, request.part + " has no fast servo that takes strokes");
+  run.programs = fabrication::read_programs(request.programs, request.dialect);
+  std::optional<turning::StrokeTable> strokes;
+  if (is_fast) strokes = {request.servo, read_file(request.servo, kMostDataBytes)};
+  fabrication::FindingList findings;
+  turning::TurningCuts cuts = turning::read_cuts(run.part, run.programs, findings);
+  run.check = turning::check_turning(run.part, std::move(cuts), strokes, findings);
+  run.findings = findings.take();
+  return run;
 }
 
 }  // namespace retrace::studies

@@ -1,13 +1,14 @@
 #pragma once
 
-// The study behind `retrace turn`: plans a turned part, writes its programs, and inspects what their text leaves.
+// The studies behind `retrace turn` and `retrace verify` of turned parts: plans a turned part, writes its programs, and
+// judges the text of programs.
 
 #include <array>
 #include <string>
 #include <vector>
 
 #include "fabrication/check/findings.h"
-#include "fabrication/turning/check/inspection.h"
+#include "fabrication/turning/check/turning_check.h"
 #include "fabrication/turning/finish.h"
 #include "fabrication/turning/part.h"
 #include "fabrication/turning/plan/path.h"
@@ -39,7 +40,7 @@ struct TurningResult {
   std::vector<TurningText> programs;
   std::string machined_stl;  ///< what is moulded in the surface that is left; empty unless the part asks for it
   std::string servo_csv;     ///< strokes of a fast tool servo; empty without
-  fabrication::turning::Inspection inspection;
+  fabrication::turning::TurningCheck check;
   TurningStretch stretch;
   std::vector<fabrication::Finding> findings;  ///< none: the programs pass
 
@@ -49,5 +50,29 @@ struct TurningResult {
 /// Plans the path of a part, writes its programs, reads their text back and inspects what it leaves.
 /// \throw InputError for a part file that makes no sense
 TurningResult turn(const std::string& part_file);
+
+/// What to verify.
+struct TurningRequest {
+  std::string part;                   ///< file
+  std::vector<std::string> programs;  ///< files, in the order in which they run
+  std::string dialect = "auto";       ///< of all of them, or told from the text
+  std::string servo;                  ///< table of strokes of a fast tool servo; empty: none
+};
+
+/// Programs from files, and what they were found to do.
+struct TurningVerification {
+  TurningRequest request;
+  fabrication::turning::TurnedPart part;
+  std::vector<fabrication::NcProgram> programs;  ///< as they were read
+  fabrication::turning::TurningCheck check;
+  std::vector<fabrication::Finding> findings;
+
+  bool passes() const { return findings.empty(); }
+  const std::vector<std::string>& part_warnings() const { return part.warnings; }
+};
+
+/// \throw InputError for a file that cannot be read or understood, with its line, and for a table of strokes that the
+/// part's servo does not take, or does without
+TurningVerification verify_turning(const TurningRequest& request);
 
 }  // namespace retrace::studies

@@ -6,44 +6,53 @@
 namespace retrace::fabrication {
 namespace {
 
+/// Carries programs out one after another.
+template <class Check, class Begin, class End>
+void follow(const std::vector<NcProgram>& programs, FindingList& findings, PlaningCheck& result, Check& check,
+            const Begin& begin, const End& end) {
+  for (const NcProgram& program : programs) {
+    findings.begin(program.file);
+    result.time_s.push_back(0.0);
+    result.frames.push_back(0);
+    begin(program);
+    const NcEnd how = run_nc(program, check);
+    end(how);
+    if (!how.is_complete) findings.add("truncated", how.line, how.reason);
+  }
+  findings.begin("");
+  check.measure();
+}
+
+}  // namespace
+
 NcTexts spindle_texts_of(const PlanedPart& part) {
   if (!part.lathe) return {};
   return {part.lathe->spindle_start, part.lathe->spindle_stop, "", "", ""};
 }
 
-}  // namespace
-
-PlaningCheck check_planing(const PlanedPart& part, double flank_slope, const std::vector<PlaningText>& programs,
-                           NcDialect dialect) {
+PlaningCheck check_planing(const PlanedPart& part, const std::vector<NcProgram>& programs) {
   PlaningCheck result;
   FindingList findings;
-  MillCheck mill(part, flank_slope, findings, result);
-  std::vector<PathPlace> path;
-  for (const PlaningText& program : programs) {
-    findings.begin(program.name);
-    result.time_s.push_back(0.0);
-    result.frames.push_back(0);
-    const NcProgram nc = parse_nc(program.text, program.name, dialect, spindle_texts_of(part));
-    NcEnd end;
-    if (part.mill) {
-      mill.begin();
-      end = run_nc(nc, mill);
-      mill.end();
-    } else {
-      LatheCheck lathe(part, dialect, findings, result);
-      end = run_nc(nc, lathe);
-      lathe.end(end);
-      path = lathe.last_pass();
-    }
-    if (!end.is_complete) findings.add("truncated", end.line, end.reason);
+  if (part.mill) {
+    MillCheck mill(part, findings, result);
+    follow(
+        programs, findings, result, mill, [&](const NcProgram& program) { mill.begin(program); },
+        [&](const NcEnd& end) { mill.end(end); });
+  } else {
+    LatheCheck lathe(part, findings, result);
+    follow(
+        programs, findings, result, lathe, [&](const NcProgram& program) { lathe.begin(program); },
+        [&](const NcEnd& end) { lathe.end(end); });
   }
-  findings.begin("");
-  if (part.mill)
-    mill.measure();
-  else
-    measure_turned(part, path, findings, result);
   result.findings = findings.take();
   return result;
+}
+
+PlaningCheck check_planing(const PlanedPart& part, const std::vector<PlaningText>& programs, NcDialect dialect) {
+  std::vector<NcProgram> read;
+  const NcTexts spindle = spindle_texts_of(part);
+  for (const PlaningText& program : programs) read.push_back(parse_nc(program.text, program.name, dialect, spindle));
+  return check_planing(part, read);
 }
 
 }  // namespace retrace::fabrication

@@ -32,6 +32,8 @@ struct PlaningCheck {
   double shortest_z_mm = 0.0;
   std::vector<ProfileSample> profile;  ///< mill
   double path_distance_mm_max = 0.0;   ///< lathe: of what the last pass leaves from what its nose can leave
+  double flank_slope = 0.0;            ///< mill: of the tool that the profile asks for, depth over distance
+  double chip_mm_max = 0.0;            ///< lathe: most that a pass takes along Z
   double unreached_mm_max = 0.0;       ///< lathe: what a perfect pass leaves below the walls, as the nose is round
 
   bool passes() const { return findings.empty(); }
@@ -43,8 +45,14 @@ struct PlaningText {
   std::string text;
 };
 
-/// \param flank_slope of the mill's tool, depth over distance \throw InputError for text that cannot be read
-PlaningCheck check_planing(const PlanedPart& part, double flank_slope, const std::vector<PlaningText>& programs,
-                           NcDialect dialect);
+/// The lines of a part's file that start and stop the spindle of a PMAC.
+NcTexts spindle_texts_of(const PlanedPart& part);
+
+/// Judges programs, in the order in which they run, as they were read.
+/// \throw InputError for programs that no control can carry out
+PlaningCheck check_planing(const PlanedPart& part, const std::vector<NcProgram>& programs);
+
+/// The same of text. \throw InputError for text that cannot be read
+PlaningCheck check_planing(const PlanedPart& part, const std::vector<PlaningText>& programs, NcDialect dialect);
 
 }  // namespace retrace::fabrication

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "fabrication/planing/check/phase_profile.h"
-#include "fabrication/planing/check/swept_nose.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -47,9 +46,16 @@ SectionLine along(const SectionLine& line, double spacing_mm) {
   return places;
 }
 
+constexpr std::uint8_t kAxesXz = 0b101;
+/// Words of a feed have three decimals.
+constexpr double kFeedRounding = 5e-4;
+constexpr double kWordsMm = 2e-6;  // of positions that words of a nanometre give
+
 /// A PMAC is told by lines of the part's file, which say nothing of sense and speed that could be read.
 ControlRule rule_of(const PlaningLathe& lathe, NcDialect dialect) {
   ControlRule rule;
+  rule.axes = kAxesXz;
+  rule.safe_z_mm = lathe.clear_mm - kWordsMm;
   const bool is_clockwise = lathe.spindle_direction == SpindleDirection::clockwise;
   rule.spindle.rpm = static_cast<double>(lathe.spindle_rpm);
   rule.spindle.turns = is_clockwise ? NcSpindle::clockwise : NcSpindle::counterclockwise;
@@ -57,65 +63,180 @@ ControlRule rule_of(const PlaningLathe& lathe, NcDialect dialect) {
   return rule;
 }
 
-bool goes_outwards(const std::vector<PathPlace>& path) {
-  const auto falls = [](const PathPlace& a, const PathPlace& b) { return b.x_mm < a.x_mm; };
+bool goes_outwards(const std::vector<SectionPoint>& path) {
+  const auto falls = [](const SectionPoint& a, const SectionPoint& b) { return b.x_mm < a.x_mm; };
   return path.size() > 1 && std::adjacent_find(path.begin(), path.end(), falls) == path.end();
+}
+
+/// Finer than the planner's points: what lies between them counts too.
+double spacing_of(const PlanedPart& part) {
+  const double nose = part.lathe->nose_radius_mm;
+  const double end = part.lens.half_width_mm;
+  if (nose > 0.0) return std::max({std::min(0.2 * part.tolerance_mm, nose / 40.0), nose / 400.0, end / 2e5});
+  return std::max(0.37 * part.tolerance_mm, end / 1e5);
+}
+
+bool is_known(const NcMotion& motion, char axis) {
+  return ((motion.known >> kNcAxisLetters.find(axis)) & 1U) != 0;
 }
 
 }  // namespace
 
-LatheCheck::LatheCheck(const PlanedPart& part, NcDialect dialect, FindingList& findings, PlaningCheck& result)
-    : part_(part), control_(findings, rule_of(*part.lathe, dialect)), result_(result) {}
+LatheCheck::LatheCheck(const PlanedPart& part, FindingList& findings, PlaningCheck& result)
+    : part_(part),
+      spacing_mm_(spacing_of(part)),
+      findings_(findings),
+      result_(result),
+      known_(findings, kAxesXz),
+      standing_(part.lens.half_width_mm, spacing_mm_, part.lathe->nose_radius_mm),
+      before_run_(standing_.heights_mm()) {}
+
+void LatheCheck::begin(const NcProgram& program) {
+  programs_.push_back(program.file);
+  control_.emplace(findings_, rule_of(*part_.lathe, program.dialect));
+  control_->begin(program.dialect);
+}
+
+std::int32_t LatheCheck::add_source(const NcMotion& motion) {
+  sources_.push_back({programs_.size() - 1, motion.place.line});
+  return static_cast<std::int32_t>(sources_.size() - 1);
+}
+
+void LatheCheck::add(const char* kind, std::int32_t who, const char* message, double value, double limit) {
+  const Source& source = sources_[static_cast<std::size_t>(who)];
+  findings_.add({kind, programs_[source.program], source.line, -1, message, value, limit, 1});
+}
 
 void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
+  known_.motion(motion);
+  control_->way(settings, motion);
   if (motion.move == NcMove::rapid) {
-    if (feeding_) last_ = std::move(now_);
-    now_.clear();
-    feeding_ = false;
+    end_run();
+    follow_rapid(motion);
     return;
   }
-  control_.cut(settings, motion.place);
-  if (now_.empty()) now_.push_back({motion.from.x_mm, motion.from.z_mm});
-  now_.push_back({motion.to.x_mm, motion.to.z_mm});
-  feeding_ = true;
+  const PlaningLathe& lathe = *part_.lathe;
+  control_->cut(settings, motion.place);
+  control_->feed(motion, lathe.feed_mm_per_min + kFeedRounding);
+  const SectionPoint from{motion.from.x_mm, motion.from.z_mm};
+  const SectionPoint to{motion.to.x_mm, motion.to.z_mm};
+  if (run_.empty()) run_.push_back(from);
+  run_.push_back(to);
+  standing_.cut(from, to, add_source(motion));
   ++result_.frames.back();
-  result_.time_s.back() += std::hypot(motion.to.x_mm - motion.from.x_mm, motion.to.z_mm - motion.from.z_mm) /
-                           part_.lathe->feed_mm_per_min * 60.0;
+  if (motion.feed_mm_per_min > 0.0)
+    result_.time_s.back() += std::hypot(to.x_mm - from.x_mm, to.z_mm - from.z_mm) / motion.feed_mm_per_min * 60.0;
 }
 
-std::vector<PathPlace> LatheCheck::last_pass() const {
-  return last_.empty() ? last_ : std::vector<PathPlace>(last_.begin() + 1, last_.end());
+/// Rapid moves need not be straight: the nose may be anywhere within the box of their ends.
+void LatheCheck::follow_rapid(const NcMotion& motion) {
+  const double clear_mm = part_.lathe->clear_mm;
+  const double from_z = is_known(motion, 'Z') ? motion.from.z_mm : motion.to.z_mm;
+  const double from_x = is_known(motion, 'X') ? motion.from.x_mm : motion.to.x_mm;
+  const double lowest = std::min(from_z, motion.to.z_mm);
+  const bool only_rises = from_x == motion.to.x_mm && motion.to.z_mm >= from_z;
+  if (!only_rises && lowest < clear_mm - kWordsMm)
+    findings_.add("clearance", motion.place.line, "a rapid move goes below clear_mm", lowest, clear_mm);
+  if (only_rises || lowest >= 0.0) return;
+  const double taken = standing_.cut({from_x, lowest}, {motion.to.x_mm, lowest}, add_source(motion));
+  if (taken > kWordsMm)
+    findings_.add("rapid_in_material", motion.place.line, "a rapid move goes through standing material", taken, 0.0);
+  before_run_ = standing_.heights_mm();
 }
 
-void measure_turned(const PlanedPart& part, const std::vector<PathPlace>& path, FindingList& findings,
-                    PlaningCheck& result) {
-  const double nose = part.lathe->nose_radius_mm;
-  const double end = part.lens.half_width_mm;
-  // Finer than the planner's points: what lies between them counts too.
-  double spacing = std::max(0.37 * part.tolerance_mm, end / 1e5);
-  if (nose > 0.0) spacing = std::max({std::min(0.2 * part.tolerance_mm, nose / 40.0), nose / 400.0, end / 2e5});
-  const std::vector<double> places = places_to(end, spacing);
-  const SectionLine design = section_of(PhaseProfile(part.lens), places);
+/// What a pass takes is at most the depth of cut. It may be formed anew within the tolerance.
+void LatheCheck::end_run() {
+  if (run_.empty()) return;
+  runs_.push_back(std::move(run_));
+  run_.clear();
+  const double limit = part_.lathe->depth_of_cut_mm;
+  const std::vector<double>& heights = standing_.heights_mm();
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double taken = before_run_[i] - heights[i];
+    result_.chip_mm_max = std::max(result_.chip_mm_max, taken);
+    if (taken > limit + part_.tolerance_mm)
+      add("chip_too_thick", standing_.who(i), "a pass takes more than the depth of cut", taken, limit);
+  }
+  before_run_ = heights;
+}
+
+void LatheCheck::end(const NcEnd& end) {
+  end_run();
+  control_->spindle_at_end(end);
+}
+
+/// Without the way down to the profile. What the last run does not reach inwards, the one before it has left; where
+/// that does not reach it either, the tool was above the blank.
+std::vector<SectionPoint> LatheCheck::last_pass() const {
+  std::vector<SectionPoint> path;
+  for (auto run = runs_.rbegin(); run != runs_.rend() && (path.empty() || path.front().x_mm > 0.0); ++run) {
+    const bool comes_down = (*run)[0].x_mm == (*run)[1].x_mm && (*run)[0].z_mm >= (*run)[1].z_mm;
+    std::vector<SectionPoint> inner(run->begin() + (comes_down ? 1 : 0), run->end());
+    if (!path.empty()) {
+      const SectionPoint joint = path.front();
+      const auto beyond =
+          std::find_if(inner.begin(), inner.end(), [&](const SectionPoint& p) { return p.x_mm >= joint.x_mm; });
+      if (beyond == inner.begin()) continue;
+      if (beyond == inner.end()) {
+        const double clear_mm = part_.lathe->clear_mm;
+        const double end_mm = inner.back().x_mm;
+        inner.push_back({end_mm, clear_mm});
+        inner.push_back({joint.x_mm, clear_mm});
+      } else {
+        const SectionPoint& before = *(beyond - 1);
+        const double share = (joint.x_mm - before.x_mm) / (beyond->x_mm - before.x_mm);
+        const SectionPoint at{joint.x_mm, before.z_mm + share * (beyond->z_mm - before.z_mm)};
+        inner.erase(beyond, inner.end());
+        inner.push_back(at);
+      }
+    }
+    path.insert(path.begin(), inner.begin(), inner.end());
+  }
+  return path;
+}
+
+/// Where moves before the last pass went below what it leaves, and below what is allowed.
+void LatheCheck::find_gouges(const std::vector<SectionPoint>& path, const SectionLine& reachable, double limit_mm) {
+  StandingSection last(part_.lens.half_width_mm, spacing_mm_, part_.lathe->nose_radius_mm);
+  for (std::size_t i = 1; i < path.size(); ++i) last.cut(path[i - 1], path[i], 0);
+  const std::vector<double>& heights = standing_.heights_mm();
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    if (heights[i] > last.heights_mm()[i] - kWordsMm) continue;
+    const SectionPoint left{standing_.place_mm(i), heights[i]};
+    const double distance = largest_distance({left}, reachable, 2.0 * part_.tolerance_mm + 2.0 * spacing_mm_);
+    if (distance > limit_mm + spacing_mm_)
+      add("gouge", standing_.who(i), "a move goes below what the last pass leaves", last.heights_mm()[i] - heights[i],
+          part_.tolerance_mm);
+  }
+}
+
+void LatheCheck::measure() {
+  const double nose = part_.lathe->nose_radius_mm;
+  const double end = part_.lens.half_width_mm;
+  const std::vector<SectionPoint> path = last_pass();
+  const std::vector<double> places = places_to(end, spacing_mm_);
+  const SectionLine design = section_of(PhaseProfile(part_.lens), places);
   SectionLine reachable = design;
   SectionLine left;
-  for (const PathPlace& p : path) left.push_back({p.x_mm, p.z_mm + nose});
-  double limit = part.tolerance_mm * (1.0 + 1e-3);  // rounding of the words is far below
+  for (const SectionPoint& p : path) left.push_back({p.x_mm, p.z_mm + nose});
+  double limit = part_.tolerance_mm * (1.0 + 1e-3);  // rounding of the words is far below
   if (nose > 0.0) {
     // The rim is touched from beyond it.
-    reachable = left_by_nose(lowest_centres(design, nose, places_to(end + nose, spacing)), nose, places);
+    reachable = left_by_nose(lowest_centres(design, nose, places_to(end + nose, spacing_mm_)), nose, places);
     if (goes_outwards(path)) left = left_by_nose(left, nose, places);
-    result.unreached_mm_max = largest_distance(design, reachable, 2.0 * nose);
-    limit += spacing * spacing / (8.0 * nose);  // by which chords of a fillet stand off from it
+    result_.unreached_mm_max = largest_distance(design, reachable, 2.0 * nose);
+    limit += spacing_mm_ * spacing_mm_ / (8.0 * nose);  // by which chords of a fillet stand off from it
   }
-  const double reach = 2.0 * part.tolerance_mm + 2.0 * spacing;
-  result.path_distance_mm_max = std::numeric_limits<double>::max();
+  const double reach = 2.0 * part_.tolerance_mm + 2.0 * spacing_mm_;
+  result_.path_distance_mm_max = std::numeric_limits<double>::max();
   if (goes_outwards(path))
-    result.path_distance_mm_max =
+    result_.path_distance_mm_max =
         std::max(largest_distance(reachable, left, reach),
-                 largest_distance(nose > 0.0 ? left : along(left, spacing), reachable, reach));
-  if (result.path_distance_mm_max > limit)
-    findings.add("path", 0, "the last pass leaves the tube of tolerance", result.path_distance_mm_max,
-                 part.tolerance_mm);
+                 largest_distance(nose > 0.0 ? left : along(left, spacing_mm_), reachable, reach));
+  if (result_.path_distance_mm_max > limit)
+    findings_.add("path", 0, "the last pass leaves the tube of tolerance", result_.path_distance_mm_max,
+                  part_.tolerance_mm);
+  find_gouges(path, reachable, limit);
 }
 
 }  // namespace retrace::fabrication

@@ -14,6 +14,15 @@ namespace {
 
 constexpr double kRoundingMm = 1e-7;
 constexpr const char* kLetters = "XYZ";
+constexpr std::uint8_t kAxes = 0b111;
+
+/// It planes in rapid moves, so that each of them may be a cut.
+ControlRule rule_of(const PlaningMill& mill) {
+  ControlRule rule;
+  rule.axes = kAxes;
+  rule.safe_z_mm = mill.clear_mm - kRoundingMm;
+  return rule;
+}
 
 std::array<double, 3> linear(const AxisPositions& at) {
   return {at.x_mm, at.y_mm, at.z_mm};
@@ -21,8 +30,21 @@ std::array<double, 3> linear(const AxisPositions& at) {
 
 }  // namespace
 
-void MillCheck::begin() {
+MillCheck::MillCheck(const PlanedPart& part, FindingList& findings, PlaningCheck& result)
+    : part_(part),
+      profile_(part.lens),
+      findings_(findings),
+      result_(result),
+      control_(findings, rule_of(*part.mill)),
+      known_(findings, kAxes) {
+  result_.flank_slope = flank_slope_of(profile_, part.lens.half_width_mm);
+}
+
+void MillCheck::begin(const NcProgram& program) {
+  programs_.push_back(program.file);
   std::fill(std::begin(is_placed_), std::end(is_placed_), false);
+  height_mm_ = 0.0;
+  control_.begin(program.dialect);
 }
 
 void MillCheck::check_length(const NcMotion& motion, std::size_t axis, double length_mm) {
@@ -52,14 +74,19 @@ void MillCheck::check_place(const NcMotion& motion, std::size_t axis) {
                     part_.length_mm);
     const bool is_through = std::min(motion.from.y_mm, motion.to.y_mm) < 0.0 &&
                             std::max(motion.from.y_mm, motion.to.y_mm) > part_.length_mm;
-    if (is_through && lowest < 0.0) strokes_.push_back({motion.to.x_mm, -lowest});
+    if (is_through && lowest < 0.0)
+      strokes_.push_back({motion.to.x_mm, -lowest, programs_.size() - 1, motion.place.line});
   } else if (!is_beside && lowest < 0.0) {
     findings_.add("moves_in_part", motion.place.line,
                   fmt::format("{} moves while the tool is in the part", kLetters[axis]), lowest, 0.0);
   }
 }
 
-void MillCheck::motion(const NcMotion& motion, const NcSettings&) {
+void MillCheck::motion(const NcMotion& motion, const NcSettings& settings) {
+  control_.way(settings, motion);
+  control_.cut(settings, motion.place);
+  known_.motion(motion);
+  height_mm_ = motion.to.z_mm;
   const std::array from = linear(motion.from);
   const std::array to = linear(motion.to);
   std::size_t moved = 0;
@@ -87,52 +114,66 @@ void MillCheck::motion(const NcMotion& motion, const NcSettings&) {
   result_.time_s.back() += length_mm / part_.mill->fast_feed_mm_per_min * 60.0 + part_.mill->frame_s;
 }
 
-void MillCheck::end() {
+void MillCheck::end(const NcEnd& end) {
+  if (end.settings.spindle) control_.spindle_at_end(end);
   const std::array travel = {part_.mill->travel_x_mm, part_.mill->travel_y_mm, part_.mill->travel_z_mm};
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (high_mm_[axis] - low_mm_[axis] > travel[axis] + kRoundingMm)
       findings_.add("travel", 0, fmt::format("{} goes farther than the machine", kLetters[axis]),
                     high_mm_[axis] - low_mm_[axis], travel[axis]);
+  if (height_mm_ < part_.mill->clear_mm - kRoundingMm)
+    findings_.add("ends_low", 0, "the program ends with the tool below clear_mm", height_mm_, part_.mill->clear_mm);
   const double hours = result_.time_s.back() / 3600.0;
   if (hours > part_.mill->most_hours + 1e-9)
     findings_.add("too_long", 0, fmt::format("the program runs for {} hours", fixed(hours, 3)), hours,
                   part_.mill->most_hours);
 }
 
-void MillCheck::measure_at(double x_mm, double left_mm, const PhaseProfile& profile) {
+void MillCheck::measure_at(double x_mm, double left_mm, const Stroke* stroke) {
+  const double place_mm = std::abs(x_mm);
+  const double design_mm = profile_.depth_mm(place_mm);
   // Within a step of the grid of an upright wall either side of it may be meant.
   const double near_mm = part_.mill->grid_mm;
-  const double design_mm = profile.depth_mm(x_mm);
   double standing = std::max(0.0, design_mm - left_mm);
   double gouge = std::max(0.0, left_mm - design_mm);
-  for (const Wall& wall : profile.walls())
-    if (std::abs(x_mm - wall.x_mm) <= near_mm) standing = gouge = 0.0;
-  if (x_mm > part_.lens.half_width_mm - near_mm) standing = 0.0;
+  for (const Wall& wall : profile_.walls())
+    if (std::abs(place_mm - wall.x_mm) <= near_mm) standing = gouge = 0.0;
+  // The other half is made when the part has been turned.
+  if (x_mm < 0.0 || x_mm > part_.lens.half_width_mm - near_mm) standing = 0.0;
   result_.standing_mm_max = std::max(result_.standing_mm_max, standing);
   result_.gouge_mm_max = std::max(result_.gouge_mm_max, gouge);
-  result_.profile.push_back({x_mm, design_mm, left_mm});
+  if (x_mm >= 0.0) result_.profile.push_back({x_mm, design_mm, left_mm});
+  if (stroke != nullptr && gouge > part_.tolerance_mm + kRoundingMm)
+    findings_.add({"gouge", programs_[stroke->program], stroke->line, -1, "a stroke goes below the design", gouge,
+                   part_.tolerance_mm, 1});
 }
 
 void MillCheck::measure() {
-  const PhaseProfile profile(part_.lens);
   std::sort(strokes_.begin(), strokes_.end(), [](const Stroke& a, const Stroke& b) { return a.x_mm < b.x_mm; });
   // From the outside in: the deepest flank over a place is that of the greatest depth - slope x of strokes beyond it.
   constexpr double kBeside = 1e-9;  // of the strokes, which stand on the grid: most stands just outside of one
   const double grid = part_.mill->grid_mm;
+  const double slope = result_.flank_slope;
   double deepest = -1e300;
+  const Stroke* of = nullptr;
   auto next = strokes_.rbegin();
-  for (auto k = 2 * static_cast<std::int64_t>(part_.lens.half_width_mm / grid); k >= 0; --k) {
-    const double x = static_cast<double>(k / 2) * grid + (k % 2 == 0 ? -kBeside : kBeside);
-    for (; next != strokes_.rend() && next->x_mm >= x; ++next)
-      deepest = std::max(deepest, next->depth_mm - flank_slope_ * next->x_mm);
-    measure_at(std::clamp(x, 0.0, part_.lens.half_width_mm), std::max(0.0, deepest + flank_slope_ * x), profile);
+  const auto last = 2 * static_cast<std::int64_t>(part_.lens.half_width_mm / grid);
+  for (std::int64_t k = last; k >= -last; --k) {
+    const auto step = static_cast<double>(k >= 0 ? k / 2 : (k - 1) / 2);
+    const double x = step * grid + (k % 2 == 0 ? -kBeside : kBeside);
+    for (; next != strokes_.rend() && next->x_mm >= x; ++next) {
+      const double flank = next->depth_mm - slope * next->x_mm;
+      if (flank <= deepest) continue;
+      deepest = flank;
+      of = &*next;
+    }
+    const double left_mm = std::max(0.0, deepest + slope * x);
+    if (x >= -kBeside || left_mm > 0.0)
+      measure_at(std::clamp(x, x < -kBeside ? -part_.lens.half_width_mm : 0.0, part_.lens.half_width_mm), left_mm, of);
   }
   std::reverse(result_.profile.begin(), result_.profile.end());
-  const double limit = part_.tolerance_mm + kRoundingMm;
-  if (result_.standing_mm_max > limit)
+  if (result_.standing_mm_max > part_.tolerance_mm + kRoundingMm)
     findings_.add("excess", 0, "material stands above the design", result_.standing_mm_max, part_.tolerance_mm);
-  if (result_.gouge_mm_max > limit)
-    findings_.add("gouge", 0, "cuts go below the design", result_.gouge_mm_max, part_.tolerance_mm);
 }
 
 }  // namespace retrace::fabrication

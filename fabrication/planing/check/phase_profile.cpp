@@ -4,6 +4,8 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
+#include "core/angle.h"
+
 namespace retrace::fabrication {
 namespace {
 
@@ -49,6 +51,21 @@ double PhaseProfile::depth_of_order_mm(double x_mm, double order) const {
 double PhaseProfile::depth_mm(double x_mm) const {
   // The way gets shorter with the depth: the lowest order that is reached at the greatest depth or before.
   return depth_of_order_mm(x_mm, std::max(0.0, std::ceil(waves(x_mm, deepest_mm_))));
+}
+
+double PhaseProfile::slope(double x_mm, double depth_mm) const {
+  // Along the profile the way stays the same: its derivatives by place and by depth.
+  const double to_lens = lens_.focal_length_mm + depth_mm;
+  const double way = std::hypot(x_mm, to_lens);
+  return (x_mm / way) / (lens_.refractive_index - to_lens / way);
+}
+
+double flank_slope_of(const PhaseProfile& profile, double half_width_mm) {
+  double steepest = profile.slope(half_width_mm, profile.depth_mm(half_width_mm));
+  for (const Wall& wall : profile.walls()) steepest = std::max(steepest, profile.slope(wall.x_mm, wall.inner_depth_mm));
+  constexpr double kStepsPerDegree = 2.0;
+  const double deg = std::atan(steepest) / kDegree;
+  return std::tan(std::ceil(kStepsPerDegree * deg) / kStepsPerDegree * kDegree);
 }
 
 }  // namespace retrace::fabrication

@@ -27,6 +27,8 @@ class PhaseProfile {
 
   /// \pre 0 <= x <= half width
   double depth_mm(double x_mm) const;
+  /// How fast the depth grows there within its zone. \param x_mm, depth_mm on the profile
+  double slope(double x_mm, double depth_mm) const;
   const std::vector<Wall>& walls() const { return walls_; }
 
  private:
@@ -38,5 +40,9 @@ class PhaseProfile {
   double deepest_mm_ = 0.0;
   std::vector<Wall> walls_;
 };
+
+/// Of the tool of a planing mill, depth over distance: as the steepest place of the profile, rounded up to half a
+/// degree.
+double flank_slope_of(const PhaseProfile& profile, double half_width_mm);
 
 }  // namespace retrace::fabrication

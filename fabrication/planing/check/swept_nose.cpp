@@ -41,13 +41,15 @@ SectionLine negated(SectionLine section) {
   return section;
 }
 
-double distance_to_piece(const SectionPoint& p, const SectionPoint& a, const SectionPoint& b) {
+double squared_distance(const SectionPoint& p, const SectionPoint& a, const SectionPoint& b) {
   const double dx = b.x_mm - a.x_mm;
   const double dz = b.z_mm - a.z_mm;
   const double length2 = dx * dx + dz * dz;
   const double along = length2 > 0.0 ? ((p.x_mm - a.x_mm) * dx + (p.z_mm - a.z_mm) * dz) / length2 : 0.0;
   const double t = std::clamp(along, 0.0, 1.0);
-  return std::hypot(p.x_mm - a.x_mm - t * dx, p.z_mm - a.z_mm - t * dz);
+  const double aside = p.x_mm - a.x_mm - t * dx;
+  const double above = p.z_mm - a.z_mm - t * dz;
+  return aside * aside + above * above;
 }
 
 }  // namespace
@@ -91,10 +93,10 @@ double largest_distance(const SectionLine& places, const SectionLine& line, doub
                                         [](const SectionPoint& q, double x) { return q.x_mm < x; });
     for (auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, first - line.begin()));
          i < line.size() && line[i - 1].x_mm <= p.x_mm + reach_mm; ++i)
-      best = std::min(best, distance_to_piece(p, line[i - 1], line[i]));
+      best = std::min(best, squared_distance(p, line[i - 1], line[i]));
     largest = std::max(largest, best);
   }
-  return largest;
+  return largest < std::numeric_limits<double>::max() ? std::sqrt(largest) : largest;
 }
 
 }  // namespace retrace::fabrication

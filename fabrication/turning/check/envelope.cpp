@@ -27,14 +27,16 @@ void CutRecorder::motion(const NcMotion& motion, const NcSettings&) {
     findings_.push_back({"stops", "", motion.place.line, -1, "the cut stops at every point", 0.0, 0.0, 1});
   if (findings_.empty() && !(motion.duration_s > 0.0))
     findings_.push_back({"untimed", "", motion.place.line, -1, "a move of the cut has no time", 0.0, 0.0, 1});
-  const auto add = [this](const AxisPositions& p) {
+  const auto add = [&](const AxisPositions& p, double duration_s) {
+    pass_.duration_s.push_back(duration_s);
+    pass_.line.push_back(motion.place.line);
     pass_.x_mm.push_back(p.x_mm);
     pass_.y_mm.push_back(p.y_mm);
     pass_.z_mm.push_back(p.z_mm);
     pass_.c_rad.push_back(p.c_deg * kDegree);
   };
-  if (pass_.x_mm.empty()) add(motion.from);
-  add(motion.to);
+  if (pass_.x_mm.empty()) add(motion.from, 0.0);
+  add(motion.to, motion.duration_s);
   pass_.seconds += motion.duration_s;
 }
 

@@ -3,7 +3,7 @@
 // The surface that a turning tool's arc leaves along the cuts of NC text: the lower envelope of its edge over every
 // place.
 
-#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,13 +14,19 @@
 
 namespace retrace::fabrication::turning {
 
-/// Positions of the axes at the ends of the blocks of a cut, as read from NC text.
+/// Positions of the axes at the ends of the blocks of a cut, as read from NC text, the start of the first one included.
 struct CutPass {
   std::vector<double> x_mm;
   std::vector<double> y_mm;
-  std::vector<double> z_mm;
+  std::vector<double> z_mm;  ///< of the tool, strokes of a servo included
   std::vector<double> c_rad;
+  std::vector<double> duration_s;  ///< of the block that ends there; of the first 0
+  std::vector<std::int32_t> line;  ///< likewise
+  std::vector<double> servo_mm;    ///< what a servo adds to the slide's Z; empty: nothing
+  std::size_t program = 0;         ///< that it is of
   double seconds = 0.0;
+
+  std::size_t size() const { return x_mm.size(); }
 };
 
 /// Gathers the cuts of a program: linear moves, without those that only change Z.

@@ -27,6 +27,7 @@ PathOptions read_path(const Document& file, const TurningTool& tool) {
   path.feed_mm = file.has("path.feed_um") ? 1e-3 * number("feed_um")
                                           : feed_for_scallop_mm(effective_radius_mm(tool), number("scallop_nm"));
   path.clear_mm = number("clear_mm");
+  path.approach_mm_per_min = number("approach_mm_per_min");
   if (path.strategy == Strategy::raster) {
     const std::vector<double> size = file.numbers("path.size_mm");
     path.height_mm = size[0];
@@ -39,6 +40,7 @@ PathOptions read_path(const Document& file, const TurningTool& tool) {
     path.spindle_rpm = number("spindle_rpm");
     path.sampling = file.choice<Sampling>("path.sampling");
     path.servo = file.choice<Servo>("path.servo");
+    path.spin_deg_per_s2 = file.number_if("machine.c_acceleration_deg_per_s2");
   }
   if (path.sampling == Sampling::arc)
     path.arc_mm = 1e-3 * number("arc_um");
@@ -66,6 +68,8 @@ AxisLimits read_limits(const Document& file, const std::string& table) {
 TurningMachine read_machine(const Document& file) {
   return {{read_limits(file, "machine.x"), read_limits(file, "machine.y"), read_limits(file, "machine.z")},
           file.number_if("machine.spindle_rpm"),
+          file.number_if("machine.c_acceleration_deg_per_s2"),
+          file.number_if("machine.blocks_per_s"),
           read_limits(file, "machine.servo")};
 }
 

@@ -42,6 +42,7 @@ constexpr Row kPathRows[] = {
     {"scallop_nm", Number{{.low = 1e-3, .high = 1e6}}, kNone,
      "In its place: the feed whose cusps on a flat are so high."},
     {"clear_mm", Number{{.low = 0.01, .high = 1e3}}, 1.0, "Above the part, for moves without cutting."},
+    {"approach_mm_per_min", Number{{.low = 0.01, .high = 1e5}}, 5.0, "Down to where a cut begins."},
     geometry::kRegionRadiusRow,
     {"overrun_mm", Number{{.low = 0.0, .high = 1e3}}, 0.0,
      "Beyond the rim, where a spiral starts: on a surface that falls outwards the nose touches inside of its lowest "
@@ -69,7 +70,11 @@ constexpr Row kLimitRows[] = {{"travel_mm", Numbers{2, kPlace}, kNone, "`[low, h
                               {"speed_mm_per_s", kPositive, kNone, "Speed that is not exceeded."},
                               {"acceleration_mm_per_s2", kPositive, kNone, "The same of acceleration."},
                               {"jerk_mm_per_s3", kPositive, kNone, "The same of jerk."}};
-constexpr Row kMachineRows[] = {{"spindle_rpm", kPositive, kNone, "Greatest speed of the spindle."}};
+constexpr Row kMachineRows[] = {
+    {"spindle_rpm", kPositive, kNone, "Greatest speed of the spindle."},
+    {"c_acceleration_deg_per_s2", kPositive, kNone,
+     "The same of its acceleration: spirals then begin and end at a standstill."},
+    {"blocks_per_s", kPositive, kNone, "Most blocks that the control carries out in a second."}};
 constexpr Table limits(std::string_view name, std::string_view meaning) {
   return {.name = name, .meaning = meaning, .rows = kLimitRows, .presence = Presence::optional};
 }

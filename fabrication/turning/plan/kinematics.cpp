@@ -1,9 +1,6 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "core/number_format.h"
 #include "fabrication/turning/plan/path.h"
 
 namespace retrace::fabrication::turning {
@@ -16,23 +13,6 @@ double position_of(const PathPoint& p, int axis) {
     case 2: return p.z_mm;
     default: return p.servo_mm;
   }
-}
-
-void check(std::vector<std::string>& found, const std::string& name, const char* what, double value,
-           const std::optional<double>& limit, const char* unit) {
-  if (limit && value > *limit)
-    found.push_back(
-        fmt::format("{}: {} of {} {} exceeds the machine's {}", name, what, fixed(value, 4), unit, shortest(*limit)));
-}
-
-void check_axis(std::vector<std::string>& found, const std::string& name, const AxisLimits& limits,
-                const AxisFigures& f) {
-  if ((limits.low_mm && f.low_mm < *limits.low_mm) || (limits.high_mm && f.high_mm > *limits.high_mm))
-    found.push_back(fmt::format("{}: travels from {} to {} mm, beyond the machine's limits", name, fixed(f.low_mm, 4),
-                                fixed(f.high_mm, 4)));
-  check(found, name, "speed", f.speed_mm_per_s, limits.speed_mm_per_s, "mm/s");
-  check(found, name, "acceleration", f.acceleration_mm_per_s2, limits.acceleration_mm_per_s2, "mm/s^2");
-  check(found, name, "jerk", f.jerk_mm_per_s3, limits.jerk_mm_per_s3, "mm/s^3");
 }
 
 }  // namespace
@@ -78,18 +58,6 @@ AxisFigures axis_figures(const std::vector<Pass>& passes, int axis) {
     }
   }
   return f;
-}
-
-std::vector<std::string> excesses(const TurningMachine& machine, const std::vector<Pass>& passes,
-                                  const PathOptions& options) {
-  std::vector<std::string> found;
-  static constexpr const char* kNames[] = {"X", "Y", "Z"};
-  for (int axis = 0; axis < 3; ++axis)
-    check_axis(found, kNames[axis], machine.axes[static_cast<std::size_t>(axis)], axis_figures(passes, axis));
-  if (options.servo == Servo::fast) check_axis(found, "servo", machine.servo, axis_figures(passes, 3));
-  if (options.strategy == Strategy::spiral)
-    check(found, "spindle", "speed", options.spindle_rpm, machine.spindle_rpm, "rpm");
-  return found;
 }
 
 double path_seconds(const std::vector<Pass>& passes) {

@@ -122,6 +122,33 @@ std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool
   return passes;
 }
 
+/// When C stands at an angle if it goes from a standstill to the spindle's speed and back at an even acceleration.
+class SpinTimes {
+ public:
+  SpinTimes(double whole_deg, double speed_deg_per_s, double acceleration)
+      : whole_(whole_deg),
+        acceleration_(acceleration),
+        speed_(std::min(speed_deg_per_s, std::sqrt(acceleration * whole_deg))) {}
+
+  double at(double c_deg) const {
+    const double ramp = 0.5 * speed_ * speed_ / acceleration_;
+    const double end_s = (whole_ - 2.0 * ramp) / speed_ + 2.0 * speed_ / acceleration_;
+    if (c_deg < ramp) return std::sqrt(2.0 * std::max(0.0, c_deg) / acceleration_);
+    if (c_deg > whole_ - ramp) return end_s - std::sqrt(2.0 * std::max(0.0, whole_ - c_deg) / acceleration_);
+    return speed_ / acceleration_ + (c_deg - ramp) / speed_;
+  }
+
+ private:
+  double whole_;
+  double acceleration_;
+  double speed_;
+};
+
+void spin_up_and_down(Pass& pass, double spindle_rpm, double acceleration_deg_per_s2) {
+  const SpinTimes times(pass.back().c_deg, 6.0 * spindle_rpm, acceleration_deg_per_s2);
+  for (std::size_t i = 1; i < pass.size(); ++i) pass[i].seconds = times.at(pass[i].c_deg) - times.at(pass[i - 1].c_deg);
+}
+
 /// Splits Z of a spiral by angles: the slide follows the mean over the turn round each point, the servo the rest. In
 /// the first and last half turn the slide goes on evenly.
 void share_with_servo(Pass& pass, int points_per_turn) {
@@ -225,6 +252,7 @@ std::vector<Pass> make_path(const FreeformSurface& surface, const TurningTool& t
   if (options.strategy == Strategy::raster) return raster(surface, tool, options, where);
   std::vector<Pass> passes;
   passes.push_back(spiral(surface, tool, options, where));
+  if (options.spin_deg_per_s2) spin_up_and_down(passes.front(), options.spindle_rpm, *options.spin_deg_per_s2);
   if (options.servo == Servo::fast) share_with_servo(passes.front(), options.points_per_turn);
   return passes;
 }

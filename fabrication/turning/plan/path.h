@@ -2,7 +2,6 @@
 
 // The tool path of freeform turning with compensation of the nose radius, and speed, acceleration and jerk of its axes.
 
-#include <string>
 #include <vector>
 
 #include "core/error.h"
@@ -90,10 +89,6 @@ struct AxisState {
 /// 0, 1, 2: X, Y, Z as programmed; 3: the servo's share.
 std::vector<AxisState> axis_states(const Pass& pass, int axis);
 AxisFigures axis_figures(const std::vector<Pass>& passes, int axis);
-
-/// One line for each limit that the path exceeds.
-std::vector<std::string> excesses(const TurningMachine& machine, const std::vector<Pass>& passes,
-                                  const PathOptions& options);
 
 double path_seconds(const std::vector<Pass>& passes);
 

@@ -6,9 +6,6 @@
 namespace retrace::fabrication::turning {
 namespace {
 
-/// Down to the first point from the height at which the tool moves freely.
-constexpr double kApproachMmPerMin = 5.0;
-
 Words words_of(const PathPoint& p) {
   return {nanometres(p.x_mm), nanometres(p.y_mm), nanometres(p.z_mm), std::nullopt, rotary_units(p.c_deg)};
 }
@@ -42,7 +39,7 @@ Program turning_program(const std::vector<Pass>& passes, const PathOptions& opti
   for (const Pass& pass : passes) {
     const Words at = words_of(pass.front());
     Move over{Motion::rapid, at, 0.0, 0.0};
-    Move down{Motion::translate, {}, kApproachMmPerMin, 0.0};
+    Move down{Motion::translate, {}, options.approach_mm_per_min, 0.0};
     std::swap(over.to[kZ], down.to[kZ]);
     program.items.insert(program.items.end(), {raise, over, down, path_of(pass, at)});
   }

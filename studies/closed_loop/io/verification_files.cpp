@@ -6,6 +6,7 @@
 
 #include "core/json_text.h"
 #include "core/number_format.h"
+#include "fabrication/check/io/finding_rows.h"
 
 namespace retrace::studies {
 namespace {
@@ -13,28 +14,9 @@ namespace {
 using namespace fabrication;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kShownFindings = 20;
-
-Json findings_json(const Verification& result) {
-  Json findings = Json::array();
-  for (const Finding& f : result.findings) {
-    Json json = {{"kind", f.kind}, {"program", f.program}};
-    if (f.line > 0) json["line"] = f.line;
-    if (f.element >= 0) json["element"] = f.element;
-    json["message"] = f.message;
-    json["value"] = f.value;
-    json["limit"] = f.limit;
-    json["count"] = f.count;
-    findings.push_back(std::move(json));
-  }
-  return findings;
-}
-
 Json programs_json(const VerificationRun& run) {
   Json programs = Json::array();
-  for (std::size_t i = 0; i < run.request.programs.size(); ++i)
-    programs.push_back(
-        {{"file", run.request.programs[i]}, {"dialect", kNcDialectWords[static_cast<std::size_t>(run.dialects[i])]}});
+  for (const NcProgram& program : run.programs) programs.push_back(program_json(program));
   return programs;
 }
 
@@ -45,12 +27,6 @@ Json poses_json(const Verification& result, const Machine& machine) {
   return poses;
 }
 
-std::string place_of(const Finding& finding) {
-  std::string place = finding.program;
-  if (finding.line > 0) place += fmt::format(":{}", finding.line);
-  return place;
-}
-
 }  // namespace
 
 std::string verification_json(const VerificationRun& run, double elapsed_s) {
@@ -59,7 +35,7 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"job", run.request.job},
                      {"machine", run.machine.name},
                      {"programs", programs_json(run)},
-                     {"findings", findings_json(r)},
+                     {"findings", findings_json(r.findings)},
                      {"tolerance_nm", r.tolerance_nm},
                      {"elements", r.elements.size()},
                      {"elements_cut", r.elements_cut},
@@ -113,14 +89,7 @@ std::string verification_table(const VerificationRun& run) {
     row("under rims", fixed(r.rim_overcut_um_max, 3) + " um, as neighbours at other heights must");
   row("free tool length", fixed(r.free_tool_length_mm, 2) + " mm needed");
   row("time", fixed(r.time.total_s(), 1) + " s");
-  for (std::size_t i = 0; i < r.findings.size() && i < kShownFindings; ++i) {
-    const Finding& f = r.findings[i];
-    text += fmt::format("{}: {}: {}{}\n", place_of(f), f.kind, f.message,
-                        f.count > 1 ? fmt::format(" ({} times)", f.count) : std::string());
-  }
-  if (r.findings.size() > kShownFindings)
-    text += fmt::format("and {} more findings\n", r.findings.size() - kShownFindings);
-  return text;
+  return text + findings_table(r.findings);
 }
 
 }  // namespace retrace::studies

@@ -11,6 +11,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "fabrication/check/io/finding_rows.h"
 #include "fabrication/planing/plan/zone_profile.h"
 
 namespace retrace::studies {
@@ -53,21 +54,7 @@ Json zones_json(const PlaningResult& result) {
   return zones;
 }
 
-Json programs_json(const PlaningResult& result) {
-  Json programs = Json::array();
-  for (std::size_t k = 0; k < result.programs.size(); ++k) {
-    const PlannedProgram& planned = result.plan.programs[k];
-    programs.push_back({{"program", result.programs[k].name},
-                        {"set", planned.set},
-                        {"cuts", planned.cuts},
-                        {"frames", result.check.frames[k]},
-                        {"hours", result.check.time_s[k] / 3600.0},
-                        {"seconds_per_frame", per_frame(result.check.time_s[k], result.check.frames[k])}});
-  }
-  return programs;
-}
-
-Json findings_json(const PlaningCheck& check) {
+Json planing_findings(const PlaningCheck& check) {
   Json findings = Json::array();
   for (const Finding& f : check.findings) {
     Json finding = {{"kind", f.kind}, {"message", f.message}, {"value", f.value}, {"limit", f.limit}};
@@ -83,53 +70,77 @@ struct Totals {
   double time_s = 0.0;
 };
 
-Totals totals_of(const PlaningResult& result) {
+Totals totals_of(const PlaningCheck& check) {
   Totals totals;
-  for (const std::int64_t frames : result.check.frames) totals.frames += frames;
-  for (const double time_s : result.check.time_s) totals.time_s += time_s;
+  for (const std::int64_t frames : check.frames) totals.frames += frames;
+  for (const double time_s : check.time_s) totals.time_s += time_s;
   return totals;
 }
 
-double flank_deg(const PlaningResult& result) {
-  return Angle::from_rad(std::atan(result.plan.flank_slope)).deg();
+double flank_deg(double slope) {
+  return Angle::from_rad(std::atan(slope)).deg();
 }
 
-void add_machine(const PlaningResult& result, Json& json) {
-  const PlaningCheck& check = result.check;
-  if (result.part.mill) {
-    json["fast_feed_mm_per_min"] = result.part.mill->fast_feed_mm_per_min;
-    json["tool_flank_deg"] = flank_deg(result);
-    json["quantum_mm"] = result.plan.quantum_mm;
-    json["form_error_mm_max"] = std::max(check.standing_mm_max, check.gouge_mm_max);
+double form_error_mm(const PlanedPart& part, const PlaningCheck& check) {
+  return part.mill ? std::max(check.standing_mm_max, check.gouge_mm_max) : check.path_distance_mm_max;
+}
+
+/// What is known of a program by its text.
+void add_run(const PlaningCheck& check, std::size_t program, Json& json) {
+  json["frames"] = check.frames[program];
+  json["hours"] = check.time_s[program] / 3600.0;
+  json["seconds_per_frame"] = per_frame(check.time_s[program], check.frames[program]);
+}
+
+Json programs_json(const PlaningResult& result) {
+  Json programs = Json::array();
+  for (std::size_t k = 0; k < result.programs.size(); ++k) {
+    const PlannedProgram& planned = result.plan.programs[k];
+    programs.push_back({{"program", result.programs[k].name}, {"set", planned.set}, {"cuts", planned.cuts}});
+    add_run(result.check, k, programs.back());
+  }
+  return programs;
+}
+
+/// Of a planner that is known: what it chose.
+void add_machine(const PlanedPart& part, const PlaningCheck& check, const PlaningPlan* plan, Json& json) {
+  if (part.mill) {
+    json["fast_feed_mm_per_min"] = part.mill->fast_feed_mm_per_min;
+    json["tool_flank_deg"] = flank_deg(check.flank_slope);
+    if (plan != nullptr) json["quantum_mm"] = plan->quantum_mm;
+    json["form_error_mm_max"] = form_error_mm(part, check);
     json["standing_mm_max"] = check.standing_mm_max;
     json["gouge_mm_max"] = check.gouge_mm_max;
     json["off_grid_nm_max"] = check.off_grid_nm_max;
     json["shortest_move_mm"] = {check.shortest_x_mm, check.shortest_y_mm, check.shortest_z_mm};
     return;
   }
-  json["feed_mm_per_min"] = result.part.lathe->feed_mm_per_min;
-  json["spindle_rpm"] = result.part.lathe->spindle_rpm;
-  json["spindle_direction"] = kSpindleDirectionWords[static_cast<std::size_t>(result.part.lathe->spindle_direction)];
-  json["passes"] = result.plan.passes;
-  json["chords"] = result.plan.chords.size() - 1;
-  json["longest_chords"] = result.plan.longest.size() - 1;
-  json["nose_radius_mm"] = result.part.lathe->nose_radius_mm;
-  json["form_error_mm_max"] = check.path_distance_mm_max;
+  json["feed_mm_per_min"] = part.lathe->feed_mm_per_min;
+  json["spindle_rpm"] = part.lathe->spindle_rpm;
+  json["spindle_direction"] = kSpindleDirectionWords[static_cast<std::size_t>(part.lathe->spindle_direction)];
+  if (plan != nullptr) {
+    json["passes"] = plan->passes;
+    json["chords"] = plan->chords.size() - 1;
+    json["longest_chords"] = plan->longest.size() - 1;
+  }
+  json["nose_radius_mm"] = part.lathe->nose_radius_mm;
+  json["form_error_mm_max"] = form_error_mm(part, check);
   json["unreached_mm_max"] = check.unreached_mm_max;
+  json["chip_mm_max"] = check.chip_mm_max;
 }
 
 }  // namespace
 
 std::string planing_json(const PlaningResult& result) {
-  const Totals totals = totals_of(result);
+  const Totals totals = totals_of(result.check);
   Json json = {{"part", result.part.source},
                {"title", result.part.title},
                {"dialect", result.dialect},
                {"element", element_json(result.part)},
                {"tolerance_mm", result.part.tolerance_mm},
                {"verdict", result.check.passes() ? "pass" : "fail"},
-               {"findings", findings_json(result.check)}};
-  add_machine(result, json);
+               {"findings", planing_findings(result.check)}};
+  add_machine(result.part, result.check, &result.plan, json);
   json["zones"] = zones_json(result);
   json["programs"] = programs_json(result);
   json["runs"] = result.plan.runs;
@@ -155,14 +166,13 @@ std::string planing_table(const PlaningResult& result) {
     text += fmt::format("{:<22} {:>5} {:>7} {:>7} {:>8}\n", result.programs[k].name, result.plan.programs[k].cuts,
                         result.check.frames[k], fixed(result.check.time_s[k] / 3600.0, 2),
                         fixed(per_frame(result.check.time_s[k], result.check.frames[k]), 2));
-  const Totals totals = totals_of(result);
+  const Totals totals = totals_of(result.check);
   text += fmt::format("in all, {} run{} each: {} frames, {} hours\n", result.plan.runs, result.plan.runs > 1 ? "s" : "",
                       result.plan.runs * totals.frames, fixed(result.plan.runs * totals.time_s / 3600.0, 2));
-  const double error = result.part.mill ? std::max(result.check.standing_mm_max, result.check.gouge_mm_max)
-                                        : result.check.path_distance_mm_max;
-  text += fmt::format("form error {} mm, tolerance {} mm", fixed(error, 4), shortest(result.part.tolerance_mm));
+  text += fmt::format("form error {} mm, tolerance {} mm", fixed(form_error_mm(result.part, result.check), 4),
+                      shortest(result.part.tolerance_mm));
   if (result.part.mill)
-    text += fmt::format("; tool flank {} degrees, depth quantum {} mm", shortest(flank_deg(result)),
+    text += fmt::format("; tool flank {} degrees, depth quantum {} mm", shortest(flank_deg(result.plan.flank_slope)),
                         shortest(result.plan.quantum_mm));
   else
     text += fmt::format("; {} chords, {} passes", result.plan.chords.size() - 1, result.plan.passes);
@@ -171,6 +181,44 @@ std::string planing_table(const PlaningResult& result) {
     text += fmt::format("  {}{}{}: {} ({}, limit {})\n", f.kind, f.program.empty() ? "" : " " + f.program,
                         f.line > 0 ? fmt::format(":{}", f.line) : "", f.message, fixed(f.value, 6), shortest(f.limit));
   return text;
+}
+
+std::string verification_json(const PlaningVerification& run, double elapsed_s) {
+  const PlaningCheck& check = run.check;
+  Json json = {{"verdict", check.passes() ? "pass" : "fail"},
+               {"part", run.part.source},
+               {"title", run.part.title},
+               {"process", "planing"}};
+  Json programs = Json::array();
+  for (std::size_t k = 0; k < run.programs.size(); ++k) {
+    programs.push_back(program_json(run.programs[k]));
+    add_run(check, k, programs.back());
+  }
+  json["programs"] = std::move(programs);
+  json["findings"] = findings_json(check.findings);
+  json["tolerance_mm"] = run.part.tolerance_mm;
+  add_machine(run.part, check, nullptr, json);
+  const Totals totals = totals_of(check);
+  json["frames"] = totals.frames;
+  json["time_s"] = totals.time_s;
+  json["elapsed_s"] = elapsed_s;
+  return result_text("retrace.verification/1", json, {});
+}
+
+std::string verification_table(const PlaningVerification& run) {
+  const PlaningCheck& check = run.check;
+  const Totals totals = totals_of(check);
+  std::string text = fmt::format("{}: {}\n", run.part.source, check.passes() ? "pass" : "fail");
+  const auto row = [&](const char* name, const std::string& value) {
+    text += fmt::format("  {:<28} {}\n", name, value);
+  };
+  const auto in_mm = [](double value) { return value < 1e6 ? fixed(value, 4) + " mm" : std::string("beyond measure"); };
+  row("form error", in_mm(form_error_mm(run.part, check)));
+  row("tolerance", shortest(run.part.tolerance_mm) + " mm");
+  if (run.part.lathe) row("most that a pass takes", in_mm(check.chip_mm_max));
+  row("frames", std::to_string(totals.frames));
+  row("time", fixed(totals.time_s / 3600.0, 2) + " h");
+  return text + findings_table(check.findings);
 }
 
 }  // namespace retrace::studies

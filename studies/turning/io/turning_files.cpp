@@ -7,6 +7,7 @@
 #include "core/csv.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
+#include "fabrication/check/io/finding_rows.h"
 
 namespace retrace::studies {
 namespace {
@@ -38,22 +39,40 @@ Json tool_json(const TurningResult& r) {
           {"skew_is_least", r.part.skew_is_least}};
 }
 
-Json verification_json(const TurningResult& r) {
-  const turning::Inspection& i = r.inspection;
+/// What was found along the blocks, and what the tool leaves; the latter where it could be found.
+void add_judged(const turning::TurnedPart& part, const turning::TurningCheck& check, Json& json) {
+  json["form_tolerance_nm"] = part.form_tolerance_nm;
+  json["block_low_nm"] = check.touch.low_nm;
+  json["block_high_nm"] = check.touch.high_nm;
+  json["step_um_max"] = 1e3 * check.coverage.step_mm_max;
+  json["blocks_per_s_max"] = check.motion.blocks_per_s;
+  if (!check.envelope) return;
+  const turning::Inspection& i = check.inspection;
+  json["form_error_nm"] = i.form_error_nm;
+  json["interference_nm"] = i.interference_nm;
+  json["scallop_nm"] = i.scallop_nm;
+  json["scallop_most_nm"] = i.scallop_most_nm;
+  json["scallop_ratio_low"] = i.scallop_ratio_low;
+  json["scallop_ratio_high"] = i.scallop_ratio_high;
+  json["rms_nm"] = i.rms_nm;
+  json["profiles"] = i.cusps.size();
+  json["profiles_compared"] = i.compared;
+}
+
+Json verification_of(const TurningResult& r) {
   Json findings = Json::array();
   for (const fabrication::Finding& finding : r.findings) findings.push_back(text_of(finding));
-  return {{"verdict", r.passes_inspection() ? "pass" : "fail"},
-          {"findings", std::move(findings)},
-          {"form_tolerance_nm", r.part.form_tolerance_nm},
-          {"form_error_nm", i.form_error_nm},
-          {"interference_nm", i.interference_nm},
-          {"scallop_nm", i.scallop_nm},
-          {"scallop_most_nm", i.scallop_most_nm},
-          {"scallop_ratio_low", i.scallop_ratio_low},
-          {"scallop_ratio_high", i.scallop_ratio_high},
-          {"rms_nm", i.rms_nm},
-          {"profiles", i.cusps.size()},
-          {"profiles_compared", i.compared}};
+  Json json = {{"verdict", r.passes_inspection() ? "pass" : "fail"}, {"findings", std::move(findings)}};
+  add_judged(r.part, r.check, json);
+  return json;
+}
+
+Json motion_json(const turning::AxisMotion& m) {
+  return {{"low_mm", m.low_mm},
+          {"high_mm", m.high_mm},
+          {"speed_mm_per_s", m.speed_mm_per_s},
+          {"acceleration_mm_per_s2", m.acceleration_mm_per_s2},
+          {"jerk_mm_per_s3", m.jerk_mm_per_s3}};
 }
 
 }  // namespace
@@ -78,7 +97,7 @@ std::string turning_json(const TurningResult& r) {
                {"axes", {{"x", axis_json(r.axes[0])}, {"y", axis_json(r.axes[1])}, {"z", axis_json(r.axes[2])}}}};
   if (!r.servo_csv.empty()) json["axes"]["servo"] = axis_json(r.axes[3]);
   json["programs"] = std::move(programs);
-  json["verification"] = verification_json(r);
+  json["verification"] = verification_of(r);
   return result_text("retrace.turning/1", json, r.part.warnings);
 }
 
@@ -104,7 +123,7 @@ std::string turning_path_csv(const TurningResult& r) {
 
 std::string turning_cusps_csv(const TurningResult& r) {
   CsvWriter csv("x_mm,y_mm,scallop_nm,predicted_nm,valley_nm");
-  for (const turning::CuspSample& s : r.inspection.cusps)
+  for (const turning::CuspSample& s : r.check.inspection.cusps)
     csv.row(s.at_mm.x(), s.at_mm.y(), s.scallop_nm, s.predicted_nm, s.valley_nm);
   return csv.text();
 }
@@ -127,12 +146,56 @@ std::string turning_table(const TurningResult& r) {
   row("peak to valley on a flat", r.finish.peak_to_valley_nm, 3, "nm");
   row("Z acceleration", r.axes[2].acceleration_mm_per_s2, 3, "mm/s^2");
   row("largest jump of it", r.axes[2].acceleration_jump_mm_per_s2, 3, "mm/s^2");
-  row("form error of the programs", r.inspection.form_error_nm, 3, "nm");
-  row("deepest cut below the surface", r.inspection.interference_nm, 3, "nm");
-  row("scallops, mean", r.inspection.scallop_nm, 3, "nm");
+  row("form error of the programs", r.check.inspection.form_error_nm, 3, "nm");
+  row("deepest cut below the surface", r.check.inspection.interference_nm, 3, "nm");
+  row("scallops, mean", r.check.inspection.scallop_nm, 3, "nm");
   text += fmt::format("  {:<34} {:>10}\n", "verdict", r.passes_inspection() ? "pass" : "fail");
   for (const fabrication::Finding& finding : r.findings) text += "  " + text_of(finding) + "\n";
   return text;
+}
+
+std::string verification_json(const TurningVerification& run, double elapsed_s) {
+  const turning::MotionFigures& motion = run.check.motion;
+  Json json = {{"verdict", run.passes() ? "pass" : "fail"},
+               {"part", run.request.part},
+               {"title", run.part.title},
+               {"process", "turning"}};
+  Json programs = Json::array();
+  for (const fabrication::NcProgram& program : run.programs) programs.push_back(fabrication::program_json(program));
+  json["programs"] = std::move(programs);
+  json["findings"] = fabrication::findings_json(run.findings);
+  json["points"] = run.check.points;
+  json["passes"] = run.check.passes;
+  json["feed_um"] = 1e3 * run.part.path.feed_mm;
+  add_judged(run.part, run.check, json);
+  json["axes"] = {
+      {"x", motion_json(motion.axes[0])}, {"y", motion_json(motion.axes[1])}, {"z", motion_json(motion.axes[2])}};
+  if (run.part.path.servo == turning::Servo::fast) json["axes"]["servo"] = motion_json(motion.axes[3]);
+  json["spindle_rpm_max"] = motion.spindle_rpm;
+  json["c_acceleration_deg_per_s2_max"] = motion.c_acceleration_deg_per_s2;
+  json["time_s"] = motion.time_s;
+  json["elapsed_s"] = elapsed_s;
+  return result_text("retrace.verification/1", json, run.part.warnings);
+}
+
+std::string verification_table(const TurningVerification& run) {
+  const turning::TurningCheck& check = run.check;
+  std::string text = fmt::format("{}: {}\n", run.request.part, run.passes() ? "pass" : "fail");
+  const auto row = [&](const char* name, const std::string& value) {
+    text += fmt::format("  {:<28} {}\n", name, value);
+  };
+  row("points", std::to_string(check.points));
+  row("time", fixed(check.motion.time_s, 1) + " s");
+  row("deepest block", fixed(check.touch.low_nm, 2) + " nm");
+  row("highest block", fixed(check.touch.high_nm, 2) + " nm");
+  row("tolerance", shortest(run.part.form_tolerance_nm) + " nm");
+  row("from cut to cut", fixed(1e3 * check.coverage.step_mm_max, 3) + " um");
+  if (check.envelope) {
+    row("form error", fixed(check.inspection.form_error_nm, 2) + " nm");
+    row("scallops, mean", fixed(check.inspection.scallop_nm, 2) + " nm");
+  }
+  row("blocks a second", fixed(check.motion.blocks_per_s, 1));
+  return text + fabrication::findings_table(run.findings);
 }
 
 }  // namespace retrace::studies

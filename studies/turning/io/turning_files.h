@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace turn`.
+// Documents and tables of `retrace turn`, and of `retrace verify` of turned parts.
 
 #include <string>
 
@@ -20,5 +20,9 @@ std::string turning_cusps_csv(const TurningResult& result);
 
 /// What people read on the terminal.
 std::string turning_table(const TurningResult& result);
+
+/// The document `retrace.verification/1` of a turned part (docs/commands.md).
+std::string verification_json(const TurningVerification& run, double elapsed_s);
+std::string verification_table(const TurningVerification& run);
 
 }  // namespace retrace::studies

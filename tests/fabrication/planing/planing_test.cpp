@@ -121,7 +121,7 @@ TEST(Planing, ProgramsKeepTheToleranceAndTheMachine) {
     const PlanedPart part = small_part(tolerance_mm);
     const PlaningPlan plan = plan_planing(part);
     EXPECT_LT(plan.quantum_mm, tolerance_mm);
-    const PlaningCheck check = check_planing(part, plan.flank_slope, texts_of(plan, "rs274ngc"), NcDialect::rs274ngc);
+    const PlaningCheck check = check_planing(part, texts_of(plan, "rs274ngc"), NcDialect::rs274ngc);
     for (const Finding& f : check.findings) ADD_FAILURE() << f.kind << ' ' << f.line << ' ' << f.message;
     EXPECT_LE(check.standing_mm_max, tolerance_mm);
     EXPECT_GT(check.standing_mm_max, 0.5 * tolerance_mm);
@@ -150,10 +150,10 @@ TEST(Planing, AFinerToleranceTakesMoreCuts) {
 TEST(Planing, AllDialectsSayTheSame) {
   const PlanedPart part = small_part();
   const PlaningPlan plan = plan_planing(part);
-  const PlaningCheck first = check_planing(part, plan.flank_slope, texts_of(plan, "rs274ngc"), NcDialect::rs274ngc);
+  const PlaningCheck first = check_planing(part, texts_of(plan, "rs274ngc"), NcDialect::rs274ngc);
   for (std::size_t k = 0; k < std::size(kNcDialectWords); ++k) {
-    const PlaningCheck check = check_planing(part, plan.flank_slope, texts_of(plan, std::string(kNcDialectWords[k])),
-                                             static_cast<NcDialect>(k));
+    const PlaningCheck check =
+        check_planing(part, texts_of(plan, std::string(kNcDialectWords[k])), static_cast<NcDialect>(k));
     EXPECT_TRUE(check.passes()) << kNcDialectWords[k];
     EXPECT_EQ(check.frames, first.frames);
     EXPECT_EQ(check.standing_mm_max, first.standing_mm_max);
@@ -167,7 +167,7 @@ TEST(Planing, ProgramsEndInTime) {
   const PlaningPlan plan = plan_planing(part);
   EXPECT_GT(plan.programs.size(), 4U);
   for (const PlannedProgram& planned : plan.programs) EXPECT_LE(planned.time_s, 0.25 * whole_s + 1e-9);
-  EXPECT_TRUE(check_planing(part, plan.flank_slope, texts_of(plan, "fanuc"), NcDialect::fanuc).passes());
+  EXPECT_TRUE(check_planing(part, texts_of(plan, "fanuc"), NcDialect::fanuc).passes());
   part.mill->most_hours = 0.001;
   EXPECT_THROW(plan_planing(part), InputError);
 }
@@ -204,7 +204,7 @@ TEST(Planing, EveryPlantedFaultIsFound) {
   const PlaningPlan plan = plan_planing(part);
   const auto texts = texts_of(plan, "rs274ngc");
   const auto check = [&](const std::vector<PlaningText>& faulty) {
-    return check_planing(part, plan.flank_slope, faulty, NcDialect::rs274ngc);
+    return check_planing(part, faulty, NcDialect::rs274ngc);
   };
   const auto moved = [](double by_mm) {
     return [by_mm](const std::string& line) {
@@ -237,10 +237,10 @@ TEST(Planing, EveryPlantedFaultIsFound) {
   EXPECT_TRUE(finds(check(missing), "excess"));
   PlanedPart quick = part;
   quick.mill->most_hours = 0.01;
-  EXPECT_TRUE(finds(check_planing(quick, plan.flank_slope, texts, NcDialect::rs274ngc), "too_long"));
+  EXPECT_TRUE(finds(check_planing(quick, texts, NcDialect::rs274ngc), "too_long"));
   quick = part;
   quick.mill->least_z_mm = 6.5;
-  EXPECT_TRUE(finds(check_planing(quick, plan.flank_slope, texts, NcDialect::rs274ngc), "short_move"));
+  EXPECT_TRUE(finds(check_planing(quick, texts, NcDialect::rs274ngc), "short_move"));
 }
 
 TEST(Planing, TheExampleIsMadeInTwoHalves) {
@@ -290,7 +290,7 @@ TEST(Planing, TheTemplateOfALatheIsMadeInEveryDialect) {
   const PlaningPlan plan = plan_planing(whole);
   for (std::size_t k = 0; k < std::size(kNcDialectWords); ++k)
     EXPECT_TRUE(
-        check_planing(whole, 0.0, texts_of(plan, std::string(kNcDialectWords[k])), static_cast<NcDialect>(k)).passes())
+        check_planing(whole, texts_of(plan, std::string(kNcDialectWords[k])), static_cast<NcDialect>(k)).passes())
         << kNcDialectWords[k];
 }
 
@@ -306,7 +306,7 @@ TEST(Planing, TheRoundExampleStaysInItsTube) {
   const std::size_t at = programs[0].text.rfind("G1 X");
   const std::size_t z = programs[0].text.find(" Z", at);
   programs[0].text.replace(z, programs[0].text.find(" F", z) - z, " Z-1.000000");
-  EXPECT_TRUE(finds(check_planing(result.part, 0.0, programs, NcDialect::rs274ngc), "path"));
+  EXPECT_TRUE(finds(check_planing(result.part, programs, NcDialect::rs274ngc), "path"));
 }
 
 }  // namespace

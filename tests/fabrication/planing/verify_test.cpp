@@ -43,7 +43,7 @@ PlaningCheck check_of(const PlanedPart& planned, const PlanedPart& wanted) {
   const PlaningPlan plan = plan_planing(planned);
   std::vector<PlaningText> texts;
   for (const PlannedProgram& p : plan.programs) texts.push_back({p.program.name, nc_text(p.program, "rs274ngc")});
-  return check_planing(wanted, plan.flank_slope, texts, NcDialect::rs274ngc);
+  return check_planing(wanted, texts, NcDialect::rs274ngc);
 }
 
 TEST(PhaseProfile, IsThePlannersProfile) {
@@ -192,7 +192,7 @@ std::string turned_text(const PlanedPart& part, const std::string& dialect) {
 }
 
 PlaningCheck check_of(const PlanedPart& part, const std::string& text, NcDialect dialect) {
-  return check_planing(part, 0.0, {{"p", text}}, dialect);
+  return check_planing(part, {{"p", text}}, dialect);
 }
 
 /// \param at where the line is looked for: from the beginning, or from the end

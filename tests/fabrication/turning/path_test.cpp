@@ -172,12 +172,6 @@ TEST(TurningKinematics, OfAnInclinedPlaneAreThoseOfASine) {
   EXPECT_NEAR(z.acceleration_mm_per_s2, 0.1 * w * w, 0.02 * w * w * 0.1 * 2.0);
   EXPECT_NEAR(z.jerk_mm_per_s3, 0.1 * w * w * w, 0.1 * 0.1 * w * w * w * 3.0);
   EXPECT_NEAR(axis_figures(passes, 0).speed_mm_per_s, 0.5, 1e-9);
-  TurningMachine machine;
-  EXPECT_TRUE(excesses(machine, passes, o).empty());
-  machine.axes[2].acceleration_mm_per_s2 = 1.0;
-  machine.axes[0].low_mm = 0.5;
-  machine.spindle_rpm = 30.0;
-  EXPECT_EQ(excesses(machine, passes, o).size(), 3U);
 }
 
 /// Ten turns of a spiral at one turn a second, 5 um apart: the exact acceleration of Z by a series in time.

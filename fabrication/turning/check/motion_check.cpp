@@ -1,0 +1,232 @@
+#include "fabrication/turning/check/motion_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "core/angle.h"
+#include "core/number_format.h"
+
+namespace retrace::fabrication::turning {
+namespace {
+
+/// How far words may be from what was meant: half of their last decimal, of a length and of an angle; of times, in the
+/// coarsest dialect, half a nanosecond.
+constexpr double kHalfWordMm = 0.5e-6;
+constexpr double kHalfWordS = 0.5e-9;
+constexpr double kDegreesPerTurn = 360.0;
+
+double half_word_deg(NcDialect dialect) {
+  return dialect == NcDialect::fanuc ? 0.5e-6 : 0.5e-7;
+}
+
+/// A figure that was measured, and how much of it rounding may have made.
+struct Figure {
+  double value = 0.0;
+  double doubt = 0.0;
+
+  /// At least so much is no rounding.
+  double sure() const { return std::max(0.0, std::abs(value) - doubt); }
+};
+
+/// The worst excess of a limit along the cuts of a program.
+class Worst {
+ public:
+  explicit Worst(const std::optional<double>& limit) : limit_(limit) {}
+
+  void add(const Figure& figure, std::int32_t line) {
+    most_ = std::max(most_, figure.sure());
+    if (!limit_ || figure.sure() <= *limit_ * (1.0 + 1e-9)) return;
+    ++count_;
+    if (figure.sure() <= excess_) return;
+    excess_ = figure.sure();
+    line_ = line;
+  }
+  double most() const { return most_; }
+
+  void report(FindingList& findings, const char* kind, const std::string& program, const std::string& what,
+              const char* unit, const char* whose) const {
+    if (count_ == 0) return;
+    Finding finding{kind, program, line_, -1, "", excess_, *limit_, count_};
+    finding.message =
+        fmt::format("{} of {} {} exceeds the {} {}", what, fixed(excess_, 4), unit, whose, shortest(*limit_));
+    findings.add(std::move(finding));
+  }
+
+ private:
+  std::optional<double> limit_;
+  double most_ = 0.0;
+  double excess_ = 0.0;
+  std::int32_t line_ = 0;
+  std::int64_t count_ = 0;
+};
+
+/// Difference quotients of a position over the blocks of a pass, by the index of the block's end or of the node.
+class Quotients {
+ public:
+  Quotients(const CutPass& pass, const std::function<double(std::size_t)>& position, double half_word)
+      : pass_(pass), velocity_(pass.size()) {
+    for (std::size_t i = 1; i < pass.size(); ++i) {
+      const double dt = pass.duration_s[i];
+      if (!(dt > 0.0)) continue;
+      const double v = (position(i) - position(i - 1)) / dt;
+      velocity_[i] = {v, 2.0 * half_word / dt + std::abs(v) * kHalfWordS / dt};
+    }
+  }
+
+  Figure velocity(std::size_t block) const { return velocity_[block]; }
+
+  /// From the block before node i to the one behind it; at the ends of a pass from and to a standstill.
+  Figure acceleration(std::size_t i) const {
+    const Figure before = i > 0 ? velocity_[i] : Figure{};
+    const Figure after = i + 1 < pass_.size() ? velocity_[i + 1] : Figure{};
+    const double s = (i > 0 ? pass_.duration_s[i] : 0.0) + (i + 1 < pass_.size() ? pass_.duration_s[i + 1] : 0.0);
+    if (!(s > 0.0)) return {};
+    return {2.0 * (after.value - before.value) / s, 2.0 * (after.doubt + before.doubt) / s};
+  }
+
+  /// \pre 2 <= i < size - 2
+  Figure jerk(std::size_t i) const {
+    const Figure before = acceleration(i - 1);
+    const Figure after = acceleration(i + 1);
+    const double s = pass_.duration_s[i] + pass_.duration_s[i + 1];
+    if (!(s > 0.0)) return {};
+    return {(after.value - before.value) / s, (after.doubt + before.doubt) / s};
+  }
+
+ private:
+  const CutPass& pass_;
+  std::vector<Figure> velocity_;
+};
+
+/// The passes of one program.
+template <class Use>
+void for_passes(const TurningCuts& cuts, std::size_t program, const Use& use) {
+  for (const CutPass& pass : cuts.passes)
+    if (pass.program == program) use(pass);
+}
+
+double position_of(const CutPass& pass, std::size_t axis, std::size_t i) {
+  switch (axis) {
+    case 0: return pass.x_mm[i];
+    case 1: return pass.y_mm[i];
+    case 2: return pass.servo_mm.empty() ? pass.z_mm[i] : pass.z_mm[i] - pass.servo_mm[i];
+    default: return pass.servo_mm.empty() ? 0.0 : pass.servo_mm[i];
+  }
+}
+
+void check_axis(const AxisLimits& limits, std::size_t axis, const TurningCuts& cuts, std::size_t program,
+                AxisMotion& motion, FindingList& findings) {
+  static constexpr const char* kNames[] = {"X", "Y", "Z", "servo"};
+  Worst speed(limits.speed_mm_per_s);
+  Worst acceleration(limits.acceleration_mm_per_s2);
+  Worst jerk(limits.jerk_mm_per_s3);
+  for_passes(cuts, program, [&](const CutPass& pass) {
+    const Quotients q(
+        pass, [&](std::size_t i) { return position_of(pass, axis, i); }, kHalfWordMm);
+    for (std::size_t i = 1; i < pass.size(); ++i) {
+      speed.add(q.velocity(i), pass.line[i]);
+      if (i + 1 < pass.size()) acceleration.add(q.acceleration(i), pass.line[i + 1]);
+      if (i >= 2 && i + 2 < pass.size()) jerk.add(q.jerk(i), pass.line[i + 1]);
+    }
+  });
+  motion.speed_mm_per_s = std::max(motion.speed_mm_per_s, speed.most());
+  motion.acceleration_mm_per_s2 = std::max(motion.acceleration_mm_per_s2, acceleration.most());
+  motion.jerk_mm_per_s3 = std::max(motion.jerk_mm_per_s3, jerk.most());
+  const std::string name = kNames[axis];
+  const std::string& file = cuts.programs[program];
+  speed.report(findings, "axis_speed", file, name + ": speed", "mm/s", "machine's");
+  acceleration.report(findings, "axis_acceleration", file, name + ": acceleration", "mm/s^2", "machine's");
+  jerk.report(findings, "axis_jerk", file, name + ": jerk", "mm/s^3", "machine's");
+}
+
+/// The stroke of a fast tool servo.
+void check_stroke(const AxisLimits& limits, const TurningCuts& cuts, AxisMotion& motion, FindingList& findings) {
+  bool is_first = true;
+  for (const CutPass& pass : cuts.passes)
+    for (const double stroke : pass.servo_mm) {
+      motion.low_mm = is_first ? stroke : std::min(motion.low_mm, stroke);
+      motion.high_mm = is_first ? stroke : std::max(motion.high_mm, stroke);
+      is_first = false;
+    }
+  for (const auto& [limit, at, sign] :
+       {std::tuple{limits.low_mm, motion.low_mm, -1.0}, {limits.high_mm, motion.high_mm, 1.0}})
+    if (limit && sign * (at - *limit) > kHalfWordMm)
+      findings.add("axis_limit", 0, fmt::format("servo: travels to {} mm, beyond the machine's limits", fixed(at, 4)),
+                   at, *limit);
+}
+
+void check_spindle(const TurnedPart& part, const TurningCuts& cuts, std::size_t program, MotionFigures& figures,
+                   FindingList& findings) {
+  const auto deg_per_s = [](const std::optional<double>& rpm) -> std::optional<double> {
+    if (!rpm) return std::nullopt;
+    return *rpm * kDegreesPerTurn / 60.0;
+  };
+  const bool is_spiral = part.path.strategy == Strategy::spiral;
+  const std::optional<double> asked = is_spiral ? std::optional(part.path.spindle_rpm) : std::nullopt;
+  Worst by_machine(deg_per_s(part.machine.spindle_rpm));
+  Worst by_path(deg_per_s(asked));
+  Worst acceleration(part.machine.c_acceleration_deg_per_s2);
+  for_passes(cuts, program, [&](const CutPass& pass) {
+    const Quotients q(
+        pass, [&](std::size_t i) { return pass.c_rad[i] / kDegree; }, half_word_deg(cuts.dialects[program]));
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+      const std::int32_t line = pass.line[std::min(i + 1, pass.size() - 1)];
+      if (i > 0) by_machine.add(q.velocity(i), pass.line[i]);
+      if (i > 0) by_path.add(q.velocity(i), pass.line[i]);
+      acceleration.add(q.acceleration(i), line);
+    }
+  });
+  figures.spindle_rpm = std::max(figures.spindle_rpm, by_path.most() * 60.0 / kDegreesPerTurn);
+  figures.c_acceleration_deg_per_s2 = std::max(figures.c_acceleration_deg_per_s2, acceleration.most());
+  const std::string& file = cuts.programs[program];
+  by_machine.report(findings, "axis_speed", file, "C: speed", "deg/s", "machine's");
+  by_path.report(findings, "feed_too_high", file, "C: speed", "deg/s", "path's");
+  acceleration.report(findings, "axis_acceleration", file, "C: acceleration", "deg/s^2", "machine's");
+}
+
+void check_blocks(const TurnedPart& part, const TurningCuts& cuts, std::size_t program, MotionFigures& figures,
+                  FindingList& findings) {
+  const bool is_raster = part.path.strategy == Strategy::raster;
+  Worst rate(part.machine.blocks_per_s);
+  Worst feed(is_raster ? std::optional(part.path.cutting_mm_per_min) : std::nullopt);
+  for_passes(cuts, program, [&](const CutPass& pass) {
+    for (std::size_t i = 1; i < pass.size(); ++i) {
+      const double dt = pass.duration_s[i];
+      if (!(dt > 0.0)) continue;
+      figures.time_s += dt;
+      rate.add({1.0 / dt, kHalfWordS / (dt * dt)}, pass.line[i]);
+      const double way = std::hypot(pass.x_mm[i] - pass.x_mm[i - 1], pass.y_mm[i] - pass.y_mm[i - 1]);
+      feed.add({60.0 * way / dt, 60.0 * (3.0 * kHalfWordMm + way * kHalfWordS / dt) / dt}, pass.line[i]);
+    }
+  });
+  figures.blocks_per_s = std::max(figures.blocks_per_s, rate.most());
+  rate.report(findings, "block_rate", cuts.programs[program], "a rate", "blocks/s", "machine's");
+  feed.report(findings, "feed_too_high", cuts.programs[program], "a feed along the line", "mm/min", "path's");
+}
+
+}  // namespace
+
+MotionFigures check_motion(const TurnedPart& part, const TurningCuts& cuts, FindingList& findings) {
+  MotionFigures figures;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    figures.axes[axis].low_mm = cuts.lowest_travel_mm[axis];
+    figures.axes[axis].high_mm = cuts.highest_travel_mm[axis];
+  }
+  const bool has_servo = part.path.servo == Servo::fast;
+  if (has_servo) check_stroke(part.machine.servo, cuts, figures.axes[3], findings);
+  for (std::size_t program = 0; program < cuts.programs.size(); ++program) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      check_axis(part.machine.axes[axis], axis, cuts, program, figures.axes[axis], findings);
+    if (has_servo) check_axis(part.machine.servo, 3, cuts, program, figures.axes[3], findings);
+    check_spindle(part, cuts, program, figures, findings);
+    check_blocks(part, cuts, program, figures, findings);
+  }
+  return figures;
+}
+
+}  // namespace retrace::fabrication::turning
