@@ -10,6 +10,7 @@
 #include "app/shared_arguments.h"
 #include "core/message_text.h"
 #include "core/toml_file.h"
+#include "fabrication/check/io/program_files.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/read/nc_program.h"
 #include "raytrace/sampling/threads.h"
@@ -43,7 +44,10 @@ Words dialects() {
 
 std::vector<Argument> arguments(VerifyOptions& options) {
   return {{"JOB|PART", "job file, or the file of a planed or turned part", &options.request.job, files(".toml")},
-          {"PROGRAM", "NC programs, in the order in which they run", &options.request.programs, files("")},
+          {"PROGRAM", "NC programs, in the order in which they run; FILE@LINE: stopped behind that line",
+           &options.request.programs, files("")},
+          {"--standing STAGE", "of a job: all before that stage has been cut, such as finishing-1-facet-1",
+           &options.request.standing},
           {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc or pmac, or auto: told from the text",
            &options.request.dialect, one_of(dialects)},
           {"--tolerance-nm T", "of a job: that facet planes may differ from the design by; 10 unless it is given",
@@ -87,18 +91,26 @@ void refuse_others(const VerifyOptions& options, Kind kind) {
   };
   if (kind != Kind::turned_part && !options.servo.empty()) refuse("--servo", "turned parts");
   if (kind == Kind::job) return;
-  const std::pair<const char*, bool> of_jobs[] = {{"--tolerance-nm", options.tolerance_nm.has_value()},
+  const std::pair<const char*, bool> of_jobs[] = {{"--standing", !options.request.standing.empty()},
+                                                  {"--tolerance-nm", options.tolerance_nm.has_value()},
                                                   {"--map", !options.map.empty()},
                                                   {"--as-machined", !options.as_machined.empty()}};
   for (const auto& [option, is_given] : of_jobs)
     if (is_given) refuse(option, "jobs");
 }
 
+/// The programs and the file of the job or part.
+std::vector<std::string> program_files(const studies::VerificationRequest& request) {
+  std::vector<std::string> files;
+  for (const std::string& program : request.programs) files.push_back(fabrication::program_name(program).file);
+  files.push_back(request.job);
+  return files;
+}
+
 /// Of a part: the run of a study, and what is said of it.
 template <class Study>
 ExitCode run_part(const VerifyOptions& options, const CommonOptions& common, const Study& study) {
-  std::vector<std::string> inputs = options.request.programs;
-  inputs.push_back(options.request.job);
+  std::vector<std::string> inputs = program_files(options.request);
   if (!options.servo.empty()) inputs.push_back(options.servo);
   const ResultFiles files(common, std::move(inputs), "verification.json");
   files.check();
@@ -110,8 +122,7 @@ ExitCode run_part(const VerifyOptions& options, const CommonOptions& common, con
 }
 
 std::vector<std::string> inputs_of(const studies::VerificationRequest& request) {
-  std::vector<std::string> files = request.programs;
-  files.push_back(request.job);
+  std::vector<std::string> files = program_files(request);
   if (const fs::path machine = fabrication::read_job(request.job).machine; machine.has_extension())
     files.push_back(machine.string());
   return files;

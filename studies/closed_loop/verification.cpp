@@ -6,8 +6,10 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "fabrication/check/io/program_files.h"
+#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
+#include "fabrication/post/post.h"
 
 namespace retrace::studies {
 namespace {
@@ -16,6 +18,17 @@ using namespace fabrication;
 
 NcTexts nc_texts_of(const Control& control) {
   return {"", "", control.mist_on, control.mist_off, control.optional_stop};
+}
+
+/// What the job's own programs of all stages before that one do.
+std::vector<NcProgram> programs_before(const std::string& stage, const Job& job, const Machine& machine) {
+  constexpr std::string_view dialect = "rs274ngc";
+  PlanOptions options;
+  options.before = stage;
+  std::vector<NcProgram> programs;
+  for (const Program& program : make_plan(job, machine, options).programs)
+    programs.push_back(parse_nc(nc_text(program, dialect), "before " + stage, NcDialect::rs274ngc));
+  return programs;
 }
 
 }  // namespace
@@ -27,9 +40,13 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
   run.request = request;
   run.job = read_job(request.job);
   run.machine = load_machine(run.job.machine, run.job.where("machine"));
-  run.programs = read_programs(request.programs, request.dialect, nc_texts_of(run.machine.control));
+  if (!request.standing.empty()) run.programs = programs_before(request.standing, run.job, run.machine);
+  run.standing = run.programs.size();
+  for (NcProgram& program : read_programs(request.programs, request.dialect, nc_texts_of(run.machine.control)))
+    run.programs.push_back(std::move(program));
   VerifyOptions options;
   options.tolerance_nm = request.tolerance_nm;
+  options.standing = run.standing;
   run.result = verify_programs(run.job, run.machine, run.programs, options, shipped_machines(), cancellation);
   return run;
 }

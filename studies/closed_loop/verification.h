@@ -18,16 +18,18 @@ namespace retrace::studies {
 /// What to verify.
 struct VerificationRequest {
   std::string job;                    ///< file
-  std::vector<std::string> programs;  ///< files, in the order in which they run
+  std::vector<std::string> programs;  ///< as fabrication::program_name() takes them, in the order in which they run
   std::string dialect = "auto";       ///< a word of fabrication::kNcDialectWords, or told from the text
   double tolerance_nm = 10.0;
+  std::string standing;  ///< stage before which all was cut by the job's own program; empty: the blank stands
 };
 
 struct VerificationRun {
   VerificationRequest request;
   fabrication::Job job;
   fabrication::Machine machine;
-  std::vector<fabrication::NcProgram> programs;  ///< as they were read
+  std::vector<fabrication::NcProgram> programs;  ///< as they were read, behind what made what stands
+  std::size_t standing = 0;                      ///< so many of the programs made it, and are not judged
   fabrication::Verification result;
   std::vector<std::string> warnings;
 };

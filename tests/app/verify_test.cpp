@@ -71,6 +71,44 @@ TEST_F(VerifyCommand, CorrectProgramsOfEveryDialectPass) {
   }
 }
 
+/// A phase, and a restart behind a line: what stands before them is said.
+TEST_F(VerifyCommand, PartsOfAJob) {
+  make("paper", "two-step");
+  const std::string whole = program("rs274ngc");
+  const auto part = [&](const Arguments& how, const std::string& name) {
+    const Outcome made = retrace(folder_, with({"fabricate", "job.toml", "-o", name, "--quiet"}, how));
+    EXPECT_EQ(made.code, 0) << made.err;
+    return name + "/" + folder_.json(name + "/fabrication.json")["programs"][0].get<std::string>();
+  };
+  const std::string roughing = part({"--phase", "roughing"}, "roughing");
+  EXPECT_EQ(verified({roughing}, 1)["verdict"], "incomplete");
+  const std::string finishing = part({"--phase", "finishing"}, "finishing");
+  EXPECT_EQ(verified({finishing}, 1)["verdict"], "fail");
+  const Json after = verified({finishing, "--standing", "finishing"}, 0);
+  EXPECT_EQ(after["verdict"], "pass");
+  EXPECT_EQ(after["programs"].size(), 1U);
+  EXPECT_EQ(verified({roughing, finishing}, 0)["verdict"], "pass");
+  // The operator stops behind the third call.
+  const std::string text = folder_.read(whole);
+  std::size_t call = 0;
+  for (int k = 0; k < 3; ++k) call = text.find(" call\n", call + 1);
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(call), '\n');
+  const std::string stopped = whole + "@" + std::to_string(line);
+  EXPECT_NE(verified({stopped}, 1)["verdict"], "pass");
+  EXPECT_EQ(verified({stopped, whole}, 1)["verdict"], "fail") << "cuts what is gone";
+  const auto refusal = [&](const Arguments& arguments) {
+    const Outcome outcome = retrace(folder_, with({"verify", "job.toml"}, arguments));
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  EXPECT_NE(refusal({whole + "@99999"}).find("cannot be stopped behind line 99999, has "), std::string::npos);
+  EXPECT_NE(refusal({whole + "@x"}).find("cannot be read"), std::string::npos);
+  EXPECT_NE(refusal({whole, "--standing", "polishing"}).find("--standing: must be roughing, finishing or one of"),
+            std::string::npos);
+  EXPECT_NE(refusal({whole, "--standing", "roughing"}).find("--standing: must be a stage before which"),
+            std::string::npos);
+}
+
 TEST_F(VerifyCommand, AFaultIsAFindingWithItsLine) {
   make("ideal", "unidirectional");
   std::string text = folder_.read(program("rs274ngc"));

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <system_error>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -19,12 +22,26 @@ NcDialect dialect_of(const std::string& word, std::string_view text, const std::
   return static_cast<NcDialect>(found - std::begin(kNcDialectWords));
 }
 
-std::vector<NcProgram> read_programs(const std::vector<std::string>& files, const std::string& dialect,
+ProgramName program_name(const std::string& given) {
+  const std::size_t at = given.rfind('@');
+  if (at == std::string::npos || std::filesystem::exists(given)) return {given, 0};
+  ProgramName name{given.substr(0, at), 0};
+  const char* const end = given.data() + given.size();
+  const auto [rest, error] = std::from_chars(given.data() + at + 1, end, name.stop_line);
+  return error == std::errc() && rest == end && name.stop_line > 0 ? name : ProgramName{given, 0};
+}
+
+std::vector<NcProgram> read_programs(const std::vector<std::string>& names, const std::string& dialect,
                                      const NcTexts& texts) {
   std::vector<NcProgram> programs;
-  for (const std::string& file : files) {
+  for (const std::string& given : names) {
+    const auto [file, stop_line] = program_name(given);
     const std::string text = read_file(file, kMostDataBytes);
-    programs.push_back(parse_nc(text, file, dialect_of(dialect, text, file), texts));
+    NcProgram& program = programs.emplace_back(parse_nc(text, file, dialect_of(dialect, text, file), texts));
+    if (stop_line > program.lines)
+      throw InputError({file, 0, ""},
+                       fmt::format("cannot be stopped behind line {}, has {}", stop_line, program.lines));
+    program.stop_line = stop_line;
   }
   return programs;
 }

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 Json programs_json(const VerificationRun& run) {
   Json programs = Json::array();
-  for (const NcProgram& program : run.programs) programs.push_back(program_json(program));
+  for (std::size_t k = run.standing; k < run.programs.size(); ++k) programs.push_back(program_json(run.programs[k]));
   return programs;
 }
 
