@@ -82,6 +82,8 @@ class CutReader : public NcSink {
     NcSettings asked = settings;
     if (motion.duration_s > 0.0 || motion.move == NcMove::rapid) asked.exact_stop = true;
     control_.cut(asked, motion.place);
+    if (motion.duration_s > 0.0 && !motion.is_exact_stop)
+      cuts_.blend_mm = std::max(cuts_.blend_mm, settings.blend_mm.value_or(0.0));
     const bool is_free = cuts_.dialects.back() == NcDialect::rs274ngc && motion.duration_s > 0.0 &&
                          !motion.is_exact_stop && !settings.blend_mm;
     if (is_free && !std::exchange(has_free_path_, true))

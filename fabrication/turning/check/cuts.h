@@ -36,6 +36,7 @@ struct TurningCuts {
   std::vector<CutPass> passes;
   std::vector<FreeMove> free_moves;  ///< but for those that rise straight up
   std::vector<DownMove> down_moves;
+  double blend_mm = 0.0;  ///< by which a path may be left at most where its moves meet, as programs say
   double lowest_travel_mm[3] = {0.0, 0.0, 0.0};  ///< of X, Y and the slide's Z
   double highest_travel_mm[3] = {0.0, 0.0, 0.0};
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -29,7 +31,29 @@ void check_free_moves(const TurnedPart& part, const TurningCuts& cuts, const Tou
                     "the program ends with the tool nearer to the part than clear_mm", cuts.end_mm[k], limit, 1});
 }
 
-void judge(double tolerance_nm, const Inspection& inspection, FindingList& findings) {
+/// How far a corner of a path stands off the chord between its neighbours, at most; C counts by the way at the tool.
+double highest_corner_mm(const std::vector<CutPass>& passes) {
+  using Place = Eigen::Vector4d;
+  double highest = 0.0;
+  for (const CutPass& pass : passes) {
+    const auto place = [&](std::size_t i, double radius_mm) {
+      return Place(pass.x_mm[i], pass.y_mm[i], pass.z_mm[i], radius_mm * pass.c_rad[i]);
+    };
+    for (std::size_t i = 1; i + 1 < pass.size(); ++i) {
+      const double radius_mm = std::hypot(pass.x_mm[i], pass.y_mm[i]);
+      const Place before = place(i - 1, radius_mm);
+      const Place at = place(i, radius_mm);
+      const Place behind = place(i + 1, radius_mm);
+      const double to_mm = (at - before).norm();
+      const double from_mm = (behind - at).norm();
+      if (to_mm + from_mm > 0.0)
+        highest = std::max(highest, (at - before - to_mm / (to_mm + from_mm) * (behind - before)).norm());
+    }
+  }
+  return highest;
+}
+
+void judge(double tolerance_nm, double blend_nm, const Inspection& inspection, FindingList& findings) {
   const auto check = [&](const char* kind, const char* what, double value) {
     if (value > tolerance_nm)
       findings.add(
@@ -37,7 +61,8 @@ void judge(double tolerance_nm, const Inspection& inspection, FindingList& findi
           fmt::format("{} of {} nm exceeds the tolerance of {} nm", what, fixed(value, 2), shortest(tolerance_nm)),
           value, tolerance_nm);
   };
-  check("form", "a form error", inspection.form_error_nm);
+  check("form", blend_nm > 0.0 ? "a form error, blends included," : "a form error",
+        inspection.form_error_nm + blend_nm);
   check("gouge", "a cut below the surface", inspection.interference_nm);
 }
 
@@ -50,6 +75,7 @@ TurningCheck check_turning(const TurnedPart& part, TurningCuts cuts, const std::
   if (strokes) add_strokes(cuts, strokes->text, strokes->file, findings);
   check.passes = cuts.passes.size();
   for (const CutPass& pass : cuts.passes) check.points += pass.size();
+  if (cuts.blend_mm > 0.0) check.blend_nm = 1e6 * std::min(cuts.blend_mm, highest_corner_mm(cuts.passes));
   check.motion = check_motion(part, cuts, findings);
   check.touch = check_touch(part, cuts, findings);
   check.coverage = check_coverage(part, cuts, findings);
@@ -58,7 +84,7 @@ TurningCheck check_turning(const TurnedPart& part, TurningCuts cuts, const std::
   try {
     check.envelope.emplace(part.tool, std::move(cuts.passes));
     check.inspection = inspect(*check.envelope, part.surface, part.tool, region_of(part.path), part.map_pixels);
-    judge(part.form_tolerance_nm, check.inspection, findings);
+    judge(part.form_tolerance_nm, check.blend_nm, check.inspection, findings);
   } catch (const InputError& error) {
     check.envelope.reset();
     findings.add("uncut", 0, error.what());

@@ -19,6 +19,9 @@ struct TurningCheck {
   TouchFigures touch;
   CoverageFigures coverage;
   std::size_t points = 0;  ///< of cuts
+  /// By which a control that blends moves may leave the path at most: what the programs allow, or the height of the
+  /// path's corners over the chords between their neighbours if that is less. Part of the form error that is judged.
+  double blend_nm = 0.0;
   std::size_t passes = 0;
   /// What is left; nothing where cuts that do not go on or leave places out make it impossible to find.
   std::optional<Envelope> envelope;

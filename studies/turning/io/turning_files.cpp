@@ -48,6 +48,7 @@ void add_judged(const turning::TurnedPart& part, const turning::TurningCheck& ch
   json["blocks_per_s_max"] = check.motion.blocks_per_s;
   if (!check.envelope) return;
   const turning::Inspection& i = check.inspection;
+  json["blend_nm"] = check.blend_nm;
   json["form_error_nm"] = i.form_error_nm;
   json["interference_nm"] = i.interference_nm;
   json["scallop_nm"] = i.scallop_nm;
