@@ -418,12 +418,13 @@ TEST(TurningCheck, StrokesOfAFastServoBelongToTheirPoints) {
 }
 
 TEST(TurningCheck, RightProgramsOfRandomPartsPassInEveryDialect) {
+  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   std::mt19937 random(23);
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   int made = 0;
-  for (int tried = 0; made < 8 && tried < 200; ++tried) {
+  for (int tried = 0; made < 6 && tried < 200; ++tried) {
     const bool is_raster = tried % 3 == 2;
     std::string file = fmt::format(
         "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"xy_polynomial\"\nterms = [[1, 0, {:.3f}], [2, 0, "
@@ -460,7 +461,7 @@ TEST(TurningCheck, RightProgramsOfRandomPartsPassInEveryDialect) {
       continue;  // a surface that the tool does not clear
     }
   }
-  EXPECT_EQ(made, 8);
+  EXPECT_EQ(made, 6);
 }
 
 }  // namespace
