@@ -31,8 +31,10 @@ void check_free_moves(const TurnedPart& part, const TurningCuts& cuts, const Tou
                     "the program ends with the tool nearer to the part than clear_mm", cuts.end_mm[k], limit, 1});
 }
 
-/// How far a corner of a path stands off the chord between its neighbours, at most; C counts by the way at the tool.
-double highest_corner_mm(const std::vector<CutPass>& passes) {
+/// How far a parabola that begins and ends in the middles of two moves stays away from the corner between them, at
+/// most: a quarter of the corner's height over the chord between its neighbours. A move that slows down while the next
+/// one speeds up evenly makes a parabola, and does so over half of its way at most. C counts by the way at the tool.
+double widest_blend_mm(const std::vector<CutPass>& passes) {
   using Place = Eigen::Vector4d;
   double highest = 0.0;
   for (const CutPass& pass : passes) {
@@ -50,7 +52,7 @@ double highest_corner_mm(const std::vector<CutPass>& passes) {
         highest = std::max(highest, (at - before - to_mm / (to_mm + from_mm) * (behind - before)).norm());
     }
   }
-  return highest;
+  return 0.25 * highest;
 }
 
 void judge(double tolerance_nm, double blend_nm, const Inspection& inspection, FindingList& findings) {
@@ -75,7 +77,7 @@ TurningCheck check_turning(const TurnedPart& part, TurningCuts cuts, const std::
   if (strokes) add_strokes(cuts, strokes->text, strokes->file, findings);
   check.passes = cuts.passes.size();
   for (const CutPass& pass : cuts.passes) check.points += pass.size();
-  if (cuts.blend_mm > 0.0) check.blend_nm = 1e6 * std::min(cuts.blend_mm, highest_corner_mm(cuts.passes));
+  if (cuts.blend_mm > 0.0) check.blend_nm = 1e6 * std::min(cuts.blend_mm, widest_blend_mm(cuts.passes));
   check.motion = check_motion(part, cuts, findings);
   check.touch = check_touch(part, cuts, findings);
   check.coverage = check_coverage(part, cuts, findings);

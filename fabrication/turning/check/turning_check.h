@@ -19,8 +19,8 @@ struct TurningCheck {
   TouchFigures touch;
   CoverageFigures coverage;
   std::size_t points = 0;  ///< of cuts
-  /// By which a control that blends moves may leave the path at most: what the programs allow, or the height of the
-  /// path's corners over the chords between their neighbours if that is less. Part of the form error that is judged.
+  /// By which a control that blends moves leaves the path at most: what the programs allow, or, if that is less, what
+  /// parabolas between the middles of the moves leave of their corners. Part of the form error that is judged.
   double blend_nm = 0.0;
   std::size_t passes = 0;
   /// What is left; nothing where cuts that do not go on or leave places out make it impossible to find.
