@@ -117,8 +117,7 @@ inline constexpr std::size_t kLongestNcBytes = std::size_t{1} << 30;
 /// Reads the text of a program. Whatever the dialect's rules do not cover here is refused, never skipped.
 /// \param file names it in messages \param texts lines of a Power PMAC, letter by letter
 /// \throw InputError naming file and line: a word that is not understood, a line that is too long, text that is none
-NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect,
-                   const NcTexts& texts = {});
+NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect, const NcTexts& texts = {});
 
 /// The dialect that a text is written in, from the words that only one of them has.
 /// \throw InputError if the text is empty, binary, or shows none

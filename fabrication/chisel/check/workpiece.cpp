@@ -17,9 +17,8 @@ Workpiece3d workpiece_of(const Job& job, const Machine& machine, double toleranc
   workpiece.tolerance_mm = tolerance_nm / kNmPerMm;
   const bool is_dmc = job.strategy == Strategy::dmc;
   if (is_dmc != (machine.tilt == Tilt::head))
-    throw InputError(job.where("machine"),
-                     fmt::format("must be a machine whose {} tilts for this strategy, got {}",
-                                 is_dmc ? "head" : "table", machine.name));
+    throw InputError(job.where("machine"), fmt::format("must be a machine whose {} tilts for this strategy, got {}",
+                                                       is_dmc ? "head" : "table", machine.name));
   const geometry::Element size = blank_element(job);
   const auto* const prism = std::get_if<geometry::RtpElement>(&size);
   const std::vector<CutElement> elements = cut_elements(job);

@@ -80,8 +80,7 @@ ElementField field_of(const Groove& groove, std::span<const SweptVolume> sweeps,
 
 ErrorField error_field(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                        std::size_t pixels) {
-  if (job.substrate)
-    throw InputError(job.where("base"), "no map is drawn of elements on a base, only of flat arrays");
+  if (job.substrate) throw InputError(job.where("base"), "no map is drawn of elements on a base, only of flat arrays");
   const Workpiece3d workpiece = workpiece_of(job, machine);
   FindingList findings;
   ProgramCheck check(workpiece, findings);
