@@ -107,7 +107,7 @@ struct Visit {
 /// Timed moves that follow each other without stopping. They begin where the axes are.
 struct Path {
   std::vector<Move> moves;
-  double blend_mm = 1e-4;  ///< by which a control may leave the path where moves meet, if it can be told
+  double blend_mm = 1e-6;  ///< by which a control may leave the path where moves meet, if it can be told
 };
 /// The operator may stop here.
 struct OptionalStop {};

@@ -27,6 +27,7 @@ struct PathOptions {
   double spindle_rpm = 60.0;
   double cutting_mm_per_min = 60.0;  ///< raster
   double clear_mm = 1.0;             ///< above the highest point, for moves without cutting
+  double blend_mm = 1e-6;            ///< by which a control may leave the path where moves meet
   double approach_mm_per_min = 5.0;  ///< down to where a cut begins
   /// Of C, from a standstill to the spindle's speed and back at the ends of a spiral; nothing: at once.
   std::optional<double> spin_deg_per_s2 = std::nullopt;

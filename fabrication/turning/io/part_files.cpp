@@ -20,6 +20,11 @@ TurningTool read_tool(const Document& file) {
           file.number("tool.rake_deg"), file.number_if("tool.skew_deg").value_or(0.0)};
 }
 
+/// A tenth of the form tolerance, in which it counts; programs say it in whole nanometres.
+double blend_mm(double form_tolerance_nm) {
+  return 1e-6 * std::max(1.0, std::floor(0.1 * form_tolerance_nm));
+}
+
 PathOptions read_path(const Document& file, const TurningTool& tool) {
   const auto number = [&](const char* key) { return file.number(schema::path_in("path", key)); };
   PathOptions path;
@@ -28,6 +33,7 @@ PathOptions read_path(const Document& file, const TurningTool& tool) {
                                           : feed_for_scallop_mm(effective_radius_mm(tool), number("scallop_nm"));
   path.clear_mm = number("clear_mm");
   path.approach_mm_per_min = number("approach_mm_per_min");
+  path.blend_mm = blend_mm(file.number("inspect.form_tolerance_nm"));
   if (path.strategy == Strategy::raster) {
     const std::vector<double> size = file.numbers("path.size_mm");
     path.height_mm = size[0];

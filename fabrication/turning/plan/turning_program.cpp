@@ -11,8 +11,9 @@ Words words_of(const PathPoint& p) {
 }
 
 /// All points but the first, where the tool is. Y and C have words where they change.
-Path path_of(const Pass& pass, Words at) {
+Path path_of(const Pass& pass, Words at, double blend_mm) {
   Path path;
+  path.blend_mm = blend_mm;
   path.moves.reserve(pass.size() - 1);
   for (std::size_t k = 1; k < pass.size(); ++k) {
     const Words to = words_of(pass[k]);
@@ -41,7 +42,7 @@ Program turning_program(const std::vector<Pass>& passes, const PathOptions& opti
     Move over{Motion::rapid, at, 0.0, 0.0};
     Move down{Motion::translate, {}, options.approach_mm_per_min, 0.0};
     std::swap(over.to[kZ], down.to[kZ]);
-    program.items.insert(program.items.end(), {raise, over, down, path_of(pass, at)});
+    program.items.insert(program.items.end(), {raise, over, down, path_of(pass, at, options.blend_mm)});
   }
   program.items.emplace_back(raise);
   return program;
