@@ -59,7 +59,8 @@ TEST_F(VerifyParts, ProgramsOfTurnInAllDialects) {
     EXPECT_EQ(json["process"], "turning");
     EXPECT_EQ(json["programs"][0]["dialect"], program["dialect"]);
     for (const char* key : {"form_error_nm", "interference_nm", "scallop_nm", "block_low_nm", "step_um_max"})
-      EXPECT_EQ(json[key], turned["verification"][key]) << key;
+      // Sums of increments, which a Fanuc is told, differ in their last digits.
+      EXPECT_NEAR(json[key].get<double>(), turned["verification"][key].get<double>(), 1e-3) << key;
   }
 }
 
