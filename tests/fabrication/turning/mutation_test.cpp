@@ -30,7 +30,7 @@ const std::string kHead =
     "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"formula\"\nformula = \"0.1*x-0.3*y^2\"\n"
     "[tool]\nnose_radius_mm = 0.2\nclearance_deg = 20\n";
 const std::string kSpiral = kHead +
-                            "[path]\nradius_mm = 0.06\nfeed_um = 20\nspindle_rpm = 30\npoints_per_turn = 20\n"
+                            "[path]\nradius_mm = 0.06\nfeed_um = 20\nspindle_rpm = 30\npoints_per_turn = 22\n"
                             "[machine]\nspindle_rpm = 60\nc_acceleration_deg_per_s2 = 400\nblocks_per_s = 20\n"
                             "[machine.x]\ntravel_mm = [-1, 1]\nacceleration_mm_per_s2 = 0.2\n"
                             "[machine.z]\ntravel_mm = [-1, 2]\nspeed_mm_per_s = 0.1\nacceleration_mm_per_s2 = 0.3\n"
@@ -394,7 +394,7 @@ TEST(TurningCheck, ATruncatedProgramIsAFinding) {
 
 TEST(TurningCheck, StrokesOfAFastServoBelongToTheirPoints) {
   std::string file = kSpiral;
-  file.replace(file.find("points_per_turn = 20\n"), 21, "points_per_turn = 20\nservo = \"fast\"\n");
+  file.replace(file.find("points_per_turn = 22\n"), 21, "points_per_turn = 22\nservo = \"fast\"\n");
   const Planned plan = planned(file);
   CsvWriter csv("c_deg,stroke_mm");
   for (const PathPoint& p : plan.passes.front())
