@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fabrication/job/on_machine.h"
+
 namespace retrace::fabrication {
 namespace {
 
@@ -47,8 +49,7 @@ std::optional<FacetCut> facet_cut(const Groove& groove, const ToolWedge& wedge, 
 
 double finishing_allowance_mm(const Workpiece3d& workpiece) {
   const Process& process = workpiece.job->process;
-  const bool finishes = workpiece.job->strategy == Strategy::two_step || workpiece.job->strategy == Strategy::dmc;
-  return finishes ? 1e-3 * process.finishing_cuts * process.finishing_depth_um : 0.0;
+  return has_finishing_cuts(*workpiece.job) ? 1e-3 * process.finishing_cuts * process.finishing_depth_um : 0.0;
 }
 
 bool is_finishing(const Workpiece3d& workpiece, const FacetCut& cut) {

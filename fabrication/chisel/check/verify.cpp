@@ -20,6 +20,7 @@
 #include "fabrication/chisel/check/simulation/nose.h"
 #include "fabrication/chisel/check/visits.h"
 #include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/job/on_machine.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
 
@@ -116,6 +117,13 @@ class Judge {
   }
 
  private:
+  /// What is left at the root of a facet was left by the plunges along the other one; a job that only ploughs it turns
+  /// no edge for it.
+  double root_limit_mm(const Prediction& prediction, std::size_t facet) const {
+    if (workpiece_.job->strategy == Strategy::dmc) return prediction.root_mm;
+    return workpiece_.job->strategy == Strategy::unidirectional ? prediction.root_mm : prediction.root_of_mm[1 - facet];
+  }
+
   void predict_angles(const ElementFigures& figures, const Prediction& prediction) {
     for (std::size_t f = 0; f < figures.facets.size(); ++f)
       if (figures.facets[f].is_ploughed)

@@ -1,11 +1,8 @@
 #include "fabrication/chisel/check/workpiece.h"
 
-#include <fmt/format.h>
-
 #include <map>
 #include <utility>
 
-#include "core/error.h"
 #include "fabrication/job/substrate_cells.h"
 
 namespace retrace::fabrication {
@@ -15,10 +12,6 @@ Workpiece3d workpiece_of(const Job& job, const Machine& machine, double toleranc
   workpiece.job = &job;
   workpiece.machine = &machine;
   workpiece.tolerance_mm = tolerance_nm / kNmPerMm;
-  const bool is_dmc = job.strategy == Strategy::dmc;
-  if (is_dmc != (machine.tilt == Tilt::head))
-    throw InputError(job.where("machine"), fmt::format("must be a machine whose {} tilts for this strategy, got {}",
-                                                       is_dmc ? "head" : "table", machine.name));
   const geometry::Element size = blank_element(job);
   const auto* const prism = std::get_if<geometry::RtpElement>(&size);
   const std::vector<CutElement> elements = cut_elements(job);

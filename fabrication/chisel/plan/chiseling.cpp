@@ -181,10 +181,7 @@ ProcessFacts chiseling_facts(const Job& job, double stock_mm, std::size_t elemen
   const geometry::Element element = blank_element(job);
   const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(element);
   ProcessFacts facts;
-  facts.tilts = Tilt::head;
-  facts.machine_text = "must be a machine whose head tilts (B), such as \"ideal-dmc\", for strategy \"dmc\"";
   facts.cuts_per_facet = chiseling_layers(job, stock_mm);
-  facts.is_finished = true;
   facts.passes_mm = {0.0};
   facts.array_title = "Cube corner array";
   facts.description = {

@@ -19,6 +19,7 @@
 #include "fabrication/chisel/plan/process_facts.h"
 #include "fabrication/chisel/plan/routines.h"
 #include "fabrication/chisel/plan/stages.h"
+#include "fabrication/job/on_machine.h"
 #include "fabrication/job/substrate_cells.h"
 #include "geometry/elements/element_cells.h"
 
@@ -360,7 +361,7 @@ class ProgramMaker {
     if (job_.substrate) lines.push_back(plain(substrate_description(job_)));
     for (const std::string& line : facts_.description) lines.push_back(line);
     lines.push_back(plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
-                                      shortest(p.roughing_depth_um), facts_.is_finished ? p.finishing_cuts : 0,
+                                      shortest(p.roughing_depth_um), has_finishing_cuts(job_) ? p.finishing_cuts : 0,
                                       shortest(p.finishing_depth_um), shortest(p.clearance_mm))));
     constexpr std::size_t kMostPoses = 24;
     for (const CuttingPose& pose : std::span(plan_.poses).first(std::min(kMostPoses, plan_.poses.size())))
@@ -422,27 +423,9 @@ void check_options(const PlanOptions& options, std::size_t elements) {
     throw InputError({"", 0, "--split-hours"}, "must be > 0, got " + shortest(*options.split_hours));
 }
 
-void check_process(const Job& job, const Machine& machine, const ProcessFacts& facts) {
-  if (facts.is_finished && job.process.finishing_depth_um > job.process.roughing_depth_um)
-    throw InputError(job.where("process.finishing_depth_um"),
-                     fmt::format("must be at most roughing_depth_um, {}, got {}",
-                                 shortest(job.process.roughing_depth_um), shortest(job.process.finishing_depth_um)));
-  double most = machine.x.max_feed_mm_per_min.value;
-  for (const LinearAxis* const axis : {&machine.y, &machine.z}) most = std::min(most, axis->max_feed_mm_per_min.value);
-  const Process& p = job.process;
-  for (const auto& [key, feed] : {std::pair{"process.roughing_feed_mm_per_min", p.roughing_feed_mm_per_min},
-                                  {"process.finishing_feed_mm_per_min", p.finishing_feed_mm_per_min},
-                                  {"process.retract_feed_mm_per_min", p.retract_feed_mm_per_min}})
-    if (feed > most)
-      throw InputError(job.where(key), fmt::format("must be at most the max_feed_mm_per_min of machine {}, {}, got {}",
-                                                   machine.name, shortest(most), shortest(feed)));
-}
-
-ProcessFacts facts_of(const Job& job, const Machine& machine, const Plan& plan) {
-  ProcessFacts facts =
-      (job.strategy == Strategy::dmc ? chiseling_facts : plunging_facts)(job, plan.stock_mm, plan.elements.size());
-  if (facts.tilts == machine.tilt) return facts;
-  throw InputError(job.where("machine"), fmt::format("{}, got {}", facts.machine_text, machine.name));
+ProcessFacts facts_of(const Job& job, const Plan& plan) {
+  const auto facts = job.strategy == Strategy::dmc ? chiseling_facts : plunging_facts;
+  return facts(job, plan.stock_mm, plan.elements.size());
 }
 
 }  // namespace
@@ -471,12 +454,12 @@ double safe_height_mm(const Job& job, const Machine& machine, const std::vector<
 }
 
 Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& options) {
+  check_on_machine(job, machine);
   Plan plan;
   plan.elements = cut_elements(job);
   check_options(options, plan.elements.size());
   if (job.substrate) plan.stock_mm = stock_mm(job, plan.elements);
-  const ProcessFacts facts = facts_of(job, machine, plan);
-  check_process(job, machine, facts);
+  const ProcessFacts facts = facts_of(job, plan);
   plan.cuts_per_facet = facts.cuts_per_facet;
   const std::vector<RoutineStart> starts = add_stages(job, machine, plan);
   plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);

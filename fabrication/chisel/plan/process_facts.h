@@ -12,10 +12,7 @@ namespace retrace::fabrication {
 
 /// One of the processes that cut elements, for one job.
 struct ProcessFacts {
-  Tilt tilts = Tilt::table;              ///< of the machine that it needs
-  std::string machine_text;              ///< what to say when the machine is another
   int cuts_per_facet = 0;                ///< of roughing
-  bool is_finished = false;              ///< by finishing cuts
   std::vector<double> passes_mm;         ///< side by side, as offsets of their middles along the root
   std::string array_title;               ///< of jobs without a title
   std::vector<std::string> description;  ///< lines for people: what is cut, how it lies, with which tool

@@ -157,9 +157,7 @@ std::string zero_text(const Job& job) {
 ProcessFacts plunging_facts(const Job& job, double stock_mm, std::size_t elements) {
   const geometry::RtpElement element = blank_prism(job);
   ProcessFacts facts;
-  facts.machine_text = "must be a machine whose table tilts (A) for this strategy";
   facts.cuts_per_facet = cuts_per_facet(job, stock_mm);
-  facts.is_finished = job.strategy == Strategy::two_step;
   facts.passes_mm = pass_offsets_mm(element.width_mm, job.tool.width_mm);
   facts.array_title = "Prism array";
   facts.description = {

@@ -15,6 +15,7 @@
 #include "fabrication/chisel/check/program_check.h"
 #include "fabrication/chisel/check/simulation/dexel.h"
 #include "fabrication/chisel/check/verify.h"
+#include "fabrication/job/on_machine.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -81,6 +82,7 @@ ElementField field_of(const Groove& groove, std::span<const SweptVolume> sweeps,
 ErrorField error_field(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                        std::size_t pixels) {
   if (job.substrate) throw InputError(job.where("base"), "no map is drawn of elements on a base, only of flat arrays");
+  check_on_machine(job, machine);
   const Workpiece3d workpiece = workpiece_of(job, machine);
   FindingList findings;
   ProgramCheck check(workpiece, findings);
