@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "core/number_format.h"
 #include "fabrication/read/nc_needs.h"
@@ -12,6 +13,7 @@ namespace retrace::fabrication {
 namespace {
 
 constexpr std::uint8_t kZBit = 0b100;
+constexpr std::uint8_t kLinearBits = 0b111;
 /// Rounding of words.
 constexpr double kSlackMm = 1e-9;
 
@@ -23,6 +25,7 @@ bool has_bit(unsigned bits, char axis) {
 
 void ControlCheck::begin(NcDialect dialect) {
   dialect_ = dialect;
+  rested_s_ = 0.0;
   wrong_.clear();
 }
 
@@ -33,6 +36,7 @@ bool ControlCheck::turns_wrong(const char* kind, bool holds) {
 }
 
 void ControlCheck::way(const NcSettings& settings, const NcMotion& motion) {
+  if (motion.moved != 0) rested_s_ = 0.0;
   if (motion.before == 0) return first_move(settings, motion);
   const bool goes_low = motion.to.z_mm < rule_.safe_z_mm - kSlackMm && (motion.moved & kZBit) != 0;
   if (!goes_low || (motion.known & rule_.axes) == rule_.axes) return;
@@ -53,10 +57,16 @@ void ControlCheck::first_move(const NcSettings& settings, const NcMotion& motion
                     fmt::format("before the first move the program does not say {}: {}", need.words, need.meaning));
   };
   for (const NcNeed& need : needs_of(dialect_)) ask(need);
-  if (dialect_ == NcDialect::fanuc && control_.has_rotation)
-    ask({nc_said::kRotationOff, "G69", "that coordinates are not turned"});
-  if (dialect_ == NcDialect::fanuc && control_.has_mirror)
-    ask({nc_said::kMirrorOff, "G50.1", "that coordinates are not mirrored"});
+  // Codes of options that a control lacks are alarms.
+  const auto ask_option = [&](bool is_there, const NcNeed& need) {
+    if (dialect_ != NcDialect::fanuc) return;
+    if (is_there) return ask(need);
+    if ((settings.said & need.said) != 0)
+      findings_.add("setup", motion.place.line,
+                    fmt::format("the program says {}, an option that the machine's control lacks", need.words));
+  };
+  ask_option(control_.has_rotation, {nc_said::kRotationOff, "G69", "that coordinates are not turned"});
+  ask_option(control_.has_mirror, {nc_said::kMirrorOff, "G50.1", "that coordinates are not mirrored"});
   const double safe_mm = rule_.safe_z_mm;
   if (motion.moved != kZBit || motion.to.z_mm < safe_mm - kSlackMm)
     findings_.add("first_move", motion.place.line,
@@ -76,6 +86,25 @@ void ControlCheck::cut(const NcSettings& settings, const NcPlace& place) {
   spindle(settings, place);
 }
 
+void ControlCheck::state(const NcSettings& settings, const NcPlace& place, bool is_in_material) {
+  if (is_in_material) return cut(settings, place);
+  // What must stand still while it cuts has no reason to turn before or after.
+  if (settings.spindle && rule_.spindle.turns == NcSpindle::stopped) spindle(settings, place);
+}
+
+void ControlCheck::rest(double seconds, const NcPlace& place) {
+  const double most_s = rule_.most_rest_s * (1.0 + 1e-9);
+  const bool was_long = rested_s_ > most_s;
+  rested_s_ += seconds;
+  if (was_long || rested_s_ <= most_s) return;
+  const bool is_stop = std::isinf(seconds);
+  findings_.add("dwell_too_long", place.line,
+                is_stop ? "the program stops for the operator while the tool is in the material"
+                        : fmt::format("the tool rests in the material for {} s, at most {} are allowed",
+                                      shortest(rested_s_), shortest(rule_.most_rest_s)),
+                is_stop ? 0.0 : rested_s_, rule_.most_rest_s);
+}
+
 void ControlCheck::spindle(const NcSettings& settings, const NcPlace& place) {
   const SpindleRule& rule = rule_.spindle;
   const NcSpindle is = settings.spindle.value_or(NcSpindle::stopped);
@@ -85,7 +114,7 @@ void ControlCheck::spindle(const NcSettings& settings, const NcPlace& place) {
   if (rule.turns == NcSpindle::stopped && !settings.spindle && dialect_ != NcDialect::pmac)
     message = "the program does not say that the spindle stands still";
   else if (rule.turns == NcSpindle::stopped && !stands)
-    message = "the spindle turns while the tool cuts";
+    message = "the spindle turns, which must stand still";
   else if (rule.turns == NcSpindle::stopped)
     message = "";
   else if (stands)
@@ -116,7 +145,9 @@ void ControlCheck::axes(const Machine& machine, const NcMotion& motion) {
                               shortest(excess.limits.low), shortest(excess.limits.high)),
                   excess.position, excess.position > excess.limits.high ? excess.limits.high : excess.limits.low);
   }
-  if (motion.move == NcMove::linear) axis_speeds(machine, motion);
+  if (motion.move != NcMove::linear) return;
+  has_feed(motion);
+  axis_speeds(machine, motion);
 }
 
 /// An axis that is counted within a turn goes on without end: one of its words for the place must be within the limits.
@@ -127,33 +158,60 @@ bool ControlCheck::is_within_turn(const LimitExcess& excess) const {
   return excess.position + turns * turn_deg <= excess.limits.high;
 }
 
-/// Each axis takes its share of the feed, which is that of the three together.
+/// Linear axes take their shares of the feed, which is theirs together; rotary ones do where they move alone. Of an
+/// axis that comes from where it happens to be nothing is known but that it may take the whole.
 void ControlCheck::axis_speeds(const Machine& machine, const NcMotion& motion) {
-  const std::array<double, 3> by = {motion.to.x_mm - motion.from.x_mm, motion.to.y_mm - motion.from.y_mm,
-                                    motion.to.z_mm - motion.from.z_mm};
-  const std::array<const LinearAxis*, 3> linear = {&machine.x, &machine.y, &machine.z};
-  const double length_mm = std::hypot(by[0], by[1], by[2]);
-  if (length_mm == 0.0) return;
-  const double feed = motion.duration_s > 0.0 ? 60.0 * length_mm / motion.duration_s : motion.feed_mm_per_min;
-  for (std::size_t axis = 0; axis < by.size(); ++axis) {
-    const double speed = feed * std::abs(by[axis]) / length_mm;
-    const double most = linear[axis]->max_feed_mm_per_min.value;
-    if ((motion.known >> axis & 1U) == 0 || speed <= most * (1.0 + 1e-9)) continue;
-    findings_.add("feed_too_high", motion.place.line,
-                  fmt::format("{} is fed at {} mm/min, the machine's limit is {}", kNcAxisLetters[axis],
-                              shortest(std::round(speed * 1e3) / 1e3), shortest(most)),
-                  speed, most);
-  }
+  const AxisPositions& from = motion.from;
+  const AxisPositions& to = motion.to;
+  const RotaryPose from_pose = rotary_pose(machine, from);
+  const RotaryPose to_pose = rotary_pose(machine, to);
+  struct Travel {
+    char letter;
+    double by;
+    double most_per_min;
+  };
+  const std::array<Travel, 3> linear = {Travel{'X', to.x_mm - from.x_mm, machine.x.max_feed_mm_per_min.value},
+                                        Travel{'Y', to.y_mm - from.y_mm, machine.y.max_feed_mm_per_min.value},
+                                        Travel{'Z', to.z_mm - from.z_mm, machine.z.max_feed_mm_per_min.value}};
+  const std::array<Travel, 2> rotary = {
+      Travel{machine.tilt_letter(), to_pose.a_deg - from_pose.a_deg, 60.0 * machine.a.speed_deg_per_s.value},
+      Travel{'C', to_pose.c_deg - from_pose.c_deg, 60.0 * machine.c.speed_deg_per_s.value}};
+  const auto judge = [&](std::span<const Travel> axes, const char* unit) {
+    double length = 0.0;
+    for (const Travel& axis : axes) length = std::hypot(length, axis.by);
+    const double feed = motion.duration_s > 0.0 ? 60.0 * length / motion.duration_s : motion.feed_mm_per_min;
+    for (const Travel& axis : axes) {
+      if (!has_bit(motion.moved, axis.letter)) continue;
+      const double share = has_bit(motion.known, axis.letter) ? std::abs(axis.by) / length : 1.0;
+      const double speed = feed * share;
+      if (speed <= axis.most_per_min * (1.0 + 1e-9)) continue;
+      findings_.add("feed_too_high", motion.place.line,
+                    fmt::format("{} is fed at {} {}/min, the machine's limit is {}", axis.letter,
+                                shortest(std::round(speed * 1e3) / 1e3), unit, shortest(axis.most_per_min)),
+                    speed, axis.most_per_min);
+    }
+  };
+  judge(linear, "mm");
+  if ((motion.moved & kLinearBits) == 0) judge(rotary, "degrees");
 }
 
-void ControlCheck::feed(const NcMotion& motion, double most_mm_per_min) {
-  if (motion.feed_mm_per_min <= 0.0)
-    findings_.add("zero_feed", motion.place.line, "a cutting move has a feed of 0");
-  else if (most_mm_per_min > 0.0 && motion.feed_mm_per_min > most_mm_per_min * (1.0 + 1e-9))
-    findings_.add("feed_too_high", motion.place.line,
-                  fmt::format("a cut has a feed of {} mm/min, the process allows {}", shortest(motion.feed_mm_per_min),
-                              shortest(most_mm_per_min)),
-                  motion.feed_mm_per_min, most_mm_per_min);
+void ControlCheck::has_feed(const NcMotion& motion) {
+  if (motion.feed_mm_per_min <= 0.0 && motion.duration_s <= 0.0)
+    findings_.add("zero_feed", motion.place.line, "a move by G1 has no feed");
+}
+
+void ControlCheck::feed(const NcMotion& motion, double process_mm_per_min) {
+  constexpr double kLeastShare = 0.1;
+  const double feed = motion.feed_mm_per_min;
+  if (feed <= 0.0) return findings_.add("zero_feed", motion.place.line, "a cutting move has no feed");
+  const auto find = [&](const char* kind, const char* bound, double limit) {
+    findings_.add(kind, motion.place.line,
+                  fmt::format("a cut has a feed of {} mm/min, {} {}", shortest(feed), bound, shortest(limit)), feed,
+                  limit);
+  };
+  if (feed > process_mm_per_min * (1.0 + 1e-9)) find("feed_too_high", "the process allows", process_mm_per_min);
+  if (feed < kLeastShare * process_mm_per_min * (1.0 - 1e-9))
+    find("feed_too_low", "the tool rubs below a tenth of the process's, of", kLeastShare * process_mm_per_min);
 }
 
 }  // namespace retrace::fabrication

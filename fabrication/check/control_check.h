@@ -26,8 +26,10 @@ struct SpindleRule {
 /// What a process asks of the control.
 struct ControlRule {
   SpindleRule spindle;
-  bool needs_mist = false;    ///< while it cuts
-  bool may_blend = false;     ///< blocks need no exact stop
+  bool needs_mist = false;  ///< while it cuts
+  bool may_blend = false;   ///< blocks need no exact stop
+  /// In the material, at one place: dwells add up.
+  double most_rest_s = std::numeric_limits<double>::infinity();
   std::uint8_t axes = 0b111;  ///< bit i: axis i of kNcAxisLetters must be known before the tool comes down
   /// Z, alone, goes there or higher first, and no lower before all those axes are known.
   double safe_z_mm = -std::numeric_limits<double>::infinity();
@@ -46,16 +48,22 @@ class ControlCheck {
   void way(const NcSettings& settings, const NcMotion& motion);
   /// Of every move in the material: exact stops, spindle, mist.
   void cut(const NcSettings& settings, const NcPlace& place);
+  /// What a block says where nothing moves. \param is_in_material where the tool stands
+  void state(const NcSettings& settings, const NcPlace& place, bool is_in_material);
+  /// The tool rests in the material. \param seconds infinite: until the operator goes on
+  void rest(double seconds, const NcPlace& place);
   void spindle_at_end(const NcEnd& end);
-  /// That the machine has the axes that move, that they stay within their limits and are not fed faster than they go.
+  /// That the machine has the axes that move, that they stay within their limits, have a feed and are not fed faster
+  /// than they go.
   void axes(const Machine& machine, const NcMotion& motion);
-  /// Of a cutting move. \param most_mm_per_min that the process allows; 0: only that there is one
-  void feed(const NcMotion& motion, double most_mm_per_min);
+  /// Of a cutting move. \param process_mm_per_min the most that the process allows; far below it the tool rubs
+  void feed(const NcMotion& motion, double process_mm_per_min);
 
  private:
   void first_move(const NcSettings& settings, const NcMotion& motion);
   bool is_within_turn(const LimitExcess& excess) const;
   void axis_speeds(const Machine& machine, const NcMotion& motion);
+  void has_feed(const NcMotion& motion);
   void spindle(const NcSettings& settings, const NcPlace& place);
   /// A modal setting: a finding where it becomes wrong. \return whether it has just become so
   bool turns_wrong(const char* kind, bool holds);
@@ -64,6 +72,7 @@ class ControlCheck {
   ControlRule rule_;
   Control control_;
   NcDialect dialect_ = NcDialect::rs274ngc;
+  double rested_s_ = 0.0;        ///< in the material, since the last move
   std::set<std::string> wrong_;  ///< kinds of settings that are wrong now
 };
 

@@ -86,6 +86,7 @@ class FanucReader {
     }
     if (text.front() == '/') lines_.fail("a line that a switch of the controller may leave out is not understood");
     if (text.front() == 'O') return begin_program(text.substr(1));
+    if (!has_main_) lines_.fail("stands before the program's number: O1, say, must come first");
     Line line;
     line.block.line = lines_.number();
     IsoBlock iso(lines_, line.block);

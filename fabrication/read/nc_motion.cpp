@@ -119,6 +119,7 @@ class Runner {
     take_over(settings_.spindle, block.spindle);
     take_over(settings_.spindle_rpm, block.spindle_rpm);
     take_over(settings_.mist_on, block.mist_on);
+    if (block.spindle || block.mist_on || block.exact_stop) sink_.state(settings_, place_of(block));
     if (block.move) move_ = block.move;
     take_over(inverse_time_, block.inverse_time);
     // Under inverse time F belongs to its line alone.
@@ -128,6 +129,7 @@ class Runner {
     if (block.move_time_s) move_time_s_ = *block.move_time_s;
     if (block.dwell_s) sink_.dwell(*block.dwell_s, place_of(block), axes_of(position_));
     if (block.axes != 0) move(block);
+    if (block.stops) sink_.stop(place_of(block));
   }
 
   void move(const NcBlock& block) {

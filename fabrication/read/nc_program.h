@@ -81,6 +81,7 @@ struct NcBlock {
   Setting<double> spindle_rpm;  ///< S
   Setting<bool> mist_on;
   Setting<double> dwell_s;
+  bool stops = false;      ///< for the operator, always or if a switch asks for it
   std::int32_t call = -1;  ///< index of a subroutine
   bool returns = false;
   bool ends = false;

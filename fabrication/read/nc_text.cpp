@@ -23,16 +23,18 @@ bool is_control(char c) {
   return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f;
 }
 
-constexpr NcCode kMCodes[] = {{0, 0, nc_effects::kNone},
-                              {1, 0, nc_effects::kNone},
-                              {2, 0, [](NcBlock& b) { b.ends = true; }},
-                              {3, 0, [](NcBlock& b) { b.spindle = NcSpindle::clockwise; }},
-                              {4, 0, [](NcBlock& b) { b.spindle = NcSpindle::counterclockwise; }},
-                              {5, 0, [](NcBlock& b) { b.spindle = NcSpindle::stopped; }},
-                              {7, 0, [](NcBlock& b) { b.mist_on = true; }},
-                              {8, 0, [](NcBlock& b) { b.mist_on = true; }},
-                              {9, 0, [](NcBlock& b) { b.mist_on = false; }},
-                              {30, 0, [](NcBlock& b) { b.ends = true; }}};
+/// Groups of M codes count on where those of G codes end. M8 is flood of other machines, and nothing of this one's
+/// mist.
+constexpr NcCode kMCodes[] = {{0, 28, [](NcBlock& b) { b.stops = true; }},
+                              {1, 28, [](NcBlock& b) { b.stops = true; }},
+                              {2, 28, [](NcBlock& b) { b.ends = true; }},
+                              {3, 29, [](NcBlock& b) { b.spindle = NcSpindle::clockwise; }},
+                              {4, 29, [](NcBlock& b) { b.spindle = NcSpindle::counterclockwise; }},
+                              {5, 29, [](NcBlock& b) { b.spindle = NcSpindle::stopped; }},
+                              {7, 30, [](NcBlock& b) { b.mist_on = true; }},
+                              {8, 0, nc_effects::kNone},
+                              {9, 30, [](NcBlock& b) { b.mist_on = false; }},
+                              {30, 28, [](NcBlock& b) { b.ends = true; }}};
 
 const NcCode* code_of(std::span<const NcCode> codes, const NcWord& word) {
   const auto found =
@@ -144,13 +146,17 @@ bool IsoBlock::set(const NcWord& word, std::span<const NcCode> g_codes) {
   return true;
 }
 
+void IsoBlock::take_group(const NcCode& code, const NcWord& word) {
+  const unsigned bit = 1U << static_cast<unsigned>(code.group);
+  if (code.group != 0 && (groups_ & bit) != 0)
+    lines_.fail(fmt::format("has two {0} codes of one group, the second is {0}{1}", word.letter, word.number.value));
+  groups_ |= bit;
+}
+
 void IsoBlock::set_g(const NcWord& word, std::span<const NcCode> codes) {
   const NcCode* const code = code_of(codes, word);
   if (code == nullptr) lines_.fail(fmt::format("G{} is not understood", word.number.value));
-  const unsigned bit = 1U << static_cast<unsigned>(code->group);
-  if (code->group != 0 && (groups_ & bit) != 0)
-    lines_.fail(fmt::format("has two G codes of one group, the second is G{}", word.number.value));
-  groups_ |= bit;
+  take_group(*code, word);
   if (code->effect == nullptr)
     wants_dwell_ = true;
   else
@@ -160,6 +166,7 @@ void IsoBlock::set_g(const NcWord& word, std::span<const NcCode> codes) {
 void IsoBlock::set_m(const NcWord& word) {
   const NcCode* const code = code_of(kMCodes, word);
   if (code == nullptr) lines_.fail(fmt::format("M{} is not understood", word.number.value));
+  take_group(*code, word);
   code->effect(block_);
 }
 

@@ -111,6 +111,8 @@ class IsoBlock {
   void finish();
 
  private:
+  void take_group(const NcCode& code, const NcWord& word);
+
   const NcLines& lines_;
   NcBlock& block_;
   unsigned groups_ = 0;

@@ -46,7 +46,9 @@ class PmacReader {
       block.spindle = NcSpindle::stopped_by_text;
     else if (text == texts_.mist_on || text == texts_.mist_off)
       block.mist_on = text == texts_.mist_on;
-    else if (text != texts_.optional_stop)
+    else if (text == texts_.optional_stop)
+      block.stops = true;
+    else
       return false;
     if (!is_in_main_) lines_.fail("stands outside of open prog ... close");
     program_.blocks.push_back(block);

@@ -53,6 +53,9 @@ std::string with_marked_rs274ngc_comments(std::string_view line, const NcLines& 
   return without_blanks(result);
 }
 
+/// Of a line without its end: what the interpreter of LinuxCNC 2.9 reads, tried with its rs274.
+constexpr std::size_t kLongestLine = 252;
+
 class Rs274Reader {
  public:
   explicit Rs274Reader(NcLines lines) : lines_(std::move(lines)), table_(program_) {
@@ -62,8 +65,10 @@ class Rs274Reader {
 
   NcProgram run() {
     std::string_view line;
-    while (!is_over_ && lines_.next(line))
+    while (!is_over_ && lines_.next(line)) {
+      if (line.size() > kLongestLine) lines_.fail(fmt::format("a line may have at most {} characters", kLongestLine));
       read_line_that_may_be_cut(lines_, program_, [&] { read(with_marked_rs274ngc_comments(line, lines_)); });
+    }
     program_.lines = lines_.number();
     program_.main_last = program_.blocks.size();
     // Of a file that stops within a subroutine there is no main program to carry out.

@@ -143,7 +143,8 @@ TEST(Chips, ThickestOfRightProgramsIsThatOfTheRakeFace) {
 Job any_prisms() {
   Job job = square_job(*rc::gen::inRange(1, 3), *rc::gen::element(Arrangement::offset, Arrangement::checker));
   geometry::RtpElement& prism = prism_of(job);
-  prism.apex_angle_deg = *rc::gen::weightedElement<double>({{3, 90.0}, {1, 0.01 * *rc::gen::inRange(6600, 12001)}});
+  prism.apex_angle_deg =
+      *rc::gen::weightedElement<double>({{3, 90.0}, {1, 60.0}, {1, 120.0}, {1, 0.01 * *rc::gen::inRange(6000, 12001)}});
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
   job.tool.clearance_deg = *rc::gen::inRange(2, 11);
   const double widest_deg = std::min(prism.apex_angle_deg - 12.5 - job.tool.clearance_deg, 70.0);

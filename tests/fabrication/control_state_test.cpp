@@ -77,6 +77,27 @@ class ControlState : public ::testing::TestWithParam<NcDialect> {
     while (!lines_[i].starts_with(rapid)) ++i;
     return i;
   }
+  /// Lines behind the preparation, of subroutines as well, between which others can stand.
+  bool is_step(std::size_t i) const {
+    return lines_[i].starts_with(is_pmac() ? "rapid " : "G0 ") || is_feed(lines_[i]) || lines_[i] == dwell_line();
+  }
+  std::string dwell_line() const {
+    switch (GetParam()) {
+      case NcDialect::pmac: return "dwell 100";
+      case NcDialect::sinumerik: return "G4 F0.100";
+      case NcDialect::fanuc: return "G4 P100";
+      case NcDialect::rs274ngc: break;
+    }
+    return "G4 P0.100";
+  }
+  std::string kinds_with(std::size_t at, const Lines& inserted) const {
+    Lines lines = lines_;
+    lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), inserted.begin(), inserted.end());
+    return kinds_in(lines);
+  }
+  static bool holds(const std::string& kinds, const std::string& kind) {
+    return (" " + kinds + " ").find(" " + kind + " ") != std::string::npos;
+  }
   bool is_feed(const std::string& line) const { return line.starts_with(is_pmac() ? "linear " : "G1 "); }
 
   Job job_ = small_job();
@@ -198,10 +219,7 @@ TEST_P(ControlState, FeedsAreThoseOfTheStage) {
 }
 
 TEST_P(ControlState, DwellsInTheMaterial) {
-  const std::string dwell = is_pmac()                            ? "dwell 100"
-                            : GetParam() == NcDialect::sinumerik ? "G4 F0.100"
-                            : GetParam() == NcDialect::fanuc     ? "G4 P100"
-                                                                 : "G4 P0.100";
+  const std::string dwell = dwell_line();
   const auto as_long_as = [&](const std::string& text, double factor) {
     const std::size_t digits = text.find_first_of("0123456789", 3);
     const double value = factor * std::stod(text.substr(digits));
@@ -218,6 +236,14 @@ TEST_P(ControlState, DwellsInTheMaterial) {
     EXPECT_EQ(kinds_in(spoilt), "");
     spoilt[i] = as_long_as(dwell, 0.5);
     EXPECT_EQ(kinds_in(spoilt), "missing_dwell");
+    // Dwells at one place add up, and the operator may be long.
+    spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), spoilt[i]);
+    EXPECT_EQ(kinds_in(spoilt), "");
+    spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), 5, spoilt[i]);
+    EXPECT_EQ(kinds_in(spoilt), "dwell_too_long");
+    const std::string stop = is_pmac() ? machine_.control.optional_stop : "M0";
+    // Texts of a Power PMAC stand in the main program alone, and cuts in subprograms.
+    for (const std::size_t at : {i, i + 1}) EXPECT_EQ(kinds_with(at, {stop}), is_pmac() ? "error" : "dwell_too_long");
     ++tried;
   }
   EXPECT_GE(tried, 3);
@@ -225,6 +251,112 @@ TEST_P(ControlState, DwellsInTheMaterial) {
   Lines rests = lines_;
   rests.insert(rests.begin() + static_cast<std::ptrdiff_t>(first_move()) + 1, as_long_as(dwell, 1000.0));
   EXPECT_EQ(kinds_in(rests), "");
+}
+
+/// A chisel has no reason to turn, wherever the program stands.
+TEST_P(ControlState, TheSpindleNeverTurns) {
+  if (is_pmac()) return;  // a control's texts name no spindle here, so that M3 is an error
+  int tried = 0;
+  for (std::size_t i = 0; i <= lines_.size(); ++i) {
+    if (i < lines_.size() && !is_step(i)) continue;
+    const std::size_t at = i < lines_.size() ? i : i - 2;  // before the end
+    EXPECT_TRUE(holds(kinds_with(at, {"M3 S3000", "M5"}), "spindle")) << lines_[at];
+    ++tried;
+  }
+  EXPECT_GE(tried, 20);
+}
+
+TEST_P(ControlState, MistStaysOnWhileTheToolIsInTheMaterial) {
+  const std::string on = is_pmac() ? machine_.control.mist_on : "M7";
+  const std::string off = is_pmac() ? machine_.control.mist_off : "M9";
+  int tried = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    if (lines_[i] != dwell_line()) continue;
+    EXPECT_EQ(kinds_with(i, {off, dwell_line(), on}), is_pmac() ? "error" : "mist");
+    ++tried;
+  }
+  EXPECT_GE(tried, 3);
+  if (is_pmac()) return;
+  Lines flooded = lines_;
+  std::replace(flooded.begin(), flooded.end(), std::string("M7"), std::string("M8"));
+  EXPECT_EQ(kinds_in(flooded), "mist");
+}
+
+TEST_P(ControlState, CutsAreNotTooSlow) {
+  const std::string retract = fmt::format(" F{:.3f}", job_.process.retract_feed_mm_per_min);
+  int tried = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const std::size_t feed = lines_[i].find(" F");
+    if (!is_feed(lines_[i]) || feed == std::string::npos || lines_[i].substr(feed) == retract) continue;
+    Lines spoilt = lines_;
+    spoilt[i] = lines_[i].substr(0, feed) + " F0.500";
+    EXPECT_EQ(kinds_in(spoilt), "feed_too_low") << lines_[i];
+    ++tried;
+  }
+  EXPECT_GE(tried, 3);
+}
+
+/// Axes that turn or come from anywhere have limits too.
+TEST_P(ControlState, FeedsOfEveryMove) {
+  int tried = 0;
+  for (std::size_t i = first_move(); i < lines_.size(); ++i) {
+    if (!lines_[i].starts_with(is_pmac() ? "rapid " : "G0 ")) continue;
+    Lines spoilt = lines_;
+    spoilt[i] = (is_pmac() ? "linear " : "G1 ") + lines_[i].substr(lines_[i].find(' ') + 1);
+    // Only lines before the first feed have none.
+    if (i == first_move()) {
+      EXPECT_TRUE(holds(kinds_in(spoilt), "zero_feed")) << spoilt[i];
+    }
+    spoilt[i] += " F999999.";
+    const std::string kinds = kinds_in(spoilt);
+    EXPECT_TRUE(holds(kinds, "feed_too_high") || kinds == "error") << spoilt[i] << ": " << kinds;
+    ++tried;
+  }
+  EXPECT_GE(tried, 10);
+}
+
+/// The tool is to stand by `rotary_clearance_mm` above all that the blank comes up to.
+TEST_P(ControlState, TurnsKeepTheirClearance) {
+  Job asks_more = job_;
+  asks_more.process.rotary_clearance_mm *= 2.0;
+  std::string text;
+  for (const std::string& line : lines_) text += line + "\n";
+  const NcProgram program = parse_nc(text, "p", GetParam(), control_texts());
+  int found = 0;
+  for (const Finding& f : verify_programs(asks_more, machine_, {program}, {}, {}).findings) {
+    EXPECT_EQ(f.kind, "turn_too_low");
+    ++found;
+  }
+  EXPECT_GE(found, 1);
+}
+
+/// What an edge's tilt leaves at the root is that of the plunge that leaves it.
+TEST_P(ControlState, RootsAreThoseOfTheirPlunge) {
+  const std::string feed = fmt::format(" F{:.3f}", job_.process.finishing_feed_mm_per_min);
+  int tried = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const std::size_t z = lines_[i].find(" Z") + 2;
+    const std::size_t at = lines_[i].find(feed);
+    if (!is_feed(lines_[i]) || at == std::string::npos) continue;
+    Lines spoilt = lines_;
+    const int decimals = GetParam() == NcDialect::fanuc ? 4 : 6;
+    const double by_mm = GetParam() == NcDialect::fanuc ? 1e-4 : 2e-5;
+    const double end = std::stod(lines_[i].substr(z, at - z)) + by_mm;
+    spoilt[i] = fmt::format("{}{:.{}f}{}", lines_[i].substr(0, z), end, decimals, lines_[i].substr(at));
+    EXPECT_TRUE(holds(kinds_in(spoilt), "root_residual")) << spoilt[i] << ": " << kinds_in(spoilt);
+    ++tried;
+  }
+  EXPECT_EQ(tried, 2);
+}
+
+TEST_P(ControlState, WhatControlsRefuse) {
+  if (GetParam() == NcDialect::rs274ngc) {
+    EXPECT_EQ(kinds_with(first_move(), {"(" + std::string(251, '-') + ")"}), "error") << "a line that is too long";
+  }
+  if (GetParam() != NcDialect::fanuc) return;
+  EXPECT_EQ(kinds_with(1, {"G90"}), "error") << "before the number of the program";
+  machine_.control.has_rotation = false;
+  EXPECT_EQ(kinds_in(lines_), "setup");
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, ControlState,

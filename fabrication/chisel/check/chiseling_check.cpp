@@ -61,28 +61,29 @@ void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
   const double chip_mm = state.left_mm[cut.facet] - tip_mm;
   if (std::abs(chip_mm) < kSameTipMm) find("cut_twice", cut.place, cut.element, "this cut has been made before");
   for (std::size_t g = 0; g < 3; ++g) {
-    if (g == cut.facet) continue;
     const double short_mm = cut.tip_mm[g] - tip_mm;
     if (short_mm > workpiece_.tolerance_mm)
       find("chip_not_separated", cut.place, cut.element,
            fmt::format("the tip stops {} um short of its layer's apex: the chip hangs on", fixed(1e3 * short_mm, 3)),
            1e3 * short_mm, 1e3 * workpiece_.tolerance_mm);
-    const double hangs_mm = state.left_mm[g] - state.left_mm[cut.facet];
-    if (hangs_mm > workpiece_.tolerance_mm)
-      find("chip_not_separated", cut.place, cut.element,
-           fmt::format("facet {} was not cut as deep as facet {} before the next layer: its chip hangs on", g + 1,
-                       cut.facet + 1),
-           1e3 * hangs_mm, 1e3 * workpiece_.tolerance_mm);
   }
+  const auto [least, most] = std::minmax_element(state.left_mm.begin(), state.left_mm.end());
+  const double hangs_mm = *most - *least;
+  const bool begins_layer = tip_mm < *least - workpiece_.tolerance_mm;
+  if (begins_layer && hangs_mm > workpiece_.tolerance_mm)
+    find("chip_not_separated", cut.place, cut.element,
+         fmt::format("facet {} was not cut as deep as the others before the next layer: its chip hangs on",
+                     most - state.left_mm.begin() + 1),
+         1e3 * hangs_mm, 1e3 * workpiece_.tolerance_mm);
 }
 
 void ChiselingCheck::dwell(double seconds) {
-  if (open_ && !open_->went_up && is_long_enough(seconds)) open_->has_dwell = true;
+  if (open_ && !open_->went_up) open_->rest_s += seconds;
 }
 
 void ChiselingCheck::close() {
   if (!open_) return;
-  if (!open_->has_dwell && process_.dwell_s > 0.0)
+  if (!is_long_enough(open_->rest_s))
     find("missing_dwell", open_->place, open_->element,
          fmt::format("the cut turns at the apex without its dwell of {} s", shortest(process_.dwell_s)), 0,
          process_.dwell_s);

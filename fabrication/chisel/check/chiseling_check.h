@@ -28,7 +28,7 @@ class ChiselingCheck : public CutCheck {
     std::size_t facet = 0;
     std::array<double, 3> tip_mm{};  ///< heights of the tip over the facets
     NcPlace place;
-    bool has_dwell = false;
+    double rest_s = 0.0;  ///< at the apex
     bool went_up = false;
   };
   /// What stands on the facets of an element.

@@ -52,9 +52,12 @@ class CutCheck {
             double limit = 0.0) {
     findings_.add(std::move(kind), place.line, std::move(message), value, limit, static_cast<std::int64_t>(element));
   }
-  /// That a cut has a feed, and none above that of its stage, which what it sweeps tells.
+  /// That a cut runs along a facet, and at no feed above that of its stage, which what it sweeps tells.
   void check_feed(const CutMove& cut) {
     const auto along = facet_cut(workpiece_.grooves[cut.element], wedge_, cut.sweep, cut.back);
+    if (!along)
+      find("off_facet", cut.motion.place, cut.element,
+           "the edge cuts along none of the facets: the axes stand in no pose of this element");
     const bool finishes = along && is_finishing(workpiece_, *along);
     control_.feed(cut.motion, finishes ? process_.finishing_feed_mm_per_min : process_.roughing_feed_mm_per_min);
   }

@@ -12,28 +12,32 @@ namespace {
 
 using geometry::Vec3;
 
-/// Z alone moves a plunge or a retract; this much of a move along Z makes it one.
-constexpr double kMostlyAlong = 0.9;
+/// Z alone moves a plunge; this much of a move down makes it one.
+constexpr double kMostlyDown = 0.9;
+/// The plunged facet stands upright, and a plough runs along the other one. A retract goes up between both, or higher:
+/// nearer to the upright one than to two thirds of the way to the other.
+bool retracts(const Groove& groove, const Vec3& travel) {
+  const double apex_rad = std::acos(-groove.facets[0].normal.dot(groove.facets[1].normal));
+  return travel.z() >= travel.norm() * std::cos(apex_rad * 2.0 / 3.0);
+}
 
 }  // namespace
 
 void PlungeCheck::move(const CutMove& cut) {
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
-  const double z_share = travel.z() / travel.norm();
+  if (retracts(workpiece_.grooves[cut.element], travel)) return close();
   // Only a retract may move the tool towards the facet that its clearance face looks at.
-  if (z_share < 0.5 && travel.y() > kMostSlip * travel.norm()) find_clearance_face(cut);
-  if (z_share < -kMostlyAlong) return plunge(cut);
-  if (z_share < 0.5) return plough(cut);
-  if (cut.motion.feed_mm_per_min <= 0.0) control_.feed(cut.motion, 0.0);
-  close();
+  if (travel.y() > kMostSlip * travel.norm()) find_clearance_face(cut);
+  if (travel.z() < -kMostlyDown * travel.norm()) return plunge(cut);
+  plough(cut);
 }
 
 void PlungeCheck::dwell(double seconds) {
-  if (open_ && is_long_enough(seconds)) open_->has_dwell = true;
+  if (open_) open_->rest_s += seconds;
 }
 
 void PlungeCheck::check_dwell() {
-  if (!open_->has_dwell && process_.dwell_s > 0.0)
+  if (!is_long_enough(open_->rest_s))
     find("missing_dwell", open_->place, open_->element,
          fmt::format("the plunge ends without its dwell of {} s", shortest(process_.dwell_s)), 0, process_.dwell_s);
 }

@@ -38,7 +38,7 @@ class PlungeCheck : public CutCheck {
     std::array<double, 2> tip_mm{};
     double chip_mm = 0.0;
     NcPlace place;
-    bool has_dwell = false;
+    double rest_s = 0.0;  ///< since it ended
   };
 
   void plunge(const CutMove& cut);

@@ -42,7 +42,8 @@ Prediction predict(const Machine& machine, const Groove& groove, double tool_wid
     near.a_deg = machine.a.sign.value * Angle::from_rad(std::asin(normal.z())).deg();
     prediction.poses[f] = solve_plunge_pose(machine, normal, groove.axis.cross(normal).normalized(), near);
     const double tilt = std::abs(std::tan(prediction.poses[f].root_tilt.rad()));
-    prediction.root_mm = std::max(prediction.root_mm, tool_width_mm * tilt);
+    prediction.root_of_mm[f] = tool_width_mm * tilt;
+    prediction.root_mm = std::max(prediction.root_mm, prediction.root_of_mm[f]);
     prediction.wall_mm = std::max(prediction.wall_mm, (groove.facet_length_mm + stock_mm) * tilt);
     const RigidMotion motion = machine_from_workpiece(machine, prediction.poses[f].pose);
     // The edge stays level while it ploughs the other facet, whose normal has a part along it.

@@ -18,8 +18,9 @@ struct Prediction {
   /// the other facet; signed along the root direction of the groove.
   std::array<double, 2> plough_slope{};
   /// Of prisms. A V follows the dihedral edges themselves and its planes hold the facets: it leaves nothing.
-  double root_mm = 0.0;  ///< by which the ends of the tilted edge stay up a facet at the root at most
-  double wall_mm = 0.0;  ///< by which the tilted edge's ends cut into the walls at most
+  double root_mm = 0.0;                ///< by which the ends of the tilted edge stay up a facet at the root at most
+  std::array<double, 2> root_of_mm{};  ///< the same, up each facet
+  double wall_mm = 0.0;                ///< by which the tilted edge's ends cut into the walls at most
 };
 
 /// \throw InputError if the machine cannot plunge a facet

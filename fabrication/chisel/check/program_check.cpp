@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/number_format.h"
 #include "fabrication/chisel/check/chiseling_check.h"
@@ -27,6 +28,8 @@ Vec3 interpolated(const Vec3& a, const Vec3& b, double a_height, double b_height
 ControlRule control_rule_of(const Job& job, const Machine& machine) {
   ControlRule rule;
   rule.needs_mist = job.process.mist;
+  // A tool that rests in its cut longer than it must marks it, and rubs once the mist has gone.
+  rule.most_rest_s = 2.0 * job.process.dwell_s + 0.1;
   rule.axes = static_cast<std::uint8_t>(kLinearBits | rotary_bits(machine));
   rule.safe_z_mm = machine.first_z_mm();
   return rule;
@@ -81,14 +84,12 @@ std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
 
 void ProgramCheck::dwell(double seconds, const NcPlace& place, const AxisPositions&) {
   time_.dwell_s += seconds;
-  // A tool that rests in its cut longer than it must marks it, and rubs once the mist has gone.
-  const double most_s = 2.0 * workpiece_.job->process.dwell_s + 0.1;
-  if (is_in_blank_ && seconds > most_s * (1.0 + 1e-9))
-    findings_.add("dwell_too_long", place.line,
-                  fmt::format("the tool rests in the material for {} s, at most {} are allowed", shortest(seconds),
-                              shortest(most_s)),
-                  seconds, most_s);
+  if (is_in_blank_) control_.rest(seconds, place);
   cuts_->dwell(seconds);
+}
+
+void ProgramCheck::stop(const NcPlace& place) {
+  if (is_in_blank_) control_.rest(std::numeric_limits<double>::infinity(), place);
 }
 
 void ProgramCheck::finish() {
@@ -98,6 +99,7 @@ void ProgramCheck::finish() {
 void ProgramCheck::end(const NcEnd& end) {
   cuts_->close();
   runs_.end();
+  is_in_blank_ = false;
   if (!end.is_complete) findings_.add("truncated", end.line, "the program stops in the middle: " + end.reason);
 }
 
@@ -131,9 +133,7 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   way_.fixtures(motion, standing_[sweep.pose]);
   if (sweep.is_rapid) way_.rapid(motion, back, element);
   if (corners_.empty()) {
-    cuts_->close();
-    if (!sweep.is_rapid && motion.feed_mm_per_min <= 0.0) control_.feed(motion, 0.0);
-    return;
+    return cuts_->close();
   }
   control_.cut(settings, motion.place);
   way_.holder(sweep, back);

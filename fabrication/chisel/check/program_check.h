@@ -32,6 +32,10 @@ class ProgramCheck : public NcSink {
   void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace& place, const AxisPositions& position) override;
+  void state(const NcSettings& settings, const NcPlace& place) override {
+    control_.state(settings, place, is_in_blank_);
+  }
+  void stop(const NcPlace& place) override;
   void end(const NcEnd& end);
   /// After the last program.
   void finish();

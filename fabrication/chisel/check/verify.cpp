@@ -133,7 +133,7 @@ class Judge {
 
   void facet(const FacetFigures& facet, std::size_t f, std::int64_t number, const std::string& program) {
     const double tolerance_nm = workpiece_.tolerance_mm * kNmPerMm;
-    const double root_nm = workpiece_.prediction(static_cast<std::size_t>(number)).root_mm * kNmPerMm;
+    const double root_nm = root_limit_mm(workpiece_.prediction(static_cast<std::size_t>(number)), f) * kNmPerMm;
     result_.facet_distance_nm_max = std::max(result_.facet_distance_nm_max, facet.distance_nm);
     result_.root_residual_nm_max = std::max(result_.root_residual_nm_max, facet.root.nm);
     const auto add = [&](const char* kind, const FacetDeviation& deviation, const char* what, double limit) {
@@ -246,6 +246,7 @@ std::string_view Verification::verdict() const {
 Verification verify_programs(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                              const VerifyOptions& options, const std::vector<Machine>& others,
                              const Cancellation* cancellation) {
+  check_on_machine(job, machine);
   const Workpiece3d workpiece = workpiece_of(job, machine, options.tolerance_nm);
   FindingList findings;
   ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));

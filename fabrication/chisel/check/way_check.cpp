@@ -13,7 +13,7 @@ namespace {
 
 using geometry::Vec3;
 
-/// Share of the process's clearance that rapid moves must keep from the blank's face.
+/// Share of the process's clearances that rapid moves and turns must keep.
 constexpr double kClearanceShare = 0.9;
 
 /// How much of the diamond counts as a body: more than the deepest groove; what holds it, the machine file says.
@@ -60,17 +60,18 @@ void WayCheck::turn(const NcMotion& motion) {
          contacts(tool_bodies_, standing_bodies(machine_, pose), std::span<const Vec3>(&stands, 1)))
       report_contact(contact, motion.place);
   }
-  if (machine_.tilt == Tilt::table && tip.z() < highest_mm)
+  const double clearance_mm = kClearanceShare * job_.process.rotary_clearance_mm;
+  if (machine_.tilt == Tilt::table && tip.z() < highest_mm + clearance_mm)
     findings_.add("turn_too_low", motion.place.line,
-                  fmt::format("the turning blank comes up to Z {} mm while the tool stands at Z {} mm",
-                              fixed(highest_mm, 3), fixed(tip.z(), 3)),
-                  tip.z(), highest_mm);
+                  fmt::format("the turning blank comes up to Z {} mm while the tool stands at Z {} mm, must keep {} mm",
+                              fixed(highest_mm, 3), fixed(tip.z(), 3), fixed(clearance_mm, 3)),
+                  tip.z(), highest_mm + clearance_mm);
   // The blank stays level, and a head that turns swings the tool about B: the tip must stay above the blank's face.
-  if (machine_.tilt == Tilt::head && lowest_tip_mm < 0.0)
-    findings_.add(
-        "turn_too_low", motion.place.line,
-        fmt::format("the tip comes to {} mm over the blank's face while the axes turn", fixed(lowest_tip_mm, 3)),
-        lowest_tip_mm, 0.0);
+  if (machine_.tilt == Tilt::head && lowest_tip_mm < clearance_mm)
+    findings_.add("turn_too_low", motion.place.line,
+                  fmt::format("the tip comes to {} mm over the blank's face while the axes turn, must keep {} mm",
+                              fixed(lowest_tip_mm, 3), fixed(clearance_mm, 3)),
+                  lowest_tip_mm, clearance_mm);
 }
 
 /// Where a rotary axis comes from is not known: only the machine's safe Z is clear of all ways.

@@ -55,6 +55,7 @@ constexpr double kWordsMm = 2e-6;  // of positions that words of a nanometre giv
 ControlRule rule_of(const PlaningLathe& lathe, NcDialect dialect) {
   ControlRule rule;
   rule.axes = kAxesXz;
+  rule.most_rest_s = 0.0;
   rule.safe_z_mm = lathe.clear_mm - kWordsMm;
   const bool is_clockwise = lathe.spindle_direction == SpindleDirection::clockwise;
   rule.spindle.rpm = static_cast<double>(lathe.spindle_rpm);
@@ -158,6 +159,15 @@ void LatheCheck::end_run() {
       add("chip_too_thick", standing_.who(i), "a pass takes more than the depth of cut", taken, limit);
   }
   before_run_ = heights;
+}
+
+void LatheCheck::dwell(double seconds, const NcPlace& place, const AxisPositions&) {
+  result_.time_s.back() += seconds;
+  if (!run_.empty()) control_->rest(seconds, place);
+}
+
+void LatheCheck::stop(const NcPlace& place) {
+  if (!run_.empty()) control_->rest(std::numeric_limits<double>::infinity(), place);
 }
 
 void LatheCheck::end(const NcEnd& end) {

@@ -23,7 +23,11 @@ class LatheCheck : public NcSink {
   /// A program begins.
   void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
-  void dwell(double seconds, const NcPlace&, const AxisPositions&) override { result_.time_s.back() += seconds; }
+  void dwell(double seconds, const NcPlace& place, const AxisPositions&) override;
+  void state(const NcSettings& settings, const NcPlace& place) override {
+    control_->state(settings, place, !run_.empty());
+  }
+  void stop(const NcPlace& place) override;
   void end(const NcEnd& end);
   /// What all passes left.
   void measure();

@@ -20,6 +20,7 @@ class MillCheck : public NcSink {
   void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace&, const AxisPositions&) override { result_.time_s.back() += seconds; }
+  void state(const NcSettings& settings, const NcPlace& place) override { control_.state(settings, place, false); }
   void end(const NcEnd& end);
   /// What all strokes left.
   void measure();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/angle.h"
@@ -24,6 +25,7 @@ constexpr double kWordMm = 1e-6;
 ControlRule rule_of_c_axis() {
   ControlRule rule;
   rule.axes = kAxesXyzc;
+  rule.most_rest_s = 0.0;
   return rule;
 }
 
@@ -39,7 +41,7 @@ class CutReader : public NcSink {
     cuts_.end_mm.push_back(0.0);
     findings_.begin(program.file);
     control_.begin(program.dialect);
-    has_soft_start_ = has_free_path_ = false;
+    has_soft_start_ = has_free_path_ = is_down_ = false;
     CutRecorder recorder;
     recorder_ = &recorder;
     const NcEnd end = run_nc(program, *this);
@@ -59,6 +61,7 @@ class CutReader : public NcSink {
     follow_travel(motion);
     cuts_.end_mm.back() = motion.to.z_mm;
     const bool moves_z_alone = (motion.moved & kXyc) == 0;
+    is_down_ = motion.move == NcMove::linear;
     if (motion.move == NcMove::rapid) {
       is_cutting_ = false;
       const bool is_z_known = (motion.known & 4U) != 0;
@@ -71,7 +74,20 @@ class CutReader : public NcSink {
     recorder_->motion(motion, settings);
   }
 
-  void dwell(double, const NcPlace&, const AxisPositions&) override {}
+  void dwell(double seconds, const NcPlace& place, const AxisPositions&) override {
+    if (is_down_) control_.rest(seconds, place);
+  }
+
+  void state(const NcSettings& settings, const NcPlace& place) override {
+    // Paths run on without stopping, which is asked of their moves.
+    NcSettings asked = settings;
+    asked.exact_stop = true;
+    control_.state(asked, place, is_down_);
+  }
+
+  void stop(const NcPlace& place) override {
+    if (is_down_) control_.rest(std::numeric_limits<double>::infinity(), place);
+  }
 
   TurningCuts take() { return std::move(cuts_); }
 
@@ -155,6 +171,7 @@ class CutReader : public NcSink {
   bool is_placed_[3] = {false, false, false};
   Excess excess_[3];
   bool is_cutting_ = false;
+  bool is_down_ = false;  ///< since the last rapid move the tool has been fed
   bool has_soft_start_ = false;
   bool has_free_path_ = false;
 };

@@ -299,8 +299,8 @@ TEST(TurningCheck, LimitsOfTheMachineAreKeptOrFound) {
   EXPECT_TRUE(found([](TurnedPart& p) { p.machine.c_acceleration_deg_per_s2 = 300.0; }, "axis_acceleration"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.machine.spindle_rpm = 29.0; }, "axis_speed"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.path.spindle_rpm = 29.0; }, "feed_too_high"));
-  EXPECT_TRUE(found([](TurnedPart& p) { p.machine.blocks_per_s = 9.9; }, "block_rate"));
-  EXPECT_FALSE(found([](TurnedPart& p) { p.machine.blocks_per_s = 10.0; }, "block_rate"));
+  EXPECT_TRUE(found([](TurnedPart& p) { p.machine.blocks_per_s = 10.9; }, "block_rate"));
+  EXPECT_FALSE(found([](TurnedPart& p) { p.machine.blocks_per_s = 11.0; }, "block_rate"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.machine.axes[0].high_mm = 0.05; }, "axis_limit"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.machine.axes[2].high_mm = 0.5; }, "axis_limit"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.machine.axes[2].speed_mm_per_s = 0.01; }, "axis_speed"));
