@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fabrication/job/on_machine.h"
+#include "fabrication/chisel/on_machine.h"
 
 namespace retrace::fabrication {
 namespace {

@@ -20,7 +20,7 @@
 #include "fabrication/chisel/check/simulation/nose.h"
 #include "fabrication/chisel/check/visits.h"
 #include "fabrication/chisel/check/workpiece.h"
-#include "fabrication/job/on_machine.h"
+#include "fabrication/chisel/on_machine.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
 

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/chisel/on_machine.h"
 #include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/chisel/plan/clear_way.h"
 #include "fabrication/chisel/plan/move_time.h"
@@ -19,7 +20,6 @@
 #include "fabrication/chisel/plan/process_facts.h"
 #include "fabrication/chisel/plan/routines.h"
 #include "fabrication/chisel/plan/stages.h"
-#include "fabrication/job/on_machine.h"
 #include "fabrication/job/substrate_cells.h"
 #include "geometry/elements/element_cells.h"
 

@@ -15,7 +15,7 @@
 #include "fabrication/chisel/check/program_check.h"
 #include "fabrication/chisel/check/simulation/dexel.h"
 #include "fabrication/chisel/check/verify.h"
-#include "fabrication/job/on_machine.h"
+#include "fabrication/chisel/on_machine.h"
 
 namespace retrace::fabrication {
 namespace {

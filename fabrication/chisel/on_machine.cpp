@@ -1,4 +1,4 @@
-#include "fabrication/job/on_machine.h"
+#include "fabrication/chisel/on_machine.h"
 
 #include <fmt/format.h>
 
