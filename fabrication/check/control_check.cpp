@@ -7,7 +7,6 @@
 #include <span>
 
 #include "core/number_format.h"
-#include "fabrication/read/nc_needs.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -16,6 +15,9 @@ constexpr std::uint8_t kZBit = 0b100;
 constexpr std::uint8_t kLinearBits = 0b111;
 /// Rounding of words.
 constexpr double kSlackMm = 1e-9;
+
+constexpr NcNeed kRotationNeed = {nc_said::kRotationOff, "G69", "that coordinates are not turned"};
+constexpr NcNeed kMirrorNeed = {nc_said::kMirrorOff, "G50.1", "that coordinates are not mirrored"};
 
 bool has_bit(unsigned bits, char axis) {
   return (bits >> kNcAxisLetters.find(axis) & 1U) != 0;
@@ -29,7 +31,7 @@ void ControlCheck::begin(NcDialect dialect) {
   wrong_.clear();
 }
 
-bool ControlCheck::turns_wrong(const char* kind, bool holds) {
+bool ControlCheck::turns_wrong(const std::string& kind, bool holds) {
   if (!holds) return wrong_.insert(kind).second;
   wrong_.erase(kind);
   return false;
@@ -57,16 +59,8 @@ void ControlCheck::first_move(const NcSettings& settings, const NcMotion& motion
                     fmt::format("before the first move the program does not say {}: {}", need.words, need.meaning));
   };
   for (const NcNeed& need : needs_of(dialect_)) ask(need);
-  // Codes of options that a control lacks are alarms.
-  const auto ask_option = [&](bool is_there, const NcNeed& need) {
-    if (dialect_ != NcDialect::fanuc) return;
-    if (is_there) return ask(need);
-    if ((settings.said & need.said) != 0)
-      findings_.add("setup", motion.place.line,
-                    fmt::format("the program says {}, an option that the machine's control lacks", need.words));
-  };
-  ask_option(control_.has_rotation, {nc_said::kRotationOff, "G69", "that coordinates are not turned"});
-  ask_option(control_.has_mirror, {nc_said::kMirrorOff, "G50.1", "that coordinates are not mirrored"});
+  if (dialect_ == NcDialect::fanuc && control_.has_rotation) ask(kRotationNeed);
+  if (dialect_ == NcDialect::fanuc && control_.has_mirror) ask(kMirrorNeed);
   const double safe_mm = rule_.safe_z_mm;
   if (motion.moved != kZBit || motion.to.z_mm < safe_mm - kSlackMm)
     findings_.add("first_move", motion.place.line,
@@ -87,9 +81,20 @@ void ControlCheck::cut(const NcSettings& settings, const NcPlace& place) {
 }
 
 void ControlCheck::state(const NcSettings& settings, const NcPlace& place, bool is_in_material) {
+  refuse_option(settings, place, control_.has_rotation, kRotationNeed);
+  refuse_option(settings, place, control_.has_mirror, kMirrorNeed);
   if (is_in_material) return cut(settings, place);
   // What must stand still while it cuts has no reason to turn before or after.
   if (settings.spindle && rule_.spindle.turns == NcSpindle::stopped) spindle(settings, place);
+}
+
+/// Codes of options that a control lacks are alarms.
+void ControlCheck::refuse_option(const NcSettings& settings, const NcPlace& place, bool is_there,
+                                 const NcNeed& option) {
+  const bool holds = dialect_ != NcDialect::fanuc || is_there || (settings.said & option.said) == 0;
+  if (turns_wrong(std::string(option.words), holds))
+    findings_.add("setup", place.line,
+                  fmt::format("the program says {}, an option that the machine's control lacks", option.words));
 }
 
 void ControlCheck::rest(double seconds, const NcPlace& place) {

@@ -11,6 +11,7 @@
 #include "fabrication/check/findings.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_motion.h"
+#include "fabrication/read/nc_needs.h"
 #include "fabrication/read/nc_program.h"
 
 namespace retrace::fabrication {
@@ -64,9 +65,10 @@ class ControlCheck {
   bool is_within_turn(const LimitExcess& excess) const;
   void axis_speeds(const Machine& machine, const NcMotion& motion);
   void has_feed(const NcMotion& motion);
+  void refuse_option(const NcSettings& settings, const NcPlace& place, bool is_there, const NcNeed& option);
   void spindle(const NcSettings& settings, const NcPlace& place);
   /// A modal setting: a finding where it becomes wrong. \return whether it has just become so
-  bool turns_wrong(const char* kind, bool holds);
+  bool turns_wrong(const std::string& kind, bool holds);
 
   FindingList& findings_;
   ControlRule rule_;

@@ -119,7 +119,7 @@ class Runner {
     take_over(settings_.spindle, block.spindle);
     take_over(settings_.spindle_rpm, block.spindle_rpm);
     take_over(settings_.mist_on, block.mist_on);
-    if (block.spindle || block.mist_on || block.exact_stop) sink_.state(settings_, place_of(block));
+    if (block.spindle || block.mist_on || block.exact_stop || block.says != 0) sink_.state(settings_, place_of(block));
     if (block.move) move_ = block.move;
     take_over(inverse_time_, block.inverse_time);
     // Under inverse time F belongs to its line alone.

@@ -50,7 +50,7 @@ class NcSink {
   virtual ~NcSink() = default;
   virtual void motion(const NcMotion& motion, const NcSettings& settings) = 0;
   virtual void dwell(double seconds, const NcPlace& place, const AxisPositions& position) = 0;
-  /// A block says something of spindle, mist or exact stops, before it moves.
+  /// A block says something of spindle, mist, exact stops or by bits of nc_said, before it moves.
   virtual void state(const NcSettings&, const NcPlace&) {}
   /// The program stops for the operator, behind what its block moves.
   virtual void stop(const NcPlace&) {}

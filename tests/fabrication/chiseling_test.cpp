@@ -364,6 +364,31 @@ TEST_F(ChiselingFaults, NoneWithoutAFault) {
   EXPECT_EQ(kinds(text_), "");
 }
 
+/// Of every layer, every element and every facet.
+TEST_F(ChiselingFaults, EveryCallIsNeeded) {
+  int tried = 0;
+  for (std::size_t at = text_.find(" call"); at != std::string::npos; at = text_.find(" call", at + 1), ++tried)
+    EXPECT_NE(kinds(without_line(text_, " call", at)), "") << text_.substr(at - 5, 10);
+  EXPECT_GE(tried, 30);
+}
+
+/// The smallest layers lie over the apex: a cut turned by what brings it over no facet takes a bite of them too.
+TEST_F(ChiselingFaults, EveryPoseIsNeeded) {
+  int tried = 0;
+  for (std::size_t at = text_.find("\nG0 B"); at != std::string::npos; at = text_.find("\nG0 B", at + 1)) {
+    const std::size_t c = text_.find(" C", at) + 2;
+    const std::size_t end = text_.find('\n', c);
+    const double c_deg = std::stod(text_.substr(c, end - c));
+    if (c_deg == 0.0) continue;  // home, at the end
+    for (const double by_deg : {-60.0, 30.0, 60.0, 180.0}) {
+      const std::string spoilt = text_.substr(0, c) + fmt::format("{:.7f}", c_deg + by_deg) + text_.substr(end);
+      EXPECT_NE(kinds(spoilt), "") << text_.substr(at + 1, end - at - 1) << " + " << by_deg;
+      ++tried;
+    }
+  }
+  EXPECT_GE(tried, 12);
+}
+
 TEST_F(ChiselingFaults, WrongSignOfC) {
   EXPECT_NE(kinds(changed(text_, "G0 B", 'C', [](double c) { return -c; })).find("gouge"), std::string::npos);
 }
