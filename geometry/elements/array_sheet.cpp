@@ -5,9 +5,9 @@
 
 #include "core/error.h"
 #include "geometry/elements/facet_planes.h"
+#include "geometry/elements/plane_polygon.h"
 #include "geometry/elements/whole_elements.h"
 #include "geometry/part/substrate_part.h"
-#include "geometry/plane_polygon.h"
 
 namespace retrace::geometry {
 namespace {

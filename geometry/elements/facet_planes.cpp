@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "geometry/plane_polygon.h"
+#include "geometry/elements/plane_polygon.h"
 
 namespace retrace::geometry {
 

@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "geometry/elements/edges.h"
-#include "geometry/plane_polygon.h"
+#include "geometry/elements/plane_polygon.h"
 
 namespace retrace::geometry {
 namespace {
