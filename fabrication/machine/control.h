@@ -33,6 +33,11 @@ struct Control {
   bool rapids_are_straight = false;  ///< axes arrive together; otherwise each goes at its own speed
 };
 
+/// A line of a Power PMAC's program that an integrator has given a meaning, written and read letter by letter.
+/// \return what is wrong with it: not 1 to 200 printable ASCII characters without // and blanks at its ends, or a
+/// statement that moves axes or belongs to the program's own frame; empty if nothing is
+std::string unfit_line(std::string_view text);
+
 /// Those of a Fanuc's increment system.
 Increments increments_of(IncrementSystem system);
 

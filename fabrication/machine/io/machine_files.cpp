@@ -265,14 +265,16 @@ constexpr Table rotary(std::string_view name, std::string_view meaning, Child ch
   return {.name = name, .meaning = meaning, .tables = kRotaryTables, .child = child, .presence = presence};
 }
 
-/// Lines of a Power PMAC's program are taken as they are, up to where a comment would begin.
 template <std::string Control::*line>
-std::string unfit_line(const Control& control) {
-  constexpr std::size_t most = 200;
+std::string unfit_text(const Control& control) {
   const std::string& text = control.*line;
-  const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
-  if (text.size() <= most && is_plain && text.find("//") == std::string::npos) return {};
-  return "must be one line of up to 200 printable ASCII characters without //";
+  if (text.empty()) return {};
+  if (const std::string fault = unfit_line(text); !fault.empty()) return fault + ", got " + in_quotes(text);
+  const std::string* const lines[] = {&control.mist_on, &control.mist_off, &control.optional_stop};
+  const bool is_other = std::any_of(std::begin(lines), std::end(lines),
+                                    [&](const auto* other) { return other != &text && *other == text; });
+  return is_other ? "must be another line than those of mist_on, mist_off and optional_stop, got " + in_quotes(text)
+                  : "";
 }
 std::string unknown_modulo_axes(const Control& control) {
   if (control.modulo_axes.find_first_not_of("ABC") == std::string::npos) return {};
@@ -306,10 +308,14 @@ constexpr std::string_view kMistOffKeys[] = {"mist_off"};
 constexpr std::string_view kStopKeys[] = {"optional_stop"};
 constexpr std::string_view kModuloKeys[] = {"modulo_axes"};
 constexpr Rule kControlRules[] = {
-    Check{kMistOnKeys, "A line of up to 200 printable ASCII characters.", check_by<unfit_line<&Control::mist_on>>},
-    Check{kMistOffKeys, "Likewise.", check_by<unfit_line<&Control::mist_off>>},
-    Check{kStopKeys, "Likewise.", check_by<unfit_line<&Control::optional_stop>>},
-    Check{kModuloKeys, "Letters of rotary axes.", check_by<unknown_modulo_axes>}};
+    Check{kMistOnKeys,
+          "`mist_on` is a line of 1 to 200 printable ASCII characters that moves no axis, does not wait and does not "
+          "lead "
+          "out of the program.",
+          check_by<unfit_text<&Control::mist_on>>},
+    Check{kMistOffKeys, "So is `mist_off`, another one.", check_by<unfit_text<&Control::mist_off>>},
+    Check{kStopKeys, "So is `optional_stop`, another one.", check_by<unfit_text<&Control::optional_stop>>},
+    Check{kModuloKeys, "`modulo_axes` holds letters of rotary axes.", check_by<unknown_modulo_axes>}};
 
 /// Not written where it is the limit of Z.
 constexpr Child kSafeZ = {

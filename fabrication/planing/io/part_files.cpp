@@ -10,6 +10,7 @@
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
 #include "core/schema/reader.h"
+#include "fabrication/machine/control.h"
 #include "fabrication/planing/plan/nose_path.h"
 
 namespace retrace::fabrication {
@@ -19,7 +20,6 @@ using namespace schema;
 
 constexpr Kind kLength = Number{{.low = 0.1, .high = 1e4}};
 constexpr Kind kFeed = Number{{.low = 1.0, .high = 1e6}};
-constexpr std::size_t kLongestSpindleText = 200;
 /// Quanta are tried from the tolerance down, step by step of the grid, and places are counted in such steps.
 constexpr double kMostQuanta = 200.0;
 constexpr double kMostSteps = 1e6;
@@ -135,16 +135,10 @@ void check_clearance(const Document& file) {
               fmt::format("must be at least the least move of Z, {}, got {}", shortest(least_mm), shortest(clear_mm)));
 }
 
-/// Lines of a PMAC program that are written as they are. Whatever follows two slashes would be a comment.
 void check_spindle_texts(const Document& file) {
   for (const std::string_view key : {kStart, kStop}) {
-    const std::string text = file.text_if(key);
-    const bool is_printable = std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
-    if (file.has(key) && (text.empty() || text.size() > kLongestSpindleText || !is_printable || text.front() == ' ' ||
-                          text.back() == ' ' || text.find("//") != std::string::npos))
-      file.fail(key, fmt::format("must be one line of 1 to {} printable ASCII characters, without // and without "
-                                 "blanks at its ends, got {}",
-                                 kLongestSpindleText, in_quotes(text)));
+    const std::string fault = file.has(key) ? unfit_line(file.text(key)) : "";
+    if (!fault.empty()) file.fail(key, fault + ", got " + in_quotes(file.text(key)));
   }
   if (file.has(kStop) && file.text_if(kStart) == file.text(kStop))
     file.fail(kStop, "must not be spindle_start, got " + in_quotes(file.text(kStop)));
