@@ -249,18 +249,19 @@ std::span<const Dialect> dialects() {
 void check_words(const Program& program, std::string_view dialect) {
   const DialectWords& words = words_of(dialect);
   if (!words.has_own_texts) return;
-  const auto need = [&](const std::string& text, std::string_view key, std::string_view otherwise) {
+  const auto need = [&](const std::string& text, std::string_view what, std::string_view key,
+                        std::string_view otherwise) {
     if (text.empty())
       throw InputError({"", 0, "--dialect"},
-                       fmt::format("{} has no words of its own for it: the machine file must give "
+                       fmt::format("{} has no words of its own for {}: the machine file must give "
                                    "control.{}, or {}",
-                                   dialect, key, otherwise));
+                                   dialect, what, key, otherwise));
   };
-  if (program.needs_mist) need(program.control.mist_on, "mist_on", "the job say process.mist = false");
-  if (program.needs_mist) need(program.control.mist_off, "mist_off", "the job say process.mist = false");
+  if (program.needs_mist) need(program.control.mist_on, "mist", "mist_on", "the job say process.mist = false");
+  if (program.needs_mist) need(program.control.mist_off, "mist", "mist_off", "the job say process.mist = false");
   for (const Item& item : program.items)
     if (std::holds_alternative<OptionalStop>(item))
-      need(program.control.optional_stop, "optional_stop", "--stop-every be left out");
+      need(program.control.optional_stop, "an optional stop", "optional_stop", "--stop-every be left out");
 }
 
 std::string nc_text(const Program& program, std::string_view dialect) {

@@ -108,8 +108,8 @@ TEST(Fabricate, SplitsAndResumes) {
   const Json rest = retrace_json(folder, {"fabricate", "j.toml", "--phase", "finishing-2-facet-1+", "--from-element",
                                           "5", "--stop-every", "3", "-o", "r"});
   EXPECT_EQ(rest["stages"].size(), 2U);
-  EXPECT_EQ(rest["programs"], Json::array({"finishing-2-facet-1_and_after.ngc"}));
-  EXPECT_NE(folder.read("r/finishing-2-facet-1_and_after.ngc").find("M1\n"), std::string::npos);
+  EXPECT_EQ(rest["programs"], Json::array({"finishing-2-facet-1_and_after_from_element_5.ngc"}));
+  EXPECT_NE(folder.read("r/finishing-2-facet-1_and_after_from_element_5.ngc").find("M1\n"), std::string::npos);
 }
 
 TEST(Fabricate, TakesAMask) {

@@ -139,19 +139,20 @@ class ProgramMaker {
       for (const std::int32_t element : order) visit(stage, element);
     }
     end();
-    plan_.programs.size() == 1 ? void(plan_.programs.front().name = substrate_name()) : number_programs();
+    plan_.programs.size() == 1 ? void(plan_.programs.front().name = base_name()) : number_programs();
   }
 
  private:
-  std::string substrate_name() const {
-    if (options_.phase == "all") return "program";
-    if (!options_.phase.ends_with('+')) return options_.phase;
-    return options_.phase.substr(0, options_.phase.size() - 1) + "_and_after";
+  /// Of all programs, without their numbers. A restart has another name than what it goes on with.
+  std::string base_name() const {
+    std::string name = options_.phase == "all" ? "program" : options_.phase;
+    if (name.ends_with('+')) name.replace(name.size() - 1, 1, "_and_after");
+    return options_.from_element ? fmt::format("{}_from_element_{}", name, *options_.from_element) : name;
   }
 
   void number_programs() {
     for (std::size_t k = 0; k < plan_.programs.size(); ++k) {
-      plan_.programs[k].name = fmt::format("{}_{:03}", substrate_name(), k + 1);
+      plan_.programs[k].name = fmt::format("{}_{:03}", base_name(), k + 1);
       plan_.programs[k].header.insert(plan_.programs[k].header.begin(),
                                       fmt::format("Part {} of {}{}", k + 1, plan_.programs.size(),
                                                   k == 0 ? "" : ", to run when those before it have run"));
