@@ -25,10 +25,15 @@ bool has_bit(unsigned bits, char axis) {
 
 }  // namespace
 
-void ControlCheck::begin(NcDialect dialect) {
-  dialect_ = dialect;
+void ControlCheck::begin(const NcProgram& program) {
+  dialect_ = program.dialect;
   rested_s_ = 0.0;
   wrong_.clear();
+  if (program.coordinate_system != 0 && program.coordinate_system != control_.coordinate_system)
+    findings_.add("setup", 0,
+                  fmt::format("the program speaks of coordinate system {}, the machine's axes are those of {}",
+                              program.coordinate_system, control_.coordinate_system),
+                  program.coordinate_system, control_.coordinate_system);
 }
 
 bool ControlCheck::turns_wrong(const std::string& kind, bool holds) {
@@ -106,7 +111,7 @@ void ControlCheck::rest(double seconds, const NcPlace& place) {
   findings_.add("dwell_too_long", place.line,
                 is_stop ? "the program stops for the operator while the tool is in the material"
                         : fmt::format("the tool rests in the material for {} s, at most {} are allowed",
-                                      shortest(rested_s_), shortest(rule_.most_rest_s)),
+                                      fixed(rested_s_, 3), fixed(rule_.most_rest_s, 3)),
                 is_stop ? 0.0 : rested_s_, rule_.most_rest_s);
 }
 
@@ -143,6 +148,7 @@ void ControlCheck::axes(const Machine& machine, const NcMotion& motion) {
   const char missing = machine.tilt == Tilt::table ? 'B' : 'A';
   if (has_bit(motion.moved, missing))
     findings_.add("axis_unknown", motion.place.line, fmt::format("machine {} has no axis {}", machine.name, missing));
+  words_of_axes(motion);
   for (const LimitExcess& excess : limit_excesses(machine, motion.to)) {
     if (!has_bit(motion.known | motion.moved, excess.axis) || is_within_turn(excess)) continue;
     findings_.add("axis_limit", motion.place.line,
@@ -153,6 +159,33 @@ void ControlCheck::axes(const Machine& machine, const NcMotion& motion) {
   if (motion.move != NcMove::linear) return;
   has_feed(motion);
   axis_speeds(machine, motion);
+}
+
+/// Words that the control refuses: more decimals than a Fanuc's increment system has, places on a modulo axis of a
+/// Sinumerik beyond its turn, and the shortest way on an axis that has none.
+void ControlCheck::words_of_axes(const NcMotion& motion) {
+  constexpr double turn_deg = 360.0;
+  const int decimals = 3 + static_cast<int>(control_.increment_system);
+  if (dialect_ == NcDialect::fanuc && motion.decimals > decimals)
+    findings_.add("word", motion.place.line,
+                  fmt::format("a word has {} decimals, increment system IS-{} takes {}", motion.decimals,
+                              kIncrementSystemWords[static_cast<std::size_t>(control_.increment_system)], decimals),
+                  motion.decimals, decimals);
+  if (dialect_ != NcDialect::sinumerik) return;
+  const std::array<double, kNcAxes> to = {motion.to.x_mm,  motion.to.y_mm,  motion.to.z_mm,
+                                          motion.to.a_deg, motion.to.c_deg, motion.to.b_deg};
+  for (std::size_t axis = kFirstRotaryAxis; axis < kNcAxes; ++axis) {
+    const char letter = kNcAxisLetters[axis];
+    const bool is_modulo = control_.modulo_axes.find(letter) != std::string::npos;
+    if (is_modulo && has_bit(motion.absolute, letter) && (to[axis] < 0.0 || to[axis] >= turn_deg))
+      findings_.add("word", motion.place.line,
+                    fmt::format("{} is a modulo axis: a place of {} degrees without DC() is an alarm", letter,
+                                shortest(to[axis])),
+                    to[axis], turn_deg);
+    if (!is_modulo && has_bit(motion.shortest, letter))
+      findings_.add("word", motion.place.line,
+                    fmt::format("DC() is asked of {}, which is none of the machine's modulo_axes", letter));
+  }
 }
 
 /// An axis that is counted within a turn goes on without end: one of its words for the place must be within the limits.

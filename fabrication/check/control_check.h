@@ -44,7 +44,7 @@ class ControlCheck {
       : findings_(findings), rule_(rule), control_(control) {}
 
   /// A program begins.
-  void begin(NcDialect dialect);
+  void begin(const NcProgram& program);
   /// Of every move: before the first one, what the program must say itself; Z first, and alone.
   void way(const NcSettings& settings, const NcMotion& motion);
   /// Of every move in the material: exact stops, spindle, mist.
@@ -65,6 +65,7 @@ class ControlCheck {
   bool is_within_turn(const LimitExcess& excess) const;
   void axis_speeds(const Machine& machine, const NcMotion& motion);
   void has_feed(const NcMotion& motion);
+  void words_of_axes(const NcMotion& motion);
   void refuse_option(const NcSettings& settings, const NcPlace& place, bool is_there, const NcNeed& option);
   void spindle(const NcSettings& settings, const NcPlace& place);
   /// A modal setting: a finding where it becomes wrong. \return whether it has just become so

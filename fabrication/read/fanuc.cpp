@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/message_text.h"
 #include "fabrication/read/dialects.h"
 #include "fabrication/read/subroutine_table.h"
@@ -114,6 +116,7 @@ class FanucReader {
   void read_word(const NcWord& word, IsoBlock& iso, Line& line) {
     if (axis_index(word.letter) < kNcAxes && !word.number.has_point)
       lines_.fail(fmt::format("{} needs a decimal point: without one it counts least increments", word.letter));
+    if (axis_index(word.letter) < kNcAxes) line.block.decimals = std::max(line.block.decimals, word.number.decimals);
     if (word.letter == 'N') return;
     if (word.letter == 'P') {
       if (line.p) lines_.fail("has two words P");

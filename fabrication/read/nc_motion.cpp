@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -20,7 +21,8 @@ void take_over(std::optional<Value>& setting, const Setting<Value>& given) {
 
 class Runner {
  public:
-  Runner(const NcProgram& program, NcSink& sink) : program_(program), sink_(sink) {}
+  Runner(const NcProgram& program, NcSink& sink)
+      : program_(program), sink_(sink), stops_in_main_(is_in_main(program, program.stop_line)) {}
 
   NcEnd run() {
     NcEnd end = carry_out_all();
@@ -37,28 +39,41 @@ class Runner {
         continue;
       }
       const NcBlock& block = program_.blocks[next_++];
-      if (stops_before(block)) return {};
+      if (stops_before(block)) return stopped();
       if (++carried_out_ > kMostNcBlocks)
         fail(block, fmt::format("the program carries out more than {} lines", kMostNcBlocks));
       carry_out(block);
       if (block.call >= 0 && !call(block)) return missing_subroutine(block);
       if (block.returns && !calls_.empty()) go_back();
-      if (block.ends) return end();
-      if (program_.stop_line > 0 && !stops_in_main() && block.line == program_.stop_line) return {};
+      if (block.ends) return end_at(block);
+      if (program_.stop_line > 0 && !stops_in_main_ && block.line == program_.stop_line) return {};
     }
-    if (program_.stop_line > 0) return {};
+    if (program_.stop_line > 0) return stopped();
     return {false, program_.lines, program_.truncated.value_or("the program does not end"), {}};
   }
 
-  bool stops_in_main() const {
-    const std::size_t first = program_.main_first;
-    const std::size_t last = program_.main_last;
-    return first < last && program_.stop_line >= program_.blocks[first].line &&
-           program_.stop_line <= program_.blocks[last - 1].line;
+  /// Whether a line belongs to the main program: lines of subroutines may stand within it.
+  static bool is_in_main(const NcProgram& program, std::int32_t line) {
+    const auto holds = [&](std::size_t first, std::size_t last) {
+      return first < last && line >= program.blocks[first].line && line <= program.blocks[last - 1].line;
+    };
+    return holds(program.main_first, program.main_last) &&
+           std::none_of(program.subroutines.begin(), program.subroutines.end(),
+                        [&](const NcSubroutine& s) { return holds(s.first, s.last); });
+  }
+  /// Behind the line that was asked for, in the main program. \throw InputError if nothing was done until then
+  NcEnd stopped() const {
+    if (motions_ == 0 || !stops_in_main_) fail_to_stop();
+    return {};
+  }
+  [[noreturn]] void fail_to_stop() const {
+    throw InputError(
+        {program_.file, program_.stop_line, ""},
+        "the program cannot be stopped there: nothing is carried out in that line, or nothing moved before");
   }
   /// Main programs run from line to line, and what a stopped line calls still runs.
   bool stops_before(const NcBlock& block) const {
-    return program_.stop_line > 0 && calls_.empty() && stops_in_main() && block.line > program_.stop_line;
+    return program_.stop_line > 0 && calls_.empty() && stops_in_main_ && block.line > program_.stop_line;
   }
 
   static std::uint16_t said_by(const NcBlock& block) {
@@ -78,6 +93,12 @@ class Runner {
 
   [[noreturn]] void fail(const NcBlock& block, std::string_view text) const {
     throw InputError({program_.file, block.line, ""}, text);
+  }
+
+  /// \throw InputError if the program was to be stopped in a line that it never comes to
+  NcEnd end_at(const NcBlock& block) const {
+    if (program_.stop_line > 0 && (!stops_in_main_ || block.line < program_.stop_line)) fail_to_stop();
+    return end();
   }
 
   NcEnd end() const {
@@ -137,6 +158,8 @@ class Runner {
     NcMotion motion;
     motion.move = *move_;
     motion.place = place_of(block);
+    motion.shortest = block.shortest;
+    motion.decimals = block.decimals;
     motion.before = motions_++;
     motion.known = known_;
     motion.from = axes_of(position_);
@@ -167,6 +190,7 @@ class Runner {
     const double unit = axis < kFirstRotaryAxis ? settings_.unit_mm.value_or(1.0) : 1.0;
     if (!is_absolute && (known_ & bit) == 0)
       fail(block, fmt::format("{} moves by an increment before its position is known", kNcAxisLetters[axis]));
+    if (is_absolute && (block.shortest & bit) == 0) motion.absolute = static_cast<std::uint8_t>(motion.absolute | bit);
     double to = block.words[axis] * unit + (is_absolute ? 0.0 : position_[axis]);
     if ((block.shortest & bit) != 0) to += kTurnDeg * std::round((position_[axis] - to) / kTurnDeg);
     if ((known_ & bit) == 0 || to != position_[axis]) motion.moved = static_cast<std::uint8_t>(motion.moved | bit);
@@ -178,6 +202,7 @@ class Runner {
 
   const NcProgram& program_;
   NcSink& sink_;
+  bool stops_in_main_;
   std::size_t next_ = 0;
   std::vector<Call> calls_;
   std::int64_t carried_out_ = 0;

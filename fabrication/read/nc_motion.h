@@ -28,6 +28,9 @@ struct NcMotion {
   double feed_mm_per_min = 0.0;  ///< of a linear move; 0: none was given
   double duration_s = 0.0;       ///< of a linear move whose time is given instead of a feed; 0: by the feed
   bool is_exact_stop = true;     ///< the move ends in its end point
+  std::uint8_t shortest = 0;     ///< bit i: axis i goes the shortest way to a place within a turn
+  std::uint8_t absolute = 0;     ///< bit i: axis i goes to the place that its word counts
+  std::uint8_t decimals = 0;     ///< NcBlock::decimals
   std::int32_t before = 0;       ///< motions of the program before this one
 };
 

@@ -77,6 +77,7 @@ struct NcBlock {
   std::uint16_t says = 0;       ///< bits of nc_said; those with a value follow from it
   std::uint8_t shortest = 0;    ///< bit i: axis i goes the shortest way to its word, which lies within a turn
   std::uint8_t increments = 0;  ///< bit i: axis i moves by its word, whatever the mode is
+  std::uint8_t decimals = 0;    ///< of the words of axes, at most, where dialects count them
   Setting<NcSpindle> spindle;
   Setting<double> spindle_rpm;  ///< S
   Setting<bool> mist_on;
@@ -105,6 +106,7 @@ struct NcProgram {
   std::size_t main_first = 0;
   std::size_t main_last = 0;  ///< block behind the last of the main program
   std::int32_t lines = 0;
+  int coordinate_system = 0;  ///< of a Power PMAC, that the program speaks of; 0: of none
   /// Behind which the operator stopped it, the first time that it was carried out; 0: it ran to its end.
   std::int32_t stop_line = 0;
   /// What is missing of a file that stops in the middle; nothing if it is whole.

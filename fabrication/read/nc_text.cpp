@@ -83,6 +83,7 @@ NcNumber take_number(std::string_view& text, const NcLines& lines) {
   for (; end < text.size(); ++end) {
     if (is_digit(text[end])) {
       ++digits;
+      if (number.has_point) ++number.decimals;
     } else if (text[end] == '.' && !number.has_point) {
       number.has_point = true;
     } else {

@@ -38,6 +38,7 @@ class NcLines {
 struct NcNumber {
   double value = 0.0;
   bool has_point = false;
+  std::uint8_t decimals = 0;
   bool is_whole() const;
 };
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <charconv>
+
 #include "core/message_text.h"
 #include "fabrication/read/dialects.h"
 #include "fabrication/read/subroutine_table.h"
@@ -185,6 +187,7 @@ class PmacReader {
     const std::string number = whole_number(text);
     if (coordinate_system_.empty()) coordinate_system_ = number;
     if (number != coordinate_system_) lines_.fail("speaks of a second coordinate system");
+    std::from_chars(number.data(), number.data() + number.size(), program_.coordinate_system);
     if (!text.starts_with("].")) lines_.fail("Coord must be followed by [number] and a point");
     text.remove_prefix(2);
     const std::string_view name = take_name(text);

@@ -353,10 +353,65 @@ TEST_P(ControlState, WhatControlsRefuse) {
   if (GetParam() == NcDialect::rs274ngc) {
     EXPECT_EQ(kinds_with(first_move(), {"(" + std::string(251, '-') + ")"}), "error") << "a line that is too long";
   }
+  if (is_pmac()) {
+    machine_.control.coordinate_system = 2;
+    EXPECT_EQ(kinds_in(lines_), "setup");
+  }
+  if (GetParam() == NcDialect::sinumerik) {
+    machine_.control.modulo_axes = "";
+    EXPECT_EQ(kinds_in(lines_), "word") << "DC() of an axis that is none";
+    machine_.control.modulo_axes = "AC";
+    EXPECT_EQ(kinds_in(lines_), "") << "A stays within a turn";
+    machine_.control.modulo_axes = "C";
+    int tried = 0;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      const std::size_t at = lines_[i].find("C=DC(");
+      if (at == std::string::npos) continue;
+      Lines spoilt = lines_;
+      const double c_deg = std::stod(lines_[i].substr(at + 5));
+      spoilt[i] = lines_[i].substr(0, at) + fmt::format("C{:.7f}", c_deg - 360.0);
+      EXPECT_TRUE(holds(kinds_in(spoilt), "word")) << spoilt[i];
+      ++tried;
+    }
+    EXPECT_GE(tried, 2);
+  }
   if (GetParam() != NcDialect::fanuc) return;
+  machine_.control.increment_system = IncrementSystem::d;
+  EXPECT_EQ(kinds_in(lines_), "word") << "a decimal too many";
+  machine_.control.increment_system = IncrementSystem::e;
   EXPECT_EQ(kinds_with(1, {"G90"}), "error") << "before the number of the program";
   machine_.control.has_rotation = false;
   EXPECT_EQ(kinds_in(lines_), "setup");
+}
+
+/// What a coarse increment leaves on facets is no more than the tolerance, also where both meet.
+TEST_P(ControlState, CoarseIncrementsLeaveWhatTheyRound) {
+  if (GetParam() != NcDialect::fanuc) return;
+  for (const auto& [system, tolerance_nm] : {std::pair{IncrementSystem::d, 30.0}, {IncrementSystem::c, 300.0}})
+    for (const std::string name : {"ideal", "paper"}) {
+      const std::string file = std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml";
+      Machine machine = parse_machine(read_file(file), file);
+      machine.control.increment_system = system;
+      machine = for_dialect(machine, "fanuc");
+      const std::string text = nc_text(make_plan(job_, machine).programs.front(), "fanuc");
+      VerifyOptions options;
+      options.tolerance_nm = tolerance_nm;
+      const Verification v = verify_programs(job_, machine, {parse_nc(text, "p", NcDialect::fanuc)}, options, {});
+      EXPECT_TRUE(v.passes()) << name << " " << tolerance_nm << "\n" << listed(v);
+    }
+}
+
+/// A tolerance wider than the chips are thick says nothing of whether they come free.
+TEST_P(ControlState, WideTolerancesPassToo) {
+  std::string text;
+  for (const std::string& line : lines_) text += line + "\n";
+  for (const double tolerance_nm : {1e3, 1e4, 1e6}) {
+    VerifyOptions options;
+    options.tolerance_nm = tolerance_nm;
+    const Verification v =
+        verify_programs(job_, machine_, {parse_nc(text, "p", GetParam(), control_texts())}, options, {});
+    EXPECT_TRUE(v.passes()) << tolerance_nm << "\n" << listed(v);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, ControlState,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
@@ -136,7 +137,41 @@ TEST_P(PartialPrograms, AProgramGoesOnWhereAnotherWasStopped) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Dialects, PartialPrograms, ::testing::Values(NcDialect::rs274ngc, NcDialect::fanuc),
+/// A program that stops in any line is whole behind its last call alone; a line that never comes is refused.
+TEST_P(PartialPrograms, EveryLineStopsTheProgramOrIsRefused) {
+  const Case c = cases()[2];
+  const std::string text = texts(c, {}).front();
+  const std::string_view call = GetParam() == NcDialect::rs274ngc    ? " call\n"
+                                : GetParam() == NcDialect::sinumerik ? "\nREPEAT RT"
+                                : GetParam() == NcDialect::fanuc     ? "\nM98 P"
+                                                                     : "\ncall ";
+  const std::string_view end = GetParam() == NcDialect::rs274ngc ? "\nM2\n"
+                               : GetParam() == NcDialect::pmac   ? "\nclose\n"
+                                                                 : "\nM30\n";
+  const auto line_of = [&](std::size_t at) {
+    return static_cast<std::int32_t>(1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
+  };
+  const std::int32_t last_call = line_of(text.rfind(call) + (call.front() == '\n' ? 1 : 0));
+  const std::int32_t last = line_of(text.rfind(end) + 1);
+  int refused = 0;
+  for (std::int32_t line = 1; line < line_of(text.size()); ++line) {
+    std::string verdict = "refused";
+    try {
+      verdict = verified(c, {program(text, line)}).verdict();
+    } catch (const InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(fmt::format("p:{}: ", line))) << error.what();
+      ++refused;
+    }
+    // Behind the last call nothing is left to be cut.
+    EXPECT_TRUE((verdict == "pass") == (line >= last_call && line <= last) || verdict == "refused")
+        << line << ": " << verdict;
+  }
+  EXPECT_GE(refused, 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Dialects, PartialPrograms,
+                         ::testing::Values(NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc,
+                                           NcDialect::pmac),
                          [](const auto& dialect) {
                            return std::string(kNcDialectWords[static_cast<std::size_t>(dialect.param)]);
                          });

@@ -103,7 +103,10 @@ void PlungeCheck::check_chip() {
   const std::size_t f = open_->facet;
   const std::size_t g = 1 - f;
   const State& state = states_[open_->element];
-  const double tolerance_mm = workpiece_.tolerance_mm + workpiece_.prediction(open_->element).root_mm;
+  // However much may stay on a facet, a chip is passed or not.
+  const double depth_mm = 1e-3 * std::min(process_.roughing_depth_um, process_.finishing_depth_um);
+  const double tolerance_mm =
+      std::min(workpiece_.tolerance_mm, 0.1 * depth_mm) + workpiece_.prediction(open_->element).root_mm;
   const bool passes = open_->tip_mm[g] < state.surface_mm[g] - tolerance_mm;
   if (passes) return;
   const auto& before = state.last[g];

@@ -60,7 +60,7 @@ ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
 void ProgramCheck::begin(const NcProgram& program) {
   findings_.begin(program.file);
   ++programs_begun_;
-  control_.begin(program.dialect);
+  control_.begin(program);
 }
 
 std::vector<RigidMotion> ProgramCheck::poses() const {

@@ -280,10 +280,11 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
       if (cancellation != nullptr && cancellation->requested()) return;
       const Prediction& prediction = workpiece.prediction(i);
       const Groove& groove = workpiece.grooves[i];
-      const ElementFigures figures =
-          groove.is_cube() ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses, check.wedge(),
-                                            job.tool.nose_angle_deg, prediction)
-                           : element_figures(groove, check.sweeps()[i], poses, check.wedge(), prediction, ploughs);
+      const ElementFigures figures = groove.is_cube()
+                                         ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses, check.wedge(),
+                                                          job.tool.nose_angle_deg, prediction)
+                                         : element_figures(groove, check.sweeps()[i], poses, check.wedge(), prediction,
+                                                           ploughs, workpiece.tolerance_mm);
       result.elements[i] = result_of(groove, figures);
       chips[i] = chips_of(workpiece, face, i, check.sweeps()[i], poses, check.wedge());
     }

@@ -95,7 +95,7 @@ LatheCheck::LatheCheck(const PlanedPart& part, FindingList& findings, PlaningChe
 void LatheCheck::begin(const NcProgram& program) {
   programs_.push_back(program.file);
   control_.emplace(findings_, rule_of(*part_.lathe, program.dialect));
-  control_->begin(program.dialect);
+  control_->begin(program);
 }
 
 std::int32_t LatheCheck::add_source(const NcMotion& motion) {

@@ -44,7 +44,7 @@ void MillCheck::begin(const NcProgram& program) {
   programs_.push_back(program.file);
   std::fill(std::begin(is_placed_), std::end(is_placed_), false);
   height_mm_ = 0.0;
-  control_.begin(program.dialect);
+  control_.begin(program);
 }
 
 void MillCheck::check_length(const NcMotion& motion, std::size_t axis, double length_mm) {

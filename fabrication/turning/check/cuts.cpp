@@ -40,7 +40,7 @@ class CutReader : public NcSink {
     cuts_.dialects.push_back(program.dialect);
     cuts_.end_mm.push_back(0.0);
     findings_.begin(program.file);
-    control_.begin(program.dialect);
+    control_.begin(program);
     has_soft_start_ = has_free_path_ = is_down_ = false;
     CutRecorder recorder;
     recorder_ = &recorder;

@@ -16,6 +16,8 @@ constexpr double kOffCornerMm = 2e-7;
 constexpr double kLeastStripMm = 2e-6;
 /// Where what is left at the root is taken.
 constexpr double kAtRootMm = 1.5e-6;
+/// Of a facet's length: up to there a layer over the other facet may count for the root, whatever the tolerance is.
+constexpr double kMostLayerShare = 0.01;
 /// Margin on what is predicted of the region at the root: rounding of poses and positions.
 constexpr double kRootMargin = 1.05;
 constexpr int kEvenLines = 12;
@@ -33,13 +35,15 @@ struct Stations {
 class Measurer {
  public:
   Measurer(const Groove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
-           const ToolWedge& wedge, const Prediction& prediction)
+           const ToolWedge& wedge, const Prediction& prediction, double tolerance_mm)
       : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
     for (const SweptVolume& sweep : sweeps) used_poses_.push_back(sweep.pose);
     std::sort(used_poses_.begin(), used_poses_.end());
     used_poses_.erase(std::unique(used_poses_.begin(), used_poses_.end()), used_poses_.end());
     find_stations();
-    strip_mm_ = std::max(kRootMargin * prediction.root_mm, kLeastStripMm);
+    const double layer_mm = std::min(tolerance_mm / sine_between(), kMostLayerShare * groove.facet_length_mm);
+    layer_end_mm_ = kLeastStripMm + layer_mm;
+    strip_mm_ = std::max(kRootMargin * prediction.root_mm, layer_end_mm_);
     find_burr();
   }
 
@@ -65,7 +69,8 @@ class Measurer {
         const double floor_mm =
             is_other_ploughed && slant == kAtRootMm ? ploughed_height(1 - facet, along).high / sine_between() : 0.0;
         if (!is_clear_of_other(slant)) continue;
-        const LineSurface surface = surface_at(facet, along, slant + floor_mm);
+        const LineSurface surface = slant == kAtRootMm ? at_root(facet, along, kAtRootMm + floor_mm)
+                                                       : surface_at(facet, along, slant + floor_mm);
         take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along) : Interval{});
         if (is_for_plane(slant, along)) plane.add(slant, along, surface.lowest);
         figures.residual_mm3 += 0.5 * (surface.top + previous_top) * (slant - previous_slant) * width_mm;
@@ -166,8 +171,10 @@ class Measurer {
   }
 
   LineSurface surface_at(std::size_t facet, double along, double slant) {
+    return surface_at(facet, along, slant, slant <= strip_mm_);
+  }
+  LineSurface surface_at(std::size_t facet, double along, double slant, bool is_at_root) {
     const DesignFacet& design = groove_.facets[facet];
-    const bool is_at_root = slant <= strip_mm_;
     const Vec3 point = groove_.root_mm + along * groove_.root_direction + slant * design.up_slope;
     // What is left at the root is told along the other facet: how far up that its cuts end.
     const Vec3& direction = is_at_root ? groove_.facets[1 - facet].up_slope : design.normal;
@@ -180,6 +187,19 @@ class Measurer {
           if (const auto span = swept_span(wedge_, sweep, p, d)) spans_.push_back(*span);
     }
     return surface_along(spans_, is_at_root ? groove_.to_face_mm(point, direction) : exit_of(facet, point));
+  }
+
+  /// A line close to the root runs along the other facet, and within the layer that the tolerance allows there. What is
+  /// left at the root is then told above that layer, less what the rake face of the last plunge leaves on its way
+  /// there.
+  LineSurface at_root(std::size_t facet, double along, double slant) {
+    const LineSurface close = surface_at(facet, along, slant);
+    const double above = slant + layer_end_mm_;
+    if (close.top <= layer_end_mm_) return close;
+    LineSurface clear = surface_at(facet, along, above, true);
+    if (close.top <= clear.top + layer_end_mm_) return close;
+    clear.top = std::max(0.0, clear.top - layer_end_mm_);
+    return clear;
   }
 
   /// Height over the other facet for each mm up a facet: the sine of the angle that they include.
@@ -255,6 +275,7 @@ class Measurer {
   std::vector<std::uint32_t> used_poses_;  ///< in which the element is cut
   Stations stations_;
   double strip_mm_ = 0.0;
+  double layer_end_mm_ = 0.0;  ///< from the root, where the tolerance of the other facet no longer reaches
   double plane_end_mm_ = 0.0;
   double burr_end_mm_ = 0.0;     ///< distance from the root
   double burr_height_mm_ = 0.0;  ///< over a facet
@@ -265,11 +286,11 @@ class Measurer {
 
 ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume> sweeps,
                                std::span<const RigidMotion> poses, const ToolWedge& wedge, const Prediction& prediction,
-                               bool is_one_facet_ploughed) {
+                               bool is_one_facet_ploughed, double tolerance_mm) {
   ElementFigures figures;
   figures.is_cut = !sweeps.empty();
   if (!figures.is_cut) return figures;
-  Measurer measurer(groove, sweeps, poses, wedge, prediction);
+  Measurer measurer(groove, sweeps, poses, wedge, prediction, tolerance_mm);
   const std::size_t plunged = measurer.plunged_facet();
   figures.facets.resize(2);
   for (std::size_t f = 0; f < 2; ++f)

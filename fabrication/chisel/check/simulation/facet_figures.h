@@ -42,9 +42,10 @@ struct ElementFigures {
 
 /// Of a prism. \param poses machine_from_workpiece for each Sweep::pose
 /// \param is_one_facet_ploughed the strategy ploughs the facet that it does not plunge
+/// \param tolerance_mm of facets: a layer that thin on one of them is not told as what is left at the root
 ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume> sweeps,
                                std::span<const RigidMotion> poses, const ToolWedge& wedge, const Prediction& prediction,
-                               bool is_one_facet_ploughed);
+                               bool is_one_facet_ploughed, double tolerance_mm);
 
 /// Of a cube corner: the surface along lines normal to each facet over the whole of it, close to the dihedral edges and
 /// on both sides of where the leading edge stands with its tip in the apex.
