@@ -10,13 +10,13 @@ namespace retrace::materials {
 ///
 /// Basis: s = d x n normalised, p = d x s, with d the direction of the wave concerned (incident, reflected or
 /// refracted); at normal incidence r_p = -r_s. Time dependence exp(-i w t). Transmission amplitudes are scaled so that
-/// their squares are shares of power: r^2 + t^2 = 1 for each component. Born and Wolf, Principles of Optics, 7th
-/// ed., 1.5.
+/// their squares are shares of power: |r|^2 + |t|^2 = 1 for each component. They are real but behind layers. Born and
+/// Wolf, Principles of Optics, 7th ed., 1.5.
 struct FresnelCoefficients {
   std::complex<double> r_s;
   std::complex<double> r_p;
-  double t_s = 0.0;
-  double t_p = 0.0;
+  std::complex<double> t_s;
+  std::complex<double> t_p;
   double cos_refracted = 0.0;  ///< 0 under total reflection
   bool total_reflection = false;
 };

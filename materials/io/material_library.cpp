@@ -89,17 +89,29 @@ Metal metal_of(const Document& file, const std::string& entry) {
   return m;
 }
 
+/// Null if no item has the name; their names are added to `names`.
+template <class Item>
+const Item* search(const std::vector<Item>& items, std::string_view name, std::vector<std::string>& names) {
+  for (const Item& item : items) {
+    if (item.name == name) return &item;
+    names.push_back(item.name);
+  }
+  return nullptr;
+}
+
+[[noreturn]] void fail(std::string_view kind, std::string_view name, const std::vector<std::string>& names,
+                       const InputLocation& where) {
+  throw InputError(where,
+                   fmt::format("no {} of that name, got \"{}\"; there are {}", kind, name, fmt::join(names, ", ")));
+}
+
 /// \throw InputError at `where` if no item has the name
 template <class Item>
 const Item& find_by_name(const std::vector<Item>& items, std::string_view kind, std::string_view name,
                          const InputLocation& where) {
   std::vector<std::string> names;
-  for (const Item& item : items) {
-    if (item.name == name) return item;
-    names.push_back(item.name);
-  }
-  throw InputError(where,
-                   fmt::format("no {} of that name, got \"{}\"; there are {}", kind, name, fmt::join(names, ", ")));
+  if (const Item* const item = search(items, name, names)) return *item;
+  fail(kind, name, names, where);
 }
 
 }  // namespace
@@ -129,6 +141,14 @@ const Material& MaterialLibrary::find(std::string_view name, const InputLocation
 
 const Metal& MaterialLibrary::find_metal(std::string_view name, const InputLocation& where) const {
   return find_by_name(metals_, "metal", name, where);
+}
+
+std::variant<const Material*, const Metal*> MaterialLibrary::find_any(std::string_view name,
+                                                                      const InputLocation& where) const {
+  std::vector<std::string> names;
+  if (const Material* const material = search(materials_, name, names)) return material;
+  if (const Metal* const metal = search(metals_, name, names)) return metal;
+  fail("material or metal", name, names, where);
 }
 
 }  // namespace retrace::materials

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/error.h"
@@ -33,6 +34,8 @@ class MaterialLibrary {
   const std::vector<Metal>& metals() const { return metals_; }
   /// \throw InputError as find()
   const Metal& find_metal(std::string_view name, const InputLocation& where = {}) const;
+  /// Of either kind. \throw InputError as find()
+  std::variant<const Material*, const Metal*> find_any(std::string_view name, const InputLocation& where = {}) const;
 
  private:
   std::vector<Material> materials_;

@@ -16,8 +16,8 @@ class BallTracer {
  public:
   explicit BallTracer(const BallLayer& layer) : layer_(layer) {}
 
-  /// \param optics lossless_entrance: every clear interface passes all; mirror_facets, coating_index: the mirror
-  /// \param score of the directions in which light leaves; null: nothing
+  /// \param optics lossless_entrance: every clear interface passes all; mirror_facets or an opaque layer of
+  /// facet_layers: the mirror \param score of the directions in which light leaves; null: nothing
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
                          const DirectionScore* score = nullptr) const;

@@ -122,15 +122,15 @@ void BallWalker::meet_back(const Ray& ray, const Vec3& position_mm, const Vec3& 
 }
 
 bool BallWalker::is_mirrored(const Vec3& normal) const {
-  const bool has_mirror = setup_.optics.mirror_facets || setup_.optics.coating_index.has_value();
+  const bool has_mirror = setup_.optics.mirror_facets || setup_.optics.facet_layers.is_opaque();
   return has_mirror && -normal.z() >= std::cos(Angle::from_deg(layer_.mirror_half_angle_deg).rad()) - 1e-12;
 }
 
 void BallWalker::meet_mirror(Ray ray, const Vec3& position_mm, const Vec3& normal, bool from_ball) {
   ray.light.turn_to(ray.direction, normal);
   const double before = ray.light.power();
-  const auto f =
-      fresnel_at_back(setup_.optics, geometry::FacetRole::retro_facet, from_ball, std::abs(normal.dot(ray.direction)));
+  const auto f = fresnel_at_mirror(setup_.optics, from_ball ? setup_.optics.index : setup_.optics.back_index,
+                                   std::abs(normal.dot(ray.direction)));
   ray.light = ray.light.reflected(f);
   tally_.other[Account::absorbed] += before - ray.light.power();
   ray.position_mm = position_mm;

@@ -128,6 +128,7 @@ void CellWalker::trace(const geometry::Rectangle& entrance_mm, std::uint64_t key
   handed_over_.clear();
   const LightSetup::Entry& entry = setup_.entry;
   tally.front[entry.front_cone] += static_cast<double>(count) * entry.front;
+  tally.other[Account::absorbed] += static_cast<double>(count) * entry.absorbed;
   if (setup_.score != nullptr)
     setup_.score->add(entry.front_direction, static_cast<double>(count) * entry.front.i, tally.score);
   reserve(count);
@@ -322,8 +323,10 @@ void CellWalker::meet_surface(const Stream& stream) {
     return grow(to, more);
   }
   if (is_retro && !optics.is_smooth()) return meet_texture(stream);
-  if (is_retro && optics.coating_index) return meet_metal(stream, *optics.coating_index);
-  meet_faces(kFacet, inside, inside ? part : below, inside ? below : part, nullptr);
+  const std::uint32_t reflected_to = inside ? part : below;
+  const std::uint32_t transmitted_to = inside ? below : part;
+  if (is_retro && !optics.facet_layers.empty()) return meet_layers(stream, reflected_to, transmitted_to);
+  meet_faces(kFacet, inside, reflected_to, transmitted_to, nullptr);
 }
 
 /// Rays on into the next column.
@@ -393,28 +396,42 @@ void CellWalker::meet_texture(const Stream& stream) {
   }
 }
 
-/// One by one: films are rare, and their amplitudes complex.
-void CellWalker::meet_metal(const Stream& stream, std::complex<double> metal) {
+/// One by one: layers are rare, and their amplitudes complex.
+void CellWalker::meet_layers(const Stream& stream, std::uint32_t reflected_to, std::uint32_t transmitted_to) {
+  const Optics& optics = setup_.optics;
   const bool inside = stream.place == Place::inside;
-  const std::complex<double> ratio = (inside ? setup_.optics.index : setup_.optics.back_index) / metal;
   const lanes::Rays rays = moved_.rays();
+  const lanes::Rays reflected_rays = end_of(reflected_to, moved_.size());
+  const lanes::Rays transmitted_rays = end_of(transmitted_to, moved_.size());
+  lanes::Branches more;
+  const auto append = [&](const lanes::Rays& to, std::size_t& at, std::size_t k, const Ray& ray) {
+    for (std::size_t n = 0; n < rays.numbers; ++n) to[n][at] = rays[n][k];
+    set(to, at++, ray);
+  };
   for (std::size_t k = 0; k < moved_.size(); ++k) {
     if (met_[k] != kFacet) continue;
+    ++more.count;
     const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
     const Vec3 against = inside ? Vec3(-normal) : normal;
     Ray ray = ray_of(rays, k, inside, stream.scattered);
+    const double cos_incidence = -against.dot(ray.direction);
+    const materials::FresnelCoefficients f = fresnel_at_back(optics, FacetRole::retro_facet, inside, cos_incidence);
     ray.light.turn_to(ray.direction, against);
-    const Light reflected = ray.light.reflected(materials::fresnel_metal(ratio, -against.dot(ray.direction)));
-    tally_->other[Account::absorbed] += ray.light.power() - reflected.power();
-    ray.light = reflected;
-    ray.direction = mirrored(ray.direction, against);
-    set(rays, k, ray);
+    Light reflected = ray.light.reflected(f);
+    Light transmitted = ray.light.transmitted(f);
+    tally_->other[Account::absorbed] += absorbed_by(optics.facet_layers, ray.light, reflected, transmitted);
+    const Branch branch = choose_branch(reflected, transmitted, policy_.split_power, [&] { return random(); });
+    if (branch != Branch::transmitted) {
+      const Ray back{mirrored(ray.direction, against), reflected, inside, stream.scattered};
+      append(reflected_rays, more.reflected, k, back);
+    }
+    if (branch == Branch::reflected) continue;
+    const Vec3 on = refracted(ray.direction, against, optics.ratio_at_back(inside), cos_incidence, f.cos_refracted);
+    append(transmitted_rays, more.transmitted, k, {on, transmitted, !inside, stream.scattered});
   }
-  const std::uint32_t to =
-      stream_of(stream.column, inside ? Place::inside : Place::below_after_leaving, stream.scattered);
-  const std::size_t more = lanes::select(met_.data(), kFacet, moved_.size(), moved_.rays(), end_of(to, moved_.size()));
-  tally_->segments += more;
-  grow(to, more);
+  tally_->segments += more.count;
+  grow(reflected_to, more.reflected);
+  grow(transmitted_to, more.transmitted);
 }
 
 /// From the top of the surface up to the entrance, out, and back down.
@@ -426,6 +443,7 @@ void CellWalker::meet_entrance(bool scattered) {
   if (array_.inner() && lanes::mark_beyond(rays, moved_.size(), {height_mm, outline_.lower, outline_.upper},
                                            kTopOrNothing, kHandedOver, met_.data()) > 0)
     hand_over(rays, moved_.size(), met_, kHandedOver, true, scattered);
+  if (!optics.entrance_layers.empty()) return meet_layers_of_entrance(scattered);
   const lanes::Entrance entrance = {
       height_mm,        optics.index,      optics.absorption_per_mm, optics.lossless_entrance,
       setup_.to_source, setup_.cone_chord2};
@@ -441,6 +459,46 @@ void CellWalker::meet_entrance(bool scattered) {
   tally_->segments += arrivals.count;
   tally_->other[Account::absorbed] += arrivals.absorbed;
   chosen_.resize(arrivals.reflected);
+  if (!chosen_.empty()) fall(scattered);
+}
+
+/// The same one by one, of an entrance with layers.
+void CellWalker::meet_layers_of_entrance(bool scattered) {
+  const Optics& optics = setup_.optics;
+  const double height_mm = setup_.thickness_mm - setup_.top_mm;
+  const Vec3 down = -Vec3::UnitZ();
+  const lanes::Rays rays = moved_.rays();
+  const lanes::Rays chosen = chosen_.rays();
+  std::vector<Stokes>& returned = scattered ? tally_->scattered : tally_->returned;
+  std::size_t reflected_count = 0;
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    if (met_[k] != kTopOrNothing) continue;
+    ++tally_->segments;
+    Ray ray = ray_of(rays, k, true, scattered);
+    const double way_mm = height_mm / ray.direction.z();
+    const double before = ray.light.power();
+    ray.light.scale(std::exp(-optics.absorption_per_mm * way_mm));
+    tally_->other[Account::absorbed] += before - ray.light.power();
+    const double cos_incidence = ray.direction.z();
+    const materials::FresnelCoefficients f = fresnel_at_entrance(optics, true, cos_incidence);
+    ray.light.turn_to(ray.direction, down);
+    Light reflected = ray.light.reflected(f);
+    Light transmitted = ray.light.transmitted(f);
+    tally_->other[Account::absorbed] += absorbed_by(optics.entrance_layers, ray.light, reflected, transmitted);
+    const Branch branch = choose_branch(reflected, transmitted, policy_.split_power, [&] { return random(); });
+    if (branch != Branch::reflected) {
+      const Vec3 out = refracted(ray.direction, down, optics.index, cos_incidence, f.cos_refracted);
+      returned[setup_.cone_of(out)] += seen_from_above(transmitted, out);
+      if (setup_.score != nullptr) setup_.score->add(out, transmitted.power(), tally_->score);
+    }
+    if (branch == Branch::transmitted) continue;
+    for (std::size_t n = 0; n < rays.numbers; ++n) chosen[n][reflected_count] = rays[n][k];
+    chosen[lanes::kX][reflected_count] += way_mm * ray.direction.x();
+    chosen[lanes::kY][reflected_count] += way_mm * ray.direction.y();
+    chosen[lanes::kZ][reflected_count] = setup_.thickness_mm;
+    set(chosen, reflected_count++, {mirrored(ray.direction, down), reflected, true, scattered});
+  }
+  chosen_.resize(reflected_count);
   if (!chosen_.empty()) fall(scattered);
 }
 

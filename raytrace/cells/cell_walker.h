@@ -88,11 +88,12 @@ class CellWalker {
   void move(const Stream& stream);
   void meet_surface(const Stream& stream);
   void meet_texture(const Stream& stream);
-  void meet_metal(const Stream& stream, std::complex<double> index);
+  void meet_layers(const Stream& stream, std::uint32_t reflected_to, std::uint32_t transmitted_to);
   void meet_wall(const Stream& stream, const Crossing& crossing, double number);
   void meet_faces(double number, bool inside, std::uint32_t reflected_to, std::uint32_t transmitted_to,
                   const Crossing* crossing);
   void meet_entrance(bool scattered);
+  void meet_layers_of_entrance(bool scattered);
   void cross(const Stream& stream, const Crossing& crossing, double number);
   void fall(bool scattered);
   void book(double number, Account account);

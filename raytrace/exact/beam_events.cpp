@@ -60,17 +60,17 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   const materials::FresnelCoefficients f = fresnel_at_back(setup_.optics, candidate.role, from.inside, cos_incidence);
   beam.trail.meet(candidate.cell);
   beam.light.turn_to(from.direction, against);
+  const CoherentLight reflected = beam.light.reflected(f);
+  const CoherentLight transmitted = beam.light.transmitted(f);
+  tally_.other[Account::absorbed] +=
+      transmission_of(beam) * absorbed_at_back(setup_.optics, candidate.role, beam.light, reflected, transmitted);
   if (!f.total_reflection) {
     Beam through = beam;
     if (from.inside) through.left_through = candidate.role;
-    const CoherentLight left =
-        mean_field(beam.light.transmitted(f), beam, candidate.role, cos_incidence, Lobe::transmission);
+    const CoherentLight left = mean_field(transmitted, beam, candidate.role, cos_incidence, Lobe::transmission);
     send(std::move(through), candidate.plane, -against,
          refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), left, !from.inside);
   }
-  const CoherentLight reflected = beam.light.reflected(f);
-  if (setup_.optics.coating_index && candidate.role == FacetRole::retro_facet)
-    tally_.other[Account::absorbed] += transmission_of(beam) * (beam.light.power() - reflected.power());
   const CoherentLight left = mean_field(reflected, beam, candidate.role, cos_incidence, Lobe::reflection);
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), left, from.inside);
 }
@@ -95,7 +95,8 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
   const Vec3 against = -plane.normal;
   const double cos_incidence = plane.normal.dot(from.direction);
   const double ratio = role == FacetRole::border_wall ? setup_.optics.ratio_at_back(true) : setup_.optics.index;
-  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
+  const materials::FresnelCoefficients f =
+      is_entrance ? fresnel_at_entrance(setup_.optics, true, cos_incidence) : materials::fresnel(ratio, cos_incidence);
   const Vec3 out = refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted);
   beam.light.turn_to(from.direction, against);
   if (is_entrance && setup_.optics.lossless_entrance) {
@@ -105,14 +106,17 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
       leave_through_entrance(beam, beam.light, out);
     return;
   }
+  const CoherentLight through = beam.light.transmitted(f);
+  const CoherentLight reflected = beam.light.reflected(f);
+  if (is_entrance)
+    tally_.other[Account::absorbed] +=
+        transmission_of(beam) * absorbed_by(setup_.optics.entrance_layers, beam.light, reflected, through);
   if (!f.total_reflection) {
-    const CoherentLight through = beam.light.transmitted(f);
     if (is_entrance)
       leave_through_entrance(beam, through, out);
     else
       tally_.other[account_of_exit(role)] += transmission_of(beam) * through.power();
   }
-  const CoherentLight reflected = beam.light.reflected(f);
   send(std::move(beam), plane, against, mirrored(from.direction, against), reflected, true);
 }
 

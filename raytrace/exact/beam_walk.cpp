@@ -56,6 +56,7 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
   approach_ = approach;
   const LightSetup::Entry& entry = setup_.entry;
   tally_.front[entry.front_cone] += entry.front;
+  tally_.other[Account::absorbed] += entry.absorbed;
   if (observer_ && entry.front.i > 0.0) observe_front();
   Beam whole;
   whole.direction = entry.direction;

@@ -53,7 +53,7 @@ struct Light {
     return passed(std::norm(f.r_s), std::norm(f.r_p), f.r_s * std::conj(f.r_p));
   }
   Light transmitted(const materials::FresnelCoefficients& f) const {
-    return passed(f.t_s * f.t_s, f.t_p * f.t_p, f.t_s * f.t_p);
+    return passed(std::norm(f.t_s), std::norm(f.t_p), f.t_s * std::conj(f.t_p));
   }
 
  private:

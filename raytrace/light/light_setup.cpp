@@ -5,6 +5,8 @@
 
 namespace retrace::raytrace {
 
+using materials::StackSide;
+
 /// The direction after refraction at a plane whose unit normal `against` faces the ray.
 Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted) {
   return (ratio * direction + (ratio * cos_incidence - cos_refracted) * against).normalized();
@@ -30,9 +32,28 @@ materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::F
                                                double cos_incidence) {
   const bool is_retro = role == geometry::FacetRole::retro_facet;
   if (is_retro && optics.mirror_facets) return perfect_mirror();
-  if (is_retro && optics.coating_index)
-    return materials::fresnel_metal((inside ? optics.index : optics.back_index) / *optics.coating_index, cos_incidence);
-  return materials::fresnel(optics.ratio_at_back(inside), cos_incidence);
+  if (!is_retro || optics.facet_layers.empty()) return materials::fresnel(optics.ratio_at_back(inside), cos_incidence);
+  if (inside)
+    return materials::fresnel_layers(optics.facet_layers, StackSide::body, optics.index, optics.back_index,
+                                     cos_incidence);
+  return materials::fresnel_layers(optics.facet_layers, StackSide::outside, optics.back_index, optics.index,
+                                   cos_incidence);
+}
+
+materials::FresnelCoefficients fresnel_at_entrance(const Optics& optics, bool inside, double cos_incidence) {
+  if (inside)
+    return materials::fresnel_layers(optics.entrance_layers, StackSide::body, optics.index, 1.0, cos_incidence);
+  return materials::fresnel_layers(optics.entrance_layers, StackSide::outside, 1.0, optics.index, cos_incidence);
+}
+
+materials::FresnelCoefficients fresnel_at_mirror(const Optics& optics, double from_index, double cos_incidence) {
+  if (optics.mirror_facets) return perfect_mirror();
+  return materials::fresnel_layers(optics.facet_layers, StackSide::body, from_index, optics.back_index, cos_incidence);
+}
+
+double absorbed_at_back(const Optics& optics, geometry::FacetRole role, const Light& met, const Light& reflected,
+                        const Light& transmitted) {
+  return role == geometry::FacetRole::retro_facet ? absorbed_by(optics.facet_layers, met, reflected, transmitted) : 0.0;
 }
 
 Vec3 source_axis(const Vec3& direction) {
@@ -118,7 +139,7 @@ std::size_t LightSetup::cone_of(const Vec3& direction) const {
 LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
   const Vec3 incident = -to_source;
   const double ratio = 1.0 / optics.index;
-  const materials::FresnelCoefficients f = materials::fresnel(ratio, to_source.z());
+  const materials::FresnelCoefficients f = fresnel_at_entrance(optics, false, to_source.z());
   CoherentLight light;
   light.stokes = stokes;
   light.stokes.u = -stokes.u;  // p = direction x s is the second axis of the source reversed
@@ -129,8 +150,12 @@ LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
   entered.direction = refracted(incident, Vec3::UnitZ(), ratio, to_source.z(), f.cos_refracted);
   entered.front_direction = mirrored(incident, Vec3::UnitZ());
   entered.front_cone = cone_of(entered.front_direction);
-  if (!optics.lossless_entrance) entered.front = seen_from_above(light.reflected(f), entered.front_direction);
-  entered.light = optics.lossless_entrance ? light : light.transmitted(f);
+  entered.light = light;
+  if (optics.lossless_entrance) return entered;
+  const CoherentLight reflected = light.reflected(f);
+  entered.front = seen_from_above(reflected, entered.front_direction);
+  entered.light = light.transmitted(f);
+  entered.absorbed = absorbed_by(optics.entrance_layers, light, reflected, entered.light);
   return entered;
 }
 

@@ -48,6 +48,7 @@ struct LightSetup {
     Vec3 front_direction = Vec3::UnitZ();  ///< of what is reflected
     std::size_t front_cone = 0;            ///< that holds it
     Stokes front;                          ///< of it, along source_axis()
+    double absorbed = 0.0;                 ///< power that the layers of the face take
   };
   Entry entry;
 
@@ -96,6 +97,23 @@ Account account_of_exit(geometry::FacetRole role);
 /// What a face of the back surface makes of light on its way, inside the part or outside.
 materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::FacetRole role, bool inside,
                                                double cos_incidence);
+
+/// What the entrance face makes of light from inside the part or outside; of an ideal one only the directions count.
+materials::FresnelCoefficients fresnel_at_entrance(const Optics& optics, bool inside, double cos_incidence);
+
+/// What the mirror behind a ball makes of light that comes from the ball's side, through a medium of index
+/// `from_index`. \pre the facets are mirrors or have an opaque layer
+materials::FresnelCoefficients fresnel_at_mirror(const Optics& optics, double from_index, double cos_incidence);
+
+/// The power that layers on a face took of light that met it.
+inline double absorbed_by(const materials::LayerStack& layers, const Light& met, const Light& reflected,
+                          const Light& transmitted) {
+  return layers.absorbs() ? met.power() - reflected.power() - transmitted.power() : 0.0;
+}
+
+/// The same of a face of the back surface.
+double absorbed_at_back(const Optics& optics, geometry::FacetRole role, const Light& met, const Light& reflected,
+                        const Light& transmitted);
 
 /// The direction after refraction at a plane whose unit normal `against` faces the ray. \param ratio index before over
 /// after

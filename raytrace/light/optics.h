@@ -2,10 +2,8 @@
 
 // The optical properties of a part at one wavelength, and the direction and polarisation of the incident beam.
 
-#include <complex>
-#include <optional>
-
 #include "core/angle.h"
+#include "materials/thin_film.h"
 #include "raytrace/light/stokes.h"
 #include "surface_models/scatter/scatter_model.h"
 
@@ -17,10 +15,10 @@ struct Optics {
   double back_index = 1.0;         ///< of what lies behind the back surface, likewise; air is in front and at the sides
   double absorption_per_mm = 0.0;  ///< Napierian, for power
   bool mirror_facets = false;      ///< retro facets reflect everything
-  /// Of an opaque metal film behind the retro facets: n + i k, k > 0, relative to air.
-  std::optional<std::complex<double>> coating_index;
-  bool lossless_entrance = false;  ///< entrance refracts with T = 1; light beyond the critical angle ends there
-  bool absorbing_walls = false;    ///< walls of elements and of the border let no light go on
+  materials::LayerStack facet_layers;     ///< on the retro facets, one of which may be opaque
+  materials::LayerStack entrance_layers;  ///< on the entrance face, all of which let light through
+  bool lossless_entrance = false;         ///< entrance refracts with T = 1; light beyond the critical angle ends there
+  bool absorbing_walls = false;           ///< walls of elements and of the border let no light go on
   surface_models::ScatterModel facet_scatter;  ///< what the texture of retro facets does
   double wavelength_nm = 587.56;               ///< in vacuum; matters to scatter alone
 

@@ -339,7 +339,8 @@ double CameraTracer::Hidden::follow(const WorldRay& ray, std::size_t wavelength,
     const bool is_side = contact.what == Contact::What::side;
     const Vec3 normal = is_side ? setups[wavelength].sides[contact.side].normal : Vec3(Vec3::UnitZ());
     const double cosine = -normal.dot(direction);
-    const materials::FresnelCoefficients f = materials::fresnel(1.0 / optics.index, cosine);
+    const materials::FresnelCoefficients f =
+        is_side ? materials::fresnel(1.0 / optics.index, cosine) : fresnel_at_entrance(optics, false, cosine);
     start.light.turn_to(direction, normal);
     const Light front = start.light.reflected(f);
     start.direction = refracted(direction, normal, 1.0 / optics.index, cosine, f.cos_refracted);

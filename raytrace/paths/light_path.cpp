@@ -98,7 +98,11 @@ class Follower {
   }
 
   bool meet(const Vec3& out, geometry::FacetRole role, double ratio) {
-    return split(out, role, materials::fresnel(ratio, out.dot(direction_)), ratio);
+    const double cosine = out.dot(direction_);
+    const bool is_entrance = role == geometry::FacetRole::entrance;
+    return split(out, role,
+                 is_entrance ? fresnel_at_entrance(setup_.optics, true, cosine) : materials::fresnel(ratio, cosine),
+                 ratio);
   }
 
   /// \param out normal of the face on the far side
@@ -110,7 +114,7 @@ class Follower {
     if (f.total_reflection || reflected.power() >= transmitted.power()) {
       light_ = reflected;
       direction_ = mirrored(direction_, out);
-      const bool is_total = f.total_reflection && !setup_.optics.coating_index && !setup_.optics.mirror_facets;
+      const bool is_total = f.total_reflection && !setup_.optics.facet_layers.absorbs() && !setup_.optics.mirror_facets;
       add({is_total ? PathEvent::total_reflection : PathEvent::reflection, role, position_, deg(cosine),
            light_.power()});
       return true;

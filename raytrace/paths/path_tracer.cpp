@@ -65,6 +65,7 @@ void PathWalker::enter(const Vec2& entry_mm) {
   if (setup_.entrance_face != nullptr) return enter_entrance_face(entry_mm);
   const LightSetup::Entry& entry = setup_.entry;
   tally_.front[entry.front_cone] += entry.front;
+  tally_.other[Account::absorbed] += entry.absorbed;
   if (setup_.score != nullptr) setup_.score->add(entry.front_direction, entry.front.i, tally_.score);
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
@@ -271,7 +272,7 @@ bool PathWalker::meet_entrance(State& state) {
   state.position.z() = setup_.thickness_mm;
   const Vec3 down = -Vec3::UnitZ();
   const double cos_incidence = state.direction.z();
-  const materials::FresnelCoefficients f = materials::fresnel(setup_.optics.index, cos_incidence);
+  const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, true, cos_incidence);
   const Vec3 out = refracted(state.direction, down, setup_.optics.index, cos_incidence, f.cos_refracted);
   state.light.turn_to(state.direction, down);
   if (setup_.optics.lossless_entrance) {
@@ -283,6 +284,7 @@ bool PathWalker::meet_entrance(State& state) {
   }
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
+  tally_.other[Account::absorbed] += absorbed_by(setup_.optics.entrance_layers, state.light, reflected, transmitted);
   const Branch branch = choose(reflected, transmitted);
   if (branch != Branch::reflected) leave(state, transmitted, out);
   state.light = reflected;
@@ -332,8 +334,8 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
 
   state.light.turn_to(state.direction, against);
   Light reflected = state.light.reflected(f);
-  if (is_retro && optics.coating_index) tally_.other[Account::absorbed] += state.light.power() - reflected.power();
   Light transmitted = state.light.transmitted(f);
+  tally_.other[Account::absorbed] += absorbed_at_back(optics, facet.role, state.light, reflected, transmitted);
   const Branch branch = choose(reflected, transmitted);
   return go_on(state, branch, reflected, against, [&](State& through) {
     through.light = transmitted;
@@ -432,7 +434,7 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
   const Vec3 against = from_inside ? Vec3(-normal) : normal;
   const double cos_incidence = std::max(0.0, -against.dot(state.direction));
   const double ratio = from_inside ? setup_.optics.index : 1.0 / setup_.optics.index;
-  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
+  const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, from_inside, cos_incidence);
   state.light.turn_to(state.direction, against);
   state.source = {};
   state.entrance_source = hit.facet;
@@ -443,6 +445,8 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
   }
   Light reflected = is_lossless ? Light{Stokes{}, state.light.s_axis} : state.light.reflected(f);
   Light transmitted = is_lossless ? state.light : state.light.transmitted(f);
+  if (!is_lossless)
+    tally_.other[Account::absorbed] += absorbed_by(setup_.optics.entrance_layers, state.light, reflected, transmitted);
   // What the first surface makes of the beam is followed both ways, as at a plane entrance face.
   const Branch branch = is_first && !is_lossless ? Branch::both : choose(reflected, transmitted);
   return go_on(state, branch, reflected, against, [&](State& through) {

@@ -77,7 +77,7 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
   Ray transmitted{refracted(ray.direction, against, optics.ratio_at_back(ray.inside), cos_incidence, f.cos_refracted),
                   light.transmitted(f), !ray.inside, ray.scattered};
   TexturedReturn result;
-  if (optics.coating_index) result.absorbed = light.power() - reflected.light.power();
+  result.absorbed = absorbed_by(optics.facet_layers, light, reflected.light, transmitted.light);
   const Branch branch = choose_branch(reflected.light, transmitted.light, split_power, [&] { return random.next(); });
   if (branch != Branch::reflected) scatter(transmitted, optics, local, Lobe::transmission, split_power, result, random);
   if (branch != Branch::transmitted) scatter(reflected, optics, local, Lobe::reflection, split_power, result, random);

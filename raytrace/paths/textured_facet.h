@@ -41,7 +41,7 @@ struct TexturedReturn {
   std::array<Ray, 4> rays;  ///< the first `count` of them
   std::size_t count = 0;
   double truncated = 0.0;  ///< power that the texture keeps, or gives (negative)
-  double absorbed = 0.0;   ///< power that a coating takes
+  double absorbed = 0.0;   ///< power that layers take
 };
 
 /// Fresnel's branches at a piece of the texture, each scattered by Optics::facet_scatter. What stays specular and what

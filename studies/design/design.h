@@ -137,10 +137,30 @@ struct Substance {
   bool is_coloured() const { return std::holds_alternative<std::vector<SpectralAbsorption>>(absorption_per_mm); }
 };
 
-/// What the retro facets do beside reflecting.
+/// A layer of a coating, as the design names it.
+struct CoatingLayer {
+  std::string material;  ///< of the library, or a metal; empty: its index is given
+  double refractive_index = 1.0;
+  double extinction_coefficient = 0.0;
+  std::optional<double> thickness_nm;  ///< none: opaque
+
+  bool operator==(const CoatingLayer&) const = default;
+};
+
+/// Layers on the faces of a part, each list from the body outwards.
+struct Coating {
+  std::vector<CoatingLayer> facets;    ///< at most one is opaque
+  std::vector<CoatingLayer> entrance;  ///< none is opaque
+
+  /// Whether the facets are as `facet_coating = "aluminium"` says.
+  bool has_aluminium_alone_on_facets() const;
+  bool has_opaque_facets() const;
+};
+
+/// What the retro facets do beside reflecting, and layers on the faces.
 struct Surface {
-  bool aluminised_facets = false;  ///< an opaque film behind them
-  bool absorbing_walls = false;    ///< of elements and of the border
+  Coating coating;
+  bool absorbing_walls = false;  ///< of elements and of the border
   FacetTexture texture;
 
   bool is_smooth() const { return std::holds_alternative<SmoothTexture>(texture); }
@@ -205,7 +225,7 @@ struct Design {
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }
   /// Whether the retro facets rely on total reflection.
-  bool needs_total_reflection() const { return !idealisation.mirror_facets && !surface.aluminised_facets; }
+  bool needs_total_reflection() const { return !idealisation.mirror_facets && !surface.coating.has_opaque_facets(); }
 };
 
 /// What a question takes of designs beside elements on a plane behind a plane face.

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "core/infinity.h"
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "materials/io/spectrum_reader.h"
@@ -20,6 +23,9 @@ namespace retrace::studies {
 namespace {
 
 constexpr double kMissingShareToTell = 0.05;
+constexpr double kMostFringesPerStep = 0.5;
+constexpr std::string_view kFacetLayers = "coating.facets";
+constexpr std::string_view kEntranceLayers = "coating.entrance";
 
 /// Where the design says what wavelengths its light has.
 InputLocation light_location(const Design& design) {
@@ -118,6 +124,43 @@ double absorption_at(const Design& design, const materials::Material& material, 
   return curve.at(wavelength_nm);
 }
 
+/// Relative to air. \throw InputError at `where` if the material has no index there
+std::complex<double> index_of_layer(const Design& design, const materials::MaterialLibrary& library,
+                                    const CoatingLayer& layer, const InputLocation& where, double wavelength_nm) {
+  if (layer.material.empty()) return {layer.refractive_index, layer.extinction_coefficient};
+  const double air = materials::refractive_index(library.air().dispersion, wavelength_nm);
+  return std::visit(Overloaded{[&](const materials::Material* material) {
+                                 // exp(-4 pi k / wavelength) is left of power after a length; k of the index relative
+                                 // to air
+                                 const double extinction = material->absorption_per_mm * 1e-6 * wavelength_nm /
+                                                           (4.0 * std::numbers::pi * air);
+                                 return std::complex<double>(
+                                     index_at_wavelength(design, *material, library.air(), wavelength_nm), extinction);
+                               },
+                               [&](const materials::Metal* metal) {
+                                 return materials::complex_index(metal->model, wavelength_nm) / air;
+                               }},
+                    library.find_any(layer.material, where));
+}
+
+/// \param list the key of the layers
+materials::LayerStack stack_of(const Design& design, const materials::MaterialLibrary& library,
+                               const std::vector<CoatingLayer>& layers, std::string_view list, double wavelength_nm) {
+  const double air = materials::refractive_index(library.air().dispersion, wavelength_nm);
+  materials::LayerStack stack;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const std::string entry = schema::path_of_entry(list, i);
+    const CoatingLayer& layer = layers[i];
+    const std::complex<double> index =
+        index_of_layer(design, library, layer, design.where(entry + ".material"), wavelength_nm);
+    if (!layer.thickness_nm && !(index.imag() > 0.0))
+      throw InputError(design.where(entry + ".thickness_nm"),
+                       fmt::format("missing: only metals are opaque without it, {} is none", layer.material));
+    stack.layers.push_back({index, layer.thickness_nm ? *layer.thickness_nm * air / wavelength_nm : kInfinity});
+  }
+  return stack;
+}
+
 /// \param map that of facet_map()
 raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrary& library,
                            const std::optional<surface_models::HeightMap>& map, double wavelength_nm) {
@@ -126,9 +169,9 @@ raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrar
   optics.mirror_facets = design.idealisation.mirror_facets;
   optics.facet_scatter = scatter_model(design, map, wavelength_nm);
   optics.back_index = design.substance.back_index;
-  if (design.surface.aluminised_facets)
-    optics.coating_index = materials::complex_index(library.find_metal("aluminium").model, wavelength_nm) /
-                           materials::refractive_index(library.air().dispersion, wavelength_nm);
+  const Coating& coating = design.surface.coating;
+  optics.facet_layers = stack_of(design, library, coating.facets, kFacetLayers, wavelength_nm);
+  optics.entrance_layers = stack_of(design, library, coating.entrance, kEntranceLayers, wavelength_nm);
   optics.absorbing_walls = design.surface.absorbing_walls;
   optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
@@ -178,6 +221,14 @@ bool is_valid_at(const materials::Metal& metal, double wavelength_nm) {
   return wavelength_nm >= metal.valid_from_nm && wavelength_nm <= metal.valid_to_nm;
 }
 
+/// Orders of interference that a stack has in all, at normal incidence.
+double orders_in(const materials::LayerStack& stack) {
+  double orders = 0.0;
+  for (const materials::ThinLayer& layer : stack.layers)
+    if (std::isfinite(layer.thickness)) orders += 2.0 * layer.index.real() * layer.thickness;
+  return orders;
+}
+
 /// Says so where the index of a material or a metal is not backed by data.
 template <class Substance>
 void warn_of_extrapolation(const Design& design, const Substance& substance, OpticalModel& model) {
@@ -196,6 +247,30 @@ void warn_of_extrapolation(const Design& design, const Substance& substance, Opt
           ? data + fmt::format("at {} nm is extrapolated", outside_nm.front())
           : data + fmt::format("is extrapolated for {:.2g} % of the light, at {} wavelengths from {:.0f} to {:.0f} nm",
                                100.0 * share, outside_nm.size(), outside_nm.front(), outside_nm.back()));
+}
+
+/// Of layers: indices that are not backed by data, each material once, and fringes that few wavelengths do not resolve.
+void add_coating_warnings(const Design& design, const materials::MaterialLibrary& library, OpticalModel& model) {
+  std::vector<std::string> told = {design.substance.refractive_index ? "" : design.substance.material, ""};
+  for (const auto* const layers : {&design.surface.coating.facets, &design.surface.coating.entrance})
+    for (const CoatingLayer& layer : *layers) {
+      if (std::ranges::count(told, layer.material) > 0) continue;
+      told.push_back(layer.material);
+      std::visit([&](const auto* substance) { warn_of_extrapolation(design, *substance, model); },
+                 library.find_any(layer.material));
+    }
+  if (!design.light.spectrum() || design.light.spectrum()->kind == LightSpectrum::Kind::lines) return;
+  for (const auto stack : {&raytrace::Optics::facet_layers, &raytrace::Optics::entrance_layers}) {
+    double fringes = 0.0;  // from one traced wavelength to the next, at most
+    for (std::size_t k = 1; k < model.spectral.size(); ++k)
+      fringes = std::max(fringes, std::abs(orders_in(model.spectral[k].optics.*stack) -
+                                           orders_in(model.spectral[k - 1].optics.*stack)));
+    if (fringes > kMostFringesPerStep)
+      model.warnings.push_back(fmt::format(
+          "{}: layers of that thickness have up to {:.1f} interference fringes from one wavelength that stands for the "
+          "lamp to the next; means over the spectrum are those of the few wavelengths",
+          design.source_name(), fringes));
+  }
 }
 
 /// What the texture's model says of its range, at the shortest wavelength that gives reason to: surfaces are roughest
@@ -248,7 +323,7 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
   model.wavelength_nm = light.centroid_nm();
   model.optics = nearest(model.spectral, model.wavelength_nm).optics;
   if (!design.substance.refractive_index) warn_of_extrapolation(design, material, model);
-  if (design.surface.aluminised_facets) warn_of_extrapolation(design, library.find_metal("aluminium"), model);
+  add_coating_warnings(design, library, model);
   add_texture_warnings(design, model);
   return model;
 }

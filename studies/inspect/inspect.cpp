@@ -108,6 +108,7 @@ void tell_early_end(Inspection& result) {
 /// Says so if light that falls in along the normal is not totally reflected, or not all of it.
 void warn_of_lost_reflection(Inspection& result) {
   if (!result.design.needs_total_reflection()) return;
+  if (result.coating.facets && result.coating.facets->stack.absorbs()) return;  // they reflect by other means
   if (result.tir_limit_deg) return tell_early_end(result);
   const std::string lost =
       fmt::format("{}: no total reflection at the facets at normal incidence", result.design.source_name());
@@ -158,6 +159,7 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
   Inspection result;
   result.design = design;
   result.warnings = model.warnings;
+  result.coating = report_coating(design, model);
   result.light = model.spectral;
   result.refractive_index = mean_index(model.spectral);
   result.wavelength_nm = model.wavelength_nm;
@@ -200,6 +202,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.entrance_area_mm2 = part.entrance_area_mm2;
   result.thickness_mm = part.thickness_mm;
   result.warnings = model.warnings;
+  result.coating = report_coating(design, model);
   result.refractive_index = mean_index(model.spectral);
   result.light = model.spectral;
   result.wavelength_nm = model.wavelength_nm;

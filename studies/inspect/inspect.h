@@ -13,6 +13,7 @@
 #include "studies/design/design.h"
 #include "studies/design/optical_model.h"
 #include "studies/design/total_reflection.h"
+#include "studies/inspect/coating_report.h"
 #include "studies/inspect/entrance_report.h"
 
 namespace retrace::studies {
@@ -49,7 +50,8 @@ struct Inspection {
   std::vector<SpectralOptics> light;  ///< the wavelengths that stand for a spectrum, or the one there is
   /// Largest incidence up to which the retroreflected light is totally reflected at every facet: across the roof edge
   /// for an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence, or
-  /// none is needed: facets are mirrors or aluminised. Of a spectrum, that of the wavelength with the least index.
+  /// none is needed: facets are mirrors or have an opaque layer. Of a spectrum, that of the wavelength with the least
+  /// index.
   std::optional<double> tir_limit_deg;
   /// From where light meets a facet most squarely, so that its total reflection ends first; 0 to below 360, the least
   /// of equal ones, of an unturned element. None where none is needed.
@@ -58,7 +60,8 @@ struct Inspection {
       substrate;  ///< of elements that stand on one; there are no limits of total reflection then
   std::optional<EntranceReport> entrance;  ///< of a part with one; limits of total reflection are those of light that
                                            ///< enters through a plane
-  double dead_zone_share = 0.0;            ///< of an element's plan that rounded and chamfered edges take
+  CoatingReports coating;
+  double dead_zone_share = 0.0;      ///< of an element's plan that rounded and chamfered edges take
   std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something
   std::string boundary;              ///< what the check of the boundary found
   std::vector<std::string> warnings;

@@ -9,6 +9,7 @@
 #include "raytrace/balls/ball_forms.h"
 #include "raytrace/balls/ball_tracer.h"
 #include "raytrace/balls/ball_walker.h"
+#include "tests/support/designs.h"
 
 namespace retrace::raytrace::balls_test {
 namespace {
@@ -187,7 +188,7 @@ TEST(Balls, EveryBitOfPowerIsBooked) {
       optics.index = 1.9;
       optics.back_index = 1.4;
       optics.absorption_per_mm = 0.05;
-      if (layer.mirror_offset_mm > 0.0) optics.coating_index = std::complex<double>(1.2, 7.1);
+      if (layer.mirror_offset_mm > 0.0) optics.facet_layers = testing::opaque({1.2, 7.1});
       const MonteCarloResult result = traced(layer, optics, at(incidence_deg, 17.0), 0.5, 1U << 12);
       const Ledger& ledger = result.cones[0].ledger;
       EXPECT_NEAR(ledger.total(), 1.0, 1e-10);

@@ -80,7 +80,16 @@ std::vector<Case> cases() {
     o.back_index = 1.2;
   });
   const Optics black_walls = optics_with([](Optics& o) { o.absorbing_walls = true; });
-  const Optics metal = optics_with([](Optics& o) { o.coating_index = std::complex<double>(1.1, 6.9); });
+  const Optics metal = optics_with([](Optics& o) { o.facet_layers = opaque({1.1, 6.9}); });
+  const Optics layers = optics_with([](Optics& o) {
+    o.absorption_per_mm = 0.1;
+    o.facet_layers = thin_aluminium();
+    o.entrance_layers = anti_reflection();
+  });
+  const Optics behind_metal = optics_with([](Optics& o) {
+    o.facet_layers = anti_reflection();
+    o.entrance_layers = thin_aluminium();
+  });
   const Optics lossless = optics_with([](Optics& o) { o.lossless_entrance = true; });
   return {{"aligned", aligned, 0.0, 0.0},
           {"aligned beyond the knee", aligned, 20.0, 0.0},
@@ -110,6 +119,10 @@ std::vector<Case> cases() {
           {"gaps, round edges, aluminised", rounded(gapped(bricks, 0.05, 0.03), 0.01, 0.02), 12.0, 30.0, metal},
           {"few bricks", few_bricks, 15.0, 25.0, absorbing(0.1)},
           {"few bricks, partial ones omitted, black walls", omitting(few_bricks), 20.0, 70.0, black_walls},
+          {"bricks, layers", bricks, 20.0, 60.0, layers},
+          {"checker, layers, linear light", checker, 25.0, 30.0, layers, {1.0, 0.6, 0.0, 0.8}},
+          {"honeycomb behind metal", honeycomb, 25.0, 40.0, behind_metal, {1.0, 0.0, 0.0, 1.0}},
+          {"few cubes, layers", few_cubes, 15.0, 25.0, layers},
           {"few bricks in water", few_bricks, 5.0, 70.0, water},
           {"few cubes", few_cubes, 10.0, 35.0},
           {"few triangles", few_triangles, 10.0, 35.0}};
@@ -186,11 +199,15 @@ std::vector<RoughCase> rough_cases() {
   const PartSpec triangles = infinite(TriangularCube{1.0}, Arrangement::triangular, 1.0);
   const PartSpec few = finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 3.7, 3.6, 0.8);
   Optics metal = pmma();
-  metal.coating_index = std::complex<double>(1.1, 6.9);
+  metal.facet_layers = opaque({1.1, 6.9});
+  Optics layers = pmma();
+  layers.facet_layers = thin_aluminium();
+  layers.entrance_layers = anti_reflection();
   return {{"Harvey-Shack, prisms", prisms, surface_models::HarveyShack({20.0, 5.0, 0.0, 0.0})},
           {"waviness, cubes", cubes, surface_models::HarveyShack({10.0, 5.0, 400.0, 100.0})},
           {"ABg, triangles", triangles, surface_models::Abg(1e-3, 1e-4, 1.5)},
           {"aluminised, cubes", cubes, surface_models::HarveyShack({20.0, 5.0, 0.0, 0.0}), metal},
+          {"layers, cubes", cubes, surface_models::HarveyShack({40.0, 5.0, 0.0, 0.0}), layers},
           {"Harvey-Shack, few prisms", few, surface_models::HarveyShack({20.0, 5.0, 0.0, 0.0})}};
 }
 

@@ -44,10 +44,21 @@ struct Case {
   PartSpec spec;
   double incidence_deg;
   double azimuth_deg;
+  Optics optics = pmma();
 };
 
+/// Layers that pass light and turn the phases of total reflection, and a film of metal on the entrance face.
+Optics layered() {
+  Optics optics = pmma();
+  optics.facet_layers = {{{1.9, 0.11}, {1.3777, 0.2}}};
+  optics.entrance_layers = thin_aluminium();
+  return optics;
+}
+
 std::vector<Case> cases() {
-  return {{"prism across", single(RtpElement{0.5, 0.4, 90.0}, 0.3), 38.0, 0.0},
+  return {{"hexagon with layers", single(HexagonalCube{1.0}, 0.4), 14.0, 70.0, layered()},
+          {"prism with layers", single(RtpElement{0.5, 0.4, 90.0}, 0.3), 38.0, 20.0, layered()},
+          {"prism across", single(RtpElement{0.5, 0.4, 90.0}, 0.3), 38.0, 0.0},
           {"prism askew", single(RtpElement{0.5, 0.4, 84.0}, 0.3), 33.0, 25.0},
           {"hexagon", single(HexagonalCube{1.0}, 0.4), 24.0, 70.0},
           {"triangle", single(TriangularCube{1.0}, 0.4), 9.0, 200.0}};
@@ -64,9 +75,9 @@ TEST(Polarisation, AllEnginesAgree) {
       SCOPED_TRACE(c.name + ", " + std::to_string(light.q) + " " + std::to_string(light.u) + " " +
                    std::to_string(light.v));
       const Illumination illumination = polarised(c.incidence_deg, c.azimuth_deg, light);
-      const ReferenceResult reference = reference_trace(part, pmma(), illumination, kCone, 8192, 5);
-      const BeamResult exact = BeamTracer(part).trace(pmma(), illumination, {kCone}, leaving(1e-5));
-      const ConeResult sampled = MonteCarlo(part).trace(pmma(), illumination, {kCone}, rays(1U << 16), {}).cones[0];
+      const ReferenceResult reference = reference_trace(part, c.optics, illumination, kCone, 8192, 5);
+      const BeamResult exact = BeamTracer(part).trace(c.optics, illumination, {kCone}, leaving(1e-5));
+      const ConeResult sampled = MonteCarlo(part).trace(c.optics, illumination, {kCone}, rays(1U << 16), {}).cones[0];
       const double slack = reference.mean[Account::truncated] + 2e-5;
       for (std::size_t k = 0; k < 4; ++k) {
         EXPECT_NEAR(exact.stokes[0].values()[k], reference.stokes[k], z * reference.stokes_error[k] + slack) << k;
@@ -121,11 +132,31 @@ Eigen::Matrix2d to_axes(const Vec3& direction, const Vec3& s_axis) {
   return turn;
 }
 
+constexpr double kSin2AtFacets = 2.0 / 3.0;
+
+/// arg r_s - arg r_p of a facet of a cube corner, bare.
+double retardance_of_bare_facet() {
+  return 2.0 * std::atan(std::sqrt((1.0 - kSin2AtFacets) * (kSin2AtFacets - 1.0 / (kPmma * kPmma))) / kSin2AtFacets);
+}
+
+/// The same behind one layer, by Airy's formula.
+double retardance_behind(const materials::ThinLayer& layer) {
+  const auto w = [](std::complex<double> n) { return std::sqrt(n * n - kPmma * kPmma * kSin2AtFacets); };
+  const auto reflection = [&](std::complex<double> a, std::complex<double> b, std::complex<double> c) {
+    const std::complex<double> turn =
+        std::exp(std::complex<double>(0.0, 4.0 * std::numbers::pi * layer.thickness) * w(layer.index));
+    const std::complex<double> front = (a - b) / (a + b);
+    const std::complex<double> back = (b - c) / (b + c);
+    return (front + back * turn) / (1.0 + front * back * turn);
+  };
+  const std::complex<double> n1 = layer.index;
+  return std::arg(reflection(w(kPmma), w(n1), w(1.0)) /
+                  reflection(w(kPmma) / (kPmma * kPmma), w(n1) / (n1 * n1), w(1.0)));
+}
+
 /// Jones matrix of three total reflections at the facets with inward normals n[0], n[1], n[2], from docs/theory: a
 /// retarder a0 + i (a3 sigma3 + a1 sigma1) from (s, p) of the first to those of the last reflection.
-Jones three_reflections(const std::array<Vec3, 3>& n, double index) {
-  const double sin2 = 2.0 / 3.0;
-  const double retardance = 2.0 * std::atan(std::sqrt((1.0 - sin2) * (sin2 - 1.0 / (index * index))) / sin2);
+Jones three_reflections(const std::array<Vec3, 3>& n, double retardance) {
   const double c = std::cos(0.5 * retardance);
   const double s = std::sin(0.5 * retardance);
   const double hand = n[0].cross(n[1]).dot(n[2]) > 0.0 ? 1.0 : -1.0;
@@ -155,11 +186,9 @@ std::array<double, 4> after(const Jones& jones, const Stokes& light) {
 
 // Liu and Azzam, Appl. Opt. 36, 4553 (1997); Murphy and Goodrow, Opt. Eng. 52, 095102 (2013). Six sub-beams, one for
 // each order of the facets.
-TEST(Polarisation, SixSubBeamsOfASolidCubeCorner) {
+void expect_six_sub_beams(const Optics& optics, double retardance) {
   const Part part = build_part(single(HexagonalCube{kCubeAperture}, 0.4));
   const Vec2 centre = centroid(part.outline);
-  Optics optics = pmma();
-  optics.lossless_entrance = true;
   std::array<Vec3, 3> edges;  // seen from the apex
   for (std::size_t k = 0; k < 3; ++k) {
     const double a = 120.0 * static_cast<double>(k) * kDeg;
@@ -177,7 +206,7 @@ TEST(Polarisation, SixSubBeamsOfASolidCubeCorner) {
       const std::size_t k = sextant / 2;
       const std::size_t first = (k + 2) % 3;
       const std::size_t second = sextant % 2 == 0 ? (k + 1) % 3 : k;
-      const Jones jones = three_reflections({edges[first], edges[second], edges[3 - first - second]}, kPmma);
+      const Jones jones = three_reflections({edges[first], edges[second], edges[3 - first - second]}, retardance);
       const std::array<double, 4> expected = after(jones, light);
       for (std::size_t s = 0; s < 4; ++s)
         EXPECT_NEAR(beam.stokes.values()[s] / beam.stokes.i, expected[s], 1e-9) << "sextant " << sextant << ", " << s;
@@ -186,6 +215,23 @@ TEST(Polarisation, SixSubBeamsOfASolidCubeCorner) {
     illumination.stokes = light;
     BeamTracer(part).trace(optics, illumination, {0.5}, {}, nullptr, compare);
     for (const double s : share) EXPECT_NEAR(s, 1.0 / 6.0, 1e-9);
+  }
+}
+
+TEST(Polarisation, SixSubBeamsOfASolidCubeCorner) {
+  Optics optics = pmma();
+  optics.lossless_entrance = true;
+  expect_six_sub_beams(optics, retardance_of_bare_facet());
+}
+
+// A layer on the facets leaves total reflection total and turns its phases.
+TEST(Polarisation, SixSubBeamsBehindALayer) {
+  Optics optics = pmma();
+  optics.lossless_entrance = true;
+  for (const materials::ThinLayer& layer : {materials::ThinLayer{1.3777, 0.18}, {1.1, 0.3}, {2.3, 0.1}}) {
+    optics.facet_layers = {{layer}};
+    expect_six_sub_beams(optics, retardance_behind(layer));
+    EXPECT_GT(std::abs(retardance_behind(layer) - retardance_of_bare_facet()), 0.05);
   }
 }
 

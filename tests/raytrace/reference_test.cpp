@@ -26,7 +26,8 @@ struct Case {
   double absorption_per_mm;
   double back_index = 1.0;
   bool absorbing_walls = false;
-  std::optional<std::complex<double>> coating_index = {};
+  materials::LayerStack facet_layers = {};
+  materials::LayerStack entrance_layers = {};
 };
 
 std::vector<Case> cases() {
@@ -53,8 +54,20 @@ std::vector<Case> cases() {
       {"honeycomb, black walls", omitted, 28.0, 15.0, 1.4917, 0.0, 1.0, true},
       {"bricks askew, black walls", bricks, 50.0, 110.0, 1.3, 0.0, 1.0, true},
       {"aluminised hexagon in glue", single(HexagonalCube{1.0}, 0.4), 35.0, 70.0, 1.4917, 0.0, 1.5, false,
-       std::complex<double>(1.1, 6.9)},
-      {"poor metal on bricks", bricks, 30.0, 35.0, 1.4917, 0.1, 1.0, false, std::complex<double>(2.5, 1.2)}};
+       opaque({1.1, 6.9})},
+      {"poor metal on bricks", bricks, 30.0, 35.0, 1.4917, 0.1, 1.0, false, opaque({2.5, 1.2})},
+      {"thin aluminium on bricks", bricks, 30.0, 35.0, 1.4917, 0.1, 1.0, false, thin_aluminium()},
+      {"coated bricks in water", bricks, 20.0, 70.0, 1.4917, 0.0, 1.333, false, anti_reflection(), anti_reflection()},
+      {"silver between layers on a hexagon",
+       single(HexagonalCube{1.0}, 0.4),
+       25.0,
+       15.0,
+       1.585,
+       0.0,
+       1.0,
+       false,
+       {{{1.9, 0.2}, {{0.14, 3.5}, kInfinity}, {1.5, 2.0}}},
+       thin_aluminium()}};
 }
 
 class AgainstReference : public ::testing::TestWithParam<std::size_t> {};
@@ -67,7 +80,8 @@ TEST_P(AgainstReference, EveryAccountAgrees) {
   optics.absorption_per_mm = c.absorption_per_mm;
   optics.back_index = c.back_index;
   optics.absorbing_walls = c.absorbing_walls;
-  optics.coating_index = c.coating_index;
+  optics.facet_layers = c.facet_layers;
+  optics.entrance_layers = c.entrance_layers;
   // A wide cone puts power on both sides of its edge.
   const double cone_deg = 8.0;
   const ReferenceResult reference =
@@ -101,9 +115,9 @@ TEST(FacetCoating, AluminisedPrism) {
   Optics optics = pmma();
   optics.lossless_entrance = true;
   optics.back_index = 1.333;
-  optics.coating_index = std::complex<double>(1.13, 6.85);
+  const std::complex<double> n2(1.13, 6.85);
+  optics.facet_layers = opaque(n2);
   const double n1 = kPmma;
-  const std::complex<double> n2 = *optics.coating_index;
   const std::complex<double> cos2 = std::sqrt(1.0 - 0.5 * n1 * n1 / (n2 * n2));
   const std::complex<double> r_s = (n1 * std::sqrt(0.5) - n2 * cos2) / (n1 * std::sqrt(0.5) + n2 * cos2);
   const std::complex<double> r_p = (n2 * std::sqrt(0.5) - n1 * cos2) / (n2 * std::sqrt(0.5) + n1 * cos2);

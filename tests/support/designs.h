@@ -1,5 +1,8 @@
 #pragma once
 
+#include <complex>
+
+#include "core/infinity.h"
 #include "geometry/part/part.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "tests/support/part_specs.h"
@@ -23,6 +26,19 @@ inline raytrace::Optics ideal() {
   optics.mirror_facets = true;
   optics.lossless_entrance = true;
   return optics;
+}
+
+/// An opaque film. \param index n + i k
+inline materials::LayerStack opaque(std::complex<double> index) {
+  return {{{index, kInfinity}}};
+}
+/// A quarter of a wave of magnesium fluoride.
+inline materials::LayerStack anti_reflection() {
+  return {{{1.3777, 0.25 / 1.3777}}};
+}
+/// Aluminium so thin that it lets a third of the light through, under silica.
+inline materials::LayerStack thin_aluminium() {
+  return {{{std::complex<double>(1.13, 6.85), 0.008}, {1.4585, 0.3}}};
 }
 
 inline raytrace::Illumination from(double incidence_deg, double azimuth_deg = 0.0) {

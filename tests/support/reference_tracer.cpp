@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -146,8 +147,10 @@ class Reference {
     const double n1 = ray.inside ? optics_.index : outside;
     const double n2 = ray.inside ? outside : optics_.index;
     const double ci = -n.dot(ray.direction);
-    if (optics_.coating_index && hit.role == FacetRole::retro_facet) {
-      meet_metal(ray, n, n1, *optics_.coating_index);
+    const bool is_retro = hit.role == FacetRole::retro_facet;
+    const bool is_entrance = hit.role == FacetRole::entrance;
+    if ((is_retro && !optics_.facet_layers.empty()) || (is_entrance && !optics_.entrance_layers.empty())) {
+      meet_layers(ray, hit.role, n, n1, n2, (is_retro ? optics_.facet_layers : optics_.entrance_layers).layers);
       return;
     }
     const double sin_t = n1 / n2 * std::sqrt(std::max(0.0, 1.0 - ci * ci));
@@ -175,20 +178,67 @@ class Reference {
     follow(through);
   }
 
-  /// By the tangential wave numbers of the metal, not by an angle of refraction.
-  void meet_metal(Ray ray, const Vec3& n, double n1, Complex metal) {
+  struct Amplitudes {
+    Complex r, t;
+  };
+  /// Of E for s, of H for p, by recursion over interfaces and phases from the last medium on, with normal wave numbers
+  /// and no angle of refraction. \param indices of the media, first and last included \param waves their thicknesses
+  static Amplitudes amplitudes(const std::vector<Complex>& indices, const std::vector<double>& waves, double ci,
+                               bool is_p) {
+    const Complex tangential = indices[0] * std::sqrt(std::max(0.0, 1.0 - ci * ci));
+    const auto kz = [&](std::size_t k) {
+      const Complex root = std::sqrt(indices[k] * indices[k] - tangential * tangential);
+      return root.imag() < 0.0 ? -root : root;
+    };
+    Amplitudes sum{0.0, 1.0};
+    for (std::size_t k = indices.size() - 1; k-- > 0;) {
+      const Complex a = kz(k) * (is_p ? indices[k + 1] * indices[k + 1] : 1.0);
+      const Complex b = kz(k + 1) * (is_p ? indices[k] * indices[k] : 1.0);
+      const Complex r = (a - b) / (a + b);
+      const bool is_last = k + 2 == indices.size();
+      const Complex once = is_last ? 1.0 : std::exp(Complex(0.0, 2.0 * std::numbers::pi * waves[k + 1]) * kz(k + 1));
+      const Complex loop = 1.0 + r * sum.r * once * once;
+      sum = {(r + sum.r * once * once) / loop, (1.0 + r) * sum.t * once / loop};
+    }
+    return sum;
+  }
+
+  void meet_layers(Ray ray, FacetRole role, const Vec3& n, double n1, double n2,
+                   std::vector<materials::ThinLayer> layers) {
+    if (!ray.inside) std::reverse(layers.begin(), layers.end());
+    std::vector<Complex> indices = {n1};
+    std::vector<double> waves = {0.0};
+    bool is_opaque = false;
+    for (const materials::ThinLayer& layer : layers) {
+      indices.push_back(layer.index);
+      waves.push_back(layer.thickness);
+      is_opaque = std::isinf(layer.thickness);
+      if (is_opaque) break;
+    }
+    if (!is_opaque) indices.push_back(n2);
     const double ci = -n.dot(ray.direction);
-    Complex kz = std::sqrt(metal * metal - n1 * n1 * (1.0 - ci * ci));
-    if (kz.imag() < 0.0) kz = -kz;
-    const Complex r_s = (n1 * ci - kz) / (n1 * ci + kz);
-    const Complex r_p = (metal * metal * ci - n1 * kz) / (metal * metal * ci + n1 * kz);
+    const Amplitudes of_s = amplitudes(indices, waves, ci, false);
+    const Amplitudes of_p = amplitudes(indices, waves, ci, true);
     Vec3 s = n.cross(ray.direction);
     s = s.norm() > 1e-9 ? s.normalized() : ray.direction.unitOrthogonal();
     Ray mirrored = ray;
     mirrored.direction = (ray.direction + 2.0 * ci * n).normalized();
-    mirrored.field = recombined(ray, mirrored.direction, s, r_s, r_p);
-    ledger_[Account::absorbed] += ray.power() - mirrored.power();
+    mirrored.field = recombined(ray, mirrored.direction, s, of_s.r, of_p.r);
+    const double sin_t = n1 / n2 * std::sqrt(std::max(0.0, 1.0 - ci * ci));
+    const bool passes = !is_opaque && sin_t < 1.0;
+    Ray through = ray;
+    if (passes) {
+      const double ct = std::sqrt(1.0 - sin_t * sin_t);
+      through.direction = (n1 / n2 * ray.direction + (n1 / n2 * ci - ct) * n).normalized();
+      through.field = recombined(ray, through.direction, s, of_s.t, of_p.t * n1 / n2);
+      through.flux *= n2 * ct / (n1 * ci);
+      through.inside = !ray.inside;
+      through.entered = true;
+      if (ray.inside) through.left_through = role;
+    }
+    ledger_[Account::absorbed] += ray.power() - mirrored.power() - (passes ? through.power() : 0.0);
     follow(mirrored);
+    if (passes) follow(through);
   }
 
   /// Field after an interface: s stays, p turns with the direction.

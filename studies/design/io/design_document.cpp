@@ -171,8 +171,31 @@ void set_body(Document& document, const Design& design) {
   if (design.substance.refractive_index) keys.set("refractive_index", *design.substance.refractive_index);
   if (const Value absorption = absorption_value(design.substance.absorption_per_mm); absorption.index() != 0)
     keys.set("absorption_per_mm", absorption);
-  if (design.surface.aluminised_facets) keys.set_word("facet_coating", "aluminium");
+  if (design.surface.coating.has_aluminium_alone_on_facets()) keys.set_word("facet_coating", "aluminium");
   if (design.substance.back_index != 1.0) keys.set("back_index", design.substance.back_index);
+}
+
+void set_layers(Document& document, const std::string& list, const std::vector<CoatingLayer>& layers) {
+  if (!layers.empty()) document.set(list, {});
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const CoatingLayer& layer = layers[i];
+    Keys entry(document, schema::path_of_entry(list, i));
+    if (!layer.material.empty()) {
+      entry.set_word("material", layer.material);
+    } else {
+      entry.set("refractive_index", layer.refractive_index);
+      entry.set("extinction_coefficient", layer.extinction_coefficient);
+    }
+    if (layer.thickness_nm) entry.set("thickness_nm", *layer.thickness_nm);
+  }
+}
+
+void set_coating(Document& document, const Coating& coating) {
+  const bool sets_facets = !coating.facets.empty() && !coating.has_aluminium_alone_on_facets();
+  if (!sets_facets && coating.entrance.empty()) return;
+  document.set("coating", {});
+  if (sets_facets) set_layers(document, "coating.facets", coating.facets);
+  set_layers(document, "coating.entrance", coating.entrance);
 }
 
 /// As the design file has it.
@@ -283,6 +306,7 @@ Document document_of(const Design& design) {
   set_shape(document, design.shape);
   if (design.entrance) set_entrance(document, *design.entrance);
   set_body(document, design);
+  set_coating(document, design.surface.coating);
   set_light(document, design);
   Keys(document, "detector").set("acceptance_half_angle_deg", design.detector.acceptance_half_angle_deg);
   if (!design.balls()) set_surface(document, design);

@@ -32,6 +32,27 @@ const Table kSurfaceTables[] = {
      .shape = "a list of tables with facet, position_um, width_um and depth_um",
      .when = kScratchesOnly}};
 
+constexpr std::string_view kLayerIndex[] = {"material", "refractive_index"};
+constexpr Rule kLayerRules[] = {OneOf{kLayerIndex, "must have either material or refractive_index"}};
+constexpr std::string_view kLayerShape =
+    "a list of tables with material or refractive_index, and thickness_nm, the layer on the body first";
+const Table kCoatingTables[] = {
+    {.name = "facets",
+     .meaning = "Layers on the retro facets, the one on the body first, at most 200, one of them opaque.",
+     .rows = layer_rows(),
+     .rules = kLayerRules,
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = kLayerShape},
+    {.name = "entrance",
+     .meaning = "The same on the entrance face, none of them opaque.",
+     .rows = layer_rows(),
+     .rules = kLayerRules,
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = kLayerShape,
+     .when = kEntranceTable}};
+
 constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Names curves in plots."}};
 const Table kTables[] = {
     {.name = "element",
@@ -60,6 +81,10 @@ const Table kTables[] = {
      .presence = Presence::optional,
      .when = kEntranceTable},
     {.name = "body", .meaning = "What the part is made of.", .rows = body_rows(), .presence = Presence::implied},
+    {.name = "coating",
+     .meaning = "Thin layers on its faces.",
+     .tables = kCoatingTables,
+     .presence = Presence::optional},
     {.name = "light", .meaning = "The light that falls on it.", .rows = light_rows(), .presence = Presence::implied},
     {.name = "detector", .meaning = "What counts as returned.", .rows = detector_rows(), .presence = Presence::implied},
     {.name = "surface",

@@ -88,9 +88,30 @@ FacetTexture read_texture(const Document& document) {
   return read_heights(document, model);
 }
 
+/// What `facet_coating = "aluminium"` says.
+const CoatingLayer kPlainAluminium = {"aluminium", 1.0, 0.0, {}};
+
+std::vector<CoatingLayer> read_layers(const Document& document, std::string_view list) {
+  std::vector<CoatingLayer> layers;
+  for (std::size_t i = 0; i < document.count(list); ++i) {
+    const std::string entry = schema::path_of_entry(list, i);
+    CoatingLayer& layer = layers.emplace_back();
+    layer.material = document.text_if(entry + ".material");
+    layer.refractive_index = document.number_if(entry + ".refractive_index").value_or(1.0);
+    layer.extinction_coefficient = document.number_if(entry + ".extinction_coefficient").value_or(0.0);
+    layer.thickness_nm = document.number_if(entry + ".thickness_nm");
+  }
+  return layers;
+}
+
+Coating read_coating(const Document& document) {
+  Coating coating = {read_layers(document, "coating.facets"), read_layers(document, "coating.entrance")};
+  if (document.text("body.facet_coating") == "aluminium") coating.facets = {kPlainAluminium};
+  return coating;
+}
+
 Surface read_surface(const Document& document) {
-  return {document.text("body.facet_coating") == "aluminium", document.text("surface.walls") == "absorbing",
-          read_texture(document)};
+  return {read_coating(document), document.text("surface.walls") == "absorbing", read_texture(document)};
 }
 
 std::variant<double, LightSpectrum> read_colour(const Document& document) {
@@ -188,6 +209,14 @@ InputLocation Design::where_texture() const {
   for (const std::string_view key : {"surface.height_map", "surface.model", "surface.roughness_sq_nm"})
     if (document && document->has(key)) return where(key);
   return where("surface.waviness_sq_nm");
+}
+
+bool Coating::has_opaque_facets() const {
+  return std::ranges::any_of(facets, [](const CoatingLayer& layer) { return !layer.thickness_nm; });
+}
+
+bool Coating::has_aluminium_alone_on_facets() const {
+  return facets.size() == 1 && facets[0] == kPlainAluminium;
 }
 
 std::string_view Design::entrance_key() const {

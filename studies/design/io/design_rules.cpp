@@ -368,12 +368,58 @@ void check_stokes(const Document& document) {
                                    shortest(given[0]), shortest(given[1]), shortest(given[2]), shortest(given[3])));
 }
 
+constexpr std::string_view kFacetLayers = "coating.facets";
+constexpr std::string_view kEntranceLayers = "coating.entrance";
+constexpr std::size_t kMostLayers = 200;
+
 /// A bowl behind balls is nothing but its mirror.
 void check_ball_mirror(const Document& document) {
   constexpr std::string_view key = "element.mirror_offset_mm";
-  if (!document.has(key) || document.number(key) == 0.0) return;
+  if (!document.has(key) || document.number(key) == 0.0 || document.count(kFacetLayers) > 0) return;
   if (document.text("body.facet_coating") == "aluminium" || document.text("idealisation.facets") == "mirror") return;
   document.fail(key, "needs a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = \"mirror\"");
+}
+
+std::size_t count_opaque(const Document& document, std::string_view list) {
+  std::size_t opaque = 0;
+  for (std::size_t i = 0; i < document.count(list); ++i)
+    if (!document.has(schema::path_of_entry(list, i) + ".thickness_nm")) ++opaque;
+  return opaque;
+}
+
+void check_layers(const Document& document) {
+  for (const std::string_view list : {kFacetLayers, kEntranceLayers}) {
+    const std::size_t count = document.count(list);
+    if (count > kMostLayers) document.fail(list, fmt::format("must be at most {} layers, got {}", kMostLayers, count));
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string key = schema::path_of_entry(list, i) + ".thickness_nm";
+      if (document.has(key)) continue;
+      if (list == kEntranceLayers)
+        document.fail(key, "missing: a layer without thickness is opaque, and light must enter");
+      const auto extinction = document.number_if(schema::path_of_entry(list, i) + ".extinction_coefficient");
+      if (extinction && !(*extinction > 0.0))
+        document.fail(key,
+                      "missing: only a metal, or a layer with an extinction_coefficient > 0, is opaque without it");
+    }
+  }
+  if (const std::size_t opaque = count_opaque(document, kFacetLayers); opaque > 1)
+    document.fail(kFacetLayers,
+                  fmt::format("must have at most one layer without thickness_nm, which is opaque, got {}", opaque));
+}
+
+/// One thing is said once, and nothing is said that would not count.
+void check_coating(const Document& document) {
+  if (document.count(kFacetLayers) > 0) {
+    if (document.text("body.facet_coating") != "none")
+      document.fail(kFacetLayers, "not allowed together with body.facet_coating: give the aluminium as a layer");
+    if (document.text("idealisation.facets") == "mirror")
+      document.fail(kFacetLayers, "not allowed together with idealisation.facets = \"mirror\"");
+    if (document.text_if("element.kind") == "ball" && count_opaque(document, kFacetLayers) == 0)
+      document.fail(kFacetLayers,
+                    "must have a layer without thickness_nm for kind = \"ball\": only mirrors lie behind balls");
+  }
+  if (document.count(kEntranceLayers) > 0 && document.text("idealisation.entrance") == "lossless")
+    document.fail(kEntranceLayers, "not allowed together with idealisation.entrance = \"lossless\"");
 }
 
 void check_entrance(const Document& document) {
@@ -412,6 +458,9 @@ constexpr schema::Words kAbsorptionKeys = {kAbsorption};
 constexpr schema::Words kSpectrumKeys = {"light.spectrum"};
 constexpr schema::Words kStokesKeys = {"light.polarisation"};
 constexpr schema::Words kMirrorKeys = {"element.mirror_offset_mm", "body.facet_coating", "idealisation.facets"};
+constexpr schema::Words kLayerKeys = {kFacetLayers, kEntranceLayers};
+constexpr schema::Words kCoatingKeys = {kFacetLayers,          kEntranceLayers,         "body.facet_coating",
+                                        "idealisation.facets", "idealisation.entrance", "element.kind"};
 constexpr schema::Words kEntranceKeys = {"front.turned", "front.mesh", "array.extent"};
 
 using schema::check_by;
@@ -465,6 +514,13 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kSpectrumKeys, "A list of lines has each wavelength once.", check_by<check_lines>},
     schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",
                   check_by<check_stokes>},
+    schema::Check{kLayerKeys,
+                  "At most 200 layers on a face. Layers without thickness are opaque: one on the facets, none on the "
+                  "entrance face.",
+                  check_by<check_layers>},
+    schema::Check{kCoatingKeys,
+                  "Layers are for faces that are real and not coated otherwise; those behind balls make a mirror.",
+                  check_by<check_coating>},
     schema::Check{kMirrorKeys, "A bowl behind balls (`mirror_offset_mm` > 0) needs a mirror: aluminium or ideal.",
                   check_by<check_ball_mirror>},
     schema::Check{kEntranceKeys, "A `[front]` has one file and a finite part.", check_by<check_entrance>}};

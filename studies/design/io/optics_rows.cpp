@@ -31,6 +31,8 @@ constexpr Condition kThicknessOfMesh[] = {is_not(kKind, kBall), beside("part.mes
 constexpr Condition kThicknessOfOthers[] = {is_not(kKind, kBall, "not allowed for kind = \"ball\", which has no plate"),
                                             without("part.mesh")};
 
+constexpr Condition kWithLayerIndex[] = {beside("refractive_index")};
+
 constexpr Row kBodyRows[] = {
     {"thickness_mm", kSize, kRequired,
      "The plate between the entrance face and the nominal rims; with a `[front]`: between the origin of its file and "
@@ -45,10 +47,18 @@ constexpr Row kBodyRows[] = {
     {"absorption_per_mm", Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]", 2}, kNone,
      "By wavelength."},
     {"facet_coating", Word{kCoatings}, "none",
-     "`\"aluminium\"`: an opaque film on the retro facets; what it does not reflect is absorbed."},
+     "`\"aluminium\"`: an opaque film on the retro facets; what it does not reflect is absorbed. `[coating]` has "
+     "more."},
     {"back_index", Number{{.low = 1.0, .high = 3.0}}, 1.0,
      "Relative to air; of what lies behind the facets, such as water (1.333) or glue; air is in front and at the "
      "sides."}};
+
+constexpr Row kLayerRows[] = {
+    {"material", Text{}, kNone, "A name that `retrace list materials` shows, of a material or a metal."},
+    {"refractive_index", Number{kAboveZero}, kNone, "In place of a material, relative to air."},
+    {"extinction_coefficient", Number{kAtLeastZero}, 0.0, "Imaginary part of that index.", kWithLayerIndex},
+    {"thickness_nm", Number{{.low = 0.0, .high = 1e6}}, kNone,
+     "Without it the layer is opaque, which takes a metal or an extinction coefficient above 0."}};
 
 constexpr Condition kNoSpectrum[] = {
     without("spectrum", "not allowed together with spectrum: one of the two says what the light is")};
@@ -151,6 +161,9 @@ constexpr Row kIdealisationRows[] = {
 
 std::span<const Row> body_rows() {
   return kBodyRows;
+}
+std::span<const Row> layer_rows() {
+  return kLayerRows;
 }
 std::span<const Row> light_rows() {
   return kLightRows;

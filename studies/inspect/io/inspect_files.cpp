@@ -1,6 +1,7 @@
 #include "studies/inspect/io/inspect_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@ std::string total_reflection(const Inspection& i) {
   if (i.entrance) return "not stated: light comes from a curved front in many directions";
   if (i.substrate) return "not stated: elements on a base stand at angles of their own";
   if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
+  if (i.coating.facets && i.coating.facets->stack.absorbs()) return "none: layers on the facets absorb";
   if (!i.tir_limit_deg) return "none at normal incidence";
   const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part().element);
   return fmt::format("up to {} degrees {}", fixed(*i.tir_limit_deg, 2),
@@ -61,6 +63,50 @@ std::string entrance_text(const Inspection& i) {
                      fixed(i.entrance->range.highest_mm, 6), fixed(i.entrance->steepest_deg, 2));
 }
 
+nlohmann::ordered_json coating_json(const CoatingReport& face) {
+  nlohmann::ordered_json layers = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < face.layers.size(); ++k) {
+    nlohmann::ordered_json layer;
+    if (!face.layers[k].material.empty()) layer["material"] = face.layers[k].material;
+    layer["refractive_index"] = face.stack.layers[k].index.real();
+    layer["extinction_coefficient"] = face.stack.layers[k].index.imag();
+    if (face.layers[k].thickness_nm) layer["thickness_nm"] = *face.layers[k].thickness_nm;
+    layers.push_back(layer);
+  }
+  return {{"layers", layers},
+          {"reflectance", face.reflectance},
+          {"transmittance", face.transmittance},
+          {"absorptance", face.absorptance}};
+}
+
+void add_coating(const Inspection& i, nlohmann::ordered_json& json) {
+  if (i.coating.facets) json["coating"]["facets"] = coating_json(*i.coating.facets);
+  if (i.coating.entrance) json["coating"]["entrance"] = coating_json(*i.coating.entrance);
+}
+
+std::string layer_text(const CoatingLayer& layer) {
+  std::string name = printable(layer.material);
+  if (name.empty()) name = "n = " + shortest(layer.refractive_index);
+  if (layer.extinction_coefficient > 0.0) name += fmt::format(" + {} i", shortest(layer.extinction_coefficient));
+  return layer.thickness_nm ? fmt::format("{} {} nm", name, shortest(*layer.thickness_nm)) : name + ", opaque";
+}
+
+/// \param label of 20 characters at most
+std::string coating_text(std::string_view label, const std::optional<CoatingReport>& face) {
+  if (!face) return {};
+  std::vector<std::string> layers;
+  for (const CoatingLayer& layer : face->layers) layers.push_back(layer_text(layer));
+  return fmt::format("  {:<20}{}, from the body outwards\n", label, fmt::join(layers, "; ")) +
+         fmt::format("  {:<20}reflects {} %, passes {} %, absorbs {} % at normal incidence\n", "",
+                     fixed(100.0 * face->reflectance, 3), fixed(100.0 * face->transmittance, 3),
+                     fixed(100.0 * face->absorptance, 3));
+}
+
+/// The layers that the design gives its faces.
+std::string coatings_text(const Inspection& i) {
+  return coating_text("facets", i.coating.facets) + coating_text("entrance face", i.coating.entrance);
+}
+
 std::string substrate_text(const Inspection& i) {
   if (!i.substrate) return {};
   const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = i.substrate->measures;
@@ -101,6 +147,7 @@ std::string ball_json(const Inspection& i) {
   json["share_within_acceptance"] = balls.share_within_acceptance;
   if (balls.focal_offset_mm) json["focal_offset_mm"] = *balls.focal_offset_mm;
   if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
+  add_coating(i, json);
   return result_text("retrace.inspect/1", json, i.warnings);
 }
 
@@ -115,6 +162,7 @@ std::string inspect_json(const Inspection& i) {
     json["thickness_mm"] = i.thickness_mm;
   }
   if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
+  add_coating(i, json);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (i.design.elements()) json["dead_zone_share"] = i.dead_zone_share;
@@ -134,6 +182,7 @@ std::string mesh_text(const Inspection& i) {
   text += fmt::format("  entrance area       {} mm2\n", fixed(i.entrance_area_mm2, 4));
   text += fmt::format("  retro facet area    {} mm2\n", fixed(i.facet_area_mm2, 4));
   text += light_text(i);
+  text += coatings_text(i);
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;
 }
@@ -147,6 +196,7 @@ std::string ball_text(const Inspection& i) {
   text += fmt::format("  in focus at         {}\n",
                       balls.focal_offset_mm ? fixed(*balls.focal_offset_mm, 6) + " mm" : "no offset");
   text += light_text(i);
+  text += coatings_text(i);
   text += fmt::format("  paraxial error      {} rad over height / radius\n", fixed(balls.paraxial_error, 6));
   text += fmt::format("  largest error       {} degrees\n", fixed(balls.largest_return_error_deg, 3));
   text +=
@@ -170,6 +220,7 @@ std::string inspect_text(const Inspection& i) {
   text += substrate_text(i);
   text += entrance_text(i);
   text += light_text(i);
+  text += coatings_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
   text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_share, 3));
   text += fmt::format("  boundary            {}\n", i.boundary);

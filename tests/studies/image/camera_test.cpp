@@ -9,6 +9,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "raytrace/exact/beam_tracer.h"
 #include "raytrace/observers/detector.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "raytrace/sampling/threads.h"
@@ -68,10 +69,33 @@ TEST(Camera, PartIsInvisibleInUniformLight) {
       scene.lamp.illuminance_lx = 0.0;
       scene.surroundings = {7.0, 7.0};
       scene.view.width_mm = 9.0;
-      const CameraImage image = pictured(*part, pmma(), scene, 4);
-      for (const double luminance : image.luminance) EXPECT_NEAR(luminance, 7.0, 1e-6);
-      EXPECT_GT(*std::max_element(image.coverage.begin(), image.coverage.end()), 0.99);
+      Optics layered = pmma();
+      layered.facet_layers = {{{1.9, 0.1}, {1.3777, 0.2}}};
+      layered.entrance_layers = anti_reflection();
+      for (const Optics& optics : {pmma(), layered}) {
+        const CameraImage image = pictured(*part, optics, scene, 4);
+        for (const double luminance : image.luminance) EXPECT_NEAR(luminance, 7.0, 1e-6);
+        EXPECT_GT(*std::max_element(image.coverage.begin(), image.coverage.end()), 0.99);
+      }
     }
+}
+
+/// One whose layers take light is as much darker as it takes of light that comes from the camera.
+TEST(Camera, LayersThatAbsorbAreDark) {
+  const Part part = cubes();
+  Optics optics = pmma();
+  optics.facet_layers = thin_aluminium();
+  optics.entrance_layers = thin_aluminium();
+  CameraScene scene = far_scene(part, 0.0, 10.0, 0.0, 10.0, 10.0);
+  scene.lamp.illuminance_lx = 0.0;
+  scene.surroundings = {7.0, 7.0};
+  const CameraImage image = pictured(part, optics, scene, 64);
+  BeamPolicy policy;
+  policy.cutoff = 1e-6;
+  const Ledger ledger = BeamTracer(part).trace(optics, from(10.0, 90.0), {0.5}, policy).ledgers[0];
+  EXPECT_GT(ledger[Account::absorbed], 0.2);
+  EXPECT_NEAR(image.part_mean(), 7.0 * (1.0 - ledger[Account::absorbed]),
+              student_bound(1, 64) * image.part_error() + 7.0 * ledger[Account::truncated] + 1e-4);
 }
 
 /// All light comes back along itself: every ray of the pupil ends on the lamp, whose disc is the larger, and sees the

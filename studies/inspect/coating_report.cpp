@@ -1,0 +1,40 @@
+#include "studies/inspect/coating_report.h"
+
+#include "raytrace/light/light_setup.h"
+
+namespace retrace::studies {
+namespace {
+
+/// \param at_wavelength what the face does to light at normal incidence
+template <class Face>
+CoatingReport report_of(const std::vector<CoatingLayer>& layers, const materials::LayerStack& stack,
+                        const OpticalModel& model, const Face& at_wavelength) {
+  CoatingReport report{layers, stack, 0.0, 0.0, 0.0};
+  for (const SpectralOptics& light : model.spectral) {
+    const materials::FresnelCoefficients f = at_wavelength(light.optics);
+    report.reflectance += light.weight * std::norm(f.r_s);
+    report.transmittance += light.weight * std::norm(f.t_s);
+  }
+  report.absorptance = stack.absorbs() ? 1.0 - report.reflectance - report.transmittance : 0.0;
+  return report;
+}
+
+}  // namespace
+
+CoatingReports report_coating(const Design& design, const OpticalModel& model) {
+  const Coating& coating = design.surface.coating;
+  CoatingReports reports;
+  if (!coating.facets.empty() && !coating.has_aluminium_alone_on_facets())
+    reports.facets = report_of(coating.facets, model.optics.facet_layers, model, [&](const raytrace::Optics& optics) {
+      const bool is_bowl = design.balls() && design.balls()->mirror_offset_mm > 0.0;
+      return materials::fresnel_layers(optics.facet_layers, materials::StackSide::body,
+                                       is_bowl ? optics.back_index : optics.index, optics.back_index, 1.0);
+    });
+  if (!coating.entrance.empty())
+    reports.entrance =
+        report_of(coating.entrance, model.optics.entrance_layers, model,
+                  [](const raytrace::Optics& optics) { return fresnel_at_entrance(optics, false, 1.0); });
+  return reports;
+}
+
+}  // namespace retrace::studies

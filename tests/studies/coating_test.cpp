@@ -1,0 +1,243 @@
+// What designs say of layers on faces, and what becomes of it: documents, optics at each wavelength, inspection.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/infinity.h"
+#include "materials/io/material_library.h"
+#include "materials/io/spectrum_reader.h"
+#include "studies/design/io/design_document.h"
+#include "studies/design/optical_model.h"
+#include "studies/inspect/inspect.h"
+#include "studies/inspect/io/inspect_files.h"
+#include "studies/rre/rre.h"
+#include "tests/studies/design_texts.h"
+
+namespace retrace::studies::coating_test {
+namespace {
+
+const materials::MaterialLibrary& library() {
+  static const materials::MaterialLibrary shipped = materials::MaterialLibrary::shipped();
+  return shipped;
+}
+
+std::string coating(const std::string& lines) {
+  return with_line(11, "[coating]\n" + lines);
+}
+
+Design read(const std::string& lines, const std::vector<std::string>& overrides = {}) {
+  return parse_design(coating(lines), "d.toml", overrides);
+}
+
+const std::string kProtected =
+    "facets = [{ material = \"aluminium\", thickness_nm = 90 }, { refractive_index = 1.5, thickness_nm = 2000 }]\n";
+const std::string kCoated = "entrance = [{ material = \"MgF2\", thickness_nm = 99.8 }]\n";
+
+TEST(Coating, LayersAreReadFromTheBodyOutwards) {
+  const Coating given = read(kProtected + kCoated).surface.coating;
+  ASSERT_EQ(given.facets.size(), 2U);
+  EXPECT_EQ(given.facets[0].material, "aluminium");
+  EXPECT_EQ(given.facets[0].thickness_nm, 90.0);
+  EXPECT_EQ(given.facets[1].material, "");
+  EXPECT_EQ(given.facets[1].refractive_index, 1.5);
+  EXPECT_EQ(given.facets[1].extinction_coefficient, 0.0);
+  ASSERT_EQ(given.entrance.size(), 1U);
+  EXPECT_FALSE(given.has_opaque_facets());
+  EXPECT_TRUE(read(kProtected).needs_total_reflection());
+  EXPECT_FALSE(read("facets = [{ material = \"silver\" }]").needs_total_reflection());
+}
+
+TEST(Coating, WhatIsWrongIsRefusedWithItsPlace) {
+  const auto refused = [](const std::string& lines) { return complaint(coating(lines)); };
+  const std::string many = "{ refractive_index = 1.5, thickness_nm = 1 }";
+  std::string list = many;
+  for (int k = 0; k < 200; ++k) list += ", " + many;
+  expect_messages(
+      refused,
+      {{"facets = 3",
+        "d.toml:12: coating.facets: must be a list of tables with material or refractive_index, and thickness_nm, the "
+        "layer on the body first, got 3"},
+       {"facets = [{ thickness_nm = 100 }]",
+        "d.toml:12: coating.facets[1]: must have either material or refractive_index"},
+       {"facets = [{ material = \"MgF2\", refractive_index = 1.4, thickness_nm = 100 }]",
+        "d.toml:12: coating.facets[1].refractive_index: must have either material or refractive_index"},
+       {"facets = [{ material = \"MgF2\", extinction_coefficient = 0.1, thickness_nm = 100 }]",
+        "d.toml:12: coating.facets[1].extinction_coefficient: only allowed with refractive_index, got 0.1"},
+       {"facets = [{ refractive_index = 0, thickness_nm = 100 }]",
+        "d.toml:12: coating.facets[1].refractive_index: must be > 0, got 0"},
+       {"facets = [{ refractive_index = 1.5, extinction_coefficient = -1, thickness_nm = 100 }]",
+        "d.toml:12: coating.facets[1].extinction_coefficient: must be >= 0, got -1"},
+       {"entrance = [{ material = \"MgF2\", thickness_nm = -1 }]",
+        "d.toml:12: coating.entrance[1].thickness_nm: must be >= 0 and <= 1e+06, got -1"},
+       {"entrance = [{ material = \"silver\" }]",
+        "d.toml:12: coating.entrance[1].thickness_nm: missing: a layer without thickness is opaque, and light must "
+        "enter"},
+       {"facets = [{ refractive_index = 1.5 }]",
+        "d.toml:12: coating.facets[1].thickness_nm: missing: only a metal, or a layer with an extinction_coefficient > "
+        "0, is opaque without it"},
+       {"facets = [{ material = \"silver\" }, { material = \"aluminium\" }]",
+        "d.toml:12: coating.facets: must have at most one layer without thickness_nm, which is opaque, got 2"},
+       {"facets = [" + list + "]", "d.toml:12: coating.facets: must be at most 200 layers, got 201"}});
+  EXPECT_TRUE(refused("back = [{ material = \"MgF2\", thickness_nm = 1 }]").starts_with("d.toml:12: coating.back: "));
+  EXPECT_TRUE(refused("facets = [{ material = \"MgF2\", thickness_um = 1 }]")
+                  .starts_with("d.toml:12: coating.facets[1].thickness_um: "));
+}
+
+TEST(Coating, WhatWouldNotCountIsRefused) {
+  const auto refused = [](const std::string& set) { return complaint(coating(kProtected + kCoated), {set}); };
+  expect_messages(refused,
+                  {{"body.facet_coating=aluminium",
+                    "d.toml:12: coating.facets: not allowed together with body.facet_coating: give the aluminium as a "
+                    "layer"},
+                   {"idealisation.facets=mirror",
+                    "d.toml:12: coating.facets: not allowed together with idealisation.facets = \"mirror\""},
+                   {"idealisation.entrance=lossless",
+                    "d.toml:13: coating.entrance: not allowed together with idealisation.entrance = \"lossless\""},
+                   {"body.facet_coating=none", ""}});
+  // Of balls a mirror alone.
+  const std::string balls = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[coating]\n";
+  EXPECT_NE(complaint(balls + kProtected).find("coating.facets: must have a layer without thickness_nm for kind"),
+            std::string::npos);
+  EXPECT_NE(complaint(balls + kCoated).find("coating.entrance: not allowed for kind = \"ball\""), std::string::npos);
+  EXPECT_EQ(complaint(balls + "facets = [{ material = \"silica\", thickness_nm = 50 }, { material = \"silver\" }]\n"),
+            "");
+}
+
+TEST(Coating, UnknownMaterialsAreRefusedWithTheirPlace) {
+  const auto refused = [](const std::string& lines) {
+    return refusal_of([&] { make_light_model(read(lines), library()); });
+  };
+  EXPECT_EQ(refused("facets = [{ material = \"gold\", thickness_nm = 5 }]"),
+            "d.toml:12: coating.facets[1].material: no material or metal of that name, got \"gold\"; there are PMMA, "
+            "PMMA-Kasarova, PMMA-Sultanova, PC, air, MgF2, silica, HfO2, aluminium, silver");
+  EXPECT_EQ(refused("facets = [{ material = \"silica\" }]"),
+            "d.toml:12: coating.facets[1].thickness_nm: missing: only metals are opaque without it, silica is none");
+  EXPECT_EQ(refused("entrance = [{ material = \"PMMA-Sultanova\", thickness_nm = 5 }]"), "");
+}
+
+TEST(Coating, DesignsAreWrittenAsTheyWereRead) {
+  for (const std::string& lines :
+       {kProtected + kCoated, kCoated, std::string("facets = [{ material = \"silver\" }]\n")}) {
+    const Design design = read(lines);
+    const Design again = parse_design(design_text(design), "again.toml");
+    EXPECT_EQ(again.surface.coating.facets, design.surface.coating.facets);
+    EXPECT_EQ(again.surface.coating.entrance, design.surface.coating.entrance);
+  }
+  // Aluminium alone has one way to be said.
+  const std::string text = design_text(read("facets = [{ material = \"aluminium\" }]\n" + kCoated));
+  EXPECT_NE(text.find("facet_coating = \"aluminium\""), std::string::npos) << text;
+  EXPECT_EQ(text.find("facets = "), std::string::npos) << text;
+}
+
+// The same numbers, whichever way the aluminium is said.
+TEST(Coating, AnOpaqueLayerOfAluminiumIsTheFacetCoating) {
+  const auto rre = [](const Design& design) {
+    RreRequest request;
+    request.incidence_deg = {0.0, 30.0};
+    return RreStudy({design}, request).run();
+  };
+  const RreResult one = rre(set({"body.facet_coating=aluminium"}));
+  const RreResult other = rre(read("facets = [{ material = \"aluminium\" }]"));
+  ASSERT_EQ(one.points.size(), other.points.size());
+  for (std::size_t k = 0; k < one.points.size(); ++k) {
+    EXPECT_EQ(one.points[k].rre, other.points[k].rre);
+    EXPECT_EQ(one.points[k].ledger.power, other.points[k].ledger.power);
+  }
+}
+
+// Indices and thicknesses are those of each wavelength, against the air around the part.
+TEST(Coating, OpticsAreThoseOfEachWavelength) {
+  const OpticalModel model =
+      make_light_model(read(kProtected + kCoated, {"light.spectrum=[[450, 1], [650, 1]]"}), library());
+  ASSERT_EQ(model.spectral.size(), 2U);
+  for (const SpectralOptics& at : model.spectral) {
+    const double air = materials::refractive_index(library().air().dispersion, at.wavelength_nm);
+    const materials::LayerStack& facets = at.optics.facet_layers;
+    ASSERT_EQ(facets.layers.size(), 2U);
+    EXPECT_EQ(facets.layers[0].index,
+              materials::complex_index(library().find_metal("aluminium").model, at.wavelength_nm) / air);
+    EXPECT_NEAR(facets.layers[0].thickness, 90.0 / (at.wavelength_nm / air), 1e-12);
+    EXPECT_EQ(facets.layers[1].index, 1.5);
+    const materials::LayerStack& entrance = at.optics.entrance_layers;
+    ASSERT_EQ(entrance.layers.size(), 1U);
+    EXPECT_EQ(entrance.layers[0].index,
+              materials::index_relative_to_air(library().find("MgF2"), library().air(), at.wavelength_nm));
+  }
+  EXPECT_EQ(
+      make_light_model(read("facets = [{ material = \"silver\" }]"), library()).optics.facet_layers.layers[0].thickness,
+      kInfinity);
+}
+
+// Ten wavelengths stand for a lamp as well behind a thin layer as without: against the mean over 4000. A hard coat has
+// more fringes than they resolve, which is told.
+TEST(Coating, SpectraOfThinAndThickLayers) {
+  const auto reflectance = [](const raytrace::Optics& optics) {
+    return std::norm(
+        materials::fresnel_layers(optics.entrance_layers, materials::StackSide::outside, 1.0, optics.index, 1.0).r_s);
+  };
+  const OpticalModel thin = make_light_model(read(kCoated, {"light.spectrum=D65"}), library());
+  EXPECT_TRUE(thin.warnings.empty()) << thin.warnings.front();
+  double mean = 0.0;
+  for (const SpectralOptics& at : thin.spectral) mean += at.weight * reflectance(at.optics);
+  const materials::CieTable cie = materials::shipped_cie_table();
+  const materials::Spectrum flux = materials::resolved_spectrum(cie.illuminant_d65, &cie.photopic_efficiency);
+  double fine = 0.0;
+  for (std::size_t k = 0; k < flux.size(); ++k) {
+    const Design at = read(kCoated, {"light.wavelength_nm=" + std::to_string(flux.wavelengths_nm[k])});
+    fine += flux.weights[k] * reflectance(make_light_model(at, library()).optics);
+  }
+  EXPECT_NEAR(mean, fine, 2e-5 * fine);
+  const OpticalModel thick = make_light_model(
+      read("entrance = [{ refractive_index = 1.55, thickness_nm = 5000 }]", {"light.spectrum=D65"}), library());
+  ASSERT_EQ(thick.warnings.size(), 1U);
+  EXPECT_NE(thick.warnings[0].find("interference fringes from one wavelength"), std::string::npos) << thick.warnings[0];
+}
+
+TEST(Coating, ExtrapolatedLayersAreTold) {
+  const OpticalModel model = make_light_model(
+      read("facets = [{ material = \"silver\", thickness_nm = 20 }, { material = \"silver\", thickness_nm = 5 }]",
+           {"light.wavelength_nm=200", "body.refractive_index=1.5"}),
+      library());
+  ASSERT_EQ(model.warnings.size(), 1U);
+  EXPECT_TRUE(model.warnings[0].starts_with("d.toml: the data of silver reach from 248 to 12400 nm"))
+      << model.warnings[0];
+}
+
+TEST(Coating, InspectionTellsTheStack) {
+  const Inspection seen = inspect(read(kProtected + kCoated), library());
+  ASSERT_TRUE(seen.coating.entrance && seen.coating.facets);
+  const CoatingReport& entrance = *seen.coating.entrance;
+  // A layer of 99.8 nm, by the closed form of one layer.
+  const double n1 = 1.3777439516901744;
+  const double air = materials::refractive_index(library().air().dispersion, 587.56);
+  const double body = seen.refractive_index;
+  const std::complex<double> turn =
+      std::exp(std::complex<double>(0.0, 4.0 * std::numbers::pi * n1 * 99.8 * air / 587.56));
+  const double front = (1.0 - n1) / (1.0 + n1);
+  const double back = (n1 - body) / (n1 + body);
+  const double expected = std::norm((front + back * turn) / (1.0 + front * back * turn));
+  EXPECT_NEAR(entrance.reflectance, expected, 1e-7);
+  EXPECT_NEAR(entrance.reflectance + entrance.transmittance, 1.0, 1e-12);
+  EXPECT_EQ(entrance.absorptance, 0.0);
+  EXPECT_NEAR(seen.coating.facets->reflectance + seen.coating.facets->transmittance + seen.coating.facets->absorptance,
+              1.0, 1e-12);
+  const std::string text = inspect_text(seen);
+  EXPECT_NE(text.find("facets              aluminium 90 nm; n = 1.5 2000 nm, from the body outwards"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("entrance face       MgF2 99.8 nm, from the body outwards"), std::string::npos) << text;
+  EXPECT_NE(text.find("total reflection    none: layers on the facets absorb"), std::string::npos) << text;
+  EXPECT_NE(inspect_text(inspect(read(kCoated), library())).find("total reflection    up to "), std::string::npos);
+  const auto json = nlohmann::json::parse(inspect_json(seen));
+  EXPECT_EQ(json["coating"]["facets"]["layers"].size(), 2U);
+  EXPECT_EQ(json["coating"]["entrance"]["reflectance"].get<double>(), entrance.reflectance);
+  EXPECT_EQ(json["design"]["coating"]["entrance"][0]["material"], "MgF2");
+  // What aluminised facets are is told by their key.
+  EXPECT_FALSE(inspect(set({"body.facet_coating=aluminium"}), library()).coating.facets);
+}
+
+}  // namespace
+}  // namespace retrace::studies::coating_test
