@@ -10,6 +10,7 @@
 #include "core/data_directory.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
+#include "core/overloaded.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "materials/io/material_library.h"
@@ -79,6 +80,25 @@ ExitCode list_processes(const CommonOptions& common) {
   return write_list(common, "processes", std::move(json), text);
 }
 
+Json absorption_json(const materials::Material& m) {
+  return std::visit(Overloaded{[](double per_mm) { return Json(per_mm); },
+                               [](const materials::SpectralCurve& curve) {
+                                 Json pairs = Json::array();
+                                 for (std::size_t k = 0; k < curve.values.size(); ++k)
+                                   pairs.push_back({curve.wavelengths_nm[k], curve.values[k]});
+                                 return pairs;
+                               }},
+                    m.absorption_per_mm);
+}
+
+/// dn/dT beside the air around at the temperature of the data, by the difference of a degree to each side.
+double growth_per_k(const materials::Material& m, const materials::Material& air) {
+  const auto n = [&](double temperature_c) {
+    return materials::index_relative_to_air(m, air, kShownWavelengthNm, temperature_c);
+  };
+  return 0.5 * (n(m.temperature_c + 1.0) - n(m.temperature_c - 1.0));
+}
+
 ExitCode list_materials(const CommonOptions& common) {
   const auto library = materials::MaterialLibrary::shipped();
   std::string text = fmt::format("{:<16} {:<10} {:<12} {}\n", "name", "n 588 nm", "data (nm)", "description");
@@ -94,8 +114,12 @@ ExitCode list_materials(const CommonOptions& common) {
                                  {"relative_to", m.relative_to_vacuum ? "vacuum" : "air"},
                                  {"valid_from_nm", m.valid_from_nm},
                                  {"valid_to_nm", m.valid_to_nm},
-                                 {"absorption_per_mm", m.absorption_per_mm},
+                                 {"temperature_c", m.temperature_c},
+                                 {"absorption_per_mm", absorption_json(m)},
                                  {"source", m.source}});
+    if (!m.thermo_optic) continue;
+    json["materials"].back()["dn_dt_per_k"] = growth_per_k(m, library.air());
+    json["materials"].back()["thermo_optic_source"] = m.thermo_optic->source;
   }
   json["metals"] = Json::array();
   for (const materials::Metal& m : library.metals()) {

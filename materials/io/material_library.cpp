@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "core/data_directory.h"
+#include "core/number_format.h"
 #include "core/schema/conditions.h"
 #include "core/schema/reader.h"
 
@@ -16,6 +17,9 @@ using namespace schema;
 constexpr Words kFormulas = {"constant", "power series", "sellmeier", "gas"};
 constexpr Condition kIsConstant[] = {is("formula", only(kFormulas, "constant"))};
 constexpr Condition kIsCurve[] = {is_not("formula", only(kFormulas, "constant"))};
+constexpr Condition kWithThermoOptic[] = {beside("thermo_optic")};
+constexpr NumberRange kAtLeastZero{.low = 0.0};
+constexpr NumberRange kAboveZero{.low = 0.0, .low_included = false};
 
 constexpr Row kMaterialRows[] = {
     {"name", Text{}, kRequired, "What designs call it."},
@@ -26,7 +30,17 @@ constexpr Row kMaterialRows[] = {
      kIsCurve},
     {"relative_to_vacuum", Flag{}, false, "Whether indices are relative to vacuum; otherwise to air."},
     {"valid_nm", Numbers{2, {}}, kRequired, "Wavelengths from which and to which the formula holds."},
-    {"absorption_per_mm", Number{{.low = 0.0}}, 0.0, "Napierian, for power."},
+    {"temperature_c", Number{}, 20.0, "That the coefficients are for."},
+    {"thermo_optic", Numbers{6, {}}, kNone,
+     "Of the index against vacuum over temperature, as the head of the shipped file tells: D0, D1, D2, E0, E1, w_TK."},
+    {"thermo_optic_valid_c", Numbers{2, {}}, kNone, "Temperatures from which and to which they hold, if that is known.",
+     kWithThermoOptic},
+    {"thermo_optic_source", Text{}, kRequired, "Where they come from.", kWithThermoOptic},
+    {"absorption_per_mm", Number{kAtLeastZero}, 0.0,
+     "Napierian, for power. A list of two or more `[wavelength_nm, absorption_per_mm]`, ascending and linear between, "
+     "tells it by wavelength."},
+    {"absorption_per_mm", Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]", 2}, kNone,
+     "By wavelength."},
     {"source", Text{}, kRequired, "Where its values come from."}};
 constexpr Row kMetalRows[] = {
     {"name", Text{}, kRequired, "What designs call it."},
@@ -73,11 +87,43 @@ Item described(const Document& file, const std::string& entry) {
   return item;
 }
 
+ThermoOptic thermo_optic_of(const Document& file, const std::string& entry) {
+  const std::vector<double> c = file.numbers(entry + ".thermo_optic");
+  ThermoOptic t{.d0_per_k = c[0],
+                .d1_per_k2 = c[1],
+                .d2_per_k3 = c[2],
+                .e0_um2_per_k = c[3],
+                .e1_um2_per_k2 = c[4],
+                .resonance_um = c[5],
+                .source = file.text(entry + ".thermo_optic_source")};
+  if (const std::string key = entry + ".thermo_optic_valid_c"; file.has(key)) {
+    t.valid_from_c = file.numbers(key)[0];
+    t.valid_to_c = file.numbers(key)[1];
+  }
+  return t;
+}
+
+std::variant<double, SpectralCurve> absorption_of(const Document& file, const std::string& key) {
+  if (!file.is_list(key)) return file.number(key);
+  SpectralCurve curve;
+  for (const std::vector<double>& pair : file.rows(key)) {
+    if (!curve.wavelengths_nm.empty() && !(pair[0] > curve.wavelengths_nm.back()))
+      file.fail(key, fmt::format("wavelengths must ascend, got {} after {}", shortest(pair[0]),
+                                 shortest(curve.wavelengths_nm.back())));
+    curve.wavelengths_nm.push_back(pair[0]);
+    curve.values.push_back(pair[1]);
+  }
+  if (curve.values.size() < 2) file.fail(key, "must be a number or a list of two or more pairs, got a list of one");
+  return curve;
+}
+
 Material material_of(const Document& file, const std::string& entry) {
   Material m = described<Material>(file, entry);
   m.dispersion = dispersion_of(file.text(entry + ".formula"), file.numbers(entry + ".coefficients"));
   m.relative_to_vacuum = file.flag(entry + ".relative_to_vacuum");
-  m.absorption_per_mm = file.number(entry + ".absorption_per_mm");
+  m.temperature_c = file.number(entry + ".temperature_c");
+  if (file.has(entry + ".thermo_optic")) m.thermo_optic = thermo_optic_of(file, entry);
+  m.absorption_per_mm = absorption_of(file, entry + ".absorption_per_mm");
   return m;
 }
 

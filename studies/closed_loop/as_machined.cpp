@@ -55,7 +55,11 @@ MachinedBody body_of(const VerificationRun& run, std::vector<std::string>& warni
   std::error_code error;
   if (!run.job.design.empty() && fs::is_regular_file(file, error)) {
     const Design design = read_design(file);
-    return {design.thickness_mm(), design.substance.material, design.substance.refractive_index,
+    return {design.thickness_mm(),
+            design.substance.material,
+            from_anywhere(design.substance.catalogue),
+            design.substance.refractive_index,
+            design.substance.temperature_c,
             design.substance.absorption_per_mm};
   }
   warnings.push_back("the job's design is not beside it: the as-machined part is given a plate of 2 mm of PMMA");
@@ -324,7 +328,9 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
   array.part.thickness_mm = part.body.thickness_mm;
   design.shape = std::move(array);
   design.substance.material = part.body.material;
+  design.substance.catalogue = part.body.catalogue;
   design.substance.refractive_index = part.body.refractive_index;
+  design.substance.temperature_c = part.body.temperature_c;
   design.substance.absorption_per_mm = part.body.absorption_per_mm;
   design.surface.texture =
       HarveyShackTexture{rounded(part.texture.roughness_sq_nm), part.texture.correlation_length_um,

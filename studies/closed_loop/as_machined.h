@@ -27,7 +27,9 @@ PredictedTexture predicted_texture(const fabrication::Job& job);
 struct MachinedBody {
   double thickness_mm = 2.0;
   std::string material = "PMMA";
+  std::optional<GlassCatalogueFile> catalogue;
   std::optional<double> refractive_index;
+  std::optional<double> temperature_c;
   Absorption absorption_per_mm;
 };
 

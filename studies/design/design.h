@@ -127,10 +127,21 @@ struct EntranceFile {
   std::optional<std::array<double, 2>> centre_mm;
 };
 
+/// A catalogue of glasses.
+struct GlassCatalogueFile {
+  std::string name;            ///< as given
+  std::filesystem::path file;  ///< the same, from the working directory; checked only when it is read, by make_model()
+};
+
+/// The same by a name that holds in every folder, for designs that are written elsewhere.
+std::optional<GlassCatalogueFile> from_anywhere(const std::optional<GlassCatalogueFile>& catalogue);
+
 /// What the part is made of, and what lies behind its retro facets.
 struct Substance {
   std::string material = "PMMA";
-  std::optional<double> refractive_index;  ///< wins over the material; relative to air, >= 1
+  std::optional<GlassCatalogueFile> catalogue;  ///< which the material is of; none: the shipped ones
+  std::optional<double> refractive_index;       ///< wins over the material; relative to air, >= 1
+  std::optional<double> temperature_c;          ///< of part and air; none: that of the material's data
   Absorption absorption_per_mm;
   double back_index = 1.0;  ///< of what lies behind the facets, relative to air; 1..3
 

@@ -12,6 +12,7 @@
 #include "core/infinity.h"
 #include "core/number_format.h"
 #include "core/overloaded.h"
+#include "materials/io/glass_catalogue.h"
 #include "materials/io/spectrum_reader.h"
 #include "studies/design/entrance_of_design.h"
 #include "studies/design/part_of_design.h"
@@ -32,10 +33,36 @@ InputLocation light_location(const Design& design) {
   return design.where(design.light.spectrum() ? "light.spectrum" : "light.wavelength_nm");
 }
 
+/// What the design is made of: a glass of its catalogue, or a shipped material.
+materials::Material material_of(const Design& design, const materials::MaterialLibrary& library) {
+  const Substance& substance = design.substance;
+  const InputLocation where = design.where("body.material");
+  if (!substance.catalogue) return library.find(substance.material, where);
+  const auto in_catalogue = [&](const auto& read) {
+    try {
+      return read();
+    } catch (const InputError& error) {
+      throw InputError(design.where("body.catalogue"), error.what());  // adds the key that names the file
+    }
+  };
+  const auto catalogue = in_catalogue([&] { return materials::GlassCatalogue::read(substance.catalogue->file); });
+  catalogue.require(substance.material, where);
+  return in_catalogue([&] { return catalogue.glass(substance.material); });
+}
+
+/// \throw InputError at `body.temperature_c` if the material's data do not serve it
+void require_temperature(const Design& design, const materials::Material& material) {
+  const std::optional<double>& temperature_c = design.substance.temperature_c;
+  if (temperature_c && *temperature_c != material.temperature_c && !material.thermo_optic)
+    throw InputError(design.where("body.temperature_c"),
+                     fmt::format("must be {}, as {} has no thermo-optic coefficients, got {}",
+                                 shortest(material.temperature_c), material.name, shortest(*temperature_c)));
+}
+
 double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air,
-                           double wavelength_nm) {
+                           double wavelength_nm, double temperature_c) {
   try {
-    return materials::index_relative_to_air(material, air, wavelength_nm);
+    return materials::index_relative_to_air(material, air, wavelength_nm, temperature_c);
   } catch (const InputError& error) {
     throw InputError(light_location(design), error.what());  // which knows the number but not where it was given
   }
@@ -109,7 +136,7 @@ surface_models::ScatterModel scatter_model(const Design& design, const std::opti
 
 double absorption_at(const Design& design, const materials::Material& material, double wavelength_nm) {
   const Absorption& given = design.substance.absorption_per_mm;
-  if (std::holds_alternative<std::monostate>(given)) return material.absorption_per_mm;
+  if (std::holds_alternative<std::monostate>(given)) return materials::absorption_per_mm(material, wavelength_nm);
   if (const double* const per_mm = std::get_if<double>(&given)) return *per_mm;
   materials::SpectralCurve curve;
   for (const auto& [at_nm, per_mm] : std::get<std::vector<SpectralAbsorption>>(given)) {
@@ -129,18 +156,19 @@ std::complex<double> index_of_layer(const Design& design, const materials::Mater
                                     const CoatingLayer& layer, const InputLocation& where, double wavelength_nm) {
   if (layer.material.empty()) return {layer.refractive_index, layer.extinction_coefficient};
   const double air = materials::refractive_index(library.air().dispersion, wavelength_nm);
-  return std::visit(Overloaded{[&](const materials::Material* material) {
-                                 // exp(-4 pi k / wavelength) is left of power after a length; k of the index relative
-                                 // to air
-                                 const double extinction = material->absorption_per_mm * 1e-6 * wavelength_nm /
-                                                           (4.0 * std::numbers::pi * air);
-                                 return std::complex<double>(
-                                     index_at_wavelength(design, *material, library.air(), wavelength_nm), extinction);
-                               },
-                               [&](const materials::Metal* metal) {
-                                 return materials::complex_index(metal->model, wavelength_nm) / air;
-                               }},
-                    library.find_any(layer.material, where));
+  return std::visit(
+      Overloaded{
+          [&](const materials::Material* material) {
+            // exp(-4 pi k / wavelength) is left of power after a length; k of the index relative
+            // to air
+            const double extinction = materials::absorption_per_mm(*material, wavelength_nm) * 1e-6 * wavelength_nm /
+                                      (4.0 * std::numbers::pi * air);
+            return std::complex<double>(
+                index_at_wavelength(design, *material, library.air(), wavelength_nm, material->temperature_c),
+                extinction);
+          },
+          [&](const materials::Metal* metal) { return materials::complex_index(metal->model, wavelength_nm) / air; }},
+      library.find_any(layer.material, where));
 }
 
 /// \param list the key of the layers
@@ -162,9 +190,9 @@ materials::LayerStack stack_of(const Design& design, const materials::MaterialLi
 }
 
 /// \param map that of facet_map()
-raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrary& library,
+raytrace::Optics optics_at(const Design& design, const materials::Material& material,
+                           const materials::MaterialLibrary& library,
                            const std::optional<surface_models::HeightMap>& map, double wavelength_nm) {
-  const materials::Material& material = library.find(design.substance.material, design.where("body.material"));
   raytrace::Optics optics;
   optics.mirror_facets = design.idealisation.mirror_facets;
   optics.facet_scatter = scatter_model(design, map, wavelength_nm);
@@ -180,7 +208,8 @@ raytrace::Optics optics_at(const Design& design, const materials::MaterialLibrar
     optics.index = *design.substance.refractive_index;
     return optics;
   }
-  optics.index = index_at_wavelength(design, material, library.air(), wavelength_nm);
+  optics.index = index_at_wavelength(design, material, library.air(), wavelength_nm,
+                                     design.substance.temperature_c.value_or(material.temperature_c));
   if (!(optics.index >= 1.0))
     throw InputError(design.where("body.material"), fmt::format("the index of {} at {} nm must be >= 1, got {}",
                                                                 material.name, wavelength_nm, optics.index));
@@ -273,6 +302,17 @@ void add_coating_warnings(const Design& design, const materials::MaterialLibrary
   }
 }
 
+/// Says so where no data back how the index changes with temperature.
+void warn_of_temperature(const Design& design, const materials::Material& material, OpticalModel& model) {
+  const double temperature_c = design.substance.temperature_c.value_or(material.temperature_c);
+  if (temperature_c == material.temperature_c) return;
+  const materials::ThermoOptic& data = *material.thermo_optic;
+  if (temperature_c >= data.valid_from_c && temperature_c <= data.valid_to_c) return;
+  model.warnings.push_back(fmt::format(
+      "{}: the thermo-optic data of {} reach from {} to {} C; its index at {} C is extrapolated", design.source_name(),
+      material.name, shortest(data.valid_from_c), shortest(data.valid_to_c), shortest(temperature_c)));
+}
+
 /// What the texture's model says of its range, at the shortest wavelength that gives reason to: surfaces are roughest
 /// to it. \throw InputError beyond every model
 void add_texture_warnings(const Design& design, OpticalModel& model) {
@@ -314,15 +354,19 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
 
 OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library) {
   OpticalModel model;
-  const materials::Material& material = library.find(design.substance.material, design.where("body.material"));
+  const materials::Material material = material_of(design, library);
+  if (!design.substance.refractive_index) require_temperature(design, material);
   const materials::Spectrum light = wavelengths_to_trace(design);
   const std::optional<surface_models::HeightMap> map = facet_map(design, model.warnings);
   for (std::size_t k = 0; k < light.size(); ++k)
-    model.spectral.push_back(
-        {light.wavelengths_nm[k], light.weights[k], optics_at(design, library, map, light.wavelengths_nm[k])});
+    model.spectral.push_back({light.wavelengths_nm[k], light.weights[k],
+                              optics_at(design, material, library, map, light.wavelengths_nm[k])});
   model.wavelength_nm = light.centroid_nm();
   model.optics = nearest(model.spectral, model.wavelength_nm).optics;
-  if (!design.substance.refractive_index) warn_of_extrapolation(design, material, model);
+  if (!design.substance.refractive_index) {
+    warn_of_extrapolation(design, material, model);
+    warn_of_temperature(design, material, model);
+  }
   add_coating_warnings(design, library, model);
   add_texture_warnings(design, model);
   return model;

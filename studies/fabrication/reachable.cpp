@@ -62,7 +62,9 @@ Design reached(const Design& design, const std::string& facets_file) {
   array.facet_planes = FacetPlanesFile{facets_file, facets_file};
   reached.shape = std::move(array);
   reached.substance.material = design.substance.material;
+  reached.substance.catalogue = from_anywhere(design.substance.catalogue);
   reached.substance.refractive_index = design.substance.refractive_index;
+  reached.substance.temperature_c = design.substance.temperature_c;
   reached.substance.absorption_per_mm = design.substance.absorption_per_mm;
   return reached;
 }

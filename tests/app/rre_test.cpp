@@ -342,7 +342,7 @@ TEST(Rre, QuietSaysNothing) {
   // Warns: the wavelength is outside the material's data.
   folder.write("d.toml",
                "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"single\"\n"
-               "[body]\nthickness_mm = 1\nmaterial = \"PC\"\n[light]\nwavelength_nm = 500\n");
+               "[body]\nthickness_mm = 1\nmaterial = \"PC\"\n[light]\nwavelength_nm = 350\n");
   const Outcome loud = retrace(folder, {"rre", "d.toml", "--samples=64"});
   EXPECT_EQ(loud.code, 0);
   EXPECT_TRUE(loud.err.starts_with("warning: ")) << loud.err;

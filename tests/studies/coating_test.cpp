@@ -102,19 +102,22 @@ TEST(Coating, WhatWouldNotCountIsRefused) {
   EXPECT_NE(complaint(balls + kProtected).find("coating.facets: must have a layer without thickness_nm for kind"),
             std::string::npos);
   EXPECT_NE(complaint(balls + kCoated).find("coating.entrance: not allowed for kind = \"ball\""), std::string::npos);
-  EXPECT_EQ(complaint(balls + "facets = [{ material = \"silica\", thickness_nm = 50 }, { material = \"silver\" }]\n"),
-            "");
+  EXPECT_EQ(
+      complaint(balls + "facets = [{ material = \"fused-silica\", thickness_nm = 50 }, { material = \"silver\" }]\n"),
+      "");
 }
 
 TEST(Coating, UnknownMaterialsAreRefusedWithTheirPlace) {
   const auto refused = [](const std::string& lines) {
     return refusal_of([&] { make_light_model(read(lines), library()); });
   };
-  EXPECT_EQ(refused("facets = [{ material = \"gold\", thickness_nm = 5 }]"),
-            "d.toml:12: coating.facets[1].material: no material or metal of that name, got \"gold\"; there are PMMA, "
-            "PMMA-Kasarova, PMMA-Sultanova, PC, air, MgF2, silica, HfO2, aluminium, silver");
-  EXPECT_EQ(refused("facets = [{ material = \"silica\" }]"),
-            "d.toml:12: coating.facets[1].thickness_nm: missing: only metals are opaque without it, silica is none");
+  EXPECT_EQ(
+      refused("facets = [{ material = \"gold\", thickness_nm = 5 }]"),
+      "d.toml:12: coating.facets[1].material: no material or metal of that name, got \"gold\"; there are PMMA, "
+      "PMMA-Kasarova, PMMA-Sultanova, PC, PC-Kasarova, COC, N-BK7, fused-silica, air, MgF2, HfO2, aluminium, silver");
+  EXPECT_EQ(
+      refused("facets = [{ material = \"fused-silica\" }]"),
+      "d.toml:12: coating.facets[1].thickness_nm: missing: only metals are opaque without it, fused-silica is none");
   EXPECT_EQ(refused("entrance = [{ material = \"PMMA-Sultanova\", thickness_nm = 5 }]"), "");
 }
 

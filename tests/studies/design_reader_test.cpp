@@ -137,8 +137,8 @@ TEST(DesignReader, NumbersOutOfRangeAreRefused) {
        {with_line(11, "refractive_index = 0.9"), "d.toml:11: body.refractive_index: must be >= 1, got 0.9"},
        {with_line(11, "absorption_per_mm = -1"), "d.toml:11: body.absorption_per_mm: must be >= 0, got -1"},
        {with_line(11, "light.wavelength_nm = 0"),
-        "d.toml:11: body.light: unknown table (allowed: thickness_mm, material, refractive_index, "
-        "absorption_per_mm, facet_coating, back_index)"},
+        "d.toml:11: body.light: unknown table (allowed: thickness_mm, material, catalogue, refractive_index, "
+        "temperature_c, absorption_per_mm, facet_coating, back_index)"},
        {with_line(11, "[light]\nwavelength_nm = 0"), "d.toml:12: light.wavelength_nm: must be > 0, got 0"}});
 }
 
@@ -193,10 +193,10 @@ TEST(DesignReader, UnknownKeysAreNamedWithASuggestion) {
       "apex_angle_deg, aperture_mm, cant_deg, cant_azimuth_deg, diameter_mm, mirror_offset_mm, mirror_half_angle_deg)");
   EXPECT_EQ(complaint(with_line(10, "thickness = 2")),
             "d.toml:10: body.thickness: unknown key, did you mean \"thickness_mm\"? (allowed: thickness_mm, material, "
-            "refractive_index, absorption_per_mm, facet_coating, back_index)");
+            "catalogue, refractive_index, temperature_c, absorption_per_mm, facet_coating, back_index)");
   EXPECT_EQ(complaint(with_line(11, "colour = \"red\"")),
-            "d.toml:11: body.colour: unknown key (allowed: thickness_mm, material, refractive_index, "
-            "absorption_per_mm, facet_coating, back_index)");
+            "d.toml:11: body.colour: unknown key (allowed: thickness_mm, material, catalogue, refractive_index, "
+            "temperature_c, absorption_per_mm, facet_coating, back_index)");
   EXPECT_EQ(
       complaint(with_line(11, "[boddy]\nx = 1")),
       "d.toml:11: boddy: unknown table, did you mean \"body\"? (allowed: element, array, base, part, front, body, "

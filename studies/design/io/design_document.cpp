@@ -168,7 +168,9 @@ void set_body(Document& document, const Design& design) {
   Keys keys(document, "body");
   keys.set_positive("thickness_mm", design.thickness_mm());
   keys.set_word("material", design.substance.material);
+  if (design.substance.catalogue) keys.set_word("catalogue", design.substance.catalogue->name);
   if (design.substance.refractive_index) keys.set("refractive_index", *design.substance.refractive_index);
+  if (design.substance.temperature_c) keys.set("temperature_c", *design.substance.temperature_c);
   if (const Value absorption = absorption_value(design.substance.absorption_per_mm); absorption.index() != 0)
     keys.set("absorption_per_mm", absorption);
   if (design.surface.coating.has_aluminium_alone_on_facets()) keys.set_word("facet_coating", "aluminium");

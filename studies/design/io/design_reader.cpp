@@ -169,6 +169,12 @@ std::optional<EntranceFile> read_entrance(const Document& document) {
   return entrance;
 }
 
+/// The catalogue that the material is of; none without such a key.
+std::optional<GlassCatalogueFile> read_catalogue(const Document& document) {
+  if (!document.has("body.catalogue")) return std::nullopt;
+  return GlassCatalogueFile{document.text("body.catalogue"), document.file("body.catalogue")};
+}
+
 /// What a document says, without the files that it names.
 Design resolved(std::shared_ptr<const Document> given) {
   const Document& document = *given;
@@ -178,8 +184,9 @@ Design resolved(std::shared_ptr<const Document> given) {
   design.title = document.text_if("title");
   design.shape = read_shape(document);
   design.entrance = read_entrance(document);
-  design.substance = {document.text("body.material"), document.number_if("body.refractive_index"),
-                      read_absorption(document), document.number("body.back_index")};
+  design.substance = {
+      document.text("body.material"),           read_catalogue(document),  document.number_if("body.refractive_index"),
+      document.number_if("body.temperature_c"), read_absorption(document), document.number("body.back_index")};
   design.surface = read_surface(document);
   design.light = {read_colour(document), read_polarisation(document)};
   design.detector.acceptance_half_angle_deg = read_acceptance(document);
@@ -217,6 +224,12 @@ bool Coating::has_opaque_facets() const {
 
 bool Coating::has_aluminium_alone_on_facets() const {
   return facets.size() == 1 && facets[0] == kPlainAluminium;
+}
+
+std::optional<GlassCatalogueFile> from_anywhere(const std::optional<GlassCatalogueFile>& catalogue) {
+  if (!catalogue) return std::nullopt;
+  const fs::path file = fs::absolute(catalogue->file).lexically_normal();
+  return GlassCatalogueFile{file.string(), file};
 }
 
 std::string_view Design::entrance_key() const {
@@ -278,8 +291,9 @@ Design with(const Design& design, std::span<const std::string> overrides) {
 
 /// The order in which stores of studies have the files of a design: it is part of what a study is. New keys come
 /// behind.
-constexpr std::array<std::string_view, 7> kFilesOfStores = {
-    "part.mesh", "array.mask", "surface.height_map", "part.facets", "light.spectrum", "front.turned", "front.mesh"};
+constexpr std::array<std::string_view, 8> kFilesOfStores = {"part.mesh",   "array.mask",     "surface.height_map",
+                                                            "part.facets", "light.spectrum", "front.turned",
+                                                            "front.mesh",  "body.catalogue"};
 
 std::vector<fs::path> files_named(std::string_view text, const std::string& source_name,
                                   std::span<const std::string> overrides) {

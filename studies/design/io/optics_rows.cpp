@@ -32,6 +32,8 @@ constexpr Condition kThicknessOfOthers[] = {is_not(kKind, kBall, "not allowed fo
                                             without("part.mesh")};
 
 constexpr Condition kWithLayerIndex[] = {beside("refractive_index")};
+constexpr Condition kIndexOfMaterial[] = {
+    without("refractive_index", "not allowed together with refractive_index, which holds at every temperature")};
 
 constexpr Row kBodyRows[] = {
     {"thickness_mm", kSize, kRequired,
@@ -40,7 +42,13 @@ constexpr Row kBodyRows[] = {
      kThicknessOfOthers},
     {"thickness_mm", kSize, kNone, "The mesh's own, if it is given.", kThicknessOfMesh},
     {"material", Text{}, "PMMA", "A name that `retrace list materials` shows."},
+    {"catalogue", File{"a glass catalogue"}, kNone,
+     "A catalogue of glasses in the AGF format, such as makers publish: `material` is then the name of one of them."},
     {"refractive_index", Number{{.low = 1.0}}, Computed{"the material's"}, "Relative to air; wins over the material."},
+    {"temperature_c", Number{{.low = -200.0, .high = 400.0}}, Computed{"that of the material's data"},
+     "Of the part and the air around it, whose indices change with it; lengths are those at that temperature. For "
+     "materials with thermo-optic coefficients; not together with `refractive_index`.",
+     kIndexOfMaterial},
     {"absorption_per_mm", Number{kAtLeastZero}, Computed{"the material's"},
      "Napierian, for power; wins over the material. A list of two or more `[wavelength_nm, absorption_per_mm]`, linear "
      "between, tells it by wavelength (coloured lenses) and must reach all wavelengths of the light."},

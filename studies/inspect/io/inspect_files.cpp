@@ -28,7 +28,10 @@ std::string total_reflection(const Inspection& i) {
 /// The index, and of a spectrum a line of its own: what it spans, and what its wavelengths see.
 std::string light_text(const Inspection& i) {
   const std::string wavelength = i.design.light.spectrum() ? fixed(i.wavelength_nm, 1) : shortest(i.wavelength_nm);
-  const std::string text = fmt::format("  refractive index    {} at {} nm\n", fixed(i.refractive_index, 5), wavelength);
+  const std::optional<double>& temperature_c = i.design.substance.temperature_c;
+  const std::string text =
+      fmt::format("  refractive index    {} at {} nm{}\n", fixed(i.refractive_index, 5), wavelength,
+                  temperature_c ? fmt::format(" and {} degrees C", shortest(*temperature_c)) : "");
   if (!i.design.light.spectrum()) return text;
   const SpectralOptics& first = i.light.front();
   const SpectralOptics& last = i.light.back();

@@ -1,0 +1,51 @@
+// Any bytes as a catalogue of glasses: each of its glasses is understood or refused in one line, and an index is a
+// number.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/error.h"
+#include "materials/io/glass_catalogue.h"
+
+namespace {
+
+namespace materials = retrace::materials;
+
+void require_one_line(const retrace::InputError& error) {
+  const std::string_view message = error.what();
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+  if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+}
+
+void use(const materials::Material& glass) {
+  for (const double wavelength_nm : {glass.valid_from_nm, 587.56, glass.valid_to_nm}) {
+    if (!(materials::absorption_per_mm(glass, wavelength_nm) >= 0.0)) std::abort();
+    try {
+      if (!std::isfinite(materials::refractive_index(glass.dispersion, wavelength_nm))) std::abort();
+    } catch (const retrace::InputError& error) {
+      require_one_line(error);
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const materials::GlassCatalogue catalogue({reinterpret_cast<const char*>(data), size}, "fuzz.agf");
+    for (const std::string& name : catalogue.names()) try {
+        catalogue.require(name, {});
+        use(catalogue.glass(name));
+      } catch (const retrace::InputError& error) {
+        require_one_line(error);
+      }
+    catalogue.require("N-BK7", {"d.toml", 1, "body.material"});
+  } catch (const retrace::InputError& error) {
+    require_one_line(error);
+  }
+  return 0;
+}

@@ -1,0 +1,111 @@
+// Designs whose material is a glass of a maker's catalogue.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/number_format.h"
+#include "studies/design/io/design_document.h"
+#include "studies/design/io/design_json.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/inspect/inspect.h"
+#include "studies/rre/rre.h"
+#include "tests/support/refusals.h"
+
+namespace retrace::studies::glass_of_design_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Overrides = std::vector<std::string>;
+
+const fs::path kCatalogue = fs::path(RETRACE_SOURCE_DIR) / "tests/data/glasses.agf";
+const std::string kPrisms =
+    "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nextent = \"infinite\"\n[body]\n"
+    "thickness_mm = 2\n";
+
+Design design(const Overrides& overrides) {
+  return parse_design(kPrisms, "d.toml", overrides);
+}
+
+Overrides with_glass(const std::string& name, Overrides more = {}) {
+  more.push_back("body.catalogue=" + kCatalogue.string());
+  more.push_back("body.material=" + name);
+  return more;
+}
+
+Inspection inspected(const Overrides& overrides) {
+  return inspect(design(overrides), materials::MaterialLibrary::shipped());
+}
+
+TEST(GlassOfDesign, IsTheShippedGlassOfThatName) {
+  for (const Overrides& more : {Overrides{}, {"body.temperature_c=70"}, {"light.spectrum=A"}}) {
+    Overrides shipped = more;
+    shipped.push_back("body.material=N-BK7");
+    EXPECT_EQ(inspected(with_glass("n-bk7", more)).refractive_index, inspected(shipped).refractive_index);
+  }
+  // n_d of the line NM.
+  EXPECT_NEAR(inspected(with_glass("BASF5")).refractive_index, 1.603233, 2e-6);
+  EXPECT_EQ(inspected(with_glass("BASF5", {"light.wavelength_nm=300"})).warnings.at(0),
+            "d.toml: the data of BASF5 reach from 334 to 2325 nm; its index at 300 nm is extrapolated");
+}
+
+TEST(GlassOfDesign, IsTraced) {
+  RreRequest request;
+  request.incidence_deg = {5.0};
+  request.engine = Engine::exact;
+  const std::string index = shortest(inspected(with_glass("CAF2")).refractive_index);
+  const RreStudy study({design(with_glass("CAF2")), design({"body.refractive_index=" + index})}, request);
+  const std::vector<RrePoint> points = study.run().points;
+  EXPECT_EQ(points.at(0).rre, points.at(1).rre);
+}
+
+TEST(GlassOfDesign, ItsFileIsTheDesigns) {
+  const Design given = design(with_glass("CAF2"));
+  ASSERT_EQ(given.files().size(), 1U);
+  EXPECT_TRUE(fs::equivalent(given.files().front(), kCatalogue));
+  EXPECT_EQ(to_json(given)["body"]["catalogue"], kCatalogue.string());
+  const Design again = parse_design(design_text(given), "again.toml", {});
+  EXPECT_EQ(again.substance.catalogue->file, given.substance.catalogue->file);
+  EXPECT_FALSE(design({}).substance.catalogue);
+}
+
+// A name is taken from the folder of the design.
+TEST(GlassOfDesign, LiesBesideTheDesign) {
+  const fs::path folder = fs::temp_directory_path() / "retrace_glass_of_design";
+  fs::create_directories(folder);
+  fs::copy_file(kCatalogue, folder / "g.agf", fs::copy_options::overwrite_existing);
+  std::ofstream(folder / "d.toml") << kPrisms << "material = \"CAF2\"\ncatalogue = \"g.agf\"\n";
+  const Design read = read_design(folder / "d.toml");
+  EXPECT_EQ(read.substance.catalogue->file, folder / "g.agf");
+  EXPECT_NEAR(inspect(read, materials::MaterialLibrary::shipped()).refractive_index, 1.433849, 2e-6);
+  EXPECT_TRUE(from_anywhere(read.substance.catalogue)->file.is_absolute());
+  fs::remove_all(folder);
+}
+
+TEST(GlassOfDesign, BadInputIsRefused) {
+  const auto complaint = [](const std::string& lines) {
+    return refusal_of(
+        [&] { inspect(parse_design(kPrisms + lines, "d.toml", {}), materials::MaterialLibrary::shipped()); });
+  };
+  const std::string here = "catalogue = \"" + kCatalogue.string() + "\"\n";
+  EXPECT_EQ(complaint("catalogue = \"no.agf\"\n").find("d.toml:9: body.catalogue: no.agf: cannot be read"), 0U)
+      << complaint("catalogue = \"no.agf\"\n");
+  EXPECT_EQ(complaint("catalogue = 3\n"), "d.toml:9: body.catalogue: must be a string, got 3");
+  EXPECT_EQ(
+      complaint(here + "material = \"BASF6\"\n").find("d.toml:10: body.material: no glass of that name among the 5"),
+      0U)
+      << complaint(here + "material = \"BASF6\"\n");
+  EXPECT_EQ(complaint(here).find("d.toml:7: body.material: no glass of that name among the 5"), 0U) << complaint(here);
+  EXPECT_EQ(complaint(here + "material = \"BASF5\"\ntemperature_c = 30\n"),
+            "d.toml:11: body.temperature_c: must be 20, as BASF5 has no thermo-optic coefficients, got 30");
+  const fs::path bad = fs::temp_directory_path() / "retrace_bad.agf";
+  std::ofstream(bad) << "NM x 2 0\nCD one\nLD 0.4 0.7\n";
+  EXPECT_EQ(complaint("material = \"x\"\ncatalogue = \"" + bad.string() + "\"\n"),
+            "d.toml:10: body.catalogue: " + bad.string() + ":2: CD: must be finite numbers, got \"one\"");
+  fs::remove(bad);
+}
+
+}  // namespace
+}  // namespace retrace::studies::glass_of_design_test
