@@ -70,11 +70,11 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
   return {
       design_argument(options.design),
       {"--standard NAME|FILE",
-       "r150, j594, bicycle, or a limits file",
+       "r150, j594, bicycle, d4956, iso20471, stvzvo, or a limits file",
        &options.standard,
        {.words = standards, .files = ".csv", .required = true}},
       {"--class CLASS", "class of the part, such as IA [the only one there is]", &options.part_class, one_of(classes)},
-      {"--colour COLOUR", "white, amber, red, ... [the only one there is]", &options.colour, one_of(colours)},
+      {"--colour COLOUR", "white, amber, red, yellow, ... [the only one there is]", &options.colour, one_of(colours)},
       {"--area-cm2 A", "area of the part that the design shows the make of", &options.area_cm2, {.required = true}},
       {"--rotation LIST", "turns of the part about its normal in degrees; the least value counts [the standard's]",
        &options.rotation},
@@ -84,14 +84,21 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
       {"--source-arcmin D", "diameter of the source [the standard's]", &options.source_arcmin},
       {"--receiver-arcmin D", "diameter of the receiver [the standard's]", &options.receiver_arcmin},
       {"--window-deg W", "half angle of the far field that is computed", &options.window_deg},
-      {"--light LIGHT", "a: CIE A as the eye sees it; design: what the design says", &options.light,
-       one_of(Words{"a", "design"})},
+      {"--light LIGHT", "a, d65: a CIE illuminant as the eye sees it; design: what the design says", &options.light,
+       one_of(Words{"a", "d65", "design"})},
       engine_argument(options.engine, "exact, montecarlo (embree), or auto: exact where it serves"),
       {"--samples N", "rays for each direction, by Monte Carlo", &options.samples, whole(1)},
       {"--cutoff W", "exact: least power that is followed, as a share of what falls on an element [1e-6]",
        &options.cutoff},
       {"--no-diffraction", "geometric far field alone", &options.no_diffraction},
       {"--no-advice", "do not look for what to change if a point fails", &options.no_advice}};
+}
+
+studies::PhotometricLight light_of(const std::string& name) {
+  using enum studies::PhotometricLight;
+  for (const studies::PhotometricLight light : {illuminant_a, illuminant_d65, of_design})
+    if (name == studies::light_name(light)) return light;
+  throw InputError({"", 0, "--light"}, fmt::format("must be a, d65 or design, got {}", in_quotes(name)));
 }
 
 /// \param request with what the standard asks
@@ -107,9 +114,8 @@ studies::PhotometryRequest with_options(studies::PhotometryRequest request, cons
   if (options.source_arcmin) request.apertures.source = Angle::from_deg(*options.source_arcmin / 60.0);
   if (options.receiver_arcmin) request.apertures.receiver = Angle::from_deg(*options.receiver_arcmin / 60.0);
   request.window_deg = options.window_deg;
-  if (options.light != "a" && options.light != "design")
-    throw InputError({"", 0, "--light"}, fmt::format("must be a or design, got {}", in_quotes(options.light)));
-  request.own_light = options.light == "design";
+  request.light = light_of(options.light);
+  request.colour = true;
   request.diffraction = !options.no_diffraction;
   request.advice = !options.no_advice;
   request.engine = studies::engine_from_name(options.engine);
@@ -156,11 +162,13 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
 
 Command photometry_command() {
   return {.name = "photometry",
-          .summary = "coefficients of retroreflection against a standard",
+          .summary = "coefficients of retroreflection and colour against a standard",
           .manual =
               "Coefficients of retroreflection at the test points of a standard, their limits, a verdict, and what "
-              "to change if a point fails. `--class` and `--colour` are needed where the standard has several. "
-              "Exits with 1 if a limit is missed or a verdict is undetermined.",
+              "to change if a point fails; the colour of the returned light, with a verdict of its own. `--class` and "
+              "`--colour` are needed where the standard has several. "
+              "Exits with 1 if a limit is missed, the colour lies outside its boundaries, or the verdict on the points "
+              "is undetermined.",
           .reads = {"retrace.design/1", "limits (CSV)", "absorption of a dye (CSV)"},
           .writes = {"retrace.photometry/1"},
           .begin = begins<PhotometryOptions>(arguments, run)};

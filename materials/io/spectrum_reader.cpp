@@ -53,6 +53,16 @@ CieTable read_cie_table(const fs::path& file) {
   return {{columns[0], columns[1]}, {columns[0], columns[2]}, {columns[0], columns[3]}};
 }
 
+ColourMatching shipped_colour_matching() {
+  return read_colour_matching(data_directory() / "cie_xyz_1931_5nm.csv");
+}
+
+ColourMatching read_colour_matching(const fs::path& file) {
+  const auto columns = read_columns(read_file(file), file.string(),
+                                    std::array<std::string_view, 4>{"wavelength_nm", "x_bar", "y_bar", "z_bar"});
+  return {{{columns[0], columns[1]}, {columns[0], columns[2]}, {columns[0], columns[3]}}};
+}
+
 SpectralCurve read_spectral_power(const fs::path& file) {
   return parse_spectral_power(read_file(file, kMostBytes), file.string());
 }

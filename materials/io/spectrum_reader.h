@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "materials/chromaticity.h"
 #include "materials/spectrum.h"
 
 namespace retrace::materials {
@@ -22,6 +23,12 @@ CieTable shipped_cie_table();
 
 /// Reads the table from a file. \throw InputError naming file and line
 CieTable read_cie_table(const std::filesystem::path& file);
+
+/// The colour matching functions in the data folder. \throw InputError naming file and line
+ColourMatching shipped_colour_matching();
+
+/// Reads them from a file. \throw InputError naming file and line
+ColourMatching read_colour_matching(const std::filesystem::path& file);
 
 /// Reads the spectral power of a lamp: CSV with the header wavelength_nm,power, wavelengths in vacuum that ascend from
 /// 1 to 100000 nm, power per nm in any unit, >= 0; at least two lines, at most 1 MiB. Lines that are empty or begin

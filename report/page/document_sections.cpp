@@ -27,6 +27,10 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
                    {"Area", measured(number(json, "area_cm2"), " cm2"), ""},
                    {"Verdict", verdict, verdict_style(verdict)}};
   if (json.contains("reason")) section.facts.push_back({"Reason", text(json, "reason"), ""});
+  if (const Json& colour = member(json, "chromaticity"); colour.contains("x"))
+    section.facts.push_back({"Colour",
+                             fmt::format("x {}, y {}", fixed(number(colour, "x"), 4), fixed(number(colour, "y"), 4)),
+                             colour.contains("verdict") ? verdict_style(text(colour, "verdict")) : ""});
   section.paragraphs.push_back(
       "R_I at the test points of the standard. Limits that are recalled, not confirmed, make a verdict unconfirmed. It "
       "is no approval test.");

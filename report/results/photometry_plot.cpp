@@ -33,7 +33,7 @@ PolarPlot far_field_plot(const studies::PhotometryResult& result) {
     panel.columns = map.columns;
     panel.values = map.r_a;
     for (const studies::PhotometricPoint& p : result.points)
-      if (p.asked.v_deg == map.v_deg && p.asked.h_deg == map.h_deg)
+      if (p.v_deg == map.v_deg && p.asked.h_deg == map.h_deg)
         panel.marks.push_back({0.0, p.asked.observation_deg,
                                fmt::format("{} mcd/lx", fixed(p.r_i_mcd_per_lx, p.r_i_mcd_per_lx < 10.0 ? 1 : 0)),
                                mark_of(p.verdict())});

@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "core/error.h"
 #include "core/message_text.h"
+#include "core/number_format.h"
 
 namespace retrace::studies {
 namespace {
@@ -26,9 +28,15 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Rows without classes are for a standard without them.
-bool is_of_class(const std::vector<std::string>& classes, const std::string& name) {
-  return classes.empty() || holds(classes, name);
+/// Lines without classes are for all of them.
+bool is_of_class(const LimitLine& line, const std::string& name) {
+  return line.classes.empty() || holds(line.classes, name);
+}
+
+/// Lines without a colour are for all of them.
+bool concerns(const LimitLine& line, const TestProgramme& programme) {
+  return line.standard == programme.standard && is_of_class(line, programme.part_class) &&
+         (line.colour.empty() || known_colour(line.colour) == programme.colour);
 }
 
 /// The one that was requested, or the only one. \param option that chooses
@@ -71,23 +79,37 @@ std::vector<std::string> colours_of(const LimitTable& table, const std::string& 
                                     const std::string& part_class) {
   std::vector<std::string> colours;
   const auto add = [&](const auto& row) {
-    if (row.standard == standard && is_of_class(row.classes, part_class)) add_once(colours, known_colour(row.colour));
+    if (row.standard == standard && is_of_class(row, part_class)) add_once(colours, known_colour(row.colour));
   };
   for (const LimitRow& row : table.rows) add(row);
   for (const LimitFactor& factor : table.factors) add(factor);
   return colours;
 }
 
-/// Every sign of a row is a point.
-void add_points(const LimitRow& row, double factor, LimitStatus at_best, std::vector<TestPoint>& points) {
+/// Every sign of a row is a point. \param by the line that multiplies it; null: none
+void add_points(const LimitRow& row, const LimitFactor* by, std::vector<TestPoint>& points) {
+  const double minimum = by != nullptr ? by->factor * row.minimum : row.minimum;
+  const LimitStatus status = by != nullptr ? std::max(row.status, by->status) : row.status;
+  const bool has_two_sources = by != nullptr && !by->source.empty();
+  const std::string source = has_two_sources ? fmt::format("{}; {}", row.source, by->source) : row.source;
   for (const double v : row.v_deg)
     for (const double h : row.h_deg)
-      points.push_back(
-          {row.observation_deg, v, h, factor * row.minimum, row.unit, std::max(row.status, at_best), row.line});
+      points.push_back({row.observation_deg, v, h, minimum, row.unit, status, row.line, source, row.v_beside_deg});
 }
 
 bool same_geometry(const TestPoint& a, const TestPoint& b) {
   return a.observation_deg == b.observation_deg && a.v_deg == b.v_deg && a.h_deg == b.h_deg;
+}
+
+/// One colour is measured, so that its boundaries are of one geometry.
+void add_boundary(const LimitTable& table, const ColourBoundary& boundary, TestProgramme& programme) {
+  const auto geometry = [](const ColourBoundary& b) {
+    return std::tie(b.observation_deg, b.v_deg, b.v_beside_deg, b.h_deg);
+  };
+  if (!programme.boundaries.empty() && geometry(programme.boundaries.front()) != geometry(boundary))
+    throw InputError({printable(table.source, std::string::npos), boundary.line, ""},
+                     fmt::format("must bound the colour at the angles of line {}", programme.boundaries.front().line));
+  programme.boundaries.push_back(boundary);
 }
 
 void refuse_doubles(const LimitTable& table, const std::vector<TestPoint>& points) {
@@ -119,6 +141,10 @@ std::string_view status_name(LimitStatus status) {
   return {};
 }
 
+std::string LimitArea::text() const {
+  return fmt::format("{} {} cm2", is_most ? "at most" : "at least", shortest(area_cm2));
+}
+
 double in_mcd_per_lx(double value, PhotometricUnit unit, double area_cm2) {
   switch (unit) {
     case PhotometricUnit::mcd_per_lx: return value;
@@ -141,29 +167,29 @@ TestProgramme programme_of(const LimitTable& table, const std::optional<std::str
   programme.colour =
       choice(colours_of(table, programme.standard, programme.part_class), asked, "--colour", programme.standard);
 
-  const auto add_rows = [&](const std::string& of_colour, double factor, LimitStatus at_best) {
+  const auto add_rows = [&](const std::string& of_colour, const LimitFactor* by) {
     for (const LimitRow& row : table.rows)
-      if (row.standard == programme.standard && is_of_class(row.classes, programme.part_class) &&
+      if (row.standard == programme.standard && is_of_class(row, programme.part_class) &&
           known_colour(row.colour) == of_colour)
-        add_points(row, factor, at_best, programme.points);
+        add_points(row, by, programme.points);
   };
-  add_rows(programme.colour, 1.0, LimitStatus::confirmed);
+  add_rows(programme.colour, nullptr);
   for (const LimitFactor& factor : table.factors) {
-    if (factor.standard != programme.standard || !is_of_class(factor.classes, programme.part_class) ||
-        known_colour(factor.colour) != programme.colour)
-      continue;
+    if (!concerns(factor, programme)) continue;
     const std::size_t before = programme.points.size();
-    add_rows(known_colour(factor.of_colour), factor.factor, factor.status);
+    add_rows(known_colour(factor.of_colour), &factor);
     if (programme.points.size() == before)
       throw InputError(
           {printable(table.source, std::string::npos), factor.line, "minimum"},
           fmt::format("must be so many times a colour that the table holds, got {}", in_quotes(factor.of_colour)));
   }
   refuse_doubles(table, programme.points);
+  for (const LimitArea& area : table.areas)
+    if (concerns(area, programme)) programme.areas.push_back(area);
+  for (const ColourBoundary& boundary : table.boundaries)
+    if (concerns(boundary, programme)) add_boundary(table, boundary, programme);
   for (const LimitGap& gap : table.gaps)
-    if (gap.standard == programme.standard && is_of_class(gap.classes, programme.part_class) &&
-        (gap.colour.empty() || known_colour(gap.colour) == programme.colour))
-      programme.is_complete = false;
+    if (concerns(gap, programme)) programme.is_complete = false;
   return programme;
 }
 

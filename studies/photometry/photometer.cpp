@@ -43,23 +43,20 @@ struct WeighedLight {
 };
 
 /// Where a dye takes most of the light, wavelengths are best placed where some is left: by the flux behind the dye on a
-/// way through the part and back, which the weights take out again.
-WeighedLight lamp_light(const materials::CieTable& cie, const PhotometryRequest& request, double way_mm,
-                        std::size_t parts) {
-  const materials::SpectralCurve& dye = request.dye_absorption_per_mm;
-  materials::SpectralCurve power = cie.illuminant_a;
+/// way through the part and back, which the weights take out again. \param response to the lamp's light
+WeighedLight lamp_light(materials::SpectralCurve power, const materials::SpectralCurve& response,
+                        const materials::SpectralCurve& dye, double way_mm, std::size_t parts) {
   const auto transmittance = [&](double w) { return dye.values.empty() ? 1.0 : std::exp(-dye.at(w) * way_mm); };
   double before = 0.0;
   double behind = 0.0;
   for (std::size_t k = 0; k < power.values.size(); ++k) {
     const double w = power.wavelengths_nm[k];
-    const double flux = power.values[k] * cie.photopic_efficiency.at(w);
+    const double flux = power.values[k] * response.at(w);
     power.values[k] *= transmittance(w);
     before += flux;
     behind += flux * transmittance(w);
   }
-  const materials::Spectrum traced =
-      materials::traced_spectrum(materials::resolved_spectrum(power, &cie.photopic_efficiency), parts);
+  const materials::Spectrum traced = materials::traced_spectrum(materials::resolved_spectrum(power, &response), parts);
   WeighedLight light;
   for (std::size_t k = 0; k < traced.size(); ++k) {
     light.wavelengths_nm.push_back(traced.wavelengths_nm[k]);
@@ -173,22 +170,30 @@ struct Photometer::Piece {
   bool complete = false;
 };
 
-Photometer::Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts)
+Photometer::Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts,
+                       PhotometricResponse response)
     : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   if (design_.balls()) check_balls(design_, request);
   if (design_.entrance && (request.engine == Engine::exact || request.engine == Engine::cell))
     throw InputError({"", 0, "--engine"}, "must be auto, montecarlo or embree for a [front]");
-  if (request.own_light) {
+  if (request.light == PhotometricLight::of_design) {
     model_ = model_of(design_, library);
     for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
   } else {
-    const WeighedLight light = lamp_light(materials::shipped_cie_table(), request, way_through_mm(design_), parts);
+    const WeighedLight light =
+        lamp_light(lamp_power(request.light), materials::shipped_colour_matching()[static_cast<std::size_t>(response)],
+                   request.dye_absorption_per_mm, way_through_mm(design_), parts);
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
   is_exact_ = !design_.balls() && !design_.entrance && model_.optics.is_smooth() &&
               (request.engine == Engine::exact || request.engine == Engine::automatic);
+}
+
+materials::SpectralCurve lamp_power(PhotometricLight light) {
+  const materials::CieTable cie = materials::shipped_cie_table();
+  return light == PhotometricLight::illuminant_d65 ? cie.illuminant_d65 : cie.illuminant_a;
 }
 
 std::optional<Photometer> Photometer::mean_field() const {

@@ -22,6 +22,9 @@ struct PhotometerSetting {
   bool split = false;
 };
 
+/// What the receiver weighs light by.
+enum class PhotometricResponse { x_bar, y_bar, z_bar };  ///< of the CIE 1931 observer; y_bar is V
+
 struct PhotometerReading {
   std::vector<double> r_a;  ///< by observation angle, cd/(lx m^2)
   std::vector<double> r_l;
@@ -35,8 +38,11 @@ struct PhotometerReading {
 /// time, all its wavelengths weighed by the lamp and the eye.
 class Photometer {
  public:
-  /// \param parts spans of the lamp's spectrum, two wavelengths each \throw InputError as make_model()
-  Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts);
+  /// \param parts spans of the lamp's spectrum, two wavelengths each
+  /// \param response of the receiver to the lamp's light; values are shares of its response to what falls on the part
+  /// \throw InputError as make_model()
+  Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts,
+             PhotometricResponse response = PhotometricResponse::y_bar);
 
   /// In the order of the settings; nothing if it was cancelled.
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
@@ -75,5 +81,8 @@ class Photometer {
   raytrace::ApertureKernel kernel_;
   bool is_exact_ = true;
 };
+
+/// Relative spectral power of a CIE illuminant, per nm. \pre not the design's own light
+materials::SpectralCurve lamp_power(PhotometricLight light);
 
 }  // namespace retrace::studies

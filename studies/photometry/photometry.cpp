@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "studies/photometry/advice.h"
+#include "studies/photometry/colour.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
@@ -70,16 +71,29 @@ std::size_t index_of(std::vector<double>& values, double value) {
   return values.size() - 1;
 }
 
-Plan plan_of(const PhotometryRequest& request) {
+/// Whether the face sends its mirror image of the source back: what turning the part slightly shows.
+bool mirrors_source(const Design& design) {
+  return !design.balls() && !design.entrance && !design.idealisation.lossless_entrance;
+}
+
+/// Where V of a point, or of a colour, is measured.
+template <class Point>
+std::vector<double> measured_v_deg(const Point& point, bool mirrors) {
+  return mirrors && !point.v_beside_deg.empty() ? point.v_beside_deg : std::vector{point.v_deg};
+}
+
+/// \param mirrors whether the face does
+Plan plan_of(const PhotometryRequest& request, bool mirrors) {
   Plan plan;
   std::map<std::tuple<double, double, double>, std::size_t> known;
   for (const TestPoint& point : request.programme.points) {
     auto& readings = plan.readings_of_point.emplace_back();
-    for (const double rotation_deg : request.rotation_deg) {
-      const auto [it, is_new] = known.try_emplace({point.v_deg, point.h_deg, rotation_deg}, plan.settings.size());
-      if (is_new) plan.settings.push_back({point.v_deg, point.h_deg, rotation_deg, {}, 0, true});
-      readings.emplace_back(it->second, index_of(plan.settings[it->second].observation_deg, point.observation_deg));
-    }
+    for (const double v_deg : measured_v_deg(point, mirrors))
+      for (const double rotation_deg : request.rotation_deg) {
+        const auto [it, is_new] = known.try_emplace({v_deg, point.h_deg, rotation_deg}, plan.settings.size());
+        if (is_new) plan.settings.push_back({v_deg, point.h_deg, rotation_deg, {}, 0, true});
+        readings.emplace_back(it->second, index_of(plan.settings[it->second].observation_deg, point.observation_deg));
+      }
   }
   return plan;
 }
@@ -97,6 +111,7 @@ std::vector<PhotometricPoint> points_of(const PhotometryRequest& request, const 
       if (!(reading.r_a[angle] < least.r_a)) continue;
       least.r_a = reading.r_a[angle];
       least.r_l = reading.r_l[angle];
+      least.v_deg = plan.settings[setting].v_deg;
       least.rotation_deg = plan.settings[setting].rotation_deg;
       least.std_error_mcd_per_lx =
           in_mcd_per_lx(reading.r_a_error[angle], PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
@@ -111,16 +126,12 @@ std::vector<PhotometricPoint> points_of(const PhotometryRequest& request, const 
   return points;
 }
 
-/// One map for each entrance angle of the programme.
-std::vector<PhotometerSetting> map_settings(const PhotometryRequest& request) {
+/// One map for each entrance angle that is measured.
+std::vector<PhotometerSetting> map_settings(const PhotometryRequest& request, const Plan& plan) {
   std::vector<PhotometerSetting> settings;
-  for (const TestPoint& point : request.programme.points) {
-    const bool is_known = std::any_of(settings.begin(), settings.end(), [&](const PhotometerSetting& s) {
-      return s.v_deg == point.v_deg && s.h_deg == point.h_deg;
-    });
-    if (!is_known && settings.size() < kMostMaps)
-      settings.push_back({point.v_deg, point.h_deg, request.rotation_deg.front(), {}, kMapColumns, false});
-  }
+  for (const PhotometerSetting& measured : plan.settings)
+    if (measured.rotation_deg == request.rotation_deg.front() && settings.size() < kMostMaps)
+      settings.push_back({measured.v_deg, measured.h_deg, measured.rotation_deg, {}, kMapColumns, false});
   return settings;
 }
 
@@ -135,11 +146,11 @@ std::vector<PhotometerSetting> curve_settings(const PhotometryRequest& request) 
   return settings;
 }
 
-bool add_pictures(const Design& design, const PhotometryRequest& request, bool exact, const Cancellation* cancel,
-                  PhotometryResult& result) {
+bool add_pictures(const Design& design, const PhotometryRequest& request, const Plan& plan, bool exact,
+                  const Cancellation* cancel, PhotometryResult& result) {
   Photometer photometer(design, request, kPictureParts);
   if (!exact) photometer.leave_exact();
-  const std::vector<PhotometerSetting> maps = map_settings(request);
+  const std::vector<PhotometerSetting> maps = map_settings(request, plan);
   const std::vector<PhotometerSetting> curves = curve_settings(request);
   std::vector<PhotometerSetting> all = maps;
   all.insert(all.end(), curves.begin(), curves.end());
@@ -163,6 +174,15 @@ std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photomet
 }
 
 }  // namespace
+
+std::string_view light_name(PhotometricLight light) {
+  switch (light) {
+    case PhotometricLight::illuminant_a: return "a";
+    case PhotometricLight::illuminant_d65: return "d65";
+    case PhotometricLight::of_design: return "design";
+  }
+  return {};
+}
 
 std::string_view verdict_name(Verdict verdict) {
   switch (verdict) {
@@ -193,6 +213,15 @@ Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgra
   return is_confirmed && programme.is_complete ? Verdict::pass : Verdict::unconfirmed;
 }
 
+Verdict area_verdict(const TestProgramme& programme, double area_cm2) {
+  Verdict verdict = Verdict::pass;
+  for (const LimitArea& limit : programme.areas) {
+    if (!limit.holds(area_cm2)) return Verdict::fail;
+    if (limit.status == LimitStatus::recalled) verdict = Verdict::unconfirmed;
+  }
+  return verdict;
+}
+
 struct PhotometryStudy::Prepared {
   Design design;
   PhotometryRequest request;
@@ -207,7 +236,7 @@ PhotometryStudy::PhotometryStudy(Design design, PhotometryRequest request) : pre
     throw InputError({"", 0, "--engine"}, fmt::format("exact needs plane smooth facets, and those of {} scatter: use "
                                                       "--engine montecarlo",
                                                       design.source_name()));
-  prepared_->plan = plan_of(request);
+  prepared_->plan = plan_of(request, mirrors_source(design));
   prepared_->design = std::move(design);
   prepared_->request = std::move(request);
 }
@@ -264,14 +293,31 @@ std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer
 bool add_changes(const Photometer& photometer, const Plan& plan, const Cancellation* cancel, PhotometryResult& result) {
   const Design& design = result.design;
   const PhotometryRequest& request = result.request;
-  if (result.verdict != Verdict::fail || !request.advice || !design.elements() || design.entrance) return true;
+  const bool is_asked = request.advice && verdict_of(result.points, request.programme) == Verdict::fail &&
+                        area_verdict(request.programme, request.area_cm2) != Verdict::fail;
+  if (!is_asked || !design.elements() || design.entrance) return true;
   const auto measure = [&](const Design& changed, std::size_t parts) {
     Photometer other(changed, request, parts);
     if (!photometer.is_exact()) other.leave_exact();
     return table_of(other, request, plan, cancel);
   };
   result.changes = changes_that_pass(design, request.programme, measure);
+  for (PhotometricChange& change : result.changes)
+    change.verdict = std::max(change.verdict, area_verdict(request.programme, request.area_cm2));
   return !is_cancelled(cancel);
+}
+
+/// The colour of the returned light, if it is asked for. False if it was cancelled.
+bool add_colour(const Photometer& photometer, const Cancellation* cancel, PhotometryResult& result) {
+  const PhotometryRequest& request = result.request;
+  const TestProgramme& programme = request.programme;
+  if (!request.colour || request.light == PhotometricLight::of_design || programme.points.empty()) return true;
+  const bool mirrors = mirrors_source(result.design);
+  const std::vector<double> v_deg = programme.boundaries.empty()
+                                        ? measured_v_deg(programme.points.front(), mirrors)
+                                        : measured_v_deg(programme.boundaries.front(), mirrors);
+  result.colour = measured_colour(result.design, request, photometer, v_deg, cancel);
+  return result.colour.has_value();
 }
 
 }  // namespace
@@ -299,11 +345,13 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
     result.measured = points_of(request, plan, *readings);
     result.points = result.measured;
     result.complete = raise_to_mean_field(photometer, request, plan, cancel, result.points);
-    result.verdict = verdict_of(result.points, request.programme);
+    result.verdict =
+        std::max(verdict_of(result.points, request.programme), area_verdict(request.programme, request.area_cm2));
     result.reason = reason_of(result.points, photometer);
   }
+  if (result.complete) result.complete = add_colour(photometer, cancel, result);
   if (result.complete && request.pictures)
-    result.complete = add_pictures(design, request, photometer.is_exact(), cancel, result);
+    result.complete = add_pictures(design, request, plan, photometer.is_exact(), cancel, result);
   if (result.complete) result.complete = add_changes(photometer, plan, cancel, result);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "materials/chromaticity.h"
 #include "materials/spectrum.h"
 #include "raytrace/observers/aperture_kernel.h"
 #include "studies/design/design.h"
@@ -18,6 +19,15 @@
 
 namespace retrace::studies {
 
+/// What a part is lit by.
+enum class PhotometricLight {
+  illuminant_a,    ///< CIE A, which the standards ask, seen by the eye
+  illuminant_d65,  ///< CIE D65, seen by the eye
+  of_design        ///< what the design's [light] says
+};
+/// "a", "d65" or "design"
+std::string_view light_name(PhotometricLight light);
+
 /// What is asked: the coefficients of retroreflection of a part at the test points of a standard.
 struct PhotometryRequest {
   TestProgramme programme;
@@ -25,8 +35,8 @@ struct PhotometryRequest {
   double area_cm2 = 0.0;                     ///< of the part, > 0; the design shows how it is made
   std::vector<double> rotation_deg = {0.0};  ///< epsilon; the least value over them counts
   raytrace::PhotometricApertures apertures;
-  double window_deg = 2.0;                         ///< half angle of the far field that is computed; 0.05 to 10
-  bool own_light = false;                          ///< the design's [light] in place of CIE A seen by the eye
+  double window_deg = 2.0;  ///< half angle of the far field that is computed; 0.05 to 10
+  PhotometricLight light = PhotometricLight::illuminant_a;
   std::string dye;                                 ///< what the dye is called; empty: none
   materials::SpectralCurve dye_absorption_per_mm;  ///< empty: none
   bool diffraction = true;
@@ -36,8 +46,10 @@ struct PhotometryRequest {
   std::uint32_t seed = 1;
   bool pictures = false;  ///< maps and curves
   bool advice = true;     ///< what to change if it fails
+  bool colour = false;    ///< the chromaticity of the returned light; none of the design's own light
 };
 
+/// From best to worst: the worst of several decides.
 enum class Verdict { pass, unconfirmed, undetermined, fail };
 std::string_view verdict_name(Verdict verdict);
 inline bool every_point_holds(Verdict verdict) {
@@ -47,6 +59,7 @@ inline bool every_point_holds(Verdict verdict) {
 /// A test point and what was found there.
 struct PhotometricPoint {
   TestPoint asked;
+  double v_deg = 0.0;         ///< at which it was measured: that of the test point unless the face mirrors there
   double rotation_deg = 0.0;  ///< at which the value is least
   double r_i_mcd_per_lx = 0.0;
   double r_a = 0.0;  ///< cd/(lx m^2)
@@ -106,6 +119,29 @@ struct PhotometricChange {
   bool passes() const { return every_point_holds(verdict); }
 };
 
+/// A bound on the colour and how the returned light stands to it.
+struct ColourPoint {
+  ColourBoundary asked;
+  double margin = 0.0;     ///< most - of_x x - of_y y: >= 0 holds
+  double std_error = 0.0;  ///< of the margin
+};
+
+/// The colour of the light that comes back in one geometry: the one that is nearest to its boundaries, or farthest past
+/// them, of those that are asked.
+struct PhotometricColour {
+  double observation_deg = 0.0;
+  double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
+  std::optional<materials::Chromaticity> chromaticity;  ///< none if nothing comes back
+  materials::Chromaticity std_error;                    ///< of x and of y
+  std::vector<ColourPoint> boundaries;                  ///< none if the standard's are not known
+  bool lacks_diffraction = false;                       ///< although it would count
+  bool is_of_another_light = false;                     ///< than CIE A, which the boundaries are of
+  std::string reason;                                   ///< why the verdict is undetermined; empty if it is not
+
+  /// What the boundaries say together; nothing if there are none.
+  std::optional<Verdict> verdict() const;
+};
+
 struct PhotometryResult {
   Design design;
   PhotometryRequest request;
@@ -116,20 +152,26 @@ struct PhotometryResult {
   std::vector<PhotometricPoint> measured;  ///< the same before lower bounds took the place of values
   std::vector<PhotometricDirection> directions;
   Verdict verdict = Verdict::fail;
-  std::string reason;                      ///< why points are undetermined; empty if none is
-  std::vector<PhotometricChange> changes;  ///< if it fails: the one that passes, or what was tried
+  std::string reason;                       ///< why points are undetermined; empty if none is
+  std::optional<PhotometricColour> colour;  ///< has a verdict of its own
+  std::vector<PhotometricChange> changes;   ///< if it fails: the one that passes, or what was tried
   std::vector<FarFieldMap> maps;
   std::vector<ObservationCurve> curves;
   double elapsed_s = 0.0;
   std::vector<std::string> warnings;
   bool complete = true;
 
-  bool passes() const { return every_point_holds(verdict); }
+  /// Every point and the area hold, and the colour is none that fails.
+  bool passes() const { return every_point_holds(verdict) && !(colour && colour->verdict() == Verdict::fail); }
 };
 
 /// What points say together: one that fails decides, then one that is undetermined. Points of recalled limits, and
 /// programmes that are not complete, confirm nothing.
 Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme);
+
+/// Whether a part is as small and as large as a programme asks: pass, unconfirmed if it holds a recalled limit, or
+/// fail.
+Verdict area_verdict(const TestProgramme& programme, double area_cm2);
 
 /// A checked request, ready to run.
 class PhotometryStudy {

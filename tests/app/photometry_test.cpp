@@ -79,8 +79,11 @@ TEST(Photometry, ShippedStandardsAreMeasured) {
   EXPECT_EQ(json["points"][7]["pass"], false);
   EXPECT_EQ(json["points"][7]["verdict"], "fail");
   EXPECT_FALSE(json.contains("reason"));
-  ASSERT_EQ(json["directions"].size(), 7U);
-  EXPECT_NEAR(json["directions"][3]["incidence_deg"].get<double>(), 20.5907, 1e-4);
+  EXPECT_EQ(json["points"][0]["v_deg"], 0);
+  EXPECT_EQ(std::abs(json["points"][0]["measured_v_deg"].get<double>()), 5.0) << "beside the mirror image";
+  EXPECT_EQ(json["area_limits"][0]["limit"], "at most 100 cm2");
+  ASSERT_EQ(json["directions"].size(), 8U);
+  EXPECT_NEAR(json["directions"][4]["incidence_deg"].get<double>(), 20.5907, 1e-4);
   EXPECT_TRUE(json.contains("version"));
   EXPECT_TRUE(json["warnings"].is_array());
 }
@@ -119,6 +122,45 @@ TEST(Photometry, DyesAndRotationsAreTaken) {
   EXPECT_LT(value({"--dye=grey.csv"}), 0.3 * clear);
   EXPECT_LT(value({}), clear) << "red by the colour";
   EXPECT_NEAR(value({"--dye=none", "--rotation=0:90:30"}), clear, 1e-6 * clear);
+}
+
+// The colour has a verdict of its own; one that fails is a part that fails.
+TEST(Photometry, TellsTheColourWithItsOwnVerdict) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign);
+  const std::string bounds =
+      "S,,red,0.1,0,0,y <= 0.335,chromaticity,read\nS,,red,0.1,0,0,z <= 0.008,chromaticity,read\n";
+  folder.write("l.csv", kHeader + "S,,red,0.1,0,0,1,mcd/lx,read\n" + bounds);
+  const auto outcome = [&](const Arguments& more) {
+    return retrace(folder, with({"photometry", "d.toml", "--area-cm2=30", "--standard=l.csv", "--no-advice",
+                                 "--no-diffraction", "--set=element.aperture_mm=20", "--json=-"},
+                                more));
+  };
+  const Outcome red = outcome({});
+  EXPECT_EQ(red.code, 0) << red.err << red.out;
+  const Json seen = Json::parse(red.out)["chromaticity"];
+  EXPECT_EQ(seen["verdict"], "pass");
+  EXPECT_LT(seen["y"].get<double>(), 0.335);
+  ASSERT_EQ(seen["boundaries"].size(), 2U);
+  EXPECT_GT(seen["boundaries"][1]["margin"].get<double>(), 0.0);
+  EXPECT_EQ(seen["boundaries"][1]["limit"], "z <= 0.008");
+  // Without its dye the part sends CIE A back, which is not red.
+  const Outcome clear = outcome({"--dye=none"});
+  EXPECT_EQ(clear.code, 1) << clear.err;
+  const Json json = Json::parse(clear.out);
+  EXPECT_EQ(json["verdict"], "pass") << "that of the points";
+  EXPECT_EQ(json["chromaticity"]["verdict"], "fail");
+  EXPECT_NEAR(json["chromaticity"]["x"].get<double>(), 0.4476, 2e-4);
+  EXPECT_NEAR(json["chromaticity"]["y"].get<double>(), 0.4074, 2e-4);
+  // Boundaries of CIE A say nothing of D65, and nothing is told of the design's own light.
+  const Outcome day = outcome({"--dye=none", "--light=d65"});
+  EXPECT_EQ(day.code, 0) << day.err;
+  const Json d65 = Json::parse(day.out)["chromaticity"];
+  EXPECT_EQ(d65["verdict"], "undetermined");
+  EXPECT_EQ(d65["reason"], "the boundaries are of CIE A");
+  EXPECT_NEAR(d65["x"].get<double>(), 0.3127, 2e-4);
+  EXPECT_NEAR(d65["y"].get<double>(), 0.3290, 2e-4);
+  EXPECT_FALSE(Json::parse(outcome({"--light=design"}).out).contains("chromaticity"));
 }
 
 TEST(Photometry, RoughDesignsAreTracedByMonteCarlo) {
@@ -164,7 +206,8 @@ TEST(Photometry, RefusesBadInputInOneLine) {
   };
   const auto also = [&](const std::string& word) { return with(r150, {word}); };
   const std::vector<Refused> cases = {
-      {instead(2, "--standard=r151"), "--standard: must be r150, j594, bicycle or a file that exists, got \"r151\""},
+      {instead(2, "--standard=r151"),
+       "--standard: must be r150, j594, bicycle, d4956, iso20471, stvzvo or a file that exists, got \"r151\""},
       {instead(3, "--class=XX"), "--class: must be IA, IB, IIIA, IIIB, IVA for UN R3 / R150, got \"XX\""},
       {instead(4, "--colour=green"), "--colour: must be red, amber, white for UN R3 / R150, got \"green\""},
       {{"photometry", "d.toml", "--standard=r150", "--colour=red", "--area-cm2=30"}, "--class: is required"},
@@ -172,12 +215,12 @@ TEST(Photometry, RefusesBadInputInOneLine) {
       {instead(5, "--area-cm2=0"), "--area-cm2: must be a number above 0, to 1e+06, got 0"},
       {instead(5, "--area-cm2=-3"), "--area-cm2: must be"},
       {instead(5, "--area-cm2=big"), "--area-cm2: "},
-      {also("--window-deg=1"), "r150:8: observation_deg: must lie within the far field that is computed"},
+      {also("--window-deg=1"), "r150:12: observation_deg: must lie within the far field that is computed"},
       {also("--rotation=a"), "--rotation: "},
       {also("--dye=blue"), "--dye: must be none, red, amber or a file that exists, got \"blue\""},
       {also("--dye=dye.csv"), "dye.csv:2: absorption_per_mm: must be a number >= 0"},
       {also("--dye=short.csv"), "short.csv: absorption_per_mm: must reach all wavelengths"},
-      {also("--light=sun"), "--light: must be a or design, got \"sun\""},
+      {also("--light=sun"), "--light: must be a, d65 or design, got \"sun\""},
       {also("--engine=cell"), "--engine: must be auto, exact, montecarlo or embree, got cell"},
       {also("--source-arcmin=-1"), "--source-arcmin: must be"},
       {also("--cutoff=2"), "--cutoff: must lie between 0 and 1"},
@@ -227,10 +270,13 @@ TEST(List, ShowsTheStandards) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json json = Json::parse(outcome.out);
   EXPECT_EQ(json["schema"], "retrace.standards/1");
-  ASSERT_EQ(json["standards"].size(), 3U);
+  ASSERT_EQ(json["standards"].size(), 6U);
   EXPECT_EQ(json["standards"][0]["name"], "r150");
   EXPECT_EQ(json["standards"][0]["classes"], (Json{"IA", "IB", "IIIA", "IIIB", "IVA"}));
-  EXPECT_EQ(json["standards"][2]["limits_complete"], false);
+  EXPECT_EQ(json["standards"][0]["limits_complete"], false) << "class IVA, red";
+  EXPECT_EQ(json["standards"][2]["limits_complete"], true);
+  EXPECT_EQ(json["standards"][3]["classes"], (Json{"I", "II", "III"}));
+  EXPECT_EQ(json["standards"][4]["colours"], (Json{"white"}));
   EXPECT_NE(retrace(folder, {"list", "standards"}).out.find("bicycle"), std::string::npos);
 }
 

@@ -177,7 +177,7 @@ PhotometryRequest request_of(double receiver_deg) {
   request.area_cm2 = 10.0;
   request.apertures.source = Angle::from_deg(0.0);
   request.apertures.receiver = Angle::from_deg(receiver_deg);
-  request.own_light = true;
+  request.light = PhotometricLight::of_design;
   request.diffraction = false;
   request.advice = false;
   request.rays = 1U << 17;

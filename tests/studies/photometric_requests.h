@@ -52,7 +52,7 @@ inline PhotometryRequest request_of(TestProgramme programme) {
   request.programme = std::move(programme);
   request.area_cm2 = 10.0;
   request.apertures = default_apertures();
-  request.own_light = true;
+  request.light = PhotometricLight::of_design;
   request.diffraction = false;
   request.advice = false;
   return request;

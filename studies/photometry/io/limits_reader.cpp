@@ -19,6 +19,8 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 20;
 constexpr double kMostObservationDeg = 20.0;
 constexpr double kMostEntranceDeg = 85.0;
 constexpr double kMostFactor = 1e3;
+constexpr double kMostBoundCm2 = 1e6;
+constexpr double kMostOfColour = 10.0;
 constexpr NumberRange kLimit{.low = 0.0, .low_included = false, .high = 1e9};
 
 enum Column : std::size_t {
@@ -31,24 +33,40 @@ enum Column : std::size_t {
   kMinimum,
   kUnit,
   kStatus,
+  kSource,  // may be missing
   kColumns,
 };
-constexpr std::array<std::string_view, kColumns> kHeader = {"standard", "class",   "colour", "observation_deg", "v_deg",
-                                                            "h_deg",    "minimum", "unit",   "status"};
-constexpr std::array<std::string_view, 5> kUnits = {"mcd/lx", "cd/lx", "cd/fc", "cd/lx/m2", "factor"};
+constexpr std::array<std::string_view, kColumns> kHeader = {
+    "standard", "class", "colour", "observation_deg", "v_deg", "h_deg", "minimum", "unit", "status", "source"};
+constexpr std::array<std::string_view, 7> kUnits = {"mcd/lx", "cd/lx", "cd/fc",       "cd/lx/m2",
+                                                    "factor", "cm2",   "chromaticity"};
 constexpr std::array<std::string_view, 4> kStatuses = {"confirmed", "read", "recalled", "incomplete"};
 
 /// A number, or both signs of it.
-std::vector<double> signed_numbers(const CsvReader& row, Column column) {
-  std::string_view text = row[column];
+std::vector<double> signed_numbers(const CsvReader& row, Column column, std::string_view text) {
   const bool both = text.starts_with("+-");
   if (both) text.remove_prefix(2);
   const std::optional<double> value = number_in(text);
   if (!value || !(std::abs(*value) <= kMostEntranceDeg) || (both && !(*value > 0.0)))
-    row.fail(column, fmt::format("must be a number from -{0} to {0}, or +- and a number above 0, got {1}",
-                                 shortest(kMostEntranceDeg), in_quotes(row[column])));
+    row.fail(column, fmt::format("must be a number from -{0} to {0}, or +- and a number above 0{1}, got {2}",
+                                 shortest(kMostEntranceDeg), column == kV ? ", or two of them as in 0 or +-5" : "",
+                                 in_quotes(row[column])));
   if (both) return {*value, -*value};
   return {*value};
+}
+
+/// V of a test point, and where it is measured instead if the face mirrors there: `0 or +-5`.
+struct V {
+  std::vector<double> deg;
+  std::vector<double> beside_deg;
+};
+
+V read_v(const CsvReader& row) {
+  const std::vector<std::string_view> words = split(row[kV], ' ');
+  const bool has_beside = words.size() == 3 && words[1] == "or";
+  V v{signed_numbers(row, kV, has_beside ? words[0] : row[kV]), {}};
+  if (has_beside) v.beside_deg = signed_numbers(row, kV, words[2]);
+  return v;
 }
 
 void must_be_empty(const CsvReader& row, std::initializer_list<Column> columns, std::string_view when) {
@@ -76,8 +94,10 @@ LimitRow limit_of(const CsvReader& row) {
   auto limit = begun<LimitRow>(row);
   limit.colour = named(row, kColour);
   limit.observation_deg = row.number(kObservation, {.low = 0.0, .high = kMostObservationDeg});
-  limit.v_deg = signed_numbers(row, kV);
-  limit.h_deg = signed_numbers(row, kH);
+  V v = read_v(row);
+  limit.v_deg = std::move(v.deg);
+  limit.v_beside_deg = std::move(v.beside_deg);
+  limit.h_deg = signed_numbers(row, kH, row[kH]);
   limit.minimum = row.number(kMinimum, kLimit);
   limit.unit = static_cast<PhotometricUnit>(row.one_of(kUnit, kUnits));
   limit.status = static_cast<LimitStatus>(row.one_of(kStatus, kStatuses));
@@ -99,6 +119,65 @@ LimitFactor factor_of(const CsvReader& row) {
   return factor;
 }
 
+LimitArea area_of(const CsvReader& row) {
+  auto area = begun<LimitArea>(row);
+  area.colour = printable(row[kColour]);
+  must_be_empty(row, {kObservation, kV, kH}, "of an area");
+  const std::vector<std::string_view> words = split(row[kMinimum], ' ');
+  const bool is_begun = words.size() == 3 && words[0] == "at" && (words[1] == "most" || words[1] == "least");
+  const std::optional<double> cm2 = is_begun ? number_in(words[2]) : std::nullopt;
+  if (!cm2 || !(*cm2 > 0.0 && *cm2 <= kMostBoundCm2))
+    row.fail(kMinimum, fmt::format("must be \"at most\" or \"at least\" and a number above 0, to {}, got {}",
+                                   shortest(kMostBoundCm2), in_quotes(row[kMinimum])));
+  area.is_most = words[1] == "most";
+  area.area_cm2 = *cm2;
+  area.status = static_cast<LimitStatus>(row.one_of(kStatus, kStatuses));
+  return area;
+}
+
+/// A line in the plane of x and y: `y <= 0.335`, `z <= 0.008` or `y >= 0.146 + 0.489 x`.
+void read_boundary(const CsvReader& row, ColourBoundary& boundary) {
+  const std::vector<std::string_view> words = split(row[kMinimum], ' ');
+  const auto word = [&](std::size_t k) { return k < words.size() ? words[k] : std::string_view(); };
+  const bool is_sloping = words.size() == 6 && (word(3) == "+" || word(3) == "-") && word(5) == "x";
+  const std::optional<double> constant = number_in(word(2));
+  const std::optional<double> slope = is_sloping ? number_in(word(4)) : std::optional(0.0);
+  const bool is_one = (word(0) == "x" || word(0) == "y" || word(0) == "z") && (word(1) == "<=" || word(1) == ">=") &&
+                      (words.size() == 3 || is_sloping);
+  if (!is_one || !constant || !slope || !(std::abs(*constant) <= kMostOfColour) || !(std::abs(*slope) <= kMostOfColour))
+    row.fail(kMinimum,
+             fmt::format("must be x, y or z, <= or >=, and a number or a line, as in \"y >= 0.146 + 0.489 x\", "
+                         "of numbers from -{0} to {0}, got {1}",
+                         shortest(kMostOfColour), in_quotes(row[kMinimum])));
+  // The left side less the right one, with z = 1 - x - y, is to be <= 0, or >= 0.
+  const bool is_z = word(0) == "z";
+  const double of_x = (word(0) == "x" ? 1.0 : is_z ? -1.0 : 0.0) - (word(3) == "-" ? -*slope : *slope);
+  const double of_y = word(0) == "y" ? 1.0 : is_z ? -1.0 : 0.0;
+  const double most = *constant - (is_z ? 1.0 : 0.0);
+  if (of_x == 0.0 && of_y == 0.0) row.fail(kMinimum, "must bound a colour, got " + in_quotes(row[kMinimum]));
+  const double sign = word(1) == "<=" ? 1.0 : -1.0;
+  boundary.of_x = sign * of_x;
+  boundary.of_y = sign * of_y;
+  boundary.most = sign * most;
+  boundary.text = printable(row[kMinimum]);
+}
+
+ColourBoundary boundary_of(const CsvReader& row) {
+  auto boundary = begun<ColourBoundary>(row);
+  boundary.colour = named(row, kColour);
+  boundary.observation_deg = row.number(kObservation, {.low = 0.0, .high = kMostObservationDeg});
+  const V v = read_v(row);
+  const std::vector<double> h_deg = signed_numbers(row, kH, row[kH]);
+  if (v.deg.size() != 1 || h_deg.size() != 1)
+    row.fail(v.deg.size() != 1 ? kV : kH, "must be one angle of a colour, got +-");
+  boundary.v_deg = v.deg.front();
+  boundary.v_beside_deg = v.beside_deg;
+  boundary.h_deg = h_deg.front();
+  read_boundary(row, boundary);
+  boundary.status = static_cast<LimitStatus>(row.one_of(kStatus, kStatuses));
+  return boundary;
+}
+
 LimitGap gap_of(const CsvReader& row) {
   auto gap = begun<LimitGap>(row);
   gap.colour = printable(row[kColour]);
@@ -106,20 +185,39 @@ LimitGap gap_of(const CsvReader& row) {
   return gap;
 }
 
+/// Whether the line of column names ends in that of the source.
+bool names_source(std::string_view content) {
+  for (const std::string_view line : split(content, '\n'))
+    if (!trimmed(line).empty() && trimmed(line).front() != '#') return trimmed(line).ends_with(kHeader[kSource]);
+  return false;
+}
+
+/// Gives a line of any kind its source.
+template <class Line>
+Line with_source(Line line, const CsvReader& row, bool has_source) {
+  if (has_source) line.source = printable(row[kSource], std::string::npos);
+  return line;
+}
+
 }  // namespace
 
 LimitTable parse_limits(std::string_view content, const std::string& name) {
   LimitTable table;
   table.source = name;
-  CsvReader row(content, name, kMostBytes, kHeader);
+  const bool has_source = names_source(content);
+  CsvReader row(content, name, kMostBytes, std::span(kHeader).first(has_source ? kColumns : kSource));
   while (row.next()) {
     if (row.rows() > kMostRows) row.fail(fmt::format("at most {} limits are allowed", kMostRows));
     if (kStatuses[row.one_of(kStatus, kStatuses)] == "incomplete")
-      table.gaps.push_back(gap_of(row));
-    else if (kUnits[row.one_of(kUnit, kUnits)] == "factor")
-      table.factors.push_back(factor_of(row));
+      table.gaps.push_back(with_source(gap_of(row), row, has_source));
+    else if (const std::string_view unit = kUnits[row.one_of(kUnit, kUnits)]; unit == "factor")
+      table.factors.push_back(with_source(factor_of(row), row, has_source));
+    else if (unit == "cm2")
+      table.areas.push_back(with_source(area_of(row), row, has_source));
+    else if (unit == "chromaticity")
+      table.boundaries.push_back(with_source(boundary_of(row), row, has_source));
     else
-      table.rows.push_back(limit_of(row));
+      table.rows.push_back(with_source(limit_of(row), row, has_source));
   }
   if (table.rows.empty()) row.fail("must have one line for each limit");
   return table;

@@ -19,6 +19,7 @@ Json point_json(const PhotometricPoint& p) {
   return {{"observation_deg", p.asked.observation_deg},
           {"v_deg", p.asked.v_deg},
           {"h_deg", p.asked.h_deg},
+          {"measured_v_deg", p.v_deg},
           {"rotation_deg", p.rotation_deg},
           {"value_mcd_per_lx", p.r_i_mcd_per_lx},
           {"std_error_mcd_per_lx", p.std_error_mcd_per_lx},
@@ -28,6 +29,7 @@ Json point_json(const PhotometricPoint& p) {
           {"unit", unit_name(p.asked.unit)},
           {"limit_status", status_name(p.asked.status)},
           {"limit_line", p.asked.line},
+          {"limit_source", p.asked.source},
           {"pass", p.verdict() == Verdict::pass},
           {"verdict", verdict_name(p.verdict())},
           {"lower_bound", p.is_lower_bound},
@@ -66,6 +68,41 @@ Json change_json(const PhotometricChange& change) {
           {"points", points_json(change.points)}};
 }
 
+Json areas_json(const PhotometryRequest& asked) {
+  Json json = Json::array();
+  for (const LimitArea& limit : asked.programme.areas)
+    json.push_back({{"limit", limit.text()},
+                    {"limit_status", status_name(limit.status)},
+                    {"limit_line", limit.line},
+                    {"limit_source", limit.source},
+                    {"pass", limit.holds(asked.area_cm2)}});
+  return json;
+}
+
+Json colour_json(const PhotometricColour& colour) {
+  Json json = {{"observation_deg", colour.observation_deg},
+               {"measured_v_deg", colour.v_deg},
+               {"h_deg", colour.h_deg},
+               {"rotation_deg", colour.rotation_deg}};
+  if (colour.chromaticity)
+    json.update({{"x", colour.chromaticity->x},
+                 {"y", colour.chromaticity->y},
+                 {"std_error_x", colour.std_error.x},
+                 {"std_error_y", colour.std_error.y}});
+  json["boundaries"] = Json::array();
+  for (const ColourPoint& point : colour.boundaries) {
+    Json one = {{"limit", point.asked.text},
+                {"limit_status", status_name(point.asked.status)},
+                {"limit_line", point.asked.line},
+                {"limit_source", point.asked.source}};
+    if (colour.chromaticity) one.update({{"margin", point.margin}, {"std_error", point.std_error}});
+    json["boundaries"].push_back(std::move(one));
+  }
+  if (const auto verdict = colour.verdict()) json["verdict"] = verdict_name(*verdict);
+  if (!colour.reason.empty()) json["reason"] = colour.reason;
+  return json;
+}
+
 Json programme_json(const PhotometryResult& result) {
   const PhotometryRequest& asked = result.request;
   return {{"standard", asked.programme.standard},
@@ -78,6 +115,7 @@ Json programme_json(const PhotometryResult& result) {
 std::string point_text(const PhotometricPoint& p) {
   std::string text = p.verdict() == Verdict::fail ? "FAIL" : std::string(verdict_name(p.verdict()));
   if (p.is_lower_bound) text += " (at least)";
+  if (p.v_deg != p.asked.v_deg) text += fmt::format(" (at V {}, beside the mirror image)", shortest(p.v_deg));
   if (p.asked.status == LimitStatus::recalled) text += " (limit unconfirmed)";
   return text;
 }
@@ -92,6 +130,41 @@ std::string rows_of(const std::vector<PhotometricPoint>& points) {
                          fixed(p.r_i_mcd_per_lx, 2), fixed(p.limit_mcd_per_lx, 2), fixed(100.0 * p.margin(), 1),
                          fixed(p.r_a, 1), point_text(p));
   return table;
+}
+
+/// A line for each bound on the area.
+std::string areas_text(const PhotometryRequest& asked) {
+  std::string text;
+  for (const LimitArea& limit : asked.programme.areas)
+    text += fmt::format("area: {}{} - {}, has {}\n", limit.holds(asked.area_cm2) ? "pass" : "FAIL",
+                        limit.status == LimitStatus::recalled ? " (limit unconfirmed)" : "", limit.text(),
+                        shortest(asked.area_cm2));
+  return text;
+}
+
+/// The colour, its verdict, and the boundaries that it does not hold.
+std::string colour_text(const PhotometricColour& colour) {
+  std::string text = "colour: ";
+  if (const auto verdict = colour.verdict())
+    text += *verdict == Verdict::fail ? "FAIL - " : fmt::format("{} - ", verdict_name(*verdict));
+  if (!colour.chromaticity) return text + "no light comes back\n";
+  text += fmt::format("x {}, y {} at {} degrees, V {}, H {}", fixed(colour.chromaticity->x, 4),
+                      fixed(colour.chromaticity->y, 4), fixed(colour.observation_deg, 2), shortest(colour.v_deg),
+                      shortest(colour.h_deg));
+  if (colour.boundaries.empty()) return text + "; the standard's boundaries are not known\n";
+  for (const ColourPoint& point : colour.boundaries)
+    if (point.margin < 0.0) text += fmt::format("; not {}", point.asked.text);
+  return text + (colour.reason.empty() ? "" : "; " + colour.reason) + "\n";
+}
+
+/// What the part is lit by.
+std::string_view light_text(PhotometricLight light) {
+  switch (light) {
+    case PhotometricLight::illuminant_a: return "CIE A";
+    case PhotometricLight::illuminant_d65: return "CIE D65";
+    case PhotometricLight::of_design: return "the design's light";
+  }
+  return {};
 }
 
 /// \param reason of a verdict that is undetermined
@@ -127,7 +200,8 @@ std::string photometry_json(const PhotometryResult& result) {
                {"design", to_json(result.design)},
                {"programme", programme_json(result)},
                {"area_cm2", asked.area_cm2},
-               {"light", asked.own_light ? "design" : "a"},
+               {"area_limits", areas_json(asked)},
+               {"light", light_name(asked.light)},
                {"dye", asked.dye},
                {"wavelengths_nm", result.wavelengths_nm},
                {"rotation_deg", asked.rotation_deg},
@@ -138,6 +212,7 @@ std::string photometry_json(const PhotometryResult& result) {
   json["points"] = points_json(result.points);
   if (result.complete || !result.points.empty()) json["verdict"] = verdict_name(result.verdict);
   if (!result.reason.empty()) json["reason"] = result.reason;
+  if (result.colour) json["chromaticity"] = colour_json(*result.colour);
   json["directions"] = Json::array();
   for (const PhotometricDirection& d : result.directions) json["directions"].push_back(direction_json(d));
   json["changes"] = Json::array();
@@ -149,11 +224,12 @@ std::string photometry_json(const PhotometryResult& result) {
 std::string photometry_csv(const PhotometryResult& result) {
   CsvWriter csv(
       "observation_deg,v_deg,h_deg,rotation_deg,value_mcd_per_lx,std_error_mcd_per_lx,limit_mcd_per_lx,margin,"
-      "limit_status,pass,r_a_cd_per_lx_m2,r_l_cd_per_lx_m2,verdict,lower_bound");
+      "limit_status,pass,r_a_cd_per_lx_m2,r_l_cd_per_lx_m2,verdict,lower_bound,measured_v_deg,limit_source");
   for (const PhotometricPoint& p : result.points)
     csv.row(p.asked.observation_deg, p.asked.v_deg, p.asked.h_deg, p.rotation_deg, p.r_i_mcd_per_lx,
             p.std_error_mcd_per_lx, p.limit_mcd_per_lx, p.margin(), status_name(p.asked.status),
-            p.verdict() == Verdict::pass, p.r_a, p.r_l, verdict_name(p.verdict()), p.is_lower_bound);
+            p.verdict() == Verdict::pass, p.r_a, p.r_l, verdict_name(p.verdict()), p.is_lower_bound, p.v_deg,
+            p.asked.source);
   return csv.text();
 }
 
@@ -174,9 +250,11 @@ std::string photometry_table(const PhotometryResult& result) {
   std::string table = printable(programme.standard);
   if (!programme.part_class.empty()) table += ", class " + printable(programme.part_class);
   table += fmt::format(", {}, {} cm2, {}{}\n", printable(programme.colour), shortest(result.request.area_cm2),
-                       result.request.own_light ? "the design's light" : "CIE A",
+                       light_text(result.request.light),
                        result.request.dye.empty() ? "" : ", dye " + printable(result.request.dye));
   table += rows_of(result.points);
+  table += areas_text(result.request);
+  if (result.colour) table += colour_text(*result.colour);
   if (!result.points.empty()) table += verdict_text(result.verdict, programme, result.reason);
   for (const PhotometricChange& change : result.changes) table += change_text(change, programme);
   return table;

@@ -1,6 +1,7 @@
 #include "studies/photometry/io/standard_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/data_directory.h"
 #include "core/error.h"
@@ -12,11 +13,21 @@
 namespace retrace::studies {
 namespace fs = std::filesystem;
 
+namespace {
+
+std::vector<std::string_view> names_of_standards() {
+  std::vector<std::string_view> names;
+  for (const ShippedStandard& standard : shipped_standards()) names.push_back(standard.name);
+  return names;
+}
+
+}  // namespace
+
 fs::path limits_file_of(const std::string& standard) {
   if (find_standard(standard) != nullptr) return data_directory() / "photometry_limits.csv";
   if (!fs::exists(standard))
-    throw InputError({"", 0, "--standard"},
-                     fmt::format("must be r150, j594, bicycle or a file that exists, got {}", in_quotes(standard)));
+    throw InputError({"", 0, "--standard"}, fmt::format("must be {} or a file that exists, got {}",
+                                                        fmt::join(names_of_standards(), ", "), in_quotes(standard)));
   return standard;
 }
 

@@ -109,7 +109,7 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& d
     if (point.observation_deg > request.window_deg)
       document.fail(at + ".window_deg", fmt::format("must be >= {}, an observation angle of the standard, got {}",
                                                     shortest(point.observation_deg), shortest(request.window_deg)));
-  request.own_light = document.text(at + ".light") == "design";
+  request.light = document.choice<PhotometricLight>(at + ".light");
   request.diffraction = document.text(at + ".far_field") == "diffracted";
   request.advice = false;
   const std::optional<std::string> dye = optional_text(document, at + ".dye");
@@ -118,9 +118,10 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& d
   if (dye && dye_file == *dye) files.push_back(dye_file);  // not a shipped one
   set_dye(request, dye, dye_file);
   table.dye_unless_coloured = !dye;
-  table.key = fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", choice.standard, choice.part_class.value_or(""),
-                          request.programme.colour, request.area_cm2, fmt::join(request.rotation_deg, " "),
-                          request.window_deg, request.own_light, request.diffraction, dye.value_or("(by colour)"));
+  table.key =
+      fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", choice.standard, choice.part_class.value_or(""),
+                  request.programme.colour, request.area_cm2, fmt::join(request.rotation_deg, " "), request.window_deg,
+                  light_name(request.light), request.diffraction, dye.value_or("(by colour)"));
   return std::make_shared<const PhotometricTable>(std::move(table));
 }
 

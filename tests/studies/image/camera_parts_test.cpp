@@ -41,7 +41,7 @@ studies::PhotometricPoint forwards(const Design& design, const RoughCase& c, dou
                                       studies::LimitStatus::confirmed, 2});
   request.area_cm2 = 10.0;
   request.apertures = {Angle::from_deg(disc_arcmin / 60.0), Angle::from_deg(disc_arcmin / 60.0)};
-  request.own_light = true;
+  request.light = studies::PhotometricLight::of_design;
   request.diffraction = false;
   request.advice = false;
   request.engine = studies::Engine::embree;

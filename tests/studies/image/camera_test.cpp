@@ -127,7 +127,7 @@ TEST(Camera, MeanLuminanceIsThatOfThePhotometer) {
                                         studies::LimitStatus::confirmed, 2});
     request.area_cm2 = 10.0;
     request.apertures = {Angle::from_rad(c.lamp_arcmin * kArcmin), Angle::from_rad(c.pupil_arcmin * kArcmin)};
-    request.own_light = true;
+    request.light = studies::PhotometricLight::of_design;
     request.diffraction = false;
     request.advice = false;
     const double r_a = studies::PhotometryStudy(design, request).run().points.front().r_a;

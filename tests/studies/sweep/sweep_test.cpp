@@ -187,7 +187,7 @@ TEST_F(PhotometricStudy, QuantitiesAreThoseOfTheTable) {
   // What `retrace photometry` measures of the same design.
   PhotometryRequest request = photometry_request({(folder_ / "l.csv").string(), {}, {}});
   request.area_cm2 = 30.0;
-  request.own_light = true;
+  request.light = PhotometricLight::of_design;
   request.diffraction = false;
   request.advice = false;
   set_dye(request, {}, dye_file_of({}, false, request.programme.colour));

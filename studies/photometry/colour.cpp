@@ -1,0 +1,148 @@
+#include "studies/photometry/colour.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "materials/io/spectrum_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+// Spans of each colour matching function, of two wavelengths each.
+constexpr std::size_t kColourParts = 3;
+// A colour nearer to a boundary than this many standard errors says nothing.
+constexpr double kErrorsOfAColour = 2.0;
+// Odd, so that no two responses share a seed.
+constexpr std::uint32_t kSeedStep = 0x85ebca6bU;
+
+/// Tristimulus values of the light that comes back in one geometry, and their standard errors.
+struct MeasuredTristimulus {
+  materials::Tristimulus values{};
+  materials::Tristimulus errors{};
+  bool lacks_diffraction = false;
+};
+
+/// The request of one response: with the rays of a direction shared by the three, and with the absorption of a coloured
+/// design as its dye, which changes nothing but where the wavelengths are placed.
+PhotometryRequest request_of_response(const PhotometryRequest& request, const Design& design, std::size_t response) {
+  PhotometryRequest one = request;
+  one.rays = std::max<std::uint64_t>(1, request.rays / 3);
+  one.seed = request.seed + kSeedStep * static_cast<std::uint32_t>(response + 1);
+  const auto* const own = std::get_if<std::vector<SpectralAbsorption>>(&design.substance.absorption_per_mm);
+  if (own != nullptr && one.dye_absorption_per_mm.values.empty())
+    for (const SpectralAbsorption& at : *own) {
+      one.dye_absorption_per_mm.wavelengths_nm.push_back(at.wavelength_nm);
+      one.dye_absorption_per_mm.values.push_back(at.per_mm);
+    }
+  return one;
+}
+
+/// In the order of the settings; nothing if it was cancelled.
+std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Design& design,
+                                                                     const PhotometryRequest& request,
+                                                                     const Photometer& photometer,
+                                                                     const std::vector<PhotometerSetting>& settings,
+                                                                     const Cancellation* cancel) {
+  const materials::Tristimulus sent =
+      materials::tristimulus(lamp_power(request.light), materials::shipped_colour_matching());
+  std::vector<MeasuredTristimulus> measured(settings.size());
+  for (std::size_t k = 0; k < sent.size(); ++k) {
+    Photometer one(design, request_of_response(request, design, k), kColourParts, static_cast<PhotometricResponse>(k));
+    if (!photometer.is_exact()) one.leave_exact();
+    const auto readings = one.measure(settings, nullptr, cancel);
+    if (!readings) return std::nullopt;
+    for (std::size_t s = 0; s < settings.size(); ++s) {
+      measured[s].values[k] = sent[k] * (*readings)[s].r_a.front();
+      measured[s].errors[k] = sent[k] * (*readings)[s].r_a_error.front();
+      measured[s].lacks_diffraction = measured[s].lacks_diffraction || (*readings)[s].lacks_diffraction;
+    }
+  }
+  return measured;
+}
+
+/// Standard error of a x + b y, whose derivative by tristimulus value k is (a_k - a x - b y) / (X + Y + Z).
+double error_of(double of_x, double of_y, const materials::Chromaticity& at, const MeasuredTristimulus& measured) {
+  const double sum = measured.values[0] + measured.values[1] + measured.values[2];
+  const double mean = of_x * at.x + of_y * at.y;
+  return std::hypot((of_x - mean) * measured.errors[0], (of_y - mean) * measured.errors[1], mean * measured.errors[2]) /
+         sum;
+}
+
+PhotometricColour colour_of(const PhotometerSetting& setting, const MeasuredTristimulus& measured,
+                            const std::vector<ColourBoundary>& boundaries) {
+  PhotometricColour colour;
+  colour.observation_deg = setting.observation_deg.front();
+  colour.v_deg = setting.v_deg;
+  colour.h_deg = setting.h_deg;
+  colour.rotation_deg = setting.rotation_deg;
+  colour.lacks_diffraction = measured.lacks_diffraction;
+  const bool is_dark = !(measured.values[0] + measured.values[1] + measured.values[2] > 0.0);
+  if (!is_dark) {
+    const materials::Chromaticity at = materials::chromaticity(measured.values);
+    colour.chromaticity = at;
+    colour.std_error = {error_of(1.0, 0.0, at, measured), error_of(0.0, 1.0, at, measured)};
+    for (const ColourBoundary& b : boundaries)
+      colour.boundaries.push_back({b, b.most - b.of_x * at.x - b.of_y * at.y, error_of(b.of_x, b.of_y, at, measured)});
+  } else {
+    for (const ColourBoundary& b : boundaries) colour.boundaries.push_back({b, 0.0, 0.0});
+  }
+  return colour;
+}
+
+/// The least of the margins.
+double least_margin(const PhotometricColour& colour) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ColourPoint& point : colour.boundaries) least = std::min(least, point.margin);
+  return least;
+}
+
+bool is_near(const ColourPoint& point) {
+  return std::abs(point.margin) < kErrorsOfAColour * point.std_error;
+}
+
+std::string reason_of(const PhotometricColour& colour, const PhotometryRequest& request, const Photometer& photometer) {
+  if (colour.verdict() != Verdict::undetermined) return {};
+  if (!colour.chromaticity) return "no light comes back there";
+  if (colour.lacks_diffraction) return "diffraction is left out, as " + photometer.why_undiffracted();
+  if (request.light != PhotometricLight::illuminant_a) return "the boundaries are of CIE A";
+  return "the colour is nearer to a boundary than two standard errors: give more samples";
+}
+
+}  // namespace
+
+std::optional<Verdict> PhotometricColour::verdict() const {
+  if (boundaries.empty()) return std::nullopt;
+  const auto any = [&](const auto& holds) { return std::any_of(boundaries.begin(), boundaries.end(), holds); };
+  if (!chromaticity || lacks_diffraction || is_of_another_light) return Verdict::undetermined;
+  if (any([](const ColourPoint& p) { return p.margin < 0.0 && !is_near(p); })) return Verdict::fail;
+  if (any(is_near)) return Verdict::undetermined;
+  const bool is_recalled = any([](const ColourPoint& p) { return p.asked.status == LimitStatus::recalled; });
+  return is_recalled ? Verdict::unconfirmed : Verdict::pass;
+}
+
+std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometryRequest& request,
+                                                 const Photometer& photometer, const std::vector<double>& v_deg,
+                                                 const Cancellation* cancel) {
+  const std::vector<ColourBoundary>& boundaries = request.programme.boundaries;
+  const TestPoint& first = request.programme.points.front();
+  const double observation_deg = boundaries.empty() ? first.observation_deg : boundaries.front().observation_deg;
+  const double h_deg = boundaries.empty() ? first.h_deg : boundaries.front().h_deg;
+  std::vector<PhotometerSetting> settings;
+  for (const double v : v_deg)
+    for (const double rotation_deg : request.rotation_deg)
+      settings.push_back({v, h_deg, rotation_deg, {observation_deg}, 0, false});
+  const auto measured = measured_tristimulus(design, request, photometer, settings, cancel);
+  if (!measured) return std::nullopt;
+  std::optional<PhotometricColour> worst;
+  for (std::size_t s = 0; s < settings.size(); ++s) {
+    PhotometricColour colour = colour_of(settings[s], (*measured)[s], boundaries);
+    colour.is_of_another_light = request.light != PhotometricLight::illuminant_a;
+    if (!worst || least_margin(colour) < least_margin(*worst)) worst = std::move(colour);
+  }
+  worst->reason = reason_of(*worst, request, photometer);
+  return worst;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,196 @@
+// The colour of the light that comes back: closed forms, dyes, dispersion and diffraction against sums over the table,
+// errors.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "materials/io/spectrum_reader.h"
+#include "studies/photometry/io/photometry_files.h"
+#include "studies/photometry/photometer.h"
+#include "tests/studies/photometric_requests.h"
+
+namespace retrace::studies::photometric_colour_test {
+namespace {
+
+using namespace photometric_requests;
+using namespace testing;
+
+const std::string kData = RETRACE_SOURCE_DIR "/data/";
+
+/// In the light of an illuminant, with the colour.
+PhotometryRequest colour_request(PhotometricLight light = PhotometricLight::illuminant_a,
+                                 double observation_deg = 0.05) {
+  PhotometryRequest request = request_of(points_at({observation_deg}, 1.0));
+  request.light = light;
+  request.colour = true;
+  return request;
+}
+
+materials::Chromaticity colour_of(const Design& design, const PhotometryRequest& request) {
+  return run(design, request).colour.value().chromaticity.value();
+}
+
+ColourBoundary at_most(double of_x, double of_y, double most) {
+  ColourBoundary boundary;
+  boundary.status = LimitStatus::read;
+  boundary.observation_deg = 0.05;
+  boundary.of_x = of_x;
+  boundary.of_y = of_y;
+  boundary.most = most;
+  return boundary;
+}
+
+/// Mirrors behind a face without losses, of one index.
+Design colourless(double base_mm = 0.5) {
+  return design_of(infinite(geometry::RtpElement{base_mm, base_mm, 90.0}, geometry::Arrangement::aligned, 2.0), true);
+}
+
+// What treats all wavelengths alike sends the lamp's own colour back.
+TEST(PhotometricColour, OfAColourlessPartIsThatOfTheLamp) {
+  const materials::Chromaticity a = colour_of(colourless(), colour_request());
+  EXPECT_NEAR(a.x, 0.44757, 2e-5);
+  EXPECT_NEAR(a.y, 0.40745, 2e-5);
+  const materials::Chromaticity d65 = colour_of(colourless(), colour_request(PhotometricLight::illuminant_d65));
+  EXPECT_NEAR(d65.x, 0.31271, 2e-5);
+  EXPECT_NEAR(d65.y, 0.32902, 2e-5);
+}
+
+// A dye takes exp(-a L), L = 2 (plate + depth): the sums of the CIE over the table.
+TEST(PhotometricColour, OfADyedPartIsTheSumOverTheTable) {
+  const double way_mm = 2.0 * 2.25;
+  const materials::CieTable cie = materials::read_cie_table(kData + "cie_v_a_d65_5nm.csv");
+  for (const std::string name : {"red", "amber"}) {
+    const materials::SpectralCurve dye = materials::read_spectral_absorption(kData + "dye_" + name + ".csv");
+    materials::SpectralCurve back = cie.illuminant_a;
+    for (std::size_t k = 0; k < back.values.size(); ++k)
+      back.values[k] *= std::exp(-way_mm * dye.at(back.wavelengths_nm[k]));
+    const materials::Chromaticity expected = materials::chromaticity(
+        materials::tristimulus(back, materials::read_colour_matching(kData + "cie_xyz_1931_5nm.csv")));
+    PhotometryRequest request = colour_request();
+    request.dye_absorption_per_mm = dye;
+    const materials::Chromaticity found = colour_of(colourless(), request);
+    EXPECT_NEAR(found.x, expected.x, 1e-5) << name;
+    EXPECT_NEAR(found.y, expected.y, 1e-5) << name;
+    EXPECT_NEAR(found.z(), expected.z(), 1e-5) << name;
+    // The same absorption as the design's own.
+    Design coloured = colourless();
+    std::vector<SpectralAbsorption> own;
+    for (std::size_t k = 0; k < dye.values.size(); ++k) own.push_back({dye.wavelengths_nm[k], dye.values[k]});
+    coloured.substance.absorption_per_mm = own;
+    const materials::Chromaticity again = colour_of(coloured, colour_request());
+    EXPECT_NEAR(again.x, found.x, 1e-12) << name;
+    EXPECT_NEAR(again.y, found.y, 1e-12) << name;
+  }
+}
+
+// Dispersion of PMMA, Fresnel's faces and diffraction of half a millimetre: runs of one wavelength every 10 nm.
+TEST(PhotometricColour, WithDispersionAndDiffractionIsThatOfItsSpectrum) {
+  Design design = design_of(honeycomb(0.75, 0.5));
+  design.substance.refractive_index.reset();
+  design.substance.material = "PMMA";
+  PhotometryRequest request = colour_request(PhotometricLight::illuminant_a, 1.0 / 3.0);
+  request.diffraction = true;
+  const materials::Chromaticity found = colour_of(design, request);
+  const materials::ColourMatching functions = materials::read_colour_matching(kData + "cie_xyz_1931_5nm.csv");
+  materials::SpectralCurve back = materials::read_cie_table(kData + "cie_v_a_d65_5nm.csv").illuminant_a;
+  request.light = PhotometricLight::of_design;
+  materials::SpectralCurve r_a;
+  for (double w = 380.0; w <= 780.0; w += 10.0) {
+    design.light.colour = w;
+    r_a.wavelengths_nm.push_back(w);
+    const Photometer photometer(design, request, 1);
+    r_a.values.push_back(photometer.measure({{0.0, 0.0, 0.0, {1.0 / 3.0}, 0, false}}, nullptr, nullptr)->at(0).r_a[0]);
+  }
+  for (std::size_t k = 0; k < back.values.size(); ++k) back.values[k] *= r_a.at(back.wavelengths_nm[k]);
+  const materials::Chromaticity expected = materials::chromaticity(materials::tristimulus(back, functions));
+  EXPECT_NEAR(found.x, expected.x, 2e-4);
+  EXPECT_NEAR(found.y, expected.y, 2e-4);
+  const bool is_colourless = std::hypot(expected.x - 0.44757, expected.y - 0.40745) < 1e-3;
+  EXPECT_FALSE(is_colourless) << "diffraction colours what it sends aside";
+}
+
+TEST(PhotometricColour, HasTheErrorOfItsRays) {
+  PhotometryRequest request = colour_request();
+  request.dye_absorption_per_mm = materials::read_spectral_absorption(kData + "dye_amber.csv");
+  const Design design = design_of(honeycomb(0.0, 20.0));
+  const materials::Chromaticity exact = colour_of(design, request);
+  request.engine = Engine::montecarlo;
+  request.rays = 1U << 14;
+  double chi_squared = 0.0;
+  constexpr int kSeeds = 12;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    request.seed = static_cast<std::uint32_t>(seed);
+    const PhotometricColour colour = run(design, request).colour.value();
+    ASSERT_GT(colour.std_error.x, 0.0);
+    ASSERT_GT(colour.std_error.y, 0.0);
+    chi_squared += std::pow((colour.chromaticity->x - exact.x) / colour.std_error.x, 2.0);
+    chi_squared += std::pow((colour.chromaticity->y - exact.y) / colour.std_error.y, 2.0);
+  }
+  // x and y share what they are made of: 12 to 24 degrees of freedom; 51 is the 99.9 % point of 24.
+  EXPECT_LT(chi_squared, 51.0);
+}
+
+TEST(PhotometricColour, VerdictIsThatOfTheBoundaries) {
+  const Design wide = colourless(20.0);  // by rays, without diffraction that counts
+  PhotometryRequest request = colour_request();
+  const auto verdict = [&](std::vector<ColourBoundary> boundaries) {
+    request.programme.boundaries = std::move(boundaries);
+    return run(wide, request).colour.value().verdict();
+  };
+  EXPECT_EQ(verdict({}), std::nullopt);
+  EXPECT_EQ(verdict({at_most(1.0, 0.0, 0.448)}), Verdict::pass);
+  EXPECT_EQ(verdict({at_most(1.0, 0.0, 0.448), at_most(0.0, 1.0, 0.407)}), Verdict::fail);
+  ColourBoundary recalled = at_most(1.0, 0.0, 0.448);
+  recalled.status = LimitStatus::recalled;
+  EXPECT_EQ(verdict({recalled}), Verdict::unconfirmed);
+  EXPECT_EQ(run(wide, request).verdict, Verdict::pass) << "that of the points is another";
+  request.light = PhotometricLight::illuminant_d65;
+  EXPECT_EQ(verdict({at_most(1.0, 0.0, 0.448)}), Verdict::undetermined);
+}
+
+TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
+  PhotometricColour colour;
+  colour.chromaticity = {0.4, 0.4};
+  colour.boundaries = {{at_most(1.0, 0.0, 0.41), 0.01, 0.004}};
+  EXPECT_EQ(colour.verdict(), Verdict::pass);
+  colour.boundaries[0].std_error = 0.006;
+  EXPECT_EQ(colour.verdict(), Verdict::undetermined);
+  colour.boundaries[0].margin = -0.02;
+  EXPECT_EQ(colour.verdict(), Verdict::fail);
+  colour.lacks_diffraction = true;
+  EXPECT_EQ(colour.verdict(), Verdict::undetermined);
+  // Cells of half a millimetre by rays.
+  PhotometryRequest request = colour_request();
+  request.programme.boundaries = {at_most(1.0, 0.0, 0.9)};
+  request.engine = Engine::montecarlo;
+  request.rays = 1U << 10;
+  const PhotometryResult result = run(design_of(honeycomb(0.0, 0.5)), request);
+  EXPECT_EQ(result.colour->verdict(), Verdict::undetermined);
+  EXPECT_NE(result.colour->reason.find("diffraction is left out"), std::string::npos);
+  EXPECT_NE(photometry_table(result).find("colour: undetermined - x "), std::string::npos);
+}
+
+// Perfect cubes send no ray aside.
+TEST(PhotometricColour, OfNoLightIsUndetermined) {
+  PhotometryRequest request = colour_request(PhotometricLight::illuminant_a, 1.0);
+  request.programme.boundaries = {at_most(1.0, 0.0, 0.9)};
+  request.programme.boundaries[0].observation_deg = 1.0;
+  const PhotometryResult result = run(design_of(honeycomb(0.0, 20.0), true), request);
+  EXPECT_FALSE(result.colour->chromaticity);
+  EXPECT_EQ(result.colour->verdict(), Verdict::undetermined);
+  EXPECT_EQ(result.colour->reason, "no light comes back there");
+  EXPECT_EQ(photometry_json(result).find("\"x\""), std::string::npos);
+}
+
+// Of the places beside the mirror image, the one that is worse.
+TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
+  PhotometryRequest request = colour_request();
+  request.programme.boundaries = {at_most(1.0, 0.0, 0.448)};
+  request.programme.boundaries[0].v_beside_deg = {5.0, -5.0};
+  EXPECT_EQ(run(colourless(), request).colour->v_deg, 0.0);
+  EXPECT_EQ(std::abs(run(design_of(honeycomb()), request).colour->v_deg), 5.0);
+}
+
+}  // namespace
+}  // namespace retrace::studies::photometric_colour_test
