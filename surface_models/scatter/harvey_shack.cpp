@@ -11,6 +11,9 @@ namespace {
 
 using std::numbers::pi;
 
+// Of the phase squared at normal incidence: 5 % of what scatters is then diffracted more than once.
+constexpr double kMostPhase2OfFirstOrder = 0.1;
+
 void require(bool holds, const char* key, const char* allowed, double given) {
   if (!holds) throw InputError({"", 0, key}, std::string(allowed) + ", got " + shortest(given));
 }
@@ -39,7 +42,126 @@ double roughness_rms_slope(const Roughness& r, double index, double wavelength_n
   return 2e-3 * r.sq_nm / r.correlation_length_um * std::sqrt(std::max(0.0, share));
 }
 
+double wave_number_per_nm(double wavelength_nm) {
+  return 2.0 * pi / wavelength_nm;
+}
+
 }  // namespace
+
+struct HarveyShack::Side {
+  DielectricInterface interface;
+  std::array<std::optional<FirstOrderShare>, 2> shares;  ///< of roughness and of waviness
+
+  Side(const Roughness& r, double from, double to, double wavelength_nm) : interface(from, to) {
+    const double wave_number_per_um = 1e3 * wave_number_per_nm(wavelength_nm);
+    if (r.sq_nm > 0.0) shares[0].emplace(interface, wave_number_per_um * r.correlation_length_um);
+    if (r.waviness_sq_nm > 0.0)
+      shares[1].emplace(interface, wave_number_per_um * equivalent_correlation_um(r.waviness_length_um));
+  }
+};
+
+struct HarveyShack::Media {
+  Side inside, outside;
+};
+
+HarveyShack::HarveyShack(const Roughness& roughness, const Dielectrics& media) : HarveyShack(roughness) {
+  const double w = media.wavelength_nm;
+  media_ = std::make_shared<const Media>(
+      Media{Side(roughness, media.index, media.back_index, w), Side(roughness, media.back_index, media.index, w)});
+}
+
+const HarveyShack::Side& HarveyShack::side_of(const ScatterEvent& event) const {
+  return event.inside_material ? media_->inside : media_->outside;
+}
+
+std::array<HarveyShack::Part, 2> HarveyShack::parts(const Facet& facet) const {
+  return {Part{roughness_.sq_nm, roughness_.correlation_length_um},
+          Part{facet.is_tilted ? 0.0 : roughness_.waviness_sq_nm,
+               equivalent_correlation_um(roughness_.waviness_length_um)}};
+}
+
+DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const Facet& facet,
+                                                const materials::FresnelCoefficients& fresnel) const {
+  const Side& side = side_of(event);
+  const double k = event.index_from * event.direction_in.head<2>().norm();
+  const double wave_number = wave_number_per_nm(event.wavelength_nm);
+  const std::array<Part, 2> heights = parts(facet);
+  std::array<double, 2> scattered{};
+  for (std::size_t n = 0; n < heights.size(); ++n) {
+    if (!(heights[n].sq_nm > 0.0)) continue;
+    const std::array<double, 2> share = side.shares[n]->at(k);
+    const double height = wave_number * heights[n].sq_nm;
+    for (std::size_t pol : {0U, 1U}) scattered[pol] += height * height * share[pol];
+  }
+  // Both specular fields pay in proportion to their power and phase variance, as they do for long heights.
+  const double reflected_path = 2.0 * event.index_from * event.cos_in();
+  const double transmitted_path = event.index_from * event.cos_in() - event.index_to * fresnel.cos_refracted;
+  const double a_r = reflected_path * reflected_path, a_t = transmitted_path * transmitted_path;
+  DiffractionMeans means;
+  for (std::size_t pol : {0U, 1U}) {
+    const double t = pol == 0 ? fresnel.t_s * fresnel.t_s : fresnel.t_p * fresnel.t_p;
+    const double phases = (1.0 - t) * a_r + t * a_t;
+    if (!(phases > 0.0)) continue;
+    means.reflected[pol] = scattered[pol] * a_r / phases;
+    means.transmitted[pol] = t > 0.0 ? scattered[pol] * a_t / phases : 0.0;
+  }
+  return means;
+}
+
+std::optional<DiffractedOnce> HarveyShack::draw_diffracted_once(const ScatterEvent& event, const Facet& facet,
+                                                                const Vec3& s_axis, const Polarisation2& coherency,
+                                                                RandomStream& random) const {
+  constexpr int kMaxTries = 1000000;
+  const Side& side = side_of(event);
+  const Vec2 along(-s_axis.y(), s_axis.x());  // z x s
+  const double k_in = event.index_from * event.direction_in.head<2>().norm();
+  const double most = std::max(event.index_from, event.index_to);
+  const double bound = side.interface.bound(k_in, coherency);
+  const std::array<Part, 2> heights = parts(facet);
+  const double variance_of_first = heights[0].sq_nm * heights[0].sq_nm;
+  const double all = variance_of_first + heights[1].sq_nm * heights[1].sq_nm;
+  if (!(bound > 0.0) || !(all > 0.0)) return std::nullopt;
+  for (int tries = 0; tries < kMaxTries; ++tries) {
+    const Part& part = heights[random.next() * all < variance_of_first ? 0 : 1];
+    const double deviation = std::sqrt(2.0) / (1e3 * part.length_um * wave_number_per_nm(event.wavelength_nm));
+    const Vec2 k_out = k_in * along + deviation * normal_pair(random);
+    double left = random.next() * bound;
+    if (k_out.squaredNorm() >= most * most) continue;
+    for (const Lobe lobe : {Lobe::reflection, Lobe::transmission}) {
+      const double index = event.index_of(lobe);
+      if (k_out.squaredNorm() >= index * index) continue;
+      const Polarisation2 f = side.interface.amplitudes(k_in, along, k_out, lobe);
+      const Polarisation2 out = f * coherency * f.adjoint();
+      const double power = out.trace().real();
+      left -= power;
+      if (left >= 0.0) continue;
+      const double k = k_out.norm();
+      const Vec2 ahead = k > 0.0 ? Vec2(k_out / k) : along;
+      return DiffractedOnce{direction_of(k_out / index, lobe), Vec3(ahead.y(), -ahead.x(), 0.0), out / power, lobe};
+    }
+  }
+  return std::nullopt;
+}
+
+double HarveyShack::diffracted_once_density(const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                            const Vec3& s_axis, const Polarisation2& coherency,
+                                            const Vec2& beta) const {
+  if (beta.squaredNorm() >= 1.0) return 0.0;
+  const double index = event.index_of(lobe);
+  const Vec2 along(-s_axis.y(), s_axis.x());
+  const double k_in = event.index_from * event.direction_in.head<2>().norm();
+  const Vec2 k_out = index * beta;
+  const double wave_number = wave_number_per_nm(event.wavelength_nm);
+  double spectrum = 0.0;
+  for (const Part& part : parts(facet)) {
+    if (!(part.sq_nm > 0.0)) continue;
+    const double length = 1e3 * part.length_um * wave_number, height = part.sq_nm * wave_number;
+    spectrum += height * height * length * length / (4.0 * pi) *
+                std::exp(-0.25 * length * length * (k_out - k_in * along).squaredNorm());
+  }
+  const Polarisation2 f = side_of(event).interface.amplitudes(k_in, along, k_out, lobe);
+  return index * index * spectrum * (f * coherency * f.adjoint()).trace().real();
+}
 
 HarveyShack::HarveyShack(const Roughness& roughness)
     : roughness_(roughness),
@@ -92,19 +214,22 @@ double HarveyShack::scattered_share(const ScatterEvent& event, const Facet& face
 }
 
 std::optional<Vec2> HarveyShack::draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
-                                                RandomStream& random) const {
+                                                RandomStream& random, int least_orders) const {
   const Band what = band(event, facet, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, what.sq_nm);
   if (!phase_lobe) return std::nullopt;
-  return phase_lobe->sample_scattered(random, [&](int order, RandomStream& numbers) -> Vec2 {
-    int rough = order;
-    if (what.roughness_share < 1.0) {
-      rough = 0;
-      for (int k = 0; k < order; ++k) rough += numbers.next() < what.roughness_share ? 1 : 0;
-    }
-    const double variance = rough * what.roughness_variance + (order - rough) * what.waviness_variance;
-    return std::sqrt(variance) * normal_pair(numbers);
-  });
+  return phase_lobe->sample_scattered(
+      random,
+      [&](int order, RandomStream& numbers) -> Vec2 {
+        int rough = order;
+        if (what.roughness_share < 1.0) {
+          rough = 0;
+          for (int k = 0; k < order; ++k) rough += numbers.next() < what.roughness_share ? 1 : 0;
+        }
+        const double variance = rough * what.roughness_variance + (order - rough) * what.waviness_variance;
+        return std::sqrt(variance) * normal_pair(numbers);
+      },
+      least_orders);
 }
 
 /// Density of the sum of `order` shifts at the squared distance `shift2`.
@@ -155,9 +280,12 @@ std::vector<std::string> HarveyShack::warnings(double index, double wavelength_n
   const Roughness& r = roughness_;
   const double wave_um = 1e-3 * wavelength_nm / index;
   if (r.sq_nm > 0.0) {
-    if (r.correlation_length_um < wave_um)
+    // Light that is diffracted once is right for any length, between dielectrics; twice, half the phase variance of it.
+    const double phase = reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm);
+    if (r.correlation_length_um < wave_um && (media_ == nullptr || phase * phase > kMostPhase2OfFirstOrder))
       found.push_back("correlation length " + shortest(r.correlation_length_um) +
-                      " um is below the wavelength in the material: the phase model of roughness does not hold");
+                      " um is below the wavelength in the material: the phase model of roughness does not hold" +
+                      (media_ == nullptr ? "" : ", and heights are too large for first order alone"));
     const double slope = roughness_rms_slope(r, index, wavelength_nm);
     if (slope > kLargestSlope)
       found.push_back("rms slope of the roughness " + fixed(slope, 3) + " is above " + shortest(kLargestSlope) +
