@@ -80,7 +80,7 @@ surface_models::ScatterModel height_map_model(const HeightMapTexture& t, const s
 /// \param optics all but their texture
 surface_models::ScatterModel harvey_shack_model(const HarveyShackTexture& t, const raytrace::Optics& optics) {
   const surface_models::Roughness heights = {t.roughness_sq_nm, t.correlation_length_um, t.waviness_sq_nm,
-                                             t.waviness_length_um};
+                                             t.waviness_length_um, t.down_correlation_length_um};
   if (optics.mirror_facets || optics.coating_index) return surface_models::HarveyShack(heights);
   return surface_models::HarveyShack(heights, {optics.index, optics.back_index, optics.wavelength_nm});
 }

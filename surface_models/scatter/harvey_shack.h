@@ -20,6 +20,12 @@ struct Roughness {
   double correlation_length_um = 0.0;  ///< where the autocorrelation is 1/e; > 0 unless sq_nm is 0
   double waviness_sq_nm = 0.0;         ///< rms height of the waviness, >= 0
   double waviness_length_um = 0.0;     ///< its period; > 0 unless waviness_sq_nm is 0
+  /// Correlation length along y, where it is unlike the one along x; 0: the same
+  double y_correlation_length_um = 0.0;
+
+  bool is_isotropic() const {
+    return y_correlation_length_um == 0.0 || y_correlation_length_um == correlation_length_um;
+  }
 };
 
 /// The media on both sides of a rough facet, both transparent.
@@ -47,8 +53,8 @@ struct DiffractedOnce {
 /// Generalized Harvey-Shack scatter (PhaseLobe) from a Gaussian PSD.
 ///
 /// Between dielectrics, light that is diffracted once follows first-order perturbation theory instead, which knows
-/// polarisation, total reflection and both sides at once (first_order.h); what is diffracted more than once, and facets
-/// that are mirrors or coated with metal, the phase alone:
+/// polarisation, total reflection and both sides at once (first_order.h); what is diffracted more than once, roughness
+/// with a lay, and facets that are mirrors or coated with metal, the phase alone:
 ///
 /// - Reflection keeps exp(-(4 pi n s cos t / w)^2) specular, transmission exp(-(2 pi s (n1 cos t1 - n2 cos t2) / w)^2),
 ///   with s the relevant roughness: that of spatial frequencies below n / w, which alone can leave as waves. For
@@ -65,7 +71,7 @@ class HarveyShack {
  public:
   /// \throw InputError for a value out of range, a slope of the waviness beyond every model among them
   explicit HarveyShack(const Roughness& roughness);
-  /// The same between two dielectrics.
+  /// The same between two dielectrics, as far as first order serves: roughness with a lay keeps the phase alone.
   HarveyShack(const Roughness& roughness, const Dielectrics& media);
 
   const Roughness& roughness() const { return roughness_; }
@@ -114,12 +120,12 @@ class HarveyShack {
   /// What scatters in an event: Sq of both parts, and the widths of their spectra in direction cosines.
   struct Band {
     double sq_nm = 0.0;
-    double roughness_share = 0.0;     ///< of sq_nm squared
-    double roughness_variance = 0.0;  ///< of one shift, along each axis
-    double waviness_variance = 0.0;
+    double roughness_share = 0.0;            ///< of sq_nm squared
+    Vec2 roughness_variance = Vec2::Zero();  ///< of one shift, along x and along y
+    Vec2 waviness_variance = Vec2::Zero();
   };
   Band band(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
-  static double shift_density(const Band& band, int order, double shift2);
+  static double shift_density(const Band& band, int order, const Vec2& shift);
 
   /// Tables of one side that light comes from.
   struct Side;

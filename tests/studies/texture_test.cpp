@@ -187,6 +187,27 @@ TEST(DesignTexture, LevelAxisOfTheMapLiesAlongTheRoofEdge) {
   EXPECT_LT(rre("y"), specular + 0.1 * (1.0 - specular));
 }
 
+// Roughness with a lay, short along the roof edge, turns light by up to w / (sqrt(2) pi l) out of the plane of
+// incidence; short down the facets, by as much over the cosine of 45 degrees within it. A cone of one deviation holds
+// erf of either.
+TEST(DesignTexture, LayLiesAsItsKeysSay) {
+  const double level_rad = 1e-3 * kWavelengthNm / (std::sqrt(2.0) * kPi * 10.0);
+  const std::string cone = "detector.acceptance_half_angle_deg=" + shortest(level_rad * 180.0 / kPi);
+  const double specular = specular_share_of_two(index_of(kPrism), 20.0, 0.0);
+  const auto share_in_cone = [&](const std::string& level_um, const std::string& down_um) {
+    const double rre = rre_of(kPrism, {cone, "surface.roughness_sq_nm=20", "surface.correlation_length_um=" + level_um,
+                                       "surface.correlation_length_down_um=" + down_um})
+                           .rre;
+    return (rre - specular) / (1.0 - specular);
+  };
+  EXPECT_NEAR(share_in_cone("10", "200"), std::erf(1.0 / std::sqrt(2.0)), 0.04);
+  EXPECT_NEAR(share_in_cone("200", "10"), std::erf(0.5), 0.04);
+  const std::vector<std::string> one = {cone, "surface.roughness_sq_nm=20", "surface.correlation_length_um=5"};
+  std::vector<std::string> both = one;
+  both.push_back("surface.correlation_length_down_um=5");
+  EXPECT_EQ(rre_of(kPrism, one).rre, rre_of(kPrism, both).rre);
+}
+
 // A map of a surface with Gaussian autocorrelation does what harvey_shack says of its two numbers, where both are
 // phases.
 TEST(DesignTexture, MapAndStatisticsOfOneSurfaceAgree) {
