@@ -51,7 +51,7 @@ struct Squares {
 std::array<double, 2> scattered_share(const DielectricInterface& interface, double length, double k_in) {
   using boost::math::quadrature::gauss;
   const double variance = 2.0 / (length * length);  // of the shift of k along each axis
-  const double reach = 6.5 * std::sqrt(variance);  // beyond lies less than 1e-9
+  const double reach = 6.5 * std::sqrt(variance);   // beyond lies less than 1e-9
   const double contrast2 = square(square(interface.index_to()) - square(interface.index_from()));
   const double q_in = interface.across(k_in, Lobe::reflection).real();
   const DielectricInterface::Vertex in = interface.arriving(k_in);
