@@ -67,18 +67,23 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   if (!f.total_reflection) {
     Beam through = beam;
     if (from.inside) through.left_through = candidate.role;
-    const CoherentLight left = mean_field(transmitted, beam, candidate.role, cos_incidence, Lobe::transmission);
+    const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::transmission);
     send(std::move(through), candidate.plane, -against,
          refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), left, !from.inside);
   }
-  const CoherentLight left = mean_field(reflected, beam, candidate.role, cos_incidence, Lobe::reflection);
+  const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::reflection);
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), left, from.inside);
 }
 
-CoherentLight BeamWalk::mean_field(CoherentLight light, const Beam& beam, FacetRole role, double cos_incidence,
-                                   Lobe lobe) {
+CoherentLight BeamWalk::mean_field(const Beam& beam, const materials::FresnelCoefficients& f, FacetRole role,
+                                   double cos_incidence, Lobe lobe) {
+  const auto passed = [&](const materials::FresnelCoefficients& by) {
+    return lobe == Lobe::reflection ? beam.light.reflected(by) : beam.light.transmitted(by);
+  };
+  CoherentLight light = passed(f);
   if (role != FacetRole::retro_facet || setup_.optics.is_smooth()) return light;
   const double before = light.power();
+  light = passed(raytrace::mean_field(setup_.optics, beam.inside, cos_incidence, f));
   light.scale(mean_field_share(setup_.optics, beam.inside, cos_incidence, lobe));
   tally_.other[Account::truncated] += transmission_of(beam) * (before - light.power());
   return light;

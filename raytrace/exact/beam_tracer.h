@@ -74,8 +74,8 @@ using BeamObserver = std::function<void(const ReturnedBeam&)>;
 
 /// Follows parallel beams of polygonal cross-section from facet to facet: plane smooth facets turn one beam into
 /// finitely many, so nothing is sampled. What is cut off or falls between polygons by rounding is booked in
-/// `truncated`. Of textured facets it follows the mean field alone (mean_field_share()): what scatters is booked there
-/// as well. A value shared by all threads.
+/// `truncated`. Of textured facets it follows the mean field alone (mean_field(), mean_field_share()): what scatters is
+/// booked there as well. A value shared by all threads.
 class BeamTracer {
  public:
   /// \pre `part` outlives the tracer

@@ -100,9 +100,10 @@ class BeamWalk {
   Beam arrived(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane);
   void meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
                   double share);
-  /// What the texture of a retro facet leaves of a lobe's light; the rest is followed no further.
-  CoherentLight mean_field(CoherentLight light, const Beam& beam, geometry::FacetRole role, double cos_incidence,
-                           surface_models::Lobe lobe);
+  /// A branch of a beam's light at a facet, less what the texture of a retro facet scatters, which is followed no
+  /// further.
+  CoherentLight mean_field(const Beam& beam, const materials::FresnelCoefficients& f, geometry::FacetRole role,
+                           double cos_incidence, surface_models::Lobe lobe);
   void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
                  geometry::FacetRole role);
   void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,

@@ -34,6 +34,10 @@ LocalEvent local_event(const Optics& optics, const Vec3& normal, const Ray& ray,
   return local;
 }
 
+Vec3 at_incidence(double cos_incidence) {
+  return {std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence)), 0.0, -cos_incidence};
+}
+
 /// Adds a ray that has left the facet as from a plane one, turned as the texture scatters it.
 void add(Ray ray, const LocalEvent& local, const surface_models::ScatterSample& out, TexturedReturn& result) {
   ray.light.scale(out.weight);
@@ -62,6 +66,120 @@ void scatter(const Ray& ray, const Optics& optics, const LocalEvent& local, Lobe
     add(ray, local, *out, result);
 }
 
+/// Amplitudes of the light that is never diffracted.
+materials::FresnelCoefficients kept(const materials::FresnelCoefficients& f,
+                                    const surface_models::DiffractionMeans& means) {
+  const auto factor = [](double mean) { return std::exp(-0.5 * mean); };
+  materials::FresnelCoefficients left = f;
+  left.r_s *= factor(means.reflected[0]);
+  left.r_p *= factor(means.reflected[1]);
+  left.t_s *= factor(means.transmitted[0]);
+  left.t_p *= factor(means.transmitted[1]);
+  return left;
+}
+
+/// Amplitudes of the light that is diffracted at least twice.
+materials::FresnelCoefficients diffracted_again(const materials::FresnelCoefficients& f,
+                                                const surface_models::DiffractionMeans& means) {
+  // 1 - exp(-x) (1 + x), by its series where that would cancel.
+  const auto factor = [](double x) {
+    return std::sqrt(x < 1e-2 ? x * x * (0.5 - x * (1.0 / 3.0 - 0.125 * x)) : -std::expm1(-x) - x * std::exp(-x));
+  };
+  materials::FresnelCoefficients left = f;
+  left.r_s *= factor(means.reflected[0]);
+  left.r_p *= factor(means.reflected[1]);
+  left.t_s *= factor(means.transmitted[0]);
+  left.t_p *= factor(means.transmitted[1]);
+  return left;
+}
+
+/// While one of several powers is below `least`, it and the next larger one become one of the two by chance: nothing is
+/// lost or made. Those that are left have the power to be followed, or are the only one. \return 0 for others
+template <std::size_t N>
+std::array<double, N> merged(std::array<double, N> power, double least, surface_models::RandomStream& random) {
+  for (;;) {
+    std::size_t smallest = N, next = N;
+    for (std::size_t k = 0; k < N; ++k) {
+      if (power[k] <= 0.0) continue;
+      if (smallest == N || power[k] < power[smallest]) {
+        next = smallest;
+        smallest = k;
+      } else if (next == N || power[k] < power[next]) {
+        next = k;
+      }
+    }
+    if (next == N || power[smallest] >= least) return power;
+    const double both = power[smallest] + power[next];
+    const bool take_smallest = random.next() * both < power[smallest];
+    power[take_smallest ? smallest : next] = both;
+    power[take_smallest ? next : smallest] = 0.0;
+  }
+}
+
+surface_models::Polarisation2 coherency_of(const Stokes& stokes) {
+  const std::complex<double> cross(stokes.u, stokes.v);
+  surface_models::Polarisation2 made;
+  made << stokes.i + stokes.q, cross, std::conj(cross), stokes.i - stokes.q;
+  return 0.5 / stokes.i * made;
+}
+
+Stokes stokes_of(const surface_models::Polarisation2& coherency, double power) {
+  const double s = power * coherency(0, 0).real(), p = power * coherency(1, 1).real();
+  const std::complex<double> cross = 2.0 * power * coherency(0, 1);
+  return {power, s - p, cross.real(), cross.imag()};
+}
+
+/// Roughness between dielectrics. \param light of the ray along s and p of the piece that it meets
+TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, const Light& light,
+                                     const materials::FresnelCoefficients& f, const LocalEvent& local,
+                                     const Ray& to_reflect, const Ray& to_transmit, double split_power,
+                                     surface_models::RandomStream& random) {
+  enum Kind : std::size_t { reflected, transmitted, reflected_again, transmitted_again, once, kKinds };
+  const surface_models::DiffractionMeans means = surface_models::diffraction_means(rough, local.event, local.piece, f);
+  const materials::FresnelCoefficients specular = kept(f, means), again = diffracted_again(f, means);
+  std::array<Light, kKinds> lights = {light.reflected(specular), light.transmitted(specular), light.reflected(again),
+                                      light.transmitted(again), light};
+  std::array<double, kKinds> power{};
+  double rest = light.power();
+  for (std::size_t k = 0; k < once; ++k) rest -= power[k] = lights[k].power();
+  // Light that roughness does not touch leaves nothing but rounding.
+  power[once] = rest > 1e-15 * light.power() ? rest : 0.0;
+  TexturedReturn result;
+  result.truncated = light.power();
+  power = merged(power, split_power, random);
+  for (std::size_t k = 0; k < once; ++k) {
+    if (power[k] <= 0.0) continue;
+    lights[k].scale(power[k] / lights[k].power());
+    const bool is_reflected = k == reflected || k == reflected_again;
+    Ray ray = is_reflected ? to_reflect : to_transmit;
+    ray.light = lights[k];
+    const Lobe lobe = is_reflected ? Lobe::reflection : Lobe::transmission;
+    if (k == reflected || k == transmitted) {
+      const Vec3 direction = local.world_from_local.transpose() * ray.direction;
+      if (!surface_models::is_on_side(direction, lobe)) continue;
+      surface_models::ScatterSample out{direction, direction, 1.0, true};
+      if (local.piece.is_tilted) out.weight = rough.unmasked_share(direction);
+      add(ray, local, out, result);
+    } else if (const auto out =
+                   surface_models::sample_diffracted_again(rough, local.event, local.piece, lobe, random)) {
+      add(ray, local, *out, result);
+    }
+  }
+  if (power[once] <= 0.0) return result;
+  const Vec3 s_axis = local.world_from_local.transpose() * light.s_axis;
+  double unmasked = 1.0;
+  const auto out = surface_models::sample_diffracted_once(rough, local.event, local.piece, s_axis,
+                                                          coherency_of(light.stokes), random, unmasked);
+  if (!out) return result;
+  Ray ray = out->lobe == Lobe::reflection ? to_reflect : to_transmit;
+  ray.direction = (local.world_from_local * out->direction).normalized();
+  ray.light = {stokes_of(out->coherency, power[once] * unmasked), local.world_from_local * out->s_axis};
+  ray.scattered = true;
+  result.truncated -= ray.light.power();
+  result.rays[result.count++] = ray;
+  return result;
+}
+
 }  // namespace
 
 TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
@@ -76,6 +194,8 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
   Ray reflected{mirrored(ray.direction, against), light.reflected(f), ray.inside, ray.scattered};
   Ray transmitted{refracted(ray.direction, against, optics.ratio_at_back(ray.inside), cos_incidence, f.cos_refracted),
                   light.transmitted(f), !ray.inside, ray.scattered};
+  if (const auto* rough = surface_models::first_order_model(optics.facet_scatter))
+    return meet_rough_dielectric(*rough, light, f, local, reflected, transmitted, split_power, random);
   TexturedReturn result;
   result.absorbed = absorbed_by(optics.facet_layers, light, reflected.light, transmitted.light);
   const Branch branch = choose_branch(reflected.light, transmitted.light, split_power, [&] { return random.next(); });
@@ -85,9 +205,17 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
 }
 
 double mean_field_share(const Optics& optics, bool inside, double cos_incidence, Lobe lobe) {
-  const double sin_incidence = std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence));
-  const Vec3 direction(sin_incidence, 0.0, -cos_incidence);
-  return surface_models::mean_field_share(optics.facet_scatter, event_of(optics, inside, direction), lobe);
+  if (surface_models::first_order_model(optics.facet_scatter) != nullptr) return 1.0;
+  return surface_models::mean_field_share(optics.facet_scatter, event_of(optics, inside, at_incidence(cos_incidence)),
+                                          lobe);
+}
+
+materials::FresnelCoefficients mean_field(const Optics& optics, bool inside, double cos_incidence,
+                                          const materials::FresnelCoefficients& fresnel) {
+  const auto* rough = surface_models::first_order_model(optics.facet_scatter);
+  if (rough == nullptr) return fresnel;
+  const surface_models::ScatterEvent event = event_of(optics, inside, at_incidence(cos_incidence));
+  return kept(fresnel, surface_models::diffraction_means(*rough, event, {}, fresnel));
 }
 
 }  // namespace retrace::raytrace

@@ -38,19 +38,25 @@ Branch choose_branch(Light& reflected, Light& transmitted, double split_power, c
 
 /// What a textured facet makes of a ray.
 struct TexturedReturn {
-  std::array<Ray, 4> rays;  ///< the first `count` of them
+  std::array<Ray, 5> rays;  ///< the first `count` of them
   std::size_t count = 0;
   double truncated = 0.0;  ///< power that the texture keeps, or gives (negative)
   double absorbed = 0.0;   ///< power that layers take
 };
 
 /// Fresnel's branches at a piece of the texture, each scattered by Optics::facet_scatter. What stays specular and what
-/// does not are followed both while each has at least `split_power`, as the branches are.
-/// \param normal of the facet, unit, out of the part
+/// does not are followed both while each has at least `split_power`, as the branches are. Roughness between dielectrics
+/// makes up to five kinds of light: specular and diffracted more than once in each branch, and diffracted once, to
+/// either side. \param normal of the facet, unit, out of the part
 TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
                                    surface_models::RandomStream& random);
 
-/// Share of a lobe's power that the texture of a retro facet leaves in its mean field.
+/// Share of a lobe's power that the texture of a retro facet leaves in its mean field, where s and p keep the same; 1
+/// where mean_field() tells them apart.
 double mean_field_share(const Optics& optics, bool inside, double cos_incidence, surface_models::Lobe lobe);
+
+/// Fresnel's amplitudes `fresnel` of a retro facet, less what roughness between dielectrics takes of each polarisation.
+materials::FresnelCoefficients mean_field(const Optics& optics, bool inside, double cos_incidence,
+                                          const materials::FresnelCoefficients& fresnel);
 
 }  // namespace retrace::raytrace

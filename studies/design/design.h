@@ -36,6 +36,8 @@ struct HarveyShackTexture {
   double correlation_length_um = 0.0;  ///< 1/e of a Gaussian autocorrelation
   double waviness_sq_nm = 0.0;
   double waviness_length_um = 0.0;  ///< period
+  /// Of the roughness down the facet, where it is unlike correlation_length_um, which is level then; 0: the same
+  double down_correlation_length_um = 0.0;
 };
 /// BSDF = a / (b + |dbeta|^g), per sr.
 struct AbgTexture {

@@ -110,24 +110,29 @@ surface_models::ScatterModel height_map_model(const HeightMapTexture& t, const s
   }
 }
 
-/// \param map that of facet_map()
+/// \param optics all but their texture
+surface_models::ScatterModel harvey_shack_model(const HarveyShackTexture& t, const raytrace::Optics& optics) {
+  const surface_models::Roughness heights = {t.roughness_sq_nm, t.correlation_length_um, t.waviness_sq_nm,
+                                             t.waviness_length_um, t.down_correlation_length_um};
+  if (optics.mirror_facets || !optics.facet_layers.layers.empty()) return surface_models::HarveyShack(heights);
+  return surface_models::HarveyShack(heights, {optics.index, optics.back_index, optics.wavelength_nm});
+}
+
+/// \param map that of facet_map() \param optics all but their texture
 surface_models::ScatterModel scatter_model(const Design& design, const std::optional<surface_models::HeightMap>& map,
-                                           double wavelength_nm) {
+                                           const raytrace::Optics& optics) {
   using surface_models::ScatterModel;
   using surface_models::SlopeShape;
   try {
     return std::visit(
         Overloaded{[](const SmoothTexture&) { return ScatterModel(surface_models::Smooth()); },
-                   [](const HarveyShackTexture& t) {
-                     return ScatterModel(surface_models::HarveyShack(
-                         {t.roughness_sq_nm, t.correlation_length_um, t.waviness_sq_nm, t.waviness_length_um}));
-                   },
+                   [&](const HarveyShackTexture& t) { return harvey_shack_model(t, optics); },
                    [](const AbgTexture& t) { return ScatterModel(surface_models::Abg(t.a, t.b, t.g)); },
                    [](const MicrofacetTexture& t) {
                      return ScatterModel(surface_models::Microfacet::of_waviness(
                          t.ggx ? SlopeShape::ggx : SlopeShape::beckmann, t.waviness_sq_nm, t.waviness_length_um));
                    },
-                   [&](const HeightMapTexture& t) { return height_map_model(t, *map, wavelength_nm); }},
+                   [&](const HeightMapTexture& t) { return height_map_model(t, *map, optics.wavelength_nm); }},
         design.surface.texture);
   } catch (const InputError& error) {
     throw InputError(design.where_texture(), error.what());  // which knows the values but not where they were given
@@ -195,7 +200,6 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
                            const std::optional<surface_models::HeightMap>& map, double wavelength_nm) {
   raytrace::Optics optics;
   optics.mirror_facets = design.idealisation.mirror_facets;
-  optics.facet_scatter = scatter_model(design, map, wavelength_nm);
   optics.back_index = design.substance.back_index;
   const Coating& coating = design.surface.coating;
   optics.facet_layers = stack_of(design, library, coating.facets, kFacetLayers, wavelength_nm);
@@ -204,15 +208,14 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
   optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
   optics.absorption_per_mm = absorption_at(design, material, wavelength_nm);
-  if (design.substance.refractive_index) {
-    optics.index = *design.substance.refractive_index;
-    return optics;
-  }
-  optics.index = index_at_wavelength(design, material, library.air(), wavelength_nm,
-                                     design.substance.temperature_c.value_or(material.temperature_c));
+  optics.index = design.substance.refractive_index
+                     ? *design.substance.refractive_index
+                     : index_at_wavelength(design, material, library.air(), wavelength_nm,
+                                           design.substance.temperature_c.value_or(material.temperature_c));
   if (!(optics.index >= 1.0))
     throw InputError(design.where("body.material"), fmt::format("the index of {} at {} nm must be >= 1, got {}",
                                                                 material.name, wavelength_nm, optics.index));
+  optics.facet_scatter = scatter_model(design, map, optics);
   return optics;
 }
 

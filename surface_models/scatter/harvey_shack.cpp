@@ -11,19 +11,60 @@ namespace {
 
 using std::numbers::pi;
 
+// Of the phase squared at normal incidence: 5 % of what scatters is then diffracted more than once.
+constexpr double kMostPhase2OfFirstOrder = 0.1;
+
 void require(bool holds, const char* key, const char* allowed, double given) {
   if (!holds) throw InputError({"", 0, key}, std::string(allowed) + ", got " + shortest(given));
 }
+
+// Roughness with a lay has the phase alone, 9 % too much at 45 degrees from here down (docs/theory/scatter.md).
+constexpr double kLongOfLay = 2.0;
 
 /// Gaussian waves of this correlation length have the slope of waves of period `length_um`.
 double equivalent_correlation_um(double length_um) {
   return length_um / pi;
 }
 
+/// pi l n / w, which compares a length with the waves that it scatters.
+double length_in_waves(double correlation_um, double index, double wavelength_nm) {
+  return pi * correlation_um * 1e3 * index / wavelength_nm;
+}
+
+/// Along x and along y.
+Vec2 correlation_lengths_um(const Roughness& r) {
+  return {r.correlation_length_um, r.is_isotropic() ? r.correlation_length_um : r.y_correlation_length_um};
+}
+
+/// Mean over an ellipse of frequencies: of f(t, u), with t the square of the frequency n / w in units of the deviation
+/// of frequencies in a direction, halved, and u the variance of slopes there in units of 2 Sq^2 / um^2. Smooth and
+/// periodic, so that equal steps serve.
+template <class F>
+double mean_over_directions(const Vec2& lengths_um, double index, double wavelength_nm, const F& f) {
+  constexpr int kSteps = 64;
+  double sum = 0.0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double angle = 0.5 * pi * (k + 0.5) / kSteps;
+    const Vec2 ahead = Vec2(std::cos(angle), std::sin(angle)).cwiseQuotient(lengths_um);
+    const double inverse = ahead.squaredNorm();
+    const double x = length_in_waves(1.0, index, wavelength_nm);
+    sum += f(x * x / inverse, inverse);
+  }
+  return sum / kSteps;
+}
+
 /// Share of the variance of heights in spatial frequencies below n / w.
 double share_that_scatters(double correlation_um, double index, double wavelength_nm) {
-  const double x = pi * correlation_um * 1e3 * index / wavelength_nm;
+  const double x = length_in_waves(correlation_um, index, wavelength_nm);
   return -std::expm1(-x * x);
+}
+
+double share_that_scatters(const Vec2& lengths_um, double index, double wavelength_nm) {
+  constexpr double kAll = 7.0;  // exp(-7^2) is below rounding
+  const double shortest_um = lengths_um.minCoeff();
+  if (lengths_um.x() == lengths_um.y() || length_in_waves(shortest_um, index, wavelength_nm) > kAll)
+    return share_that_scatters(shortest_um, index, wavelength_nm);
+  return mean_over_directions(lengths_um, index, wavelength_nm, [](double t, double) { return -std::expm1(-t); });
 }
 
 /// Variance along each axis of the shift of direction cosines that one spatial frequency of a Gaussian PSD makes.
@@ -34,12 +75,137 @@ double shift_variance(double correlation_um, double index, double wavelength_nm)
 
 /// Areal, of Gaussian heights with a Gaussian autocorrelation: of their spatial frequencies below n / w.
 double roughness_rms_slope(const Roughness& r, double index, double wavelength_nm) {
-  const double x = pi * r.correlation_length_um * 1e3 * index / wavelength_nm;
-  const double share = -std::expm1(-x * x) - x * x * std::exp(-x * x);
-  return 2e-3 * r.sq_nm / r.correlation_length_um * std::sqrt(std::max(0.0, share));
+  const auto band = [](double t) { return -std::expm1(-t) - t * std::exp(-t); };
+  if (r.is_isotropic()) {
+    const double x = length_in_waves(r.correlation_length_um, index, wavelength_nm);
+    return 2e-3 * r.sq_nm / r.correlation_length_um * std::sqrt(std::max(0.0, band(x * x)));
+  }
+  const double mean = mean_over_directions(correlation_lengths_um(r), index, wavelength_nm,
+                                           [&](double t, double inverse) { return inverse * band(t); });
+  return 2e-3 * r.sq_nm * std::sqrt(std::max(0.0, mean));
+}
+
+double wave_number_per_nm(double wavelength_nm) {
+  return 2.0 * pi / wavelength_nm;
 }
 
 }  // namespace
+
+struct HarveyShack::Side {
+  DielectricInterface interface;
+  std::array<std::optional<FirstOrderShare>, 2> shares;  ///< of roughness and of waviness
+
+  Side(const Roughness& r, double from, double to, double wavelength_nm) : interface(from, to) {
+    const double wave_number_per_um = 1e3 * wave_number_per_nm(wavelength_nm);
+    if (r.sq_nm > 0.0) shares[0].emplace(interface, wave_number_per_um * r.correlation_length_um);
+    if (r.waviness_sq_nm > 0.0)
+      shares[1].emplace(interface, wave_number_per_um * equivalent_correlation_um(r.waviness_length_um));
+  }
+};
+
+struct HarveyShack::Media {
+  Side inside, outside;
+};
+
+HarveyShack::HarveyShack(const Roughness& roughness, const Dielectrics& media) : HarveyShack(roughness) {
+  if (!roughness.is_isotropic()) return;
+  const double w = media.wavelength_nm;
+  media_ = std::make_shared<const Media>(
+      Media{Side(roughness, media.index, media.back_index, w), Side(roughness, media.back_index, media.index, w)});
+}
+
+const HarveyShack::Side& HarveyShack::side_of(const ScatterEvent& event) const {
+  return event.inside_material ? media_->inside : media_->outside;
+}
+
+std::array<HarveyShack::Part, 2> HarveyShack::parts(const Facet& facet) const {
+  return {Part{roughness_.sq_nm, roughness_.correlation_length_um},
+          Part{facet.is_tilted ? 0.0 : roughness_.waviness_sq_nm,
+               equivalent_correlation_um(roughness_.waviness_length_um)}};
+}
+
+DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const Facet& facet,
+                                                const materials::FresnelCoefficients& fresnel) const {
+  const Side& side = side_of(event);
+  const double k = event.index_from * event.direction_in.head<2>().norm();
+  const double wave_number = wave_number_per_nm(event.wavelength_nm);
+  const std::array<Part, 2> heights = parts(facet);
+  std::array<double, 2> scattered{};
+  for (std::size_t n = 0; n < heights.size(); ++n) {
+    if (!(heights[n].sq_nm > 0.0)) continue;
+    const std::array<double, 2> share = side.shares[n]->at(k);
+    const double height = wave_number * heights[n].sq_nm;
+    for (std::size_t pol : {0U, 1U}) scattered[pol] += height * height * share[pol];
+  }
+  // Both specular fields pay in proportion to their power and phase variance, as they do for long heights.
+  const double reflected_path = 2.0 * event.index_from * event.cos_in();
+  const double transmitted_path = event.index_from * event.cos_in() - event.index_to * fresnel.cos_refracted;
+  const double a_r = reflected_path * reflected_path, a_t = transmitted_path * transmitted_path;
+  DiffractionMeans means;
+  for (std::size_t pol : {0U, 1U}) {
+    const double t = pol == 0 ? fresnel.t_s * fresnel.t_s : fresnel.t_p * fresnel.t_p;
+    const double phases = (1.0 - t) * a_r + t * a_t;
+    if (!(phases > 0.0)) continue;
+    means.reflected[pol] = scattered[pol] * a_r / phases;
+    means.transmitted[pol] = t > 0.0 ? scattered[pol] * a_t / phases : 0.0;
+  }
+  return means;
+}
+
+std::optional<DiffractedOnce> HarveyShack::draw_diffracted_once(const ScatterEvent& event, const Facet& facet,
+                                                                const Vec3& s_axis, const Polarisation2& coherency,
+                                                                RandomStream& random) const {
+  constexpr int kMaxTries = 1000000;
+  const Side& side = side_of(event);
+  const Vec2 along(-s_axis.y(), s_axis.x());  // z x s
+  const double k_in = event.index_from * event.direction_in.head<2>().norm();
+  const double most = std::max(event.index_from, event.index_to);
+  const double bound = side.interface.bound(k_in, coherency);
+  const std::array<Part, 2> heights = parts(facet);
+  const double variance_of_first = heights[0].sq_nm * heights[0].sq_nm;
+  const double all = variance_of_first + heights[1].sq_nm * heights[1].sq_nm;
+  if (!(bound > 0.0) || !(all > 0.0)) return std::nullopt;
+  for (int tries = 0; tries < kMaxTries; ++tries) {
+    const Part& part = heights[random.next() * all < variance_of_first ? 0 : 1];
+    const double deviation = std::sqrt(2.0) / (1e3 * part.length_um * wave_number_per_nm(event.wavelength_nm));
+    const Vec2 k_out = k_in * along + deviation * normal_pair(random);
+    double left = random.next() * bound;
+    if (k_out.squaredNorm() >= most * most) continue;
+    for (const Lobe lobe : {Lobe::reflection, Lobe::transmission}) {
+      const double index = event.index_of(lobe);
+      if (k_out.squaredNorm() >= index * index) continue;
+      const Polarisation2 f = side.interface.amplitudes(k_in, along, k_out, lobe);
+      const Polarisation2 out = f * coherency * f.adjoint();
+      const double power = out.trace().real();
+      left -= power;
+      if (left >= 0.0) continue;
+      const double k = k_out.norm();
+      const Vec2 ahead = k > 0.0 ? Vec2(k_out / k) : along;
+      return DiffractedOnce{direction_of(k_out / index, lobe), Vec3(ahead.y(), -ahead.x(), 0.0), out / power, lobe};
+    }
+  }
+  return std::nullopt;
+}
+
+double HarveyShack::diffracted_once_density(const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                            const Vec3& s_axis, const Polarisation2& coherency,
+                                            const Vec2& beta) const {
+  if (beta.squaredNorm() >= 1.0) return 0.0;
+  const double index = event.index_of(lobe);
+  const Vec2 along(-s_axis.y(), s_axis.x());
+  const double k_in = event.index_from * event.direction_in.head<2>().norm();
+  const Vec2 k_out = index * beta;
+  const double wave_number = wave_number_per_nm(event.wavelength_nm);
+  double spectrum = 0.0;
+  for (const Part& part : parts(facet)) {
+    if (!(part.sq_nm > 0.0)) continue;
+    const double length = 1e3 * part.length_um * wave_number, height = part.sq_nm * wave_number;
+    spectrum += height * height * length * length / (4.0 * pi) *
+                std::exp(-0.25 * length * length * (k_out - k_in * along).squaredNorm());
+  }
+  const Polarisation2 f = side_of(event).interface.amplitudes(k_in, along, k_out, lobe);
+  return index * index * spectrum * (f * coherency * f.adjoint()).trace().real();
+}
 
 HarveyShack::HarveyShack(const Roughness& roughness)
     : roughness_(roughness),
@@ -48,6 +214,7 @@ HarveyShack::HarveyShack(const Roughness& roughness)
   require(r.sq_nm >= 0.0, "roughness_sq_nm", "must be >= 0", r.sq_nm);
   require(r.sq_nm == 0.0 || r.correlation_length_um > 0.0, "correlation_length_um",
           "must be > 0 where roughness_sq_nm is", r.correlation_length_um);
+  require(r.y_correlation_length_um >= 0.0, "y_correlation_length_um", "must be >= 0", r.y_correlation_length_um);
   require(r.waviness_sq_nm >= 0.0, "waviness_sq_nm", "must be >= 0", r.waviness_sq_nm);
   require(r.waviness_sq_nm == 0.0 || r.waviness_length_um > 0.0, "waviness_length_um",
           "must be > 0 where waviness_sq_nm is", r.waviness_length_um);
@@ -67,14 +234,15 @@ HarveyShack::Band HarveyShack::band(const ScatterEvent& event, const Facet& face
   Band made;
   double rough2 = 0.0, wavy2 = 0.0;
   if (roughness_.sq_nm > 0.0) {
-    const double length = roughness_.correlation_length_um;
-    rough2 = square(roughness_.sq_nm) * share_that_scatters(length, index, event.wavelength_nm);
-    made.roughness_variance = shift_variance(length, index, event.wavelength_nm);
+    const Vec2 lengths_um = correlation_lengths_um(roughness_);
+    rough2 = square(roughness_.sq_nm) * share_that_scatters(lengths_um, index, event.wavelength_nm);
+    made.roughness_variance = {shift_variance(lengths_um.x(), index, event.wavelength_nm),
+                               shift_variance(lengths_um.y(), index, event.wavelength_nm)};
   }
   if (roughness_.waviness_sq_nm > 0.0 && !facet.is_tilted) {
     const double length = equivalent_correlation_um(roughness_.waviness_length_um);
     wavy2 = square(roughness_.waviness_sq_nm) * share_that_scatters(length, index, event.wavelength_nm);
-    made.waviness_variance = shift_variance(length, index, event.wavelength_nm);
+    made.waviness_variance.setConstant(shift_variance(length, index, event.wavelength_nm));
   }
   made.sq_nm = std::sqrt(rough2 + wavy2);
   made.roughness_share = rough2 > 0.0 ? rough2 / (rough2 + wavy2) : 0.0;
@@ -92,25 +260,28 @@ double HarveyShack::scattered_share(const ScatterEvent& event, const Facet& face
 }
 
 std::optional<Vec2> HarveyShack::draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
-                                                RandomStream& random) const {
+                                                RandomStream& random, int least_orders) const {
   const Band what = band(event, facet, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, what.sq_nm);
   if (!phase_lobe) return std::nullopt;
-  return phase_lobe->sample_scattered(random, [&](int order, RandomStream& numbers) -> Vec2 {
-    int rough = order;
-    if (what.roughness_share < 1.0) {
-      rough = 0;
-      for (int k = 0; k < order; ++k) rough += numbers.next() < what.roughness_share ? 1 : 0;
-    }
-    const double variance = rough * what.roughness_variance + (order - rough) * what.waviness_variance;
-    return std::sqrt(variance) * normal_pair(numbers);
-  });
+  return phase_lobe->sample_scattered(
+      random,
+      [&](int order, RandomStream& numbers) -> Vec2 {
+        int rough = order;
+        if (what.roughness_share < 1.0) {
+          rough = 0;
+          for (int k = 0; k < order; ++k) rough += numbers.next() < what.roughness_share ? 1 : 0;
+        }
+        const Vec2 variance = rough * what.roughness_variance + (order - rough) * what.waviness_variance;
+        return variance.cwiseSqrt().cwiseProduct(normal_pair(numbers));
+      },
+      least_orders);
 }
 
-/// Density of the sum of `order` shifts at the squared distance `shift2`.
-double HarveyShack::shift_density(const Band& band, int order, double shift2) {
-  const auto gaussian = [shift2](double variance) {
-    return std::exp(-0.5 * shift2 / variance) / (2.0 * pi * variance);
+/// Density of the sum of `order` shifts at `shift`.
+double HarveyShack::shift_density(const Band& band, int order, const Vec2& shift) {
+  const auto gaussian = [&shift](const Vec2& variance) {
+    return std::exp(-0.5 * shift.cwiseAbs2().cwiseQuotient(variance).sum()) / (2.0 * pi * std::sqrt(variance.prod()));
   };
   if (band.roughness_share == 1.0) return gaussian(order * band.roughness_variance);
   if (band.roughness_share == 0.0) return gaussian(order * band.waviness_variance);
@@ -130,8 +301,8 @@ double HarveyShack::unscaled_density(const ScatterEvent& event, const Facet& fac
   const Band what = band(event, facet, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, what.sq_nm);
   if (!phase_lobe || beta.squaredNorm() >= 1.0) return 0.0;
-  const double shift2 = (beta - phase_lobe->specular_beta()).squaredNorm();
-  return phase_lobe->density(beta, 1, [&](int order) { return shift_density(what, order, shift2); });
+  const Vec2 shift = beta - phase_lobe->specular_beta();
+  return phase_lobe->density(beta, 1, [&](int order) { return shift_density(what, order, shift); });
 }
 
 double HarveyShack::scattered_density(const ScatterEvent& event, const Facet& facet, Lobe lobe,
@@ -139,7 +310,7 @@ double HarveyShack::scattered_density(const ScatterEvent& event, const Facet& fa
   const Band what = band(event, facet, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, what.sq_nm);
   if (!phase_lobe || what.sq_nm == 0.0) return 0.0;
-  const double width = std::sqrt(std::max(what.roughness_variance, what.waviness_variance));
+  const double width = std::sqrt(std::max(what.roughness_variance.maxCoeff(), what.waviness_variance.maxCoeff()));
   const double sum = integrate_over_disc(phase_lobe->specular_beta(), width,
                                          [&](const Vec2& at) { return unscaled_density(event, facet, lobe, at); });
   return sum > 0.0 ? phase_lobe->scattered_share() * unscaled_density(event, facet, lobe, beta) / sum : 0.0;
@@ -155,9 +326,16 @@ std::vector<std::string> HarveyShack::warnings(double index, double wavelength_n
   const Roughness& r = roughness_;
   const double wave_um = 1e-3 * wavelength_nm / index;
   if (r.sq_nm > 0.0) {
-    if (r.correlation_length_um < wave_um)
-      found.push_back("correlation length " + shortest(r.correlation_length_um) +
-                      " um is below the wavelength in the material: the phase model of roughness does not hold");
+    // Light that is diffracted once is right for any length, between dielectrics; twice, half the phase variance of it.
+    const double phase = reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm);
+    const double shortest_um = correlation_lengths_um(r).minCoeff();
+    if (!r.is_isotropic() && shortest_um >= wave_um && shortest_um < kLongOfLay)
+      found.push_back("correlation length " + shortest(shortest_um) + " um of roughness with a lay is below " +
+                      shortest(kLongOfLay) + " um: at total reflection it scatters less than its phase says");
+    if (shortest_um < wave_um && (media_ == nullptr || phase * phase > kMostPhase2OfFirstOrder))
+      found.push_back("correlation length " + shortest(shortest_um) +
+                      " um is below the wavelength in the material: the phase model of roughness does not hold" +
+                      (media_ == nullptr ? "" : ", and heights are too large for first order alone"));
     const double slope = roughness_rms_slope(r, index, wavelength_nm);
     if (slope > kLargestSlope)
       found.push_back("rms slope of the roughness " + fixed(slope, 3) + " is above " + shortest(kLargestSlope) +

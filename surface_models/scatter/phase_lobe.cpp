@@ -67,9 +67,9 @@ double PhaseLobe::envelope(int order) const {
   return order_probability(order, std::clamp(static_cast<double>(order), lowest_, highest_));
 }
 
-double PhaseLobe::envelope_sum() const {
+double PhaseLobe::envelope_sum(int first) const {
   double sum = 0.0;
-  for (int m = 1; m <= last_order(highest_); ++m) {
+  for (int m = first; m <= last_order(highest_); ++m) {
     const double term = envelope(m);
     sum += term;
     if (m > highest_ && term < 1e-17 * sum) break;
@@ -77,9 +77,9 @@ double PhaseLobe::envelope_sum() const {
   return sum;
 }
 
-int PhaseLobe::pick_order(double cumulative) const {
+int PhaseLobe::pick_order(double cumulative, int first) const {
   const int last = last_order(highest_);
-  for (int m = 1; m < last; ++m) {
+  for (int m = first; m < last; ++m) {
     cumulative -= envelope(m);
     if (cumulative < 0.0) return m;
   }

@@ -33,13 +33,14 @@ class PhaseLobe {
   const Vec3& specular() const { return specular_; }
   Vec2 specular_beta() const { return specular_.head<2>(); }
 
-  /// Draws the direction cosines of scattered light. `diffract(m, random)` draws the sum of m shifts of direction
-  /// cosines. Exact: proposals that go evanescent are drawn again, so that those that do not carry all.
+  /// Draws the direction cosines of light that has been diffracted `first` times or more. `diffract(m, random)` draws
+  /// the sum of m shifts of direction cosines. Exact: proposals that go evanescent are drawn again, so that those that
+  /// do not carry all.
   template <class Diffract>
-  std::optional<Vec2> sample_scattered(RandomStream& random, Diffract&& diffract) const {
-    const double total = envelope_sum();
+  std::optional<Vec2> sample_scattered(RandomStream& random, Diffract&& diffract, int first = 1) const {
+    const double total = envelope_sum(first);
     for (int tries = 0; total > 0.0 && tries < kMaxTries; ++tries) {
-      const int order = pick_order(random.next() * total);
+      const int order = pick_order(random.next() * total, first);
       const Vec2 beta = specular_beta() + diffract(order, random);
       if (beta.squaredNorm() >= 1.0) continue;
       if (random.next() * envelope(order) < order_probability(order, variance(beta))) return beta;
@@ -75,8 +76,8 @@ class PhaseLobe {
   static int last_order(double variance);
   /// Upper bound of the probability of `order` over all directions.
   double envelope(int order) const;
-  double envelope_sum() const;
-  int pick_order(double cumulative) const;
+  double envelope_sum(int first) const;
+  int pick_order(double cumulative, int first) const;
 
   Vec3 specular_;
   double phase_per_cos_in_ = 0.0;   ///< rad

@@ -94,6 +94,45 @@ std::optional<ScatterSplit> sample_split(const ScatterModel& model, const Scatte
       model);
 }
 
+const HarveyShack* first_order_model(const ScatterModel& model) {
+  const auto* rough = std::get_if<HarveyShack>(&model);
+  return rough != nullptr && rough->is_between_dielectrics() ? rough : nullptr;
+}
+
+DiffractionMeans diffraction_means(const HarveyShack& model, const ScatterEvent& event, const Facet& facet,
+                                   const materials::FresnelCoefficients& fresnel) {
+  return model.diffraction_means(FacetFrame(facet).to_facet(event), facet, fresnel);
+}
+
+std::optional<DiffractedOnce> sample_diffracted_once(const HarveyShack& model, const ScatterEvent& event,
+                                                     const Facet& facet, const Vec3& s_axis,
+                                                     const Polarisation2& coherency, RandomStream& random,
+                                                     double& unmasked) {
+  const FacetFrame frame(facet);
+  auto drawn = model.draw_diffracted_once(frame.to_facet(event), facet, frame.to_facet(s_axis), coherency, random);
+  if (!drawn) return std::nullopt;
+  drawn->direction = frame.to_mean(drawn->direction);
+  drawn->s_axis = frame.to_mean(drawn->s_axis);
+  if (!is_on_side(drawn->direction, drawn->lobe)) return std::nullopt;
+  unmasked = facet.is_tilted ? model.unmasked_share(drawn->direction) : 1.0;
+  return drawn;
+}
+
+std::optional<ScatterSample> sample_diffracted_again(const HarveyShack& model, const ScatterEvent& event,
+                                                     const Facet& facet, Lobe lobe, RandomStream& random) {
+  const auto specular = specular_direction(event, facet.normal, lobe);
+  if (!specular) return std::nullopt;
+  const FacetFrame frame(facet);
+  ScatterSample drawn{*specular, *specular, 1.0, true};
+  if (const auto beta = model.draw_scattered(frame.to_facet(event), facet, lobe, random, 2)) {
+    drawn.direction = frame.to_mean(direction_of(*beta, lobe));
+    drawn.is_specular = false;
+  }
+  if (!is_on_side(drawn.direction, lobe)) return std::nullopt;
+  if (facet.is_tilted) drawn.weight = model.unmasked_share(drawn.direction);
+  return drawn;
+}
+
 double specular_share(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe) {
   if (!specular_direction(event, facet.normal, lobe)) return 0.0;
   return std::visit([&](const auto& m) { return m.specular_share(FacetFrame(facet).to_facet(event), facet, lobe); },

@@ -47,6 +47,25 @@ struct ScatterSplit {
 std::optional<ScatterSplit> sample_split(const ScatterModel& model, const ScatterEvent& event, const Facet& facet,
                                          Lobe lobe, double least_share, RandomStream& random);
 
+/// A texture between dielectrics whose light that is diffracted once belongs to no lobe alone; null for others.
+const HarveyShack* first_order_model(const ScatterModel& model);
+
+/// DiffractionMeans of an event. \param fresnel at the facet
+DiffractionMeans diffraction_means(const HarveyShack& model, const ScatterEvent& event, const Facet& facet,
+                                   const materials::FresnelCoefficients& fresnel);
+
+/// Light that is diffracted once. Nothing where it runs to the wrong side of the mean surface. \param s_axis across the
+/// light and the facet's normal \param coherency of the incident light along s_axis and p, of trace 1 \param
+/// unmasked set to the share that waviness lets by
+std::optional<DiffractedOnce> sample_diffracted_once(const HarveyShack& model, const ScatterEvent& event,
+                                                     const Facet& facet, const Vec3& s_axis,
+                                                     const Polarisation2& coherency, RandomStream& random,
+                                                     double& unmasked);
+
+/// Light of a lobe that is diffracted more than once, as sample().
+std::optional<ScatterSample> sample_diffracted_again(const HarveyShack& model, const ScatterEvent& event,
+                                                     const Facet& facet, Lobe lobe, RandomStream& random);
+
 /// Share of a lobe's power that leaves in the facet's specular direction, masking aside; 0 without such a direction.
 double specular_share(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe);
 

@@ -74,6 +74,9 @@ TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
       {12, "[light]\nspectrum = \"A\"\nwavelength_nm = 1", "d.toml:14: light.wavelength_nm: not allowed together"},
       {12, "[light]\nweighting = \"radiant\"", "d.toml:13: light.weighting: only allowed together with spectrum"},
       {12, "[surface]\nroughness_sq_nm = 5", "d.toml:12: surface.correlation_length_um: "},
+      {12, "[surface]\nroughness_sq_nm = 5\ncorrelation_length_um = 2\ncorrelation_length_down_um = 0",
+       "d.toml:15: surface.correlation_length_down_um: must be > 0"},
+      {12, "[surface]\ncorrelation_length_down_um = \"long\"", "d.toml:13: surface.correlation_length_down_um: "},
   };
   for (const BadLine& bad : cases)
     for (const std::string command : {"rre", "inspect"}) {

@@ -16,6 +16,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/returned_beams_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/robustness_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/round_edges_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/rough_dielectric_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/rough_variance_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/sampling_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp

@@ -19,11 +19,11 @@ namespace retrace::studies::roughness_test {
 namespace {
 
 const std::string kSource = RETRACE_SOURCE_DIR;
-/// A prism under a lossless face with a cone too narrow for what scatters: RRE is the specular share.
+/// A prism of mirrors under a lossless face with a cone too narrow for what scatters: RRE is the specular share.
 const std::string kPrism =
     "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"single\"\n"
-    "[body]\nthickness_mm = 0.5\n[idealisation]\nentrance = \"lossless\"\n[detector]\nacceptance_half_angle_deg = "
-    "0.001\n";
+    "[body]\nthickness_mm = 0.5\n[idealisation]\nentrance = \"lossless\"\nfacets = \"mirror\"\n"
+    "[detector]\nacceptance_half_angle_deg = 0.001\n";
 const std::string kArray =
     "[element]\nkind = \"rtp\"\nbase_mm = 0.45\nwidth_mm = 0.45\n[array]\narrangement = \"offset\"\nextent = "
     "\"infinite\"\n[body]\nthickness_mm = 0.5\n";
@@ -108,7 +108,7 @@ double phase2(double index, double sa_nm) {
   return std::pow(4.0 * pi * index * std::sqrt(0.5 * pi) * sa_nm * std::cos(0.25 * pi) / 587.56, 2);
 }
 
-// Two total reflections at 45 degrees, each of which leaves exp(-g) of closed form 7; Sq = sqrt(pi / 2) Sa.
+// Two reflections at 45 degrees, each of which leaves exp(-g) of closed form 7; Sq = sqrt(pi / 2) Sa.
 TEST(RoughnessStudy, SpecularShareIsTheClosedFormOfSa) {
   const Design design = parse_design(kPrism, "d.toml");
   const double index = make_model(design, materials::MaterialLibrary::shipped()).optics.index;

@@ -43,6 +43,8 @@ const std::string kTriangles =
 constexpr double kExactCutoff = 1e-7;
 /// So narrow that nothing that scatters returns into it.
 const std::string kNarrow = "detector.acceptance_half_angle_deg=0.001";
+/// For which the phase alone decides, at any length of the heights.
+const std::string kMirrors = "idealisation.facets=mirror";
 
 class Folder {
  public:
@@ -109,9 +111,29 @@ TEST(DesignTexture, WavinessOf30NmLeaves63PercentAtEachTotalReflection) {
   const double share = specular_share_of_two(index_of(kPrism), 30.0, 0.0);
   EXPECT_NEAR(std::sqrt(share), 0.63, 0.005);
   const double all = exact(kPrism, {kNarrow}).rre;
-  const RrePoint wavy = rre_of(kPrism, {kNarrow, "surface.waviness_sq_nm=30", "surface.waviness_length_um=100"}, {});
-  EXPECT_NEAR(wavy.rre, all * share, testing::student_bound(1) * wavy.std_error + kRounding);
+  const std::vector<std::string> waves = {kNarrow, "surface.waviness_sq_nm=30", "surface.waviness_length_um=100"};
+  std::vector<std::string> mirrors = waves;
+  mirrors.push_back(kMirrors);
+  const RrePoint wavy = rre_of(kPrism, mirrors, {});
+  EXPECT_NEAR(wavy.rre, all * share, testing::student_bound(2) * wavy.std_error + kRounding);
   EXPECT_LT(wavy.std_error, 2e-3);
+  // At total reflection the amplitude turns within the lobe: waves of 100 um are that short by some 1e-4 of the phase.
+  const RrePoint real = rre_of(kPrism, waves, {});
+  EXPECT_NEAR(real.rre / all, share, testing::student_bound(2) * real.std_error + 2e-4);
+}
+
+// Roughness as short as a wave scatters less than its phase says, half of it at 0.39 um, and a tenth of that out
+// through the facets (docs/theory/scatter.md).
+TEST(DesignTexture, ShortRoughnessScattersLessAtTotalReflection) {
+  const double all = exact(kPrism, {kNarrow}).rre;
+  const RrePoint traced =
+      rre_of(kPrism, {kNarrow, "surface.roughness_sq_nm=10", "surface.correlation_length_um=0.39"}, {});
+  const double kept = traced.rre / all;
+  const double phase = -std::log(specular_share_of_two(index_of(kPrism), 10.0, 0.0));
+  EXPECT_NEAR(-std::log(kept) / phase, 0.543, 0.01);
+  EXPECT_LT(traced.std_error, 1e-5);
+  EXPECT_NEAR(traced.ledger.total(), 1.0, 1e-9);
+  EXPECT_GT(traced.ledger[raytrace::Account::transmitted], 0.1 * (1.0 - kept));
 }
 
 // From g = 10 on no light is specular: facets tilt it, and the ledger calls it scattered.
@@ -133,8 +155,8 @@ TEST(DesignTexture, SpecularSharesOfTwoFacetsMultiply) {
   const std::string source = (folder.path() / "d.toml").string();
   for (const double incidence_deg : {0.0, 3.0}) {
     const double all = exact(kPrism, {kNarrow}, incidence_deg).rre;
-    const RrePoint rough =
-        rre_of(kPrism, {kNarrow, "surface.roughness_sq_nm=15", "surface.correlation_length_um=2"}, {incidence_deg});
+    const RrePoint rough = rre_of(
+        kPrism, {kNarrow, kMirrors, "surface.roughness_sq_nm=15", "surface.correlation_length_um=2"}, {incidence_deg});
     EXPECT_NEAR(rough.rre, all * specular_share_of_two(index, 15.0, incidence_deg),
                 testing::student_bound(4) * rough.std_error + kRounding);
     const RrePoint mapped =
@@ -165,7 +187,29 @@ TEST(DesignTexture, LevelAxisOfTheMapLiesAlongTheRoofEdge) {
   EXPECT_LT(rre("y"), specular + 0.1 * (1.0 - specular));
 }
 
-// A map of a surface with Gaussian autocorrelation does what harvey_shack says of its two numbers.
+// Roughness with a lay, short along the roof edge, turns light by up to w / (sqrt(2) pi l) out of the plane of
+// incidence; short down the facets, by as much over the cosine of 45 degrees within it. A cone of one deviation holds
+// erf of either.
+TEST(DesignTexture, LayLiesAsItsKeysSay) {
+  const double level_rad = 1e-3 * kWavelengthNm / (std::sqrt(2.0) * kPi * 10.0);
+  const std::string cone = "detector.acceptance_half_angle_deg=" + shortest(level_rad * 180.0 / kPi);
+  const double specular = specular_share_of_two(index_of(kPrism), 20.0, 0.0);
+  const auto share_in_cone = [&](const std::string& level_um, const std::string& down_um) {
+    const double rre = rre_of(kPrism, {cone, "surface.roughness_sq_nm=20", "surface.correlation_length_um=" + level_um,
+                                       "surface.correlation_length_down_um=" + down_um})
+                           .rre;
+    return (rre - specular) / (1.0 - specular);
+  };
+  EXPECT_NEAR(share_in_cone("10", "200"), std::erf(1.0 / std::sqrt(2.0)), 0.04);
+  EXPECT_NEAR(share_in_cone("200", "10"), std::erf(0.5), 0.04);
+  const std::vector<std::string> one = {cone, "surface.roughness_sq_nm=20", "surface.correlation_length_um=5"};
+  std::vector<std::string> both = one;
+  both.push_back("surface.correlation_length_down_um=5");
+  EXPECT_EQ(rre_of(kPrism, one).rre, rre_of(kPrism, both).rre);
+}
+
+// A map of a surface with Gaussian autocorrelation does what harvey_shack says of its two numbers, where both are
+// phases.
 TEST(DesignTexture, MapAndStatisticsOfOneSurfaceAgree) {
   const Folder folder;
   HeightMap map = testing::gaussian_surface(384, 384, 14.0, 8.0, 9);
@@ -175,9 +219,10 @@ TEST(DesignTexture, MapAndStatisticsOfOneSurfaceAgree) {
   folder.write("map.txt", map);
   const std::string cone = "detector.acceptance_half_angle_deg=5";
   const std::string source = (folder.path() / "d.toml").string();
-  const RrePoint mapped = rre_of(kPrism + "[surface]\nheight_map = \"map.txt\"\n", {cone}, {}, source);
+  const RrePoint mapped = rre_of(kPrism + "[surface]\nheight_map = \"map.txt\"\n", {cone, kMirrors}, {}, source);
   const RrePoint stated = rre_of(
-      kPrism, {cone, "surface.roughness_sq_nm=" + shortest(measured_sq_nm), "surface.correlation_length_um=2"}, {});
+      kPrism,
+      {cone, kMirrors, "surface.roughness_sq_nm=" + shortest(measured_sq_nm), "surface.correlation_length_um=2"}, {});
   EXPECT_GT(stated.rre, 0.84);
   EXPECT_LT(stated.rre, 0.92);
   // The spectrum of so small a sample scatters by some percent; the cone holds about half of what scatters.

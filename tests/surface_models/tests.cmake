@@ -16,6 +16,8 @@ target_include_directories(gwyddion_test SYSTEM PRIVATE "${RETRACE_GWYDDION_INCL
 
 retrace_test(raytrace_tests
   SOURCES
+    ${CMAKE_CURRENT_LIST_DIR}/first_order_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/height_map_scatter_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/lay_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp
   LIBRARIES retrace::scatter retrace::materials Boost::headers)

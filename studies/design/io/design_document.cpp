@@ -255,6 +255,8 @@ void set_texture(Keys& keys, const Surface& surface) {
                  [&](const HarveyShackTexture& t) {
                    set_height(keys, "roughness_sq_nm", t.roughness_sq_nm, "correlation_length_um",
                               t.correlation_length_um);
+                   if (t.roughness_sq_nm > 0.0 && t.down_correlation_length_um > 0.0)
+                     keys.set("correlation_length_down_um", t.down_correlation_length_um);
                    set_height(keys, "waviness_sq_nm", t.waviness_sq_nm, "waviness_length_um", t.waviness_length_um);
                  },
                  [&](const AbgTexture& t) {

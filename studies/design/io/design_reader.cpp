@@ -73,7 +73,7 @@ FacetTexture read_heights(const Document& document, std::string_view model) {
   if (model == "microfacet")
     return MicrofacetTexture{waviness_sq_nm, waviness_length_um, document.text("surface.slope_distribution") == "ggx"};
   return HarveyShackTexture{roughness_sq_nm, document.number("surface.correlation_length_um"), waviness_sq_nm,
-                            waviness_length_um};
+                            waviness_length_um, document.number_if("surface.correlation_length_down_um").value_or(0.0)};
 }
 
 FacetTexture read_texture(const Document& document) {

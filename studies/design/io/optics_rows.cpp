@@ -139,6 +139,11 @@ constexpr Row kSurfaceRows[] = {
     {"roughness_sq_nm", Number{kHeight}, 0.0, "Of `harvey_shack`: rms height."},
     {"correlation_length_um", Number{kLength}, 0.0,
      "Where the Gaussian autocorrelation of the roughness is 1/e; required together with `roughness_sq_nm`."},
+    {"correlation_length_down_um", Number{{.low = 0.0, .low_included = false, .high = 1e6}},
+     Computed{"`correlation_length_um`"},
+     "Of roughness with a lay, such as feed marks: its length down the facet; `correlation_length_um` is then the "
+     "level "
+     "one, along the roof edge of a prism."},
     {"waviness_sq_nm", Number{kHeight}, 0.0, "Of `harvey_shack` and `microfacet`: rms height of the waviness."},
     {"waviness_length_um", Number{kLength}, 0.0, "Period of the waviness; required together with `waviness_sq_nm`."},
     {"root_radius_um", kEdgeUm, 0.0,

@@ -1,0 +1,352 @@
+// Roughness between dielectrics to first order, against shallow gratings solved by the Rayleigh method, which shares
+// nothing with it; its energy, reciprocity, limits and draws.
+#include <Eigen/Dense>
+
+#include "materials/fresnel.h"
+#include "tests/surface_models/scatter_checks.h"
+
+namespace retrace::testing::first_order_test {
+namespace {
+
+using namespace scatter_checks;
+using Complex = std::complex<double>;
+using Eigen::Vector3cd;
+
+/// Eigen's own conjugates that of complex vectors.
+Vector3cd cross(const Vector3cd& a, const Vector3cd& b) {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+}
+
+/// A sinusoidal grating h = depth cos(g x) between two media, by the Rayleigh method: plane waves of all orders on both
+/// sides, down to the grooves' floor, their fields matched on the surface. Exact as the depth goes to 0. Lengths in
+/// units of w / (2 pi), time dependence exp(-i w t).
+class Grating {
+ public:
+  static constexpr int kOrders = 4;
+  static constexpr int kCount = 2 * kOrders + 1;
+
+  /// \param k wave vector of the incident light along the mean plane
+  Grating(double index_from, double index_to, const Vec2& k, double g, double depth)
+      : index_{index_from, index_to}, k_(k), g_(g) {
+    constexpr int kPoints = 48;
+    constexpr int kUnknowns = 4 * kCount;
+    Eigen::MatrixXcd system = Eigen::MatrixXcd::Zero(kUnknowns, kUnknowns);
+    Eigen::MatrixXcd right = Eigen::MatrixXcd::Zero(kUnknowns, 2);
+    for (int n = 0; n < kPoints; ++n) {
+      const double x = 2.0 * std::numbers::pi * n / kPoints;  // g x
+      const double h = depth * std::cos(x), slope = -depth * g * std::sin(x);
+      const auto along = [&](const Vector3cd& e, const Vector3cd& wave, int row) {
+        const Vector3cd magnetic = cross(wave, e);
+        const std::array<Complex, 4> all = {e.x() + slope * e.z(), e.y(), magnetic.x() + slope * magnetic.z(),
+                                            magnetic.y()};
+        return all[static_cast<std::size_t>(row)];
+      };
+      for (int m = -kOrders; m <= kOrders; ++m)
+        for (int row = 0; row < 4; ++row) {
+          const int equation = 4 * (m + kOrders) + row;
+          for (int p = -kOrders; p <= kOrders; ++p)
+            for (int medium : {0, 1})
+              for (int pol : {0, 1}) {
+                const Vector3cd wave = wave_vector(p, medium);
+                const Complex phase = std::exp(Complex(0.0, 1.0) * (wave.z() * h + (p - m) * x));
+                system(equation, unknown(p, medium, pol)) +=
+                    (medium == 0 ? 1.0 : -1.0) * phase * along(field(wave, medium, pol), wave, row);
+              }
+          for (int pol : {0, 1}) {
+            Vector3cd wave = wave_vector(0, 0);
+            wave.z() = -wave.z();
+            right(equation, pol) -=
+                std::exp(Complex(0.0, 1.0) * (wave.z() * h - m * x)) * along(field(wave, 0, pol), wave, row);
+          }
+        }
+    }
+    solution_ = system.fullPivLu().solve(right);
+  }
+
+  /// Amplitudes of an order, as roots of power: rows s and p of what leaves, columns of what arrives.
+  Eigen::Matrix2cd order(int m, Lobe lobe) const {
+    const int medium = lobe == Lobe::reflection ? 0 : 1;
+    const double q = std::abs(wave_vector(m, medium).z().real()), q_in = std::abs(wave_vector(0, 0).z().real());
+    Eigen::Matrix2cd found;
+    for (int out : {0, 1})
+      for (int in : {0, 1}) found(out, in) = std::sqrt(q / q_in) * solution_(unknown(m, medium, out), in);
+    return found;
+  }
+  bool propagates(int m, Lobe lobe) const {
+    return (k_ + Vec2(m * g_, 0.0)).norm() < index_[lobe == Lobe::reflection ? 0 : 1];
+  }
+
+ private:
+  static int unknown(int order, int medium, int pol) { return ((order + kOrders) * 2 + medium) * 2 + pol; }
+  Vector3cd wave_vector(int order, int medium) const {
+    const Vec2 k = k_ + Vec2(order * g_, 0.0);
+    const double n = index_[static_cast<std::size_t>(medium)];
+    const Complex q = std::sqrt(Complex(n * n - k.squaredNorm()));
+    return {k.x(), k.y(), medium == 0 ? q : -q};
+  }
+  Vector3cd field(const Vector3cd& wave, int medium, int pol) const {
+    const Vec2 k(wave.x().real(), wave.y().real());
+    const Vector3cd s = Vector3cd(k.y(), -k.x(), 0.0) / k.norm();
+    return pol == 0 ? s : Vector3cd(cross(wave, s) / index_[static_cast<std::size_t>(medium)]);
+  }
+
+  std::array<double, 2> index_;
+  Vec2 k_;
+  double g_;
+  Eigen::MatrixXcd solution_;
+};
+
+struct Incidence {
+  double index_from, index_to, incidence_deg, azimuth_deg, g;
+  Vec2 k() const {
+    const double t = incidence_deg * kRadians, p = azimuth_deg * kRadians;
+    return index_from * std::sin(t) * Vec2(std::cos(p), std::sin(p));
+  }
+};
+
+/// Inside and outside, in and across the plane of incidence, total reflection, both sides of the critical angle (42.1).
+const std::vector<Incidence>& incidences() {
+  static const std::vector<Incidence> all = {
+      {kIndex, 1.0, 5.0, 0.0, 0.4},     {kIndex, 1.0, 30.0, 35.0, 0.3},  {kIndex, 1.0, 41.9, 180.0, 0.05},
+      {kIndex, 1.0, 42.3, 180.0, 0.05}, {kIndex, 1.0, 45.0, 60.0, 0.25}, {kIndex, 1.0, 45.0, 180.0, 0.3},
+      {kIndex, 1.0, 54.74, 120.0, 0.9}, {kIndex, 1.0, 80.0, 150.0, 0.6}, {kIndex, 1.333, 70.0, 160.0, 0.2},
+      {1.0, kIndex, 20.0, 20.0, 0.5},   {1.0, kIndex, 70.0, 100.0, 0.3}, {1.0, kIndex, 70.0, 10.0, 0.45}};
+  return all;
+}
+
+Vec2 unit(const Vec2& v) {
+  return v / v.norm();
+}
+
+// Both orders of a grating that is 1e-5 of a wave deep, every component with its phase.
+TEST(FirstOrder, IsTheFirstOrderOfAShallowGrating) {
+  constexpr double kDepth = 1e-4;
+  int compared = 0;
+  for (const Incidence& i : incidences()) {
+    const Grating grating(i.index_from, i.index_to, i.k(), i.g, kDepth);
+    const DielectricInterface interface(i.index_from, i.index_to);
+    for (const Lobe lobe : {Lobe::reflection, Lobe::transmission})
+      for (const int m : {-1, 1}) {
+        if (!grating.propagates(m, lobe)) continue;
+        const Vec2 k_out = i.k() + Vec2(m * i.g, 0.0);
+        const Polarisation2 f = interface.amplitudes(i.k().norm(), unit(i.k()), k_out, lobe);
+        // Half of the cosine belongs to either order; scattered fields are a quarter of a period late.
+        const Polarisation2 expected = grating.order(m, lobe) / (Complex(0.0, 1.0) * 0.5 * kDepth);
+        EXPECT_LT((f - expected).norm(), 2e-5 * (1.0 + expected.norm()))
+            << i.incidence_deg << " deg, order " << m << ", lobe " << static_cast<int>(lobe) << "\n"
+            << f << "\n\n"
+            << expected;
+        ++compared;
+      }
+  }
+  EXPECT_GE(compared, 30);
+}
+
+/// Share of unpolarised light, or of s or p, in units of (2 pi Sq / w)^2 and by midpoints over the discs of both sides:
+/// nothing in common with the table's rule.
+double share_by_midpoints(const DielectricInterface& interface, double length, double k_in,
+                          const Polarisation2& coherency, std::optional<Lobe> only = {}) {
+  double sum = 0.0;
+  for (const Lobe lobe : {Lobe::reflection, Lobe::transmission}) {
+    if (only && *only != lobe) continue;
+    const double n = interface.index_of(lobe);
+    sum += n * n *
+           disc_integral(
+               [&](const Vec2& beta) {
+                 const Vec2 k_out = n * beta;
+                 const Polarisation2 f = interface.amplitudes(k_in, Vec2::UnitX(), k_out, lobe);
+                 const double shift2 = (k_out - k_in * Vec2::UnitX()).squaredNorm();
+                 return (f * coherency * f.adjoint()).trace().real() * length * length / (4.0 * std::numbers::pi) *
+                        std::exp(-0.25 * length * length * shift2);
+               },
+               300, 150);
+  }
+  return sum;
+}
+
+const Polarisation2 kS = (Polarisation2() << 1.0, 0.0, 0.0, 0.0).finished();
+const Polarisation2 kP = (Polarisation2() << 0.0, 0.0, 0.0, 1.0).finished();
+
+/// Correlation length in units of w / (2 pi).
+double in_waves(double length_um, double wavelength_nm = 550.0) {
+  return 2e3 * std::numbers::pi * length_um / wavelength_nm;
+}
+
+// Shares between the nodes of the table, at both sides of the critical angle, for short lengths and long ones.
+TEST(FirstOrder, SharesAreIntegralsOverBothSides) {
+  for (const auto& [from, to] : {std::pair(kIndex, 1.0), std::pair(1.0, kIndex), std::pair(kIndex, 1.333)}) {
+    const DielectricInterface interface(from, to);
+    for (const double length_um : {0.1, 0.39}) {
+      const FirstOrderShare share(interface, in_waves(length_um));
+      for (const double incidence_deg : {20.0, 41.5, 42.5, 78.0}) {
+        const double k = from * std::sin(incidence_deg * kRadians);
+        const auto [s, p] = share.at(k);
+        EXPECT_NEAR(s, share_by_midpoints(interface, in_waves(length_um), k, kS), 2e-3 * s) << length_um << " " << k;
+        EXPECT_NEAR(p, share_by_midpoints(interface, in_waves(length_um), k, kP), 2e-3 * p) << length_um << " " << k;
+      }
+    }
+  }
+}
+
+// What a shallow grating takes from the specular light, to second order of its depth, is what its first orders carry.
+TEST(FirstOrder, SpecularLightLosesWhatIsScattered) {
+  constexpr double kDepth = 3e-3;
+  for (const Incidence& i : incidences()) {
+    const Grating grating(i.index_from, i.index_to, i.k(), i.g, kDepth);
+    const DielectricInterface interface(i.index_from, i.index_to);
+    for (const Polarisation2& state : {kS, kP}) {
+      const auto power = [&](const Eigen::Matrix2cd& f) { return (f * state * f.adjoint()).trace().real(); };
+      double specular = 0.0, scattered = 0.0;
+      for (const Lobe lobe : {Lobe::reflection, Lobe::transmission}) {
+        if (grating.propagates(0, lobe)) specular += power(grating.order(0, lobe));
+        for (const int m : {-1, 1})
+          if (grating.propagates(m, lobe))
+            scattered += 0.25 * kDepth * kDepth *
+                         power(interface.amplitudes(i.k().norm(), unit(i.k()), i.k() + Vec2(m * i.g, 0.0), lobe));
+      }
+      // Terms of the fourth power grow with the slope of what the orders see, 1 / q.
+      EXPECT_NEAR((1.0 - specular) / scattered, 1.0, 1e-3) << i.incidence_deg;
+    }
+  }
+}
+
+// Turned round, light goes the other way with the same amplitude: F(in -> out) is F(out -> in) transposed, but for the
+// sign of s, whose axis turns with the light.
+TEST(FirstOrder, IsReciprocal) {
+  for (const Incidence& i : incidences()) {
+    const DielectricInterface there(i.index_from, i.index_to), back(i.index_to, i.index_from);
+    for (const Vec2& k_out : {Vec2(0.3, -0.2), Vec2(-0.1, 0.85), Vec2(0.97, 0.1)})
+      for (const Lobe lobe : {Lobe::reflection, Lobe::transmission}) {
+        const DielectricInterface& from_there = lobe == Lobe::reflection ? there : back;
+        const Polarisation2 f = there.amplitudes(i.k().norm(), unit(i.k()), k_out, lobe);
+        const Polarisation2 g = from_there.amplitudes(k_out.norm(), -unit(k_out), -i.k(), lobe);
+        for (int out : {0, 1})
+          for (int in : {0, 1}) EXPECT_NEAR(std::abs(f(out, in)), std::abs(g(in, out)), 1e-12 * (1.0 + f.norm()));
+      }
+  }
+}
+
+// Heights that are long against the wavelength put a phase on Fresnel's amplitudes: the limit in which the model of
+// phases was right.
+TEST(FirstOrder, LongHeightsPutAPhaseOnFresnelsLight) {
+  for (const Incidence& i : incidences()) {
+    const DielectricInterface interface(i.index_from, i.index_to);
+    const auto fresnel = materials::fresnel(i.index_from / i.index_to, std::cos(i.incidence_deg * kRadians));
+    const double path = i.index_from * std::cos(i.incidence_deg * kRadians);
+    const Polarisation2 f = interface.amplitudes(i.k().norm(), unit(i.k()), i.k(), Lobe::reflection);
+    EXPECT_LT(std::abs(f(0, 0) + 2.0 * path * fresnel.r_s), 1e-12);
+    EXPECT_LT(std::abs(f(1, 1) + 2.0 * path * fresnel.r_p), 1e-12);
+    EXPECT_LT(std::abs(f(0, 1)) + std::abs(f(1, 0)), 1e-14);
+    if (fresnel.total_reflection) continue;
+    const double across = i.index_to * fresnel.cos_refracted - path;
+    const Polarisation2 through = interface.amplitudes(i.k().norm(), unit(i.k()), i.k(), Lobe::transmission);
+    EXPECT_LT(std::abs(through(0, 0) - across * fresnel.t_s), 1e-12);
+    EXPECT_LT(std::abs(through(1, 1) - across * fresnel.t_p), 1e-12);
+  }
+}
+
+Polarisation2 askew() {
+  Polarisation2 made;
+  made << 0.6, Complex(0.2, 0.35), Complex(0.2, -0.35), 0.4;
+  return made;
+}
+
+ScatterEvent rough_event(double incidence_deg) {
+  ScatterEvent event = inside(incidence_deg);
+  event.inside_material = true;
+  return event;
+}
+
+// Draws in both hemispheres follow the density, with light of every polarisation, and below and above the critical
+// angle; their mean coherency, too, is that of the amplitudes.
+TEST(FirstOrder, DrawsFollowTheDensity) {
+  constexpr std::uint32_t kDraws = 60000;
+  const Roughness heights = {5.0, 0.39, 4.0, 8.0};
+  const HarveyShack model(heights, {kIndex, 1.0, 550.0});
+  const std::vector<double> all_deg = {20.0, 41.0, 45.0, 70.0};
+  const double level = sidak_level(2 * all_deg.size());
+  std::uint32_t seed = 100;
+  for (const double incidence_deg : all_deg) {
+    const ScatterEvent event = rough_event(incidence_deg);
+    const Vec3 s_axis = event.direction_in.cross(Vec3::UnitZ()).normalized();
+    const double k = kIndex * std::sin(incidence_deg * kRadians);
+    const materials::FresnelCoefficients f = materials::fresnel(kIndex, event.cos_in());
+    const DiffractionMeans means = model.diffraction_means(event, {}, f);
+    const double t_s = f.t_s * f.t_s, t_p = f.t_p * f.t_p;
+    const double total = askew()(0, 0).real() * ((1.0 - t_s) * means.reflected[0] + t_s * means.transmitted[0]) +
+                         askew()(1, 1).real() * ((1.0 - t_p) * means.reflected[1] + t_p * means.transmitted[1]);
+    for (const Lobe lobe : {Lobe::reflection, Lobe::transmission}) {
+      const Rings rings(lobe == Lobe::reflection ? Vec2(event.direction_in.head<2>())
+                                                 : Vec2(event.direction_in.head<2>().normalized() * std::min(0.8, k)),
+                        0.15);
+      const Density density = [&](const Vec2& beta) {
+        return model.diffracted_once_density(event, {}, lobe, s_axis, askew(), beta) / total;
+      };
+      const Draw draw = [&](RandomStream& random) -> std::optional<Vec2> {
+        const auto once = model.draw_diffracted_once(event, {}, s_axis, askew(), random);
+        if (!once || once->lobe != lobe) return std::nullopt;
+        EXPECT_NEAR(once->coherency.trace().real(), 1.0, 1e-12);
+        EXPECT_LT(std::abs(once->s_axis.dot(once->direction)), 1e-12);
+        return Vec2(once->direction.head<2>());
+      };
+      EXPECT_GT(chi_square_p(rings, density, draw, ++seed, kDraws), level)
+          << incidence_deg << ", lobe " << static_cast<int>(lobe);
+    }
+  }
+}
+
+// For roughness that is long against the wavelength the means are the phase variances, so that nothing changes; for
+// short ones they are less at total reflection.
+TEST(FirstOrder, MeansAreThePhaseVariancesOfLongHeights) {
+  const double sq_nm = 10.0;
+  for (const double incidence_deg : {0.0, 20.0, 50.0, 54.74, 70.0}) {
+    const ScatterEvent event = rough_event(incidence_deg);
+    const materials::FresnelCoefficients f = materials::fresnel(kIndex, event.cos_in());
+    const auto mean_of = [&](double length_um) {
+      return HarveyShack({sq_nm, length_um, 0.0, 0.0}, {kIndex, 1.0, 550.0}).diffraction_means(event, {}, f);
+    };
+    const double phase = 4.0 * std::numbers::pi * kIndex * sq_nm * event.cos_in() / 550.0;
+    const DiffractionMeans longest = mean_of(200.0), middle = mean_of(20.0), short_one = mean_of(0.39);
+    for (const std::size_t pol : {0U, 1U}) {
+      const double off = std::abs(middle.reflected[pol] / (phase * phase) - 1.0);
+      EXPECT_NEAR(longest.reflected[pol] / (phase * phase), 1.0, 1e-5) << incidence_deg;
+      EXPECT_LT(off, 1.5e-3);
+      if (f.total_reflection) {
+        EXPECT_LT(short_one.reflected[pol], 0.8 * phase * phase);
+        EXPECT_EQ(short_one.transmitted[pol], 0.0);
+      }
+    }
+  }
+}
+
+// The bound of the draws holds for every index ratio, incidence and direction, and is nearly reached.
+TEST(FirstOrder, BoundHolds) {
+  double closest = 0.0;
+  for (const double ratio : {0.4, 0.67, 0.9, 1.02, 1.12, 1.49, 2.0, 3.0}) {
+    const DielectricInterface interface(ratio, 1.0);
+    const double most = std::max(ratio, 1.0);
+    for (int a = 0; a < 30; ++a) {
+      const double k_in = ratio * std::sin((3 * a + 1.5) * kRadians);
+      for (const Polarisation2& state : {kS, kP, Polarisation2(0.5 * (kS + kP))}) {
+        const double bound = interface.bound(k_in, state);
+        for (int r = 0; r < 200; ++r)
+          for (int phi = 0; phi <= 4; ++phi) {
+            const double k = most * (r + 0.5) / 200.0, angle = std::numbers::pi / 4.0 * phi;
+            double sum = 0.0;
+            for (const Lobe lobe : {Lobe::reflection, Lobe::transmission}) {
+              if (k >= interface.index_of(lobe)) continue;
+              const Polarisation2 f =
+                  interface.amplitudes(k_in, Vec2::UnitX(), k * Vec2(std::cos(angle), std::sin(angle)), lobe);
+              sum += (f * state * f.adjoint()).trace().real();
+            }
+            ASSERT_LE(sum, bound * (1.0 + 1e-12)) << ratio << " " << a << " " << k;
+            closest = std::max(closest, sum / bound);
+          }
+      }
+    }
+  }
+  EXPECT_GT(closest, 0.95);
+}
+
+}  // namespace
+}  // namespace retrace::testing::first_order_test
