@@ -39,6 +39,7 @@ void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3
       (index_at(beam.inside) * beam.direction - index_at(inside) * direction).dot(plane.normal) * plane.offset_mm;
   beam.path_length = beam.path_length.continued(plane, direction, inside ? 1.0 : 0.0);
   beam.entry = beam.entry.continued(plane, direction);
+  for (TexturedHit& hit : beam.hits) hit = hit.continued(plane, direction);
   beam.start = {ahead, ahead.dot(plane.normal) * plane.offset_mm};
   beam.direction = direction;
   beam.light = light;
@@ -63,6 +64,7 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   if (!f.total_reflection) {
     Beam through = beam;
     if (from.inside) through.left_through = candidate.role;
+    keep_phases(through, candidate, cos_incidence, Lobe::transmission);
     const CoherentLight left =
         mean_field(beam.light.transmitted(f), beam, candidate.role, cos_incidence, Lobe::transmission);
     send(std::move(through), candidate.plane, -against,
@@ -72,12 +74,21 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   if (setup_.optics.coating_index && candidate.role == FacetRole::retro_facet)
     tally_.other[Account::absorbed] += transmission_of(beam) * (beam.light.power() - reflected.power());
   const CoherentLight left = mean_field(reflected, beam, candidate.role, cos_incidence, Lobe::reflection);
+  keep_phases(beam, candidate, cos_incidence, Lobe::reflection);
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), left, from.inside);
+}
+
+void BeamWalk::keep_phases(Beam& beam, const Candidate& candidate, double cos_incidence, Lobe lobe) const {
+  if (!policy_.keeps_phases || candidate.role != FacetRole::retro_facet || setup_.optics.is_smooth()) return;
+  TexturedHit hit;
+  hit.plane = candidate.plane;
+  hit.phase = phase_texture(setup_.optics, beam.inside, cos_incidence, lobe);
+  beam.hits.push_back(hit);
 }
 
 CoherentLight BeamWalk::mean_field(CoherentLight light, const Beam& beam, FacetRole role, double cos_incidence,
                                    Lobe lobe) {
-  if (role != FacetRole::retro_facet || setup_.optics.is_smooth()) return light;
+  if (role != FacetRole::retro_facet || setup_.optics.is_smooth() || policy_.keeps_phases) return light;
   const double before = light.power();
   light.scale(mean_field_share(setup_.optics, beam.inside, cos_incidence, lobe));
   tally_.other[Account::truncated] += transmission_of(beam) * (before - light.power());
@@ -148,6 +159,7 @@ ReturnedBeam BeamWalk::returned_beam(const Beam& beam, CoherentLight light, cons
   returned.phase_mm = beam.phase_mm + setup_.optics.index * beam.direction.z() * setup_.thickness_mm;
   returned.centre_mm = centre_mm_;
   returned.trail = beam.trail;
+  returned.hits = beam.hits;
   return returned;
 }
 

@@ -101,8 +101,10 @@ class BeamWalk {
   void meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
                   double share);
   /// What the texture of a retro facet leaves of a lobe's light; the rest is followed no further.
+  /// With phases that are kept: all of it.
   CoherentLight mean_field(CoherentLight light, const Beam& beam, geometry::FacetRole role, double cos_incidence,
                            surface_models::Lobe lobe);
+  void keep_phases(Beam& beam, const Candidate& candidate, double cos_incidence, surface_models::Lobe lobe) const;
   void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
                  geometry::FacetRole role);
   void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,

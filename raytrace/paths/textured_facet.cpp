@@ -22,6 +22,11 @@ surface_models::ScatterEvent event_of(const Optics& optics, bool inside, const V
   return {direction, from, to, optics.wavelength_nm, inside};
 }
 
+/// In the plane y = 0 of a facet's frame.
+Vec3 direction_at(double cos_incidence) {
+  return {std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence)), 0.0, -cos_incidence};
+}
+
 LocalEvent local_event(const Optics& optics, const Vec3& normal, const Ray& ray, surface_models::RandomStream& random) {
   LocalEvent local;
   const Vec3 z = ray.inside ? Vec3(-normal) : normal;
@@ -85,9 +90,13 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
 }
 
 double mean_field_share(const Optics& optics, bool inside, double cos_incidence, Lobe lobe) {
-  const double sin_incidence = std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence));
-  const Vec3 direction(sin_incidence, 0.0, -cos_incidence);
-  return surface_models::mean_field_share(optics.facet_scatter, event_of(optics, inside, direction), lobe);
+  const surface_models::ScatterEvent event = event_of(optics, inside, direction_at(cos_incidence));
+  return surface_models::mean_field_share(optics.facet_scatter, event, lobe);
+}
+
+surface_models::PhaseTexture phase_texture(const Optics& optics, bool inside, double cos_incidence, Lobe lobe) {
+  const surface_models::ScatterEvent event = event_of(optics, inside, direction_at(cos_incidence));
+  return surface_models::phase_texture(optics.facet_scatter, event, lobe);
 }
 
 }  // namespace retrace::raytrace

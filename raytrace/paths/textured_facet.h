@@ -53,4 +53,8 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
 /// Share of a lobe's power that the texture of a retro facet leaves in its mean field.
 double mean_field_share(const Optics& optics, bool inside, double cos_incidence, surface_models::Lobe lobe);
 
+/// What the texture of a retro facet does to the phase of a lobe's light. \pre surface_models::has_phases()
+surface_models::PhaseTexture phase_texture(const Optics& optics, bool inside, double cos_incidence,
+                                           surface_models::Lobe lobe);
+
 }  // namespace retrace::raytrace
