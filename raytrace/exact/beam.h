@@ -6,10 +6,12 @@
 #include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "geometry/elements/element_cells.h"
 #include "raytrace/exact/flat_polygon.h"
 #include "raytrace/light/coherent_light.h"
+#include "surface_models/scatter/scatter_event.h"
 
 namespace retrace::raytrace {
 
@@ -75,6 +77,23 @@ struct CellTrail {
   }
 };
 
+/// A facet with a texture that light has met: where, as an affine function of where the light is now (as EntryPoint),
+/// and what the heights there did to its phase.
+struct TexturedHit {
+  Plane plane;
+  Vec3 constant_mm = Vec3::Zero();
+  Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
+  surface_models::PhaseTexture phase;
+
+  Vec3 of(const Vec3& p) const { return constant_mm + slope * p; }
+
+  /// Beyond an interface: equal on its plane, constant along the new direction.
+  TexturedHit continued(const Plane& at, const Vec3& direction) const {
+    const Vec3 across = -(slope * direction) / at.normal.dot(direction);
+    return {plane, constant_mm - across * at.offset_mm, slope + across * at.normal.transpose(), phase};
+  }
+};
+
 /// Light of one direction and polarisation through a polygon.
 struct Beam {
   Corners corners;  ///< of the cross-section, on the plane it starts from
@@ -82,11 +101,12 @@ struct Beam {
   CoherentLight light;    ///< before absorption
   double phase_mm = 0.0;  ///< of the field at the origin, with the wave continued there: an optical path
   CellTrail trail;
-  double share = 1.0;      ///< of the entrance's cross-section
-  double power = 0.0;      ///< that it starts with, as a share of the incident
-  PathLength path_length;  ///< in the material
-  EntryPoint entry;        ///< where it came in
-  Plane start;             ///< the beam lies where start.height(p) >= 0
+  double share = 1.0;             ///< of the entrance's cross-section
+  double power = 0.0;             ///< that it starts with, as a share of the incident
+  PathLength path_length;         ///< in the material
+  EntryPoint entry;               ///< where it came in
+  std::vector<TexturedHit> hits;  ///< in their order; BeamPolicy::keeps_phases
+  Plane start;                    ///< the beam lies where start.height(p) >= 0
   bool inside = true;
   geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through
   std::uint32_t depth = 0;                                              ///< interfaces so far

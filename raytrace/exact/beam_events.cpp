@@ -39,6 +39,7 @@ void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3
       (index_at(beam.inside) * beam.direction - index_at(inside) * direction).dot(plane.normal) * plane.offset_mm;
   beam.path_length = beam.path_length.continued(plane, direction, inside ? 1.0 : 0.0);
   beam.entry = beam.entry.continued(plane, direction);
+  for (TexturedHit& hit : beam.hits) hit = hit.continued(plane, direction);
   beam.start = {ahead, ahead.dot(plane.normal) * plane.offset_mm};
   beam.direction = direction;
   beam.light = light;
@@ -67,12 +68,22 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   if (!f.total_reflection) {
     Beam through = beam;
     if (from.inside) through.left_through = candidate.role;
+    keep_phases(through, candidate, cos_incidence, Lobe::transmission);
     const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::transmission);
     send(std::move(through), candidate.plane, -against,
          refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), left, !from.inside);
   }
   const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::reflection);
+  keep_phases(beam, candidate, cos_incidence, Lobe::reflection);
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), left, from.inside);
+}
+
+void BeamWalk::keep_phases(Beam& beam, const Candidate& candidate, double cos_incidence, Lobe lobe) const {
+  if (!policy_.keeps_phases || candidate.role != FacetRole::retro_facet || setup_.optics.is_smooth()) return;
+  TexturedHit hit;
+  hit.plane = candidate.plane;
+  hit.phase = phase_texture(setup_.optics, beam.inside, cos_incidence, lobe);
+  beam.hits.push_back(hit);
 }
 
 CoherentLight BeamWalk::mean_field(const Beam& beam, const materials::FresnelCoefficients& f, FacetRole role,
@@ -81,7 +92,7 @@ CoherentLight BeamWalk::mean_field(const Beam& beam, const materials::FresnelCoe
     return lobe == Lobe::reflection ? beam.light.reflected(by) : beam.light.transmitted(by);
   };
   CoherentLight light = passed(f);
-  if (role != FacetRole::retro_facet || setup_.optics.is_smooth()) return light;
+  if (role != FacetRole::retro_facet || setup_.optics.is_smooth() || policy_.keeps_phases) return light;
   const double before = light.power();
   light = passed(raytrace::mean_field(setup_.optics, beam.inside, cos_incidence, f));
   light.scale(mean_field_share(setup_.optics, beam.inside, cos_incidence, lobe));
@@ -157,6 +168,7 @@ ReturnedBeam BeamWalk::returned_beam(const Beam& beam, CoherentLight light, cons
   returned.phase_mm = beam.phase_mm + setup_.optics.index * beam.direction.z() * setup_.thickness_mm;
   returned.centre_mm = centre_mm_;
   returned.trail = beam.trail;
+  returned.hits = beam.hits;
   return returned;
 }
 

@@ -35,6 +35,9 @@ struct BeamPolicy {
   /// Facets of neighbouring cells are kept apart even where they lie in one plane, so that every returned beam belongs
   /// to its cell.
   bool by_cell = false;
+  /// Textured facets leave beams all their light, and every returned beam tells which of them it has met: what is
+  /// specular and what scatters is for the far field to say. For textures with has_phases() alone.
+  bool keeps_phases = false;
 };
 
 struct BeamResult {
@@ -66,6 +69,9 @@ struct ReturnedBeam {
   double phase_mm = 0.0;
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< that centre
   CellTrail trail;
+  /// Of places on the entrance face, relative to the part's centre. The field and its power are those before the phases
+  /// of these facets.
+  std::vector<TexturedHit> hits;
 };
 
 /// Called for every returned beam, as it is found. With a cut-off that has to be found first, that takes a run of its
@@ -75,7 +81,7 @@ using BeamObserver = std::function<void(const ReturnedBeam&)>;
 /// Follows parallel beams of polygonal cross-section from facet to facet: plane smooth facets turn one beam into
 /// finitely many, so nothing is sampled. What is cut off or falls between polygons by rounding is booked in
 /// `truncated`. Of textured facets it follows the mean field alone (mean_field(), mean_field_share()): what scatters is
-/// booked there as well. A value shared by all threads.
+/// booked there as well, unless BeamPolicy::keeps_phases. A value shared by all threads.
 class BeamTracer {
  public:
   /// \pre `part` outlives the tracer

@@ -101,9 +101,10 @@ class BeamWalk {
   void meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
                   double share);
   /// A branch of a beam's light at a facet, less what the texture of a retro facet scatters, which is followed no
-  /// further.
+  /// further; with phases that are kept: all of it.
   CoherentLight mean_field(const Beam& beam, const materials::FresnelCoefficients& f, geometry::FacetRole role,
                            double cos_incidence, surface_models::Lobe lobe);
+  void keep_phases(Beam& beam, const Candidate& candidate, double cos_incidence, surface_models::Lobe lobe) const;
   void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
                  geometry::FacetRole role);
   void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,

@@ -26,6 +26,11 @@ std::size_t steps(double length_rad, double detail_rad) {
 
 }  // namespace
 
+double disc_transform(double x) {
+  const double x2 = x * x;
+  return x2 < 1e-4 ? 1.0 - x2 / 8.0 : 2.0 * std::cyl_bessel_j(1.0, x) / x;
+}
+
 GaussRule gauss_legendre(std::size_t count) {
   GaussRule rule{std::vector<double>(count), std::vector<double>(count)};
   const double n = static_cast<double>(count);
@@ -70,6 +75,11 @@ double ApertureKernel::per_sr(double separation_rad) const {
   // Two circular segments.
   const double common = a * a * (at_a - 0.5 * std::sin(2.0 * at_a)) + b * b * (at_b - 0.5 * std::sin(2.0 * at_b));
   return common / (pi * a * a * pi * b * b);
+}
+
+double ApertureKernel::transform(double rad_per_rad) const {
+  // A convolution of two discs.
+  return disc_transform(larger_rad_ * rad_per_rad) * disc_transform(smaller_rad_ * rad_per_rad);
 }
 
 std::vector<ApertureKernel::Node> ApertureKernel::nodes(double detail_rad) const {

@@ -15,6 +15,9 @@ struct PhotometricApertures {
   Angle receiver;
 };
 
+/// 2 J1(x) / x: the Fourier transform of the unit disc over its area.
+double disc_transform(double x);
+
 /// What a source and a receiver of finite size make of a direction: the mean over both discs. A pattern moves with its
 /// source, so that the mean is a convolution with the density of the difference of two points, one in each disc - the
 /// area that the discs share when moved apart, over the product of their areas.
@@ -25,6 +28,8 @@ class ApertureKernel {
 
   /// Density per steradian at an angular separation. Its integral is 1.
   double per_sr(double separation_rad) const;
+  /// Its Fourier transform: what it leaves of a wave over the plane of angles, 1 at 0.
+  double transform(double rad_per_rad) const;
   /// Half angle beyond which it is 0.
   double reach_rad() const { return larger_rad_ + smaller_rad_; }
 

@@ -23,6 +23,8 @@ constexpr double kOneDirection_rad = 1e-9;
 constexpr double kFaint = 1e-10;
 // Steps by which fields of cells are compared: of lengths in elements, of cosines, of amplitudes, of paths in mm.
 constexpr double kLengthStep = 1e-7, kCosineStep = 1e-8, kAmplitudeStep = 1e-7, kPathStep_mm = 1e-7;
+// Of places where facets were met, in elements, and of their slopes.
+constexpr double kHitStep = 1e-6;
 // Polygons are joined if their union is convex but for this share of an element's area.
 constexpr double kJoinShare = 1e-10;
 // Lattice points to the finest detail: the density is a band-limited function.
@@ -55,6 +57,13 @@ double small_angle_between(const Vec3& a, const Vec3& b) {
   return 2.0 * std::asin(std::min(1.0, 0.5 * (a - b).norm()));
 }
 
+/// By how much cosines along x and y change with angles to the right and upwards.
+Eigen::Matrix2d axes_of(const ReturnFrame& frame) {
+  Eigen::Matrix2d axes;
+  axes << frame.right.head<2>(), frame.up.head<2>();
+  return axes;
+}
+
 /// What tells fields of two cells apart.
 using Signature = std::vector<std::int64_t>;
 
@@ -84,9 +93,15 @@ double CoherentGroup::power() const {
   return copies * sum;
 }
 
+double CoherentGroup::specular_power() const {
+  double sum = 0.0;
+  for (const FieldPolygon& p : polygons) sum += p.mean_factor * p.mean_factor * p.power;
+  return copies * sum;
+}
+
 double FarField::diffracted_power() const {
   double sum = 0.0;
-  for (const CoherentGroup& group : groups_) sum += group.power();
+  for (const CoherentGroup& group : groups_) sum += group.specular_power();
   return sum;
 }
 
@@ -105,24 +120,34 @@ double FarField::per_cosines(const Vec2& cosines) const {
     if (is_cancelled(cancel_)) return 0.0;
     JonesMatrix field = JonesMatrix::Zero();
     for (const FieldPolygon& p : group.polygons)
-      field += p.transform.at(wave_number * (cosines - p.cosines)) * p.amplitude;
+      field += p.transform.at(wave_number * (cosines - p.cosines)) * p.mean_factor * p.amplitude;
     sum += group.copies * power_of(field, coherency_);
   }
-  return sum / (wavelength_mm_ * wavelength_mm_);
+  return sum / (wavelength_mm_ * wavelength_mm_) + scattered_.fringes_per_cosines(cosines);
 }
 
 double FarField::diffracted_per_sr(const Vec3& direction) const {
   return direction.z() > 0.0 ? direction.z() * per_cosines(direction.head<2>()) : 0.0;
 }
 
+double FarField::scattered_per_sr(const Vec3& direction) const {
+  return direction.z() > 0.0 ? direction.z() * scattered_.lobes_per_cosines(direction.head<2>()) : 0.0;
+}
+
+double FarField::scattered_within(const ReturnFrame& frame, double half_angle_rad) const {
+  return scattered_.lobes_within(std::cos(half_angle_rad) * frame.to_source.head<2>(),
+                                 std::sin(half_angle_rad) * axes_of(frame));
+}
+
 double FarField::intensity_per_sr(const Vec3& direction, const ApertureKernel& kernel) const {
   double sum = 0.0;
   for (const FarFieldRay& ray : rays_) sum += ray.power * kernel.per_sr(small_angle_between(ray.direction, direction));
-  if (groups_.empty()) return sum;
   ReturnFrame frame;
   frame.to_source = direction;
   frame.right = source_axis(direction);
   frame.up = direction.cross(frame.right);
+  sum += direction.z() * scattered_.lobes_per_cosines(direction.head<2>(), axes_of(frame), kernel);
+  if (groups_.empty()) return sum;
   for (const ApertureKernel::Node& node : kernel.nodes(detail_rad()))
     sum += node.weight * diffracted_per_sr(frame.direction(node.offset_rad));
   return sum;
@@ -132,14 +157,16 @@ std::vector<double> FarField::binned(const ReturnFrame& frame, const DirectionGr
   std::vector<double> sums(grid.size() + 1, 0.0);
   for (const FarFieldRay& ray : rays_)
     sums[grid.bin_of(frame.angles_rad(ray.direction)).value_or(grid.size())] += ray.power;
-  if (groups_.empty()) return sums;
+  sums.back() += unplaced_power_;
+  if (groups_.empty() && scattered_.power() == 0.0) return sums;
   double inside = 0.0;
   for (std::size_t bin = 0; bin < grid.size(); ++bin) {
-    const double power = diffracted_per_sr(frame.direction(grid.middle_rad(bin))) * grid.solid_angle_sr(bin);
+    const Vec3 direction = frame.direction(grid.middle_rad(bin));
+    const double power = (diffracted_per_sr(direction) + scattered_per_sr(direction)) * grid.solid_angle_sr(bin);
     sums[bin] += power;
     inside += power;
   }
-  sums.back() += std::max(0.0, diffracted_power() - inside);
+  sums.back() += std::max(0.0, diffracted_power() + scattered_.power() - inside);
   return sums;
 }
 
@@ -147,6 +174,9 @@ FarField::Split FarField::split(const ReturnFrame& frame, double half_angle_rad)
   Split split;
   for (const FarFieldRay& ray : rays_)
     (small_angle_between(ray.direction, frame.to_source) <= half_angle_rad ? split.inside : split.outside) += ray.power;
+  const double scattered = scattered_within(frame, half_angle_rad);
+  split.inside += scattered;
+  split.outside += scattered_.power() - scattered + unplaced_power_;
   if (groups_.empty()) return split;
   const double step = std::min(detail_rad() / kPointsToADetail, half_angle_rad / kPointsToARadius);
   const auto reach = static_cast<std::int64_t>(std::ceil(half_angle_rad / step));
@@ -188,6 +218,7 @@ FarFieldCollector::FarFieldCollector(const geometry::Part& part, const Illuminat
     : policy_(policy),
       is_infinite_(part.period_mm.has_value()),
       size_mm_(part.size_mm),
+      thickness_mm_(part.thickness_mm),
       to_source_(direction_to_source(illumination)),
       directions_(kOneDirection_rad) {
   field_.wavelength_mm_ = 1e-6 * policy.wavelength_nm;
@@ -205,12 +236,23 @@ void FarFieldCollector::add_ray(const Vec3& direction, double power) {
   field_.rays_[index].power += power;
 }
 
+/// What is specular of it.
+void FarFieldCollector::add_scattering_ray(const Vec3& direction, double power, double phase_variance) {
+  const double specular = std::exp(-phase_variance) * power;
+  field_.unplaced_power_ += power - specular;
+  add_ray(direction, specular);
+}
+
 void FarFieldCollector::add(const ReturnedBeam& beam) {
   field_.total_power_ += beam.stokes.i;
   const bool is_diffracted = policy_.diffraction && beam.trail.first && beam.left_mm.size() >= 3 &&
                              beam.stokes.i > kFaint &&
                              small_angle_between(beam.direction, to_source_) <= policy_.window_rad;
-  if (!is_diffracted) return add_ray(beam.direction, beam.stokes.i);
+  if (!is_diffracted) {
+    double phase_variance = 0.0;
+    for (const TexturedHit& hit : beam.hits) phase_variance += hit.phase.variance();
+    return add_scattering_ray(beam.direction, beam.stokes.i, phase_variance);
+  }
   Place place{0, 0, 0, 0};
   if (beam.trail.is_mixed) {
     place.beam = ++mixed_;
@@ -235,6 +277,16 @@ FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam)
   piece.transmission = beam.transmission;
   piece.phase_mm = beam.phase_mm + (beam.direction + to_source_).head<2>().dot(by);
   piece.power = beam.stokes.i;
+  const Vec3 moved(by.x(), by.y(), 0.0);
+  for (const TexturedHit& hit : beam.hits) {
+    FieldHit at_home;
+    at_home.normal = hit.plane.normal;
+    at_home.offset_mm = hit.plane.offset_mm - hit.plane.normal.dot(moved);
+    at_home.constant_mm = hit.of({by.x(), by.y(), thickness_mm_}) - moved;
+    at_home.slope = hit.slope.leftCols<2>();
+    at_home.phase = hit.phase;
+    piece.hits.push_back(at_home);
+  }
   return piece;
 }
 
@@ -266,8 +318,8 @@ std::vector<CoherentGroup> FarFieldCollector::groups_of(const std::vector<Piece>
 
 /// Joins what belongs to one wave again: a large entrance is traced in pieces that have nothing to do with its cells.
 void FarFieldCollector::join(std::vector<Piece>& pieces) const {
-  const auto wave_of = [](const Piece& p) {
-    std::array<std::int64_t, 11> key{};
+  const auto wave_of = [this](const Piece& p) {
+    std::vector<std::int64_t> key(11);
     key[0] = step_of(p.direction.x(), kCosineStep);
     key[1] = step_of(p.direction.y(), kCosineStep);
     key[2] = step_of(p.phase_mm, kPathStep_mm);
@@ -275,6 +327,12 @@ void FarFieldCollector::join(std::vector<Piece>& pieces) const {
       const std::complex<double> a = p.jones.reshaped()(static_cast<Eigen::Index>(k));
       key[3 + 2 * k] = step_of(a.real(), kAmplitudeStep);
       key[4 + 2 * k] = step_of(a.imag(), kAmplitudeStep);
+    }
+    // Light of one wave may have met other places of the facets, or in another order.
+    for (const FieldHit& hit : p.hits) {
+      for (const double cosine : hit.normal) key.push_back(step_of(cosine, kCosineStep));
+      for (const double length : hit.constant_mm) key.push_back(step_of(length, kHitStep * size_mm_));
+      for (const double slope : hit.slope.reshaped()) key.push_back(step_of(slope, kHitStep));
     }
     return key;
   };
@@ -326,7 +384,14 @@ CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2&
     const double phase = wave_number * (path(piece) - first_path);
     const std::complex<double> factor = std::polar(std::sqrt(piece.transmission / transform.area_mm2()), phase);
     for (const Vec2& p : outline) group.extent_mm = std::max(group.extent_mm, 2.0 * p.norm());
-    group.polygons.push_back({std::move(transform), piece.direction.head<2>(), factor * piece.jones, piece.power});
+    FieldPolygon polygon{std::move(transform), piece.direction.head<2>(), factor * piece.jones, piece.power,
+                         piece.hits};
+    for (FieldHit& hit : polygon.hits) {
+      hit.constant_mm += hit.slope * middle_mm;
+      polygon.phase_variance += hit.phase.variance();
+    }
+    polygon.mean_factor = std::exp(-0.5 * polygon.phase_variance);
+    group.polygons.push_back(std::move(polygon));
   }
   return group;
 }
@@ -356,25 +421,31 @@ void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
   std::stable_sort(groups.begin(), groups.end(),
                    [](const CoherentGroup& a, const CoherentGroup& b) { return a.power() > b.power(); });
   std::size_t polygons = 0;
+  field_.scattered_ = ScatteredField(field_.wavelength_mm_, field_.coherency_, std::sin(policy_.window_rad), groups);
   for (CoherentGroup& group : groups) {
-    const bool is_to_be_diffracted =
-        left > least && field_.wavelength_mm_ >= policy_.finest_detail_rad * group.extent_mm;
+    if (is_cancelled(policy_.cancel)) return;
+    const bool is_strong = left > least;
+    const bool is_narrow = field_.wavelength_mm_ >= policy_.finest_detail_rad * group.extent_mm;
+    const bool is_to_be_diffracted = is_strong && is_narrow;
     const bool is_within_budget = polygons + group.polygons.size() <= policy_.most_polygons;
     left -= group.power();
+    if (is_strong && is_within_budget) field_.scattered_.add(group, is_narrow);
     if (is_to_be_diffracted && is_within_budget) {
       polygons += group.polygons.size();
       field_.groups_.push_back(std::move(group));
       continue;
     }
     if (is_to_be_diffracted) field_.beyond_budget_power_ += group.power();
-    add_undiffracted(group);
+    add_undiffracted(group, is_strong && is_within_budget);
   }
 }
 
-void FarFieldCollector::add_undiffracted(const CoherentGroup& group) {
+void FarFieldCollector::add_undiffracted(const CoherentGroup& group, bool has_lobes) {
   for (const FieldPolygon& p : group.polygons) {
     const double height = std::sqrt(std::max(0.0, 1.0 - p.cosines.squaredNorm()));
-    add_ray({p.cosines.x(), p.cosines.y(), height}, group.copies * p.power);
+    const double specular = p.mean_factor * p.mean_factor * p.power;
+    add_ray({p.cosines.x(), p.cosines.y(), height}, group.copies * specular);
+    if (!has_lobes) field_.unplaced_power_ += group.copies * (p.power - specular);
   }
 }
 

@@ -12,7 +12,7 @@
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/exact/point_lookup.h"
 #include "raytrace/observers/direction_score.h"
-#include "raytrace/observers/polygon_transform.h"
+#include "raytrace/observers/scattered_field.h"
 
 namespace retrace::raytrace {
 
@@ -34,22 +34,6 @@ struct FarFieldPolicy {
   const Cancellation* cancel = nullptr;
 };
 
-/// A plane wave through a convex polygon of the entrance face: part of the field that a cell sends back.
-struct FieldPolygon {
-  PolygonTransform transform;
-  geometry::Vec2 cosines;  ///< of its direction along x and y
-  JonesMatrix amplitude;   ///< times the square root of the density of power, with the phase at the origin
-  double power = 0.0;      ///< for the polarisation of the incident light
-};
-
-/// All that interferes: the light of one cell by paths of about the same length.
-struct CoherentGroup {
-  std::vector<FieldPolygon> polygons;
-  double copies = 1.0;     ///< cells that send back the same
-  double extent_mm = 0.0;  ///< diameter of the circle round all polygons, about their common middle
-  double power() const;    ///< of all copies
-};
-
 /// Light in one direction, without a shape.
 struct FarFieldRay {
   Vec3 direction;
@@ -61,13 +45,18 @@ struct FarFieldRay {
 ///
 /// Beams of one cell add their fields, cells add their intensities: cells of a mould differ in height by more than the
 /// light can tell, and a lamp's light is coherent over less than a cell. Fraunhofer diffraction on the entrance face:
-/// the far field of a beam is the Fourier transform of its polygon (docs/theory/photometry.md).
+/// the far field of a beam is the Fourier transform of its polygon. Of beams that have met textures
+/// (ReturnedBeam::hits) what their phases leave of the mean field is diffracted so, and what they scatter is added
+/// (ScatteredField; docs/theory/photometry.md): means over all heights.
 class FarField {
  public:
   /// What the receivers of `frame` see at angles (right, up), per steradian. \param kernel of source and receiver
   double intensity_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;
-  /// The diffracted part alone, for a point as source and as receiver.
+  /// The diffracted part alone, for a point as source and as receiver: the mean field, and the fringes of what
+  /// scatters.
   double diffracted_per_sr(const Vec3& direction) const;
+  /// The lobes of what scatters, likewise.
+  double scattered_per_sr(const Vec3& direction) const;
 
   /// Power by the bins of a grid, and outside of it at the end. Undiffracted light goes where its direction is;
   /// diffracted light by its density in the middle of a bin.
@@ -83,6 +72,12 @@ class FarField {
 
   double total_power() const { return total_power_; }
   double diffracted_power() const;
+  /// Of all lobes.
+  double scattered_power() const { return scattered_.power(); }
+  /// Of the lobes within a cone about the direction back to the source.
+  double scattered_within(const ReturnFrame& frame, double half_angle_rad) const;
+  /// Scattered by beams outside of the window and by the faintest: where it goes is not known.
+  double unplaced_power() const { return unplaced_power_; }
   /// What would have been diffracted, were there not more polygons than `most_polygons`.
   double beyond_budget_power() const { return beyond_budget_power_; }
   /// Distance of the finest details of what is diffracted; infinite if nothing is.
@@ -100,6 +95,8 @@ class FarField {
   Eigen::Matrix2cd coherency_ = 0.5 * Eigen::Matrix2cd::Identity();
   std::vector<CoherentGroup> groups_;
   std::vector<FarFieldRay> rays_;
+  ScatteredField scattered_;
+  double unplaced_power_ = 0.0;
   double total_power_ = 0.0;
   double beyond_budget_power_ = 0.0;
   const Cancellation* cancel_ = nullptr;
@@ -123,6 +120,7 @@ class FarFieldCollector {
     double transmission = 0.0;
     double phase_mm = 0.0;
     double power = 0.0;
+    std::vector<FieldHit> hits;
   };
   /// One cell; of a beam that met several, the beam itself.
   struct Place {
@@ -134,17 +132,20 @@ class FarFieldCollector {
   };
 
   void add_ray(const Vec3& direction, double power);
+  void add_scattering_ray(const Vec3& direction, double power, double phase_variance);
   Piece moved_home(const ReturnedBeam& beam) const;
   std::vector<CoherentGroup> groups_of(const std::vector<Piece>& pieces) const;
   CoherentGroup group_of(std::vector<Piece> pieces, const geometry::Vec2& middle_mm) const;
   void join(std::vector<Piece>& pieces) const;
   std::vector<CoherentGroup> distinct_groups() const;
   void keep_strongest(std::vector<CoherentGroup> groups);
-  void add_undiffracted(const CoherentGroup& group);
+  /// \param has_lobes whether what it scatters is kept
+  void add_undiffracted(const CoherentGroup& group, bool has_lobes);
 
   FarFieldPolicy policy_;
   bool is_infinite_ = false;
   double size_mm_ = 0.0;
+  double thickness_mm_ = 0.0;
   Vec3 to_source_;
   FarField field_;
   std::map<Place, std::vector<Piece>> cells_;

@@ -21,6 +21,7 @@ class PolygonTransform {
 
   double area_mm2() const { return area_mm2_; }
   double size_mm() const { return size_mm_; }
+  const geometry::Vec2& centroid_mm() const { return centroid_mm_; }
   const geometry::Polygon& polygon() const { return corners_; }
 
  private:

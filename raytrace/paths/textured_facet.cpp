@@ -218,4 +218,9 @@ materials::FresnelCoefficients mean_field(const Optics& optics, bool inside, dou
   return kept(fresnel, surface_models::diffraction_means(*rough, event, {}, fresnel));
 }
 
+surface_models::PhaseTexture phase_texture(const Optics& optics, bool inside, double cos_incidence, Lobe lobe) {
+  const surface_models::ScatterEvent event = event_of(optics, inside, at_incidence(cos_incidence));
+  return surface_models::phase_texture(optics.facet_scatter, event, lobe);
+}
+
 }  // namespace retrace::raytrace

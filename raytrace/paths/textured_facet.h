@@ -59,4 +59,8 @@ double mean_field_share(const Optics& optics, bool inside, double cos_incidence,
 materials::FresnelCoefficients mean_field(const Optics& optics, bool inside, double cos_incidence,
                                           const materials::FresnelCoefficients& fresnel);
 
+/// What the texture of a retro facet does to the phase of a lobe's light. \pre surface_models::has_phases()
+surface_models::PhaseTexture phase_texture(const Optics& optics, bool inside, double cos_incidence,
+                                           surface_models::Lobe lobe);
+
 }  // namespace retrace::raytrace

@@ -115,6 +115,13 @@ Design dyed(Design design, const PhotometryRequest& request) {
   return design;
 }
 
+/// Of a beam that keeps its phases.
+double scattered_power(const raytrace::ReturnedBeam& beam) {
+  double variance = 0.0;
+  for (const raytrace::TexturedHit& hit : beam.hits) variance += hit.phase.variance();
+  return -std::expm1(-variance) * beam.stokes.i;
+}
+
 /// Calls work(k) for every k on the threads at hand and tells how far it is.
 void for_each_told(std::size_t count, Progress* progress, const std::function<void(std::size_t)>& work) {
   std::mutex mutex;
@@ -187,7 +194,8 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
-  is_exact_ = !design_.balls() && !design_.entrance && model_.optics.is_smooth() &&
+  keeps_phases_ = request.diffraction && surface_models::has_phases(model_.optics.facet_scatter);
+  is_exact_ = !design_.balls() && !design_.entrance && (model_.optics.is_smooth() || keeps_phases_) &&
               (request.engine == Engine::exact || request.engine == Engine::automatic);
 }
 
@@ -201,6 +209,7 @@ std::optional<Photometer> Photometer::mean_field() const {
   if (!is_asked || is_exact_ || design_.balls() || design_.entrance || model_.optics.is_smooth()) return std::nullopt;
   Photometer bound = *this;
   bound.is_exact_ = true;
+  bound.keeps_phases_ = false;
   return bound;
 }
 
@@ -209,7 +218,8 @@ std::string Photometer::why_undiffracted() const {
   if (design_.balls()) return "balls are traced by rays";
   if (design_.entrance) return "curved fronts are traced by rays";
   if (is_exact_) return "its cells differ too much to diffract the light of each";
-  if (!model_.optics.is_smooth()) return "facets that scatter are traced by rays";
+  if (!model_.optics.is_smooth() && !keeps_phases_)
+    return "textures that say nothing of phases (abg, microfacet, height_map) are traced by rays";
   return request_.engine == Engine::automatic ? "the exact engine would take too many beams"
                                               : "the Monte-Carlo engine has none";
 }
@@ -249,17 +259,27 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
   beams.cutoff = request_.cutoff.value_or(kCutoff) /
                  std::max(1.0, static_cast<double>(model_.part.period_mm ? 1 : model_.part.elements_full));
   beams.by_cell = request_.diffraction;
+  beams.keeps_phases = keeps_phases_;
   if (request_.engine != Engine::exact) beams.max_beams = kMostBeams;
   raytrace::FarFieldCollector collector(model_.part, illumination, policy);
+  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
+  double scattered_from_cone = 0.0;
   const raytrace::BeamResult traced =
-      tracer.trace(light.optics, illumination, design_.detector.acceptance_half_angle_deg, beams, cancel,
-                   [&](const raytrace::ReturnedBeam& beam) { collector.add(beam); });
+      tracer.trace(light.optics, illumination, cones, beams, cancel, [&](const raytrace::ReturnedBeam& beam) {
+        collector.add(beam);
+        if (beam.cone < cones.size()) scattered_from_cone += scattered_power(beam);
+      });
   Piece piece;
   if (!traced.complete) return piece;
   const raytrace::FarField field = collector.finish();
   piece.beyond_budget = field.beyond_budget_power();
   piece.rre = traced.ledgers.back()[raytrace::Account::retroreflected];
   piece.truncated = traced.ledgers.back()[raytrace::Account::truncated];
+  if (keeps_phases_) {
+    // What textures take from the cone's beams, and what falls into the cone of all that they scatter.
+    piece.rre += field.scattered_within(frame, deg(cones.back()).rad()) - scattered_from_cone;
+    piece.truncated += field.unplaced_power();
+  }
   for (const double observation_deg : setting.observation_deg)
     piece.per_sr.push_back(field.intensity_per_sr(frame.direction({0.0, deg(observation_deg).rad()}), kernel_));
   piece.error_per_sr.assign(piece.per_sr.size(), 0.0);

@@ -56,9 +56,9 @@ class Photometer {
   std::string why_undiffracted() const;
   /// Width from which on cells need none.
   double least_undiffracted_mm() const;
-  /// Of a part whose facets scatter: the photometer of its mean field, with diffraction, which is nowhere brighter than
-  /// the part (docs/theory/photometry.md). Nothing for other parts, and where engine or far field were chosen
-  /// otherwise.
+  /// Of a part whose facets scatter and that was measured without diffraction: the photometer of its mean field, with
+  /// diffraction, which is nowhere brighter than the part (docs/theory/photometry.md). Nothing for other parts, and
+  /// where engine or far field were chosen otherwise.
   std::optional<Photometer> mean_field() const;
   /// From now on by Monte Carlo.
   void leave_exact() { is_exact_ = false; }
@@ -80,6 +80,7 @@ class Photometer {
   std::vector<double> weights_;  ///< of the wavelengths: of flux without the dye, which the tracer applies
   raytrace::ApertureKernel kernel_;
   bool is_exact_ = true;
+  bool keeps_phases_ = false;  ///< exact: textures scatter by their phases, diffracted
 };
 
 /// Relative spectral power of a CIE illuminant, per nm. \pre not the design's own light

@@ -259,6 +259,26 @@ double HarveyShack::scattered_share(const ScatterEvent& event, const Facet& face
   return phase_lobe ? phase_lobe->scattered_share() : 0.0;
 }
 
+PhaseTexture HarveyShack::phase_texture(const ScatterEvent& event, Lobe lobe) const {
+  const auto specular = specular_direction(event, Vec3::UnitZ(), lobe);
+  if (!specular) return {};
+  const Band what = band(event, {}, lobe);
+  // By how much a height on the side that the light goes to lengthens its way; the texture's own side is the
+  // material's.
+  const double length_per_height = lobe == Lobe::reflection
+                                       ? 2.0 * event.index_from * event.cos_in()
+                                       : event.index_from * event.cos_in() - event.index_to * -specular->z();
+  const double outwards = event.inside_material ? 1.0 : -1.0;
+  const double rms_rad = outwards * 2.0 * pi * length_per_height * what.sq_nm / event.wavelength_nm;
+  PhaseTexture phases;
+  if (what.roughness_share > 0.0)
+    phases.terms[0] = {rms_rad * std::sqrt(what.roughness_share), 1e-3 * roughness_.correlation_length_um};
+  if (roughness_.waviness_sq_nm > 0.0)
+    phases.terms[1] = {rms_rad * std::sqrt(std::max(0.0, 1.0 - what.roughness_share)),
+                       1e-3 * equivalent_correlation_um(roughness_.waviness_length_um)};
+  return phases;
+}
+
 std::optional<Vec2> HarveyShack::draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                                 RandomStream& random, int least_orders) const {
   const Band what = band(event, facet, lobe);

@@ -95,6 +95,8 @@ class HarveyShack {
   double specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
   /// One less the same, to full precision where that is small.
   double scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
+  /// What the heights do to the phase of a lobe; the exponential of less its variance is the specular share.
+  PhaseTexture phase_texture(const ScatterEvent& event, Lobe lobe) const;
   /// Draws the direction of light, given that it scatters. Nothing if no direction can be found.
   /// \param least_orders how often it has been diffracted at least
   std::optional<Vec2> draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe, RandomStream& random,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -38,6 +39,23 @@ struct ScatterEvent {
 struct Facet {
   Vec3 normal = Vec3::UnitZ();  ///< local frame, z > 0, and against the light
   bool is_tilted = false;       ///< drawn from slopes; else it is the mean surface
+};
+
+/// The phase that a texture's heights put on the light of a lobe: a Gaussian random function of the place on the facet,
+/// with the covariance sum rms_rad^2 exp(-d^2 / length_mm^2) at the distance d. Of two lobes at one place the product
+/// of their rms_rad takes the place of the square.
+struct PhaseTexture {
+  struct Term {
+    double rms_rad = 0.0;    ///< < 0 where heights out of the material shorten the way
+    double length_mm = 1.0;  ///< > 0
+  };
+  std::array<Term, 2> terms;  ///< of roughness and of waviness
+
+  double variance() const {
+    double sum = 0.0;
+    for (const Term& term : terms) sum += term.rms_rad * term.rms_rad;
+    return sum;
+  }
 };
 
 /// One direction drawn from a lobe.

@@ -145,6 +145,14 @@ double mean_field_share(const ScatterModel& model, const ScatterEvent& event, Lo
   return specular_share(model, event, {}, lobe);
 }
 
+bool has_phases(const ScatterModel& model) {
+  return std::holds_alternative<HarveyShack>(model);
+}
+
+PhaseTexture phase_texture(const ScatterModel& model, const ScatterEvent& event, Lobe lobe) {
+  return std::get<HarveyShack>(model).phase_texture(event, lobe);
+}
+
 double evaluate(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
                 const Vec3& direction) {
   if (!is_on_side(direction, lobe)) return 0.0;

@@ -74,6 +74,14 @@ double specular_share(const ScatterModel& model, const ScatterEvent& event, cons
 /// BSDF leaves.
 double mean_field_share(const ScatterModel& model, const ScatterEvent& event, Lobe lobe);
 
+/// Whether a model knows what its heights do to the phase of light, so that fields can be added up: harvey_shack alone.
+/// The measured scatter of abg and the slopes of microfacet say nothing of phases; of height_map only rays are made.
+bool has_phases(const ScatterModel& model);
+
+/// Of a lobe's light at the mean surface, however high the waves are; none of its variance where there is no such lobe.
+/// \pre has_phases()
+PhaseTexture phase_texture(const ScatterModel& model, const ScatterEvent& event, Lobe lobe);
+
 /// BSDF of the scattered light of a lobe given the facet, per sr, without Fresnel's factor and the specular light; its
 /// cosine is that to the facet's normal. By quadrature in some models: for tests and tables.
 double evaluate(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,

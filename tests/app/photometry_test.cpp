@@ -186,7 +186,7 @@ TEST(Photometry, AnExampleOfATenthOfANanometrePasses) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json json = Json::parse(outcome.out);
   EXPECT_EQ(json["verdict"], "pass");
-  for (const Json& point : json["points"]) EXPECT_EQ(point["lower_bound"], true);
+  for (const Json& point : json["points"]) EXPECT_EQ(point["lower_bound"], false);
 }
 
 TEST(Photometry, RefusesBadInputInOneLine) {

@@ -1,0 +1,366 @@
+#include "raytrace/observers/scattered_field.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "raytrace/exact/flat_polygon.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::Vec2, std::numbers::pi;
+using Amplitude = std::complex<double>;
+
+// Distances of the grid reach this many of the longest correlation length: exp(-3.6^2) is left. On a facet distances
+// are longer than on the entrance face but for a tenth or so, where light is oblique.
+constexpr double kReachInLengths = 3.6 * 1.2;
+// Phases by which the grid is made finer, from its middle to its edge. Beyond, lobes are no finer resolved.
+constexpr double kMostPhase = 200.0;
+// Points of a grid: along a panel and over half a turn, at least, and what a phase over them adds.
+constexpr double kLeastAlong = 8.0, kLeastRound = 24.0, kAlongPerRad = 0.5;
+constexpr std::size_t kCoarseAlong = 6, kCoarseRound = 24;
+// Maps of places to places whose images are nearer than this share of the correlation length are one.
+constexpr double kOneMap = 0.3;
+// Planes of facets nearer than this are one: components of normals, and offsets in correlation lengths.
+constexpr double kOnePlane = 1e-8, kOneOffset = 1e-3;
+// A facet seen at a grazing angle has no places of its own.
+constexpr double kNoPlaces = 1e-9;
+// Corners nearer than this share of a polygon's size are one.
+constexpr double kMergedCorners = 1e-9;
+// Ratio of singular values below which a map folds the aperture along a line.
+constexpr double kFolded = 0.1;
+// Width of what is taken out of fringes where partners meet, in those of the covariance: at a fold this leaves the
+// integral of the complementary error function.
+constexpr double kDipWidth = 2.0 / pi;
+// Shares of a polygon below this are none.
+constexpr double kLeastCommonShare = 1e-6;
+
+Amplitude phasor(double phase) {
+  return {std::cos(phase), std::sin(phase)};
+}
+
+FlatPolygon flat_outline(const geometry::Polygon& polygon) {
+  return {polygon.begin(), polygon.end()};
+}
+
+bool contains(const FlatPolygon& polygon, const Vec2& place) {
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    if (left_of(polygon[i], polygon[(i + 1) % polygon.size()]).excess(place) > 0.0) return false;
+  return true;
+}
+
+/// Two hits of one facet, of light that leaves here and of light that leaves there.
+using HitPair = std::pair<const FieldHit*, const FieldHit*>;
+
+/// Sum of the covariances of phases at places that are `distance_mm` apart on the entrance face, there.
+double covariance(const std::vector<HitPair>& pairs, const Vec2& distance_mm) {
+  double sum = 0.0;
+  for (const auto& [a, b] : pairs) {
+    const double square = (b->slope * distance_mm).squaredNorm();
+    for (std::size_t k = 0; k < a->phase.terms.size(); ++k) {
+      const auto& term = b->phase.terms[k];
+      const double product = a->phase.terms[k].rms_rad * term.rms_rad;
+      if (product != 0.0) sum += product * std::exp(-square / (term.length_mm * term.length_mm));
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+/// How far the places of `here` are from their partners: matrix r - shift.
+struct ScatteredField::Moves {
+  Eigen::Matrix2d matrix;
+  Vec2 shift_mm;
+  double stretch = 0.0;            ///< greatest singular value
+  bool is_folded = false;          ///< along a line whose places stay where they are
+  Vec2 from_line = Vec2::UnitX();  ///< across that line
+  Vec2 direction = Vec2::UnitX();  ///< in which places beside it move
+
+  explicit Moves(const Shared& shared);
+
+  Vec2 place_that_moves_by(const Vec2& distance_mm) const { return matrix.inverse() * (distance_mm + shift_mm); }
+
+  /// Of a normal density of distances, at those by which the places of a polygon move: its integral over the polygon.
+  double places_at_line(const FlatPolygon& polygon, const Eigen::Matrix2d& spread_mm2) const {
+    constexpr int kStrips = 16;
+    constexpr double kReach = 4.0;
+    const double narrow = direction.dot(spread_mm2.inverse() * direction);
+    const double step_mm = kReach / std::sqrt(narrow) / kStrips;
+    const double at_line = -direction.dot(shift_mm);
+    double sum = 0.0;
+    for (int k = -kStrips; k < kStrips; ++k) {
+      // Moves from k to k + 1 steps.
+      FlatPolygon strip = polygon;
+      const Vec2 across = stretch * from_line;
+      clip(strip, {across.x(), across.y(), (k + 1) * step_mm - at_line}, 0.0);
+      if (strip.size() >= 3) clip(strip, {-across.x(), -across.y(), at_line - k * step_mm}, 0.0);
+      if (strip.size() < 3) continue;
+      const double move_mm = (k + 0.5) * step_mm;
+      sum += area(strip) * std::exp(-0.5 * move_mm * move_mm * narrow);
+    }
+    return sum / (2.0 * pi * std::sqrt(spread_mm2.determinant()));
+  }
+};
+
+/// What two polygons (or one) share: light that leaves at r of the one and at turn r + shift of the other has met the
+/// same places of the facets of `pairs`.
+struct ScatteredField::Shared {
+  const FieldPolygon* here = nullptr;
+  const FieldPolygon* there = nullptr;
+  Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
+  Vec2 shift_mm = Vec2::Zero();
+  std::vector<HitPair> pairs;
+  double log_means = 0.0;  ///< logarithm of the factors that averaging leaves of both fields
+
+  /// How far the images of the corners are apart, at most.
+  double farthest_from(const Eigen::Matrix2d& other_turn, const Vec2& other_shift_mm) const {
+    double most = 0.0;
+    for (const Vec2& r : here->transform.polygon())
+      most = std::max(most, ((turn - other_turn) * r + shift_mm - other_shift_mm).norm());
+    return most;
+  }
+  bool is_in_place(double tolerance_mm) const {
+    return farthest_from(Eigen::Matrix2d::Identity(), Vec2::Zero()) < tolerance_mm;
+  }
+  /// By what the fields of both go on when averaged over the heights, less the product of their means.
+  double correlation(const Vec2& distance_mm) const {
+    return std::exp(covariance(pairs, distance_mm) + log_means) - std::exp(log_means);
+  }
+  /// The places of `here` whose partners at `distance_mm` lie in `there`.
+  FlatPolygon common_places(const Vec2& distance_mm) const {
+    const double merge_mm = kMergedCorners * here->transform.size_mm();
+    FlatPolygon partners;
+    const Eigen::Matrix2d back = turn.inverse();
+    for (const Vec2& r : there->transform.polygon()) partners.push_back(back * (r - shift_mm - distance_mm));
+    if (turn.determinant() < 0.0) std::reverse(partners.begin(), partners.end());
+    return intersection(flat_outline(here->transform.polygon()), partners, merge_mm);
+  }
+
+  /// All maps of places of one to places of the other by the facets that both have met.
+  static std::vector<Shared> of(const FieldPolygon& here, const FieldPolygon& there, double shortest_mm) {
+    std::vector<Shared> found;
+    const double log_means = -0.5 * (here.phase_variance + there.phase_variance);
+    for (const FieldHit& a : here.hits)
+      for (const FieldHit& b : there.hits) {
+        if ((a.normal - b.normal).norm() > kOnePlane || std::abs(a.offset_mm - b.offset_mm) > kOneOffset * shortest_mm)
+          continue;
+        const Eigen::Matrix2d square = b.slope.transpose() * b.slope;
+        if (square.determinant() < kNoPlaces) continue;
+        Shared one{&here, &there, Eigen::Matrix2d::Identity(), Vec2::Zero(), {{&a, &b}}, log_means};
+        if (&a != &b) {
+          const Eigen::Matrix<double, 2, 3> inverse = square.inverse() * b.slope.transpose();
+          one.turn = inverse * a.slope;
+          one.shift_mm = inverse * (a.constant_mm - b.constant_mm);
+          if (std::abs(one.turn.determinant()) < kNoPlaces) continue;
+        }
+        const auto same = std::find_if(found.begin(), found.end(), [&](const Shared& s) {
+          return s.farthest_from(one.turn, one.shift_mm) < kOneMap * shortest_mm;
+        });
+        if (same == found.end())
+          found.push_back(std::move(one));
+        else
+          same->pairs.push_back(one.pairs.front());
+      }
+    return found;
+  }
+};
+
+ScatteredField::Moves::Moves(const Shared& shared)
+    : matrix(Eigen::Matrix2d::Identity() - shared.turn), shift_mm(shared.shift_mm) {
+  const Eigen::JacobiSVD<Eigen::Matrix2d> singular(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  stretch = singular.singularValues()[0];
+  is_folded = singular.singularValues()[1] < kFolded * stretch;
+  from_line = singular.matrixV().col(0);
+  direction = singular.matrixU().col(0);
+}
+
+ScatteredField::ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coherency, double reach_cosine,
+                               const std::vector<CoherentGroup>& groups)
+    : wave_number_(2.0 * pi / wavelength_mm), coherency_(coherency) {
+  double greatest_variance = 0.0;
+  double extent_mm = 0.0;
+  for (const CoherentGroup& group : groups)
+    for (const FieldPolygon& p : group.polygons) {
+      greatest_variance = std::max(greatest_variance, p.phase_variance);
+      extent_mm = std::max(extent_mm, group.extent_mm);
+      for (const FieldHit& hit : p.hits)
+        for (const auto& term : hit.phase.terms) {
+          if (term.rms_rad == 0.0) continue;
+          shortest_mm_ = longest_mm_ > 0.0 ? std::min(shortest_mm_, term.length_mm) : term.length_mm;
+          longest_mm_ = std::max(longest_mm_, term.length_mm);
+        }
+    }
+  if (longest_mm_ == 0.0) return;
+  const double reach_mm = std::min(kReachInLengths * longest_mm_, extent_mm);
+  const double phase_per_mm = std::min(wave_number_ * reach_cosine, kMostPhase / reach_mm);
+  // The covariance of exponentials of phases is narrower than that of phases where these are large.
+  double width_mm = 0.5 * shortest_mm_ / std::sqrt(std::max(1.0, greatest_variance));
+  for (double from = 0.0; from < reach_mm;) {
+    const double until = std::min(from + width_mm, reach_mm);
+    const auto along = static_cast<std::size_t>(kLeastAlong + kAlongPerRad * phase_per_mm * (until - from));
+    const GaussRule fine = gauss_legendre(along);
+    for (std::size_t k = 0; k < along; ++k) {
+      const double r = std::lerp(from, until, fine.nodes[k]);
+      rings_.push_back({r, (until - from) * fine.weights[k], static_cast<std::size_t>(kLeastRound + phase_per_mm * r)});
+    }
+    const GaussRule coarse = gauss_legendre(kCoarseAlong);
+    for (std::size_t k = 0; k < kCoarseAlong; ++k)
+      coarse_rings_.push_back(
+          {std::lerp(from, until, coarse.nodes[k]), (until - from) * coarse.weights[k], kCoarseRound});
+    from = until;
+    width_mm = from;
+  }
+  for (const Ring& ring : rings_)
+    for (std::size_t k = 0; k < ring.angles; ++k) {
+      const double angle = pi * (static_cast<double>(k) + 0.5) / static_cast<double>(ring.angles);
+      distances_.push_back({ring.radius_mm * Vec2(std::cos(angle), std::sin(angle)), 0.0});
+    }
+}
+
+void ScatteredField::add(const CoherentGroup& group, bool with_fringes) {
+  if (longest_mm_ == 0.0) return;
+  power_ += group.power() - group.specular_power();
+  const double tolerance_mm = kOneMap * shortest_mm_;
+  for (std::size_t i = 0; i < group.polygons.size(); ++i)
+    for (std::size_t j = i; j < group.polygons.size(); ++j)
+      for (const Shared& shared : Shared::of(group.polygons[i], group.polygons[j], shortest_mm_)) {
+        // One of a pair stands for both orders: the other adds its conjugate.
+        const double copies = (i == j ? 1.0 : 2.0) * group.copies;
+        if (shared.is_in_place(tolerance_mm))
+          add_lobe(shared, copies);
+        else if (with_fringes)
+          add_fringes(shared, copies);
+      }
+}
+
+void ScatteredField::add_lobe(const Shared& shared, double copies) {
+  const PolygonTransform& here = shared.here->transform;
+  const PolygonTransform& there = shared.there->transform;
+  const bool is_one = shared.here == shared.there;
+  const double gap_mm =
+      is_one ? 0.0 : (here.centroid_mm() - there.centroid_mm()).norm() - here.size_mm() - there.size_mm();
+  const Amplitude field = copies * (shared.here->amplitude * coherency_ * shared.there->amplitude.adjoint()).trace() *
+                          std::pow(wave_number_ / (2.0 * pi), 2.0);
+  const Vec2 turn = wave_number_ * (shared.there->cosines - shared.here->cosines);
+  const bool is_parallel = turn.norm() * here.size_mm() < 1e-6;
+  std::size_t at = 0;
+  for (const Ring& ring : rings_) {
+    if (ring.radius_mm < gap_mm) {
+      at += ring.angles;
+      continue;
+    }
+    const double step = pi / static_cast<double>(ring.angles) * ring.weight_mm * ring.radius_mm;
+    for (std::size_t k = 0; k < ring.angles; ++k, ++at) {
+      // Both halves of the turn, of which one is the other's conjugate - of a pair with the orders exchanged, so that
+      // both have to be taken.
+      Amplitude sum = 0.0;
+      for (const double sign : {1.0, -1.0}) {
+        const Vec2 distance = sign * distances_[at].mm;
+        const double correlation = shared.correlation(distance);
+        if (std::abs(correlation) < 1e-12) continue;
+        const FlatPolygon common = shared.common_places(distance);
+        if (common.size() < 3) continue;
+        Amplitude places = area(common);
+        if (!is_parallel) places = PolygonTransform({common.begin(), common.end()}).at(turn);
+        const Amplitude one =
+            field * correlation * phasor(-wave_number_ * shared.there->cosines.dot(distance)) * places;
+        if (is_one) {
+          sum = 2.0 * one;
+          break;
+        }
+        sum += sign > 0.0 ? one : std::conj(one);
+      }
+      distances_[at].weight += step * sum;
+    }
+  }
+}
+
+void ScatteredField::add_fringes(const Shared& shared, double copies) {
+  const FlatPolygon common = shared.common_places(Vec2::Zero());
+  const double common_mm2 = common.size() < 3 ? 0.0 : area(common);
+  if (!(common_mm2 > kLeastCommonShare * shared.here->transform.area_mm2())) return;
+  // How far places are from their partners.
+  const Moves moves(shared);
+  double whole_mm2 = 0.0;
+  double strength_mm4 = 0.0;  // with what the edges of both polygons leave
+  double still_mm2 = 0.0;
+  Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
+  for (const Ring& ring : coarse_rings_)
+    for (std::size_t k = 0; k < ring.angles; ++k) {
+      const double angle = 2.0 * pi * (static_cast<double>(k) + 0.5) / static_cast<double>(ring.angles);
+      const Vec2 distance = ring.radius_mm * Vec2(std::cos(angle), std::sin(angle));
+      const double weight =
+          2.0 * pi / static_cast<double>(ring.angles) * ring.weight_mm * ring.radius_mm * shared.correlation(distance);
+      if (weight == 0.0) continue;
+      const FlatPolygon left = shared.common_places(distance);
+      whole_mm2 += weight;
+      strength_mm4 += weight * (left.size() < 3 ? 0.0 : area(left));
+      moments += weight * distance * distance.transpose();
+      if (!moves.is_folded && contains(common, moves.place_that_moves_by(distance))) still_mm2 += weight;
+    }
+  if (!(strength_mm4 > 0.0)) return;
+  const Eigen::Matrix2d spread_mm2 = moments / whole_mm2;
+  // Places and partners cannot be one: what the covariance finds there is taken out, as wide as it reaches, so that
+  // fringes carry no power.
+  const double still = moves.is_folded ? moves.places_at_line(common, spread_mm2)
+                                       : still_mm2 / whole_mm2 / std::abs(moves.matrix.determinant());
+  const Eigen::Matrix2d dip_mm2 = kDipWidth * kDipWidth * spread_mm2;
+  const double dip_mm2_of_places = still * 2.0 * pi * std::sqrt(dip_mm2.determinant());
+  if (!(dip_mm2_of_places < 0.5 * common_mm2)) return;
+  const Amplitude field = copies * (shared.here->amplitude * coherency_ * shared.there->amplitude.adjoint()).trace() *
+                          std::pow(wave_number_ / (2.0 * pi), 2.0);
+  fringes_.push_back({PolygonTransform({common.begin(), common.end()}), shared.turn, shared.shift_mm,
+                      shared.here->cosines, shared.there->cosines,
+                      strength_mm4 / (common_mm2 - dip_mm2_of_places) * field, spread_mm2, dip_mm2, dip_mm2_of_places});
+}
+
+double ScatteredField::lobes_per_cosines(const Vec2& cosines) const {
+  const Vec2 kappa = wave_number_ * cosines;
+  double sum = 0.0;
+  for (const Distance& d : distances_) {
+    const double phase = kappa.dot(d.mm);
+    sum += d.weight.real() * std::cos(phase) - d.weight.imag() * std::sin(phase);
+  }
+  return sum;
+}
+
+double ScatteredField::lobes_per_cosines(const Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
+                                         const ApertureKernel& kernel) const {
+  double sum = 0.0;
+  for (const Distance& d : distances_) {
+    const Vec2 kappa = wave_number_ * d.mm;
+    sum +=
+        (d.weight * phasor(kappa.dot(cosines))).real() * kernel.transform((cosines_per_rad.transpose() * kappa).norm());
+  }
+  return sum;
+}
+
+double ScatteredField::lobes_within(const Vec2& middle, const Eigen::Matrix2d& axes) const {
+  double sum = 0.0;
+  for (const Distance& d : distances_) {
+    const Vec2 kappa = wave_number_ * d.mm;
+    sum += (d.weight * phasor(kappa.dot(middle))).real() * disc_transform((axes.transpose() * kappa).norm());
+  }
+  return pi * std::abs(axes.determinant()) * sum;
+}
+
+double ScatteredField::fringes_per_cosines(const Vec2& cosines) const {
+  double sum = 0.0;
+  for (const Fringes& f : fringes_) {
+    const Vec2 here = wave_number_ * (cosines - f.cosines_here);
+    const Vec2 there = wave_number_ * (cosines - f.cosines_there);
+    const Vec2 between = 0.5 * (here + there);
+    const double lobe = std::exp(-0.5 * there.dot(f.spread_mm2 * there));
+    const double dip = f.dip_mm2_of_places * std::exp(-0.5 * between.dot(f.dip_mm2 * between));
+    const Amplitude places =
+        lobe < 1e-12 ? 0.0 : lobe * phasor(there.dot(f.shift_mm)) * f.transform.at(here - f.turn.transpose() * there);
+    sum += (f.coefficient * (places - dip)).real();
+  }
+  return sum;
+}
+
+}  // namespace retrace::raytrace

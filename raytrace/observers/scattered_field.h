@@ -1,0 +1,85 @@
+#pragma once
+
+// Light that the textures of facets scatter, diffracted together with the specular light: what heights that paths share
+// make of the far field beyond its mean.
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/observers/coherent_group.h"
+
+namespace retrace::raytrace {
+
+/// The mean of |E - <E>|^2 in the far field of cells whose facets have heights of Gaussian statistics, over all such
+/// heights. Every facet is a screen of phases where light meets it; two places of the entrance face are correlated as
+/// far as their light has met the same places of facets (docs/theory/photometry.md).
+///
+/// What paths share at like places of the entrance face makes lobes, as wide as the wavelength over the correlation
+/// length. What they share at unlike places - a path and its reverse meet the same points - makes fringes about the
+/// direction back to the source, as wide as the wavelength over the cell.
+class ScatteredField {
+ public:
+  ScatteredField() = default;
+  /// \param coherency matrix of the incident light
+  /// \param reach_cosine distance from the specular directions, in cosines, up to which lobes are computed
+  /// \param groups all that will be added
+  ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coherency, double reach_cosine,
+                 const std::vector<CoherentGroup>& groups);
+
+  /// \param with_fringes else they are left out, as discs of source and receiver hide those of wide cells
+  void add(const CoherentGroup& group, bool with_fringes);
+
+  /// Power of the lobes, by the cosines of directions.
+  double lobes_per_cosines(const geometry::Vec2& cosines) const;
+  /// The same, as the kernel averages it. \param cosines_per_rad of angles across the direction
+  double lobes_per_cosines(const geometry::Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
+                           const ApertureKernel& kernel) const;
+  /// Power of the lobes within an ellipse of cosines: the image of the unit disc.
+  double lobes_within(const geometry::Vec2& middle, const Eigen::Matrix2d& axes) const;
+  /// Power of the fringes by the cosines of directions: below 0 between them. Over all directions it adds up to
+  /// nothing.
+  double fringes_per_cosines(const geometry::Vec2& cosines) const;
+  /// Of the lobes over all directions.
+  double power() const { return power_; }
+
+ private:
+  /// A distance of two places and what all pairs of places so far apart have in common: lobes are their Fourier sum.
+  struct Distance {
+    geometry::Vec2 mm;
+    std::complex<double> weight;
+  };
+  /// Distances along the radius of the grid, over half a turn.
+  struct Ring {
+    double radius_mm = 0.0;
+    double weight_mm = 0.0;
+    std::size_t angles = 0;
+  };
+  /// Places r and turn r + shift that are correlated.
+  struct Fringes {
+    PolygonTransform transform;  ///< of the places r
+    Eigen::Matrix2d turn;
+    geometry::Vec2 shift_mm;
+    geometry::Vec2 cosines_here, cosines_there;
+    std::complex<double> coefficient;
+    Eigen::Matrix2d spread_mm2;  ///< second moments of the covariance
+    Eigen::Matrix2d dip_mm2;     ///< of what is taken out where places and partners are one
+    double dip_mm2_of_places;    ///< its share of the places
+  };
+  struct Shared;
+  struct Moves;
+
+  void add_lobe(const Shared& shared, double copies);
+  void add_fringes(const Shared& shared, double copies);
+
+  double wave_number_ = 0.0;  ///< rad per mm
+  Eigen::Matrix2cd coherency_ = Eigen::Matrix2cd::Zero();
+  double shortest_mm_ = 0.0, longest_mm_ = 0.0;  ///< correlation lengths; 0: nothing scatters
+  std::vector<Ring> rings_, coarse_rings_;
+  std::vector<Distance> distances_;
+  std::vector<Fringes> fringes_;
+  double power_ = 0.0;
+};
+
+}  // namespace retrace::raytrace
