@@ -49,17 +49,6 @@ TEST(Dispersion, NoRealIndexIsAnError) {
   EXPECT_THROW(refractive_index(Sellmeier{{{1.0, 1.0}}}, 999.0), InputError);
 }
 
-// Rows of the table that refractiveindex.info (public domain, CC0) computed from the same paper.
-TEST(Metal, AluminiumOfRakic1998) {
-  const LorentzDrude model = shipped().find_metal("aluminium").model;
-  for (const auto& [wavelength_nm, n, k] : {std::array{401.43, 0.45683, 4.7236}, std::array{502.30, 0.76990, 5.9264},
-                                            std::array{588.13, 1.1354, 6.8566}, std::array{700.15, 1.6945, 7.9618}}) {
-    const std::complex<double> index = complex_index(model, wavelength_nm);
-    EXPECT_NEAR(index.real(), n, 2e-4 * n) << wavelength_nm;
-    EXPECT_NEAR(index.imag(), k, 2e-4 * k) << wavelength_nm;
-  }
-}
-
 TEST(FresnelMetal, NormalIncidenceAndLimits) {
   const std::complex<double> metal(1.13, 6.85);
   const FresnelCoefficients normal = fresnel_metal(1.49 / metal, 1.0);
