@@ -9,11 +9,11 @@ namespace retrace::app {
 
 std::span<const Command> commands() {
   static const std::vector<Command> all = {
-      rre_command(),    inspect_command(),   photometry_command(), roughness_command(), metrology_command(),
-      sweep_command(),  job_command(),       fabricate_command(),  optimize_command(),  tolerance_command(),
-      verify_command(), forces_command(),    turn_command(),       plane_command(),     image_command(),
-      export_command(), report_command(),    init_command(),       list_command(),      schema_command(),
-      manual_command(), completion_command()};
+      rre_command(),    inspect_command(), photometry_command(), roughness_command(), metrology_command(),
+      sweep_command(),  job_command(),     fabricate_command(),  optimize_command(),  tolerance_command(),
+      verify_command(), forces_command(),  turn_command(),       plane_command(),     image_command(),
+      export_command(), report_command(),  validate_command(),   init_command(),      list_command(),
+      schema_command(), manual_command(),  completion_command()};
   return all;
 }
 
@@ -93,8 +93,8 @@ std::vector<Argument> common_arguments(CommonOptions& common) {
   };
   return {
       {"--json FILE", "write the result as JSON to FILE; - is standard output", &common.json, files(".json")},
-      {"-o,--out DIR", "write the result's files to folder DIR (init, job, export: to file FILE)", &common.out,
-       files("/")},
+      {"-o,--out DIR", "write the result's files to folder DIR (init, job, export, validate: to file FILE)",
+       &common.out, files("/")},
       {"--threads N", "threads to use [all cores the process may use]", &common.threads, whole(1, 4096)},
       {"--seed S", "seed of the random numbers", &common.seed, whole(0, std::numeric_limits<std::uint32_t>::max())},
       {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4", &common.overrides, one_of(keys)},

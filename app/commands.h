@@ -34,6 +34,7 @@ Command schema_command();
 Command sweep_command();
 Command tolerance_command();
 Command turn_command();
+Command validate_command();
 Command verify_command();
 
 }  // namespace retrace::app

@@ -136,15 +136,34 @@ void ResultFiles::write_outputs(std::string_view json, std::string_view text) co
   if (!options_.quiet) print(std::string(text) + remarks);
 }
 
+namespace {
+
+/// Of a text, which goes to standard output if it goes to no file.
+CommonOptions options_of_text(const CommonOptions& common) {
+  CommonOptions options = without_folder(common);
+  options.quiet = common.quiet && !common.out.empty();
+  return options;
+}
+
+}  // namespace
+
+TextFiles::TextFiles(const CommonOptions& common)
+    : has_file_(!common.out.empty()), warns_(!common.quiet), files_(options_of_text(common), {}) {
+  files_.add_named("--out", common.out, [text = text_] { return *text; });
+  files_.prepare();
+}
+
+ExitCode TextFiles::write(std::string_view json, const std::string& text, const std::vector<std::string>& warnings,
+                          const Ending& ending) {
+  *text_ = text;
+  return files_.write(json, has_file_ ? "" : text, warns_ ? warnings : std::vector<std::string>{}, ending);
+}
+
 ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohmann::ordered_json content,
                     const std::string& text) {
-  CommonOptions outputs = without_folder(common);
-  outputs.quiet = common.quiet && !common.out.empty();
-  ResultFiles files(outputs, {});
-  files.add_named("--out", common.out, [&] { return text; });
-  files.prepare();
+  TextFiles files(common);
   content["text"] = text;
-  return files.write(result_text(schema, std::move(content), {}), common.out.empty() ? text : "");
+  return files.write(result_text(schema, std::move(content), {}), text);
 }
 
 void say(std::string_view text) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -88,8 +89,26 @@ void ResultFiles::add_drawing(const std::string& name, Plot plot) {
   add(name + ".png", [once] { return render_png(once()); });
 }
 
-/// Writes a text that is the result itself: to the file of --out, else to standard output, which --quiet does not take
-/// away. \param content of the document of --json, to which the text is added \throw InputError, OutputError
+/// The files of a result that is itself a text, which goes to the file of --out, else to standard output; --quiet does
+/// not take it away.
+class TextFiles {
+ public:
+  /// Checks them, as ResultFiles::prepare(). \throw InputError, OutputError
+  explicit TextFiles(const CommonOptions& common);
+
+  /// As ResultFiles::write().
+  ExitCode write(std::string_view json, const std::string& text, const std::vector<std::string>& warnings = {},
+                 const Ending& ending = {});
+
+ private:
+  bool has_file_;
+  bool warns_;
+  std::shared_ptr<std::string> text_ = std::make_shared<std::string>();
+  ResultFiles files_;
+};
+
+/// Writes a text that is the result itself. \param content of the document of --json, to which the text is added
+/// \throw InputError, OutputError
 ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohmann::ordered_json content,
                     const std::string& text);
 

@@ -96,6 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
         LongRun{"export", {"export", "wide.toml", "e.stl"}, SIGTERM},
         LongRun{"turn", {"turn", example("turning/lenslet_array.toml"), "-o", "t"}},
         LongRun{"fabricate", kFabricate, SIGTERM, 1.0, {kJob}},
+        LongRun{"validate", {"validate", "--threads=1", "-o", "v.md"}},
         LongRun{"verify", {"verify", "job.toml", "f/program.ngc", "--threads=1"}, SIGINT, 1.0, {kJob, kFabricate}},
         LongRun{"roughness", {"roughness", example("facet_quality.toml"), "--threads=1", "--target-error=1e-6"}}),
     [](const auto& run) { return run.param.name; });

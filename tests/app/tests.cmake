@@ -20,6 +20,7 @@ retrace_test(command_tests
     app/rre_test.cpp
     app/schema_command_test.cpp
     app/texture_test.cpp
+    app/validate_test.cpp
     app/verify_parts_test.cpp
     app/verify_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)

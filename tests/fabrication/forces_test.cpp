@@ -34,34 +34,6 @@ CutConditions experiment_2() {
   return cut;
 }
 
-TEST(Forces, SpecificForceIsTheSameAtBothDepths) {
-  const ForceModel model = calibrate(table());
-  for (const double depth : {5.0, 10.0})
-    EXPECT_NEAR(model.chip_fz_n_per_mm.at(depth) / (1e-3 * depth), 319.8, 0.1) << "N/mm2";
-  EXPECT_NEAR(model.chip_fz_n_per_mm.at_zero, 0.0, 1e-12) << "no force of the edge";
-}
-
-TEST(Forces, FrictionOfTheSideWalls) {
-  const ForceModel model = calibrate(table());
-  EXPECT_NEAR(model.friction_n_per_mm.at(5), 3.2, 0.05);
-  EXPECT_NEAR(model.friction_n_per_mm.at(10), 4.2, 0.05);
-}
-
-TEST(Forces, ExperimentOneAsMeasuredWithItsSigns) {
-  const ForceModel model = calibrate(table());
-  const ForceEvents five = force_events(model, experiment_1(5));
-  EXPECT_NEAR(five.full_chip_fz_n, -1.57, 1e-9);
-  EXPECT_NEAR(five.full_chip_fy_n, -0.66, 1e-9);
-  EXPECT_NEAR(five.before_root_fz_n, -3.76, 1e-9);
-  EXPECT_NEAR(five.root_fz_n, -5.34, 1e-9);
-  EXPECT_NEAR(five.root_fx_n, -0.95, 1e-9);
-  EXPECT_NEAR(five.peak_fy_n, -3.33, 1e-9);
-  const ForceEvents ten = force_events(model, experiment_1(10));
-  EXPECT_NEAR(ten.full_chip_fz_n, -3.14, 1e-9);
-  EXPECT_NEAR(ten.root_fz_n, -9.82, 1e-9);
-  EXPECT_NEAR(ten.peak_fy_n, -5.81, 1e-9);
-}
-
 /// Experiment 2 was not used for the calibration: the full chip load comes out, the peaks do not, and are not tuned.
 TEST(Forces, ExperimentTwoIsPredicted) {
   const ForceEvents two = force_events(calibrate(table()), experiment_2());
@@ -71,18 +43,6 @@ TEST(Forces, ExperimentTwoIsPredicted) {
   EXPECT_EQ(two.root_fx_n, 0.0);
   EXPECT_NEAR(two.root_fz_n, -2.62, 0.005) << "measured -4.06";
   EXPECT_NEAR(two.peak_fy_n, -2.77, 0.005) << "measured -1.73";
-}
-
-TEST(Forces, ExperimentThreeHasItsOwnCalibration) {
-  const ForceModel model = calibrate(table());
-  CutConditions cut = experiment_1(5);
-  cut.width_mm = 1.032;
-  cut.strategy = Strategy::bidirectional;
-  EXPECT_NEAR(force_events(model, cut).root_fz_n, -26.29, 1e-9);
-  EXPECT_NEAR(force_events(model, cut).peak_fy_n, -11.43, 1e-9);
-  cut.facet = 2;
-  EXPECT_NEAR(force_events(model, cut).root_fz_n, -15.74, 1e-9);
-  EXPECT_NEAR(force_events(model, cut).peak_fy_n, -6.21, 1e-9);
 }
 
 /// The events of Figure 4.8 at their times: contact 1.00, full chip 1.07, before the root 5.18, root 5.23, ploughing

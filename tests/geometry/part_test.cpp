@@ -72,33 +72,6 @@ TEST(Part, CubeCornerArraysAreClosed) {
   }
 }
 
-// Counts printed in Hamilton et al. 2017, Table 1 (first row shifted) and Milliken 2017, section 2.7 (second row
-// shifted).
-TEST(Part, CountsOfThePapers) {
-  const auto full = [](double substrate, RowParity parity, double length = 10.0) {
-    PartSpec spec = rtp_array(substrate, substrate, length, Arrangement::offset);
-    spec.array.shifted_rows = parity;
-    return build_part(spec).elements_full;
-  };
-  EXPECT_EQ(full(10, RowParity::odd), 1);
-  EXPECT_EQ(full(5, RowParity::odd), 3);
-  EXPECT_EQ(full(2, RowParity::odd), 22);
-  EXPECT_EQ(full(1, RowParity::odd), 95);
-  EXPECT_EQ(full(0.5, RowParity::odd), 390);
-  EXPECT_EQ(full(0.451, RowParity::even, 25 * 0.451), 613);
-  EXPECT_EQ(full(0.451, RowParity::even, 3 * 0.451), 8);
-  EXPECT_EQ(full(0.451, RowParity::even, 5 * 0.451), 23);
-  EXPECT_EQ(full(0.451, RowParity::even, 7 * 0.451), 46);
-}
-
-TEST(Part, TotalReflectiveFacetAreaOfTable1) {
-  for (const double substrate : {10.0, 5.0, 2.0, 1.0, 0.5}) {
-    PartSpec spec = rtp_array(substrate, substrate, 10.0, Arrangement::offset);
-    spec.array.shifted_rows = RowParity::odd;
-    EXPECT_NEAR(build_part(spec).retro_facet_area_mm2, 141.42, 5e-3);
-  }
-}
-
 TEST(Part, FacetsAreAtTheRightAngles) {
   for (const Element element : {Element(HexagonalCube{1.3}), Element(TriangularCube{1.3})}) {
     PartSpec spec;

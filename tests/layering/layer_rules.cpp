@@ -54,7 +54,8 @@ const std::map<std::string, Names>& study_rooms() {
       {"quantity", {"design", "rre", "inspect", "photometry", "fabrication", "closed_loop"}},
       {"sweep", {"design", "store", "quantity"}},
       {"optimise", {"design", "store", "quantity", "sweep"}},
-      {"tolerance", {"design", "store", "quantity", "sweep"}}};
+      {"tolerance", {"design", "store", "quantity", "sweep"}},
+      {"validation", {"roughness", "quantity"}}};
   return rooms;
 }
 
@@ -87,7 +88,7 @@ Side side_of(const std::string& path) {
 /// Rooms of studies/ that see fabrication/, themselves or through what they include. A design knows of no tool.
 const Names& rooms_that_see_fabrication() {
   static const Names rooms = {"closed_loop", "fabrication", "forces",    "optimise", "planing",
-                              "quantity",    "sweep",       "tolerance", "turning"};
+                              "quantity",    "sweep",       "tolerance", "turning",  "validation"};
   return rooms;
 }
 

@@ -184,17 +184,6 @@ TEST(Dispersion, NoRealIndexIsAnError) {
 }
 
 // Rows of the table that refractiveindex.info (public domain, CC0) computed from the same paper.
-TEST(Metal, AluminiumOfRakic1998) {
-  const LorentzDrude model = shipped().find_metal("aluminium").model;
-  for (const auto& [wavelength_nm, n, k] : {std::array{401.43, 0.45683, 4.7236}, std::array{502.30, 0.76990, 5.9264},
-                                            std::array{588.13, 1.1354, 6.8566}, std::array{700.15, 1.6945, 7.9618}}) {
-    const std::complex<double> index = complex_index(model, wavelength_nm);
-    EXPECT_NEAR(index.real(), n, 2e-4 * n) << wavelength_nm;
-    EXPECT_NEAR(index.imag(), k, 2e-4 * k) << wavelength_nm;
-  }
-}
-
-// Likewise.
 TEST(Metal, SilverOfRakic1998) {
   const LorentzDrude model = shipped().find_metal("silver").model;
   for (const auto& [wavelength_nm, n, k] : {std::array{397.46, 0.16007, 1.7990}, std::array{503.21, 0.13208, 2.7927},

@@ -17,3 +17,6 @@ retrace_test(studies_tests
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/balls_test.cpp
   LIBRARIES retrace::inspect retrace::photometry retrace::rre nlohmann_json::nlohmann_json)
+retrace_test(studies_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/validation_test.cpp
+  LIBRARIES retrace::validation nlohmann_json::nlohmann_json)

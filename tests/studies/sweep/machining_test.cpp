@@ -3,41 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <stdexcept>
-#include <string>
 
 namespace retrace::studies::machining_test {
 namespace {
-
-/// A value of the table of measured machining times.
-double measured(const std::string& quantity) {
-  std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/tests/data/machining_time.csv");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with(quantity + ",")) return std::stod(line.substr(quantity.size() + 1));
-  throw std::runtime_error("no " + quantity);
-}
-
-constexpr geometry::RtpElement kMeasured{0.451, 0.451, 90.0};
-
-TEST(Machining, CutsOfAFacetAsPublished) {
-  MachiningProcess process;
-  EXPECT_EQ(roughing_cuts(kMeasured, process), 21.0);  // 2 x 5 um left for finishing
-  process.finishing_cuts = 0;
-  EXPECT_EQ(roughing_cuts(kMeasured, process), 22.0);
-  process.roughing_depth_um = 10.0;
-  EXPECT_EQ(roughing_cuts({1.0, 1.0, 90.0}, process), 71.0);
-  process.roughing_depth_um = 5.0;
-  EXPECT_EQ(roughing_cuts({1.0, 1.0, 90.0}, process), 142.0);
-}
-
-TEST(Machining, TimeOfAnElementIsThatOfItsPath) {
-  // Summed cut by cut, with the approach of 283 um along Z: 27.7 s.
-  EXPECT_NEAR(seconds_per_element(kMeasured, {}), 27.7, 0.15);
-  // The clock saw 29.16 s: accelerations and turns of the table are no part of the path.
-  EXPECT_NEAR(seconds_per_element(kMeasured, {}), 3600.0 * measured("time_per_structure"), 0.06 * 29.16);
-  EXPECT_NEAR(0.451 * 0.451 / measured("time_per_structure"), measured("removal_area_rate"), 0.05);
-}
 
 TEST(Machining, SumOfCutsOneByOne) {
   const geometry::RtpElement element{0.3, 0.3, 90.0};

@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "tests/app/program.h"
+
+// retrace validate: every figure is met, the page of the documentation is the one that it writes, and the document has
+// the shape that docs/commands.md says.
+
+namespace retrace::test::validate_test {
+namespace {
+
+TEST(Validate, MeetsEveryFigureAndWritesThePageOfTheDocumentation) {
+  const TemporaryFolder folder;
+  const Outcome outcome = retrace(folder, {"validate", "-o", "validation.md", "--json", "validation.json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.out, "wrote validation.md\n");
+  EXPECT_EQ(folder.names(), (Arguments{"validation.json", "validation.md"}));
+  EXPECT_EQ(folder.read("validation.md"), read_text(std::string(RETRACE_SOURCE_DIR) + "/docs/validation.md"))
+      << "retrace validate -o docs/validation.md";
+
+  const Json json = folder.json("validation.json");
+  EXPECT_EQ(json["schema"], "retrace.validation/1");
+  EXPECT_EQ(json["verdict"], "pass");
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["warnings"], Json::array());
+  EXPECT_EQ(json["figures"], json["rows"].size());
+  EXPECT_GE(json["elapsed_s"].get<double>(), 0.0);
+  std::set<std::string> references;
+  std::set<std::string> names;
+  for (const Json& row : json["rows"]) {
+    const std::string name = row["topic"].get<std::string>() + ": " + row["quantity"].get<std::string>() +
+                             row["reference"].get<std::string>();
+    EXPECT_TRUE(names.insert(name).second) << name << " stands twice";
+    references.insert(row["reference"]);
+    for (const char* key : {"unit", "source", "why"}) EXPECT_TRUE(row[key].is_string()) << name << key;
+    EXPECT_NE(row["source"], "") << name;
+    EXPECT_NE(row["why"], "") << name;
+    const double difference = row["computed"].get<double>() - row["expected"].get<double>();
+    EXPECT_EQ(row["difference"], difference) << name;
+    EXPECT_EQ(row.contains("allowed"), row.contains("holds")) << name;
+    if (!row.contains("allowed")) {
+      EXPECT_EQ(row["reference"], "published") << name << ": only of publications a figure may be missed";
+      continue;
+    }
+    EXPECT_EQ(row["holds"], true) << name;
+    EXPECT_LE(std::abs(difference), row["allowed"].get<double>()) << name;
+  }
+  EXPECT_EQ(references, (std::set<std::string>{"closed_form", "independent", "published"}));
+}
+
+TEST(Validate, RefusesWhatItDoesNotTake) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const Arguments& arguments) {
+    const Outcome outcome = retrace(folder, arguments);
+    EXPECT_EQ(outcome.code, outcome.err.find("cannot be written") == std::string::npos ? 2 : 3) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(lines_of(outcome.err).size(), 1U);
+    return outcome.err;
+  };
+  EXPECT_NE(refused({"validate", "--set", "element.base_mm=1"}).find("validate has designs of its own"),
+            std::string::npos);
+  refused({"validate", "all"});
+  refused({"validate", "--threads", "0"});
+  refused({"validate", "--json", "nowhere/v.json"});
+  EXPECT_NE(refused({"validate", "-o", "v.md", "--json", "v.md"}).find("--json: v.md"), std::string::npos);
+  EXPECT_TRUE(folder.names().empty());
+}
+
+}  // namespace
+}  // namespace retrace::test::validate_test
