@@ -219,7 +219,7 @@ std::string Photometer::why_undiffracted() const {
   if (design_.entrance) return "curved fronts are traced by rays";
   if (is_exact_) return "its cells differ too much to diffract the light of each";
   if (!model_.optics.is_smooth() && !keeps_phases_)
-    return "textures that say nothing of phases (abg, microfacet, height_map) are traced by rays";
+    return "textures that say nothing of phases (abg, microfacet, height_map, roughness with a lay) are traced by rays";
   return request_.engine == Engine::automatic ? "the exact engine would take too many beams"
                                               : "the Monte-Carlo engine has none";
 }

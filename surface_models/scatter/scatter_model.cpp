@@ -146,7 +146,8 @@ double mean_field_share(const ScatterModel& model, const ScatterEvent& event, Lo
 }
 
 bool has_phases(const ScatterModel& model) {
-  return std::holds_alternative<HarveyShack>(model);
+  const auto* const heights = std::get_if<HarveyShack>(&model);
+  return heights != nullptr && heights->roughness().is_isotropic();
 }
 
 PhaseTexture phase_texture(const ScatterModel& model, const ScatterEvent& event, Lobe lobe) {

@@ -184,7 +184,7 @@ std::array<double, 4> after(const Jones& jones, const Stokes& light) {
           2.0 * out(0, 1).imag()};
 }
 
-// Liu and Azzam, Appl. Opt. 36, 4553 (1997); Murphy and Goodrow, Opt. Eng. 52, 095102 (2013). Six sub-beams, one for
+// Liu and Azzam, Appl. Opt. 36, 1553 (1997); Murphy and Goodrow, Appl. Opt. 52, 117 (2013). Six sub-beams, one for
 // each order of the facets.
 void expect_six_sub_beams(const Optics& optics, double retardance) {
   const Part part = build_part(single(HexagonalCube{kCubeAperture}, 0.4));
