@@ -147,10 +147,10 @@ TEST(PhotometryVerdict, MeanFieldIsTheSmoothPatternTimesTheSpecularShares) {
 TEST(PhotometryVerdict, TexturesWithoutPhasesThatTheBoundDoesNotLiftAreUndeterminedAndNothingIsAdvised) {
   const PhotometryResult result = run(scattering_by_abg(design_of(honeycomb(0.75, 0.5))), diffracted_request(1e3));
   EXPECT_EQ(result.verdict, Verdict::undetermined);
-  EXPECT_EQ(
-      result.reason,
-      "diffraction is left out, as textures that say nothing of phases (abg, microfacet, height_map) are traced by "
-      "rays, and counts for cells narrower than 12.9 mm");
+  EXPECT_EQ(result.reason,
+            "diffraction is left out, as textures that say nothing of phases (abg, microfacet, height_map, roughness "
+            "with a lay) are traced by "
+            "rays, and counts for cells narrower than 12.9 mm");
   EXPECT_TRUE(result.changes.empty());
   EXPECT_NE(photometry_table(result).find("verdict: undetermined - diffraction is left out"), std::string::npos);
   const std::string json = photometry_json(result);
