@@ -143,7 +143,7 @@ DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const
   const double a_r = reflected_path * reflected_path, a_t = transmitted_path * transmitted_path;
   DiffractionMeans means;
   for (std::size_t pol : {0U, 1U}) {
-    const double t = pol == 0 ? fresnel.t_s * fresnel.t_s : fresnel.t_p * fresnel.t_p;
+    const double t = std::norm(pol == 0 ? fresnel.t_s : fresnel.t_p);
     const double phases = (1.0 - t) * a_r + t * a_t;
     if (!(phases > 0.0)) continue;
     means.reflected[pol] = scattered[pol] * a_r / phases;
