@@ -272,7 +272,7 @@ TEST(FirstOrder, DrawsFollowTheDensity) {
     const double k = kIndex * std::sin(incidence_deg * kRadians);
     const materials::FresnelCoefficients f = materials::fresnel(kIndex, event.cos_in());
     const DiffractionMeans means = model.diffraction_means(event, {}, f);
-    const double t_s = f.t_s * f.t_s, t_p = f.t_p * f.t_p;
+    const double t_s = std::norm(f.t_s), t_p = std::norm(f.t_p);
     const double total = askew()(0, 0).real() * ((1.0 - t_s) * means.reflected[0] + t_s * means.transmitted[0]) +
                          askew()(1, 1).real() * ((1.0 - t_p) * means.reflected[1] + t_p * means.transmitted[1]);
     for (const Lobe lobe : {Lobe::reflection, Lobe::transmission}) {
