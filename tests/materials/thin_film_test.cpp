@@ -229,8 +229,9 @@ TEST(ThinFilm, SumOfAiry) {
         }
         const FresnelCoefficients f = fresnel_layers({{layer}}, StackSide::body, kGlass, 1.0, ci);
         EXPECT_NEAR(std::abs((is_p ? f.r_p : f.r_s) - r), 0.0, 1e-11) << index << ci << is_p;
-        if (!f.total_reflection)
+        if (!f.total_reflection) {
           EXPECT_NEAR(std::norm(is_p ? f.t_p : f.t_s), passed({r, t}, kGlass, 1.0, ci, is_p), 1e-11) << index << ci;
+        }
       }
 }
 
