@@ -120,7 +120,7 @@ TEST_P(Completion, KnowsWhatMayStandForAValue) {
   EXPECT_TRUE(offers("retrace photometry a.toml --colour ", "amber"));
   EXPECT_TRUE(offers("retrace verify a.toml c.txt --dialect ", "auto"));
   EXPECT_EQ(completed("retrace metrology c.txt --form pl"), Arguments{"plane"});
-  EXPECT_EQ(completed("retrace rre --set body.t"), Arguments{"body.thickness_mm="});
+  EXPECT_EQ(completed("retrace rre --set body.th"), Arguments{"body.thickness_mm="});
   EXPECT_TRUE(offers("retrace rre --set ", "surface.root_radius_um="));
   EXPECT_EQ(completed("retrace list "), (Arguments{"machines", "materials", "processes", "standards"}));
   EXPECT_EQ(completed("retrace --json list schema "),

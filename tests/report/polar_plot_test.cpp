@@ -60,7 +60,7 @@ TEST(PhotometryPlot, MarksTheTestPointsOfEachDirection) {
   result.curves = {{20.0, {0.0, 1.0}, {1000.0, 0.0}}};
   for (const double v : {0.0, 10.0, 10.0}) {
     studies::PhotometricPoint point;
-    point.asked.v_deg = v;
+    point.asked.v_deg = point.v_deg = v;
     point.asked.observation_deg = 0.33;
     point.r_i_mcd_per_lx = 12.3;
     point.limit_mcd_per_lx = 20.0;
