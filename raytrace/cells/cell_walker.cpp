@@ -8,9 +8,7 @@ namespace {
 
 using geometry::FacetRole;
 
-// Numbers of what lanes::advance_inside() and lanes::advance_outside() find.
-constexpr double kFacet = 0.0;
-constexpr double kTopOrNothing = 1.0;
+// Numbers of what lanes::advance_inside() and lanes::advance_outside() find, beside those of the class.
 constexpr std::size_t kFirstBorder = 2;
 constexpr double kHandedOver = -1.0;
 // By how much places may miss their column by rounding, relative to the period.
@@ -18,16 +16,6 @@ constexpr double kSlack = 1e-12;
 
 Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k) {
   return {rays[first][k], rays[first + 1][k], rays[first + 2][k]};
-}
-
-void set(const lanes::Rays& rays, std::size_t k, const Ray& ray) {
-  const auto put = [&](std::size_t first, const auto& values) {
-    for (std::size_t n = 0; n < values.size(); ++n) rays[first + n][k] = values[n];
-  };
-  const auto three = [](const Vec3& v) { return std::array{v.x(), v.y(), v.z()}; };
-  put(lanes::kDx, three(ray.direction));
-  put(lanes::kI, ray.light.stokes.values());
-  put(lanes::kAx, three(ray.light.s_axis));
 }
 
 Vec3 lifted(const Vec2& normal) {
@@ -184,6 +172,16 @@ void CellWalker::come_in(std::uint32_t number, std::size_t more, const Vec2& shi
     }
   }
   grow(number, more);
+}
+
+void CellWalker::set(const lanes::Rays& rays, std::size_t k, const Ray& ray) {
+  const auto put = [&](std::size_t first, const auto& values) {
+    for (std::size_t n = 0; n < values.size(); ++n) rays[first + n][k] = values[n];
+  };
+  const auto three = [](const Vec3& v) { return std::array{v.x(), v.y(), v.z()}; };
+  put(lanes::kDx, three(ray.direction));
+  put(lanes::kI, ray.light.stokes.values());
+  put(lanes::kAx, three(ray.light.s_axis));
 }
 
 Ray CellWalker::ray_of(const lanes::Rays& rays, std::size_t k, bool inside, bool scattered) const {
@@ -371,69 +369,6 @@ void CellWalker::meet_faces(double number, bool inside, std::uint32_t reflected_
     grow(transmitted_to, more.transmitted);
 }
 
-/// One by one: what a texture does takes longer than all else.
-void CellWalker::meet_texture(const Stream& stream) {
-  const bool was_inside = stream.place == Place::inside;
-  const lanes::Rays rays = moved_.rays();
-  const auto send = [&](std::size_t k, const Ray& ray) {
-    const Place place = ray.inside ? Place::inside : Place::below_after_leaving;
-    const std::uint32_t to = stream_of(stream.column, place, ray.scattered);
-    const lanes::Rays end = end_of(to, 1);
-    for (std::size_t n = 0; n < rays.numbers; ++n) end[n][0] = rays[n][k];
-    set(end, 0, ray);
-    grow(to, 1);
-  };
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    if (met_[k] != kFacet) continue;
-    ++tally_->segments;
-    const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
-    surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
-    const TexturedReturn back = meet_textured_facet(
-        setup_.optics, normal, ray_of(rays, k, was_inside, stream.scattered), policy_.split_power, random);
-    tally_->other[Account::truncated] += back.truncated;
-    tally_->other[Account::absorbed] += back.absorbed;
-    for (std::size_t n = 0; n < back.count; ++n) send(k, back.rays[n]);
-  }
-}
-
-/// One by one: layers are rare, and their amplitudes complex.
-void CellWalker::meet_layers(const Stream& stream, std::uint32_t reflected_to, std::uint32_t transmitted_to) {
-  const Optics& optics = setup_.optics;
-  const bool inside = stream.place == Place::inside;
-  const lanes::Rays rays = moved_.rays();
-  const lanes::Rays reflected_rays = end_of(reflected_to, moved_.size());
-  const lanes::Rays transmitted_rays = end_of(transmitted_to, moved_.size());
-  lanes::Branches more;
-  const auto append = [&](const lanes::Rays& to, std::size_t& at, std::size_t k, const Ray& ray) {
-    for (std::size_t n = 0; n < rays.numbers; ++n) to[n][at] = rays[n][k];
-    set(to, at++, ray);
-  };
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    if (met_[k] != kFacet) continue;
-    ++more.count;
-    const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
-    const Vec3 against = inside ? Vec3(-normal) : normal;
-    Ray ray = ray_of(rays, k, inside, stream.scattered);
-    const double cos_incidence = -against.dot(ray.direction);
-    const materials::FresnelCoefficients f = fresnel_at_back(optics, FacetRole::retro_facet, inside, cos_incidence);
-    ray.light.turn_to(ray.direction, against);
-    Light reflected = ray.light.reflected(f);
-    Light transmitted = ray.light.transmitted(f);
-    tally_->other[Account::absorbed] += absorbed_by(optics.facet_layers, ray.light, reflected, transmitted);
-    const Branch branch = choose_branch(reflected, transmitted, policy_.split_power, [&] { return random(); });
-    if (branch != Branch::transmitted) {
-      const Ray back{mirrored(ray.direction, against), reflected, inside, stream.scattered};
-      append(reflected_rays, more.reflected, k, back);
-    }
-    if (branch == Branch::reflected) continue;
-    const Vec3 on = refracted(ray.direction, against, optics.ratio_at_back(inside), cos_incidence, f.cos_refracted);
-    append(transmitted_rays, more.transmitted, k, {on, transmitted, !inside, stream.scattered});
-  }
-  tally_->segments += more.count;
-  grow(reflected_to, more.reflected);
-  grow(transmitted_to, more.transmitted);
-}
-
 /// From the top of the surface up to the entrance, out, and back down.
 void CellWalker::meet_entrance(bool scattered) {
   const Optics& optics = setup_.optics;
@@ -459,46 +394,6 @@ void CellWalker::meet_entrance(bool scattered) {
   tally_->segments += arrivals.count;
   tally_->other[Account::absorbed] += arrivals.absorbed;
   chosen_.resize(arrivals.reflected);
-  if (!chosen_.empty()) fall(scattered);
-}
-
-/// The same one by one, of an entrance with layers.
-void CellWalker::meet_layers_of_entrance(bool scattered) {
-  const Optics& optics = setup_.optics;
-  const double height_mm = setup_.thickness_mm - setup_.top_mm;
-  const Vec3 down = -Vec3::UnitZ();
-  const lanes::Rays rays = moved_.rays();
-  const lanes::Rays chosen = chosen_.rays();
-  std::vector<Stokes>& returned = scattered ? tally_->scattered : tally_->returned;
-  std::size_t reflected_count = 0;
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    if (met_[k] != kTopOrNothing) continue;
-    ++tally_->segments;
-    Ray ray = ray_of(rays, k, true, scattered);
-    const double way_mm = height_mm / ray.direction.z();
-    const double before = ray.light.power();
-    ray.light.scale(std::exp(-optics.absorption_per_mm * way_mm));
-    tally_->other[Account::absorbed] += before - ray.light.power();
-    const double cos_incidence = ray.direction.z();
-    const materials::FresnelCoefficients f = fresnel_at_entrance(optics, true, cos_incidence);
-    ray.light.turn_to(ray.direction, down);
-    Light reflected = ray.light.reflected(f);
-    Light transmitted = ray.light.transmitted(f);
-    tally_->other[Account::absorbed] += absorbed_by(optics.entrance_layers, ray.light, reflected, transmitted);
-    const Branch branch = choose_branch(reflected, transmitted, policy_.split_power, [&] { return random(); });
-    if (branch != Branch::reflected) {
-      const Vec3 out = refracted(ray.direction, down, optics.index, cos_incidence, f.cos_refracted);
-      returned[setup_.cone_of(out)] += seen_from_above(transmitted, out);
-      if (setup_.score != nullptr) setup_.score->add(out, transmitted.power(), tally_->score);
-    }
-    if (branch == Branch::transmitted) continue;
-    for (std::size_t n = 0; n < rays.numbers; ++n) chosen[n][reflected_count] = rays[n][k];
-    chosen[lanes::kX][reflected_count] += way_mm * ray.direction.x();
-    chosen[lanes::kY][reflected_count] += way_mm * ray.direction.y();
-    chosen[lanes::kZ][reflected_count] = setup_.thickness_mm;
-    set(chosen, reflected_count++, {mirrored(ray.direction, down), reflected, true, scattered});
-  }
-  chosen_.resize(reflected_count);
   if (!chosen_.empty()) fall(scattered);
 }
 

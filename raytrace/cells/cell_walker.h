@@ -44,6 +44,10 @@ class CellWalker {
   std::uint32_t choices() const { return choices_; }
 
  private:
+  /// Numbers of what lanes::advance_inside() and lanes::advance_outside() find.
+  static constexpr double kFacet = 0.0;
+  static constexpr double kTopOrNothing = 1.0;
+
   /// Where rays are. Over its own column a surface is convex: light that leaves it there does not come back before
   /// another column.
   enum class Place : std::uint8_t { inside, below, below_after_leaving };
@@ -104,6 +108,8 @@ class CellWalker {
   void come_in(std::uint32_t stream, std::size_t more, const Vec2& shift);
   void hand_over(const lanes::Rays& rays, std::size_t count, const std::vector<double>& which, double number,
                  bool inside, bool scattered);
+  /// Direction and light of the ray k.
+  static void set(const lanes::Rays& rays, std::size_t k, const Ray& ray);
   Ray ray_of(const lanes::Rays& rays, std::size_t k, bool inside, bool scattered) const;
   void waits(std::uint32_t stream);
   std::optional<std::uint32_t> fullest();

@@ -17,6 +17,7 @@
 #include "geometry/elements/element_cells.h"
 #include "geometry/io/substrate_rows.h"
 #include "geometry/part/substrate_part.h"
+#include "studies/design/io/optics_checks.h"
 #include "studies/design/io/part_reader.h"
 
 namespace retrace::studies {
@@ -296,130 +297,6 @@ void check_bowl(const Document& document) {
     document.fail("element.mirror_half_angle_deg",
                   fmt::format("must be <= {} where the bowls of neighbours meet, got {}", fixed(most_deg, 6),
                               shortest(*given_deg)));
-}
-
-constexpr std::string_view kRoughness = "surface.roughness_sq_nm";
-constexpr std::string_view kRoughnessLength = "surface.correlation_length_um";
-constexpr std::string_view kWaviness = "surface.waviness_sq_nm";
-constexpr std::string_view kWavinessLength = "surface.waviness_length_um";
-
-/// A height without the length that belongs to it says nothing.
-void check_lengths(const Document& document) {
-  for (const auto& [height, length] : {std::pair(kRoughness, kRoughnessLength), {kWaviness, kWavinessLength}})
-    if (document.number(height) > 0.0 && !(document.number(length) > 0.0))
-      document.fail(length, fmt::format("must be > 0 where {} is given, got {}", height.substr(height.find('.') + 1),
-                                        document.number(length)));
-}
-
-void refuse_heights(const Document& document, std::initializer_list<std::string_view> keys, std::string_view why) {
-  for (const std::string_view key : keys)
-    if (document.number(key) != 0.0) document.fail(key, fmt::format("{}, got {}", why, shortest(document.number(key))));
-}
-
-void check_heights(const Document& document) {
-  const std::string model = document.text_if("surface.model");
-  if (model == "height_map")
-    refuse_heights(document, {kRoughness, kWaviness}, "must be 0 for model = \"height_map\", whose map holds both");
-  if (model == "smooth" || model == "abg")
-    refuse_heights(document, {kRoughness, kWaviness},
-                   "must be 0 for this model; leave the model out or use \"harvey_shack\"");
-  if (model == "microfacet")
-    refuse_heights(document, {kRoughness}, "must be 0 for model = \"microfacet\", which has waviness only");
-}
-
-constexpr std::string_view kAbsorption = "body.absorption_per_mm";
-
-void check_material(const Document& document) {
-  if (document.text("body.material").empty())
-    document.fail("body.material", "must name a material, such as \"PMMA\", got \"\"");
-}
-
-void check_absorption(const Document& document) {
-  if (!document.is_list(kAbsorption)) return;
-  const std::vector<std::vector<double>> curve = document.rows(kAbsorption);
-  for (std::size_t k = 1; k < curve.size(); ++k)
-    if (!(curve[k][0] > curve[k - 1][0]))
-      document.fail(kAbsorption, fmt::format("wavelengths must ascend, got {} after {}", shortest(curve[k][0]),
-                                             shortest(curve[k - 1][0])));
-  if (curve.size() < 2)
-    document.fail(kAbsorption, "must be a number or a list of two or more pairs, got a list of one");
-}
-
-void check_lines(const Document& document) {
-  constexpr std::string_view key = "light.spectrum";
-  if (!document.is_list(key)) return;
-  std::vector<double> wavelengths_nm;
-  for (const std::vector<double>& line : document.rows(key)) wavelengths_nm.push_back(line[0]);
-  std::ranges::sort(wavelengths_nm);
-  const auto twice = std::ranges::adjacent_find(wavelengths_nm);
-  if (twice != wavelengths_nm.end())
-    document.fail(key, fmt::format("must name each wavelength once, got {} twice", shortest(*twice)));
-}
-
-void check_stokes(const Document& document) {
-  constexpr std::string_view key = "light.polarisation";
-  if (!document.is_list(key)) return;
-  const std::vector<double> given = document.numbers(key);
-  constexpr double rounding = 1e-12;
-  double degree2 = 0.0;
-  for (std::size_t k = 1; k < given.size(); ++k) degree2 += given[k] / given[0] * (given[k] / given[0]);
-  if (!(given[0] > 0.0 && degree2 <= 1.0 + rounding))
-    document.fail(key, fmt::format("must be [i, q, u, v] with i > 0 and q^2 + u^2 + v^2 <= i^2, got [{}, {}, {}, {}]",
-                                   shortest(given[0]), shortest(given[1]), shortest(given[2]), shortest(given[3])));
-}
-
-constexpr std::string_view kFacetLayers = "coating.facets";
-constexpr std::string_view kEntranceLayers = "coating.entrance";
-constexpr std::size_t kMostLayers = 200;
-
-/// A bowl behind balls is nothing but its mirror.
-void check_ball_mirror(const Document& document) {
-  constexpr std::string_view key = "element.mirror_offset_mm";
-  if (!document.has(key) || document.number(key) == 0.0 || document.count(kFacetLayers) > 0) return;
-  if (document.text("body.facet_coating") == "aluminium" || document.text("idealisation.facets") == "mirror") return;
-  document.fail(key, "needs a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = \"mirror\"");
-}
-
-std::size_t count_opaque(const Document& document, std::string_view list) {
-  std::size_t opaque = 0;
-  for (std::size_t i = 0; i < document.count(list); ++i)
-    if (!document.has(schema::path_of_entry(list, i) + ".thickness_nm")) ++opaque;
-  return opaque;
-}
-
-void check_layers(const Document& document) {
-  for (const std::string_view list : {kFacetLayers, kEntranceLayers}) {
-    const std::size_t count = document.count(list);
-    if (count > kMostLayers) document.fail(list, fmt::format("must be at most {} layers, got {}", kMostLayers, count));
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::string key = schema::path_of_entry(list, i) + ".thickness_nm";
-      if (document.has(key)) continue;
-      if (list == kEntranceLayers)
-        document.fail(key, "missing: a layer without thickness is opaque, and light must enter");
-      const auto extinction = document.number_if(schema::path_of_entry(list, i) + ".extinction_coefficient");
-      if (extinction && !(*extinction > 0.0))
-        document.fail(key,
-                      "missing: only a metal, or a layer with an extinction_coefficient > 0, is opaque without it");
-    }
-  }
-  if (const std::size_t opaque = count_opaque(document, kFacetLayers); opaque > 1)
-    document.fail(kFacetLayers,
-                  fmt::format("must have at most one layer without thickness_nm, which is opaque, got {}", opaque));
-}
-
-/// One thing is said once, and nothing is said that would not count.
-void check_coating(const Document& document) {
-  if (document.count(kFacetLayers) > 0) {
-    if (document.text("body.facet_coating") != "none")
-      document.fail(kFacetLayers, "not allowed together with body.facet_coating: give the aluminium as a layer");
-    if (document.text("idealisation.facets") == "mirror")
-      document.fail(kFacetLayers, "not allowed together with idealisation.facets = \"mirror\"");
-    if (document.text_if("element.kind") == "ball" && count_opaque(document, kFacetLayers) == 0)
-      document.fail(kFacetLayers,
-                    "must have a layer without thickness_nm for kind = \"ball\": only mirrors lie behind balls");
-  }
-  if (document.count(kEntranceLayers) > 0 && document.text("idealisation.entrance") == "lossless")
-    document.fail(kEntranceLayers, "not allowed together with idealisation.entrance = \"lossless\"");
 }
 
 void check_entrance(const Document& document) {

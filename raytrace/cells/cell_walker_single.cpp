@@ -1,0 +1,115 @@
+// What rays of a cell meet one by one, as it takes longer than lanes could save: the members of CellWalker for textures
+// and for layers.
+#include <cmath>
+#include <vector>
+
+#include "raytrace/cells/cell_walker.h"
+
+namespace retrace::raytrace {
+
+using geometry::FacetRole;
+
+/// One by one: what a texture does takes longer than all else.
+void CellWalker::meet_texture(const Stream& stream) {
+  const bool was_inside = stream.place == Place::inside;
+  const lanes::Rays rays = moved_.rays();
+  const auto send = [&](std::size_t k, const Ray& ray) {
+    const Place place = ray.inside ? Place::inside : Place::below_after_leaving;
+    const std::uint32_t to = stream_of(stream.column, place, ray.scattered);
+    const lanes::Rays end = end_of(to, 1);
+    for (std::size_t n = 0; n < rays.numbers; ++n) end[n][0] = rays[n][k];
+    set(end, 0, ray);
+    grow(to, 1);
+  };
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    if (met_[k] != kFacet) continue;
+    ++tally_->segments;
+    const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
+    surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
+    const TexturedReturn back = meet_textured_facet(
+        setup_.optics, normal, ray_of(rays, k, was_inside, stream.scattered), policy_.split_power, random);
+    tally_->other[Account::truncated] += back.truncated;
+    tally_->other[Account::absorbed] += back.absorbed;
+    for (std::size_t n = 0; n < back.count; ++n) send(k, back.rays[n]);
+  }
+}
+
+/// One by one: layers are rare, and their amplitudes complex.
+void CellWalker::meet_layers(const Stream& stream, std::uint32_t reflected_to, std::uint32_t transmitted_to) {
+  const Optics& optics = setup_.optics;
+  const bool inside = stream.place == Place::inside;
+  const lanes::Rays rays = moved_.rays();
+  const lanes::Rays reflected_rays = end_of(reflected_to, moved_.size());
+  const lanes::Rays transmitted_rays = end_of(transmitted_to, moved_.size());
+  lanes::Branches more;
+  const auto append = [&](const lanes::Rays& to, std::size_t& at, std::size_t k, const Ray& ray) {
+    for (std::size_t n = 0; n < rays.numbers; ++n) to[n][at] = rays[n][k];
+    set(to, at++, ray);
+  };
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    if (met_[k] != kFacet) continue;
+    ++more.count;
+    const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
+    const Vec3 against = inside ? Vec3(-normal) : normal;
+    Ray ray = ray_of(rays, k, inside, stream.scattered);
+    const double cos_incidence = -against.dot(ray.direction);
+    const materials::FresnelCoefficients f = fresnel_at_back(optics, FacetRole::retro_facet, inside, cos_incidence);
+    ray.light.turn_to(ray.direction, against);
+    Light reflected = ray.light.reflected(f);
+    Light transmitted = ray.light.transmitted(f);
+    tally_->other[Account::absorbed] += absorbed_by(optics.facet_layers, ray.light, reflected, transmitted);
+    const Branch branch = choose_branch(reflected, transmitted, policy_.split_power, [&] { return random(); });
+    if (branch != Branch::transmitted) {
+      const Ray back{mirrored(ray.direction, against), reflected, inside, stream.scattered};
+      append(reflected_rays, more.reflected, k, back);
+    }
+    if (branch == Branch::reflected) continue;
+    const Vec3 on = refracted(ray.direction, against, optics.ratio_at_back(inside), cos_incidence, f.cos_refracted);
+    append(transmitted_rays, more.transmitted, k, {on, transmitted, !inside, stream.scattered});
+  }
+  tally_->segments += more.count;
+  grow(reflected_to, more.reflected);
+  grow(transmitted_to, more.transmitted);
+}
+
+/// The same one by one, of an entrance with layers.
+void CellWalker::meet_layers_of_entrance(bool scattered) {
+  const Optics& optics = setup_.optics;
+  const double height_mm = setup_.thickness_mm - setup_.top_mm;
+  const Vec3 down = -Vec3::UnitZ();
+  const lanes::Rays rays = moved_.rays();
+  const lanes::Rays chosen = chosen_.rays();
+  std::vector<Stokes>& returned = scattered ? tally_->scattered : tally_->returned;
+  std::size_t reflected_count = 0;
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    if (met_[k] != kTopOrNothing) continue;
+    ++tally_->segments;
+    Ray ray = ray_of(rays, k, true, scattered);
+    const double way_mm = height_mm / ray.direction.z();
+    const double before = ray.light.power();
+    ray.light.scale(std::exp(-optics.absorption_per_mm * way_mm));
+    tally_->other[Account::absorbed] += before - ray.light.power();
+    const double cos_incidence = ray.direction.z();
+    const materials::FresnelCoefficients f = fresnel_at_entrance(optics, true, cos_incidence);
+    ray.light.turn_to(ray.direction, down);
+    Light reflected = ray.light.reflected(f);
+    Light transmitted = ray.light.transmitted(f);
+    tally_->other[Account::absorbed] += absorbed_by(optics.entrance_layers, ray.light, reflected, transmitted);
+    const Branch branch = choose_branch(reflected, transmitted, policy_.split_power, [&] { return random(); });
+    if (branch != Branch::reflected) {
+      const Vec3 out = refracted(ray.direction, down, optics.index, cos_incidence, f.cos_refracted);
+      returned[setup_.cone_of(out)] += seen_from_above(transmitted, out);
+      if (setup_.score != nullptr) setup_.score->add(out, transmitted.power(), tally_->score);
+    }
+    if (branch == Branch::transmitted) continue;
+    for (std::size_t n = 0; n < rays.numbers; ++n) chosen[n][reflected_count] = rays[n][k];
+    chosen[lanes::kX][reflected_count] += way_mm * ray.direction.x();
+    chosen[lanes::kY][reflected_count] += way_mm * ray.direction.y();
+    chosen[lanes::kZ][reflected_count] = setup_.thickness_mm;
+    set(chosen, reflected_count++, {mirrored(ray.direction, down), reflected, true, scattered});
+  }
+  chosen_.resize(reflected_count);
+  if (!chosen_.empty()) fall(scattered);
+}
+
+}  // namespace retrace::raytrace
