@@ -28,11 +28,13 @@ Argument engine_argument(std::string& engine, const std::string& help) {
   return {"--engine ENGINE", help, &engine, one_of([] { return engine_words(false); })};
 }
 
-Words engine_words(bool with_cell) {
+Words engine_words(bool of_rre) {
   Words words;
-  for (const auto engine : {studies::Engine::automatic, studies::Engine::exact, studies::Engine::montecarlo,
-                            studies::Engine::cell, studies::Engine::embree})
-    if (with_cell || engine != studies::Engine::cell) words.emplace_back(studies::engine_name(engine));
+  using studies::Engine;
+  for (const auto engine :
+       {Engine::automatic, Engine::exact, Engine::stochastic, Engine::montecarlo, Engine::cell, Engine::embree})
+    if (of_rre || (engine != Engine::cell && engine != Engine::stochastic))
+      words.emplace_back(studies::engine_name(engine));
   return words;
 }
 

@@ -26,8 +26,8 @@ Argument dye_argument(Name& dye, const std::string& help) {
   return {"--dye NAME|FILE", help, &dye, one_of(Words{"none", "red", "amber"}, ".csv")};
 }
 
-/// Names of all engines, or of those without `cell`.
-Words engine_words(bool with_cell);
+/// Names of the engines of `retrace rre`, or of those that pictures and photometry have as well.
+Words engine_words(bool of_rre);
 
 /// Of commands that keep their points in a store.
 struct StudyOptions {

@@ -30,7 +30,7 @@ std::vector<Argument> arguments(RreOptions& options) {
           {"--incidence LIST", "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
            &options.incidence},
           {"--azimuth LIST", "azimuths of the source in degrees: a,b,c and start:stop:step", &options.azimuth},
-          {"--engine ENGINE", "exact, montecarlo (cell or embree), or auto: the faster one for each direction",
+          {"--engine ENGINE", "exact, stochastic, montecarlo (cell or embree), or auto: the fastest for each direction",
            &options.engine, one_of([] { return engine_words(true); })},
           {"--samples N", "rays for each point [until the target error is reached]", &request.rays, whole(1)},
           {"--sampling KIND", "stratified, or plain: random points and no splitting, to compare with",
@@ -129,7 +129,7 @@ Command rre_command() {
       .manual =
           R"(Retroreflective efficiency (RRE) over angles of incidence and azimuths, with its standard error and a ledger of where all other light went.
 
-`exact` follows beams and has no noise. `cell` is Monte Carlo in SIMD lanes, for endless arrays and those of equal elements that reach more than two elements from every border, which it leaves to Embree; `embree` is Monte Carlo for every design; `montecarlo` is the first of them that can. `auto` takes, for each direction and wavelength, the exact engine or Monte Carlo, whichever is expected to reach the target error first.
+`exact` follows beams and has no noise. `stochastic` follows strong beams as `exact` does, and of weak ones some that stand for all: its noise is far below that of rays for the same time, but where light enters prisms askew. `cell` is Monte Carlo in SIMD lanes, for endless arrays and those of equal elements that reach more than two elements from every border, which it leaves to Embree; `embree` is Monte Carlo for every design; `montecarlo` is the first of them that can. `auto` takes, for each direction and wavelength, that of `exact`, `stochastic` and `montecarlo` which is expected to reach the target error first.
 
 A LIST mixes `a,b,c` and `start:stop:step`, stop included, such as `--incidence=-40:40:5`. With `start:stop:auto` `--incidence` chooses points itself: the ends, 0, where total reflection begins or ends, and so many between that straight lines miss RRE by no more than the target error, or 1e-3 if that is more.
 

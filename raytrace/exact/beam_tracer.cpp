@@ -17,12 +17,12 @@ constexpr double kHighestFirstCutoff = 1e-3;
 // Power left behind falls at least about as the cut-off to this power.
 constexpr double kSlowestFall = 0.7;
 
-geometry::Polygon entrance_of(const geometry::Part& part) {
+}  // namespace
+
+geometry::Polygon entrance_outline(const geometry::Part& part) {
   if (part.period_mm) return geometry::to_polygon({Vec2::Zero(), *part.period_mm});
   return part.outline;
 }
-
-}  // namespace
 
 BeamTracer::BeamTracer(const geometry::Part& part)
     : part_(part), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {}
@@ -57,7 +57,7 @@ BeamTrace::~BeamTrace() = default;
 
 void BeamTrace::start() {
   walk_ = std::make_unique<BeamWalk>(tracer_.part_, tracer_.centre_mm_, tracer_.cells_, setup_, policy_, observer_);
-  walk_->enter(entrance_of(tracer_.part_), cutoff_,
+  walk_->enter(entrance_outline(tracer_.part_), cutoff_,
                policy_.cutoff ? BeamWalk::Approach::fixed : BeamWalk::Approach::falling);
 }
 

@@ -94,6 +94,7 @@ class BeamTracer {
 
  private:
   friend class BeamTrace;
+  friend class StochasticBeams;
 
   const geometry::Part& part_;
   Vec2 centre_mm_;

@@ -138,6 +138,7 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
       if (++beams_ > policy_.max_beams) fail_on_budget();
       advance(beam);
     }
+    if (approach_ == Approach::kept) return End::done;
     const bool is_enough = approach_ == Approach::fixed || open_power() <= policy_.truncated_goal;
     if ((is_enough && (may_stop() || policy_.spare_work <= work_)) || cutoff_ < kLastCutoff) break;
     if (deferred_.size() > kMostDeferred) {
@@ -153,13 +154,17 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
 /// Enough is settled, and work on more of it would cost something. Power that is open only ever falls, so that this may
 /// be asked at any time; sums of it that are kept up to date are too coarse for the finest goals.
 bool BeamWalk::may_stop() const {
-  if (approach_ == Approach::fixed) return pending_.empty();
+  if (approach_ != Approach::falling) return pending_.empty();
   if (policy_.truncated_goal <= kFinestGoal) return pending_.empty() && deferred_power_ <= policy_.truncated_goal;
   return open_power() <= (work_ < policy_.spare_work ? kFinestGoal : policy_.truncated_goal);
 }
 
 void BeamWalk::lower_cutoff() {
-  cutoff_ *= policy_.truncated_goal <= kFinestGoal ? kFall : kGentleFall;
+  lower_cutoff_to(cutoff_ * (policy_.truncated_goal <= kFinestGoal ? kFall : kGentleFall));
+}
+
+void BeamWalk::lower_cutoff_to(double cutoff) {
+  cutoff_ = cutoff;
   pass_ = {static_cast<double>(work_), deferred_power_};
   pending_.swap(deferred_);
   pending_power_ = deferred_power_;
@@ -202,7 +207,15 @@ BeamResult BeamWalk::result() const {
 /// Beams below the cut-off are kept for a lower one, unless they are so many that they are better found again.
 void BeamWalk::defer(const Beam& beam) {
   deferred_power_ += beam.power;
-  if (deferred_.size() <= kMostDeferred) deferred_.push_back(beam);
+  if (approach_ == Approach::kept || deferred_.size() <= kMostDeferred) deferred_.push_back(beam);
+}
+
+void BeamWalk::step(const Beam& beam, const Cancellation* cancel, std::vector<Beam>& next) {
+  cancel_ = cancel;
+  ++beams_;
+  advance(beam);
+  std::move(pending_.begin(), pending_.end(), std::back_inserter(next));
+  pending_.clear();
 }
 
 void BeamWalk::advance(const Beam& beam) {

@@ -49,18 +49,32 @@ struct Horizon {
   bool limited = false;  ///< the beam may meet facets beyond
 };
 
+/// Where light enters a part; an infinite one: the central period.
+geometry::Polygon entrance_outline(const geometry::Part& part);
+
 /// Follows beams through a part until too little is left of them. Serves one trace() of BeamTracer.
 class BeamWalk {
  public:
   BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
            const BeamPolicy& policy, BeamObserver observer);
 
-  enum class Approach { falling, fixed };
-  /// \param cutoff that is fixed, or the first of those that fall until little enough is left behind
+  enum class Approach { falling, fixed, kept };
+  /// \param cutoff that is fixed, or the first of those that fall until little enough is left behind; where beams below
+  /// it are kept: until lower_cutoff_to()
   void enter(const geometry::Polygon& entrance, double cutoff, Approach approach);
   enum class End { done, paused, cancelled, cutoff_too_high };
   /// Follows beams above the cut-off until the goal is reached, or as much work is done in all.
   End run(std::uint64_t most_work, const Cancellation* cancel);
+
+  /// Beams below the cut-off, in the order in which they were found. \pre Approach::kept, and run() is done
+  const std::vector<Beam>& kept() const { return deferred_; }
+  /// What is below the old cut-off and not below this one is for the next run() to follow. \pre likewise
+  void lower_cutoff_to(double cutoff);
+  /// Follows a beam to the next faces that it meets. \param next its parts that go on from there are added to these
+  void step(const Beam& beam, const Cancellation* cancel, std::vector<Beam>& next);
+  /// Power that is given up.
+  void book_truncated(double power) { tally_.other[Account::truncated] += power; }
+  const Tally& tally() const { return tally_; }
 
   BeamResult result() const;
   std::uint64_t beams() const { return beams_; }

@@ -27,19 +27,20 @@ constexpr std::uint32_t kFirstRound = 256;
 constexpr double kConvergence = 0.75;
 
 ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double half_angle_deg, std::size_t cone) {
+  const auto count = static_cast<double>(replicates.size());
   ConeResult result;
   result.half_angle_deg = half_angle_deg;
   std::vector<double> rre;
   for (const Tally& tally : replicates) {
     const Ledger ledger = tally.ledger(cone);
     rre.push_back(ledger[Account::retroreflected] / rays);
-    result.stokes += 1.0 / (rays * kReplicates) * tally.retroreflected(cone);
-    for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays / kReplicates;
+    result.stokes += 1.0 / (rays * count) * tally.retroreflected(cone);
+    for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays / count;
   }
   result.rre = result.ledger[Account::retroreflected];
   double squares = 0.0;
   for (const double r : rre) squares += (r - result.rre) * (r - result.rre);
-  result.std_error = std::sqrt(squares / (kReplicates - 1.0) / kReplicates);
+  result.std_error = std::sqrt(squares / (count - 1.0) / count);
   // Replicates that agree to rounding say the same.
   if (result.std_error < 1e-15) result.std_error = 0.0;
   return result;
@@ -47,32 +48,19 @@ ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double
 
 /// Means and standard errors of what was scored.
 void add_score(const std::vector<Tally>& replicates, double rays, MonteCarloResult& result) {
+  const auto count = static_cast<double>(replicates.size());
   const std::size_t size = replicates.front().score.size();
   result.score.assign(size, 0.0);
   result.score_error.assign(size, 0.0);
   for (std::size_t k = 0; k < size; ++k) {
-    for (const Tally& tally : replicates) result.score[k] += tally.score[k] / rays / kReplicates;
+    for (const Tally& tally : replicates) result.score[k] += tally.score[k] / rays / count;
     double squares = 0.0;
     for (const Tally& tally : replicates) {
       const double off = tally.score[k] / rays - result.score[k];
       squares += off * off;
     }
-    result.score_error[k] = std::sqrt(squares / (kReplicates - 1.0) / kReplicates);
+    result.score_error[k] = std::sqrt(squares / (count - 1.0) / count);
   }
-}
-
-MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t rays_per_replicate,
-                           const std::vector<double>& cones_deg) {
-  MonteCarloResult result;
-  result.rays = std::uint64_t{rays_per_replicate} * kReplicates;
-  for (const Tally& tally : replicates) {
-    result.segments += tally.segments;
-    result.misses += tally.misses;
-  }
-  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone)
-    result.cones.push_back(cone_result(replicates, rays_per_replicate, cones_deg[cone], cone));
-  add_score(replicates, rays_per_replicate, result);
-  return result;
 }
 
 double largest_error(const MonteCarloResult& result) {
@@ -91,6 +79,20 @@ void check_lost(const MonteCarloResult& result) {
 }
 
 }  // namespace
+
+MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t rays_per_replicate,
+                           const std::vector<double>& cones_deg) {
+  MonteCarloResult result;
+  result.rays = std::uint64_t{rays_per_replicate} * replicates.size();
+  for (const Tally& tally : replicates) {
+    result.segments += tally.segments;
+    result.misses += tally.misses;
+  }
+  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone)
+    result.cones.push_back(cone_result(replicates, rays_per_replicate, cones_deg[cone], cone));
+  add_score(replicates, rays_per_replicate, result);
+  return result;
+}
 
 /// Of the scrambles of a replicate's entry points.
 std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t replicate) {

@@ -34,8 +34,9 @@ void check(const DetectorRequest& request) {
   if (!(request.window_deg > 0.0 && request.window_deg <= 90.0))
     throw InputError({"", 0, "--window-deg"},
                      fmt::format("must be above 0 and at most 90 degrees, got {}", shortest(request.window_deg)));
-  if (request.engine == Engine::cell)
-    throw InputError({"", 0, "--engine"}, "must be auto, exact, montecarlo or embree for pictures, got cell");
+  if (request.engine == Engine::cell || request.engine == Engine::stochastic)
+    throw InputError({"", 0, "--engine"}, fmt::format("must be auto, exact, montecarlo or embree for pictures, got {}",
+                                                      engine_name(request.engine)));
 }
 
 raytrace::Illumination illumination_of(const Design& design, const DetectorRequest& request) {

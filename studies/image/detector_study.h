@@ -21,7 +21,7 @@ struct DetectorRequest {
   std::size_t pixels = 400;           ///< along the longer side of the face; 1 to 8192
   std::size_t angle_pixels = 201;     ///< along either side of the angular map; 1 to 2049
   double window_deg = 1.0;            ///< half width of the angular map; > 0, up to 90
-  Engine engine = Engine::automatic;  ///< cell is not one of them
+  Engine engine = Engine::automatic;  ///< neither stochastic nor cell
   std::optional<double> cutoff;       ///< exact engine: least power of a beam, as a share of the incident
   std::uint64_t rays = 1U << 22;      ///< Monte Carlo
   std::uint32_t seed = 1;

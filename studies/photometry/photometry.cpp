@@ -49,8 +49,9 @@ void check(const PhotometryRequest& request) {
     throw InputError(
         {"", 0, "--source-arcmin"},
         "must be above 0 unless --receiver-arcmin is: two points see an infinite intensity or none, got 0");
-  if (request.engine == Engine::cell)
-    throw InputError({"", 0, "--engine"}, "must be auto, exact, montecarlo or embree, got cell");
+  if (request.engine == Engine::cell || request.engine == Engine::stochastic)
+    throw InputError({"", 0, "--engine"},
+                     fmt::format("must be auto, exact, montecarlo or embree, got {}", engine_name(request.engine)));
   for (const TestPoint& point : request.programme.points)
     if (!(point.observation_deg <= request.window_deg))
       throw InputError({request.limits_source, point.line, "observation_deg"},

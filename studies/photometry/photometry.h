@@ -40,7 +40,7 @@ struct PhotometryRequest {
   std::string dye;                                 ///< what the dye is called; empty: none
   materials::SpectralCurve dye_absorption_per_mm;  ///< empty: none
   bool diffraction = true;
-  Engine engine = Engine::automatic;  ///< cell is not one of them
+  Engine engine = Engine::automatic;  ///< neither stochastic nor cell
   std::optional<double> cutoff;       ///< least power followed by the exact engine, as a share of an element's
   std::uint64_t rays = 1U << 20;      ///< of a direction, by Monte Carlo
   std::uint32_t seed = 1;

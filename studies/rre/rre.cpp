@@ -17,8 +17,9 @@
 namespace retrace::studies {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Engine>, 5> kEngines = {{{"auto", Engine::automatic},
+constexpr std::array<std::pair<std::string_view, Engine>, 6> kEngines = {{{"auto", Engine::automatic},
                                                                           {"exact", Engine::exact},
+                                                                          {"stochastic", Engine::stochastic},
                                                                           {"montecarlo", Engine::montecarlo},
                                                                           {"cell", Engine::cell},
                                                                           {"embree", Engine::embree}}};
@@ -30,13 +31,14 @@ void check_incidence(double deg) {
 
 void check(const RreRequest& request) {
   if (request.sampling == raytrace::Sampling::Kind::plain)
-    if (request.engine == Engine::cell || request.engine == Engine::exact)
+    if (request.engine != Engine::automatic && request.engine != Engine::montecarlo && request.engine != Engine::embree)
       throw InputError({"", 0, "--sampling"},
                        fmt::format("plain needs --engine montecarlo or embree, got {}", engine_name(request.engine)));
   for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
                                       {request.far_field, "--far-field"},
                                       {request.derivatives, "--derivatives"}})
-    if (asked && !may_be_exact(request)) throw InputError({"", 0, option}, "needs --engine exact");
+    if (asked && (!may_follow_beams(request) || request.engine == Engine::stochastic))
+      throw InputError({"", 0, option}, "needs --engine exact");
   for (const double t : request.incidence_deg) check_incidence(t);
   for (const CurveSpan& span : request.incidence_spans) {
     check_incidence(span.low);
@@ -80,7 +82,8 @@ double target_error_of(const RreRequest& request) {
 Engine engine_from_name(std::string_view name) {
   for (const auto& [known, engine] : kEngines)
     if (known == name) return engine;
-  throw InputError({"", 0, "--engine"}, fmt::format("must be auto, exact, montecarlo, cell or embree, got {}", name));
+  throw InputError({"", 0, "--engine"},
+                   fmt::format("must be auto, exact, stochastic, montecarlo, cell or embree, got {}", name));
 }
 
 raytrace::Sampling::Kind sampling_from_name(std::string_view name) {
@@ -100,7 +103,7 @@ namespace {
 /// Beams and cells know plane entrance faces alone.
 void check_entrance(const Design& design, const RreRequest& request) {
   if (!design.entrance) return;
-  if (request.engine == Engine::exact || request.engine == Engine::cell)
+  if (request.engine == Engine::exact || request.engine == Engine::stochastic || request.engine == Engine::cell)
     throw InputError({"", 0, "--engine"}, fmt::format("{} takes a plane entrance face alone, {} has a [front]: use "
                                                       "--engine embree",
                                                       engine_name(request.engine), design.source_name()));
@@ -145,7 +148,8 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     check_planes(design, request);
     if (design.balls()) continue;
     if (request.derivatives) check_taken(design, {.what = "--derivatives"});
-    if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
+    if ((must_be_exact(request) || request.engine == Engine::stochastic) &&
+        !prepared_->models.back().optics.is_smooth())
       throw InputError(design.where_texture(),
                        "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "
                        "--far-field and --derivatives");
@@ -179,13 +183,14 @@ void warn_of_truncation(const RreRequest& request, RreResult& result) {
       shortest(worst->azimuth_deg)));
 }
 
-/// The engine of all points; if they took different ones, `montecarlo` where none was exact, else `mixed`.
+/// The engine of all points; if they took different ones, `montecarlo` where all followed rays, else `mixed`.
 std::string engine_of(const std::vector<RrePoint>& points) {
   const auto all = [&](const auto& fits) { return std::all_of(points.begin(), points.end(), fits); };
   if (points.empty()) return "none";
   if (all([&](const RrePoint& p) { return p.engine == points.front().engine; })) return points.front().engine;
-  const bool none_is_exact = all([](const RrePoint& p) { return p.engine != "exact" && p.engine != kMixedEngines; });
-  return none_is_exact ? "montecarlo" : std::string(kMixedEngines);
+  const bool all_are_of_rays = all(
+      [](const RrePoint& p) { return p.engine != "exact" && p.engine != "stochastic" && p.engine != kMixedEngines; });
+  return all_are_of_rays ? "montecarlo" : std::string(kMixedEngines);
 }
 
 }  // namespace

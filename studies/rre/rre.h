@@ -22,10 +22,9 @@
 
 namespace retrace::studies {
 
-/// The tracer of a request. `automatic` is exact where beams are expected to reach the target error before rays do,
-/// else Monte Carlo, for each direction and wavelength; `montecarlo` is `cell` where that serves, else
-/// `embree`.
-enum class Engine { automatic, exact, montecarlo, cell, embree };
+/// The tracer of a request. `automatic` is that of `exact`, `stochastic` and `montecarlo` which is expected to reach
+/// the target error first, for each direction and wavelength; `montecarlo` is `cell` where that serves, else `embree`.
+enum class Engine { automatic, exact, stochastic, montecarlo, cell, embree };
 
 /// \throw InputError listing the engines for a name that is none of them
 Engine engine_from_name(std::string_view name);
@@ -84,10 +83,11 @@ struct RrePoint {
   double acceptance_half_angle_deg = 0.0;
   double rre = 0.0;
   double std_error = 0.0;  ///< of sampling alone: what `truncated` may add to `rre` is apart
-  std::string engine;  ///< exact, cell, embree or balls; of a spectrum kMixedEngines if wavelengths took different ones
+  std::string engine;  ///< exact, stochastic, cell, embree or balls; of a spectrum kMixedEngines if wavelengths took
+                       ///< different ones
   raytrace::Stokes stokes;  ///< of what is retroreflected, along raytrace::source_axis()
   raytrace::Ledger ledger;
-  std::uint64_t beams = 0;                      ///< exact engine: followed for this point
+  std::uint64_t beams = 0;                      ///< exact and stochastic engine: followed for this point
   std::uint32_t depth = 0;                      ///< exact engine: interfaces on the longest path
   std::vector<RreDerivative> derivatives = {};  ///< if they were requested
   std::vector<SpectralRre> by_wavelength = {};  ///< designs with a spectrum: what the point is the mean of

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "core/error.h"
 #include "raytrace/balls/ball_tracer.h"
 #include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/stochastic_beams.h"
 #include "raytrace/sampling/threads.h"
 
 namespace retrace::studies {
@@ -15,6 +17,8 @@ namespace {
 // What the counts of work of the tracers stand for, as benchmarks/engine_choice.cpp measured them: choices rest on
 // counts and not on clocks, so that they are the same on every machine.
 constexpr double kNsPerLook = 30.0;
+/// Of stochastic beams, which are fewer and wider.
+constexpr double kNsPerStochasticLook = 15.0;
 /// Of a straight piece, and of each facet of an element besides; of a finite array Embree does what is near its
 /// borders.
 struct SegmentCost {
@@ -26,6 +30,10 @@ constexpr SegmentCost kCellOfFinite{220.0, 25.0};
 constexpr SegmentCost kEmbree{350.0, 25.0};
 /// Straight pieces of a first round of Monte Carlo, before there was one.
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
+/// Looks that stochastic beams take to the usual error, before there was a round. Light that enters prisms askew
+/// wanders far, and little of it comes back.
+constexpr double kLooksForCubes = 300'000.0;
+constexpr double kLooksForPrisms = 1'000'000.0;
 /// What beams may take below the error that was requested: some 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
 /// Share of what rays are expected to take that beams may take, however long they are expected to.
@@ -171,7 +179,7 @@ class DesignTracing {
       : design_(design), model_(model), request_(request), cancel_(cancel), beams_(beam_policy(request)) {
     paths_.cutoff = request.cutoff.value_or(paths_.cutoff);
     if (design.balls()) return;
-    if (may_be_exact(design, model, request)) beam_tracer_.emplace(model.part);
+    if (may_follow_beams(design, model, request)) beam_tracer_.emplace(model.part);
   }
 
   /// Whether directions are shared out among the threads; else each takes all of them.
@@ -180,7 +188,9 @@ class DesignTracing {
   /// False if it was cancelled: an unfinished point is no point.
   bool trace(Direction& direction, std::size_t wavelength) {
     if (!beam_tracer_) return trace_rays(direction, wavelength);
-    return must_be_exact(request_) ? trace_beams(direction, wavelength) : trace_faster(direction, wavelength);
+    if (must_be_exact(request_)) return trace_beams(direction, wavelength);
+    if (request_.engine == Engine::stochastic) return trace_stochastic(direction, wavelength);
+    return trace_fastest(direction, wavelength);
   }
 
  private:
@@ -249,26 +259,51 @@ class DesignTracing {
                                                     cancel_, direction.spectral[wavelength]);
   }
 
-  /// By beams as long as they are expected to reach the goal before rays reach theirs, else by rays: either goes on
-  /// where it was left when the other turns out to be slower than expected.
-  bool trace_faster(Direction& direction, std::size_t wavelength) {
+  bool keep(Direction& direction, std::size_t wavelength, const raytrace::StochasticBeams& traced) const {
+    if (!keep(direction, wavelength, traced.result(), "stochastic")) return false;
+    for (RrePoint& point : direction.spectral[wavelength]) point.beams = traced.beams();
+    return true;
+  }
+
+  bool trace_stochastic(Direction& direction, std::size_t wavelength) {
+    raytrace::StochasticBeams beams(*beam_tracer_, light(wavelength).optics, illumination_of(direction.at, design_),
+                                    cones(), sampling_of(request_, light(wavelength).weight, wavelength), cancel_);
+    while (!beams.advance())
+      ;
+    return keep(direction, wavelength, beams);
+  }
+
+  /// By the engine that is expected to reach the goal first, round by round: each goes on where it was left when
+  /// another turns out to be slower than expected.
+  bool trace_fastest(Direction& direction, std::size_t wavelength) {
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     const raytrace::Optics& optics = light(wavelength).optics;
     const raytrace::Sampling sampling = sampling_of(request_, light(wavelength).weight, wavelength);
     const double ns_per_segment = ns_of_segment();
+    const double first_looks =
+        std::holds_alternative<geometry::RtpElement>(model_.part.spec.element) ? kLooksForPrisms : kLooksForCubes;
     raytrace::BeamTrace beams(*beam_tracer_, optics, illumination, cones(), beams_);
+    std::optional<raytrace::StochasticBeams> stochastic;
+    bool stochastic_may_do = !request_.cutoff;
     std::optional<raytrace::MonteCarlo::Run> rays;
     for (double look = kFirstLook;; look = std::max(kFirstLook, 1.1 * beams.work())) {
-      const double segments = rays ? rays->expected_segments() : kSegmentsOfFirstRound;
-      const double rays_take = ns_per_segment * segments;
-      if (kNsPerLook * std::min(beams.expected_work(), beams.work() / kHedge) <= rays_take) {
+      const double rays_take = ns_per_segment * (rays ? rays->expected_segments() : kSegmentsOfFirstRound);
+      const double stochastic_takes =
+          !stochastic_may_do ? std::numeric_limits<double>::infinity()
+                             : kNsPerStochasticLook * (stochastic ? stochastic->expected_work() : first_looks);
+      if (kNsPerLook * std::min(beams.expected_work(), beams.work() / kHedge) <=
+          std::min(rays_take, stochastic_takes)) {
         if (beams.advance(static_cast<std::uint64_t>(look), cancel_))
           return keep(direction, wavelength, beams.result());
-        if (is_cancelled(cancel_)) return false;
-        continue;
+      } else if (stochastic_takes <= rays_take) {
+        if (!stochastic) stochastic.emplace(*beam_tracer_, optics, illumination, cones(), sampling, cancel_);
+        stochastic_may_do = !stochastic->advance();
+        if (stochastic->result().reached_target) return keep(direction, wavelength, *stochastic);
+      } else {
+        if (!rays) rays.emplace(ray_tracer(), optics, illumination, cones(), sampling, paths_, cancel_);
+        if (rays->advance()) return keep(direction, wavelength, rays->result(), name_of(ray_engine()));
       }
-      if (!rays) rays.emplace(ray_tracer(), optics, illumination, cones(), sampling, paths_, cancel_);
-      if (rays->advance()) return keep(direction, wavelength, rays->result(), name_of(ray_engine()));
+      if (is_cancelled(cancel_)) return false;
     }
   }
 
@@ -283,13 +318,14 @@ class DesignTracing {
   std::optional<raytrace::MonteCarlo> ray_tracer_;
 };
 
-bool may_be_exact(const RreRequest& request) {
+bool may_follow_beams(const RreRequest& request) {
   const bool asks_for_rays = request.rays || request.sampling == raytrace::Sampling::Kind::plain;
-  return request.engine == Engine::exact || (request.engine == Engine::automatic && !asks_for_rays);
+  return request.engine == Engine::exact || request.engine == Engine::stochastic ||
+         (request.engine == Engine::automatic && !asks_for_rays);
 }
 
-bool may_be_exact(const Design& design, const OpticalModel& model, const RreRequest& request) {
-  return may_be_exact(request) && !design.balls() && !model.entrance && model.optics.is_smooth();
+bool may_follow_beams(const Design& design, const OpticalModel& model, const RreRequest& request) {
+  return may_follow_beams(request) && !design.balls() && !model.entrance && model.optics.is_smooth();
 }
 
 bool must_be_exact(const RreRequest& request) {

@@ -160,7 +160,7 @@ TEST(BadInput, FilesThatCannotBeReadAreRefused) {
 
 TEST(BadInput, WrongOptionsAreRefused) {
   const std::vector<Refused> cases = {
-      {{"--engine", "magic"}, "--engine: must be auto, exact, montecarlo, cell or embree, got magic"},
+      {{"--engine", "magic"}, "--engine: must be auto, exact, stochastic, montecarlo, cell or embree, got magic"},
       {{"--engine", ""}, "--engine: "},
       {{"--engine", "cell"},
        "--engine: cell takes endless arrays, and arrays of equal elements that reach more than two elements from every "
@@ -168,6 +168,9 @@ TEST(BadInput, WrongOptionsAreRefused) {
       {{"--sampling", "random"}, "--sampling: must be stratified or plain, got random"},
       {{"--sampling", "plain", "--engine", "exact"},
        "--sampling: plain needs --engine montecarlo or embree, got exact"},
+      {{"--sampling", "plain", "--engine", "stochastic"},
+       "--sampling: plain needs --engine montecarlo or embree, got stochastic"},
+      {{"--footprint", "--engine", "stochastic"}, "--footprint: needs --engine exact"},
       {{"--sampling", "plain", "--engine", "cell"}, "--sampling: plain needs --engine montecarlo or embree, got cell"},
       {{"--incidence=5:1:1"}, "--incidence: the range runs away"},
       {{"--incidence=1:1:auto"}, "--incidence: a range start:stop:auto must have start < stop, got \"1:1:auto\""},

@@ -111,7 +111,8 @@ TEST_P(Completion, KnowsEveryCommandAndOption) {
 }
 
 TEST_P(Completion, KnowsWhatMayStandForAValue) {
-  EXPECT_EQ(completed("retrace rre a.toml --engine "), (Arguments{"auto", "cell", "embree", "exact", "montecarlo"}));
+  EXPECT_EQ(completed("retrace rre a.toml --engine "),
+            (Arguments{"auto", "cell", "embree", "exact", "montecarlo", "stochastic"}));
   EXPECT_EQ(completed("retrace image a.toml --engine "), (Arguments{"auto", "embree", "exact", "montecarlo"}));
   EXPECT_TRUE(offers("retrace job a.toml --machine ", "ideal-dmc"));
   EXPECT_TRUE(offers("retrace job a.toml --machine ", "a.toml"));

@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "geometry/check/boundary_check.h"
 #include "geometry/part/closed_boundary.h"
-#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/stochastic_beams.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "tests/support/designs.h"
 #include "tests/support/reference_tracer.h"
@@ -15,7 +16,7 @@
 
 namespace retrace::testing {
 
-/// Beams and rays find the same efficiency of PMMA at 3 degrees, and all light is in the ledgers.
+/// Beams, stochastic beams and rays find the same efficiency of PMMA at 3 degrees, and all light is in the ledgers.
 /// \param most_truncated that beams may leave behind
 inline void expect_engines_agree(const geometry::PartSpec& spec, double most_truncated) {
   using raytrace::Account;
@@ -28,6 +29,14 @@ inline void expect_engines_agree(const geometry::PartSpec& spec, double most_tru
   EXPECT_NEAR(exact[Account::retroreflected], sampled.rre, 4.0 * sampled.std_error + exact[Account::truncated] + 1e-6);
   EXPECT_LT(exact[Account::truncated], most_truncated);
   EXPECT_NEAR(exact.total(), 1.0, 1e-9);
+  raytrace::Sampling sampling;
+  sampling.target_error = 1e-3;
+  const raytrace::BeamTracer tracer(part);
+  raytrace::StochasticBeams stochastic(tracer, pmma(), from(3.0), {0.5}, sampling);
+  while (!stochastic.advance()) continue;
+  const raytrace::ConeResult& resampled = stochastic.result().cones[0];
+  EXPECT_NEAR(resampled.rre, sampled.rre, 4.0 * std::hypot(sampled.std_error, resampled.std_error));
+  EXPECT_NEAR(resampled.ledger.total(), 1.0, 1e-12);
   EXPECT_LT(sampled.ledger[Account::lost], 1e-9);
 }
 

@@ -127,7 +127,7 @@ constexpr Row kQuantityRows[] = {
 
 // How it is computed.
 
-constexpr Words kEngines = {"auto", "exact", "montecarlo", "cell", "embree"};
+constexpr Words kEngines = {"auto", "exact", "stochastic", "montecarlo", "cell", "embree"};
 constexpr Row kAnalysisRows[] = {
     {"incidence_deg", Number{kIncidence}, 0.0, "For quantities that name none."},
     {"azimuth_deg", Number{}, 0.0, "For quantities that name none."},

@@ -76,8 +76,8 @@ Json point_json(const RrePoint& p) {
   json["ledger"] = ledger_json(p.ledger);
   json["engine"] = p.engine;
   if (!p.by_wavelength.empty()) json["by_wavelength"] = by_wavelength_json(p.by_wavelength);
+  if (p.engine == "exact" || p.engine == "stochastic") json["beams"] = p.beams;
   if (p.engine != "exact") return json;
-  json["beams"] = p.beams;
   json["depth"] = p.depth;
   if (!p.derivatives.empty()) json["derivatives"] = derivatives_json(p.derivatives);
   return json;

@@ -1,0 +1,75 @@
+#pragma once
+
+// The engine of stochastic beams: beams above a threshold are followed exactly, those below it are resampled,
+// generation by generation, in independent replicates.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/paths/monte_carlo.h"
+
+namespace retrace::raytrace {
+
+/// One direction of a BeamTracer, traced round by round at falling thresholds until the standard error of RRE is below
+/// a target.
+///
+/// Beams of a power above the threshold w are followed as BeamTrace follows them. A generation of weaker ones, with the
+/// power P together, is resampled: of it n = ceil(P / (kThinning w)) survive with P / n each, chosen by systematic
+/// resampling, which is unbiased and keeps the power, after they were sorted by direction and place, as alike beams
+/// have alike ends (Array-RQMC: L'Ecuyer, Lecot and Tuffin, Operations Research 56, 958, 2008). Replicates, each with
+/// random numbers of its own, give the standard error. It is never told to be less than what a survivor brings over
+/// their number: so much may be in beams that none of them has seen (docs/theory/beams.md).
+///
+/// For one thread at a time; replicates are shared out among threads, and results do not depend on their number.
+class StochasticBeams {
+ public:
+  static constexpr std::uint32_t kReplicates = 16;
+  /// Survivors are stronger than the weakest beams that are followed exactly, by this factor: those are followed once
+  /// and survivors in every replicate.
+  static constexpr double kThinning = 32.0;
+
+  /// \param sampling its seed and target error \pre smooth facets; `tracer` and `cancel` outlive this
+  StochasticBeams(const BeamTracer& tracer, const Optics& optics, const Illumination& illumination,
+                  const std::vector<double>& cones_deg, const Sampling& sampling, const Cancellation* cancel = nullptr);
+  ~StochasticBeams();
+
+  /// One more round, at a lower threshold. \return whether that was the last one that is needed or possible; if it was
+  /// cancelled, it is the last as well
+  bool advance();
+  /// Of the last round, without rays. 1.96 standard errors hold the truth in 95 of 100 cases.
+  const MonteCarloResult& result() const { return result_; }
+  std::uint64_t beams() const;  ///< followed so far
+  /// In looks at a facet's bounding box, as BeamTrace: done so far, and expected until the target error is reached.
+  double work() const { return static_cast<double>(work_); }
+  double expected_work() const;
+  double threshold() const { return threshold_; }
+
+ private:
+  struct Queue;
+  struct Replicate;
+
+  std::optional<Replicate> replicate(std::uint32_t number, const Queue& first) const;
+  Queue queue_of(const std::vector<Beam>& beams) const;
+  double largest_error() const;
+  double next_threshold() const;
+
+  const BeamTracer& tracer_;
+  const LightSetup setup_;
+  const BeamPolicy policy_;
+  std::vector<double> cones_deg_;
+  Sampling sampling_;
+  const Cancellation* cancel_;
+  std::unique_ptr<BeamWalk> strong_;  ///< above the threshold
+  double threshold_;
+  std::uint32_t round_ = 0;
+  std::uint64_t work_ = 0;
+  std::uint64_t round_work_ = 0;  ///< of the last round alone
+  std::uint64_t weak_beams_ = 0;
+  MonteCarloResult result_;
+};
+
+}  // namespace retrace::raytrace

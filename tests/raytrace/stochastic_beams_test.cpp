@@ -1,0 +1,147 @@
+// Stochastic beams: without bias, with intervals that hold, and with all power in the ledger.
+#include "raytrace/exact/stochastic_beams.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/sampling/threads.h"
+#include "tests/support/designs.h"
+#include "tests/support/engines.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing::stochastic_beams_test {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+Sampling until(double target_error, std::uint32_t seed = 1) {
+  Sampling sampling;
+  sampling.target_error = target_error;
+  sampling.seed = seed;
+  return sampling;
+}
+
+MonteCarloResult traced(const BeamTracer& tracer, const Optics& optics, const Illumination& light,
+                        const std::vector<double>& cones_deg, const Sampling& sampling) {
+  StochasticBeams beams(tracer, optics, light, cones_deg, sampling);
+  while (!beams.advance()) continue;
+  return beams.result();
+}
+
+struct Question {
+  std::string name;
+  Part part;
+  Illumination light;
+};
+
+/// Arrays that trap light, so that weak beams matter.
+std::vector<Question> questions() {
+  PartSpec finite_cubes = finite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 8.0, 8.0, 1.0);
+  return {
+      {"honeycomb", build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0)), from(20, 10)},
+      {"triangular", build_part(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0)), from(10, 10)},
+      {"prisms", build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0)), from(20, 25)},
+      {"finite cubes", build_part(finite_cubes), from(15, 40)}};
+}
+
+TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
+  Optics optics = pmma();
+  optics.absorption_per_mm = 0.01;
+  for (const Question& question : questions()) {
+    const BeamTracer tracer(question.part);
+    BeamPolicy policy;
+    policy.truncated_goal = 1e-6;
+    const std::vector<double> cones = {0.5, 60.0};
+    const BeamResult exact = tracer.trace(optics, question.light, cones, policy);
+    const MonteCarloResult result = traced(tracer, optics, question.light, cones, until(2e-5));
+    EXPECT_TRUE(result.reached_target && result.complete) << question.name;
+    for (std::size_t cone = 0; cone < cones.size(); ++cone) {
+      const ConeResult& own = result.cones[cone];
+      EXPECT_LE(own.std_error, 2e-5) << question.name;
+      EXPECT_NEAR(own.rre, exact.ledgers[cone][Account::retroreflected],
+                  student_bound(8, StochasticBeams::kReplicates) * own.std_error + 1e-6)
+          << question.name;
+      EXPECT_NEAR(own.ledger.total(), 1.0, 1e-13) << question.name;
+      EXPECT_NEAR(own.ledger[Account::truncated], 0.0, 1e-12) << question.name;
+      // No other account has more than a few times the error of RRE, and here it is a matter of bias, not of noise.
+      for (const Account account : {Account::transmitted, Account::absorbed, Account::side_exit})
+        EXPECT_NEAR(own.ledger[account], exact.ledgers[cone][account], 3e-4)
+            << question.name << ", " << static_cast<int>(account);
+    }
+  }
+}
+
+/// Rounds end when their error is small, which could favour lucky ones: the truth is to lie within 1.96 standard errors
+/// of 90 to 99 % of the answers, and of their mean.
+TEST(StochasticBeams, IntervalsHoldOverSeeds) {
+  constexpr std::uint32_t kSeeds = 200;
+  for (const Question& question : questions()) {
+    const BeamTracer tracer(question.part);
+    BeamPolicy policy;
+    policy.truncated_goal = 1e-6;
+    const Ledger exact = tracer.trace(pmma(), question.light, {0.5}, policy).ledgers[0];
+    const double truth = exact[Account::retroreflected] + 0.5 * exact[Account::truncated];
+    std::vector<double> found(kSeeds);
+    std::vector<double> error(kSeeds);
+    for_each_in_parallel(kSeeds, [&](std::size_t k) {
+      const ConeResult cone =
+          traced(tracer, pmma(), question.light, {0.5}, until(3e-4, static_cast<std::uint32_t>(k + 1))).cones[0];
+      found[k] = cone.rre;
+      error[k] = cone.std_error;
+      return true;
+    });
+    double mean = 0.0;
+    double squares = 0.0;
+    int hits = 0;
+    for (std::uint32_t k = 0; k < kSeeds; ++k) {
+      mean += found[k] / kSeeds;
+      squares += (found[k] - truth) * (found[k] - truth) / kSeeds;
+      if (std::abs(found[k] - truth) <= 1.96 * error[k]) ++hits;
+    }
+    EXPECT_GE(hits, 180) << question.name;
+    EXPECT_LE(hits, 200) << question.name;
+    EXPECT_LE(std::abs(mean - truth), normal_bound(4) * std::sqrt(squares / kSeeds)) << question.name;
+    RecordProperty(question.name + " of 200", hits);
+  }
+}
+
+TEST(StochasticBeams, SameAtAnyNumberOfThreads) {
+  const Question question = questions()[1];
+  const BeamTracer tracer(question.part);
+  std::vector<MonteCarloResult> results;
+  for (const unsigned threads : {1U, 2U, 5U})
+    run_with_threads(threads, [&] { results.push_back(traced(tracer, pmma(), question.light, {0.5}, until(1e-4))); });
+  for (const MonteCarloResult& result : results) {
+    EXPECT_EQ(result.cones[0].rre, results[0].cones[0].rre);
+    EXPECT_EQ(result.cones[0].std_error, results[0].cones[0].std_error);
+    EXPECT_EQ(result.cones[0].ledger.power, results[0].cones[0].ledger.power);
+  }
+}
+
+/// What beams follow to their end needs no sampling and has no error: prisms at normal incidence send all back but what
+/// the entrance face reflects.
+TEST(StochasticBeams, NothingIsLeftToChanceWhereBeamsEnd) {
+  const Part part = build_part(single(RtpElement{0.6, 0.4, 90.0}, 0.7));
+  const BeamTracer tracer(part);
+  const ConeResult cone = traced(tracer, ideal(), from(0.0), {0.5}, until(1e-6)).cones[0];
+  EXPECT_NEAR(cone.rre, 1.0, 1e-12);
+  EXPECT_EQ(cone.std_error, 0.0);
+}
+
+TEST(StochasticBeams, StopWhenCancelled) {
+  const Question question = questions()[1];
+  const BeamTracer tracer(question.part);
+  Cancellation cancel;
+  cancel.request();
+  StochasticBeams beams(tracer, pmma(), question.light, {0.5}, until(1e-7), &cancel);
+  EXPECT_TRUE(beams.advance());
+  EXPECT_FALSE(beams.result().complete);
+}
+
+}  // namespace
+}  // namespace retrace::testing::stochastic_beams_test
