@@ -113,7 +113,9 @@ TEST(Temperature, NBK7AsItsDataSheetHasIt) {
 TEST(Temperature, PolymersAsTabled) {
   const MaterialLibrary library = shipped();
   for (const auto& [name, per_k] : {std::pair("PMMA", -10e-5), {"PC", -12e-5}}) {
-    const auto n = [&](double c) { return index_relative_to_air(library.find(name), library.air(), 589.3, c); };
+    const auto n = [&, material = library.find(name)](double c) {
+      return index_relative_to_air(material, library.air(), 589.3, c);
+    };
     EXPECT_NEAR((n(30.0) - n(20.0)) / 10.0, per_k, 1.5e-5) << name;
   }
 }

@@ -96,8 +96,8 @@ TEST(BeamTracer, TotalReflectionLimitOfCubeCorners) {
       const bool is_honeycomb = spec.array.arrangement == Arrangement::honeycomb;
       const Part part = build_part(spec);
       const BeamTracer tracer(part);
-      const auto missing = [&](double t, double p) {
-        const double all = is_honeycomb ? honeycomb_rre(t, p, index) : triangular_rre(t, p, index);
+      const auto missing = [&, n = index](double t, double p) {
+        const double all = is_honeycomb ? honeycomb_rre(t, p, n) : triangular_rre(t, p, n);
         return all - tracer.trace(optics, from(t, p), {0.01}, policy).ledgers[0][Account::retroreflected];
       };
       for (double p = 0.0; p < 360.0; p += 7.5) EXPECT_NEAR(missing(limit - 1e-9, p), 0.0, 1e-9) << p;
