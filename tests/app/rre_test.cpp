@@ -172,9 +172,10 @@ TEST(Rre, AutoIsExactWhereThatIsCheap) {
                                           "--incidence=0,20", "--azimuth=4", "--target-error=0.01"});
   EXPECT_EQ(dear["engine"], "mixed");
   EXPECT_EQ(dear["points"][0]["engine"], "exact");
-  EXPECT_EQ(dear["points"][1]["engine"], "cell");
-  EXPECT_TRUE(dear["points"][0].contains("beams"));
-  EXPECT_FALSE(dear["points"][1].contains("beams"));
+  EXPECT_EQ(dear["points"][1]["engine"], "stochastic");
+  for (const Json& point : dear["points"]) EXPECT_TRUE(point.contains("beams"));
+  EXPECT_TRUE(dear["points"][0].contains("depth"));
+  EXPECT_FALSE(dear["points"][1].contains("depth"));
   EXPECT_EQ(dear["complete"], true);
 }
 
