@@ -2,12 +2,20 @@
 
 // The optical properties of a part at one wavelength, and the direction and polarisation of the incident beam.
 
+#include <memory>
+
 #include "core/angle.h"
 #include "materials/thin_film.h"
 #include "raytrace/light/stokes.h"
 #include "surface_models/scatter/scatter_model.h"
 
+namespace retrace::geometry {
+class ChosenElements;
+}
+
 namespace retrace::raytrace {
+
+struct WetBack;
 
 /// What the part is made of and how its faces treat light, at one wavelength.
 struct Optics {
@@ -21,6 +29,7 @@ struct Optics {
   bool absorbing_walls = false;           ///< walls of elements and of the border let no light go on
   surface_models::ScatterModel facet_scatter;  ///< what the texture of retro facets does
   double wavelength_nm = 587.56;               ///< in vacuum; matters to scatter alone
+  std::shared_ptr<const WetBack> wet;          ///< behind some elements; null: all backs are alike
 
   /// Index before over index after, at a face of the back surface.
   double ratio_at_back(bool inside) const { return inside ? index / back_index : back_index / index; }
@@ -28,6 +37,15 @@ struct Optics {
   bool border_walls_differ() const { return absorbing_walls || back_index != 1.0; }
   /// Whether every beam stays a beam at every face.
   bool is_smooth() const { return std::holds_alternative<surface_models::Smooth>(facet_scatter); }
+  /// Whether all backs are alike, as beams and cells know them.
+  bool has_one_back() const { return wet == nullptr; }
+};
+
+/// Elements with another medium behind them. What ends the one medium and begins the other is not modelled: light on
+/// its way from behind an element to another meets each facet from what lies behind that facet.
+struct WetBack {
+  Optics optics;  ///< of these elements: as those of the others but for the back's index and what follows from it
+  std::shared_ptr<const geometry::ChosenElements> elements;
 };
 
 /// Where the light comes from: the source lies in direction (sin t cos p, sin t sin p, cos t) of the part frame, with

@@ -1,5 +1,6 @@
 #include "raytrace/paths/path_tracer.h"
 #include "core/infinity.h"
+#include "geometry/part/chosen_elements.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +15,14 @@ constexpr int kMaxWraps = 1000;
 
 }  // namespace
 
-PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const Vec2& centre_mm, const Optics& how,
+PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const Vec2& centre, const Optics& how,
                      const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& paths,
                      const EntranceFace* curved)
-    : LightSetup(part, centre_mm, how, illumination, cones_deg),
+    : LightSetup(part, centre, how, illumination, cones_deg),
       surface(back),
       entrance_face(curved),
       policy(paths),
+      centre_mm(centre),
       clearance_mm(part.top_mm + std::min(0.01 * part.element_depth_mm, 0.5 * (part.thickness_mm - part.top_mm))) {
   if (part.period_mm) {
     period_mm = *part.period_mm;
@@ -300,9 +302,21 @@ void PathWalker::leave(const State& state, const Light& light, const Vec3& direc
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 
+/// Behind a facet: what lies behind its element.
+const Optics& PathWalker::optics_of(const FacetRef& facet) const {
+  const WetBack* const wet = setup_.optics.wet.get();
+  return wet != nullptr && wet->elements->has(facet.placement, facet.facet) ? wet->optics : setup_.optics;
+}
+
+const Optics& PathWalker::optics_of_wall(const Vec3& position) const {
+  const WetBack* const wet = setup_.optics.wet.get();
+  return wet != nullptr && wet->elements->has_wall_at(position.head<2>() + setup_.centre_mm) ? wet->optics
+                                                                                             : setup_.optics;
+}
+
 bool PathWalker::meet_side(State& state, const Vec3& normal) {
-  const Optics& optics = setup_.optics;
   const bool is_border_wall = state.position.z() < 0.0;
+  const Optics& optics = is_border_wall ? optics_of_wall(state.position) : setup_.optics;
   if (is_border_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
   const materials::FresnelCoefficients f =
       materials::fresnel(is_border_wall ? optics.ratio_at_back(true) : optics.index, normal.dot(state.direction));
@@ -321,13 +335,13 @@ bool PathWalker::meet_side(State& state, const Vec3& normal) {
 
 bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   const ExactSurface::Facet& facet = setup_.surface.facet(hit.facet);
-  const Optics& optics = setup_.optics;
+  const Optics& optics = optics_of(hit.facet);
   const bool is_wall = facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
   if (is_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
   const bool is_retro = facet.role == FacetRole::retro_facet;
   state.source = hit.facet;
   state.entrance_source = {};
-  if (is_retro && !optics.is_smooth()) return meet_textured(state, facet.normal);
+  if (is_retro && !optics.is_smooth()) return meet_textured(state, facet.normal, optics);
   const Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
   const double cos_incidence = -against.dot(state.direction);
   const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, state.inside, cos_incidence);
@@ -359,9 +373,9 @@ bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, cons
   return true;
 }
 
-bool PathWalker::meet_textured(State& state, const Vec3& normal) {
+bool PathWalker::meet_textured(State& state, const Vec3& normal, const Optics& optics) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
-  const TexturedReturn back = meet_textured_facet(setup_.optics, normal, state, setup_.policy.split_power, random);
+  const TexturedReturn back = meet_textured_facet(optics, normal, state, setup_.policy.split_power, random);
   tally_.other[Account::truncated] += back.truncated;
   tally_.other[Account::absorbed] += back.absorbed;
   const State before = state;

@@ -27,6 +27,7 @@ struct PathSetup : LightSetup {
   const EntranceFace* entrance_face = nullptr;  ///< in place of the plane z = thickness_mm; null: that plane
   Light incident;                               ///< on an entrance surface: the light of the beam
   PathPolicy policy;
+  Vec2 centre_mm = Vec2::Zero();     ///< where positions are told from, in the part frame
   double clearance_mm = 0.0;         ///< height above z = 0 from which the back surface is looked for
   Vec2 period_mm = Vec2::Zero();     ///< infinite part
   Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the piece of surface that stands for it
@@ -91,7 +92,9 @@ class PathWalker {
   void leave(const State& state, const Light& light, const Vec3& direction);
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
-  bool meet_textured(State& state, const Vec3& normal);
+  bool meet_textured(State& state, const Vec3& normal, const Optics& optics);
+  const Optics& optics_of(const FacetRef& facet) const;
+  const Optics& optics_of_wall(const Vec3& position) const;
   Branch choose(Light& reflected, Light& transmitted);
   template <class Pass>
   bool go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass);

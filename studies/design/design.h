@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/schema/document.h"
+#include "geometry/elements/element_choice.h"
 #include "geometry/elements/part_spec.h"
 #include "raytrace/balls/ball_layer.h"
 #include "raytrace/light/stokes.h"
@@ -150,6 +151,12 @@ struct Substance {
   bool is_coloured() const { return std::holds_alternative<std::vector<SpectralAbsorption>>(absorption_per_mm); }
 };
 
+/// Some elements of a finite array that have another medium behind them.
+struct WetElements {
+  double index = 1.333;  ///< of that medium, relative to air; 1..3
+  geometry::ElementChoice where;
+};
+
 /// A layer of a coating, as the design names it.
 struct CoatingLayer {
   std::string material;  ///< of the library, or a metal; empty: its index is given
@@ -203,6 +210,7 @@ struct Design {
   Shape shape;
   std::optional<EntranceFile> entrance;  ///< none: the plane z = thickness_mm; balls and endless arrays have none
   Substance substance;
+  std::optional<WetElements> wet_back;
   Surface surface;
   Light light;
   Detector detector;
@@ -248,6 +256,7 @@ struct Takes {
   bool solids = false;  ///< meshes and plates
   bool substrates = true;
   bool entrances = false;
+  bool wet_backs = false;
 };
 /// \throw InputError for a design that is not taken
 void check_taken(const Design& design, const Takes& takes);

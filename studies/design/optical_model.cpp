@@ -342,16 +342,38 @@ const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double w
   });
 }
 
+raytrace::Optics with_back_index(const Design& design, raytrace::Optics optics, double back_index) {
+  optics.back_index = back_index;
+  if (const auto* const texture = std::get_if<HarveyShackTexture>(&design.surface.texture))
+    optics.facet_scatter = harvey_shack_model(*texture, optics);
+  return optics;
+}
+
+/// Gives the wet elements of a design their back index, at every wavelength.
+void add_wet_back(const Design& design, OpticalModel& model) {
+  model.wet_elements = std::make_shared<const geometry::ChosenElements>(model.part, design.wet_back->where);
+  if (model.wet_elements->is_nothing()) return;
+  for (SpectralOptics& at : model.spectral) {
+    raytrace::Optics wet = with_back_index(design, at.optics, design.wet_back->index);
+    if (model.wet_elements->is_everything())
+      at.optics = std::move(wet);
+    else
+      at.optics.wet = std::make_shared<const raytrace::WetBack>(raytrace::WetBack{std::move(wet), model.wet_elements});
+  }
+  model.optics = nearest(model.spectral, model.wavelength_nm).optics;
+}
+
 }  // namespace
 
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Entrances entrances) {
-  check_taken(design, {.what = {}, .solids = true, .entrances = true});
+  check_taken(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
   if (entrances == Entrances::plane && design.entrance)
     throw InputError(design.where(design.entrance_key()),
                      "a [front] is taken by retrace rre, photometry and inspect alone");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.entrance) model.entrance = entrance_of_design(design, model.part);
+  if (design.wet_back) add_wet_back(design, model);
   return model;
 }
 

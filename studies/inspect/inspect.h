@@ -35,6 +35,14 @@ struct SubstrateReport {
   geometry::InnerWalls walls;  ///< what stands open between neighbours, seen along the base's normal at its middle
 };
 
+/// Elements that have another medium behind them.
+struct WetReport {
+  std::int64_t elements = 0;  ///< whole and partial ones that have
+  std::int64_t of_all = 0;
+  /// As Inspection::tir_limit_deg, of these elements.
+  std::optional<double> tir_limit_deg;
+};
+
 /// What a design is, before any light is traced. Areas and counts of an infinite array are those of one period.
 struct Inspection {
   Design design;
@@ -60,6 +68,7 @@ struct Inspection {
       substrate;  ///< of elements that stand on one; there are no limits of total reflection then
   std::optional<EntranceReport> entrance;  ///< of a part with one; limits of total reflection are those of light that
                                            ///< enters through a plane
+  std::optional<WetReport> wet_back;
   CoatingReports coating;
   double dead_zone_share = 0.0;      ///< of an element's plan that rounded and chamfered edges take
   std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something

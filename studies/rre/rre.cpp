@@ -110,6 +110,19 @@ void check_entrance(const Design& design, const RreRequest& request) {
     if (asked) check_taken(design, {.what = option, .solids = true});
 }
 
+/// Beams and cells know backs alone that are all alike.
+void check_backs(const Design& design, const OpticalModel& model, const RreRequest& request) {
+  if (model.optics.has_one_back()) return;
+  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
+                                      {request.far_field, "--far-field"},
+                                      {request.derivatives, "--derivatives"}})
+    if (asked) check_taken(design, {.what = option, .solids = true});
+  if (request.engine == Engine::exact || request.engine == Engine::cell)
+    throw InputError({"", 0, "--engine"}, fmt::format("{} takes backs that are all alike, {} has a [wet_back] behind "
+                                                      "some elements: use --engine embree",
+                                                      engine_name(request.engine), design.source_name()));
+}
+
 /// Balls have one engine of their own.
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreRequest& request) {
   if (!design.balls()) {
@@ -145,6 +158,7 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     check_planes(design, request);
     if (design.balls()) continue;
     if (request.derivatives) check_taken(design, {.what = "--derivatives"});
+    check_backs(design, prepared_->models.back(), request);
     if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
       throw InputError(design.where_texture(),
                        "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "

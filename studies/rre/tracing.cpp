@@ -189,7 +189,7 @@ class DesignTracing {
 
   raytrace::MonteCarlo::Engine ray_engine() const {
     using raytrace::MonteCarlo;
-    const bool may_be_cell = !model_.entrance && request_.engine != Engine::embree &&
+    const bool may_be_cell = !model_.entrance && model_.optics.has_one_back() && request_.engine != Engine::embree &&
                              request_.sampling == raytrace::Sampling::Kind::stratified;
     return may_be_cell && MonteCarlo::cell_serves(model_.part) ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
   }
@@ -289,7 +289,8 @@ bool may_be_exact(const RreRequest& request) {
 }
 
 bool may_be_exact(const Design& design, const OpticalModel& model, const RreRequest& request) {
-  return may_be_exact(request) && !design.balls() && !model.entrance && model.optics.is_smooth();
+  return may_be_exact(request) && !design.balls() && !model.entrance && model.optics.is_smooth() &&
+         model.optics.has_one_back();
 }
 
 bool must_be_exact(const RreRequest& request) {

@@ -177,6 +177,26 @@ void set_body(Document& document, const Design& design) {
   if (design.substance.back_index != 1.0) keys.set("back_index", design.substance.back_index);
 }
 
+void set_wet_back(Document& document, const WetElements& wet) {
+  Keys keys(document, "wet_back");
+  keys.set("index", wet.index);
+  std::visit(
+      Overloaded{[&](const geometry::RandomShare& random) {
+                   keys.set("share", random.share);
+                   keys.set("seed", static_cast<double>(random.seed));
+                 },
+                 [&](const geometry::Rectangle& r) {
+                   keys.set("rectangle_mm", std::vector{r.lower.x(), r.lower.y(), r.upper.x(), r.upper.y()});
+                 },
+                 [&](const geometry::Disc& disc) {
+                   keys.set("disc_mm", std::vector{disc.centre_mm.x(), disc.centre_mm.y(), disc.radius_mm});
+                 },
+                 [&](const geometry::HalfPlane& half) {
+                   keys.set("half_plane", std::vector{half.through_mm.x(), half.through_mm.y(), half.azimuth_deg});
+                 }},
+      wet.where);
+}
+
 void set_layers(Document& document, const std::string& list, const std::vector<CoatingLayer>& layers) {
   if (!layers.empty()) document.set(list, {});
   for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -310,6 +330,7 @@ Document document_of(const Design& design) {
   set_shape(document, design.shape);
   if (design.entrance) set_entrance(document, *design.entrance);
   set_body(document, design);
+  if (design.wet_back) set_wet_back(document, *design.wet_back);
   set_coating(document, design.surface.coating);
   set_light(document, design);
   Keys(document, "detector").set("acceptance_half_angle_deg", design.detector.acceptance_half_angle_deg);

@@ -53,6 +53,10 @@ const Table kCoatingTables[] = {
      .shape = kLayerShape,
      .when = kEntranceTable}};
 
+constexpr std::string_view kWhichAreWet[] = {"share", "rectangle_mm", "disc_mm", "half_plane"};
+constexpr Rule kWetBackRules[] = {
+    OneOf{kWhichAreWet, "must have one of share, rectangle_mm, disc_mm and half_plane, which say where it is wet"}};
+
 constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Names curves in plots."}};
 const Table kTables[] = {
     {.name = "element",
@@ -81,6 +85,12 @@ const Table kTables[] = {
      .presence = Presence::optional,
      .when = kEntranceTable},
     {.name = "body", .meaning = "What the part is made of.", .rows = body_rows(), .presence = Presence::implied},
+    {.name = "wet_back",
+     .meaning = "Another medium behind some elements of a finite array, such as water that has entered in places.",
+     .rows = wet_back_rows(),
+     .rules = kWetBackRules,
+     .presence = Presence::optional,
+     .when = kWithPlanes},
     {.name = "coating",
      .meaning = "Thin layers on its faces.",
      .tables = kCoatingTables,

@@ -175,6 +175,25 @@ std::optional<GlassCatalogueFile> read_catalogue(const Document& document) {
   return GlassCatalogueFile{document.text("body.catalogue"), document.file("body.catalogue")};
 }
 
+/// Which elements are wet; none without such a table.
+std::optional<WetElements> read_wet_back(const Document& document) {
+  if (!document.has("wet_back")) return std::nullopt;
+  WetElements wet{document.number("wet_back.index"), {}};
+  if (const auto share = document.number_if("wet_back.share")) {
+    wet.where = geometry::RandomShare{*share, static_cast<std::uint32_t>(document.number("wet_back.seed"))};
+  } else if (document.has("wet_back.rectangle_mm")) {
+    const std::vector<double> r = document.numbers("wet_back.rectangle_mm");
+    wet.where = geometry::Rectangle{{r[0], r[1]}, {r[2], r[3]}};
+  } else if (document.has("wet_back.disc_mm")) {
+    const std::vector<double> d = document.numbers("wet_back.disc_mm");
+    wet.where = geometry::Disc{{d[0], d[1]}, d[2]};
+  } else {
+    const std::vector<double> h = document.numbers("wet_back.half_plane");
+    wet.where = geometry::HalfPlane{{h[0], h[1]}, h[2]};
+  }
+  return wet;
+}
+
 /// What a document says, without the files that it names.
 Design resolved(std::shared_ptr<const Document> given) {
   const Document& document = *given;
@@ -187,6 +206,7 @@ Design resolved(std::shared_ptr<const Document> given) {
   design.substance = {
       document.text("body.material"),           read_catalogue(document),  document.number_if("body.refractive_index"),
       document.number_if("body.temperature_c"), read_absorption(document), document.number("body.back_index")};
+  design.wet_back = read_wet_back(document);
   design.surface = read_surface(document);
   design.light = {read_colour(document), read_polarisation(document)};
   design.detector.acceptance_half_angle_deg = read_acceptance(document);
@@ -273,6 +293,8 @@ void check_taken(const Design& design, const Takes& takes) {
              design.shape);
   if (design.entrance && !takes.entrances)
     throw InputError(design.where(design.entrance_key()), what + " takes no [front], only a plane entrance face");
+  if (design.wet_back && !takes.wet_backs)
+    throw InputError(design.where("wet_back.index"), what + " takes no [wet_back], only backs that are all alike");
 }
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {

@@ -335,6 +335,8 @@ constexpr schema::Words kAbsorptionKeys = {kAbsorption};
 constexpr schema::Words kSpectrumKeys = {"light.spectrum"};
 constexpr schema::Words kStokesKeys = {"light.polarisation"};
 constexpr schema::Words kMirrorKeys = {"element.mirror_offset_mm", "body.facet_coating", "idealisation.facets"};
+constexpr schema::Words kWetBackKeys = {"wet_back.rectangle_mm", "wet_back.disc_mm", "array.extent",
+                                        "array.arrangement", "base.kind"};
 constexpr schema::Words kLayerKeys = {kFacetLayers, kEntranceLayers};
 constexpr schema::Words kCoatingKeys = {kFacetLayers,          kEntranceLayers,         "body.facet_coating",
                                         "idealisation.facets", "idealisation.entrance", "element.kind"};
@@ -391,6 +393,10 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kSpectrumKeys, "A list of lines has each wavelength once.", check_by<check_lines>},
     schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",
                   check_by<check_stokes>},
+    schema::Check{kWetBackKeys,
+                  "A `[wet_back]` is for finite arrays without a `[base]`, not `single`; its rectangle has two lengths "
+                  "above 0, its disc a radius.",
+                  check_by<check_wet_back>},
     schema::Check{kLayerKeys,
                   "At most 200 layers on a face. Layers without thickness are opaque: one on the facets, none on the "
                   "entrance face.",

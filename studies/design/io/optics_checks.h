@@ -30,6 +30,8 @@ void check_lines(const schema::Document& document);
 void check_stokes(const schema::Document& document);
 /// A bowl behind balls has a mirror.
 void check_ball_mirror(const schema::Document& document);
+/// Elements with another medium behind them are some of a finite array on a plane, and their region has a size.
+void check_wet_back(const schema::Document& document);
 /// At most one layer is opaque, and none of those on the entrance face.
 void check_layers(const schema::Document& document);
 /// Layers stand beside nothing that would not count.

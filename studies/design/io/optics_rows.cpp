@@ -61,6 +61,23 @@ constexpr Row kBodyRows[] = {
      "Relative to air; of what lies behind the facets, such as water (1.333) or glue; air is in front and at the "
      "sides."}};
 
+constexpr Condition kWithShare[] = {beside("share")};
+constexpr NumberRange kPlaceInPart{.low = -1e6, .high = 1e6};
+
+constexpr Row kWetBackRows[] = {
+    {"index", Number{{.low = 1.0, .high = 3.0}}, kRequired,
+     "Relative to air; of what lies behind these elements, such as water (1.333); behind the others lies what "
+     "`body.back_index` says."},
+    {"share", Number{{.low = 0.0, .high = 1.0}}, kNone,
+     "The chance of each element to be one of them, by a hash of its row, its column and `seed`."},
+    {"seed", Whole{{.low = 0.0, .high = 4294967295.0}}, 1.0, "Of that choice.", kWithShare},
+    {"rectangle_mm", Numbers{4, kPlaceInPart, "places, x and y of two corners"}, kNone,
+     "`[x, y, x, y]`: elements whose middle lies in a rectangle of the part frame, its least corner first."},
+    {"disc_mm", Numbers{3, kPlaceInPart, "lengths, x and y of the centre and the radius"}, kNone,
+     "`[x, y, radius]`: those whose middle lies in a disc."},
+    {"half_plane", Numbers{3, kPlaceInPart, "numbers, x and y in mm and an azimuth in degrees"}, kNone,
+     "`[x_mm, y_mm, azimuth_deg]`: those whose middle lies on the side towards that azimuth of a line through x, y."}};
+
 constexpr Row kLayerRows[] = {
     {"material", Text{}, kNone, "A name that `retrace list materials` shows, of a material or a metal."},
     {"refractive_index", Number{kAboveZero}, kNone, "In place of a material, relative to air."},
@@ -174,6 +191,9 @@ constexpr Row kIdealisationRows[] = {
 
 std::span<const Row> body_rows() {
   return kBodyRows;
+}
+std::span<const Row> wet_back_rows() {
+  return kWetBackRows;
 }
 std::span<const Row> layer_rows() {
   return kLayerRows;

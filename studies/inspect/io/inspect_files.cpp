@@ -9,6 +9,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/overloaded.h"
 #include "studies/design/io/design_json.h"
 
 namespace retrace::studies {
@@ -110,6 +111,44 @@ std::string coatings_text(const Inspection& i) {
   return coating_text("facets", i.coating.facets) + coating_text("entrance face", i.coating.entrance);
 }
 
+std::string place_text(const geometry::ElementChoice& choice) {
+  return std::visit(
+      Overloaded{[](const geometry::RandomShare& random) {
+                   return fmt::format("each with a chance of {}, seed {}", shortest(random.share), random.seed);
+                 },
+                 [](const geometry::Rectangle& r) {
+                   return fmt::format("x {} to {}, y {} to {} mm", shortest(r.lower.x()), shortest(r.upper.x()),
+                                      shortest(r.lower.y()), shortest(r.upper.y()));
+                 },
+                 [](const geometry::Disc& disc) {
+                   return fmt::format("within {} mm of x {}, y {} mm", shortest(disc.radius_mm),
+                                      shortest(disc.centre_mm.x()), shortest(disc.centre_mm.y()));
+                 },
+                 [](const geometry::HalfPlane& half) {
+                   return fmt::format("beyond x {}, y {} mm towards azimuth {}", shortest(half.through_mm.x()),
+                                      shortest(half.through_mm.y()), shortest(half.azimuth_deg));
+                 }},
+      choice);
+}
+
+/// Those of the elements that are wet.
+std::string wet_back_text(const Inspection& i) {
+  if (!i.wet_back) return {};
+  return fmt::format("  wet back            {} of {} elements, {} behind them: {}\n", i.wet_back->elements,
+                     i.wet_back->of_all, shortest(i.design.wet_back->index), place_text(i.design.wet_back->where)) +
+         fmt::format("                      total reflection in them {}\n",
+                     i.wet_back->tir_limit_deg ? fmt::format("up to {} degrees", fixed(*i.wet_back->tir_limit_deg, 2))
+                                               : "nowhere, or not stated");
+}
+
+nlohmann::ordered_json wet_back_json(const Inspection& i) {
+  nlohmann::ordered_json json = {{"elements", i.wet_back->elements},
+                                 {"of_all", i.wet_back->of_all},
+                                 {"refractive_index", i.design.wet_back->index}};
+  if (i.wet_back->tir_limit_deg) json["tir_limit_deg"] = *i.wet_back->tir_limit_deg;
+  return json;
+}
+
 std::string substrate_text(const Inspection& i) {
   if (!i.substrate) return {};
   const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = i.substrate->measures;
@@ -170,6 +209,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (i.design.elements()) json["dead_zone_share"] = i.dead_zone_share;
   if (i.substrate) json["base"] = substrate_json(*i.substrate);
+  if (i.wet_back) json["wet_back"] = wet_back_json(i);
   if (i.entrance) json["front"] = entrance_json(*i.entrance);
   json["boundary"] = i.boundary;
   return result_text("retrace.inspect/1", json, i.warnings);
@@ -225,6 +265,7 @@ std::string inspect_text(const Inspection& i) {
   text += light_text(i);
   text += coatings_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
+  text += wet_back_text(i);
   text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_share, 3));
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;
