@@ -14,10 +14,6 @@ constexpr double kHandedOver = -1.0;
 // By how much places may miss their column by rounding, relative to the period.
 constexpr double kSlack = 1e-12;
 
-Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k) {
-  return {rays[first][k], rays[first + 1][k], rays[first + 2][k]};
-}
-
 Vec3 lifted(const Vec2& normal) {
   return {normal.x(), normal.y(), 0.0};
 }
@@ -40,6 +36,8 @@ CellWalker::CellWalker(const LightSetup& setup, const PathPolicy& policy, const 
     shape.role = column.facets.front().role;
     for (const CellArray::Facet& facet : column.facets) {
       shape.facets.push_back({facet.normal, facet.offset_mm});
+      shape.frames.emplace_back();
+      if (facet.middle_mm) shape.frames.back() = FacetFrame(facet.normal, facet.offset_mm, *facet.middle_mm);
       shape.heights.push_back({facet.height.slope.x(), facet.height.slope.y(), facet.height.height_mm});
     }
     for (const CellArray::Edge& edge : column.edges) shape.borders.push_back({lifted(edge.normal), edge.offset_mm});
@@ -313,6 +311,7 @@ void CellWalker::meet_surface(const Stream& stream) {
   const std::uint32_t part = stream_of(stream.column, Place::inside, stream.scattered);
   const std::uint32_t below = stream_of(stream.column, Place::below_after_leaving, stream.scattered);
   const bool is_retro = shapes_[stream.column].role == FacetRole::retro_facet;
+  if (is_retro && !optics.facet_form.is_plane()) turn_normals(stream);
   if (is_retro && optics.mirror_facets) {
     const std::uint32_t to = inside ? part : below;
     const std::size_t more =

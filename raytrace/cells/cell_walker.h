@@ -10,11 +10,17 @@
 #include "raytrace/cells/cell_array.h"
 #include "raytrace/cells/cell_lanes.h"
 #include "raytrace/cells/ray_store.h"
+#include "raytrace/faces/formed_facet.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/path_policy.h"
 #include "raytrace/paths/textured_facet.h"
 
 namespace retrace::raytrace {
+
+/// A vector of a ray. \param first of its three numbers
+inline Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k) {
+  return {rays[first][k], rays[first + 1][k], rays[first + 2][k]};
+}
 
 /// Follows light through an endless array, column by column, many rays at once: all that are over one column, or under
 /// its surface, wait in one stream and are moved in SIMD lanes, the fullest stream first. Rays that leave the inner
@@ -80,6 +86,7 @@ class CellWalker {
     std::vector<lanes::Plane> facets;
     std::vector<lanes::Plane> borders;
     std::vector<lanes::LinearForm> heights;
+    std::vector<std::optional<FacetFrame>> frames;  ///< of facets that have a form
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
   };
 
@@ -91,6 +98,8 @@ class CellWalker {
   void advance(std::uint32_t number);
   void move(const Stream& stream);
   void meet_surface(const Stream& stream);
+  std::size_t facet_of(const Stream& stream, const Vec3& normal) const;
+  void turn_normals(const Stream& stream);
   void meet_texture(const Stream& stream);
   void meet_layers(const Stream& stream, std::uint32_t reflected_to, std::uint32_t transmitted_to);
   void meet_wall(const Stream& stream, const Crossing& crossing, double number);

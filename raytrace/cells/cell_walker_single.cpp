@@ -1,6 +1,8 @@
-// What rays of a cell meet one by one, as it takes longer than lanes could save: the members of CellWalker for textures
-// and for layers.
+// What rays of a cell meet one by one, as it takes longer than lanes could save: the members of CellWalker for forms,
+// textures and layers.
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "raytrace/cells/cell_walker.h"
@@ -8,6 +10,29 @@
 namespace retrace::raytrace {
 
 using geometry::FacetRole;
+
+/// The facet of a column whose normal is that one, or nearly.
+std::size_t CellWalker::facet_of(const Stream& stream, const Vec3& normal) const {
+  const std::vector<lanes::Plane>& facets = shapes_[stream.column].facets;
+  const auto turned = [&](const lanes::Plane& facet) { return (facet.normal - normal).squaredNorm(); };
+  return static_cast<std::size_t>(std::ranges::min_element(facets, {}, turned) - facets.begin());
+}
+
+/// Gives rays that have met formed facets the normals of those there.
+void CellWalker::turn_normals(const Stream& stream) {
+  const bool inside = stream.place == Place::inside;
+  const Shape& shape = shapes_[stream.column];
+  const lanes::Rays rays = moved_.rays();
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    if (met_[k] != kFacet) continue;
+    const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
+    const std::optional<FacetFrame>& frame = shape.frames[facet_of(stream, normal)];
+    if (!frame) continue;
+    const Vec3 formed = formed_normal(setup_.optics, normal, *frame, vector_of(rays, lanes::kX, k),
+                                      vector_of(rays, lanes::kDx, k), inside);
+    for (std::size_t n = 0; n < 3; ++n) met_[(n + 1) * capacity_ + k] = formed[static_cast<Eigen::Index>(n)];
+  }
+}
 
 /// One by one: what a texture does takes longer than all else.
 void CellWalker::meet_texture(const Stream& stream) {
@@ -26,8 +51,10 @@ void CellWalker::meet_texture(const Stream& stream) {
     ++tally_->segments;
     const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
     surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
-    const TexturedReturn back = meet_textured_facet(
-        setup_.optics, normal, ray_of(rays, k, was_inside, stream.scattered), policy_.split_power, random);
+    TexturedReturn back = meet_textured_facet(setup_.optics, normal, ray_of(rays, k, was_inside, stream.scattered),
+                                              policy_.split_power, random);
+    if (!setup_.optics.facet_form.is_plane())
+      back.keep_sides(shapes_[stream.column].facets[facet_of(stream, normal)].normal);
     tally_->other[Account::truncated] += back.truncated;
     tally_->other[Account::absorbed] += back.absorbed;
     for (std::size_t n = 0; n < back.count; ++n) send(k, back.rays[n]);

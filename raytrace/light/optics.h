@@ -5,6 +5,7 @@
 #include "core/angle.h"
 #include "materials/thin_film.h"
 #include "raytrace/light/stokes.h"
+#include "surface_models/facet_form.h"
 #include "surface_models/scatter/scatter_model.h"
 
 namespace retrace::raytrace {
@@ -20,6 +21,7 @@ struct Optics {
   bool lossless_entrance = false;         ///< entrance refracts with T = 1; light beyond the critical angle ends there
   bool absorbing_walls = false;           ///< walls of elements and of the border let no light go on
   surface_models::ScatterModel facet_scatter;  ///< what the texture of retro facets does
+  surface_models::FacetForm facet_form;        ///< by which retro facets of elements depart from their planes
   double wavelength_nm = 587.56;               ///< in vacuum; matters to scatter alone
 
   /// Index before over index after, at a face of the back surface.
@@ -28,6 +30,8 @@ struct Optics {
   bool border_walls_differ() const { return absorbing_walls || back_index != 1.0; }
   /// Whether every beam stays a beam at every face.
   bool is_smooth() const { return std::holds_alternative<surface_models::Smooth>(facet_scatter); }
+  /// Whether retro facets do to light what planes do.
+  bool has_plane_facets() const { return is_smooth() && facet_form.is_plane(); }
 };
 
 /// Where the light comes from: the source lies in direction (sin t cos p, sin t sin p, cos t) of the part frame, with

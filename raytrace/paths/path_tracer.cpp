@@ -1,5 +1,6 @@
 #include "raytrace/paths/path_tracer.h"
 #include "core/infinity.h"
+#include "raytrace/faces/formed_facet.h"
 
 #include <algorithm>
 #include <cmath>
@@ -327,8 +328,10 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   const bool is_retro = facet.role == FacetRole::retro_facet;
   state.source = hit.facet;
   state.entrance_source = {};
-  if (is_retro && !optics.is_smooth()) return meet_textured(state, facet.normal);
-  const Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
+  const bool is_formed = is_retro && facet.middle_mm && !optics.facet_form.is_plane();
+  const Vec3 normal = is_formed ? normal_at(state, hit.facet) : facet.normal;
+  if (is_retro && !optics.is_smooth()) return meet_textured(state, normal, facet.normal);
+  const Vec3 against = state.inside ? Vec3(-normal) : normal;
   const double cos_incidence = -against.dot(state.direction);
   const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, state.inside, cos_incidence);
 
@@ -346,6 +349,15 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   });
 }
 
+/// Of a formed facet, where a path has come to it.
+Vec3 PathWalker::normal_at(const State& state, const FacetRef& where) const {
+  const ExactSurface::Facet& facet = setup_.surface.facet(where);
+  const geometry::Placement& placement = setup_.surface.placement(where);
+  const Vec3 place(placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm);
+  const FacetFrame frame(facet.normal, facet.offset_mm, *facet.middle_mm);
+  return formed_normal(setup_.optics, facet.normal, frame, state.position - place, state.direction, state.inside);
+}
+
 /// Follows the branches at a face. \param pass makes of the path the one that goes through
 template <class Pass>
 bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass) {
@@ -359,9 +371,11 @@ bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, cons
   return true;
 }
 
-bool PathWalker::meet_textured(State& state, const Vec3& normal) {
+/// \param plane_normal that of a facet without its form
+bool PathWalker::meet_textured(State& state, const Vec3& normal, const Vec3& plane_normal) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
-  const TexturedReturn back = meet_textured_facet(setup_.optics, normal, state, setup_.policy.split_power, random);
+  TexturedReturn back = meet_textured_facet(setup_.optics, normal, state, setup_.policy.split_power, random);
+  if (!setup_.optics.facet_form.is_plane()) back.keep_sides(plane_normal);
   tally_.other[Account::truncated] += back.truncated;
   tally_.other[Account::absorbed] += back.absorbed;
   const State before = state;

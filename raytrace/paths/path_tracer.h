@@ -91,7 +91,8 @@ class PathWalker {
   void leave(const State& state, const Light& light, const Vec3& direction);
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
-  bool meet_textured(State& state, const Vec3& normal);
+  Vec3 normal_at(const State& state, const FacetRef& where) const;
+  bool meet_textured(State& state, const Vec3& normal, const Vec3& plane_normal);
   Branch choose(Light& reflected, Light& transmitted);
   template <class Pass>
   bool go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass);
