@@ -59,6 +59,28 @@ struct HeightMapTexture {
 /// What the retro facets are like, in the order of the words of `surface.model`.
 using FacetTexture = std::variant<SmoothTexture, HarveyShackTexture, AbgTexture, MicrofacetTexture, HeightMapTexture>;
 
+/// A term of a polynomial over a facet: height_um times the powers of places level and down the facet, in units of the
+/// facet's radius.
+struct FormTerm {
+  int level = 0;
+  int down = 0;            ///< both together at most 8
+  double height_um = 0.0;  ///< out of the body
+};
+struct FormMap {
+  std::string name;            ///< of the file, as given
+  std::filesystem::path file;  ///< the same, from the working directory; checked only when it is read, by make_model()
+  HeightMapAxis level_axis = HeightMapAxis::x;
+  int degree = 4;  ///< of the polynomial that is taken from it, 2..8
+};
+/// By what the retro facets of elements depart from their planes, all alike: the sum of these.
+struct FormOfFacets {
+  double sink_um = 0.0;  ///< of a paraboloid, from its farthest corner to its middle, into the body
+  std::vector<FormTerm> terms;
+  std::optional<FormMap> map;
+
+  bool is_plane() const { return sink_um == 0.0 && terms.empty() && !map; }
+};
+
 struct SpectralAbsorption {
   double wavelength_nm = 0.0;
   double per_mm = 0.0;  ///< Napierian, for power; >= 0
@@ -175,6 +197,7 @@ struct Surface {
   Coating coating;
   bool absorbing_walls = false;  ///< of elements and of the border
   FacetTexture texture;
+  FormOfFacets form;
 
   bool is_smooth() const { return std::holds_alternative<SmoothTexture>(texture); }
 };
@@ -216,6 +239,10 @@ struct Design {
   InputLocation where(std::string_view key) const;
   /// The same of what decides the texture of the facets.
   InputLocation where_texture() const;
+  /// The same of what decides their form.
+  InputLocation where_form() const;
+  /// Of what makes them other than smooth planes: the texture, or the form where there is none.
+  InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
   std::string_view entrance_key() const;
   /// The key is now what `place` says, for messages.
   void set_where(const std::string& key, InputLocation place);

@@ -15,15 +15,14 @@
 #include "materials/io/glass_catalogue.h"
 #include "materials/io/spectrum_reader.h"
 #include "studies/design/entrance_of_design.h"
+#include "studies/design/form_of_design.h"
 #include "studies/design/part_of_design.h"
 #include "surface_models/form.h"
-#include "surface_models/io/height_map_reader.h"
 
 namespace retrace::studies {
 
 namespace {
 
-constexpr double kMissingShareToTell = 0.05;
 constexpr double kMostFringesPerStep = 0.5;
 constexpr std::string_view kFacetLayers = "coating.facets";
 constexpr std::string_view kEntranceLayers = "coating.entrance";
@@ -68,23 +67,12 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
   }
 }
 
-/// The map as it lies on a facet, x level. Warnings are appended.
+/// The map as it lies on a facet, x level, less its form. Warnings are appended.
 surface_models::HeightMap levelled_map(const HeightMapTexture& t, const std::string& source,
                                        std::vector<std::string>& warnings) {
-  using namespace surface_models;
-  HeightMapOptions options;
-  options.can_be_given = false;
-  HeightMapFile file = read_height_map(t.file, options);
-  const std::size_t points = file.map.heights_nm.size();
-  const std::size_t missing = points - measured_points(file.map);
-  if (static_cast<double>(missing) > kMissingShareToTell * static_cast<double>(points))
-    file.warnings.push_back(fmt::format("{:.1f} % of the points are missing; they count as the mean height",
-                                        100.0 * static_cast<double>(missing) / static_cast<double>(points)));
-  for (const std::string& warning : file.warnings)
-    warnings.push_back(fmt::format("{}: {}: {}", source, t.file.string(), warning));
-  const HeightMap level = t.level_axis == HeightMapAxis::x ? std::move(file.map) : turned_by_quarter(file.map);
+  const surface_models::HeightMap level = level_map_of(t.file, t.level_axis, source, warnings);
   try {
-    return without_form(level, t.form_degree);
+    return surface_models::without_form(level, t.form_degree);
   } catch (const InputError& error) {
     throw InputError({t.file.string(), 0, ""}, error.what());
   }
@@ -364,6 +352,8 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
   for (std::size_t k = 0; k < light.size(); ++k)
     model.spectral.push_back({light.wavelengths_nm[k], light.weights[k],
                               optics_at(design, material, library, map, light.wavelengths_nm[k])});
+  const surface_models::FacetForm form = form_of_design(design, model.warnings);
+  for (SpectralOptics& at : model.spectral) at.optics.facet_form = form;
   model.wavelength_nm = light.centroid_nm();
   model.optics = nearest(model.spectral, model.wavelength_nm).optics;
   if (!design.substance.refractive_index) {

@@ -212,6 +212,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
     result.boundary = result.warnings.empty() ? "closed, free of self-intersections" : "see warnings";
     return result;
   }
+  if (!model.optics.facet_form.is_plane()) result.form = report_form(design, model.optics.facet_form);
   const double aperture = geometry::area(geometry::aperture_outline(design.part().element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   if (design.part().substrate) {

@@ -11,6 +11,7 @@
 #include "geometry/part/substrate_part.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
+#include "studies/design/form_of_design.h"
 #include "studies/design/optical_model.h"
 #include "studies/design/total_reflection.h"
 #include "studies/inspect/coating_report.h"
@@ -60,6 +61,7 @@ struct Inspection {
       substrate;  ///< of elements that stand on one; there are no limits of total reflection then
   std::optional<EntranceReport> entrance;  ///< of a part with one; limits of total reflection are those of light that
                                            ///< enters through a plane
+  std::optional<FormReport> form;          ///< of facets that have one
   CoatingReports coating;
   double dead_zone_share = 0.0;      ///< of an element's plan that rounded and chamfered edges take
   std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something

@@ -145,10 +145,11 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     check_planes(design, request);
     if (design.balls()) continue;
     if (request.derivatives) check_taken(design, {.what = "--derivatives"});
-    if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
-      throw InputError(design.where_texture(),
-                       "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "
-                       "--far-field and --derivatives");
+    if (must_be_exact(request) && !prepared_->models.back().optics.has_plane_facets())
+      throw InputError(design.where_facets(),
+                       fmt::format("{} a beam into infinitely many: use --engine montecarlo, without --footprint, "
+                                   "--far-field and --derivatives",
+                                   design.surface.is_smooth() ? "facets with a form bend" : "rough facets split"));
     if (request.engine == Engine::cell && !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part))
       throw InputError({"", 0, "--engine"},
                        fmt::format("cell takes endless arrays, and arrays of equal elements that reach more than two "

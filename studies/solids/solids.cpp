@@ -67,6 +67,8 @@ void add_warnings(Solid& solid) {
     solid.warnings.push_back(name + ": the part touches itself along edges, which some programs take for open");
   if (!solid.design.surface.is_smooth())
     solid.warnings.push_back(name + ": the texture of the facets is left out: a solid's facets are plane");
+  if (!solid.design.surface.form.is_plane())
+    solid.warnings.push_back(name + ": the form of the facets is left out: a solid's facets are plane");
 }
 
 geometry::Part part_to_write(const Design& design, SolidKind what) {

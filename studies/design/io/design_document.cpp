@@ -302,6 +302,24 @@ void set_surface(Document& document, const Design& design) {
   }
 }
 
+void set_form(Document& document, const FormOfFacets& form) {
+  if (form.is_plane()) return;
+  Keys keys(document, "form");
+  if (form.sink_um != 0.0) keys.set("sink_um", form.sink_um);
+  if (form.map) {
+    keys.set_word("map", form.map->name);
+    keys.set_choice("map_level_axis", form.map->level_axis);
+    keys.set("map_degree", static_cast<double>(form.map->degree));
+  }
+  for (std::size_t i = 0; i < form.terms.size(); ++i) {
+    document.set("form.terms", {});
+    Keys entry(document, schema::path_of_entry("form.terms", i));
+    entry.set("level", static_cast<double>(form.terms[i].level));
+    entry.set("down", static_cast<double>(form.terms[i].down));
+    entry.set("height_um", form.terms[i].height_um);
+  }
+}
+
 }  // namespace
 
 Document document_of(const Design& design) {
@@ -314,6 +332,7 @@ Document document_of(const Design& design) {
   set_light(document, design);
   Keys(document, "detector").set("acceptance_half_angle_deg", design.detector.acceptance_half_angle_deg);
   if (!design.balls()) set_surface(document, design);
+  set_form(document, design.surface.form);
   Keys idealisation(document, "idealisation");
   idealisation.set_choice("facets", design.idealisation.mirror_facets);
   idealisation.set_choice("entrance", design.idealisation.lossless_entrance);

@@ -32,6 +32,15 @@ const Table kSurfaceTables[] = {
      .shape = "a list of tables with facet, position_um, width_um and depth_um",
      .when = kScratchesOnly}};
 
+const Table kFormTables[] = {
+    {.name = "terms",
+     .meaning = "A polynomial over every facet, at most 45 terms; places are counted from its middle in units of its "
+                "radius, the distance to the farthest corner. Nothing is taken off.",
+     .rows = form_term_rows(),
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = "a list of tables with level, down and height_um"}};
+
 constexpr std::string_view kLayerIndex[] = {"material", "refractive_index"};
 constexpr Rule kLayerRules[] = {OneOf{kLayerIndex, "must have either material or refractive_index"}};
 constexpr std::string_view kLayerShape =
@@ -93,6 +102,13 @@ const Table kTables[] = {
      .tables = kSurfaceTables,
      .presence = Presence::implied,
      .when = kSurfaceTable},
+    {.name = "form",
+     .meaning = "By what the retro facets of elements depart from planes, all alike: sink of moulded parts, a "
+                "polynomial, a measured map.",
+     .rows = form_rows(),
+     .tables = kFormTables,
+     .presence = Presence::optional,
+     .when = kWithPlanes},
     {.name = "idealisation",
      .meaning = "Idealisations, to be checked against theory.",
      .rows = idealisation_rows(),

@@ -110,8 +110,26 @@ Coating read_coating(const Document& document) {
   return coating;
 }
 
+FormOfFacets read_form(const Document& document) {
+  FormOfFacets form;
+  if (!document.has("form")) return form;
+  form.sink_um = document.number("form.sink_um");
+  for (std::size_t i = 0; i < document.count("form.terms"); ++i) {
+    const std::string entry = schema::path_of_entry("form.terms", i);
+    const FormTerm term{static_cast<int>(document.number(entry + ".level")),
+                        static_cast<int>(document.number(entry + ".down")), document.number(entry + ".height_um")};
+    if (term.height_um != 0.0) form.terms.push_back(term);
+  }
+  if (document.has("form.map"))
+    form.map = {document.text("form.map"), document.file("form.map"),
+                document.choice<HeightMapAxis>("form.map_level_axis"),
+                static_cast<int>(document.number("form.map_degree"))};
+  return form;
+}
+
 Surface read_surface(const Document& document) {
-  return {read_coating(document), document.text("surface.walls") == "absorbing", read_texture(document)};
+  return {read_coating(document), document.text("surface.walls") == "absorbing", read_texture(document),
+          read_form(document)};
 }
 
 std::variant<double, LightSpectrum> read_colour(const Document& document) {
@@ -218,6 +236,12 @@ InputLocation Design::where_texture() const {
   return where("surface.waviness_sq_nm");
 }
 
+InputLocation Design::where_form() const {
+  for (const std::string_view key : {"form.map", "form.terms", "form.sink_um"})
+    if (document && document->has(key)) return where(key);
+  return where("form");
+}
+
 bool Coating::has_opaque_facets() const {
   return std::ranges::any_of(facets, [](const CoatingLayer& layer) { return !layer.thickness_nm; });
 }
@@ -291,9 +315,9 @@ Design with(const Design& design, std::span<const std::string> overrides) {
 
 /// The order in which stores of studies have the files of a design: it is part of what a study is. New keys come
 /// behind.
-constexpr std::array<std::string_view, 8> kFilesOfStores = {"part.mesh",   "array.mask",     "surface.height_map",
+constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",   "array.mask",     "surface.height_map",
                                                             "part.facets", "light.spectrum", "front.turned",
-                                                            "front.mesh",  "body.catalogue"};
+                                                            "front.mesh",  "body.catalogue", "form.map"};
 
 std::vector<fs::path> files_named(std::string_view text, const std::string& source_name,
                                   std::span<const std::string> overrides) {

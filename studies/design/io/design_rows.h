@@ -19,6 +19,8 @@ std::span<const schema::Row> light_rows();
 std::span<const schema::Row> detector_rows();
 std::span<const schema::Row> surface_rows();
 std::span<const schema::Row> scratch_rows();
+std::span<const schema::Row> form_rows();
+std::span<const schema::Row> form_term_rows();
 std::span<const schema::Row> idealisation_rows();
 
 inline constexpr schema::Words kRtp = {"rtp"};

@@ -307,6 +307,25 @@ void check_entrance(const Document& document) {
     document.fail(key, "not allowed for extent = \"infinite\": give lengths");
 }
 
+constexpr std::string_view kFormTerms = "form.terms";
+
+void check_form(const Document& document) {
+  constexpr std::size_t most_terms = 45;
+  constexpr double most_degree = 8.0;
+  if (!document.has(kFormTerms)) return;
+  const std::size_t count = document.count(kFormTerms);
+  if (count > most_terms) document.fail(kFormTerms, fmt::format("must be at most {}, got {}", most_terms, count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string entry = schema::path_of_entry(kFormTerms, i);
+    const double degree = document.number(entry + ".level") + document.number(entry + ".down");
+    if (degree > most_degree)
+      document.fail(entry + ".down", fmt::format("must be <= {} beside level = {}, got {}",
+                                                 shortest(most_degree - document.number(entry + ".level")),
+                                                 shortest(document.number(entry + ".level")),
+                                                 shortest(document.number(entry + ".down"))));
+  }
+}
+
 constexpr schema::Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr schema::Words kRoomKeys = {"array.x_length_mm", "array.y_length_mm", "array.x_offset_mm",
                                      "array.y_offset_mm"};
@@ -327,6 +346,7 @@ constexpr schema::Words kFacetsKeys = {"part.facets",  "array.extent", "base.kin
 constexpr schema::Words kSubstrateKeys = {"base.kind", "base.elements", "surface.rim_radius_um",
                                           "surface.rim_chamfer_um"};
 constexpr schema::Words kThicknessKeys = {"body.thickness_mm"};
+constexpr schema::Words kFormKeys = {kFormTerms};
 constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap_mm"};
 constexpr schema::Words kHeightKeys = {kRoughness, kRoughnessLength, kWaviness, kWavinessLength};
 constexpr schema::Words kModelKeys = {"surface.model", kRoughness, kWaviness};
@@ -400,6 +420,7 @@ constexpr schema::Rule kRules[] = {
                   check_by<check_coating>},
     schema::Check{kMirrorKeys, "A bowl behind balls (`mirror_offset_mm` > 0) needs a mirror: aluminium or ideal.",
                   check_by<check_ball_mirror>},
+    schema::Check{kFormKeys, "Terms of a form are at most 45, each of degree 8 at most.", check_by<check_form>},
     schema::Check{kEntranceKeys, "A `[front]` has one file and a finite part.", check_by<check_entrance>}};
 
 }  // namespace

@@ -165,6 +165,23 @@ constexpr Row kScratchRows[] = {
     {"depth_um", Number{}, kRequired,
      "Normal to the facet and into the part, at most half the width; < 0 is a ridge."}};
 
+constexpr NumberRange kPower{.low = 0.0, .high = 8.0};
+constexpr NumberRange kFormHeight{.low = -100.0, .high = 100.0};
+constexpr Condition kWithFormMap[] = {beside("map")};
+constexpr Row kFormRows[] = {
+    {"sink_um", Number{kFormHeight}, 0.0,
+     "How far the middle of a facet sinks into the body against its farthest corner, as a paraboloid; < 0: it bulges. "
+     "The plane that fits it best is taken off."},
+    {"map", File{"the file of a measured map"}, kNone,
+     "Heights of a facet, as `retrace metrology` reads them, about its middle: a polynomial is fitted, less the plane "
+     "that fits this best over the facet."},
+    {"map_level_axis", Word{kAxes}, "x", "The axis of the map that lies level on a facet.", kWithFormMap},
+    {"map_degree", Whole{{.low = 2.0, .high = 8.0}}, 4.0, "Of that polynomial.", kWithFormMap}};
+constexpr Row kFormTermRows[] = {
+    {"level", Whole{kPower}, kRequired, "Power of the place along the facet's level axis."},
+    {"down", Whole{kPower}, kRequired, "Power of that down the facet; both together at most 8."},
+    {"height_um", Number{kFormHeight}, kRequired, "Out of the body, where both places are the facet's radius."}};
+
 constexpr Row kIdealisationRows[] = {
     {"facets", Word{kFacetModels}, "real", "`\"mirror\"`: retro facets reflect everything at every angle."},
     {"entrance", Word{kEntranceModels}, "real",
@@ -189,6 +206,12 @@ std::span<const Row> surface_rows() {
 }
 std::span<const Row> scratch_rows() {
   return kScratchRows;
+}
+std::span<const Row> form_rows() {
+  return kFormRows;
+}
+std::span<const Row> form_term_rows() {
+  return kFormTermRows;
 }
 std::span<const Row> idealisation_rows() {
   return kIdealisationRows;

@@ -59,6 +59,19 @@ nlohmann::ordered_json entrance_json(const EntranceReport& entrance) {
           {"steepest_deg", entrance.steepest_deg}};
 }
 
+nlohmann::ordered_json form_json(const FormReport& form) {
+  return {{"radius_mm", form.radius_mm}, {"lowest_um", form.lowest_um}, {"highest_um", form.highest_um},
+          {"rms_um", form.rms_um},       {"tilt_mrad", form.tilt_mrad}, {"steepest_mrad", form.steepest_mrad}};
+}
+
+std::string form_text(const Inspection& i) {
+  if (!i.form) return {};
+  return fmt::format("  form of facets      {} to {} um from their planes, rms {} um, slopes to {} mrad{}\n",
+                     fixed(i.form->lowest_um, 4), fixed(i.form->highest_um, 4), fixed(i.form->rms_um, 4),
+                     fixed(i.form->steepest_mrad, 3),
+                     i.form->tilt_mrad > 1e-6 ? fmt::format(", tilted by {} mrad", fixed(i.form->tilt_mrad, 3)) : "");
+}
+
 std::string entrance_text(const Inspection& i) {
   if (!i.entrance) return {};
   return fmt::format("  front               {}, z = {} to {} mm, up to {} degrees steep\n",
@@ -171,6 +184,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.design.elements()) json["dead_zone_share"] = i.dead_zone_share;
   if (i.substrate) json["base"] = substrate_json(*i.substrate);
   if (i.entrance) json["front"] = entrance_json(*i.entrance);
+  if (i.form) json["form"] = form_json(*i.form);
   json["boundary"] = i.boundary;
   return result_text("retrace.inspect/1", json, i.warnings);
 }
@@ -222,6 +236,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += substrate_text(i);
   text += entrance_text(i);
+  text += form_text(i);
   text += light_text(i);
   text += coatings_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
