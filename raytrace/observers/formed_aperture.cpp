@@ -156,9 +156,11 @@ class Cutter {
     }
     const FormPhase phase{whole.hits, form_, policy_.wave_number};
     const double share = std::max(kLeastShare, made_.copies * whole.power / policy_.strongest);
-    const double left_rad = share < 1.0 ? policy_.phase_left_rad / std::pow(share, 0.25) : policy_.phase_left_rad;
+    const double widened = share < 1.0 ? 1.0 / std::pow(share, 0.25) : 1.0;
     const double merge_mm = kOneCorner * whole.transform.size_mm();
     std::vector<FlatPolygon> waiting = {{whole.transform.polygon().begin(), whole.transform.polygon().end()}};
+    const double whole_left_rad = LinearPhase(waiting.front(), phase).left_rad;
+    const double left_rad = policy_.phase_left_rad * std::cbrt(whole_left_rad) * widened;
     while (!waiting.empty()) {
       const FlatPolygon polygon = std::move(waiting.back());
       waiting.pop_back();

@@ -13,9 +13,11 @@ namespace retrace::raytrace {
 /// How finely polygons are cut.
 struct FormedPolicy {
   double wave_number = 0.0;  ///< rad per mm
-  /// Root mean square, over a piece of the strongest polygon, of the phases that a linear one leaves. Their mean is 0,
-  /// so that the field of the piece along its own wave is right to half the square. Of a polygon with less power it is
-  /// more, as the fourth root: its field counts for less.
+  /// Root mean square, over a piece of the strongest polygon, of the phases that a linear one leaves, where the whole
+  /// polygon would leave 1 rad. Their mean is 0, so that the field of the piece along its own wave is right to half the
+  /// square. What they scatter goes as wide as the pieces are narrow; for it to be as faint in any direction, pieces of
+  /// polygons that would leave less are finer, with its cubic root. Of a polygon with less power they are wider, with
+  /// the fourth root: its field counts for less.
   double phase_left_rad = 0.05;
   double strongest = 0.0;  ///< power of that polygon, in all copies of its group
   std::size_t most_pieces = 20'000;
