@@ -30,7 +30,9 @@ CellWalker::CellWalker(const LightSetup& setup, const PathPolicy& policy, const 
       array_(array),
       waiting_(64),
       moved_(array.inner() ? lanes::kRayNumbers : lanes::kNumbersOfEndless),
-      chosen_(array.inner() ? lanes::kRayNumbers : lanes::kNumbersOfEndless) {
+      chosen_(array.inner() ? lanes::kRayNumbers : lanes::kNumbersOfEndless),
+      entering_{chosen_, chosen_} {
+  if (setup.optics.entrance.scatters()) soiled_.emplace(setup.optics);
   if (const auto& inner = array.inner()) {
     inner_ = {inner->where_mm.lower - centre_mm, inner->where_mm.upper - centre_mm};
     anchor_mm_ = inner->anchor_mm - centre_mm;
@@ -114,24 +116,33 @@ void CellWalker::trace(const geometry::Rectangle& entrance_mm, std::uint64_t key
   tally_ = &tally;
   outline_ = entrance_mm;
   handed_over_.clear();
-  const LightSetup::Entry& entry = setup_.entry;
-  tally.front[entry.front_cone] += static_cast<double>(count) * entry.front;
-  tally.other[Account::absorbed] += static_cast<double>(count) * entry.absorbed;
-  if (setup_.score != nullptr)
-    setup_.score->add(entry.front_direction, static_cast<double>(count) * entry.front.i, tally.score);
   reserve(count);
   chosen_.resize(count);
   const lanes::Rays rays = chosen_.rays();
   lanes::sobol(key_x, key_y, first, count, entrance_mm.size(), rays[lanes::kX], rays[lanes::kY]);
   std::fill_n(rays[lanes::kZ], count, setup_.thickness_mm);
-  for (std::size_t k = 0; k < count; ++k) set(rays, k, {entry.direction, entry.light});
   if (array_.inner()) {
     std::fill_n(rays[lanes::kOx], count, entrance_mm.lower.x());
     std::fill_n(rays[lanes::kOy], count, entrance_mm.lower.y());
     lanes::shift(rays, count, entrance_mm.lower - anchor_mm_);
   }
-  fall(false);
+  if (soiled_)
+    enter_soiled(count);
+  else
+    enter(count);
   while (const auto stream = fullest()) advance(*stream);
+}
+
+/// The rays of `chosen_` at their places on the entrance face.
+void CellWalker::enter(std::size_t count) {
+  const LightSetup::Entry& entry = setup_.entry;
+  tally_->front[entry.front_cone] += static_cast<double>(count) * entry.front;
+  tally_->other[Account::absorbed] += static_cast<double>(count) * entry.absorbed;
+  if (setup_.score != nullptr)
+    setup_.score->add(entry.front_direction, static_cast<double>(count) * entry.front.i, tally_->score);
+  const lanes::Rays rays = chosen_.rays();
+  for (std::size_t k = 0; k < count; ++k) set(rays, k, {entry.direction, entry.light});
+  fall(false);
 }
 
 void CellWalker::waits(std::uint32_t stream) {
@@ -378,7 +389,8 @@ void CellWalker::meet_entrance(bool scattered) {
   if (array_.inner() && lanes::mark_beyond(rays, moved_.size(), {height_mm, outline_.lower, outline_.upper},
                                            kTopOrNothing, kHandedOver, met_.data()) > 0)
     hand_over(rays, moved_.size(), met_, kHandedOver, true, scattered);
-  if (!optics.entrance_layers.empty()) return meet_layers_of_entrance(scattered);
+  if (soiled_) return meet_soiled_entrance(scattered);
+  if (!optics.has_bare_entrance()) return meet_layers_of_entrance(scattered);
   const lanes::Entrance entrance = {
       height_mm,        optics.index,      optics.absorption_per_mm, optics.lossless_entrance,
       setup_.to_source, setup_.cone_chord2};

@@ -2,6 +2,7 @@
 
 // The cell engine: moves streams of rays from column to column of an endless array and books where their power ends.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -12,7 +13,7 @@
 #include "raytrace/cells/ray_store.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/path_policy.h"
-#include "raytrace/paths/textured_facet.h"
+#include "raytrace/paths/soiled_entrance.h"
 
 namespace retrace::raytrace {
 
@@ -98,6 +99,12 @@ class CellWalker {
                   const Crossing* crossing);
   void meet_entrance(bool scattered);
   void meet_layers_of_entrance(bool scattered);
+  void enter(std::size_t count);
+  void enter_soiled(std::size_t count);
+  void meet_soiled_entrance(bool scattered);
+  const SoiledReturn& soiled(const Ray& ray);
+  void put_in(const lanes::Rays& from, std::size_t k, const Vec3& place, const Ray& ray);
+  void fall_in();
   void cross(const Stream& stream, const Crossing& crossing, double number);
   void fall(bool scattered);
   void book(double number, Account account);
@@ -132,11 +139,14 @@ class CellWalker {
   std::vector<std::uint32_t> piece_starts_;
   RayStore moved_;                           ///< of the stream at hand
   RayStore chosen_;                          ///< those of them that meet the same
+  std::array<RayStore, 2> entering_;         ///< below a soiled entrance: not scattered, and scattered
   RayStore left_{lanes::kNumbersOfEndless};  ///< what leaves through the entrance, if it is scored
   std::vector<double> met_;                  ///< by `moved_`: number, normal
   std::vector<double> branches_;             ///< marks of `chosen_`, or of weak rays
   std::size_t capacity_ = 0;
   std::uint64_t batches_ = 0;
+  std::optional<SoiledEntrance> soiled_;  ///< where the entrance face scatters
+  SoiledReturn from_soiled_;
   RandomKey key_;
   std::uint32_t replicate_ = 0;
   std::uint32_t sample_ = 0;

@@ -126,7 +126,7 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
   const CoherentLight reflected = beam.light.reflected(f);
   if (is_entrance)
     tally_.other[Account::absorbed] +=
-        transmission_of(beam) * absorbed_by(setup_.optics.entrance_layers, beam.light, reflected, through);
+        transmission_of(beam) * absorbed_at_entrance(setup_.optics, beam.light, reflected, through);
   if (!f.total_reflection) {
     if (is_entrance)
       leave_through_entrance(beam, through, out);

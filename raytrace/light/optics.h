@@ -4,6 +4,7 @@
 
 #include "core/angle.h"
 #include "materials/thin_film.h"
+#include "raytrace/light/entrance_condition.h"
 #include "raytrace/light/stokes.h"
 #include "surface_models/scatter/scatter_model.h"
 
@@ -17,6 +18,7 @@ struct Optics {
   bool mirror_facets = false;      ///< retro facets reflect everything
   materials::LayerStack facet_layers;     ///< on the retro facets, one of which may be opaque
   materials::LayerStack entrance_layers;  ///< on the entrance face, all of which let light through
+  EntranceCondition entrance;             ///< what else the entrance face is like
   bool lossless_entrance = false;         ///< entrance refracts with T = 1; light beyond the critical angle ends there
   bool absorbing_walls = false;           ///< walls of elements and of the border let no light go on
   surface_models::ScatterModel facet_scatter;  ///< what the texture of retro facets does
@@ -26,8 +28,13 @@ struct Optics {
   double ratio_at_back(bool inside) const { return inside ? index / back_index : back_index / index; }
   /// Whether border walls, below z = 0, treat light otherwise than the plate's sides above them.
   bool border_walls_differ() const { return absorbing_walls || back_index != 1.0; }
-  /// Whether every beam stays a beam at every face.
+  /// Whether every beam stays a beam at the facets ...
   bool is_smooth() const { return std::holds_alternative<surface_models::Smooth>(facet_scatter); }
+  /// ... and at every face.
+  bool keeps_beams() const { return is_smooth() && !entrance.scatters(); }
+  /// Whether nothing lies on the entrance face.
+  bool has_bare_entrance() const { return entrance_layers.empty() && entrance.layers.empty(); }
+  bool entrance_absorbs() const { return entrance_layers.absorbs() || entrance.absorbs(); }
 };
 
 /// Where the light comes from: the source lies in direction (sin t cos p, sin t sin p, cos t) of the part frame, with

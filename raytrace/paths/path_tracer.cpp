@@ -27,7 +27,7 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
     // The cells of the outermost periods do not fill them to the edge.
     tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
   }
-  if (entrance_face != nullptr) incident = light_of_beam(illumination.stokes, to_source);
+  if (how.entrance.scatters()) soiled.emplace(how);
 }
 
 void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample) {
@@ -63,6 +63,7 @@ void PathWalker::follow_pending() {
 
 void PathWalker::enter(const Vec2& entry_mm) {
   if (setup_.entrance_face != nullptr) return enter_entrance_face(entry_mm);
+  if (setup_.soiled) return enter_soiled(entry_mm);
   const LightSetup::Entry& entry = setup_.entry;
   tally_.front[entry.front_cone] += entry.front;
   tally_.other[Account::absorbed] += entry.absorbed;
@@ -270,6 +271,7 @@ bool PathWalker::is_over_part(const Vec3& position) const {
 
 bool PathWalker::meet_entrance(State& state) {
   state.position.z() = setup_.thickness_mm;
+  if (setup_.soiled) return meet_soiled_entrance(state);
   const Vec3 down = -Vec3::UnitZ();
   const double cos_incidence = state.direction.z();
   const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, true, cos_incidence);
@@ -284,7 +286,7 @@ bool PathWalker::meet_entrance(State& state) {
   }
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
-  tally_.other[Account::absorbed] += absorbed_by(setup_.optics.entrance_layers, state.light, reflected, transmitted);
+  tally_.other[Account::absorbed] += absorbed_at_entrance(setup_.optics, state.light, reflected, transmitted);
   const Branch branch = choose(reflected, transmitted);
   if (branch != Branch::reflected) leave(state, transmitted, out);
   state.light = reflected;
@@ -446,7 +448,7 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
   Light reflected = is_lossless ? Light{Stokes{}, state.light.s_axis} : state.light.reflected(f);
   Light transmitted = is_lossless ? state.light : state.light.transmitted(f);
   if (!is_lossless)
-    tally_.other[Account::absorbed] += absorbed_by(setup_.optics.entrance_layers, state.light, reflected, transmitted);
+    tally_.other[Account::absorbed] += absorbed_at_entrance(setup_.optics, state.light, reflected, transmitted);
   // What the first surface makes of the beam is followed both ways, as at a plane entrance face.
   const Branch branch = is_first && !is_lossless ? Branch::both : choose(reflected, transmitted);
   return go_on(state, branch, reflected, against, [&](State& through) {

@@ -170,9 +170,42 @@ struct Coating {
   bool has_opaque_facets() const;
 };
 
-/// What the retro facets do beside reflecting, and layers on the faces.
+/// A layer on the entrance face that is thick against the coherence of light.
+struct ThickCoatingLayer {
+  double refractive_index = 1.0;
+  double thickness_um = 0.0;
+  double absorption_per_mm = 0.0;  ///< Napierian, for power
+};
+
+/// What the entrance face is like where it is not clean. Shares are of its area but for haze's.
+struct EntranceState {
+  std::vector<ThickCoatingLayer> layers;  ///< from the body outwards, on those of the coating
+  double film_coverage = 0.0;
+  double water_index = 1.333;
+  double drop_coverage = 0.0;
+  std::optional<double> drop_contact_angle_deg;  ///< there where its share is above 0, as what follows
+  double dust_coverage = 0.0;
+  std::optional<double> dust_albedo;
+  std::optional<double> dust_forward_share;
+  double scratch_coverage = 0.0;
+  std::optional<double> scratch_spread_deg;
+  std::optional<double> scratch_azimuth_deg;  ///< none: all directions alike
+  double haze = 0.0;                          ///< share beyond 2.5 degrees
+  std::optional<double> haze_spread_deg;
+  double roughness_sq_nm = 0.0;
+  double correlation_length_um = 0.0;
+
+  /// Whether it sends light to more directions than a plane does.
+  bool scatters() const {
+    return drop_coverage > 0.0 || dust_coverage > 0.0 || scratch_coverage > 0.0 || haze > 0.0 || roughness_sq_nm > 0.0;
+  }
+  bool is_clean() const { return layers.empty() && film_coverage == 0.0 && !scatters(); }
+};
+
+/// What the retro facets do beside reflecting, layers on the faces, and the state of the entrance face.
 struct Surface {
   Coating coating;
+  EntranceState entrance;
   bool absorbing_walls = false;  ///< of elements and of the border
   FacetTexture texture;
 
@@ -237,6 +270,8 @@ struct Design {
 
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }
+  /// Where what makes the entrance face scatter was given. \pre surface.entrance.scatters()
+  InputLocation where_entrance_scatters() const;
   /// Whether the retro facets rely on total reflection.
   bool needs_total_reflection() const { return !idealisation.mirror_facets && !surface.coating.has_opaque_facets(); }
 };

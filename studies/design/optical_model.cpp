@@ -14,6 +14,7 @@
 #include "core/overloaded.h"
 #include "materials/io/glass_catalogue.h"
 #include "materials/io/spectrum_reader.h"
+#include "studies/design/entrance_condition.h"
 #include "studies/design/entrance_of_design.h"
 #include "studies/design/part_of_design.h"
 #include "surface_models/form.h"
@@ -215,6 +216,7 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
   if (!(optics.index >= 1.0))
     throw InputError(design.where("body.material"), fmt::format("the index of {} at {} nm must be >= 1, got {}",
                                                                 material.name, wavelength_nm, optics.index));
+  optics.entrance = condition_of(design, optics);
   optics.facet_scatter = scatter_model(design, map, optics);
   return optics;
 }
@@ -316,23 +318,36 @@ void warn_of_temperature(const Design& design, const materials::Material& materi
       material.name, shortest(data.valid_from_c), shortest(data.valid_to_c), shortest(temperature_c)));
 }
 
-/// What the texture's model says of its range, at the shortest wavelength that gives reason to: surfaces are roughest
-/// to it. \throw InputError beyond every model
-void add_texture_warnings(const Design& design, OpticalModel& model) {
+/// What the model of a face's texture says of its range, at the shortest wavelength that gives reason to: surfaces are
+/// roughest to it. \param name that warnings begin with \param texture of the face at one wavelength \param behind
+/// index of the medium on its other side \throw InputError at `where` beyond every model
+template <class Texture, class Behind>
+void add_texture_warnings(const std::string& name, const InputLocation& where, const Texture& texture,
+                          const Behind& behind, OpticalModel& model) {
   bool is_told = false;
   for (const SpectralOptics& at : model.spectral) {
-    const double index = std::max(at.optics.index, at.optics.back_index);
+    const double index = std::max(at.optics.index, behind(at.optics));
     try {
-      surface_models::require_in_range(at.optics.facet_scatter, index, at.wavelength_nm);
+      surface_models::require_in_range(texture(at.optics), index, at.wavelength_nm);
     } catch (const InputError& error) {
-      throw InputError(design.where_texture(), error.what());
+      throw InputError(where, error.what());
     }
     if (is_told) continue;
-    for (const std::string& warning : surface_models::warnings(at.optics.facet_scatter, index, at.wavelength_nm)) {
-      model.warnings.push_back(fmt::format("{}: {}", design.source_name(), warning));
+    for (const std::string& warning : surface_models::warnings(texture(at.optics), index, at.wavelength_nm)) {
+      model.warnings.push_back(fmt::format("{}: {}", name, warning));
       is_told = true;
     }
   }
+}
+
+void add_texture_warnings(const Design& design, OpticalModel& model) {
+  using raytrace::Optics;
+  add_texture_warnings(
+      design.source_name(), design.where_texture(), [](const Optics& o) -> const auto& { return o.facet_scatter; },
+      [](const Optics& o) { return o.back_index; }, model);
+  add_texture_warnings(
+      design.source_name() + ": entrance face", design.where("entrance.roughness_sq_nm"),
+      [](const Optics& o) -> const auto& { return o.entrance.roughness; }, [](const Optics&) { return 1.0; }, model);
 }
 
 /// The wavelength of those to trace that lies nearest to `wavelength_nm`.

@@ -203,6 +203,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.thickness_mm = part.thickness_mm;
   result.warnings = model.warnings;
   result.coating = report_coating(design, model);
+  result.entrance_state = report_entrance_state(design, model);
   result.refractive_index = mean_index(model.spectral);
   result.light = model.spectral;
   result.wavelength_nm = model.wavelength_nm;

@@ -15,6 +15,7 @@
 #include "studies/design/total_reflection.h"
 #include "studies/inspect/coating_report.h"
 #include "studies/inspect/entrance_report.h"
+#include "studies/inspect/entrance_state_report.h"
 
 namespace retrace::studies {
 
@@ -61,7 +62,8 @@ struct Inspection {
   std::optional<EntranceReport> entrance;  ///< of a part with one; limits of total reflection are those of light that
                                            ///< enters through a plane
   CoatingReports coating;
-  double dead_zone_share = 0.0;      ///< of an element's plan that rounded and chamfered edges take
+  std::optional<EntranceStateReport> entrance_state;  ///< of a face that is not clean
+  double dead_zone_share = 0.0;                       ///< of an element's plan that rounded and chamfered edges take
   std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something
   std::string boundary;              ///< what the check of the boundary found
   std::vector<std::string> warnings;

@@ -194,8 +194,10 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
-  keeps_phases_ = request.diffraction && surface_models::has_phases(model_.optics.facet_scatter);
-  is_exact_ = !design_.balls() && !design_.entrance && (model_.optics.is_smooth() || keeps_phases_) &&
+  const bool scatters_at_entrance = model_.optics.entrance.scatters();
+  keeps_phases_ =
+      request.diffraction && !scatters_at_entrance && surface_models::has_phases(model_.optics.facet_scatter);
+  is_exact_ = !design_.balls() && !design_.entrance && (model_.optics.keeps_beams() || keeps_phases_) &&
               (request.engine == Engine::exact || request.engine == Engine::automatic);
 }
 
@@ -206,7 +208,9 @@ materials::SpectralCurve lamp_power(PhotometricLight light) {
 
 std::optional<Photometer> Photometer::mean_field() const {
   const bool is_asked = request_.engine == Engine::automatic && request_.diffraction;
-  if (!is_asked || is_exact_ || design_.balls() || design_.entrance || model_.optics.is_smooth()) return std::nullopt;
+  if (!is_asked || is_exact_ || design_.balls() || design_.entrance || model_.optics.is_smooth() ||
+      model_.optics.entrance.scatters())
+    return std::nullopt;
   Photometer bound = *this;
   bound.is_exact_ = true;
   bound.keeps_phases_ = false;
@@ -218,6 +222,7 @@ std::string Photometer::why_undiffracted() const {
   if (design_.balls()) return "balls are traced by rays";
   if (design_.entrance) return "curved fronts are traced by rays";
   if (is_exact_) return "its cells differ too much to diffract the light of each";
+  if (model_.optics.entrance.scatters()) return "an entrance face that scatters is traced by rays";
   if (!model_.optics.is_smooth() && !keeps_phases_)
     return "textures that say nothing of phases (abg, microfacet, height_map, roughness with a lay) are traced by rays";
   return request_.engine == Engine::automatic ? "the exact engine would take too many beams"

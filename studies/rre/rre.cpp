@@ -145,10 +145,13 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     check_planes(design, request);
     if (design.balls()) continue;
     if (request.derivatives) check_taken(design, {.what = "--derivatives"});
-    if (must_be_exact(request) && !prepared_->models.back().optics.is_smooth())
-      throw InputError(design.where_texture(),
-                       "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "
-                       "--far-field and --derivatives");
+    if (const raytrace::Optics& optics = prepared_->models.back().optics;
+        must_be_exact(request) && !optics.keeps_beams())
+      throw InputError(
+          optics.is_smooth() ? design.where_entrance_scatters() : design.where_texture(),
+          fmt::format("{} split a beam into infinitely many: use --engine montecarlo, without --footprint, "
+                      "--far-field and --derivatives",
+                      optics.is_smooth() ? "entrance faces that scatter" : "rough facets"));
     if (request.engine == Engine::cell && !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part))
       throw InputError({"", 0, "--engine"},
                        fmt::format("cell takes endless arrays, and arrays of equal elements that reach more than two "

@@ -289,7 +289,7 @@ bool may_be_exact(const RreRequest& request) {
 }
 
 bool may_be_exact(const Design& design, const OpticalModel& model, const RreRequest& request) {
-  return may_be_exact(request) && !design.balls() && !model.entrance && model.optics.is_smooth();
+  return may_be_exact(request) && !design.balls() && !model.entrance && model.optics.keeps_beams();
 }
 
 bool must_be_exact(const RreRequest& request) {

@@ -32,6 +32,8 @@ Design few_elements(const Design& design, std::vector<std::string>& remarks) {
   if (small.light.spectrum() != nullptr) small.light.colour = Light{}.colour;
   if (design.mask()) remarks.push_back("the mask is not shown");
   if (!design.surface.is_smooth()) remarks.push_back("facets are shown smooth");
+  small.surface.entrance = {};
+  if (!design.surface.entrance.is_clean()) remarks.push_back("the entrance face is shown clean");
   if (design.facet_planes()) remarks.push_back("facets are shown as designed");
   if (!design.elements()) return small;
   small.shape = ElementArray{design.part(), {}, {}};

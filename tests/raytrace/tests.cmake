@@ -21,6 +21,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/sampling_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scratches_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/soiled_entrance_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
   LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers rapidcheck)
 

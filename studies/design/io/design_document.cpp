@@ -200,6 +200,34 @@ void set_coating(Document& document, const Coating& coating) {
   set_layers(document, "coating.entrance", coating.entrance);
 }
 
+void set_entrance_face(Document& document, const EntranceState& face) {
+  if (face.is_clean()) return;
+  Keys keys(document, "entrance");
+  const auto set_share = [&](std::string_view key, double share, std::string_view needed,
+                             const std::optional<double>& value) {
+    keys.set_positive(key, share);
+    if (share > 0.0) keys.set(needed, *value);
+  };
+  keys.set_positive("film_coverage", face.film_coverage);
+  keys.set("water_index", face.water_index);
+  set_share("drop_coverage", face.drop_coverage, "drop_contact_angle_deg", face.drop_contact_angle_deg);
+  set_share("dust_coverage", face.dust_coverage, "dust_albedo", face.dust_albedo);
+  set_share("dust_coverage", face.dust_coverage, "dust_forward_share", face.dust_forward_share);
+  set_share("scratch_coverage", face.scratch_coverage, "scratch_spread_deg", face.scratch_spread_deg);
+  if (face.scratch_coverage > 0.0 && face.scratch_azimuth_deg)
+    keys.set("scratch_azimuth_deg", *face.scratch_azimuth_deg);
+  set_share("haze", face.haze, "haze_spread_deg", face.haze_spread_deg);
+  keys.set_positive("roughness_sq_nm", face.roughness_sq_nm);
+  if (face.roughness_sq_nm > 0.0) keys.set("correlation_length_um", face.correlation_length_um);
+  if (!face.layers.empty()) document.set("entrance.layers", {});
+  for (std::size_t i = 0; i < face.layers.size(); ++i) {
+    Keys entry(document, schema::path_of_entry("entrance.layers", i));
+    entry.set("refractive_index", face.layers[i].refractive_index);
+    entry.set("thickness_um", face.layers[i].thickness_um);
+    entry.set("absorption_per_mm", face.layers[i].absorption_per_mm);
+  }
+}
+
 /// As the design file has it.
 Value spectrum_value(const LightSpectrum& spectrum) {
   if (spectrum.kind == LightSpectrum::Kind::illuminant_a) return text_of("A");
@@ -311,6 +339,7 @@ Document document_of(const Design& design) {
   if (design.entrance) set_entrance(document, *design.entrance);
   set_body(document, design);
   set_coating(document, design.surface.coating);
+  set_entrance_face(document, design.surface.entrance);
   set_light(document, design);
   Keys(document, "detector").set("acceptance_half_angle_deg", design.detector.acceptance_half_angle_deg);
   if (!design.balls()) set_surface(document, design);

@@ -53,6 +53,15 @@ const Table kCoatingTables[] = {
      .shape = kLayerShape,
      .when = kEntranceTable}};
 
+const Table kEntranceFaceTables[] = {
+    {.name = "layers",
+     .meaning = "Layers that are thick against the coherence of light, such as hard coats, the one nearest to the body "
+                "first, at most 20. They lie on those of `coating.entrance`, under water.",
+     .rows = thick_layer_rows(),
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = "a list of tables with refractive_index, thickness_um and absorption_per_mm"}};
+
 constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Names curves in plots."}};
 const Table kTables[] = {
     {.name = "element",
@@ -85,6 +94,13 @@ const Table kTables[] = {
      .meaning = "Thin layers on its faces.",
      .tables = kCoatingTables,
      .presence = Presence::optional},
+    {.name = "entrance",
+     .meaning =
+         "What the entrance face is like where it is not clean: layers, water, dust, scratches, haze, roughness.",
+     .rows = entrance_face_rows(),
+     .tables = kEntranceFaceTables,
+     .presence = Presence::optional,
+     .when = kEntranceTable},
     {.name = "light", .meaning = "The light that falls on it.", .rows = light_rows(), .presence = Presence::implied},
     {.name = "detector", .meaning = "What counts as returned.", .rows = detector_rows(), .presence = Presence::implied},
     {.name = "surface",

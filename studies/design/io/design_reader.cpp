@@ -110,8 +110,34 @@ Coating read_coating(const Document& document) {
   return coating;
 }
 
+EntranceState read_entrance_face(const Document& document) {
+  EntranceState face;
+  if (!document.has("entrance")) return face;
+  for (std::size_t i = 0; i < document.count("entrance.layers"); ++i) {
+    const std::string entry = schema::path_of_entry("entrance.layers", i);
+    face.layers.push_back({document.number(entry + ".refractive_index"), document.number(entry + ".thickness_um"),
+                           document.number(entry + ".absorption_per_mm")});
+  }
+  face.film_coverage = document.number("entrance.film_coverage");
+  face.water_index = document.number("entrance.water_index");
+  face.drop_coverage = document.number("entrance.drop_coverage");
+  face.drop_contact_angle_deg = document.number_if("entrance.drop_contact_angle_deg");
+  face.dust_coverage = document.number("entrance.dust_coverage");
+  face.dust_albedo = document.number_if("entrance.dust_albedo");
+  face.dust_forward_share = document.number_if("entrance.dust_forward_share");
+  face.scratch_coverage = document.number("entrance.scratch_coverage");
+  face.scratch_spread_deg = document.number_if("entrance.scratch_spread_deg");
+  face.scratch_azimuth_deg = document.number_if("entrance.scratch_azimuth_deg");
+  face.haze = document.number("entrance.haze");
+  face.haze_spread_deg = document.number_if("entrance.haze_spread_deg");
+  face.roughness_sq_nm = document.number("entrance.roughness_sq_nm");
+  face.correlation_length_um = document.number("entrance.correlation_length_um");
+  return face;
+}
+
 Surface read_surface(const Document& document) {
-  return {read_coating(document), document.text("surface.walls") == "absorbing", read_texture(document)};
+  return {read_coating(document), read_entrance_face(document), document.text("surface.walls") == "absorbing",
+          read_texture(document)};
 }
 
 std::variant<double, LightSpectrum> read_colour(const Document& document) {
@@ -216,6 +242,15 @@ InputLocation Design::where_texture() const {
   for (const std::string_view key : {"surface.height_map", "surface.model", "surface.roughness_sq_nm"})
     if (document && document->has(key)) return where(key);
   return where("surface.waviness_sq_nm");
+}
+
+InputLocation Design::where_entrance_scatters() const {
+  const EntranceState& face = surface.entrance;
+  return where(face.drop_coverage > 0.0      ? "entrance.drop_coverage"
+               : face.dust_coverage > 0.0    ? "entrance.dust_coverage"
+               : face.scratch_coverage > 0.0 ? "entrance.scratch_coverage"
+               : face.haze > 0.0             ? "entrance.haze"
+                                             : "entrance.roughness_sq_nm");
 }
 
 bool Coating::has_opaque_facets() const {

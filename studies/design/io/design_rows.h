@@ -15,6 +15,8 @@ std::span<const schema::Row> part_rows();
 std::span<const schema::Row> entrance_rows();
 std::span<const schema::Row> body_rows();
 std::span<const schema::Row> layer_rows();
+std::span<const schema::Row> entrance_face_rows();
+std::span<const schema::Row> thick_layer_rows();
 std::span<const schema::Row> light_rows();
 std::span<const schema::Row> detector_rows();
 std::span<const schema::Row> surface_rows();

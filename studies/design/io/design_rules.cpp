@@ -338,6 +338,22 @@ constexpr schema::Words kMirrorKeys = {"element.mirror_offset_mm", "body.facet_c
 constexpr schema::Words kLayerKeys = {kFacetLayers, kEntranceLayers};
 constexpr schema::Words kCoatingKeys = {kFacetLayers,          kEntranceLayers,         "body.facet_coating",
                                         "idealisation.facets", "idealisation.entrance", "element.kind"};
+constexpr schema::Words kEntranceFaceKeys = {"entrance.layers",
+                                             "entrance.film_coverage",
+                                             "entrance.drop_coverage",
+                                             "entrance.drop_contact_angle_deg",
+                                             "entrance.dust_coverage",
+                                             "entrance.dust_albedo",
+                                             "entrance.dust_forward_share",
+                                             "entrance.scratch_coverage",
+                                             "entrance.scratch_spread_deg",
+                                             "entrance.haze",
+                                             "entrance.haze_spread_deg",
+                                             "entrance.roughness_sq_nm",
+                                             "entrance.correlation_length_um",
+                                             "idealisation.entrance",
+                                             "front.turned",
+                                             "front.mesh"};
 constexpr schema::Words kEntranceKeys = {"front.turned", "front.mesh", "array.extent"};
 
 using schema::check_by;
@@ -398,6 +414,11 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kCoatingKeys,
                   "Layers are for faces that are real and not coated otherwise; those behind balls make a mirror.",
                   check_by<check_coating>},
+    schema::Check{kEntranceFaceKeys,
+                  "What covers or blurs an entrance face says what it is like; drops, dust and scratches cover at most "
+                  "all of it; haze is within its lobe; a rough face has no thick layers and no film. None of them on a "
+                  "lossless face, and on a `[front]` layers and film alone.",
+                  check_by<check_entrance_face>},
     schema::Check{kMirrorKeys, "A bowl behind balls (`mirror_offset_mm` > 0) needs a mirror: aluminium or ideal.",
                   check_by<check_ball_mirror>},
     schema::Check{kEntranceKeys, "A `[front]` has one file and a finite part.", check_by<check_entrance>}};

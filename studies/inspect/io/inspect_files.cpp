@@ -82,6 +82,18 @@ nlohmann::ordered_json coating_json(const CoatingReport& face) {
           {"absorptance", face.absorptance}};
 }
 
+void add_entrance_state(const Inspection& i, nlohmann::ordered_json& json) {
+  if (!i.entrance_state) return;
+  const auto& [clean_share, reflectance, transmittance, absorptance, specular, haze_share, dust] = *i.entrance_state;
+  json["entrance"] = {{"clean_share", clean_share},
+                      {"reflectance", reflectance},
+                      {"transmittance", transmittance},
+                      {"absorptance", absorptance},
+                      {"specular_transmittance", specular}};
+  if (haze_share > 0.0) json["entrance"]["haze_share"] = haze_share;
+  if (i.design.surface.entrance.dust_coverage > 0.0) json["entrance"]["dust_cd_per_lx_m2"] = dust;
+}
+
 void add_coating(const Inspection& i, nlohmann::ordered_json& json) {
   if (i.coating.facets) json["coating"]["facets"] = coating_json(*i.coating.facets);
   if (i.coating.entrance) json["coating"]["entrance"] = coating_json(*i.coating.entrance);
@@ -105,9 +117,29 @@ std::string coating_text(std::string_view label, const std::optional<CoatingRepo
                      fixed(100.0 * face->absorptance, 3));
 }
 
-/// The layers that the design gives its faces.
+/// What the entrance face is like where it is not clean.
+std::string entrance_state_text(const Inspection& i) {
+  if (!i.entrance_state) return {};
+  const EntranceStateReport& face = *i.entrance_state;
+  std::string text = fmt::format(
+      "  {:<20}{} % under no drop, dust or scratch, which reflects {} %, passes {} %, absorbs "
+      "{} % at normal incidence\n",
+      "entrance state", fixed(100.0 * face.clean_share, 3), fixed(100.0 * face.reflectance, 3),
+      fixed(100.0 * face.transmittance, 3), fixed(100.0 * face.absorptance, 3));
+  text += fmt::format("  {:<20}passes {} % of all light as a plane does\n", "",
+                      fixed(100.0 * face.specular_transmittance, 3));
+  if (face.haze_share > 0.0)
+    text += fmt::format("  {:<20}haze throws off {} % of a passage\n", "", fixed(100.0 * face.haze_share, 3));
+  if (i.design.surface.entrance.dust_coverage > 0.0)
+    text +=
+        fmt::format("  {:<20}dust sends back {} cd/(lx m2) along the normal\n", "", fixed(face.dust_cd_per_lx_m2, 6));
+  return text;
+}
+
+/// The layers that the design gives its faces, and what else the entrance face is like.
 std::string coatings_text(const Inspection& i) {
-  return coating_text("facets", i.coating.facets) + coating_text("entrance face", i.coating.entrance);
+  return coating_text("facets", i.coating.facets) + coating_text("entrance face", i.coating.entrance) +
+         entrance_state_text(i);
 }
 
 std::string substrate_text(const Inspection& i) {
@@ -166,6 +198,7 @@ std::string inspect_json(const Inspection& i) {
   }
   if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
   add_coating(i, json);
+  add_entrance_state(i, json);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (i.design.elements()) json["dead_zone_share"] = i.dead_zone_share;
