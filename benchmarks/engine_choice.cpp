@@ -5,26 +5,20 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <optional>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "benchmarks/processor_time.h"
 #include "core/error.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::benchmarks {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Draws designs of every kind, arrangement, extent, carrier, error, edge, index, roughness and spectrum.
 class RandomDesigns {
@@ -84,44 +78,9 @@ class RandomDesigns {
   std::mt19937 random_;
 };
 
-/// Stops a run after some time.
-class Deadline {
- public:
-  explicit Deadline(double seconds)
-      : thread_([this, seconds] {
-          const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-          while (!is_over_ && Clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-          cancellation.request();
-        }) {}
-  ~Deadline() {
-    is_over_ = true;
-    thread_.join();
-  }
-
-  Cancellation cancellation;
-
- private:
-  std::atomic<bool> is_over_ = false;
-  std::thread thread_;
-};
-
-struct Timed {
-  double s = 0.0;
-  bool is_complete = false;
-  std::string engine;
-};
-
-Timed timed(const studies::Design& design, studies::RreRequest request, studies::Engine engine, double most_s) {
+Timed timed_by(const studies::Design& design, studies::RreRequest request, studies::Engine engine, double most_s) {
   request.engine = engine;
-  const studies::RreStudy study({design}, request);
-  Timed result;
-  raytrace::run_with_threads(1, [&] {
-    const Deadline deadline(most_s);
-    const std::clock_t start = std::clock();  // of the processor: the machine may be busy
-    const studies::RreResult found = study.run(nullptr, &deadline.cancellation);
-    result = {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, found.complete, found.engine};
-  });
-  return result;
+  return timed(design, request, most_s);
 }
 
 struct Comparison {
@@ -142,11 +101,11 @@ std::optional<Comparison> compare(unsigned seed, double target_error) {
   try {
     const studies::Design design = studies::parse_design(text, fmt::format("design {}", seed));
     constexpr double kPatience_s = 60.0;
-    const Timed rays = timed(design, request, studies::Engine::montecarlo, kPatience_s);
-    const Timed automatic = timed(design, request, studies::Engine::automatic, 2.0 * kPatience_s);
+    const Timed rays = timed_by(design, request, studies::Engine::montecarlo, kPatience_s);
+    const Timed automatic = timed_by(design, request, studies::Engine::automatic, 2.0 * kPatience_s);
     Timed exact{kPatience_s, false, ""};
     if (text.find("roughness") == std::string::npos)
-      exact = timed(design, request, studies::Engine::exact, 1.2 * rays.s + 0.1);
+      exact = timed_by(design, request, studies::Engine::exact, 1.2 * rays.s + 0.1);
     const double faster_s = exact.is_complete ? std::min(exact.s, rays.s) : rays.s;
     const Comparison comparison{automatic.s, faster_s};
     if (std::getenv("RETRACE_SHOW_DESIGNS") != nullptr) fmt::print("{}\n", text);

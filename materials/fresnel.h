@@ -17,6 +17,10 @@ struct FresnelCoefficients {
   std::complex<double> r_p;
   std::complex<double> t_s;
   std::complex<double> t_p;
+  /// Share of the coherence between s and p that light keeps: less than 1 where parts of it without a phase between
+  /// them add up by power, behind thick layers.
+  double r_coherence = 1.0;
+  double t_coherence = 1.0;
   double cos_refracted = 0.0;  ///< 0 under total reflection
   bool total_reflection = false;
 };

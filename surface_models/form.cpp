@@ -28,6 +28,7 @@ class Basis {
       for (int a = 0; a + b <= degree; ++a) powers_.push_back({a, b});
   }
 
+  const std::vector<std::pair<int, int>>& powers() const { return powers_; }
   Eigen::Index size() const { return static_cast<Eigen::Index>(powers_.size()); }
 
   void at(std::size_t column, std::size_t row, Eigen::VectorXd& values) const {
@@ -59,7 +60,36 @@ Eigen::VectorXd fitted_coefficients(const HeightMap& map, const Basis& basis) {
   return full.completeOrthogonalDecomposition().solve(right);
 }
 
+/// Coefficients of the powers of x in P_0..P_degree, one a row.
+Eigen::MatrixXd legendre_powers(int degree) {
+  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(degree + 1, degree + 1);
+  p(0, 0) = 1.0;
+  if (degree > 0) p(1, 1) = 1.0;
+  for (int n = 2; n <= degree; ++n) {
+    p.row(n) = -(n - 1.0) / n * p.row(n - 2);
+    p.row(n).tail(degree) += (2.0 * n - 1.0) / n * p.row(n - 1).head(degree);
+  }
+  return p;
+}
+
 }  // namespace
+
+FacetForm fitted_form(const HeightMap& map, int degree) {
+  constexpr double kMmPerNm = 1e-6, kMmPerUm = 1e-3;
+  const Basis basis(map, degree);
+  const Eigen::VectorXd coefficients = kMmPerNm * fitted_coefficients(map, basis);
+  const Eigen::MatrixXd powers = legendre_powers(degree);
+  const double half_x_mm = 0.5 * kMmPerUm * map.x_pixel_um * static_cast<double>(map.columns - 1);
+  const double half_y_mm = 0.5 * kMmPerUm * map.y_pixel_um * static_cast<double>(map.rows - 1);
+  FacetForm form;
+  for (Eigen::Index k = 0; k < basis.size(); ++k) {
+    const auto [a, b] = basis.powers()[static_cast<std::size_t>(k)];
+    for (int i = 0; i <= a; ++i)
+      for (int j = 0; j <= b; ++j)
+        form.add(i, j, coefficients[k] * powers(a, i) * powers(b, j) / std::pow(half_x_mm, i) / std::pow(half_y_mm, j));
+  }
+  return form;
+}
 
 HeightMap without_form(const HeightMap& map, int degree) {
   const Basis basis(map, degree);

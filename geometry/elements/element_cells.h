@@ -4,6 +4,7 @@
 // and cant.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "geometry/elements/part_spec.h"
@@ -34,6 +35,9 @@ struct CellFacet {
   Polygon outline;
   HeightPlane plane;
   bool is_edge = false;  ///< a strip of a rounded or chamfered edge, or a flank of a scratch
+  /// Over which the centroid of the whole facet lies, whatever edges, scratches and borders take of it: the origin of
+  /// what its form is told in. None of land and edges.
+  std::optional<Vec2> middle_mm = {};
 };
 
 /// An element (its facets in the contract's order), or a piece of flat land (on z = 0).

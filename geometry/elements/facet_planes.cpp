@@ -91,7 +91,11 @@ Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2
   };
   Cell own = cell;
   own.facets.clear();
-  for (const HeightPlane& plane : element.planes) own.facets.push_back({{}, own_plane(plane)});
+  for (const HeightPlane& plane : element.planes) {
+    const std::size_t k = own.facets.size();
+    const bool is_of_element = element.planes.size() == cell.facets.size();
+    own.facets.push_back({{}, own_plane(plane), false, is_of_element ? cell.facets[k].middle_mm : std::nullopt});
+  }
   own.facets = highest_of(cell.outline, std::move(own.facets));
   std::vector<CellFacet> caps;
   for (const std::optional<HeightPlane>& cap : element.caps)

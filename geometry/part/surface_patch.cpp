@@ -212,6 +212,7 @@ class PatchBuilder {
     const Tile& tile = tiles_[t];
     PatchFacet facet;
     facet.role = tile.role;
+    facet.middle_mm = tile.middle_mm;
     const Vec3 downward(tile.plane.slope.x(), tile.plane.slope.y(), -1.0);
     facet.normal = downward.normalized();
     facet.offset_mm = -tile.plane.height_mm / downward.norm();

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "geometry/elements/element_cells.h"
@@ -17,8 +18,9 @@ struct Tile {
   Polygon outline;
   HeightPlane plane;
   FacetRole role = FacetRole::retro_facet;
-  std::uint32_t cell = 0;  ///< tiles of one cell are adjacent in the input
-  bool owned = true;       ///< false: only a neighbour that shapes walls and welds
+  std::uint32_t cell = 0;              ///< tiles of one cell are adjacent in the input
+  bool owned = true;                   ///< false: only a neighbour that shapes walls and welds
+  std::optional<Vec2> middle_mm = {};  ///< of CellFacet
 };
 
 /// One plane convex face of the back surface.
@@ -28,6 +30,7 @@ struct PatchFacet {
   std::uint32_t first_corner = 0;
   std::uint32_t corner_count = 0;
   FacetRole role = FacetRole::retro_facet;
+  std::optional<Vec2> middle_mm = {};  ///< of CellFacet
 };
 
 /// The consecutive facets of one cell and the box round them.

@@ -68,12 +68,18 @@ HeightPlane placed_plane(const HeightPlane& own, const SubstrateFrame& frame) {
   return plane;
 }
 
+/// In plan, a point that is told in such a frame.
+Vec2 placed(const Vec2& own, double height_mm, const SubstrateFrame& frame) {
+  return (frame.origin + own.x() * frame.along_u + own.y() * frame.along_v + height_mm * frame.normal).head<2>();
+}
+
 /// The cell moved in plan, and up.
 void move_facets(Cell& cell, const Vec2& shift_mm, double height_mm) {
   for (CellFacet& facet : cell.facets) {
     facet.outline = moved(std::move(facet.outline), shift_mm);
     facet.plane.height_mm -= facet.plane.slope.dot(shift_mm);
     if (height_mm != 0.0) facet.plane.height_mm += height_mm;
+    if (facet.middle_mm) *facet.middle_mm += shift_mm;
   }
 }
 
@@ -203,19 +209,21 @@ class Tiler {
       piece->partial += standing == Standing::cut ? 1 : 0;
     }
     if (standing == Standing::whole) {
-      for (CellFacet& facet : cell.facets) add_tile(std::move(facet.outline), facet.plane, role_of(cell, facet));
+      for (CellFacet& facet : cell.facets)
+        add_tile(std::move(facet.outline), facet.plane, role_of(cell, facet), facet.middle_mm);
       return;
     }
     if (cell.is_element && spec_.array.partial_elements == PartialElements::omit) turn_to_land(cell, place);
     for (const CellFacet& facet : cell.facets) {
-      add_tile(here_->within(place, facet.outline, here_->block()), facet.plane, role_of(cell, facet));
+      add_tile(here_->within(place, facet.outline, here_->block()), facet.plane, role_of(cell, facet), facet.middle_mm);
       if (sheet_.is_upright) add_margins(place, facet.outline);
     }
     if (!sheet_.is_upright) add_margins(place, place.outline);
   }
 
-  void add_tile(Polygon outline, const HeightPlane& plane, FacetRole role) {
-    if (!outline.empty()) tiles_.push_back({std::move(outline), plane, role});
+  void add_tile(Polygon outline, const HeightPlane& plane, FacetRole role,
+                const std::optional<Vec2>& middle_mm = std::nullopt) {
+    if (!outline.empty()) tiles_.push_back({std::move(outline), plane, role, 0, true, middle_mm});
   }
 
   /// The land beside the block of elements.
@@ -231,6 +239,7 @@ class Tiler {
     for (CellFacet& facet : cell.facets) {
       facet.plane = placed_plane({}, place.frame);
       facet.is_edge = false;
+      facet.middle_mm.reset();
     }
   }
 
@@ -272,7 +281,10 @@ class Tiler {
     if (!is_convex(place.outline, sheet_.tolerance_mm)) refuse_bend(place.frame);
     cell = element_in_place_of(cell, spec_.element, errors_of(spec_, index.i, index.j, index.number));
     for (CellFacet& facet : cell.facets) {
-      facet.plane.height_mm += facet.plane.slope.dot(sheet_.middles_mm[index.number]);
+      const Vec2& middle = sheet_.middles_mm[index.number];
+      if (facet.middle_mm)
+        facet.middle_mm = placed(*facet.middle_mm - middle, facet.plane.at(*facet.middle_mm), place.frame);
+      facet.plane.height_mm += facet.plane.slope.dot(middle);
       facet.plane = placed_plane(facet.plane, place.frame);
     }
     cell.outline = place.outline;
@@ -332,7 +344,8 @@ void add_single(Part& part, const FacetPlanes* planes, const Vec2& origin_mm) {
   cell = finished_cell(cell, part.spec);
   move_facets(cell, -bounding_box(cell.outline).lower, 0.0);
   std::vector<Tile> tiles;
-  for (CellFacet& facet : cell.facets) tiles.push_back({std::move(facet.outline), facet.plane});
+  for (CellFacet& facet : cell.facets)
+    tiles.push_back({std::move(facet.outline), facet.plane, FacetRole::retro_facet, 0, true, facet.middle_mm});
   const Polygon outline = aperture_outline(part.spec.element);
   part.patches.push_back(build_patch(tiles, bounding_box(outline), part.size_mm));
   part.placements.push_back({0, origin_mm});

@@ -14,9 +14,11 @@ namespace {
 // Periods in which the neighbours of a cell are looked for: a cell reaches less than one beyond its own.
 constexpr int kReach = 2;
 
-CellArray::Facet facet_of(const geometry::HeightPlane& plane, geometry::FacetRole role) {
+CellArray::Facet facet_of(const geometry::CellFacet& facet, geometry::FacetRole role) {
+  const geometry::HeightPlane& plane = facet.plane;
   const double length = std::sqrt(1.0 + plane.slope.squaredNorm());
-  return {Vec3(plane.slope.x(), plane.slope.y(), -1.0) / length, -plane.height_mm / length, plane, role};
+  return {Vec3(plane.slope.x(), plane.slope.y(), -1.0) / length, -plane.height_mm / length, plane, role,
+          facet.middle_mm};
 }
 
 CellArray::Column column_of(const geometry::Cell& cell) {
@@ -24,7 +26,7 @@ CellArray::Column column_of(const geometry::Cell& cell) {
   for (const geometry::CellFacet& facet : cell.facets) {
     const bool is_retro = cell.is_element || facet.is_edge;  // rims reach over the land beside them
     column.facets.push_back(
-        facet_of(facet.plane, is_retro ? geometry::FacetRole::retro_facet : geometry::FacetRole::flat_back));
+        facet_of(facet, is_retro ? geometry::FacetRole::retro_facet : geometry::FacetRole::flat_back));
   }
   for (std::size_t k = 0; k < cell.outline.size(); ++k) {
     const Vec2& from = cell.outline[k];

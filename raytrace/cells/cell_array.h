@@ -23,6 +23,7 @@ class CellArray {
     double offset_mm = 0.0;                          ///< normal . p on the plane
     geometry::HeightPlane height;                    ///< the same plane
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
+    std::optional<geometry::Vec2> middle_mm = {};  ///< of CellFacet
   };
   /// What lies behind a stretch of an edge.
   struct Neighbour {

@@ -14,10 +14,6 @@ constexpr double kHandedOver = -1.0;
 // By how much places may miss their column by rounding, relative to the period.
 constexpr double kSlack = 1e-12;
 
-Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k) {
-  return {rays[first][k], rays[first + 1][k], rays[first + 2][k]};
-}
-
 Vec3 lifted(const Vec2& normal) {
   return {normal.x(), normal.y(), 0.0};
 }
@@ -30,7 +26,9 @@ CellWalker::CellWalker(const LightSetup& setup, const PathPolicy& policy, const 
       array_(array),
       waiting_(64),
       moved_(array.inner() ? lanes::kRayNumbers : lanes::kNumbersOfEndless),
-      chosen_(array.inner() ? lanes::kRayNumbers : lanes::kNumbersOfEndless) {
+      chosen_(array.inner() ? lanes::kRayNumbers : lanes::kNumbersOfEndless),
+      entering_{chosen_, chosen_} {
+  if (setup.optics.entrance.scatters()) soiled_.emplace(setup.optics);
   if (const auto& inner = array.inner()) {
     inner_ = {inner->where_mm.lower - centre_mm, inner->where_mm.upper - centre_mm};
     anchor_mm_ = inner->anchor_mm - centre_mm;
@@ -40,6 +38,8 @@ CellWalker::CellWalker(const LightSetup& setup, const PathPolicy& policy, const 
     shape.role = column.facets.front().role;
     for (const CellArray::Facet& facet : column.facets) {
       shape.facets.push_back({facet.normal, facet.offset_mm});
+      shape.frames.emplace_back();
+      if (facet.middle_mm) shape.frames.back() = FacetFrame(facet.normal, facet.offset_mm, *facet.middle_mm);
       shape.heights.push_back({facet.height.slope.x(), facet.height.slope.y(), facet.height.height_mm});
     }
     for (const CellArray::Edge& edge : column.edges) shape.borders.push_back({lifted(edge.normal), edge.offset_mm});
@@ -114,24 +114,33 @@ void CellWalker::trace(const geometry::Rectangle& entrance_mm, std::uint64_t key
   tally_ = &tally;
   outline_ = entrance_mm;
   handed_over_.clear();
-  const LightSetup::Entry& entry = setup_.entry;
-  tally.front[entry.front_cone] += static_cast<double>(count) * entry.front;
-  tally.other[Account::absorbed] += static_cast<double>(count) * entry.absorbed;
-  if (setup_.score != nullptr)
-    setup_.score->add(entry.front_direction, static_cast<double>(count) * entry.front.i, tally.score);
   reserve(count);
   chosen_.resize(count);
   const lanes::Rays rays = chosen_.rays();
   lanes::sobol(key_x, key_y, first, count, entrance_mm.size(), rays[lanes::kX], rays[lanes::kY]);
   std::fill_n(rays[lanes::kZ], count, setup_.thickness_mm);
-  for (std::size_t k = 0; k < count; ++k) set(rays, k, {entry.direction, entry.light});
   if (array_.inner()) {
     std::fill_n(rays[lanes::kOx], count, entrance_mm.lower.x());
     std::fill_n(rays[lanes::kOy], count, entrance_mm.lower.y());
     lanes::shift(rays, count, entrance_mm.lower - anchor_mm_);
   }
-  fall(false);
+  if (soiled_)
+    enter_soiled(count);
+  else
+    enter(count);
   while (const auto stream = fullest()) advance(*stream);
+}
+
+/// The rays of `chosen_` at their places on the entrance face.
+void CellWalker::enter(std::size_t count) {
+  const LightSetup::Entry& entry = setup_.entry;
+  tally_->front[entry.front_cone] += static_cast<double>(count) * entry.front;
+  tally_->other[Account::absorbed] += static_cast<double>(count) * entry.absorbed;
+  if (setup_.score != nullptr)
+    setup_.score->add(entry.front_direction, static_cast<double>(count) * entry.front.i, tally_->score);
+  const lanes::Rays rays = chosen_.rays();
+  for (std::size_t k = 0; k < count; ++k) set(rays, k, {entry.direction, entry.light});
+  fall(false);
 }
 
 void CellWalker::waits(std::uint32_t stream) {
@@ -313,6 +322,7 @@ void CellWalker::meet_surface(const Stream& stream) {
   const std::uint32_t part = stream_of(stream.column, Place::inside, stream.scattered);
   const std::uint32_t below = stream_of(stream.column, Place::below_after_leaving, stream.scattered);
   const bool is_retro = shapes_[stream.column].role == FacetRole::retro_facet;
+  if (is_retro && !optics.facet_form.is_plane()) turn_normals(stream);
   if (is_retro && optics.mirror_facets) {
     const std::uint32_t to = inside ? part : below;
     const std::size_t more =
@@ -378,7 +388,8 @@ void CellWalker::meet_entrance(bool scattered) {
   if (array_.inner() && lanes::mark_beyond(rays, moved_.size(), {height_mm, outline_.lower, outline_.upper},
                                            kTopOrNothing, kHandedOver, met_.data()) > 0)
     hand_over(rays, moved_.size(), met_, kHandedOver, true, scattered);
-  if (!optics.entrance_layers.empty()) return meet_layers_of_entrance(scattered);
+  if (soiled_) return meet_soiled_entrance(scattered);
+  if (!optics.has_bare_entrance()) return meet_layers_of_entrance(scattered);
   const lanes::Entrance entrance = {
       height_mm,        optics.index,      optics.absorption_per_mm, optics.lossless_entrance,
       setup_.to_source, setup_.cone_chord2};

@@ -2,6 +2,7 @@
 
 // The cell engine: moves streams of rays from column to column of an endless array and books where their power ends.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -10,11 +11,17 @@
 #include "raytrace/cells/cell_array.h"
 #include "raytrace/cells/cell_lanes.h"
 #include "raytrace/cells/ray_store.h"
+#include "raytrace/faces/formed_facet.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/path_policy.h"
-#include "raytrace/paths/textured_facet.h"
+#include "raytrace/paths/soiled_entrance.h"
 
 namespace retrace::raytrace {
+
+/// A vector of a ray. \param first of its three numbers
+inline Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k) {
+  return {rays[first][k], rays[first + 1][k], rays[first + 2][k]};
+}
 
 /// Follows light through an endless array, column by column, many rays at once: all that are over one column, or under
 /// its surface, wait in one stream and are moved in SIMD lanes, the fullest stream first. Rays that leave the inner
@@ -80,6 +87,7 @@ class CellWalker {
     std::vector<lanes::Plane> facets;
     std::vector<lanes::Plane> borders;
     std::vector<lanes::LinearForm> heights;
+    std::vector<std::optional<FacetFrame>> frames;  ///< of facets that have a form
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
   };
 
@@ -91,6 +99,8 @@ class CellWalker {
   void advance(std::uint32_t number);
   void move(const Stream& stream);
   void meet_surface(const Stream& stream);
+  std::size_t facet_of(const Stream& stream, const Vec3& normal) const;
+  void turn_normals(const Stream& stream);
   void meet_texture(const Stream& stream);
   void meet_layers(const Stream& stream, std::uint32_t reflected_to, std::uint32_t transmitted_to);
   void meet_wall(const Stream& stream, const Crossing& crossing, double number);
@@ -98,6 +108,12 @@ class CellWalker {
                   const Crossing* crossing);
   void meet_entrance(bool scattered);
   void meet_layers_of_entrance(bool scattered);
+  void enter(std::size_t count);
+  void enter_soiled(std::size_t count);
+  void meet_soiled_entrance(bool scattered);
+  const SoiledReturn& soiled(const Ray& ray);
+  void put_in(const lanes::Rays& from, std::size_t k, const Vec3& place, const Ray& ray);
+  void fall_in();
   void cross(const Stream& stream, const Crossing& crossing, double number);
   void fall(bool scattered);
   void book(double number, Account account);
@@ -132,11 +148,14 @@ class CellWalker {
   std::vector<std::uint32_t> piece_starts_;
   RayStore moved_;                           ///< of the stream at hand
   RayStore chosen_;                          ///< those of them that meet the same
+  std::array<RayStore, 2> entering_;         ///< below a soiled entrance: not scattered, and scattered
   RayStore left_{lanes::kNumbersOfEndless};  ///< what leaves through the entrance, if it is scored
   std::vector<double> met_;                  ///< by `moved_`: number, normal
   std::vector<double> branches_;             ///< marks of `chosen_`, or of weak rays
   std::size_t capacity_ = 0;
   std::uint64_t batches_ = 0;
+  std::optional<SoiledEntrance> soiled_;  ///< where the entrance face scatters
+  SoiledReturn from_soiled_;
   RandomKey key_;
   std::uint32_t replicate_ = 0;
   std::uint32_t sample_ = 0;

@@ -1,6 +1,8 @@
-// What rays of a cell meet one by one, as it takes longer than lanes could save: the members of CellWalker for textures
-// and for layers.
+// What rays of a cell meet one by one, as it takes longer than lanes could save: the members of CellWalker for forms,
+// textures and layers, and for entrance faces that scatter.
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "raytrace/cells/cell_walker.h"
@@ -8,6 +10,29 @@
 namespace retrace::raytrace {
 
 using geometry::FacetRole;
+
+/// The facet of a column whose normal is that one, or nearly.
+std::size_t CellWalker::facet_of(const Stream& stream, const Vec3& normal) const {
+  const std::vector<lanes::Plane>& facets = shapes_[stream.column].facets;
+  const auto turned = [&](const lanes::Plane& facet) { return (facet.normal - normal).squaredNorm(); };
+  return static_cast<std::size_t>(std::ranges::min_element(facets, {}, turned) - facets.begin());
+}
+
+/// Gives rays that have met formed facets the normals of those there.
+void CellWalker::turn_normals(const Stream& stream) {
+  const bool inside = stream.place == Place::inside;
+  const Shape& shape = shapes_[stream.column];
+  const lanes::Rays rays = moved_.rays();
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    if (met_[k] != kFacet) continue;
+    const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
+    const std::optional<FacetFrame>& frame = shape.frames[facet_of(stream, normal)];
+    if (!frame) continue;
+    const Vec3 formed = formed_normal(setup_.optics, normal, *frame, vector_of(rays, lanes::kX, k),
+                                      vector_of(rays, lanes::kDx, k), inside);
+    for (std::size_t n = 0; n < 3; ++n) met_[(n + 1) * capacity_ + k] = formed[static_cast<Eigen::Index>(n)];
+  }
+}
 
 /// One by one: what a texture does takes longer than all else.
 void CellWalker::meet_texture(const Stream& stream) {
@@ -26,8 +51,10 @@ void CellWalker::meet_texture(const Stream& stream) {
     ++tally_->segments;
     const Vec3 normal(met_[capacity_ + k], met_[2 * capacity_ + k], met_[3 * capacity_ + k]);
     surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
-    const TexturedReturn back = meet_textured_facet(
-        setup_.optics, normal, ray_of(rays, k, was_inside, stream.scattered), policy_.split_power, random);
+    TexturedReturn back = meet_textured_facet(setup_.optics, normal, ray_of(rays, k, was_inside, stream.scattered),
+                                              policy_.split_power, random);
+    if (!setup_.optics.facet_form.is_plane())
+      back.keep_sides(shapes_[stream.column].facets[facet_of(stream, normal)].normal);
     tally_->other[Account::truncated] += back.truncated;
     tally_->other[Account::absorbed] += back.absorbed;
     for (std::size_t n = 0; n < back.count; ++n) send(k, back.rays[n]);
@@ -94,7 +121,7 @@ void CellWalker::meet_layers_of_entrance(bool scattered) {
     ray.light.turn_to(ray.direction, down);
     Light reflected = ray.light.reflected(f);
     Light transmitted = ray.light.transmitted(f);
-    tally_->other[Account::absorbed] += absorbed_by(optics.entrance_layers, ray.light, reflected, transmitted);
+    tally_->other[Account::absorbed] += absorbed_at_entrance(optics, ray.light, reflected, transmitted);
     const Branch branch = choose_branch(reflected, transmitted, policy_.split_power, [&] { return random(); });
     if (branch != Branch::reflected) {
       const Vec3 out = refracted(ray.direction, down, optics.index, cos_incidence, f.cos_refracted);
@@ -110,6 +137,87 @@ void CellWalker::meet_layers_of_entrance(bool scattered) {
   }
   chosen_.resize(reflected_count);
   if (!chosen_.empty()) fall(scattered);
+}
+
+/// What a scattering entrance face makes of a ray.
+const SoiledReturn& CellWalker::soiled(const Ray& ray) {
+  surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
+  from_soiled_.clear();
+  soiled_->meet(ray, policy_.split_power, random, from_soiled_);
+  tally_->other[Account::absorbed] += from_soiled_.absorbed;
+  tally_->other[Account::truncated] += from_soiled_.truncated;
+  return from_soiled_;
+}
+
+/// Puts a ray below the entrance face, with what else the ray `k` of `from` has.
+void CellWalker::put_in(const lanes::Rays& from, std::size_t k, const Vec3& place, const Ray& ray) {
+  RayStore& to = entering_[ray.scattered ? 1 : 0];
+  to.reserve(to.size() + 1);
+  const lanes::Rays end = to.rays(to.size());
+  for (std::size_t n = 0; n < from.numbers; ++n) end[n][0] = from[n][k];
+  for (std::size_t n = 0; n < 3; ++n) end[lanes::kX + n][0] = place[static_cast<Eigen::Index>(n)];
+  set(end, 0, ray);
+  to.resize(to.size() + 1);
+}
+
+/// Lets what waits below the entrance fall, as many rays at once as there is room for.
+void CellWalker::fall_in() {
+  const std::size_t most = capacity_ - lanes::kPadding;
+  chosen_.reserve(most);
+  for (const bool scattered : {false, true}) {
+    RayStore& from = entering_[scattered ? 1 : 0];
+    for (std::size_t first = 0; first < from.size(); first += most) {
+      const std::size_t count = std::min(most, from.size() - first);
+      chosen_.resize(count);
+      const lanes::Rays rays = from.rays(first);
+      const lanes::Rays chosen = chosen_.rays();
+      for (std::size_t n = 0; n < rays.numbers; ++n) std::copy_n(rays[n], count, chosen[n]);
+      fall(scattered);
+    }
+    from.clear();
+  }
+}
+
+/// One by one, as each light takes its own way: the rays of `chosen_` at their places on the entrance face.
+void CellWalker::enter_soiled(std::size_t count) {
+  const lanes::Rays rays = chosen_.rays();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 place(rays[lanes::kX][k], rays[lanes::kY][k], setup_.thickness_mm);
+    for (const Ray& ray : soiled({-setup_.to_source, setup_.incident, false, false}).rays) {
+      if (ray.inside)
+        put_in(rays, k, place, ray);
+      else
+        book_front(setup_, ray, *tally_);
+    }
+  }
+  fall_in();
+}
+
+/// The same from inside.
+void CellWalker::meet_soiled_entrance(bool scattered) {
+  const double height_mm = setup_.thickness_mm - setup_.top_mm;
+  const lanes::Rays rays = moved_.rays();
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    if (met_[k] != kTopOrNothing) continue;
+    ++tally_->segments;
+    Ray met = ray_of(rays, k, true, scattered);
+    const double way_mm = height_mm / met.direction.z();
+    const double before = met.light.power();
+    met.light.scale(std::exp(-setup_.optics.absorption_per_mm * way_mm));
+    tally_->other[Account::absorbed] += before - met.light.power();
+    const Vec3 place(rays[lanes::kX][k] + way_mm * met.direction.x(), rays[lanes::kY][k] + way_mm * met.direction.y(),
+                     setup_.thickness_mm);
+    for (const Ray& ray : soiled(met).rays) {
+      if (ray.inside) {
+        put_in(rays, k, place, ray);
+        continue;
+      }
+      (ray.scattered ? tally_->scattered : tally_->returned)[setup_.cone_of(ray.direction)] +=
+          seen_from_above(ray.light, ray.direction);
+      if (setup_.score != nullptr) setup_.score->add(ray.direction, ray.light.power(), tally_->score);
+    }
+  }
+  fall_in();
 }
 
 }  // namespace retrace::raytrace

@@ -10,6 +10,7 @@
 
 #include "geometry/elements/element_cells.h"
 #include "raytrace/exact/flat_polygon.h"
+#include "raytrace/faces/formed_facet.h"
 #include "raytrace/light/coherent_light.h"
 #include "surface_models/scatter/scatter_event.h"
 
@@ -77,20 +78,25 @@ struct CellTrail {
   }
 };
 
-/// A facet with a texture that light has met: where, as an affine function of where the light is now (as EntryPoint),
-/// and what the heights there did to its phase.
+/// A facet with a texture or a form that light has met: where, as an affine function of where the light is now (as
+/// EntryPoint), and what the heights there did to its phase.
 struct TexturedHit {
   Plane plane;
   Vec3 constant_mm = Vec3::Zero();
   Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
   surface_models::PhaseTexture phase;
+  FacetFrame frame;              ///< of the form
+  double path_per_height = 0.0;  ///< by which a height out of the part lengthens the way; 0: without a form
 
   Vec3 of(const Vec3& p) const { return constant_mm + slope * p; }
 
   /// Beyond an interface: equal on its plane, constant along the new direction.
   TexturedHit continued(const Plane& at, const Vec3& direction) const {
     const Vec3 across = -(slope * direction) / at.normal.dot(direction);
-    return {plane, constant_mm - across * at.offset_mm, slope + across * at.normal.transpose(), phase};
+    TexturedHit hit = *this;
+    hit.constant_mm -= across * at.offset_mm;
+    hit.slope += across * at.normal.transpose();
+    return hit;
   }
 };
 
@@ -105,7 +111,7 @@ struct Beam {
   double power = 0.0;             ///< that it starts with, as a share of the incident
   PathLength path_length;         ///< in the material
   EntryPoint entry;               ///< where it came in
-  std::vector<TexturedHit> hits;  ///< in their order; BeamPolicy::keeps_phases
+  std::vector<TexturedHit> hits;  ///< in their order: with BeamPolicy::keeps_phases, and of facets with a form
   Plane start;                    ///< the beam lies where start.height(p) >= 0
   bool inside = true;
   geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through

@@ -68,21 +68,32 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   if (!f.total_reflection) {
     Beam through = beam;
     if (from.inside) through.left_through = candidate.role;
-    keep_phases(through, candidate, cos_incidence, Lobe::transmission);
+    keep_phases(through, candidate, f, cos_incidence, Lobe::transmission);
     const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::transmission);
     send(std::move(through), candidate.plane, -against,
          refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), left, !from.inside);
   }
   const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::reflection);
-  keep_phases(beam, candidate, cos_incidence, Lobe::reflection);
+  keep_phases(beam, candidate, f, cos_incidence, Lobe::reflection);
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), left, from.inside);
 }
 
-void BeamWalk::keep_phases(Beam& beam, const Candidate& candidate, double cos_incidence, Lobe lobe) const {
-  if (!policy_.keeps_phases || candidate.role != FacetRole::retro_facet || setup_.optics.is_smooth()) return;
+/// \param beam before it is sent on
+void BeamWalk::keep_phases(Beam& beam, const Candidate& candidate, const materials::FresnelCoefficients& f,
+                           double cos_incidence, Lobe lobe) const {
+  const bool has_texture = policy_.keeps_phases && !setup_.optics.is_smooth();
+  const bool has_form = candidate.middle_mm && !setup_.optics.facet_form.is_plane();
+  if (candidate.role != FacetRole::retro_facet || !(has_texture || has_form)) return;
   TexturedHit hit;
   hit.plane = candidate.plane;
-  hit.phase = phase_texture(setup_.optics, beam.inside, cos_incidence, lobe);
+  if (has_texture) hit.phase = phase_texture(setup_.optics, beam.inside, cos_incidence, lobe);
+  if (has_form) {
+    hit.frame = FacetFrame(hit.plane.normal, hit.plane.offset_mm, *candidate.middle_mm);
+    // Wave vectors before less those behind, along the normal out of the part.
+    const double before = index_at(beam.inside) * cos_incidence;
+    const double behind = lobe == Lobe::reflection ? -before : index_at(!beam.inside) * f.cos_refracted;
+    hit.path_per_height = (beam.inside ? 1.0 : -1.0) * (before - behind);
+  }
   beam.hits.push_back(hit);
 }
 
@@ -126,7 +137,7 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
   const CoherentLight reflected = beam.light.reflected(f);
   if (is_entrance)
     tally_.other[Account::absorbed] +=
-        transmission_of(beam) * absorbed_by(setup_.optics.entrance_layers, beam.light, reflected, through);
+        transmission_of(beam) * absorbed_at_entrance(setup_.optics, beam.light, reflected, through);
   if (!f.total_reflection) {
     if (is_entrance)
       leave_through_entrance(beam, through, out);

@@ -79,9 +79,11 @@ struct ReturnedBeam {
 using BeamObserver = std::function<void(const ReturnedBeam&)>;
 
 /// Follows parallel beams of polygonal cross-section from facet to facet: plane smooth facets turn one beam into
-/// finitely many, so nothing is sampled. What is cut off or falls between polygons by rounding is booked in
-/// `truncated`. Of textured facets it follows the mean field alone (mean_field(), mean_field_share()): what scatters is
-/// booked there as well, unless BeamPolicy::keeps_phases. A value shared by all threads.
+/// finitely many, so nothing is sampled. Of facets with a form it follows the planes, and tells where they were met;
+/// with BeamPolicy::by_cell alone these are those of single facets. What is cut off or falls between polygons by
+/// rounding is booked in `truncated`. Of textured facets it follows the mean field alone (mean_field(),
+/// mean_field_share()): what scatters is booked there as well, unless BeamPolicy::keeps_phases. A value shared by all
+/// threads.
 class BeamTracer {
  public:
   /// \pre `part` outlives the tracer

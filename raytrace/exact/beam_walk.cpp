@@ -344,7 +344,10 @@ void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon&
   FlatPolygon piece = intersection(whole, seen, merge_mm_);
   if (piece.size() < 3 || area(piece) <= least_area_) return;
   const PlanBox piece_box = box_of(piece);
-  candidates_.push_back({plane, facet.role, cell, Distance(frame, plane), std::move(piece), piece_box, false});
+  std::optional<Vec2> middle_mm = facet.middle_mm;
+  if (middle_mm) *middle_mm += cell.offset_mm;
+  candidates_.push_back(
+      {plane, facet.role, cell, Distance(frame, plane), std::move(piece), piece_box, false, middle_mm});
 }
 
 /// What of a candidate's piece no nearer candidate covers.

@@ -40,7 +40,8 @@ struct Candidate {
   Distance distance;
   FlatPolygon piece;  ///< as far as it stands in the beam, hidden or not
   PlanBox box;
-  bool is_met = false;  ///< its light has been sent on
+  bool is_met = false;                 ///< its light has been sent on
+  std::optional<Vec2> middle_mm = {};  ///< of PatchFacet
 };
 
 /// How far ahead of a beam facets are looked for.
@@ -118,7 +119,8 @@ class BeamWalk {
   /// further; with phases that are kept: all of it.
   CoherentLight mean_field(const Beam& beam, const materials::FresnelCoefficients& f, geometry::FacetRole role,
                            double cos_incidence, surface_models::Lobe lobe);
-  void keep_phases(Beam& beam, const Candidate& candidate, double cos_incidence, surface_models::Lobe lobe) const;
+  void keep_phases(Beam& beam, const Candidate& candidate, const materials::FresnelCoefficients& f,
+                   double cos_incidence, surface_models::Lobe lobe) const;
   void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
                  geometry::FacetRole role);
   void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,

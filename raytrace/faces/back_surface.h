@@ -32,6 +32,8 @@ class BackSurface {
   std::optional<SurfaceHit> certain_first_hit(const SurfaceRay& ray) const;
 
   const ExactSurface::Facet& facet(FacetRef ref) const { return exact_.facet(ref); }
+  /// Where it stands.
+  const geometry::Placement& placement(FacetRef ref) const { return exact_.placements()[ref.placement]; }
 
  private:
   struct Boxes;

@@ -6,7 +6,8 @@
 
 namespace retrace::raytrace {
 
-/// Told of light that leaves the part through the entrance face, path by path.
+/// Told of light that leaves the part through the entrance face, path by path; of a plane face that scatters also of
+/// what it sends back at once.
 class ExitObserver {
  public:
   virtual ~ExitObserver() = default;

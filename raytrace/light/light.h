@@ -50,10 +50,10 @@ struct Light {
   }
 
   Light reflected(const materials::FresnelCoefficients& f) const {
-    return passed(std::norm(f.r_s), std::norm(f.r_p), f.r_s * std::conj(f.r_p));
+    return passed(std::norm(f.r_s), std::norm(f.r_p), f.r_coherence * f.r_s * std::conj(f.r_p));
   }
   Light transmitted(const materials::FresnelCoefficients& f) const {
-    return passed(std::norm(f.t_s), std::norm(f.t_p), f.t_s * std::conj(f.t_p));
+    return passed(std::norm(f.t_s), std::norm(f.t_p), f.t_coherence * f.t_s * std::conj(f.t_p));
   }
 
  private:

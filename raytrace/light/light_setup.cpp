@@ -40,10 +40,38 @@ materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::F
                                    cos_incidence);
 }
 
-materials::FresnelCoefficients fresnel_at_entrance(const Optics& optics, bool inside, double cos_incidence) {
+namespace {
+
+/// Of the face with its thin layers alone.
+materials::FresnelCoefficients fresnel_of_face(const Optics& optics, bool inside, double cos_incidence) {
   if (inside)
     return materials::fresnel_layers(optics.entrance_layers, StackSide::body, optics.index, 1.0, cos_incidence);
   return materials::fresnel_layers(optics.entrance_layers, StackSide::outside, 1.0, optics.index, cos_incidence);
+}
+
+materials::FresnelCoefficients fresnel_behind(const Optics& optics, std::span<const materials::ThickLayer> layers,
+                                              double outside_index, bool inside, double cos_incidence) {
+  return inside ? materials::fresnel_thick_layers(optics.entrance_layers, layers, StackSide::body, optics.index,
+                                                  outside_index, cos_incidence)
+                : materials::fresnel_thick_layers(optics.entrance_layers, layers, StackSide::outside, outside_index,
+                                                  optics.index, cos_incidence);
+}
+
+}  // namespace
+
+materials::FresnelCoefficients fresnel_at_entrance(const Optics& optics, bool inside, double cos_incidence) {
+  const EntranceCondition& face = optics.entrance;
+  if (face.layers.empty()) return fresnel_of_face(optics, inside, cos_incidence);
+  const auto met = [&](std::span<const materials::ThickLayer> layers) {
+    return fresnel_behind(optics, layers, 1.0, inside, cos_incidence);
+  };
+  if (face.film_coverage <= 0.0 || face.film_coverage >= 1.0) return met(face.layers);
+  return materials::mixed(met(face.layers_under_film()), met(face.layers), face.film_coverage);
+}
+
+materials::FresnelCoefficients fresnel_under_drop(const Optics& optics, bool inside, double cos_incidence) {
+  return fresnel_behind(optics, optics.entrance.layers_under_film(), optics.entrance.water_index, inside,
+                        cos_incidence);
 }
 
 materials::FresnelCoefficients fresnel_at_mirror(const Optics& optics, double from_index, double cos_incidence) {
@@ -116,6 +144,7 @@ LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const 
                        const Illumination& illumination, const std::vector<double>& cones_deg)
     : optics(how), thickness_mm(part.thickness_mm), depth_mm(part.element_depth_mm), top_mm(part.top_mm) {
   to_source = direction_to_source(illumination);
+  incident = light_of_beam(illumination.stokes, to_source);
   for (const double half_angle_deg : cones_deg) {
     const double chord = 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad());
     cone_chord2.push_back(chord * chord * (1.0 + 1e-9));  // the cone's edge belongs to it, rounding or not
@@ -137,7 +166,7 @@ std::size_t LightSetup::cone_of(const Vec3& direction) const {
 }
 
 LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
-  const Vec3 incident = -to_source;
+  const Vec3 down = -to_source;
   const double ratio = 1.0 / optics.index;
   const materials::FresnelCoefficients f = fresnel_at_entrance(optics, false, to_source.z());
   CoherentLight light;
@@ -145,17 +174,17 @@ LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
   light.stokes.u = -stokes.u;  // p = direction x s is the second axis of the source reversed
   light.jones(1, 1) = -1.0;
   light.s_axis = source_axis(to_source);
-  light.turn_to(incident, Vec3::UnitZ());
+  light.turn_to(down, Vec3::UnitZ());
   Entry entered;
-  entered.direction = refracted(incident, Vec3::UnitZ(), ratio, to_source.z(), f.cos_refracted);
-  entered.front_direction = mirrored(incident, Vec3::UnitZ());
+  entered.direction = refracted(down, Vec3::UnitZ(), ratio, to_source.z(), f.cos_refracted);
+  entered.front_direction = mirrored(down, Vec3::UnitZ());
   entered.front_cone = cone_of(entered.front_direction);
   entered.light = light;
   if (optics.lossless_entrance) return entered;
   const CoherentLight reflected = light.reflected(f);
   entered.front = seen_from_above(reflected, entered.front_direction);
   entered.light = light.transmitted(f);
-  entered.absorbed = absorbed_by(optics.entrance_layers, light, reflected, entered.light);
+  entered.absorbed = absorbed_at_entrance(optics, light, reflected, entered.light);
   return entered;
 }
 

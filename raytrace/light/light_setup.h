@@ -33,6 +33,7 @@ struct LightSetup {
   double top_mm = 0.0;
   std::vector<Side> sides;  ///< empty for an infinite part
   Vec3 to_source = Vec3::UnitZ();
+  Light incident;                         ///< of the beam, along -to_source
   const DirectionScore* score = nullptr;  ///< sums over the directions in which light leaves; null: none are kept
   std::vector<double> cone_chord2;  ///< squared distance of unit vectors at each cone's edge from the one to the source
 
@@ -101,6 +102,9 @@ materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::F
 /// What the entrance face makes of light from inside the part or outside; of an ideal one only the directions count.
 materials::FresnelCoefficients fresnel_at_entrance(const Optics& optics, bool inside, double cos_incidence);
 
+/// The same under a drop: of the face with its layers but for the film, next to a medium other than air.
+materials::FresnelCoefficients fresnel_under_drop(const Optics& optics, bool inside, double cos_incidence);
+
 /// What the mirror behind a ball makes of light that comes from the ball's side, through a medium of index
 /// `from_index`. \pre the facets are mirrors or have an opaque layer
 materials::FresnelCoefficients fresnel_at_mirror(const Optics& optics, double from_index, double cos_incidence);
@@ -109,6 +113,12 @@ materials::FresnelCoefficients fresnel_at_mirror(const Optics& optics, double fr
 inline double absorbed_by(const materials::LayerStack& layers, const Light& met, const Light& reflected,
                           const Light& transmitted) {
   return layers.absorbs() ? met.power() - reflected.power() - transmitted.power() : 0.0;
+}
+
+/// The same of the entrance face.
+inline double absorbed_at_entrance(const Optics& optics, const Light& met, const Light& reflected,
+                                   const Light& transmitted) {
+  return optics.entrance_absorbs() ? met.power() - reflected.power() - transmitted.power() : 0.0;
 }
 
 /// The same of a face of the back surface.

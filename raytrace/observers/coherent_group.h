@@ -11,7 +11,7 @@
 
 namespace retrace::raytrace {
 
-/// A textured facet on the way of light that leaves the entrance face at a place r: where it was met,
+/// A facet with a texture or a form on the way of light that leaves the entrance face at a place r: where it was met,
 /// constant_mm + slope r, and what the heights there did to its phase.
 struct FieldHit {
   Vec3 normal = Vec3::UnitZ();  ///< of the facet's plane normal . p = offset_mm
@@ -19,6 +19,10 @@ struct FieldHit {
   Vec3 constant_mm = Vec3::Zero();
   Eigen::Matrix<double, 3, 2> slope = Eigen::Matrix<double, 3, 2>::Zero();
   surface_models::PhaseTexture phase;
+  /// The same place in the frame of the facet's form, and by how much a height there lengthens the way; 0: no form.
+  Vec2 form_constant_mm = Vec2::Zero();
+  Eigen::Matrix2d form_slope = Eigen::Matrix2d::Zero();
+  double path_per_height = 0.0;
 };
 
 /// A plane wave through a convex polygon of the entrance face: part of the field that a cell sends back.
@@ -27,7 +31,7 @@ struct FieldPolygon {
   geometry::Vec2 cosines;  ///< of its direction along x and y
   JonesMatrix amplitude;   ///< times the square root of the density of power, with the phase at the origin
   double power = 0.0;      ///< for the polarisation of the incident light
-  /// Textured facets on its way. Amplitude and power are those before their phases.
+  /// Textured and formed facets on its way. Amplitude and power are those before their phases.
   std::vector<FieldHit> hits;
   double phase_variance = 0.0;  ///< that they make
   double mean_factor = 1.0;     ///< on the amplitude, by averaging over their phases

@@ -86,6 +86,7 @@ class Recorder : public ExitObserver {
 
   void enters(const Vec2& position_mm) {
     entry_ = pixel_at(position_mm);
+    if (light_.optics.entrance.scatters()) return;  // the walker tells what the face sends back
     add(position_mm, light_.entry.front_direction, light_.entry.front.i);
   }
   void leaves(const Vec3& position, const Vec3& direction, double power) override {

@@ -10,6 +10,7 @@
 
 #include "raytrace/exact/flat_polygon.h"
 #include "raytrace/light/light_setup.h"
+#include "raytrace/observers/formed_aperture.h"
 #include "raytrace/sampling/sobol.h"
 
 namespace retrace::raytrace {
@@ -35,6 +36,9 @@ constexpr double kPointsToARadius = 48.0;
 constexpr std::uint32_t kTailPoints = 1U << 15;
 // How far they reach.
 constexpr double kFarthestCosine = 20.0;
+// Beyond so many of the angles by which forms turn light, what they do to edges is no more than a share of as much of
+// the little that is there.
+constexpr double kFarInBends = 4.0;
 constexpr std::uint64_t kTailKey = 0x2545f4914f6cdd1dU;
 
 std::int64_t step_of(double value, double step) {
@@ -67,6 +71,16 @@ Eigen::Matrix2d axes_of(const ReturnFrame& frame) {
 /// What tells fields of two cells apart.
 using Signature = std::vector<std::int64_t>;
 
+/// Where in their frames formed facets were met.
+void add_form_keys(const std::vector<FieldHit>& hits, double size_mm, Signature& key) {
+  for (const FieldHit& hit : hits) {
+    if (hit.path_per_height == 0.0) continue;
+    key.push_back(step_of(hit.path_per_height, kHitStep));
+    for (const double length : hit.form_constant_mm) key.push_back(step_of(length, kHitStep * size_mm));
+    for (const double slope : hit.form_slope.reshaped()) key.push_back(step_of(slope, kHitStep));
+  }
+}
+
 Signature signature_of(const CoherentGroup& group, double size_mm) {
   Signature all;
   for (const FieldPolygon& p : group.polygons) {
@@ -81,6 +95,7 @@ Signature signature_of(const CoherentGroup& group, double size_mm) {
       all.push_back(step_of(unit.real(), 1e3 * kAmplitudeStep));
       all.push_back(step_of(unit.imag(), 1e3 * kAmplitudeStep));
     }
+    add_form_keys(p.hits, size_mm, all);
   }
   return all;
 }
@@ -113,10 +128,10 @@ double FarField::detail_rad() const {
 
 /// Power by the cosines of directions. Defined beyond the horizon as well, where the theory leaves a little of cells
 /// that are not much larger than the wavelength.
-double FarField::per_cosines(const Vec2& cosines) const {
+double FarField::per_cosines(const Vec2& cosines, const std::vector<CoherentGroup>& groups) const {
   const double wave_number = 2.0 * pi / wavelength_mm_;
   double sum = 0.0;
-  for (const CoherentGroup& group : groups_) {
+  for (const CoherentGroup& group : groups) {
     if (is_cancelled(cancel_)) return 0.0;
     JonesMatrix field = JonesMatrix::Zero();
     for (const FieldPolygon& p : group.polygons)
@@ -127,7 +142,7 @@ double FarField::per_cosines(const Vec2& cosines) const {
 }
 
 double FarField::diffracted_per_sr(const Vec3& direction) const {
-  return direction.z() > 0.0 ? direction.z() * per_cosines(direction.head<2>()) : 0.0;
+  return direction.z() > 0.0 ? direction.z() * per_cosines(direction.head<2>(), groups_) : 0.0;
 }
 
 double FarField::scattered_per_sr(const Vec3& direction) const {
@@ -200,6 +215,8 @@ double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
   const double nearest = 0.9 * frame.to_source.z() * std::sin(half_angle_rad);
   const double decades = std::log(kFarthestCosine / nearest);
   const SobolSquare square(kTailKey, ~kTailKey);
+  const bool is_far = !plane_groups_.empty() && nearest > kFarInBends * bend_;
+  const std::vector<CoherentGroup>& groups = is_far ? plane_groups_ : groups_;
   double sum = 0.0;
   for (std::uint32_t k = 0; k < kTailPoints; ++k) {
     const auto [u, v] = square(k);
@@ -208,7 +225,7 @@ double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
     const double height2 = 1.0 - at.squaredNorm();
     const bool is_inside =
         height2 > 0.0 && small_angle_between({at.x(), at.y(), std::sqrt(height2)}, frame.to_source) <= half_angle_rad;
-    if (!is_inside) sum += per_cosines(at) * distance * distance;
+    if (!is_inside) sum += per_cosines(at, groups) * distance * distance;
   }
   return 2.0 * pi * decades * sum / kTailPoints;
 }
@@ -285,6 +302,11 @@ FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam)
     at_home.constant_mm = hit.of({by.x(), by.y(), thickness_mm_}) - moved;
     at_home.slope = hit.slope.leftCols<2>();
     at_home.phase = hit.phase;
+    at_home.path_per_height = hit.path_per_height;
+    Eigen::Matrix<double, 2, 3> axes;
+    axes << hit.frame.level.transpose(), hit.frame.down.transpose();
+    at_home.form_constant_mm = axes * (at_home.constant_mm + moved - hit.frame.origin_mm);
+    at_home.form_slope = axes * at_home.slope;
     piece.hits.push_back(at_home);
   }
   return piece;
@@ -334,6 +356,7 @@ void FarFieldCollector::join(std::vector<Piece>& pieces) const {
       for (const double length : hit.constant_mm) key.push_back(step_of(length, kHitStep * size_mm_));
       for (const double slope : hit.slope.reshaped()) key.push_back(step_of(slope, kHitStep));
     }
+    add_form_keys(p.hits, size_mm_, key);
     return key;
   };
   std::stable_sort(pieces.begin(), pieces.end(),
@@ -388,6 +411,7 @@ CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2&
                          piece.hits};
     for (FieldHit& hit : polygon.hits) {
       hit.constant_mm += hit.slope * middle_mm;
+      hit.form_constant_mm += hit.form_slope * middle_mm;
       polygon.phase_variance += hit.phase.variance();
     }
     polygon.mean_factor = std::exp(-0.5 * polygon.phase_variance);
@@ -421,15 +445,27 @@ void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
   std::stable_sort(groups.begin(), groups.end(),
                    [](const CoherentGroup& a, const CoherentGroup& b) { return a.power() > b.power(); });
   std::size_t polygons = 0;
+  FormedPolicy how_finely{.wave_number = 2.0 * pi / field_.wavelength_mm_, .most_pieces = policy_.most_polygons};
+  for (const CoherentGroup& group : groups)
+    for (const FieldPolygon& p : group.polygons)
+      how_finely.strongest = std::max(how_finely.strongest, group.copies * p.power);
   field_.scattered_ = ScatteredField(field_.wavelength_mm_, field_.coherency_, std::sin(policy_.window_rad), groups);
   for (CoherentGroup& group : groups) {
     if (is_cancelled(policy_.cancel)) return;
     const bool is_strong = left > least;
     const bool is_narrow = field_.wavelength_mm_ >= policy_.finest_detail_rad * group.extent_mm;
     const bool is_to_be_diffracted = is_strong && is_narrow;
-    const bool is_within_budget = polygons + group.polygons.size() <= policy_.most_polygons;
     left -= group.power();
+    const bool is_formed = is_strong && policy_.form != nullptr;
+    CoherentGroup bent = is_formed ? formed(group, *policy_.form, how_finely) : CoherentGroup{};
+    const std::size_t more = is_formed ? bent.polygons.size() : group.polygons.size();
+    const bool is_within_budget = polygons + more <= policy_.most_polygons;
     if (is_strong && is_within_budget) field_.scattered_.add(group, is_narrow);
+    if (is_formed) {
+      field_.bend_ = std::max(field_.bend_, turn_between(group, bent));
+      if (is_to_be_diffracted && is_within_budget) field_.plane_groups_.push_back(group);
+      group = std::move(bent);
+    }
     if (is_to_be_diffracted && is_within_budget) {
       polygons += group.polygons.size();
       field_.groups_.push_back(std::move(group));

@@ -30,6 +30,9 @@ struct FarFieldPolicy {
   std::size_t most_polygons = 20'000;  ///< that are diffracted; the faintest beyond are not
   /// Cells so large that their pattern is finer than this are not diffracted: the discs of source and receiver hide it.
   double finest_detail_rad = 0.0;
+  /// Of the retro facets, as the tracer's optics have it; null: they are plane. Outlives the collector. It bends what
+  /// is diffracted, and the rays of cells that are not for their size.
+  const surface_models::FacetForm* form = nullptr;
   /// Asked between polygons; figures of a far field are of no use once it is set. Outlives the far field.
   const Cancellation* cancel = nullptr;
 };
@@ -88,12 +91,16 @@ class FarField {
  private:
   friend class FarFieldCollector;
 
-  double per_cosines(const geometry::Vec2& cosines) const;
+  double per_cosines(const geometry::Vec2& cosines, const std::vector<CoherentGroup>& groups) const;
   double tail(const ReturnFrame& frame, double half_angle_rad) const;
 
   double wavelength_mm_ = 0.0;
   Eigen::Matrix2cd coherency_ = 0.5 * Eigen::Matrix2cd::Identity();
   std::vector<CoherentGroup> groups_;
+  /// The same of plane facets, where these have a form that turns light by `bend_` at most: far from the light they
+  /// send out nothing else, and they have fewer polygons.
+  std::vector<CoherentGroup> plane_groups_;
+  double bend_ = 0.0;
   std::vector<FarFieldRay> rays_;
   ScatteredField scattered_;
   double unplaced_power_ = 0.0;
@@ -109,6 +116,7 @@ class FarFieldCollector {
   FarFieldCollector(const geometry::Part& part, const Illumination& illumination, const FarFieldPolicy& policy);
 
   void add(const ReturnedBeam& beam);
+  /// \throw BudgetError if the form takes too many pieces (formed())
   FarField finish();
 
  private:

@@ -1,5 +1,7 @@
 #include "raytrace/paths/path_tracer.h"
 #include "core/infinity.h"
+#include "geometry/part/chosen_elements.h"
+#include "raytrace/faces/formed_facet.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,20 +16,21 @@ constexpr int kMaxWraps = 1000;
 
 }  // namespace
 
-PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const Vec2& centre_mm, const Optics& how,
+PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const Vec2& centre, const Optics& how,
                      const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& paths,
                      const EntranceFace* curved)
-    : LightSetup(part, centre_mm, how, illumination, cones_deg),
+    : LightSetup(part, centre, how, illumination, cones_deg),
       surface(back),
       entrance_face(curved),
       policy(paths),
+      centre_mm(centre),
       clearance_mm(part.top_mm + std::min(0.01 * part.element_depth_mm, 0.5 * (part.thickness_mm - part.top_mm))) {
   if (part.period_mm) {
     period_mm = *part.period_mm;
     // The cells of the outermost periods do not fill them to the edge.
     tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
   }
-  if (entrance_face != nullptr) incident = light_of_beam(illumination.stokes, to_source);
+  if (how.entrance.scatters()) soiled.emplace(how);
 }
 
 void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample) {
@@ -63,6 +66,7 @@ void PathWalker::follow_pending() {
 
 void PathWalker::enter(const Vec2& entry_mm) {
   if (setup_.entrance_face != nullptr) return enter_entrance_face(entry_mm);
+  if (setup_.soiled) return enter_soiled(entry_mm);
   const LightSetup::Entry& entry = setup_.entry;
   tally_.front[entry.front_cone] += entry.front;
   tally_.other[Account::absorbed] += entry.absorbed;
@@ -270,6 +274,7 @@ bool PathWalker::is_over_part(const Vec3& position) const {
 
 bool PathWalker::meet_entrance(State& state) {
   state.position.z() = setup_.thickness_mm;
+  if (setup_.soiled) return meet_soiled_entrance(state);
   const Vec3 down = -Vec3::UnitZ();
   const double cos_incidence = state.direction.z();
   const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, true, cos_incidence);
@@ -284,7 +289,7 @@ bool PathWalker::meet_entrance(State& state) {
   }
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
-  tally_.other[Account::absorbed] += absorbed_by(setup_.optics.entrance_layers, state.light, reflected, transmitted);
+  tally_.other[Account::absorbed] += absorbed_at_entrance(setup_.optics, state.light, reflected, transmitted);
   const Branch branch = choose(reflected, transmitted);
   if (branch != Branch::reflected) leave(state, transmitted, out);
   state.light = reflected;
@@ -300,9 +305,21 @@ void PathWalker::leave(const State& state, const Light& light, const Vec3& direc
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 
+/// Behind a facet: what lies behind its element.
+const Optics& PathWalker::optics_of(const FacetRef& facet) const {
+  const WetBack* const wet = setup_.optics.wet.get();
+  return wet != nullptr && wet->elements->has(facet.placement, facet.facet) ? wet->optics : setup_.optics;
+}
+
+const Optics& PathWalker::optics_of_wall(const Vec3& position) const {
+  const WetBack* const wet = setup_.optics.wet.get();
+  return wet != nullptr && wet->elements->has_wall_at(position.head<2>() + setup_.centre_mm) ? wet->optics
+                                                                                             : setup_.optics;
+}
+
 bool PathWalker::meet_side(State& state, const Vec3& normal) {
-  const Optics& optics = setup_.optics;
   const bool is_border_wall = state.position.z() < 0.0;
+  const Optics& optics = is_border_wall ? optics_of_wall(state.position) : setup_.optics;
   if (is_border_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
   const materials::FresnelCoefficients f =
       materials::fresnel(is_border_wall ? optics.ratio_at_back(true) : optics.index, normal.dot(state.direction));
@@ -321,14 +338,16 @@ bool PathWalker::meet_side(State& state, const Vec3& normal) {
 
 bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   const ExactSurface::Facet& facet = setup_.surface.facet(hit.facet);
-  const Optics& optics = setup_.optics;
+  const Optics& optics = optics_of(hit.facet);
   const bool is_wall = facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
   if (is_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
   const bool is_retro = facet.role == FacetRole::retro_facet;
   state.source = hit.facet;
   state.entrance_source = {};
-  if (is_retro && !optics.is_smooth()) return meet_textured(state, facet.normal);
-  const Vec3 against = state.inside ? Vec3(-facet.normal) : facet.normal;
+  const bool is_formed = is_retro && facet.middle_mm && !optics.facet_form.is_plane();
+  const Vec3 normal = is_formed ? normal_at(state, hit.facet) : facet.normal;
+  if (is_retro && !optics.is_smooth()) return meet_textured(state, normal, facet.normal, optics);
+  const Vec3 against = state.inside ? Vec3(-normal) : normal;
   const double cos_incidence = -against.dot(state.direction);
   const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, state.inside, cos_incidence);
 
@@ -346,6 +365,15 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   });
 }
 
+/// Of a formed facet, where a path has come to it.
+Vec3 PathWalker::normal_at(const State& state, const FacetRef& where) const {
+  const ExactSurface::Facet& facet = setup_.surface.facet(where);
+  const geometry::Placement& placement = setup_.surface.placement(where);
+  const Vec3 place(placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm);
+  const FacetFrame frame(facet.normal, facet.offset_mm, *facet.middle_mm);
+  return formed_normal(setup_.optics, facet.normal, frame, state.position - place, state.direction, state.inside);
+}
+
 /// Follows the branches at a face. \param pass makes of the path the one that goes through
 template <class Pass>
 bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass) {
@@ -359,9 +387,11 @@ bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, cons
   return true;
 }
 
-bool PathWalker::meet_textured(State& state, const Vec3& normal) {
+/// \param plane_normal that of a facet without its form
+bool PathWalker::meet_textured(State& state, const Vec3& normal, const Vec3& plane_normal, const Optics& optics) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
-  const TexturedReturn back = meet_textured_facet(setup_.optics, normal, state, setup_.policy.split_power, random);
+  TexturedReturn back = meet_textured_facet(optics, normal, state, setup_.policy.split_power, random);
+  if (!optics.facet_form.is_plane()) back.keep_sides(plane_normal);
   tally_.other[Account::truncated] += back.truncated;
   tally_.other[Account::absorbed] += back.absorbed;
   const State before = state;
@@ -446,7 +476,7 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
   Light reflected = is_lossless ? Light{Stokes{}, state.light.s_axis} : state.light.reflected(f);
   Light transmitted = is_lossless ? state.light : state.light.transmitted(f);
   if (!is_lossless)
-    tally_.other[Account::absorbed] += absorbed_by(setup_.optics.entrance_layers, state.light, reflected, transmitted);
+    tally_.other[Account::absorbed] += absorbed_at_entrance(setup_.optics, state.light, reflected, transmitted);
   // What the first surface makes of the beam is followed both ways, as at a plane entrance face.
   const Branch branch = is_first && !is_lossless ? Branch::both : choose(reflected, transmitted);
   return go_on(state, branch, reflected, against, [&](State& through) {

@@ -13,6 +13,7 @@
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/path_policy.h"
+#include "raytrace/paths/soiled_entrance.h"
 #include "raytrace/paths/textured_facet.h"
 
 namespace retrace::raytrace {
@@ -25,8 +26,9 @@ struct PathSetup : LightSetup {
 
   const BackSurface& surface;
   const EntranceFace* entrance_face = nullptr;  ///< in place of the plane z = thickness_mm; null: that plane
-  Light incident;                               ///< on an entrance surface: the light of the beam
+  std::optional<SoiledEntrance> soiled;         ///< where the plane entrance face scatters
   PathPolicy policy;
+  Vec2 centre_mm = Vec2::Zero();     ///< where positions are told from, in the part frame
   double clearance_mm = 0.0;         ///< height above z = 0 from which the back surface is looked for
   Vec2 period_mm = Vec2::Zero();     ///< infinite part
   Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the piece of surface that stands for it
@@ -87,11 +89,17 @@ class PathWalker {
   bool meet_entrance_face(State& state, const SurfaceHit& hit, const Vec3& normal);
   bool leave_entrance_face(const State& state);
   bool meet_entrance(State& state);
+  void enter_soiled(const Vec2& entry_mm);
+  bool meet_soiled_entrance(const State& state);
+  const SoiledReturn& soiled(const Ray& ray);
   std::vector<Stokes>& returned(const State& state) { return state.scattered ? tally_.scattered : tally_.returned; }
   void leave(const State& state, const Light& light, const Vec3& direction);
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
-  bool meet_textured(State& state, const Vec3& normal);
+  Vec3 normal_at(const State& state, const FacetRef& where) const;
+  bool meet_textured(State& state, const Vec3& normal, const Vec3& plane_normal, const Optics& optics);
+  const Optics& optics_of(const FacetRef& facet) const;
+  const Optics& optics_of_wall(const Vec3& position) const;
   Branch choose(Light& reflected, Light& transmitted);
   template <class Pass>
   bool go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass);
@@ -102,6 +110,7 @@ class PathWalker {
   Tally& tally_;
   ExitObserver* observer_;
   std::vector<State> pending_;
+  SoiledReturn from_soiled_;
   RandomKey key_;
   std::uint32_t replicate_ = 0;
   std::uint32_t sample_ = 0;

@@ -204,6 +204,17 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
   return result;
 }
 
+void TexturedReturn::keep_sides(const Vec3& plane_normal) {
+  for (std::size_t k = 0; k < count; ++k) {
+    Ray& ray = rays[k];
+    const double out = plane_normal.dot(ray.direction);
+    if (ray.inside == (out < 0.0)) continue;
+    const Vec3 direction = mirrored(ray.direction, plane_normal);
+    ray.light.s_axis = Eigen::Quaterniond::FromTwoVectors(ray.direction, direction) * ray.light.s_axis;
+    ray.direction = direction;
+  }
+}
+
 double mean_field_share(const Optics& optics, bool inside, double cos_incidence, Lobe lobe) {
   if (surface_models::first_order_model(optics.facet_scatter) != nullptr) return 1.0;
   return surface_models::mean_field_share(optics.facet_scatter, event_of(optics, inside, at_incidence(cos_incidence)),

@@ -42,6 +42,10 @@ struct TexturedReturn {
   std::size_t count = 0;
   double truncated = 0.0;  ///< power that the texture keeps, or gives (negative)
   double absorbed = 0.0;   ///< power that layers take
+
+  /// Mirrors at the facet's plane the directions that its form has turned to the wrong side of it: light that grazes
+  /// the facet. \param plane_normal unit, out of the part
+  void keep_sides(const Vec3& plane_normal);
 };
 
 /// Fresnel's branches at a piece of the texture, each scattered by Optics::facet_scatter. What stays specular and what

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/schema/document.h"
+#include "geometry/elements/element_choice.h"
 #include "geometry/elements/part_spec.h"
 #include "raytrace/balls/ball_layer.h"
 #include "raytrace/light/stokes.h"
@@ -58,6 +59,28 @@ struct HeightMapTexture {
 };
 /// What the retro facets are like, in the order of the words of `surface.model`.
 using FacetTexture = std::variant<SmoothTexture, HarveyShackTexture, AbgTexture, MicrofacetTexture, HeightMapTexture>;
+
+/// A term of a polynomial over a facet: height_um times the powers of places level and down the facet, in units of the
+/// facet's radius.
+struct FormTerm {
+  int level = 0;
+  int down = 0;            ///< both together at most 8
+  double height_um = 0.0;  ///< out of the body
+};
+struct FormMap {
+  std::string name;            ///< of the file, as given
+  std::filesystem::path file;  ///< the same, from the working directory; checked only when it is read, by make_model()
+  HeightMapAxis level_axis = HeightMapAxis::x;
+  int degree = 4;  ///< of the polynomial that is taken from it, 2..8
+};
+/// By what the retro facets of elements depart from their planes, all alike: the sum of these.
+struct FormOfFacets {
+  double sink_um = 0.0;  ///< of a paraboloid, from its farthest corner to its middle, into the body
+  std::vector<FormTerm> terms;
+  std::optional<FormMap> map;
+
+  bool is_plane() const { return sink_um == 0.0 && terms.empty() && !map; }
+};
 
 struct SpectralAbsorption {
   double wavelength_nm = 0.0;
@@ -150,6 +173,12 @@ struct Substance {
   bool is_coloured() const { return std::holds_alternative<std::vector<SpectralAbsorption>>(absorption_per_mm); }
 };
 
+/// Some elements of a finite array that have another medium behind them.
+struct WetElements {
+  double index = 1.333;  ///< of that medium, relative to air; 1..3
+  geometry::ElementChoice where;
+};
+
 /// A layer of a coating, as the design names it.
 struct CoatingLayer {
   std::string material;  ///< of the library, or a metal; empty: its index is given
@@ -170,11 +199,45 @@ struct Coating {
   bool has_opaque_facets() const;
 };
 
-/// What the retro facets do beside reflecting, and layers on the faces.
+/// A layer on the entrance face that is thick against the coherence of light.
+struct ThickCoatingLayer {
+  double refractive_index = 1.0;
+  double thickness_um = 0.0;
+  double absorption_per_mm = 0.0;  ///< Napierian, for power
+};
+
+/// What the entrance face is like where it is not clean. Shares are of its area but for haze's.
+struct EntranceState {
+  std::vector<ThickCoatingLayer> layers;  ///< from the body outwards, on those of the coating
+  double film_coverage = 0.0;
+  double water_index = 1.333;
+  double drop_coverage = 0.0;
+  std::optional<double> drop_contact_angle_deg;  ///< there where its share is above 0, as what follows
+  double dust_coverage = 0.0;
+  std::optional<double> dust_albedo;
+  std::optional<double> dust_forward_share;
+  double scratch_coverage = 0.0;
+  std::optional<double> scratch_spread_deg;
+  std::optional<double> scratch_azimuth_deg;  ///< none: all directions alike
+  double haze = 0.0;                          ///< share beyond 2.5 degrees
+  std::optional<double> haze_spread_deg;
+  double roughness_sq_nm = 0.0;
+  double correlation_length_um = 0.0;
+
+  /// Whether it sends light to more directions than a plane does.
+  bool scatters() const {
+    return drop_coverage > 0.0 || dust_coverage > 0.0 || scratch_coverage > 0.0 || haze > 0.0 || roughness_sq_nm > 0.0;
+  }
+  bool is_clean() const { return layers.empty() && film_coverage == 0.0 && !scatters(); }
+};
+
+/// What the retro facets do beside reflecting, layers on the faces, and the state of the entrance face.
 struct Surface {
   Coating coating;
+  EntranceState entrance;
   bool absorbing_walls = false;  ///< of elements and of the border
   FacetTexture texture;
+  FormOfFacets form;
 
   bool is_smooth() const { return std::holds_alternative<SmoothTexture>(texture); }
 };
@@ -203,6 +266,7 @@ struct Design {
   Shape shape;
   std::optional<EntranceFile> entrance;  ///< none: the plane z = thickness_mm; balls and endless arrays have none
   Substance substance;
+  std::optional<WetElements> wet_back;
   Surface surface;
   Light light;
   Detector detector;
@@ -216,6 +280,10 @@ struct Design {
   InputLocation where(std::string_view key) const;
   /// The same of what decides the texture of the facets.
   InputLocation where_texture() const;
+  /// The same of what decides their form.
+  InputLocation where_form() const;
+  /// Of what makes them other than smooth planes: the texture, or the form where there is none.
+  InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
   std::string_view entrance_key() const;
   /// The key is now what `place` says, for messages.
   void set_where(const std::string& key, InputLocation place);
@@ -237,6 +305,8 @@ struct Design {
 
   /// What messages call the source.
   std::string source_name() const { return source == "-" ? "standard input" : source; }
+  /// Where what makes the entrance face scatter was given. \pre surface.entrance.scatters()
+  InputLocation where_entrance_scatters() const;
   /// Whether the retro facets rely on total reflection.
   bool needs_total_reflection() const { return !idealisation.mirror_facets && !surface.coating.has_opaque_facets(); }
 };
@@ -248,6 +318,7 @@ struct Takes {
   bool solids = false;  ///< meshes and plates
   bool substrates = true;
   bool entrances = false;
+  bool wet_backs = false;
 };
 /// \throw InputError for a design that is not taken
 void check_taken(const Design& design, const Takes& takes);

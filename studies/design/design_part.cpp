@@ -7,7 +7,7 @@
 namespace retrace::studies {
 
 geometry::Part part_of(const Design& design) {
-  check_taken(design, {.what = {}, .solids = true, .entrances = true});
+  check_taken(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
   if (design.mask() && design.facet_planes())
     throw InputError(design.where("array.mask"), "not allowed together with facets in [part]");
   if (design.mask()) return geometry::build_part(design.part(), elements_of_mask(design));

@@ -14,16 +14,16 @@
 #include "core/overloaded.h"
 #include "materials/io/glass_catalogue.h"
 #include "materials/io/spectrum_reader.h"
+#include "studies/design/entrance_condition.h"
 #include "studies/design/entrance_of_design.h"
+#include "studies/design/form_of_design.h"
 #include "studies/design/part_of_design.h"
 #include "surface_models/form.h"
-#include "surface_models/io/height_map_reader.h"
 
 namespace retrace::studies {
 
 namespace {
 
-constexpr double kMissingShareToTell = 0.05;
 constexpr double kMostFringesPerStep = 0.5;
 constexpr std::string_view kFacetLayers = "coating.facets";
 constexpr std::string_view kEntranceLayers = "coating.entrance";
@@ -68,23 +68,12 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
   }
 }
 
-/// The map as it lies on a facet, x level. Warnings are appended.
+/// The map as it lies on a facet, x level, less its form. Warnings are appended.
 surface_models::HeightMap levelled_map(const HeightMapTexture& t, const std::string& source,
                                        std::vector<std::string>& warnings) {
-  using namespace surface_models;
-  HeightMapOptions options;
-  options.can_be_given = false;
-  HeightMapFile file = read_height_map(t.file, options);
-  const std::size_t points = file.map.heights_nm.size();
-  const std::size_t missing = points - measured_points(file.map);
-  if (static_cast<double>(missing) > kMissingShareToTell * static_cast<double>(points))
-    file.warnings.push_back(fmt::format("{:.1f} % of the points are missing; they count as the mean height",
-                                        100.0 * static_cast<double>(missing) / static_cast<double>(points)));
-  for (const std::string& warning : file.warnings)
-    warnings.push_back(fmt::format("{}: {}: {}", source, t.file.string(), warning));
-  const HeightMap level = t.level_axis == HeightMapAxis::x ? std::move(file.map) : turned_by_quarter(file.map);
+  const surface_models::HeightMap level = level_map_of(t.file, t.level_axis, source, warnings);
   try {
-    return without_form(level, t.form_degree);
+    return surface_models::without_form(level, t.form_degree);
   } catch (const InputError& error) {
     throw InputError({t.file.string(), 0, ""}, error.what());
   }
@@ -215,6 +204,7 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
   if (!(optics.index >= 1.0))
     throw InputError(design.where("body.material"), fmt::format("the index of {} at {} nm must be >= 1, got {}",
                                                                 material.name, wavelength_nm, optics.index));
+  optics.entrance = condition_of(design, optics);
   optics.facet_scatter = scatter_model(design, map, optics);
   return optics;
 }
@@ -316,23 +306,36 @@ void warn_of_temperature(const Design& design, const materials::Material& materi
       material.name, shortest(data.valid_from_c), shortest(data.valid_to_c), shortest(temperature_c)));
 }
 
-/// What the texture's model says of its range, at the shortest wavelength that gives reason to: surfaces are roughest
-/// to it. \throw InputError beyond every model
-void add_texture_warnings(const Design& design, OpticalModel& model) {
+/// What the model of a face's texture says of its range, at the shortest wavelength that gives reason to: surfaces are
+/// roughest to it. \param name that warnings begin with \param texture of the face at one wavelength \param behind
+/// index of the medium on its other side \throw InputError at `where` beyond every model
+template <class Texture, class Behind>
+void add_texture_warnings(const std::string& name, const InputLocation& where, const Texture& texture,
+                          const Behind& behind, OpticalModel& model) {
   bool is_told = false;
   for (const SpectralOptics& at : model.spectral) {
-    const double index = std::max(at.optics.index, at.optics.back_index);
+    const double index = std::max(at.optics.index, behind(at.optics));
     try {
-      surface_models::require_in_range(at.optics.facet_scatter, index, at.wavelength_nm);
+      surface_models::require_in_range(texture(at.optics), index, at.wavelength_nm);
     } catch (const InputError& error) {
-      throw InputError(design.where_texture(), error.what());
+      throw InputError(where, error.what());
     }
     if (is_told) continue;
-    for (const std::string& warning : surface_models::warnings(at.optics.facet_scatter, index, at.wavelength_nm)) {
-      model.warnings.push_back(fmt::format("{}: {}", design.source_name(), warning));
+    for (const std::string& warning : surface_models::warnings(texture(at.optics), index, at.wavelength_nm)) {
+      model.warnings.push_back(fmt::format("{}: {}", name, warning));
       is_told = true;
     }
   }
+}
+
+void add_texture_warnings(const Design& design, OpticalModel& model) {
+  using raytrace::Optics;
+  add_texture_warnings(
+      design.source_name(), design.where_texture(), [](const Optics& o) -> const auto& { return o.facet_scatter; },
+      [](const Optics& o) { return o.back_index; }, model);
+  add_texture_warnings(
+      design.source_name() + ": entrance face", design.where("entrance.roughness_sq_nm"),
+      [](const Optics& o) -> const auto& { return o.entrance.roughness; }, [](const Optics&) { return 1.0; }, model);
 }
 
 /// The wavelength of those to trace that lies nearest to `wavelength_nm`.
@@ -342,16 +345,38 @@ const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double w
   });
 }
 
+raytrace::Optics with_back_index(const Design& design, raytrace::Optics optics, double back_index) {
+  optics.back_index = back_index;
+  if (const auto* const texture = std::get_if<HarveyShackTexture>(&design.surface.texture))
+    optics.facet_scatter = harvey_shack_model(*texture, optics);
+  return optics;
+}
+
+/// Gives the wet elements of a design their back index, at every wavelength.
+void add_wet_back(const Design& design, OpticalModel& model) {
+  model.wet_elements = std::make_shared<const geometry::ChosenElements>(model.part, design.wet_back->where);
+  if (model.wet_elements->is_nothing()) return;
+  for (SpectralOptics& at : model.spectral) {
+    raytrace::Optics wet = with_back_index(design, at.optics, design.wet_back->index);
+    if (model.wet_elements->is_everything())
+      at.optics = std::move(wet);
+    else
+      at.optics.wet = std::make_shared<const raytrace::WetBack>(raytrace::WetBack{std::move(wet), model.wet_elements});
+  }
+  model.optics = nearest(model.spectral, model.wavelength_nm).optics;
+}
+
 }  // namespace
 
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Entrances entrances) {
-  check_taken(design, {.what = {}, .solids = true, .entrances = true});
+  check_taken(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
   if (entrances == Entrances::plane && design.entrance)
     throw InputError(design.where(design.entrance_key()),
                      "a [front] is taken by retrace rre, photometry and inspect alone");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.entrance) model.entrance = entrance_of_design(design, model.part);
+  if (design.wet_back) add_wet_back(design, model);
   return model;
 }
 
@@ -364,6 +389,8 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
   for (std::size_t k = 0; k < light.size(); ++k)
     model.spectral.push_back({light.wavelengths_nm[k], light.weights[k],
                               optics_at(design, material, library, map, light.wavelengths_nm[k])});
+  const surface_models::FacetForm form = form_of_design(design, model.warnings);
+  for (SpectralOptics& at : model.spectral) at.optics.facet_form = form;
   model.wavelength_nm = light.centroid_nm();
   model.optics = nearest(model.spectral, model.wavelength_nm).optics;
   if (!design.substance.refractive_index) {

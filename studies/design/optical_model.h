@@ -2,11 +2,13 @@
 
 // Makes a design ready to trace: its part, its refractive indices, and the wavelengths that stand for its light.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "geometry/entrance/entrance_surface.h"
+#include "geometry/part/chosen_elements.h"
 #include "geometry/part/part.h"
 #include "materials/io/material_library.h"
 #include "raytrace/light/optics.h"
@@ -24,6 +26,8 @@ struct SpectralOptics {
 /// A design made ready to trace.
 struct OpticalModel {
   geometry::Part part;
+  /// That have another medium behind them, which `optics` know where they are some of all; null: the design has none.
+  std::shared_ptr<const geometry::ChosenElements> wet_elements;
   std::optional<geometry::Entrance> entrance;  ///< in place of the plane entrance face; none: that plane
   double wavelength_nm = 0.0;                  ///< of the light; of a spectrum, its centroid
   raytrace::Optics optics;                     ///< at that of the wavelengths to trace which lies nearest to it

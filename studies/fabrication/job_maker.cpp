@@ -177,7 +177,7 @@ void check_substrate(const Design& design, const JobRequest& request) {
 }  // namespace
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
-  check_taken(design, {.what = "retrace job"});
+  check_taken(design, {.what = "retrace job", .wet_backs = true});
   check_substrate(design, request);
   if (design.facet_planes())
     throw InputError(design.where("part.facets"), "planes of single facets are traced, not cut, in this version");

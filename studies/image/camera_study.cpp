@@ -152,6 +152,9 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
   if (!is_unpolarised(design_.light.polarisation))
     throw InputError({design_.source, 0, "light.polarisation"},
                      "cameras take unpolarised light in this version: leave it out");
+  if (design_.surface.entrance.scatters())
+    throw InputError(design_.where_entrance_scatters(),
+                     "cameras take no entrance face that scatters: use retrace rre, photometry or image --detector");
   check_film(request_, design_.is_endless());
   model_ = make_model(design_, materials::MaterialLibrary::shipped());
   scene_ = scene_of(request_, model_.part);

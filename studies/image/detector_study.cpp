@@ -95,8 +95,16 @@ DetectorStudy::DetectorStudy(Design design, DetectorRequest request)
     : design_(std::move(design)), request_(std::move(request)) {
   check(request_);
   model_ = make_model(design_, materials::MaterialLibrary::shipped());
-  if (request_.engine == Engine::exact && !model_.optics.is_smooth())
-    throw InputError(design_.where_texture(), "rough facets cannot be traced exactly: use --engine montecarlo");
+  if (request_.engine == Engine::exact && !model_.optics.has_plane_facets())
+    throw InputError(design_.where_facets(),
+                     fmt::format("{} cannot be traced exactly: use --engine montecarlo",
+                                 model_.optics.is_smooth() ? "facets with a form" : "rough facets"));
+  if (request_.engine == Engine::exact && !model_.optics.has_one_back())
+    throw InputError(design_.where("wet_back.index"),
+                     "backs that are not all alike cannot be traced exactly: use --engine montecarlo");
+  if (request_.engine == Engine::exact && !model_.optics.keeps_beams())
+    throw InputError(design_.where_entrance_scatters(),
+                     "an entrance face that scatters cannot be traced exactly: use --engine montecarlo");
 }
 
 raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const raytrace::DetectorSetting& setting,
@@ -131,7 +139,8 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
        request_.angle_pixels},
       frame_of(illumination_of(design_, request_)),
       result.acceptance_half_angle_deg};
-  bool exact = model_.optics.is_smooth() && (request_.engine == Engine::exact || request_.engine == Engine::automatic);
+  bool exact =
+      model_.optics.keeps_beams() && (request_.engine == Engine::exact || request_.engine == Engine::automatic);
   const auto trace_all = [&] {
     result.maps = {};
     for (std::size_t k = 0; k < model_.spectral.size() && result.maps.complete; ++k)

@@ -198,7 +198,7 @@ void draw_road(const RoadScene& s, const RoadRequest& r, RoadView& view) {
 
 RoadStudy::RoadStudy(Design design, RoadRequest request, std::uint32_t seed)
     : design_(std::move(design)), request_(std::move(request)), seed_(seed) {
-  check_taken(design_, {.what = "retrace image", .solids = true});
+  check_taken(design_, {.what = "retrace image", .solids = true, .wet_backs = true});
   check(request_);
 }
 

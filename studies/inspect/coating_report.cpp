@@ -32,8 +32,10 @@ CoatingReports report_coating(const Design& design, const OpticalModel& model) {
     });
   if (!coating.entrance.empty())
     reports.entrance =
-        report_of(coating.entrance, model.optics.entrance_layers, model,
-                  [](const raytrace::Optics& optics) { return fresnel_at_entrance(optics, false, 1.0); });
+        report_of(coating.entrance, model.optics.entrance_layers, model, [](const raytrace::Optics& optics) {
+          return materials::fresnel_layers(optics.entrance_layers, materials::StackSide::outside, 1.0, optics.index,
+                                           1.0);
+        });
   return reports;
 }
 

@@ -63,6 +63,11 @@ double least_index(const std::vector<SpectralOptics>& light) {
   return std::min_element(light.begin(), light.end(), smaller)->optics.index;
 }
 
+/// Of what lies behind the elements, or behind those of them that are dry.
+double back_index(const Inspection& result) {
+  return result.light.front().optics.back_index;
+}
+
 double mean_index(const std::vector<SpectralOptics>& light) {
   double mean = 0.0;
   for (const SpectralOptics& at : light) mean += at.weight * at.optics.index;
@@ -72,8 +77,7 @@ double mean_index(const std::vector<SpectralOptics>& light) {
 /// What is unusual about the facets, so that total reflection ends early; empty if nothing is.
 std::string circumstances(const Inspection& result) {
   std::string text;
-  if (result.design.substance.back_index > 1.0)
-    text += fmt::format(", {} behind them", shortest(result.design.substance.back_index));
+  if (back_index(result) > 1.0) text += fmt::format(", {} behind them", shortest(back_index(result)));
   const geometry::Cant cant = geometry::cant_of(result.design.part().element);
   if (cant.deg > 0.0) text += fmt::format(", canted by {} degrees", shortest(cant.deg));
   return text;
@@ -84,8 +88,8 @@ std::string where_it_begins(const Inspection& result) {
   const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element)) return {};
   const double away_deg = std::fmod(*result.tir_limit_azimuth_deg + 180.0, 360.0);
-  const auto from_deg = total_reflection_from_deg(part, least_index(result.light), result.design.substance.back_index,
-                                                  Angle::from_deg(away_deg));
+  const auto from_deg =
+      total_reflection_from_deg(part, least_index(result.light), back_index(result), Angle::from_deg(away_deg));
   if (!from_deg) return {};
   return fmt::format("; it begins at {:.2f} degrees of incidence at azimuth {:.1f}", *from_deg, away_deg);
 }
@@ -189,6 +193,18 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
 
 }  // namespace
 
+namespace {
+
+/// \pre model.wet_elements
+WetReport report_wet_back(const Design& design, const OpticalModel& model) {
+  WetReport wet{model.wet_elements->count(), model.wet_elements->of_all(), {}};
+  if (!design.entrance)
+    wet.tir_limit_deg = tir_limit_deg(design.part(), least_index(model.spectral), design.wet_back->index);
+  return wet;
+}
+
+}  // namespace
+
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library) {
   if (design.balls()) return inspect_balls(design, library);
   const OpticalModel model = make_model(design, library, Entrances::any);
@@ -203,6 +219,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.thickness_mm = part.thickness_mm;
   result.warnings = model.warnings;
   result.coating = report_coating(design, model);
+  result.entrance_state = report_entrance_state(design, model);
   result.refractive_index = mean_index(model.spectral);
   result.light = model.spectral;
   result.wavelength_nm = model.wavelength_nm;
@@ -212,6 +229,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
     result.boundary = result.warnings.empty() ? "closed, free of self-intersections" : "see warnings";
     return result;
   }
+  if (!model.optics.facet_form.is_plane()) result.form = report_form(design, model.optics.facet_form);
   const double aperture = geometry::area(geometry::aperture_outline(design.part().element));
   result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   if (design.part().substrate) {
@@ -220,6 +238,7 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
     result.tir_limit_deg = tir_limit_deg(design.part(), least_index(model.spectral), model.optics.back_index);
     if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part());
   }
+  if (model.wet_elements) result.wet_back = report_wet_back(design, model);
   result.dead_zone_share = geometry::edge_share(geometry::finished_cell(
       geometry::element_cell(design.part().element, design.part().angle_errors), design.part()));
   result.boundary = boundary_finding(design, part.size_mm);

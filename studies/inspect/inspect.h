@@ -11,10 +11,12 @@
 #include "geometry/part/substrate_part.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
+#include "studies/design/form_of_design.h"
 #include "studies/design/optical_model.h"
 #include "studies/design/total_reflection.h"
 #include "studies/inspect/coating_report.h"
 #include "studies/inspect/entrance_report.h"
+#include "studies/inspect/entrance_state_report.h"
 
 namespace retrace::studies {
 
@@ -33,6 +35,14 @@ struct SubstrateReport {
   geometry::SubstrateMeasures measures;
   double element_mm = 0.0;     ///< circle round an element, which the least radius is to exceed
   geometry::InnerWalls walls;  ///< what stands open between neighbours, seen along the base's normal at its middle
+};
+
+/// Elements that have another medium behind them.
+struct WetReport {
+  std::int64_t elements = 0;  ///< whole and partial ones that have
+  std::int64_t of_all = 0;
+  /// As Inspection::tir_limit_deg, of these elements.
+  std::optional<double> tir_limit_deg;
 };
 
 /// What a design is, before any light is traced. Areas and counts of an infinite array are those of one period.
@@ -60,8 +70,11 @@ struct Inspection {
       substrate;  ///< of elements that stand on one; there are no limits of total reflection then
   std::optional<EntranceReport> entrance;  ///< of a part with one; limits of total reflection are those of light that
                                            ///< enters through a plane
+  std::optional<WetReport> wet_back;
+  std::optional<FormReport> form;  ///< of facets that have one
   CoatingReports coating;
-  double dead_zone_share = 0.0;      ///< of an element's plan that rounded and chamfered edges take
+  std::optional<EntranceStateReport> entrance_state;  ///< of a face that is not clean
+  double dead_zone_share = 0.0;                       ///< of an element's plan that rounded and chamfered edges take
   std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something
   std::string boundary;              ///< what the check of the boundary found
   std::vector<std::string> warnings;

@@ -194,8 +194,18 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
-  keeps_phases_ = request.diffraction && surface_models::has_phases(model_.optics.facet_scatter);
-  is_exact_ = !design_.balls() && !design_.entrance && (model_.optics.is_smooth() || keeps_phases_) &&
+  if (!model_.optics.has_one_back() && (request.engine == Engine::exact || request.engine == Engine::cell))
+    throw InputError({"", 0, "--engine"}, "must be auto, montecarlo or embree for a [wet_back] behind some elements");
+  has_form_ = !model_.optics.facet_form.is_plane();
+  const bool keeps_beams_elsewhere = model_.optics.has_one_back() && !model_.optics.entrance.scatters();
+  keeps_phases_ = request.diffraction && !has_form_ && keeps_beams_elsewhere &&
+                  surface_models::has_phases(model_.optics.facet_scatter);
+  if (request.engine == Engine::exact && has_form_ && !(request.diffraction && model_.optics.is_smooth()))
+    throw InputError(design_.where_form(),
+                     "facets with a form are traced exactly with diffraction and without a texture alone: use --engine "
+                     "montecarlo");
+  is_exact_ = !design_.balls() && !design_.entrance && keeps_beams_elsewhere &&
+              (model_.optics.is_smooth() || keeps_phases_) && (!has_form_ || request.diffraction) &&
               (request.engine == Engine::exact || request.engine == Engine::automatic);
 }
 
@@ -206,7 +216,9 @@ materials::SpectralCurve lamp_power(PhotometricLight light) {
 
 std::optional<Photometer> Photometer::mean_field() const {
   const bool is_asked = request_.engine == Engine::automatic && request_.diffraction;
-  if (!is_asked || is_exact_ || design_.balls() || design_.entrance || model_.optics.is_smooth()) return std::nullopt;
+  if (!is_asked || is_exact_ || design_.balls() || design_.entrance || model_.optics.is_smooth() ||
+      !model_.optics.has_one_back() || model_.optics.entrance.scatters())
+    return std::nullopt;
   Photometer bound = *this;
   bound.is_exact_ = true;
   bound.keeps_phases_ = false;
@@ -217,7 +229,10 @@ std::string Photometer::why_undiffracted() const {
   if (!request_.diffraction) return "it was not asked for";
   if (design_.balls()) return "balls are traced by rays";
   if (design_.entrance) return "curved fronts are traced by rays";
+  if (!model_.optics.has_one_back()) return "backs that are not all alike are traced by rays";
   if (is_exact_) return "its cells differ too much to diffract the light of each";
+  if (!model_.optics.is_smooth() && has_form_) return "facets with both a form and a texture are traced by rays";
+  if (model_.optics.entrance.scatters()) return "an entrance face that scatters is traced by rays";
   if (!model_.optics.is_smooth() && !keeps_phases_)
     return "textures that say nothing of phases (abg, microfacet, height_map, roughness with a lay) are traced by rays";
   return request_.engine == Engine::automatic ? "the exact engine would take too many beams"
@@ -254,6 +269,7 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
   policy.wavelength_nm = light.wavelength_nm;
   policy.window_rad = deg(1.5 * request_.window_deg).rad();
   policy.finest_detail_rad = kernel_.reach_rad() / kWidthsWithoutDiffraction;
+  if (has_form_) policy.form = &light.optics.facet_form;
   policy.cancel = cancel;
   raytrace::BeamPolicy beams;
   beams.cutoff = request_.cutoff.value_or(kCutoff) /

@@ -80,6 +80,7 @@ class Photometer {
   std::vector<double> weights_;  ///< of the wavelengths: of flux without the dye, which the tracer applies
   raytrace::ApertureKernel kernel_;
   bool is_exact_ = true;
+  bool has_form_ = false;
   bool keeps_phases_ = false;  ///< exact: textures scatter by their phases, diffracted
 };
 

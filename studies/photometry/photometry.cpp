@@ -234,7 +234,7 @@ PhotometryStudy::PhotometryStudy(Design design, PhotometryRequest request) : pre
   check(request);
   prepared_->photometer = std::make_unique<Photometer>(design, request, materials::kSpectralParts);
   if (request.engine == Engine::exact && !prepared_->photometer->is_exact())
-    throw InputError({"", 0, "--engine"}, fmt::format("exact needs plane smooth facets, and those of {} scatter: use "
+    throw InputError({"", 0, "--engine"}, fmt::format("exact needs plane smooth faces, and those of {} scatter: use "
                                                       "--engine montecarlo",
                                                       design.source_name()));
   prepared_->plan = plan_of(request, mirrors_source(design));

@@ -67,9 +67,13 @@ std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vect
     if (!design.elements() || design.part().substrate || !design.needs_total_reflection()) continue;
     for (const double azimuth : request.azimuth_deg)
       for (const SpectralOptics& light : models[d].spectral) {
-        const std::vector<double> edges = total_reflection_edges_deg(design.part(), light.optics.index,
-                                                                     light.optics.back_index, Angle::from_deg(azimuth));
-        kinks.insert(kinks.end(), edges.begin(), edges.end());
+        const auto add = [&](const raytrace::Optics& optics) {
+          const std::vector<double> edges =
+              total_reflection_edges_deg(design.part(), optics.index, optics.back_index, Angle::from_deg(azimuth));
+          kinks.insert(kinks.end(), edges.begin(), edges.end());
+        };
+        add(light.optics);
+        if (light.optics.wet) add(light.optics.wet->optics);
       }
   }
   return kinks;

@@ -113,6 +113,33 @@ void check_entrance(const Design& design, const RreRequest& request) {
     if (asked) check_taken(design, {.what = option, .solids = true});
 }
 
+/// Beams and cells know backs alone that are all alike.
+void check_backs(const Design& design, const OpticalModel& model, const RreRequest& request) {
+  if (model.optics.has_one_back()) return;
+  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
+                                      {request.far_field, "--far-field"},
+                                      {request.derivatives, "--derivatives"}})
+    if (asked) check_taken(design, {.what = option, .solids = true});
+  if (request.engine == Engine::exact || request.engine == Engine::stochastic || request.engine == Engine::cell)
+    throw InputError({"", 0, "--engine"}, fmt::format("{} takes backs that are all alike, {} has a [wet_back] behind "
+                                                      "some elements: use --engine embree",
+                                                      engine_name(request.engine), design.source_name()));
+}
+
+/// What would split or bend a beam is for rays.
+void check_beams(const Design& design, const raytrace::Optics& optics) {
+  if (optics.keeps_beams()) return;
+  const auto refused = [](const InputLocation& where, std::string_view what) {
+    return InputError(where,
+                      fmt::format("{} a beam into infinitely many: use --engine montecarlo, without --footprint, "
+                                  "--far-field and --derivatives",
+                                  what));
+  };
+  if (!optics.has_plane_facets())
+    throw refused(design.where_facets(), optics.is_smooth() ? "facets with a form bend" : "rough facets split");
+  throw refused(design.where_entrance_scatters(), "entrance faces that scatter split");
+}
+
 /// Balls have one engine of their own.
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreRequest& request) {
   if (!design.balls()) {
@@ -148,11 +175,9 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     check_planes(design, request);
     if (design.balls()) continue;
     if (request.derivatives) check_taken(design, {.what = "--derivatives"});
-    if ((must_be_exact(request) || request.engine == Engine::stochastic) &&
-        !prepared_->models.back().optics.is_smooth())
-      throw InputError(design.where_texture(),
-                       "rough facets split a beam into infinitely many: use --engine montecarlo, without --footprint, "
-                       "--far-field and --derivatives");
+    check_backs(design, prepared_->models.back(), request);
+    if (must_be_exact(request) || request.engine == Engine::stochastic)
+      check_beams(design, prepared_->models.back().optics);
     if (request.engine == Engine::cell && !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part))
       throw InputError({"", 0, "--engine"},
                        fmt::format("cell takes endless arrays, and arrays of equal elements that reach more than two "

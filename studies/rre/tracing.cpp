@@ -199,7 +199,7 @@ class DesignTracing {
 
   raytrace::MonteCarlo::Engine ray_engine() const {
     using raytrace::MonteCarlo;
-    const bool may_be_cell = !model_.entrance && request_.engine != Engine::embree &&
+    const bool may_be_cell = !model_.entrance && model_.optics.has_one_back() && request_.engine != Engine::embree &&
                              request_.sampling == raytrace::Sampling::Kind::stratified;
     return may_be_cell && MonteCarlo::cell_serves(model_.part) ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
   }
@@ -325,7 +325,7 @@ bool may_follow_beams(const RreRequest& request) {
 }
 
 bool may_follow_beams(const Design& design, const OpticalModel& model, const RreRequest& request) {
-  return may_follow_beams(request) && !design.balls() && !model.entrance && model.optics.is_smooth();
+  return may_follow_beams(request) && !design.balls() && !model.entrance && model.optics.keeps_beams();
 }
 
 bool must_be_exact(const RreRequest& request) {

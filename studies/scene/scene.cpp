@@ -29,9 +29,15 @@ geometry::Rectangle element_box(const geometry::Element& element) {
 Design few_elements(const Design& design, std::vector<std::string>& remarks) {
   Design small = design;
   small.surface.texture = {};
+  small.surface.form = {};
+  small.wet_back.reset();
   if (small.light.spectrum() != nullptr) small.light.colour = Light{}.colour;
   if (design.mask()) remarks.push_back("the mask is not shown");
   if (!design.surface.is_smooth()) remarks.push_back("facets are shown smooth");
+  if (!design.surface.form.is_plane()) remarks.push_back("facets are shown plane");
+  if (design.wet_back) remarks.push_back("wet backs are shown dry");
+  small.surface.entrance = {};
+  if (!design.surface.entrance.is_clean()) remarks.push_back("the entrance face is shown clean");
   if (design.facet_planes()) remarks.push_back("facets are shown as designed");
   if (!design.elements()) return small;
   small.shape = ElementArray{design.part(), {}, {}};

@@ -67,6 +67,8 @@ void add_warnings(Solid& solid) {
     solid.warnings.push_back(name + ": the part touches itself along edges, which some programs take for open");
   if (!solid.design.surface.is_smooth())
     solid.warnings.push_back(name + ": the texture of the facets is left out: a solid's facets are plane");
+  if (!solid.design.surface.form.is_plane())
+    solid.warnings.push_back(name + ": the form of the facets is left out: a solid's facets are plane");
 }
 
 geometry::Part part_to_write(const Design& design, SolidKind what) {
@@ -85,7 +87,7 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
 /// What was read, mended where it had to be.
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
-    check_taken(solid.design, {.what = fmt::format("--what {}", name_of(solid.what))});
+    check_taken(solid.design, {.what = fmt::format("--what {}", name_of(solid.what)), .wet_backs = true});
   solid.mesh = geometry::boundary_of(mesh_of_design(solid.design, &solid.warnings));
   measure(solid);
   add_warnings(solid);
@@ -109,7 +111,7 @@ Solid make_solid(const Design& design, const SolidRequest& request) {
     throw InputError({"", 0, "--block-mm"}, "only allowed with --what mould");
   if (request.block_mm && !(*request.block_mm > 0.0 && *request.block_mm <= 1e6))
     throw InputError({"", 0, "--block-mm"}, fmt::format("must be > 0 and <= 1e6, got {}", *request.block_mm));
-  check_taken(design, {.what = "retrace export", .solids = true});
+  check_taken(design, {.what = "retrace export", .solids = true, .wet_backs = true});
   Solid solid;
   solid.design = design;
   solid.what = request.what;

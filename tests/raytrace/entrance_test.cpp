@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -125,6 +126,41 @@ TEST(Entrance, PlaneIsTheEntranceFace) {
   }
 }
 
+// Layers on a plane that is given as a surface are those on the entrance face: at normal incidence and obliquely,
+// whether they reflect nothing or absorb, with light of every polarisation.
+TEST(Entrance, LayersOnAPlaneAreThoseOfTheEntranceFace) {
+  const Part part = build_part(finite(RtpElement{0.5, 0.4, 88.0}, Arrangement::offset, 2.3, 1.9, 0.7));
+  const Entrance surface = plane_entrance(0.7);
+  for (const materials::LayerStack& layers : {anti_reflection(), thin_aluminium()}) {
+    Optics optics = pmma();
+    optics.entrance_layers = layers;
+    for (Illumination light : {from(0.0), from(27.0, 30.0), from(70.0, 200.0)}) {
+      light.stokes = {1.0, 0.3, -0.5, -0.4};
+      const ConeResult flat = traced(part, nullptr, optics, light, 4096, {}, 8.0).cones[0];
+      const ConeResult curved = traced(part, &surface, optics, light, 4096, {}, 8.0).cones[0];
+      expect_same(flat, curved, 1e-12);
+      EXPECT_NEAR(curved.ledger.total(), 1.0, 1e-9);
+      EXPECT_EQ(curved.ledger[Account::absorbed] > 1e-3, layers.absorbs());
+    }
+  }
+}
+
+// Behind layers that absorb, and on waves, all power is told.
+TEST(Entrance, LedgersOfCoatedWavesAddUpToOne) {
+  const Part part = build_part(finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 2.3, 1.9, 0.7));
+  const Entrance waves = egg_box_entrance(0.8, 0.03, 6.0);
+  for (const materials::LayerStack& layers : {anti_reflection(), thin_aluminium()}) {
+    Optics optics = pmma();
+    optics.entrance_layers = layers;
+    for (const double incidence : {0.0, 35.0}) {
+      const ConeResult result = traced(part, &waves, optics, from(incidence, 20.0), 2048).cones[0];
+      EXPECT_NEAR(result.ledger.total(), 1.0, 1e-9);
+      EXPECT_EQ(result.ledger[Account::lost], 0.0);
+      EXPECT_EQ(result.ledger[Account::absorbed] > 0.05, layers.absorbs());
+    }
+  }
+}
+
 // A wedge over a mirror: refraction in, reflection, refraction out, with the power of both polarisations by hand.
 TEST(Entrance, WedgeRefractsBothPolarisationsAsByHand) {
   const Part plate = build_plate({2.0, 2.0}, 1.0);
@@ -174,6 +210,52 @@ ByHand through_sphere(double radius, double thickness, double n, const Vec3& fro
   const Vec3 d2(d1.x(), d1.y(), -d1.z());
   const Vec3 out = meet(bottom, d2, 1.0);
   return {out, snell(d2, (out - centre) / radius, n, 1.0)};
+}
+
+/// Share of power that a layer between two media lets through, as the sum over the ways to and fro in it (Airy): Hecht,
+/// Optics, 9.6.1, with the amplitudes of Fresnel for each polarisation.
+double through_layer(double n0, double n1, double n2, double thickness, double cos0, bool s_polarised) {
+  const auto cos_in = [&](double n) { return std::sqrt(1.0 - std::pow(n0 / n, 2.0) * (1.0 - cos0 * cos0)); };
+  const auto r = [&](double a, double b) {
+    const double ca = cos_in(a), cb = cos_in(b);
+    return s_polarised ? (a * ca - b * cb) / (a * ca + b * cb) : (b * ca - a * cb) / (b * ca + a * cb);
+  };
+  const std::complex<double> turn = std::polar(1.0, 4.0 * std::numbers::pi * n1 * thickness * cos_in(n1));
+  const double r01 = r(n0, n1), r12 = r(n1, n2);
+  const std::complex<double> reflected = (r01 + r12 * turn) / (1.0 + r01 * r12 * turn);
+  return 1.0 - std::norm(reflected);
+}
+
+// Layers on a lens over a mirror act by the incidence on its face where light meets it, going in and coming out.
+TEST(Entrance, LayersOnALensActByTheLocalIncidence) {
+  const double radius = 3.0, thickness = 4.0;
+  const Vec2 size(2.4, 2.0);
+  const Part plate = build_plate(size, 0.5 * thickness);
+  const OneRay tracer(plate, sphere_entrance(radius, thickness, 0.5 * size), 0.5 * size);
+  const Vec3 centre(0.0, 0.0, thickness - radius);
+  Optics optics = mirrored_pmma();
+  for (const double layer : {0.25 / 1.3777, 0.4}) {
+    optics.entrance_layers = {{{1.3777, layer}}};
+    for (const double incidence : {0.0, 8.0})
+      for (const double x : {0.0, 0.5, -0.7})
+        for (const bool s_polarised : {true, false}) {
+          const Vec3 d0 = towards_part(incidence, 0.0);
+          const Vec3 top(x, 0.0, thickness);
+          const Vec3 q = top - centre;
+          const double b = q.dot(d0);
+          const Vec3 normal = (q + (-b - std::sqrt(b * b - q.squaredNorm() + radius * radius)) * d0) / radius;
+          const ByHand hand = through_sphere(radius, thickness, kPmma, top, d0);
+          const double cos_out = hand.direction.dot(hand.at - centre) / radius;
+          Illumination light = from(incidence);
+          light.stokes = {1.0, s_polarised ? -1.0 : 1.0, 0.0, 0.0};
+          const Exits::Exit exit = tracer.follow(optics, light, {x, 0.0}).strongest();
+          // The way out is as good as the way in, by reciprocity.
+          const double expected = through_layer(1.0, 1.3777, kPmma, layer, -d0.dot(normal), s_polarised) *
+                                  through_layer(1.0, 1.3777, kPmma, layer, cos_out, s_polarised);
+          EXPECT_LT((exit.direction - hand.direction).norm(), 1e-12);
+          EXPECT_NEAR(exit.power, expected, 1e-10) << layer << " " << incidence << " " << x << " " << s_polarised;
+        }
+  }
 }
 
 TEST(Entrance, LensOverAMirrorFollowsRaysByHand) {

@@ -8,6 +8,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/cant_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/closed_forms_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/edges_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/form_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/layers_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/overlay_test.cpp
@@ -22,6 +23,8 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scratches_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/stochastic_beams_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/wet_back_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/soiled_entrance_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
   LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers rapidcheck)
 

@@ -7,12 +7,13 @@ retrace_test(studies_tests
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/adaptive_curve_test.cpp ${CMAKE_CURRENT_LIST_DIR}/coating_test.cpp ${CMAKE_CURRENT_LIST_DIR}/derivatives_test.cpp ${CMAKE_CURRENT_LIST_DIR}/engine_choice_test.cpp ${CMAKE_CURRENT_LIST_DIR}/returned_light_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/rre_files_test.cpp ${CMAKE_CURRENT_LIST_DIR}/roughness_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/spectrum_of_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/spectrum_of_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp ${CMAKE_CURRENT_LIST_DIR}/wet_back_test.cpp
   LIBRARIES retrace::roughness retrace::rre retrace::inspect)
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/photometric_colour_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometry_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/temperature_test.cpp ${CMAKE_CURRENT_LIST_DIR}/glass_of_design_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/photometry_verdict_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/photometry_verdict_test.cpp ${CMAKE_CURRENT_LIST_DIR}/form_of_design_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/entrance_state_test.cpp
   LIBRARIES retrace::photometry retrace::inspect retrace::rre nlohmann_json::nlohmann_json)
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/balls_test.cpp

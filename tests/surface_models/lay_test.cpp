@@ -104,5 +104,41 @@ TEST(Lay, RefusesAndWarnsByItsShorterLength) {
   EXPECT_EQ(warnings(HarveyShack({5.0, 30.0, 0.0, 0.0, 0.2}), kIndex, 550.0).size(), 1U);
 }
 
+// What the specular light leaves and the lobe scatters are all light, in reflection, transmission and total reflection;
+// a draw has weight 1.
+TEST(Lay, KeepsAllLight) {
+  for (const Roughness& r : {Roughness{20.0, 3.0, 0.0, 0.0, 1.0}, Roughness{40.0, 1.0, 0.0, 0.0, 3.0}}) {
+    const HarveyShack model(r);
+    for (const std::size_t k : {1U, 2U, 7U}) {
+      const Case& c = cases()[k];
+      const auto lobe = scaled_density(model, c.event, c.lobe);
+      EXPECT_NEAR(specular_share(model, c.event, {}, c.lobe) + disc_integral(lobe, 200, 300), 1.0, 1e-3) << c.name;
+      for (std::uint32_t draw = 0; draw < 200; ++draw) {
+        RandomStream random = stream(92, draw);
+        const auto drawn = sample(ScatterModel(model), c.event, {}, c.lobe, random);
+        ASSERT_TRUE(drawn);
+        EXPECT_EQ(drawn->weight, 1.0);
+        EXPECT_NEAR(drawn->direction.norm(), 1.0, 1e-12);
+        EXPECT_EQ(drawn->direction.z() > 0.0, c.lobe == Lobe::reflection);
+      }
+    }
+  }
+}
+
+// Draws follow the density, which is as wide as its lengths ask for along either axis.
+TEST(Lay, DrawsFollowTheDensity) {
+  std::uint32_t seed = 700;
+  for (const Roughness& r : {Roughness{20.0, 8.0, 0.0, 0.0, 2.0}, Roughness{60.0, 3.0, 0.0, 0.0, 12.0}}) {
+    const HarveyShack model(r);
+    for (const Case& c : cases()) {
+      const Vec2 middle = specular_direction(c.event, Vec3::UnitZ(), c.lobe)->head<2>();
+      const Rings rings(middle, 0.55 / (std::sqrt(2.0) * std::numbers::pi * c.event.index_of(c.lobe) * 3.0));
+      EXPECT_GT(chi_square_p(rings, scaled_density(model, c.event, c.lobe), draw_of(model, c.event, c.lobe), ++seed),
+                sidak_level(2 * cases().size()))
+          << c.name << ", Sq " << r.sq_nm;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace retrace::testing::lay_test

@@ -177,6 +177,26 @@ void set_body(Document& document, const Design& design) {
   if (design.substance.back_index != 1.0) keys.set("back_index", design.substance.back_index);
 }
 
+void set_wet_back(Document& document, const WetElements& wet) {
+  Keys keys(document, "wet_back");
+  keys.set("index", wet.index);
+  std::visit(
+      Overloaded{[&](const geometry::RandomShare& random) {
+                   keys.set("share", random.share);
+                   keys.set("seed", static_cast<double>(random.seed));
+                 },
+                 [&](const geometry::Rectangle& r) {
+                   keys.set("rectangle_mm", std::vector{r.lower.x(), r.lower.y(), r.upper.x(), r.upper.y()});
+                 },
+                 [&](const geometry::Disc& disc) {
+                   keys.set("disc_mm", std::vector{disc.centre_mm.x(), disc.centre_mm.y(), disc.radius_mm});
+                 },
+                 [&](const geometry::HalfPlane& half) {
+                   keys.set("half_plane", std::vector{half.through_mm.x(), half.through_mm.y(), half.azimuth_deg});
+                 }},
+      wet.where);
+}
+
 void set_layers(Document& document, const std::string& list, const std::vector<CoatingLayer>& layers) {
   if (!layers.empty()) document.set(list, {});
   for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -198,6 +218,34 @@ void set_coating(Document& document, const Coating& coating) {
   document.set("coating", {});
   if (sets_facets) set_layers(document, "coating.facets", coating.facets);
   set_layers(document, "coating.entrance", coating.entrance);
+}
+
+void set_entrance_face(Document& document, const EntranceState& face) {
+  if (face.is_clean()) return;
+  Keys keys(document, "entrance");
+  const auto set_share = [&](std::string_view key, double share, std::string_view needed,
+                             const std::optional<double>& value) {
+    keys.set_positive(key, share);
+    if (share > 0.0) keys.set(needed, *value);
+  };
+  keys.set_positive("film_coverage", face.film_coverage);
+  keys.set("water_index", face.water_index);
+  set_share("drop_coverage", face.drop_coverage, "drop_contact_angle_deg", face.drop_contact_angle_deg);
+  set_share("dust_coverage", face.dust_coverage, "dust_albedo", face.dust_albedo);
+  set_share("dust_coverage", face.dust_coverage, "dust_forward_share", face.dust_forward_share);
+  set_share("scratch_coverage", face.scratch_coverage, "scratch_spread_deg", face.scratch_spread_deg);
+  if (face.scratch_coverage > 0.0 && face.scratch_azimuth_deg)
+    keys.set("scratch_azimuth_deg", *face.scratch_azimuth_deg);
+  set_share("haze", face.haze, "haze_spread_deg", face.haze_spread_deg);
+  keys.set_positive("roughness_sq_nm", face.roughness_sq_nm);
+  if (face.roughness_sq_nm > 0.0) keys.set("correlation_length_um", face.correlation_length_um);
+  if (!face.layers.empty()) document.set("entrance.layers", {});
+  for (std::size_t i = 0; i < face.layers.size(); ++i) {
+    Keys entry(document, schema::path_of_entry("entrance.layers", i));
+    entry.set("refractive_index", face.layers[i].refractive_index);
+    entry.set("thickness_um", face.layers[i].thickness_um);
+    entry.set("absorption_per_mm", face.layers[i].absorption_per_mm);
+  }
 }
 
 /// As the design file has it.
@@ -302,6 +350,24 @@ void set_surface(Document& document, const Design& design) {
   }
 }
 
+void set_form(Document& document, const FormOfFacets& form) {
+  if (form.is_plane()) return;
+  Keys keys(document, "form");
+  if (form.sink_um != 0.0) keys.set("sink_um", form.sink_um);
+  if (form.map) {
+    keys.set_word("map", form.map->name);
+    keys.set_choice("map_level_axis", form.map->level_axis);
+    keys.set("map_degree", static_cast<double>(form.map->degree));
+  }
+  for (std::size_t i = 0; i < form.terms.size(); ++i) {
+    document.set("form.terms", {});
+    Keys entry(document, schema::path_of_entry("form.terms", i));
+    entry.set("level", static_cast<double>(form.terms[i].level));
+    entry.set("down", static_cast<double>(form.terms[i].down));
+    entry.set("height_um", form.terms[i].height_um);
+  }
+}
+
 }  // namespace
 
 Document document_of(const Design& design) {
@@ -310,10 +376,13 @@ Document document_of(const Design& design) {
   set_shape(document, design.shape);
   if (design.entrance) set_entrance(document, *design.entrance);
   set_body(document, design);
+  if (design.wet_back) set_wet_back(document, *design.wet_back);
   set_coating(document, design.surface.coating);
+  set_entrance_face(document, design.surface.entrance);
   set_light(document, design);
   Keys(document, "detector").set("acceptance_half_angle_deg", design.detector.acceptance_half_angle_deg);
   if (!design.balls()) set_surface(document, design);
+  set_form(document, design.surface.form);
   Keys idealisation(document, "idealisation");
   idealisation.set_choice("facets", design.idealisation.mirror_facets);
   idealisation.set_choice("entrance", design.idealisation.lossless_entrance);

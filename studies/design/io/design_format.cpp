@@ -32,6 +32,15 @@ const Table kSurfaceTables[] = {
      .shape = "a list of tables with facet, position_um, width_um and depth_um",
      .when = kScratchesOnly}};
 
+const Table kFormTables[] = {
+    {.name = "terms",
+     .meaning = "A polynomial over every facet, at most 45 terms; places are counted from its middle in units of its "
+                "radius, the distance to the farthest corner. Nothing is taken off.",
+     .rows = form_term_rows(),
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = "a list of tables with level, down and height_um"}};
+
 constexpr std::string_view kLayerIndex[] = {"material", "refractive_index"};
 constexpr Rule kLayerRules[] = {OneOf{kLayerIndex, "must have either material or refractive_index"}};
 constexpr std::string_view kLayerShape =
@@ -52,6 +61,18 @@ const Table kCoatingTables[] = {
      .layout = Layout::in_line,
      .shape = kLayerShape,
      .when = kEntranceTable}};
+
+constexpr std::string_view kWhichAreWet[] = {"share", "rectangle_mm", "disc_mm", "half_plane"};
+constexpr Rule kWetBackRules[] = {
+    OneOf{kWhichAreWet, "must have one of share, rectangle_mm, disc_mm and half_plane, which say where it is wet"}};
+const Table kEntranceFaceTables[] = {
+    {.name = "layers",
+     .meaning = "Layers that are thick against the coherence of light, such as hard coats, the one nearest to the body "
+                "first, at most 20. They lie on those of `coating.entrance`, under water.",
+     .rows = thick_layer_rows(),
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = "a list of tables with refractive_index, thickness_um and absorption_per_mm"}};
 
 constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Names curves in plots."}};
 const Table kTables[] = {
@@ -81,10 +102,23 @@ const Table kTables[] = {
      .presence = Presence::optional,
      .when = kEntranceTable},
     {.name = "body", .meaning = "What the part is made of.", .rows = body_rows(), .presence = Presence::implied},
+    {.name = "wet_back",
+     .meaning = "Another medium behind some elements of a finite array, such as water that has entered in places.",
+     .rows = wet_back_rows(),
+     .rules = kWetBackRules,
+     .presence = Presence::optional,
+     .when = kWithPlanes},
     {.name = "coating",
      .meaning = "Thin layers on its faces.",
      .tables = kCoatingTables,
      .presence = Presence::optional},
+    {.name = "entrance",
+     .meaning =
+         "What the entrance face is like where it is not clean: layers, water, dust, scratches, haze, roughness.",
+     .rows = entrance_face_rows(),
+     .tables = kEntranceFaceTables,
+     .presence = Presence::optional,
+     .when = kEntranceTable},
     {.name = "light", .meaning = "The light that falls on it.", .rows = light_rows(), .presence = Presence::implied},
     {.name = "detector", .meaning = "What counts as returned.", .rows = detector_rows(), .presence = Presence::implied},
     {.name = "surface",
@@ -93,6 +127,13 @@ const Table kTables[] = {
      .tables = kSurfaceTables,
      .presence = Presence::implied,
      .when = kSurfaceTable},
+    {.name = "form",
+     .meaning = "By what the retro facets of elements depart from planes, all alike: sink of moulded parts, a "
+                "polynomial, a measured map.",
+     .rows = form_rows(),
+     .tables = kFormTables,
+     .presence = Presence::optional,
+     .when = kWithPlanes},
     {.name = "idealisation",
      .meaning = "Idealisations, to be checked against theory.",
      .rows = idealisation_rows(),

@@ -110,8 +110,51 @@ Coating read_coating(const Document& document) {
   return coating;
 }
 
+FormOfFacets read_form(const Document& document) {
+  FormOfFacets form;
+  if (!document.has("form")) return form;
+  form.sink_um = document.number("form.sink_um");
+  for (std::size_t i = 0; i < document.count("form.terms"); ++i) {
+    const std::string entry = schema::path_of_entry("form.terms", i);
+    const FormTerm term{static_cast<int>(document.number(entry + ".level")),
+                        static_cast<int>(document.number(entry + ".down")), document.number(entry + ".height_um")};
+    if (term.height_um != 0.0) form.terms.push_back(term);
+  }
+  if (document.has("form.map"))
+    form.map = {document.text("form.map"), document.file("form.map"),
+                document.choice<HeightMapAxis>("form.map_level_axis"),
+                static_cast<int>(document.number("form.map_degree"))};
+  return form;
+}
+
+EntranceState read_entrance_face(const Document& document) {
+  EntranceState face;
+  if (!document.has("entrance")) return face;
+  for (std::size_t i = 0; i < document.count("entrance.layers"); ++i) {
+    const std::string entry = schema::path_of_entry("entrance.layers", i);
+    face.layers.push_back({document.number(entry + ".refractive_index"), document.number(entry + ".thickness_um"),
+                           document.number(entry + ".absorption_per_mm")});
+  }
+  face.film_coverage = document.number("entrance.film_coverage");
+  face.water_index = document.number("entrance.water_index");
+  face.drop_coverage = document.number("entrance.drop_coverage");
+  face.drop_contact_angle_deg = document.number_if("entrance.drop_contact_angle_deg");
+  face.dust_coverage = document.number("entrance.dust_coverage");
+  face.dust_albedo = document.number_if("entrance.dust_albedo");
+  face.dust_forward_share = document.number_if("entrance.dust_forward_share");
+  face.scratch_coverage = document.number("entrance.scratch_coverage");
+  face.scratch_spread_deg = document.number_if("entrance.scratch_spread_deg");
+  face.scratch_azimuth_deg = document.number_if("entrance.scratch_azimuth_deg");
+  face.haze = document.number("entrance.haze");
+  face.haze_spread_deg = document.number_if("entrance.haze_spread_deg");
+  face.roughness_sq_nm = document.number("entrance.roughness_sq_nm");
+  face.correlation_length_um = document.number("entrance.correlation_length_um");
+  return face;
+}
+
 Surface read_surface(const Document& document) {
-  return {read_coating(document), document.text("surface.walls") == "absorbing", read_texture(document)};
+  return {read_coating(document), read_entrance_face(document), document.text("surface.walls") == "absorbing",
+          read_texture(document), read_form(document)};
 }
 
 std::variant<double, LightSpectrum> read_colour(const Document& document) {
@@ -175,6 +218,25 @@ std::optional<GlassCatalogueFile> read_catalogue(const Document& document) {
   return GlassCatalogueFile{document.text("body.catalogue"), document.file("body.catalogue")};
 }
 
+/// Which elements are wet; none without such a table.
+std::optional<WetElements> read_wet_back(const Document& document) {
+  if (!document.has("wet_back")) return std::nullopt;
+  WetElements wet{document.number("wet_back.index"), {}};
+  if (const auto share = document.number_if("wet_back.share")) {
+    wet.where = geometry::RandomShare{*share, static_cast<std::uint32_t>(document.number("wet_back.seed"))};
+  } else if (document.has("wet_back.rectangle_mm")) {
+    const std::vector<double> r = document.numbers("wet_back.rectangle_mm");
+    wet.where = geometry::Rectangle{{r[0], r[1]}, {r[2], r[3]}};
+  } else if (document.has("wet_back.disc_mm")) {
+    const std::vector<double> d = document.numbers("wet_back.disc_mm");
+    wet.where = geometry::Disc{{d[0], d[1]}, d[2]};
+  } else {
+    const std::vector<double> h = document.numbers("wet_back.half_plane");
+    wet.where = geometry::HalfPlane{{h[0], h[1]}, h[2]};
+  }
+  return wet;
+}
+
 /// What a document says, without the files that it names.
 Design resolved(std::shared_ptr<const Document> given) {
   const Document& document = *given;
@@ -187,6 +249,7 @@ Design resolved(std::shared_ptr<const Document> given) {
   design.substance = {
       document.text("body.material"),           read_catalogue(document),  document.number_if("body.refractive_index"),
       document.number_if("body.temperature_c"), read_absorption(document), document.number("body.back_index")};
+  design.wet_back = read_wet_back(document);
   design.surface = read_surface(document);
   design.light = {read_colour(document), read_polarisation(document)};
   design.detector.acceptance_half_angle_deg = read_acceptance(document);
@@ -216,6 +279,21 @@ InputLocation Design::where_texture() const {
   for (const std::string_view key : {"surface.height_map", "surface.model", "surface.roughness_sq_nm"})
     if (document && document->has(key)) return where(key);
   return where("surface.waviness_sq_nm");
+}
+
+InputLocation Design::where_form() const {
+  for (const std::string_view key : {"form.map", "form.terms", "form.sink_um"})
+    if (document && document->has(key)) return where(key);
+  return where("form");
+}
+
+InputLocation Design::where_entrance_scatters() const {
+  const EntranceState& face = surface.entrance;
+  return where(face.drop_coverage > 0.0      ? "entrance.drop_coverage"
+               : face.dust_coverage > 0.0    ? "entrance.dust_coverage"
+               : face.scratch_coverage > 0.0 ? "entrance.scratch_coverage"
+               : face.haze > 0.0             ? "entrance.haze"
+                                             : "entrance.roughness_sq_nm");
 }
 
 bool Coating::has_opaque_facets() const {
@@ -273,6 +351,8 @@ void check_taken(const Design& design, const Takes& takes) {
              design.shape);
   if (design.entrance && !takes.entrances)
     throw InputError(design.where(design.entrance_key()), what + " takes no [front], only a plane entrance face");
+  if (design.wet_back && !takes.wet_backs)
+    throw InputError(design.where("wet_back.index"), what + " takes no [wet_back], only backs that are all alike");
 }
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
@@ -291,9 +371,9 @@ Design with(const Design& design, std::span<const std::string> overrides) {
 
 /// The order in which stores of studies have the files of a design: it is part of what a study is. New keys come
 /// behind.
-constexpr std::array<std::string_view, 8> kFilesOfStores = {"part.mesh",   "array.mask",     "surface.height_map",
+constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",   "array.mask",     "surface.height_map",
                                                             "part.facets", "light.spectrum", "front.turned",
-                                                            "front.mesh",  "body.catalogue"};
+                                                            "front.mesh",  "body.catalogue", "form.map"};
 
 std::vector<fs::path> files_named(std::string_view text, const std::string& source_name,
                                   std::span<const std::string> overrides) {

@@ -14,11 +14,16 @@ std::span<const schema::Row> array_rows();
 std::span<const schema::Row> part_rows();
 std::span<const schema::Row> entrance_rows();
 std::span<const schema::Row> body_rows();
+std::span<const schema::Row> wet_back_rows();
 std::span<const schema::Row> layer_rows();
+std::span<const schema::Row> entrance_face_rows();
+std::span<const schema::Row> thick_layer_rows();
 std::span<const schema::Row> light_rows();
 std::span<const schema::Row> detector_rows();
 std::span<const schema::Row> surface_rows();
 std::span<const schema::Row> scratch_rows();
+std::span<const schema::Row> form_rows();
+std::span<const schema::Row> form_term_rows();
 std::span<const schema::Row> idealisation_rows();
 
 inline constexpr schema::Words kRtp = {"rtp"};

@@ -307,6 +307,25 @@ void check_entrance(const Document& document) {
     document.fail(key, "not allowed for extent = \"infinite\": give lengths");
 }
 
+constexpr std::string_view kFormTerms = "form.terms";
+
+void check_form(const Document& document) {
+  constexpr std::size_t most_terms = 45;
+  constexpr double most_degree = 8.0;
+  if (!document.has(kFormTerms)) return;
+  const std::size_t count = document.count(kFormTerms);
+  if (count > most_terms) document.fail(kFormTerms, fmt::format("must be at most {}, got {}", most_terms, count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string entry = schema::path_of_entry(kFormTerms, i);
+    const double degree = document.number(entry + ".level") + document.number(entry + ".down");
+    if (degree > most_degree)
+      document.fail(entry + ".down", fmt::format("must be <= {} beside level = {}, got {}",
+                                                 shortest(most_degree - document.number(entry + ".level")),
+                                                 shortest(document.number(entry + ".level")),
+                                                 shortest(document.number(entry + ".down"))));
+  }
+}
+
 constexpr schema::Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr schema::Words kRoomKeys = {"array.x_length_mm", "array.y_length_mm", "array.x_offset_mm",
                                      "array.y_offset_mm"};
@@ -327,6 +346,7 @@ constexpr schema::Words kFacetsKeys = {"part.facets",  "array.extent", "base.kin
 constexpr schema::Words kSubstrateKeys = {"base.kind", "base.elements", "surface.rim_radius_um",
                                           "surface.rim_chamfer_um"};
 constexpr schema::Words kThicknessKeys = {"body.thickness_mm"};
+constexpr schema::Words kFormKeys = {kFormTerms};
 constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap_mm"};
 constexpr schema::Words kHeightKeys = {kRoughness, kRoughnessLength, kWaviness, kWavinessLength};
 constexpr schema::Words kModelKeys = {"surface.model", kRoughness, kWaviness};
@@ -335,9 +355,27 @@ constexpr schema::Words kAbsorptionKeys = {kAbsorption};
 constexpr schema::Words kSpectrumKeys = {"light.spectrum"};
 constexpr schema::Words kStokesKeys = {"light.polarisation"};
 constexpr schema::Words kMirrorKeys = {"element.mirror_offset_mm", "body.facet_coating", "idealisation.facets"};
+constexpr schema::Words kWetBackKeys = {"wet_back.rectangle_mm", "wet_back.disc_mm", "array.extent",
+                                        "array.arrangement", "base.kind"};
 constexpr schema::Words kLayerKeys = {kFacetLayers, kEntranceLayers};
 constexpr schema::Words kCoatingKeys = {kFacetLayers,          kEntranceLayers,         "body.facet_coating",
                                         "idealisation.facets", "idealisation.entrance", "element.kind"};
+constexpr schema::Words kEntranceFaceKeys = {"entrance.layers",
+                                             "entrance.film_coverage",
+                                             "entrance.drop_coverage",
+                                             "entrance.drop_contact_angle_deg",
+                                             "entrance.dust_coverage",
+                                             "entrance.dust_albedo",
+                                             "entrance.dust_forward_share",
+                                             "entrance.scratch_coverage",
+                                             "entrance.scratch_spread_deg",
+                                             "entrance.haze",
+                                             "entrance.haze_spread_deg",
+                                             "entrance.roughness_sq_nm",
+                                             "entrance.correlation_length_um",
+                                             "idealisation.entrance",
+                                             "front.turned",
+                                             "front.mesh"};
 constexpr schema::Words kEntranceKeys = {"front.turned", "front.mesh", "array.extent"};
 
 using schema::check_by;
@@ -391,6 +429,10 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kSpectrumKeys, "A list of lines has each wavelength once.", check_by<check_lines>},
     schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",
                   check_by<check_stokes>},
+    schema::Check{kWetBackKeys,
+                  "A `[wet_back]` is for finite arrays without a `[base]`, not `single`; its rectangle has two lengths "
+                  "above 0, its disc a radius.",
+                  check_by<check_wet_back>},
     schema::Check{kLayerKeys,
                   "At most 200 layers on a face. Layers without thickness are opaque: one on the facets, none on the "
                   "entrance face.",
@@ -398,8 +440,14 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kCoatingKeys,
                   "Layers are for faces that are real and not coated otherwise; those behind balls make a mirror.",
                   check_by<check_coating>},
+    schema::Check{kEntranceFaceKeys,
+                  "What covers or blurs an entrance face says what it is like; drops, dust and scratches cover at most "
+                  "all of it; haze is within its lobe; a rough face has no thick layers and no film. None of them on a "
+                  "lossless face, and on a `[front]` layers and film alone.",
+                  check_by<check_entrance_face>},
     schema::Check{kMirrorKeys, "A bowl behind balls (`mirror_offset_mm` > 0) needs a mirror: aluminium or ideal.",
                   check_by<check_ball_mirror>},
+    schema::Check{kFormKeys, "Terms of a form are at most 45, each of degree 8 at most.", check_by<check_form>},
     schema::Check{kEntranceKeys, "A `[front]` has one file and a finite part.", check_by<check_entrance>}};
 
 }  // namespace

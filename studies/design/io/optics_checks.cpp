@@ -1,6 +1,7 @@
 #include "studies/design/io/optics_checks.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <initializer_list>
@@ -96,6 +97,26 @@ void check_ball_mirror(const Document& document) {
   if (!document.has(key) || document.number(key) == 0.0 || document.count(kFacetLayers) > 0) return;
   if (document.text("body.facet_coating") == "aluminium" || document.text("idealisation.facets") == "mirror") return;
   document.fail(key, "needs a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = \"mirror\"");
+}
+
+void check_wet_back(const Document& document) {
+  if (!document.has("wet_back")) return;
+  constexpr std::string_view key = "wet_back.index";
+  if (document.text("array.extent") == "infinite")
+    document.fail(key,
+                  "[wet_back] is not allowed for extent = \"infinite\", whose elements are all alike: give lengths");
+  if (document.text("array.arrangement") == "single")
+    document.fail(key, "[wet_back] is not allowed for arrangement = \"single\": give body.back_index");
+  if (document.has("base")) document.fail(key, "[wet_back] is not allowed together with [base]");
+  const auto given = [&](std::string_view list) { return fmt::format("{}", fmt::join(document.numbers(list), ", ")); };
+  if (document.has("wet_back.rectangle_mm")) {
+    const std::vector<double> r = document.numbers("wet_back.rectangle_mm");
+    if (!(r[0] < r[2] && r[1] < r[3]))
+      document.fail("wet_back.rectangle_mm",
+                    "must have its least corner first, both lengths > 0, got " + given("wet_back.rectangle_mm"));
+  }
+  if (document.has("wet_back.disc_mm") && !(document.numbers("wet_back.disc_mm")[2] > 0.0))
+    document.fail("wet_back.disc_mm", "must have a radius > 0, got " + given("wet_back.disc_mm"));
 }
 
 void check_layers(const Document& document) {

@@ -15,6 +15,8 @@ inline constexpr std::string_view kWavinessLength = "surface.waviness_length_um"
 inline constexpr std::string_view kAbsorption = "body.absorption_per_mm";
 inline constexpr std::string_view kFacetLayers = "coating.facets";
 inline constexpr std::string_view kEntranceLayers = "coating.entrance";
+inline constexpr std::string_view kEntranceFace = "entrance";
+inline constexpr std::string_view kThickLayers = "entrance.layers";
 
 /// A roughness or waviness has its length. All of these: \throw InputError naming file, line and key
 void check_lengths(const schema::Document& document);
@@ -30,9 +32,13 @@ void check_lines(const schema::Document& document);
 void check_stokes(const schema::Document& document);
 /// A bowl behind balls has a mirror.
 void check_ball_mirror(const schema::Document& document);
+/// Elements with another medium behind them are some of a finite array on a plane, and their region has a size.
+void check_wet_back(const schema::Document& document);
 /// At most one layer is opaque, and none of those on the entrance face.
 void check_layers(const schema::Document& document);
 /// Layers stand beside nothing that would not count.
 void check_coating(const schema::Document& document);
+/// What the entrance face is like is complete, and nothing that a face cannot be at once. In entrance_checks.cpp.
+void check_entrance_face(const schema::Document& document);
 
 }  // namespace retrace::studies

@@ -61,6 +61,23 @@ constexpr Row kBodyRows[] = {
      "Relative to air; of what lies behind the facets, such as water (1.333) or glue; air is in front and at the "
      "sides."}};
 
+constexpr Condition kWithShare[] = {beside("share")};
+constexpr NumberRange kPlaceInPart{.low = -1e6, .high = 1e6};
+
+constexpr Row kWetBackRows[] = {
+    {"index", Number{{.low = 1.0, .high = 3.0}}, kRequired,
+     "Relative to air; of what lies behind these elements, such as water (1.333); behind the others lies what "
+     "`body.back_index` says."},
+    {"share", Number{{.low = 0.0, .high = 1.0}}, kNone,
+     "The chance of each element to be one of them, by a hash of its row, its column and `seed`."},
+    {"seed", Whole{{.low = 0.0, .high = 4294967295.0}}, 1.0, "Of that choice.", kWithShare},
+    {"rectangle_mm", Numbers{4, kPlaceInPart, "places, x and y of two corners"}, kNone,
+     "`[x, y, x, y]`: elements whose middle lies in a rectangle of the part frame, its least corner first."},
+    {"disc_mm", Numbers{3, kPlaceInPart, "lengths, x and y of the centre and the radius"}, kNone,
+     "`[x, y, radius]`: those whose middle lies in a disc."},
+    {"half_plane", Numbers{3, kPlaceInPart, "numbers, x and y in mm and an azimuth in degrees"}, kNone,
+     "`[x_mm, y_mm, azimuth_deg]`: those whose middle lies on the side towards that azimuth of a line through x, y."}};
+
 constexpr Row kLayerRows[] = {
     {"material", Text{}, kNone, "A name that `retrace list materials` shows, of a material or a metal."},
     {"refractive_index", Number{kAboveZero}, kNone, "In place of a material, relative to air."},
@@ -165,6 +182,23 @@ constexpr Row kScratchRows[] = {
     {"depth_um", Number{}, kRequired,
      "Normal to the facet and into the part, at most half the width; < 0 is a ridge."}};
 
+constexpr NumberRange kPower{.low = 0.0, .high = 8.0};
+constexpr NumberRange kFormHeight{.low = -100.0, .high = 100.0};
+constexpr Condition kWithFormMap[] = {beside("map")};
+constexpr Row kFormRows[] = {
+    {"sink_um", Number{kFormHeight}, 0.0,
+     "How far the middle of a facet sinks into the body against its farthest corner, as a paraboloid; < 0: it bulges. "
+     "The plane that fits it best is taken off."},
+    {"map", File{"the file of a measured map"}, kNone,
+     "Heights of a facet, as `retrace metrology` reads them, about its middle: a polynomial is fitted, less the plane "
+     "that fits this best over the facet."},
+    {"map_level_axis", Word{kAxes}, "x", "The axis of the map that lies level on a facet.", kWithFormMap},
+    {"map_degree", Whole{{.low = 2.0, .high = 8.0}}, 4.0, "Of that polynomial.", kWithFormMap}};
+constexpr Row kFormTermRows[] = {
+    {"level", Whole{kPower}, kRequired, "Power of the place along the facet's level axis."},
+    {"down", Whole{kPower}, kRequired, "Power of that down the facet; both together at most 8."},
+    {"height_um", Number{kFormHeight}, kRequired, "Out of the body, where both places are the facet's radius."}};
+
 constexpr Row kIdealisationRows[] = {
     {"facets", Word{kFacetModels}, "real", "`\"mirror\"`: retro facets reflect everything at every angle."},
     {"entrance", Word{kEntranceModels}, "real",
@@ -174,6 +208,9 @@ constexpr Row kIdealisationRows[] = {
 
 std::span<const Row> body_rows() {
   return kBodyRows;
+}
+std::span<const Row> wet_back_rows() {
+  return kWetBackRows;
 }
 std::span<const Row> layer_rows() {
   return kLayerRows;
@@ -189,6 +226,12 @@ std::span<const Row> surface_rows() {
 }
 std::span<const Row> scratch_rows() {
   return kScratchRows;
+}
+std::span<const Row> form_rows() {
+  return kFormRows;
+}
+std::span<const Row> form_term_rows() {
+  return kFormTermRows;
 }
 std::span<const Row> idealisation_rows() {
   return kIdealisationRows;

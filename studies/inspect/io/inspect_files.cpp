@@ -9,6 +9,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/overloaded.h"
 #include "studies/design/io/design_json.h"
 
 namespace retrace::studies {
@@ -59,6 +60,19 @@ nlohmann::ordered_json entrance_json(const EntranceReport& entrance) {
           {"steepest_deg", entrance.steepest_deg}};
 }
 
+nlohmann::ordered_json form_json(const FormReport& form) {
+  return {{"radius_mm", form.radius_mm}, {"lowest_um", form.lowest_um}, {"highest_um", form.highest_um},
+          {"rms_um", form.rms_um},       {"tilt_mrad", form.tilt_mrad}, {"steepest_mrad", form.steepest_mrad}};
+}
+
+std::string form_text(const Inspection& i) {
+  if (!i.form) return {};
+  return fmt::format("  form of facets      {} to {} um from their planes, rms {} um, slopes to {} mrad{}\n",
+                     fixed(i.form->lowest_um, 4), fixed(i.form->highest_um, 4), fixed(i.form->rms_um, 4),
+                     fixed(i.form->steepest_mrad, 3),
+                     i.form->tilt_mrad > 1e-6 ? fmt::format(", tilted by {} mrad", fixed(i.form->tilt_mrad, 3)) : "");
+}
+
 std::string entrance_text(const Inspection& i) {
   if (!i.entrance) return {};
   return fmt::format("  front               {}, z = {} to {} mm, up to {} degrees steep\n",
@@ -80,6 +94,18 @@ nlohmann::ordered_json coating_json(const CoatingReport& face) {
           {"reflectance", face.reflectance},
           {"transmittance", face.transmittance},
           {"absorptance", face.absorptance}};
+}
+
+void add_entrance_state(const Inspection& i, nlohmann::ordered_json& json) {
+  if (!i.entrance_state) return;
+  const auto& [clean_share, reflectance, transmittance, absorptance, specular, haze_share, dust] = *i.entrance_state;
+  json["entrance"] = {{"clean_share", clean_share},
+                      {"reflectance", reflectance},
+                      {"transmittance", transmittance},
+                      {"absorptance", absorptance},
+                      {"specular_transmittance", specular}};
+  if (haze_share > 0.0) json["entrance"]["haze_share"] = haze_share;
+  if (i.design.surface.entrance.dust_coverage > 0.0) json["entrance"]["dust_cd_per_lx_m2"] = dust;
 }
 
 void add_coating(const Inspection& i, nlohmann::ordered_json& json) {
@@ -105,9 +131,67 @@ std::string coating_text(std::string_view label, const std::optional<CoatingRepo
                      fixed(100.0 * face->absorptance, 3));
 }
 
-/// The layers that the design gives its faces.
+/// What the entrance face is like where it is not clean.
+std::string entrance_state_text(const Inspection& i) {
+  if (!i.entrance_state) return {};
+  const EntranceStateReport& face = *i.entrance_state;
+  std::string text = fmt::format(
+      "  {:<20}{} % under no drop, dust or scratch, which reflects {} %, passes {} %, absorbs "
+      "{} % at normal incidence\n",
+      "entrance state", fixed(100.0 * face.clean_share, 3), fixed(100.0 * face.reflectance, 3),
+      fixed(100.0 * face.transmittance, 3), fixed(100.0 * face.absorptance, 3));
+  text += fmt::format("  {:<20}passes {} % of all light as a plane does\n", "",
+                      fixed(100.0 * face.specular_transmittance, 3));
+  if (face.haze_share > 0.0)
+    text += fmt::format("  {:<20}haze throws off {} % of a passage\n", "", fixed(100.0 * face.haze_share, 3));
+  if (i.design.surface.entrance.dust_coverage > 0.0)
+    text +=
+        fmt::format("  {:<20}dust sends back {} cd/(lx m2) along the normal\n", "", fixed(face.dust_cd_per_lx_m2, 6));
+  return text;
+}
+
+/// The layers that the design gives its faces, and what else the entrance face is like.
 std::string coatings_text(const Inspection& i) {
-  return coating_text("facets", i.coating.facets) + coating_text("entrance face", i.coating.entrance);
+  return coating_text("facets", i.coating.facets) + coating_text("entrance face", i.coating.entrance) +
+         entrance_state_text(i);
+}
+
+std::string place_text(const geometry::ElementChoice& choice) {
+  return std::visit(
+      Overloaded{[](const geometry::RandomShare& random) {
+                   return fmt::format("each with a chance of {}, seed {}", shortest(random.share), random.seed);
+                 },
+                 [](const geometry::Rectangle& r) {
+                   return fmt::format("x {} to {}, y {} to {} mm", shortest(r.lower.x()), shortest(r.upper.x()),
+                                      shortest(r.lower.y()), shortest(r.upper.y()));
+                 },
+                 [](const geometry::Disc& disc) {
+                   return fmt::format("within {} mm of x {}, y {} mm", shortest(disc.radius_mm),
+                                      shortest(disc.centre_mm.x()), shortest(disc.centre_mm.y()));
+                 },
+                 [](const geometry::HalfPlane& half) {
+                   return fmt::format("beyond x {}, y {} mm towards azimuth {}", shortest(half.through_mm.x()),
+                                      shortest(half.through_mm.y()), shortest(half.azimuth_deg));
+                 }},
+      choice);
+}
+
+/// Those of the elements that are wet.
+std::string wet_back_text(const Inspection& i) {
+  if (!i.wet_back) return {};
+  return fmt::format("  wet back            {} of {} elements, {} behind them: {}\n", i.wet_back->elements,
+                     i.wet_back->of_all, shortest(i.design.wet_back->index), place_text(i.design.wet_back->where)) +
+         fmt::format("                      total reflection in them {}\n",
+                     i.wet_back->tir_limit_deg ? fmt::format("up to {} degrees", fixed(*i.wet_back->tir_limit_deg, 2))
+                                               : "nowhere, or not stated");
+}
+
+nlohmann::ordered_json wet_back_json(const Inspection& i) {
+  nlohmann::ordered_json json = {{"elements", i.wet_back->elements},
+                                 {"of_all", i.wet_back->of_all},
+                                 {"refractive_index", i.design.wet_back->index}};
+  if (i.wet_back->tir_limit_deg) json["tir_limit_deg"] = *i.wet_back->tir_limit_deg;
+  return json;
 }
 
 std::string substrate_text(const Inspection& i) {
@@ -166,11 +250,14 @@ std::string inspect_json(const Inspection& i) {
   }
   if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
   add_coating(i, json);
+  add_entrance_state(i, json);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (i.design.elements()) json["dead_zone_share"] = i.dead_zone_share;
   if (i.substrate) json["base"] = substrate_json(*i.substrate);
+  if (i.wet_back) json["wet_back"] = wet_back_json(i);
   if (i.entrance) json["front"] = entrance_json(*i.entrance);
+  if (i.form) json["form"] = form_json(*i.form);
   json["boundary"] = i.boundary;
   return result_text("retrace.inspect/1", json, i.warnings);
 }
@@ -222,9 +309,11 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += substrate_text(i);
   text += entrance_text(i);
+  text += form_text(i);
   text += light_text(i);
   text += coatings_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
+  text += wet_back_text(i);
   text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_share, 3));
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;

@@ -288,7 +288,7 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
   const std::vector<std::string> as_cut = surface_overrides(machining);
   texts.for_design.insert(texts.for_design.begin(), as_cut.begin(), as_cut.end());
   const Design varied = parse_design(study.design_texts.at(texts.design), texts.design, texts.for_design);
-  check_taken(varied, {.what = "a study"});
+  check_taken(varied, {.what = "a study", .wet_backs = true});
   return {varied, analysis_of(document, study.seed), machining};
 }
 

@@ -8,6 +8,7 @@
 #include "studies/image/camera_study.h"
 #include "studies/photometry/photometry.h"
 #include "tests/support/designs.h"
+#include "tests/support/refusals.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::camera_parts_test {
@@ -118,6 +119,16 @@ TEST(MaskCamera, ShowsTheElementsThatAreThere) {
       EXPECT_LT(image.luminance[k], 0.1 * full) << column << ' ' << row;
     }
   }
+}
+
+TEST(CameraStudy, RefusesAnEntranceFaceThatScatters) {
+  Design design = rough_cubes(studies::SmoothTexture());
+  design.source = "d.toml";
+  design.surface.entrance.haze = 0.1;
+  design.surface.entrance.haze_spread_deg = 5.0;
+  EXPECT_EQ(refusal_of([&] { studies::CameraStudy(design, {}); }),
+            "d.toml: entrance.haze: cameras take no entrance face that scatters: use retrace rre, photometry or image "
+            "--detector");
 }
 
 }  // namespace

@@ -167,5 +167,24 @@ TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
   EXPECT_GT(result.maps.entering.value[25 * 50 + 25], 0.9);
 }
 
+// Before an entrance face that scatters maps hold what it sends back at once, too: all light that leaves the face.
+TEST(DetectorMaps, OfASoiledEntrance) {
+  const Part part = build_part(infinite(RtpElement{0.5, 0.5}, Arrangement::offset, 0.5));
+  Optics optics = pmma();
+  optics.entrance.dust = {0.3, 0.9, 0.5};
+  const DetectorSetting setting = setting_of(part, 8, 8, from(5.0));
+  const DetectorMaps maps = sampled_detector_maps(part, optics, from(5.0), setting, 1U << 13, 1, {});
+  const ConeResult traced = MonteCarlo(part).trace(optics, from(5.0), {0.5}, rays(1U << 13), {}).cones[0];
+  double power = maps.outside;
+  for (std::size_t k = 0; k < setting.angles.size(); ++k)
+    power += maps.per_sr.value[k] * setting.angles.solid_angle_sr(k);
+  double left = 0.0;
+  for (const Account a :
+       {Account::retroreflected, Account::front_specular, Account::returned_elsewhere, Account::scattered_out})
+    left += traced.ledger[a];
+  EXPECT_NEAR(power, left, 5e-3);
+  EXPECT_NEAR(maps.rre, traced.rre, student_bound(1) * std::hypot(maps.std_error, traced.std_error));
+}
+
 }  // namespace
 }  // namespace retrace::testing::detector_test

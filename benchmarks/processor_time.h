@@ -1,0 +1,59 @@
+#pragma once
+
+// Processor time of one question on one thread, and what stops it when it takes too long.
+
+#include <atomic>
+#include <chrono>
+#include <ctime>
+#include <string>
+#include <thread>
+
+#include "core/progress.h"
+#include "raytrace/sampling/threads.h"
+#include "studies/rre/rre.h"
+
+namespace retrace::benchmarks {
+
+/// Stops a run after some time by the clock.
+class Deadline {
+ public:
+  explicit Deadline(double seconds)
+      : thread_([this, seconds] {
+          const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+          while (!is_over_ && Clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+          cancellation.request();
+        }) {}
+  ~Deadline() {
+    is_over_ = true;
+    thread_.join();
+  }
+
+  Cancellation cancellation;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::atomic<bool> is_over_ = false;
+  std::thread thread_;
+};
+
+struct Timed {
+  double s = 0.0;  ///< of the processor: the machine may be busy
+  bool is_complete = false;
+  std::string engine;
+};
+
+/// What a request takes on one thread, once it is checked. \param most_s after which it is given up
+inline Timed timed(const studies::Design& design, const studies::RreRequest& request, double most_s) {
+  const studies::RreStudy study({design}, request);
+  Timed result;
+  raytrace::run_with_threads(1, [&] {
+    const Deadline deadline(most_s);
+    const std::clock_t start = std::clock();
+    const studies::RreResult found = study.run(nullptr, &deadline.cancellation);
+    result = {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, found.complete, found.engine};
+  });
+  return result;
+}
+
+}  // namespace retrace::benchmarks

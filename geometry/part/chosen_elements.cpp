@@ -1,0 +1,137 @@
+#include "geometry/part/chosen_elements.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/angle.h"
+#include "core/overloaded.h"
+#include "core/random.h"
+#include "geometry/elements/facet_planes.h"
+
+namespace retrace::geometry {
+namespace {
+
+bool is_in_outline(const Polygon& outline, const Vec2& place) {
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2 along = outline[(k + 1) % outline.size()] - outline[k];
+    const Vec2 to = place - outline[k];
+    if (along.x() * to.y() - along.y() * to.x() < 0.0) return false;
+  }
+  return true;
+}
+
+/// Of what is seen of a cell along z; where nothing is, of its box.
+Vec2 middle_in_plan(const SurfacePatch& patch, const PatchCell& cell) {
+  Vec2 sum = Vec2::Zero();
+  double area_mm2 = 0.0;
+  for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
+    const PatchFacet& facet = patch.facets[f];
+    if (facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall) continue;
+    Polygon plan;
+    for (std::uint32_t k = 0; k < facet.corner_count; ++k)
+      plan.push_back(patch.vertices[patch.corners[facet.first_corner + k]].head<2>());
+    const double of_facet_mm2 = std::abs(area(plan));
+    if (!(of_facet_mm2 > 0.0)) continue;
+    sum += of_facet_mm2 * centroid(plan);
+    area_mm2 += of_facet_mm2;
+  }
+  return area_mm2 > 0.0 ? Vec2(sum / area_mm2) : Vec2(0.5 * (cell.lower + cell.upper).head<2>());
+}
+
+bool has_retro_facet(const SurfacePatch& patch, const PatchCell& cell) {
+  for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
+    if (patch.facets[f].role == FacetRole::retro_facet) return true;
+  return false;
+}
+
+}  // namespace
+
+ChosenElements::ChosenElements(const Part& part, const ElementChoice& choice)
+    : choice_(choice),
+      spec_(part.spec),
+      sheet_(spec_),
+      part_mm_(bounding_box(part.outline)),
+      inwards_(Vec2::Constant(1e-6 * part.size_mm)) {
+  std::vector<std::vector<Vec2>> middles;  // by patch
+  for (const SurfacePatch& patch : part.patches) {
+    auto& of_patch = middles.emplace_back();
+    for (const PatchCell& cell : patch.cells) of_patch.push_back(middle_in_plan(patch, cell));
+  }
+  bool all = true, none = true;
+  for (const Placement& placement : part.placements) {
+    const SurfacePatch& patch = part.patches[placement.patch];
+    const std::size_t first = facets_.size();
+    first_of_placement_.push_back(first);
+    facets_.resize(first + patch.facets.size());
+    for (std::size_t c = 0; c < patch.cells.size(); ++c) {
+      const PatchCell& cell = patch.cells[c];
+      const Vec2 place_mm = placement.offset_mm + middles[placement.patch][c];
+      const Place element = element_at(place_mm);
+      const bool chosen = is_chosen(element, place_mm);
+      std::fill_n(facets_.begin() + static_cast<std::ptrdiff_t>(first + cell.first_facet), cell.facet_count, chosen);
+      (chosen ? none : all) = false;
+      if (!element.is_within || !has_retro_facet(patch, cell)) continue;
+      ++of_all_;
+      if (chosen) ++count_;
+    }
+  }
+  // Regions are convex: walls lie between the corners.
+  const auto wall_is_chosen = [&](const Vec2& corner) { return is_chosen({}, corner); };
+  const auto* const by_chance = std::get_if<RandomShare>(&choice_);
+  is_everything_ = all && (by_chance ? by_chance->share >= 1.0 : std::ranges::all_of(part.outline, wall_is_chosen));
+  is_nothing_ = none;
+}
+
+ChosenElements::Place ChosenElements::element_at(const Vec2& place_mm) const {
+  const Vec2 from_anchor = place_mm - sheet_.anchor_mm;
+  const Vec2 period = sheet_.lattice.period_mm;
+  const auto index = [&](Eigen::Index axis) {
+    return static_cast<std::int64_t>(std::floor(from_anchor[axis] / period[axis]));
+  };
+  Place nearest;
+  double least_mm2 = INFINITY;
+  for (std::int64_t j = index(1) - 1; j <= index(1) + 1; ++j)
+    for (std::int64_t i = index(0) - 1; i <= index(0) + 1; ++i) {
+      const Vec2 origin = sheet_.at_mm(i, j);
+      for (std::uint32_t k = 0; k < sheet_.lattice.cells.size(); ++k) {
+        const Cell& cell = sheet_.lattice.cells[k];
+        if (!cell.is_element) continue;
+        const Place here{i, j, k, is_in_outline(cell.outline, place_mm - origin), origin + place_of(spec_, cell)};
+        if (here.is_within) return here;
+        const double mm2 = (here.middle_mm - place_mm).squaredNorm();
+        if (!(mm2 < least_mm2)) continue;
+        least_mm2 = mm2;
+        nearest = here;
+      }
+    }
+  return nearest;
+}
+
+bool ChosenElements::is_chosen(const Place& element, const Vec2& place_mm) const {
+  constexpr std::uint32_t kChoiceStream = 4;
+  const Vec2 at =
+      element.is_within ? Vec2(element.middle_mm.cwiseMax(part_mm_.lower).cwiseMin(part_mm_.upper)) : place_mm;
+  return std::visit(Overloaded{[&](const RandomShare& random) {
+                                 const auto words =
+                                     philox({random.seed, kChoiceStream}, static_cast<std::uint32_t>(element.i),
+                                            static_cast<std::uint32_t>(element.j), element.number);
+                                 return unit_interval(words[0]) < random.share;
+                               },
+                               [&](const Rectangle& r) {
+                                 return (at.array() >= r.lower.array()).all() && (at.array() <= r.upper.array()).all();
+                               },
+                               [&](const Disc& disc) { return (at - disc.centre_mm).norm() <= disc.radius_mm; },
+                               [&](const HalfPlane& half) {
+                                 const double azimuth = Angle::from_deg(half.azimuth_deg).rad();
+                                 return (at - half.through_mm).dot(Vec2(std::cos(azimuth), std::sin(azimuth))) >= 0.0;
+                               }},
+                    choice_);
+}
+
+bool ChosenElements::has_wall_at(const Vec2& place_mm) const {
+  // A little inwards: on the border itself the lattice goes on to either side.
+  const Vec2 within = place_mm.cwiseMax(part_mm_.lower + inwards_).cwiseMin(part_mm_.upper - inwards_);
+  return is_chosen(element_at(within), within);
+}
+
+}  // namespace retrace::geometry

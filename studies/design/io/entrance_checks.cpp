@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/number_format.h"
+#include "core/schema/conditions.h"
+#include "studies/design/haze.h"
+#include "studies/design/io/optics_checks.h"
+
+namespace retrace::studies {
+namespace {
+
+using schema::Document;
+
+constexpr std::size_t kMostThickLayers = 20;
+
+std::string key_of(std::string_view name) {
+  return "entrance." + std::string(name);
+}
+
+/// How much there is of something means nothing without what it is like.
+void require_beside(const Document& document, std::string_view amount, std::string_view needed) {
+  if (document.number(key_of(amount)) > 0.0 && !(document.number_if(key_of(needed)).value_or(-1.0) >= 0.0))
+    document.fail(key_of(needed), fmt::format("missing: needed where {} is given", amount));
+}
+
+void check_haze(const Document& document) {
+  const double haze = document.number("entrance.haze");
+  if (!(haze > 0.0)) return;
+  const double most = beyond_haze_angle(document.number("entrance.haze_spread_deg"));
+  if (haze > most)
+    document.fail("entrance.haze", fmt::format("must be <= {}, what a lobe of that haze_spread_deg has beyond 2.5 "
+                                               "degrees, got {}",
+                                               fixed(most, 6), shortest(haze)));
+}
+
+void check_roughness_of_face(const Document& document) {
+  if (!(document.number("entrance.roughness_sq_nm") > 0.0)) return;
+  const double length_um = document.number("entrance.correlation_length_um");
+  if (!(length_um > 0.0))
+    document.fail("entrance.correlation_length_um",
+                  "must be > 0 where roughness_sq_nm is given, got " + shortest(length_um));
+  if (document.count(kThickLayers) > 0 || document.number("entrance.film_coverage") > 0.0)
+    document.fail("entrance.roughness_sq_nm", "must be 0 under layers or a film_coverage, which fill it");
+}
+
+/// The first key of the table that makes its face scatter; empty if none does.
+std::string_view scattering_key(const Document& document) {
+  for (const std::string_view key : {"entrance.drop_coverage", "entrance.dust_coverage", "entrance.scratch_coverage",
+                                     "entrance.haze", "entrance.roughness_sq_nm"})
+    if (document.number(key) > 0.0) return key;
+  return {};
+}
+
+}  // namespace
+
+void check_entrance_face(const Document& document) {
+  if (!document.has(kEntranceFace)) return;
+  if (document.text("idealisation.entrance") == "lossless")
+    document.fail(kEntranceFace, "not allowed together with idealisation.entrance = \"lossless\"");
+  if (const std::size_t count = document.count(kThickLayers); count > kMostThickLayers)
+    document.fail(kThickLayers, fmt::format("must be at most {} layers, got {}", kMostThickLayers, count));
+  require_beside(document, "drop_coverage", "drop_contact_angle_deg");
+  require_beside(document, "dust_coverage", "dust_albedo");
+  require_beside(document, "dust_coverage", "dust_forward_share");
+  require_beside(document, "scratch_coverage", "scratch_spread_deg");
+  require_beside(document, "haze", "haze_spread_deg");
+  const double spots = document.number("entrance.drop_coverage") + document.number("entrance.dust_coverage") +
+                       document.number("entrance.scratch_coverage");
+  if (spots > 1.0)
+    document.fail(scattering_key(document), fmt::format("drop_coverage, dust_coverage and scratch_coverage must add to "
+                                                        "at most 1, got {}",
+                                                        shortest(spots)));
+  check_haze(document);
+  check_roughness_of_face(document);
+  if (const std::string_view key = scattering_key(document); document.has("front") && !key.empty())
+    document.fail(key, "must be 0 with a [front]: curved faces take layers and a film_coverage alone");
+}
+
+}  // namespace retrace::studies

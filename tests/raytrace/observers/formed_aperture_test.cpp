@@ -1,0 +1,314 @@
+// Diffraction with the forms of facets: against a pixelwise model of a cube corner, Fresnel's integrals, tilted facets,
+// and rays.
+#include "raytrace/observers/formed_aperture.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "core/error.h"
+#include "materials/fresnel.h"
+#include "raytrace/observers/far_field.h"
+#include "raytrace/paths/monte_carlo.h"
+#include "tests/support/closed_forms.h"
+#include "tests/support/designs.h"
+
+namespace retrace::testing::formed_aperture_test {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+using std::numbers::pi;
+using surface_models::FacetForm;
+using Complex = std::complex<double>;
+
+constexpr double kWaveNm = 550.0;
+constexpr double kWave = 1e-6 * kWaveNm;
+
+Vec3 tilted(const Vec2& q) {
+  return {q.x(), q.y(), std::sqrt(1.0 - q.squaredNorm())};
+}
+
+FarField field_of(const PartSpec& spec, Optics optics, const FacetForm& form, const Illumination& light = {},
+                  FarFieldPolicy policy = {}) {
+  const Part part = build_part(spec);
+  optics.facet_form = form;
+  policy.wavelength_nm = kWaveNm;
+  if (!form.is_plane()) policy.form = &form;
+  FarFieldCollector collector(part, light, policy);
+  BeamPolicy beams;
+  beams.cutoff = 1e-6;
+  beams.by_cell = true;
+  BeamTracer(part).trace(optics, light, {0.5}, beams, nullptr, [&](const ReturnedBeam& b) { collector.add(b); });
+  return collector.finish();
+}
+
+FacetForm paraboloid(double depth_mm, double radius_mm) {
+  FacetForm form;
+  form.add(2, 0, depth_mm / (radius_mm * radius_mm));
+  form.add(0, 2, depth_mm / (radius_mm * radius_mm));
+  return form;
+}
+
+/// One cube corner under normal light, pixel by pixel: rays and field vectors in space, and the way that heights of its
+/// facets add. Shares nothing with the engine.
+class PixelCube {
+ public:
+  struct Pixel {
+    Vec2 out;
+    Eigen::Matrix<Complex, 3, 2> field;
+  };
+  /// \param height over a facet by the places level and down it, in mm
+  template <class Height>
+  PixelCube(double aperture_mm, bool mirrors, const Height& height)
+      : edge_(aperture_mm / (2.0 * std::sqrt(2.0 / 3.0))) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double a = 120.0 * static_cast<double>(k) * kDeg;
+      edges_[k] = {std::sqrt(2.0 / 3.0) * std::cos(a), std::sqrt(2.0 / 3.0) * std::sin(a), 1.0 / std::sqrt(3.0)};
+    }
+    constexpr int kPixels = 400;
+    step_ = aperture_mm / kPixels;
+    for (int j = 0; j < kPixels; ++j)
+      for (int i = 0; i < kPixels; ++i) {
+        const Vec2 p = step_ * Vec2(i + 0.5 - 0.5 * kPixels, j + 0.5 - 0.5 * kPixels);
+        if (is_in_aperture(p)) trace(p, mirrors, height);
+      }
+  }
+
+  /// Intensity over its peak without form for mirrors.
+  double at(const Vec2& q) const {
+    Eigen::Matrix<Complex, 3, 2> sum = Eigen::Matrix<Complex, 3, 2>::Zero();
+    for (const Pixel& pixel : pixels_) sum += std::polar(1.0, -2.0 * pi / kWave * q.dot(pixel.out)) * pixel.field;
+    return 0.5 * sum.squaredNorm() / std::pow(static_cast<double>(pixels_.size()), 2.0);
+  }
+  double area_mm2() const { return static_cast<double>(pixels_.size()) * step_ * step_; }
+
+ private:
+  bool is_in_aperture(const Vec2& p) const {
+    for (int k = 0; k < 3; ++k) {
+      const double a = (60.0 * k + 30.0) * kDeg;
+      if (std::abs(p.x() * std::cos(a) + p.y() * std::sin(a)) > edge_ / std::numbers::sqrt2) return false;
+    }
+    return true;
+  }
+
+  template <class Height>
+  void trace(const Vec2& place, bool mirrors, const Height& height) {
+    Pixel pixel;
+    pixel.field.setZero();
+    pixel.field(0, 0) = pixel.field(1, 1) = 1.0;
+    Vec3 p(place.x(), place.y(), 10.0);
+    Vec3 d = -Vec3::UnitZ();
+    double way_mm = 0.0;
+    std::array<bool, 3> met{};
+    for (int bounce = 0; bounce < 3; ++bounce) {
+      double nearest = 1e9;
+      std::size_t facet = 3;
+      // The facet across edge k has it for its normal, into the body.
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (met[k] || edges_[k].dot(d) >= -1e-12) continue;
+        const double t = -edges_[k].dot(p) / edges_[k].dot(d);
+        if (t >= nearest) continue;
+        nearest = t;
+        facet = k;
+      }
+      if (facet == 3) return;
+      met[facet] = true;
+      p += nearest * d;
+      const Vec3& first = edges_[(facet + 1) % 3];
+      const Vec3& second = edges_[(facet + 2) % 3];
+      const Vec3 from_middle = p - 0.5 * edge_ * (first + second);
+      const double c = -edges_[facet].dot(d);
+      way_mm += 2.0 * kPmma * c *
+                height((first - second).dot(from_middle) / std::numbers::sqrt2,
+                       -(first + second).dot(from_middle) / std::numbers::sqrt2);
+      reflect(edges_[facet], c, mirrors, d, pixel.field);
+    }
+    pixel.out = p.head<2>();
+    pixel.field *= std::polar(1.0, 2.0 * pi / kWave * way_mm);
+    pixels_.push_back(pixel);
+  }
+
+  static void reflect(const Vec3& normal, double c, bool mirrors, Vec3& d, Eigen::Matrix<Complex, 3, 2>& field) {
+    Complex rs = -1.0;
+    Complex rp = 1.0;
+    if (!mirrors) {
+      // Born and Wolf, 1.5.2 (20), with the root of total reflection for exp(-i w t).
+      const double m = 1.0 / (kPmma * kPmma);
+      const Complex root = std::sqrt(Complex(m - (1.0 - c * c)));
+      rs = (c - root) / (c + root);
+      rp = (m * c - root) / (m * c + root);
+    }
+    const Vec3 s = d.cross(-normal).normalized();
+    const Vec3 p_in = d.cross(s);
+    d += 2.0 * c * normal;
+    const Eigen::Matrix<Complex, 1, 2> along_s = s.transpose().cast<Complex>() * field;
+    const Eigen::Matrix<Complex, 1, 2> along_p = p_in.transpose().cast<Complex>() * field;
+    field = rs * s.cast<Complex>() * along_s + rp * d.cross(s).cast<Complex>() * along_p;
+  }
+
+  double edge_;
+  double step_ = 0.0;
+  std::array<Vec3, 3> edges_;
+  std::vector<Pixel> pixels_;
+};
+
+// A sink, and a form without any symmetry whose places, signs and axes all count.
+TEST(FormedAperture, CubeCornerAgreesWithAPixelModel) {
+  constexpr double kAperture = 0.5;
+  const double radius = 0.5 * kAperture / std::sqrt(4.0 / 3.0);  // half the diagonal of a square of the cube's edge
+  FacetForm skewed;
+  skewed.add(1, 0, 2e-4);
+  skewed.add(1, 1, -8e-5 / std::pow(radius, 2.0));
+  skewed.add(0, 3, 1e-4 / std::pow(radius, 3.0));
+  skewed.add(2, 1, 6e-5 / std::pow(radius, 3.0));
+  for (const bool mirrors : {true, false})
+    for (const FacetForm& form : {paraboloid(1e-4, radius), skewed}) {
+      Optics optics = pmma();
+      optics.mirror_facets = mirrors;
+      optics.lossless_entrance = true;
+      const FarField field = field_of(single(HexagonalCube{kAperture}, 0.3), optics, form);
+      const PixelCube cube(kAperture, mirrors, [&](double level, double down) {
+        return form.height_mm({level, down});
+      });
+      const double peak = cube.area_mm2() / (kWave * kWave);
+      double most = 0.0;
+      for (const double radius_in_fringes : {0.0, 0.7, 1.5, 2.5})
+        for (const double turn_deg : {0.0, 47.0, 140.0, 222.0, 301.0}) {
+          const Vec2 q =
+              radius_in_fringes * kWave / kAperture * Vec2(std::cos(turn_deg * kDeg), std::sin(turn_deg * kDeg));
+          const double found = field.diffracted_per_sr(tilted(q)) / peak;
+          EXPECT_NEAR(found, cube.at(q), 3e-3) << mirrors << " " << radius_in_fringes << " " << turn_deg;
+          most = std::max(most, found);
+        }
+      EXPECT_GT(most, 0.03);
+      EXPECT_LT(most, 0.9);
+    }
+}
+
+/// Mean of exp(i c x^2) over |x| < a.
+Complex fresnel_mean(double c, double a) {
+  const GaussRule rule = gauss_legendre(64);
+  Complex sum = 0.0;
+  for (std::size_t k = 0; k < rule.nodes.size(); ++k)
+    sum += rule.weights[k] * std::polar(1.0, c * std::pow(a * (2.0 * rule.nodes[k] - 1.0), 2.0));
+  return sum;
+}
+
+// Both ways through a prism are longer by P (2 x^2 + y^2), x across the roof from the middle of a facet in plan: the
+// axis has the product of two Fresnel integrals. For small heights 1 less the variance of the phase is left (Marechal).
+TEST(FormedAperture, SunkPrismHasTheProductOfTwoFresnelIntegrals) {
+  constexpr double kBase = 0.5, kWidth = 0.4;
+  const double radius2 = kBase * kBase / 8.0 + kWidth * kWidth / 4.0;
+  const PartSpec spec = single(RtpElement{kBase, kWidth, 90.0}, 0.3);
+  for (const double depth_mm : {2e-5, -5e-5, 1e-4, 3e-4}) {
+    const double c = 2.0 * pi / kWave * 4.0 * kPmma * std::sqrt(0.5) * depth_mm / radius2;
+    const double strehl = std::norm(fresnel_mean(2.0 * c, 0.25 * kBase) * fresnel_mean(c, 0.5 * kWidth));
+    const FarField field = field_of(spec, ideal(), paraboloid(depth_mm, std::sqrt(radius2)));
+    const double found = field.diffracted_per_sr(Vec3::UnitZ()) * kWave * kWave / (kBase * kWidth);
+    EXPECT_NEAR(found, strehl, 1.5e-3) << depth_mm;
+    const double variance = c * c * 4.0 / 45.0 * (4.0 * std::pow(0.25 * kBase, 4.0) + std::pow(0.5 * kWidth, 4.0));
+    if (variance < 0.3) {
+      EXPECT_NEAR(found, 1.0 - variance, variance * variance + 1.5e-3) << depth_mm;
+    }
+  }
+}
+
+// Down every facet a slope: the field of a cube whose facets are tilted, but for what is of second order.
+TEST(FormedAperture, SlopeIsTheTiltOfFacets) {
+  constexpr double kTiltArcmin = 0.7;
+  FacetForm slope;
+  slope.add(0, 1, -std::tan(kTiltArcmin / 60.0 * kDeg));
+  PartSpec spec = single(HexagonalCube{0.5}, 0.3);
+  const Illumination light = from(5.0, 20.0);
+  Optics optics = pmma();
+  optics.lossless_entrance = true;
+  const FarField formed = field_of(spec, optics, slope, light);
+  const FarField plane = field_of(spec, optics, {}, light);
+  spec.angle_errors.facet_tilt_arcmin.fill(kTiltArcmin);
+  const FarField tilts = field_of(spec, optics, {}, light);
+  const Vec2 back = direction_to_source(light).head<2>();
+  const double peak = area(aperture_outline(HexagonalCube{0.5})) / (kWave * kWave);
+  double most_change = 0.0;
+  for (int j = -3; j <= 3; ++j)
+    for (int i = -3; i <= 3; ++i) {
+      const Vec3 at = tilted(back + 6e-4 * Vec2(i, j));
+      EXPECT_NEAR(formed.diffracted_per_sr(at) / peak, tilts.diffracted_per_sr(at) / peak, 2e-3) << i << " " << j;
+      most_change = std::max(most_change, std::abs(formed.diffracted_per_sr(at) - plane.diffracted_per_sr(at)) / peak);
+    }
+  EXPECT_GT(most_change, 0.05);
+}
+
+ReturnFrame frame_at(const Illumination& light) {
+  ReturnFrame frame;
+  frame.to_source = direction_to_source(light);
+  frame.right = source_axis(frame.to_source);
+  frame.up = frame.to_source.cross(frame.right);
+  return frame;
+}
+
+TEST(FormedAperture, PowerStaysAndNoHeightChangesNothing) {
+  const PartSpec spec = single(HexagonalCube{0.5}, 0.3);
+  const FarField plane = field_of(spec, ideal(), {});
+  const FarField formed = field_of(spec, ideal(), paraboloid(1e-4, 0.2));
+  EXPECT_GT(formed.groups()[0].polygons.size(), 10 * plane.groups()[0].polygons.size());
+  EXPECT_NEAR(formed.diffracted_power(), plane.diffracted_power(), 1e-12);
+  EXPECT_NEAR(formed.total_power(), plane.total_power(), 1e-12);
+  double area_mm2 = 0.0;
+  for (const FieldPolygon& p : formed.groups()[0].polygons) area_mm2 += p.transform.area_mm2();
+  EXPECT_NEAR(area_mm2, area(aperture_outline(HexagonalCube{0.5})), 1e-12);
+  const FarField::Split split = formed.split(frame_at({}), 0.03);
+  EXPECT_NEAR(split.inside + split.outside, formed.total_power(), 2e-3);
+  // The same of heights that are none, and of those that are hardly any.
+  FacetForm none;
+  none.add(2, 0, 1e-300);
+  const FarField still = field_of(spec, ideal(), none);
+  for (const double x : {0.0, 5e-4, 2e-3})
+    EXPECT_NEAR(still.diffracted_per_sr(tilted({x, 0.0})), plane.diffracted_per_sr(tilted({x, 0.0})),
+                1e-9 * plane.diffracted_per_sr(Vec3::UnitZ()));
+}
+
+// Cells that are too wide to be diffracted send rays along the slopes of their forms: what discs see is what Monte
+// Carlo shows them, of askew light that passes from cell to cell.
+TEST(FormedAperture, WideCellsSendRaysWhereMonteCarloDoes) {
+  const PartSpec spec = infinite(HexagonalCube{3.0}, Arrangement::honeycomb, 2.0);
+  const double radius = 1.5 / std::sqrt(4.0 / 3.0);
+  FacetForm form = paraboloid(1.2e-3, radius);
+  form.add(0, 3, 4e-4 / std::pow(radius, 3.0));
+  form.add(1, 1, 3e-4 / std::pow(radius, 2.0));
+  const Illumination light = from(8.0, 25.0);
+  const Part part = build_part(spec);
+  const ApertureKernel kernel({Angle::from_deg(0.2), Angle::from_deg(0.2)});
+  DirectionScore score{frame_at(light), kernel, {}, {}};
+  for (const Vec2& deg : {Vec2(0.0, 0.0), Vec2(0.0, 0.25), Vec2(0.2, -0.1), Vec2(-0.3, 0.0), Vec2(0.1, -0.35)})
+    score.receivers.push_back(score.frame.direction(kDeg * deg));
+  Optics optics = pmma();
+  optics.facet_form = form;
+  const MonteCarloResult traced =
+      MonteCarlo(part, MonteCarlo::Engine::cell).trace(optics, light, {0.5}, rays(1U << 16), {}, nullptr, &score);
+  FarFieldPolicy policy;
+  policy.finest_detail_rad = 1.0;
+  const FarField field = field_of(spec, pmma(), form, light, policy);
+  EXPECT_TRUE(field.groups().empty());
+  for (std::size_t k = 0; k < score.receivers.size(); ++k) {
+    EXPECT_NEAR(field.intensity_per_sr(score.receivers[k], kernel), traced.score[k],
+                4.0 * traced.score_error[k] + 0.01 * traced.score[0])
+        << k;
+    EXPECT_GT(traced.score[k], 0.1 * traced.score[0]) << k;
+  }
+}
+
+TEST(FormedAperture, FormsThatBendTooMuchAreRefused) {
+  FarFieldPolicy policy;
+  policy.most_polygons = 50;
+  const PartSpec spec = single(HexagonalCube{0.5}, 0.3);
+  EXPECT_NO_THROW(field_of(spec, ideal(), paraboloid(1e-6, 0.2), {}, policy));
+  EXPECT_THROW(field_of(spec, ideal(), paraboloid(3e-3, 0.2), {}, policy), BudgetError);
+}
+
+}  // namespace
+}  // namespace retrace::testing::formed_aperture_test

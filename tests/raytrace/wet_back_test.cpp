@@ -1,0 +1,213 @@
+// Another medium behind some elements: which elements those are, and that each returns what its own back lets it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "geometry/part/chosen_elements.h"
+#include "tests/support/designs.h"
+
+namespace retrace::testing::wet_back_test {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+constexpr double kWater = 1.333;
+
+/// Light meets another index behind the elements of a choice, whether or not these are all.
+Optics wet_behind(Optics optics, const Part& part, const ElementChoice& choice, double index) {
+  Optics wet = optics;
+  wet.back_index = index;
+  optics.wet = std::make_shared<const WetBack>(WetBack{wet, std::make_shared<const ChosenElements>(part, choice)});
+  return optics;
+}
+
+ConeResult traced(const Part& part, const Optics& optics, const Illumination& illumination,
+                  std::uint64_t count = 4096) {
+  return MonteCarlo(part).trace(optics, illumination, {0.5}, rays(count), {}).cones[0];
+}
+
+PartSpec prisms(Arrangement arrangement = Arrangement::aligned) {
+  return finite(RtpElement{0.5, 0.5, 90.0}, arrangement, 8.0, 8.0, 0.4);
+}
+
+/// Cut elements, land, margins, and every kind.
+std::vector<PartSpec> arrays() {
+  std::vector<PartSpec> all = {finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 2.5, 2.6, 0.4),
+                               finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 2.5, 2.0, 0.4),
+                               finite(HexagonalCube{1.0}, Arrangement::honeycomb, 4.3, 3.9, 0.4),
+                               finite(TriangularCube{1.0}, Arrangement::triangular, 4.3, 3.9, 0.4)};
+  all.push_back(all[0]);
+  all.back().array.x_gap_mm = 0.05;
+  all.back().array.y_gap_mm = 0.08;
+  all.back().array.x_offset_mm = 0.15;
+  return all;
+}
+
+/// Of light that falls in along the normal, by a 90 degree prism behind a plate: both facets are met at 45 degrees, and
+/// the plate's face sends what it reflects round again.
+double returned_by_prism(double index, double back_index) {
+  const double sine = index / back_index * std::sqrt(0.5);
+  double facets = 1.0;  // power, unpolarised
+  const double face = std::pow((index - 1.0) / (index + 1.0), 2.0);
+  const auto through_plate = [&](double reflectance) {
+    const double both = reflectance * reflectance;
+    return face + (1.0 - face) * (1.0 - face) * both / (1.0 - face * both);
+  };
+  if (sine >= 1.0) return through_plate(facets);
+  const double cosine = std::sqrt(1.0 - sine * sine), c = std::sqrt(0.5);
+  const double s = std::pow((index * c - back_index * cosine) / (index * c + back_index * cosine), 2.0);
+  const double p = std::pow((back_index * c - index * cosine) / (back_index * c + index * cosine), 2.0);
+  // A face between two of its own reflections keeps s and p apart.
+  return 0.5 * (through_plate(s) + through_plate(p));
+}
+
+TEST(ChosenElements, ARegionHasTheElementsWhoseMiddlesLieInIt) {
+  const Part part = build_part(prisms());  // 16 x 16, middles at 0.25 + 0.5 k
+  const auto count = [&](const ElementChoice& choice) { return ChosenElements(part, choice).count(); };
+  EXPECT_EQ(ChosenElements(part, Disc{{0.0, 0.0}, 1.0}).of_all(), 256);
+  EXPECT_EQ(count(Rectangle{{0.0, 0.0}, {8.0, 8.0}}), 256);
+  EXPECT_EQ(count(Rectangle{{0.2, 0.3}, {1.3, 0.8}}), 3);  // 0.25, 0.75, 1.25 of row 2
+  EXPECT_EQ(count(Disc{{0.25, 0.25}, 0.6}), 3);
+  EXPECT_EQ(count(Disc{{20.0, 0.0}, 1.0}), 0);
+  EXPECT_EQ(count(geometry::HalfPlane{{4.0, 0.0}, 0.0}), 128);
+  EXPECT_EQ(count(geometry::HalfPlane{{0.0, 7.0}, 90.0}), 32);
+  EXPECT_EQ(count(geometry::HalfPlane{{0.0, 1.0}, -90.0}), 32);
+  EXPECT_EQ(count(geometry::HalfPlane{{0.0, 0.6}, 225.0}), 1);  // below x + y = 0.6
+}
+
+TEST(ChosenElements, EverythingAndNothingAreKnown) {
+  for (const PartSpec& spec : arrays()) {
+    const Part part = build_part(spec);
+    const auto& [x, y] = std::pair(spec.array.x_length_mm, spec.array.y_length_mm);
+    for (const ElementChoice& all : {ElementChoice(Rectangle{{0.0, 0.0}, {x, y}}), ElementChoice(RandomShare{1.0, 9}),
+                                     ElementChoice(Disc{{0.0, 0.0}, 10.0})}) {
+      const ChosenElements chosen(part, all);
+      EXPECT_TRUE(chosen.is_everything());
+      EXPECT_FALSE(chosen.is_nothing());
+      EXPECT_EQ(chosen.count(), part.elements_full + part.elements_partial);
+      EXPECT_EQ(chosen.of_all(), chosen.count());
+    }
+    for (const ElementChoice& none : {ElementChoice(RandomShare{0.0, 9}), ElementChoice(Disc{{-9.0, 0.0}, 1.0})}) {
+      EXPECT_TRUE(ChosenElements(part, none).is_nothing());
+      EXPECT_FALSE(ChosenElements(part, none).is_everything());
+    }
+    const ChosenElements half(part, geometry::HalfPlane{{0.5 * x, 0.0}, 0.0});
+    EXPECT_FALSE(half.is_everything() || half.is_nothing());
+  }
+}
+
+// Every element has the same chance, whatever the seed; seeds choose apart from each other.
+TEST(ChosenElements, ASharesCountIsThatOfIndependentChances) {
+  const Part part = build_part(prisms());
+  for (const double share : {0.1, 0.5, 0.9}) {
+    double sum = 0.0, square = 0.0;
+    constexpr int kSeeds = 200;
+    for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+      const auto count = static_cast<double>(ChosenElements(part, RandomShare{share, seed}).count());
+      sum += count - 256.0 * share;
+      square += std::pow(count - 256.0 * share, 2.0);
+    }
+    const double variance = 256.0 * share * (1.0 - share);
+    EXPECT_NEAR(sum / kSeeds, 0.0, 4.0 * std::sqrt(variance / kSeeds)) << share;
+    EXPECT_NEAR(square / kSeeds / variance, 1.0, 4.0 * std::sqrt(2.0 / kSeeds)) << share;
+  }
+}
+
+// An element is wet as a whole: facets, and the outer walls at its end.
+TEST(ChosenElements, FacetsOfAnElementAreChosenTogether) {
+  const Part part = build_part(prisms(Arrangement::offset));
+  const ChosenElements chosen(part, RandomShare{0.5, 3});
+  for (std::uint32_t p = 0; p < part.placements.size(); ++p)
+    for (const PatchCell& cell : part.patches[part.placements[p].patch].cells)
+      for (std::uint32_t f = 1; f < cell.facet_count; ++f)
+        EXPECT_EQ(chosen.has(p, cell.first_facet), chosen.has(p, cell.first_facet + f));
+  std::int64_t wet = 0;
+  for (int k = 0; k < 16; ++k) {  // along y = 0, row 1
+    const bool is_wet = chosen.has_wall_at({0.5 * k + 0.1, 0.0});
+    EXPECT_EQ(is_wet, chosen.has_wall_at({0.5 * k + 0.4, 0.0}));
+    if (is_wet) ++wet;
+  }
+  EXPECT_GT(wet, 2);
+  EXPECT_LT(wet, 14);
+}
+
+// Another index behind every element one by one, and behind none, are the index of the whole back, to the last bit.
+TEST(WetBack, OfAllElementsAndOfNoneAreTheBacksOwn) {
+  for (const PartSpec& spec : arrays()) {
+    const Part part = build_part(spec);
+    Optics rough = pmma();
+    rough.facet_scatter = surface_models::Abg(1e-3, 1e-3, 2.0);
+    for (const Optics& dry : {pmma(), rough}) {
+      Optics wet = dry;
+      wet.back_index = kWater;
+      for (const Illumination& at : {from(0.0), from(25.0, 20.0), from(60.0, 200.0)}) {
+        const ConeResult one_by_one = traced(part, wet_behind(dry, part, RandomShare{1.0, 1}, kWater), at, 1024);
+        EXPECT_EQ(one_by_one.ledger.power, traced(part, wet, at, 1024).ledger.power);
+        const ConeResult of_none = traced(part, wet_behind(dry, part, RandomShare{0.0, 1}, kWater), at, 1024);
+        EXPECT_EQ(of_none.ledger.power, traced(part, dry, at, 1024).ledger.power);
+      }
+    }
+  }
+}
+
+// At normal incidence what a dry prism returns never leaves it. Light that a wet one lets out enters its neighbours and
+// comes back through a third if that is wet as well; of wet prisms among dry ones, and of columns of them, nothing
+// does. Sobol points fall on 16 x 16 elements alike: the mean over the elements is exact but for 2e-9 that finds its
+// way all the same.
+TEST(WetBack, PrismsReturnTheMeanOverTheirElements) {
+  const Part part = build_part(prisms());
+  const double dry = returned_by_prism(kPmma, 1.0);
+  for (const double index : {1.1, kWater}) {
+    const double wet = returned_by_prism(kPmma, index);
+    for (const auto& [choice, count] :
+         {std::pair(ElementChoice(Disc{{3.25, 5.75}, 0.1}), 1), std::pair(ElementChoice(Disc{{3.0, 5.5}, 0.0}), 0),
+          std::pair(ElementChoice(geometry::HalfPlane{{7.6, 0.0}, 0.0}), 16),
+          std::pair(ElementChoice(Rectangle{{2.0, 0.0}, {2.5, 3.0}}), 6)}) {
+      EXPECT_EQ(ChosenElements(part, choice).count(), count);
+      const double share = count / 256.0;
+      const MonteCarloResult result = MonteCarlo(part).trace(wet_behind(pmma(), part, choice, index), from(0.0), {0.5},
+                                                             rays(32 * 1024), {1e-11, 0.0, 1'000'000});
+      EXPECT_NEAR(result.cones[0].rre, share * wet + (1.0 - share) * dry, 1e-8) << index << " " << share;
+    }
+  }
+}
+
+// Light that falls in across the roof edges stays in its row, so that wet rows among dry ones do in every account what
+// they do by themselves.
+TEST(WetBack, WetRowsAmongDryOnes) {
+  const Part part = build_part(prisms());
+  const Rectangle rows{{0.0, 3.0}, {8.0, 7.0}};  // 8 of 16
+  for (const double index : {1.1, kWater})
+    for (const double incidence_deg : {0.0, 12.0, 40.0}) {
+      const Illumination at = from(incidence_deg, 0.0);
+      Optics wet = pmma();
+      wet.back_index = index;
+      constexpr std::uint64_t kRays = 1 << 16;
+      const ConeResult all_wet = traced(part, wet, at, kRays), dry = traced(part, pmma(), at, kRays);
+      const ConeResult mixed = traced(part, wet_behind(pmma(), part, rows, index), at, kRays);
+      const double error = std::hypot(mixed.std_error, 0.5 * std::hypot(all_wet.std_error, dry.std_error));
+      EXPECT_GT(dry.rre - all_wet.rre, 20.0 * error) << incidence_deg;
+      EXPECT_NEAR(mixed.rre, 0.5 * (all_wet.rre + dry.rre), 4.0 * error + 1e-9) << index << " " << incidence_deg;
+      for (std::size_t k = 0; k < kAccountCount; ++k)
+        EXPECT_NEAR(mixed.ledger.power[k], 0.5 * (all_wet.ledger.power[k] + dry.ledger.power[k]), 1e-3)
+            << index << " " << incidence_deg << " " << kAccountNames[k];
+    }
+}
+
+TEST(WetBack, LedgersAddUpToOne) {
+  for (const PartSpec& spec : arrays()) {
+    const Part part = build_part(spec);
+    for (const Illumination& at : {from(0.0), from(21.0, 30.0), from(75.0, 211.0)}) {
+      const MonteCarloResult result =
+          MonteCarlo(part).trace(wet_behind(pmma(), part, RandomShare{0.5, 4}, kWater), at, {0.5}, rays(4096), {});
+      EXPECT_NEAR(result.cones[0].ledger.total(), 1.0, 1e-9);
+      EXPECT_EQ(result.misses, 0U);
+      for (const double power : result.cones[0].ledger.power) EXPECT_GE(power, 0.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace retrace::testing::wet_back_test

@@ -1,0 +1,285 @@
+// The [form] of a design: what it says, what is refused, and what studies make of it.
+#include "studies/design/form_of_design.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "materials/io/material_library.h"
+#include "studies/design/io/design_document.h"
+#include "studies/design/io/design_json.h"
+#include "studies/inspect/inspect.h"
+#include "studies/inspect/io/inspect_files.h"
+#include "studies/photometry/photometer.h"
+#include "studies/rre/rre.h"
+#include "surface_models/form.h"
+#include "tests/studies/design_texts.h"
+#include "tests/studies/photometric_requests.h"
+#include "tests/support/refusals.h"
+
+namespace retrace::studies::form_of_design_test {
+namespace {
+
+using geometry::Vec2, surface_models::FacetForm;
+
+const std::string kCubes =
+    "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 0.5\n[array]\narrangement = \"honeycomb\"\n"
+    "extent = \"infinite\"\n[body]\nthickness_mm = 1.5\n";
+
+FacetForm form_of(const std::string& text) {
+  std::vector<std::string> warnings;
+  return form_of_design(parse_design(text, "d.toml"), warnings);
+}
+
+FormReport report_of(const std::string& text) {
+  const Design design = parse_design(text, "d.toml");
+  std::vector<std::string> warnings;
+  return report_form(design, form_of_design(design, warnings));
+}
+
+std::string refused(const std::string& text) {
+  return refusal_of([&] { form_of(text); });
+}
+
+// The slope of a polynomial is what its heights say.
+TEST(FacetForm, SlopeIsTheDerivativeOfTheHeight) {
+  FacetForm form;
+  for (int i = 0; i <= FacetForm::kMostDegree; ++i)
+    for (int j = 0; i + j <= FacetForm::kMostDegree; ++j) form.add(i, j, std::sin(1.0 + 3.0 * i + 7.0 * j));
+  EXPECT_NEAR(
+      form.height_mm({1.0, 0.0}) - form.height_mm({0.0, 0.0}),
+      [] {
+        double sum = 0.0;
+        for (int i = 1; i <= FacetForm::kMostDegree; ++i) sum += std::sin(1.0 + 3.0 * i);
+        return sum;
+      }(),
+      1e-12);
+  constexpr double kStep = 1e-5;
+  for (const Vec2& p : {Vec2(0.3, -0.7), Vec2(-0.9, 0.2), Vec2(0.0, 0.5)}) {
+    const Vec2 slope = form.slope(p);
+    EXPECT_NEAR(slope.x(),
+                (form.height_mm(p + Vec2(kStep, 0.0)) - form.height_mm(p - Vec2(kStep, 0.0))) / (2.0 * kStep), 1e-7);
+    EXPECT_NEAR(slope.y(),
+                (form.height_mm(p + Vec2(0.0, kStep)) - form.height_mm(p - Vec2(0.0, kStep))) / (2.0 * kStep), 1e-7);
+  }
+}
+
+// A sink of a square is a paraboloid whose middle lies the sink below its corners, about a mean of 0: a third of the
+// way up from the middle, with 2 / 45 of the square of the sink as its variance.
+TEST(FormOfDesign, SinkIsAParaboloidAboutItsMean) {
+  const FormReport report = report_of(kCubes + "[form]\nsink_um = 0.1\n");
+  EXPECT_NEAR(report.radius_mm, 0.5 / (2.0 * std::sqrt(2.0 / 3.0)) / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(report.lowest_um, -0.1 / 3.0, 1e-12);
+  EXPECT_NEAR(report.highest_um, 0.2 / 3.0, 1e-12);
+  EXPECT_NEAR(report.rms_um, 0.05 * std::sqrt(8.0 / 45.0), 1e-12);
+  EXPECT_NEAR(report.tilt_mrad, 0.0, 1e-12);
+  EXPECT_NEAR(report.steepest_mrad, 0.2 / report.radius_mm, 1e-9);
+  // A bulge is the reverse.
+  EXPECT_NEAR(report_of(kCubes + "[form]\nsink_um = -0.1\n").highest_um, 0.1 / 3.0, 1e-12);
+  // What has no such symmetry is about its best plane as well.
+  const std::string triangles =
+      "[element]\nkind = \"triangular_icc\"\naperture_mm = 0.5\n[array]\narrangement = "
+      "\"triangular\"\nextent = \"infinite\"\n[body]\nthickness_mm = 1.5\n";
+  EXPECT_NEAR(report_of(triangles + "[form]\nsink_um = 0.1\n").tilt_mrad, 0.0, 1e-12);
+  EXPECT_TRUE(form_of(kCubes + "[form]\nsink_um = 0\n").is_plane());
+  EXPECT_TRUE(form_of(kCubes).is_plane());
+}
+
+TEST(FormOfDesign, TermsAreInUnitsOfTheRadiusAndAddUp) {
+  const std::string terms =
+      "terms = [{ level = 1, down = 0, height_um = 0.2 }, { level = 0, down = 3, height_um = -0.3 }]\n";
+  const FacetForm form = form_of(kCubes + "[form]\n" + terms);
+  const double radius = report_of(kCubes + "[form]\n" + terms).radius_mm;
+  EXPECT_NEAR(form.height_mm({radius, 0.0}), 2e-4, 1e-15);
+  EXPECT_NEAR(form.height_mm({0.0, -radius}), 3e-4, 1e-15);
+  const FacetForm both = form_of(kCubes + "[form]\nsink_um = 0.5\n" + terms);
+  const FacetForm sink = form_of(kCubes + "[form]\nsink_um = 0.5\n");
+  for (const Vec2& p : {Vec2(0.1, -0.05), Vec2(-0.02, 0.07)})
+    EXPECT_NEAR(both.height_mm(p), sink.height_mm(p) + form.height_mm(p), 1e-15);
+  EXPECT_NEAR(report_of(kCubes + "[form]\nterms = [{ level = 1, down = 0, height_um = 0.2 }]\n").tilt_mrad,
+              0.2 / radius, 1e-9);
+}
+
+/// A folder with a map of 41 x 35 points, 12 um apart unless told, of heights in nm by places from its middle in um.
+class MapFolder {
+ public:
+  template <class Height>
+  explicit MapFolder(const Height& height, double pixel_um = 12.0) {
+    std::string name = (std::filesystem::temp_directory_path() / "retrace_form_XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+    std::string text = "pixel_um " + shortest(pixel_um) + "\nheight_unit nm\n";
+    for (int row = -17; row <= 17; ++row)
+      for (int column = -20; column <= 20; ++column)
+        text += shortest(height(pixel_um * column, pixel_um * row)) + (column == 20 ? "\n" : " ");
+    std::ofstream(path_ / "map.txt") << text;
+  }
+  ~MapFolder() { std::filesystem::remove_all(path_); }
+  MapFolder(const MapFolder&) = delete;
+  MapFolder& operator=(const MapFolder&) = delete;
+
+  std::string text(const std::string& keys) const {
+    return kCubes + "[form]\nmap = \"" + (path_ / "map.txt").string() + "\"\n" + keys;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// A map that is a polynomial gives that polynomial, less its best plane: of odd and even powers, along both axes.
+TEST(FormOfDesign, MapGivesItsPolynomial) {
+  const MapFolder folder([](double x_um, double y_um) {
+    return 30.0 + 0.2 * x_um - 0.1 * y_um + 5e-3 * x_um * x_um - 3e-3 * x_um * y_um + 4e-5 * y_um * y_um * y_um;
+  });
+  FacetForm expected;  // in mm
+  expected.add(2, 0, 5e-3);
+  expected.add(1, 1, -3e-3);
+  expected.add(0, 3, 4e-2);
+  for (const int degree : {3, 4, 6}) {
+    const FacetForm form = form_of(folder.text("map_degree = " + std::to_string(degree) + "\n"));
+    // Second differences know no planes.
+    const auto bend = [](const FacetForm& f, const Vec2& p, const Vec2& step) {
+      return f.height_mm(p + step) - 2.0 * f.height_mm(p) + f.height_mm(p - step);
+    };
+    for (const Vec2& p : {Vec2(0.0, 0.0), Vec2(0.05, -0.08)})
+      for (const Vec2& step : {Vec2(0.04, 0.0), Vec2(0.0, 0.04), Vec2(0.03, 0.03)})
+        EXPECT_NEAR(bend(form, p, step), bend(expected, p, step), 1e-12);
+  }
+  EXPECT_NEAR(report_of(folder.text("")).tilt_mrad, 0.0, 1e-9);
+  // The other axis level: what lay along y lies along x.
+  const FacetForm turned = form_of(folder.text("map_level_axis = \"y\"\n"));
+  const auto second = [&](const Vec2& step) {
+    return turned.height_mm(step) - 2.0 * turned.height_mm({0.0, 0.0}) + turned.height_mm(-step);
+  };
+  EXPECT_NEAR(second({0.0, 0.04}), 2.0 * 5e-3 * 0.04 * 0.04, 1e-12);
+  EXPECT_NEAR(second({0.04, 0.0}), 0.0, 1e-12);
+}
+
+TEST(FormOfDesign, WrongFormsAreRefused) {
+  const auto said = [](const std::string& lines) { return refused(kCubes + "[form]\n" + lines); };
+  expect_messages(
+      said,
+      {{"sink_um = 101", "d.toml:10: form.sink_um: must be >= -100 and <= 100, got 101"},
+       {"sink = 0.1", "d.toml:10: form.sink: unknown key (allowed: sink_um, map, map_level_axis, map_degree, terms)"},
+       {"map_degree = 3", "d.toml:10: form.map_degree: only allowed with map, got 3"},
+       {"terms = 3", "d.toml:10: form.terms: must be a list of tables with level, down and height_um, got 3"},
+       {"terms = [{ level = 2, down = 7, height_um = 0.1 }]",
+        "d.toml:10: form.terms[1].down: must be <= 6 beside level = 2, got 7"},
+       {"sink_um = 10", "d.toml:10: form.sink_um: the slope of the form over a facet must be <= 0.03, got 0.0924"}});
+  EXPECT_NE(said("terms = [{ level = 1.5, down = 0, height_um = 0.1 }]").find("form.terms[1].level: must be a whole"),
+            std::string::npos);
+  EXPECT_NE(said("terms = [{ level = 1, down = 0 }]").find("form.terms[1].height_um: missing"), std::string::npos);
+  EXPECT_NE(said("map = \"none.txt\"").find("form.map: "), std::string::npos);
+  const MapFolder small([](double, double) { return 0.0; }, 5.0);
+  EXPECT_NE(refused(small.text("")).find("must cover the facet, 433.0 um level and 433.0 um down it"),
+            std::string::npos)
+      << refused(small.text(""));
+  // What has no facets of elements has no form.
+  for (const std::string& part : {std::string("[element]\nkind = \"ball\"\ndiameter_mm = 1\n"),
+                                  std::string("[part]\nplate_mm = [1, 1]\n[body]\nthickness_mm = 1\n")})
+    EXPECT_NE(complaint(part + "[form]\nsink_um = 1\n").find("form"), std::string::npos) << part;
+}
+
+TEST(FormOfDesign, IsWrittenAsItWasRead) {
+  const std::string text =
+      kCubes +
+      "[form]\nsink_um = 0.25\nterms = [{ level = 2, down = 1, height_um = -0.5 }]\nmap = \"m.gsf\"\n"
+      "map_level_axis = \"y\"\nmap_degree = 6\n";
+  const Design again = parse_design(design_text(parse_design(text, "d.toml")), "d.toml");
+  const FormOfFacets& form = again.surface.form;
+  EXPECT_EQ(form.sink_um, 0.25);
+  ASSERT_EQ(form.terms.size(), 1U);
+  EXPECT_EQ(form.terms[0].level, 2);
+  EXPECT_EQ(form.terms[0].down, 1);
+  EXPECT_EQ(form.terms[0].height_um, -0.5);
+  ASSERT_TRUE(form.map);
+  EXPECT_EQ(form.map->name, "m.gsf");
+  EXPECT_EQ(form.map->level_axis, HeightMapAxis::y);
+  EXPECT_EQ(form.map->degree, 6);
+  EXPECT_TRUE(parse_design(kCubes, "d.toml").surface.form.is_plane());
+}
+
+TEST(FormOfDesign, InspectTellsIt) {
+  const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
+  const auto told = [&](const std::string& lines) {
+    return inspect_text(inspect(parse_design(kCubes + lines, "d.toml"), library));
+  };
+  EXPECT_NE(
+      told("[form]\nsink_um = 0.1\n")
+          .find("form of facets      -0.0333 to 0.0667 um from their planes, rms 0.0211 um, slopes to 0.924 mrad\n"),
+      std::string::npos);
+  EXPECT_EQ(told("").find("form of facets"), std::string::npos);
+  EXPECT_NE(inspect_json(inspect(parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml"), library))
+                .find("\"steepest_mrad\""),
+            std::string::npos);
+}
+
+// Beams stay plane at plane facets alone: rays are taken, and exact engines refused by name.
+TEST(FormOfDesign, ExactEnginesAreForPlanes) {
+  const Design sunk = parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml");
+  const auto refusal = [&](const auto& change) {
+    RreRequest request;
+    change(request);
+    return refusal_of([&] { RreStudy({sunk}, request); });
+  };
+  const std::string message =
+      "d.toml:10: form.sink_um: facets with a form bend a beam into infinitely many: use --engine montecarlo, without "
+      "--footprint, --far-field and --derivatives";
+  EXPECT_EQ(refusal([](RreRequest& r) { r.engine = Engine::exact; }), message);
+  EXPECT_EQ(refusal([](RreRequest& r) { r.footprint = true; }), message);
+  EXPECT_EQ(refusal([](RreRequest& r) { r.derivatives = true; }), message);
+  RreRequest automatic;
+  automatic.rays = std::nullopt;
+  automatic.target_error = 1e-3;
+  EXPECT_EQ(RreStudy({sunk}, automatic).run().points.front().engine, "cell");
+}
+
+using namespace photometric_requests;
+
+// As the sink goes to 0 so does what it does; a tenth of a micrometre is far from that.
+TEST(FormOfDesign, PhotometryIsContinuousInTheSink) {
+  Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
+  PhotometryRequest request = request_of(points_at({0.2}, 100.0));
+  request.diffraction = true;
+  const auto r_a = [&](double sink_um) {
+    design.surface.form.sink_um = sink_um;
+    const Photometer photometer(design, request, 1);
+    EXPECT_TRUE(photometer.is_exact() && photometer.has_diffraction());
+    return photometer.measure({{.v_deg = 5.0, .observation_deg = {0.2, 1.0 / 3.0}}}, nullptr, nullptr)->front().r_a;
+  };
+  const std::vector<double> plane = r_a(0.0), little = r_a(1e-7), sunk = r_a(0.1);
+  ASSERT_EQ(sunk.size(), 2U);
+  for (std::size_t k = 0; k < plane.size(); ++k) {
+    EXPECT_NEAR(little[k], plane[k], 1e-4 * plane[k]) << "which of the faintest 1e-4 are diffracted may differ";
+    EXPECT_GT(std::abs(sunk[k] - plane[k]), 0.05 * plane[k]);
+  }
+}
+
+TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
+  Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
+  design.surface.form.sink_um = 0.1;
+  PhotometryRequest request = request_of(points_at({0.2}, 1e6));
+  request.rays = 1U << 12;
+  EXPECT_EQ(run(design, request).engine, "embree") << "without diffraction";
+  request.engine = Engine::exact;
+  EXPECT_NE(refusal_of([&] { run(design, request); }).find("with diffraction and without a texture alone"),
+            std::string::npos);
+  request.engine = Engine::automatic;
+  request.diffraction = true;
+  design.surface.texture = HarveyShackTexture{.roughness_sq_nm = 5.0, .correlation_length_um = 20.0};
+  const PhotometryResult rough = run(design, request);
+  EXPECT_EQ(rough.engine, "embree");
+  EXPECT_NE(rough.reason.find("both a form and a texture"), std::string::npos);
+  request.engine = Engine::exact;
+  EXPECT_NE(refusal_of([&] { run(design, request); }).find("with diffraction and without a texture alone"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace retrace::studies::form_of_design_test

@@ -1,0 +1,139 @@
+// What designs say of elements with another medium behind them, and who takes such designs.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "materials/io/material_library.h"
+#include "studies/design/io/design_document.h"
+#include "studies/inspect/inspect.h"
+#include "studies/inspect/io/inspect_files.h"
+#include "studies/rre/rre.h"
+#include "tests/studies/design_texts.h"
+
+namespace retrace::studies::wet_back_test {
+namespace {
+
+std::string wet(const std::string& lines) {
+  return with_line(11, "[wet_back]\n" + lines);
+}
+
+Design read(const std::string& lines, const std::vector<std::string>& overrides = {}) {
+  return parse_design(wet(lines), "d.toml", overrides);
+}
+
+RreResult rre(const Design& design, Engine engine = Engine::automatic) {
+  RreRequest request;
+  request.incidence_deg = {0.0, 20.0};
+  request.azimuth_deg = {0.0, 40.0};
+  request.engine = engine;
+  request.target_error = 1e-3;
+  return RreStudy({design}, request).run();
+}
+
+void expect_same(const RreResult& one, const RreResult& other) {
+  ASSERT_EQ(one.points.size(), other.points.size());
+  for (std::size_t k = 0; k < one.points.size(); ++k) {
+    EXPECT_EQ(one.points[k].ledger.power, other.points[k].ledger.power);
+    EXPECT_EQ(one.points[k].engine, other.points[k].engine);
+  }
+}
+
+TEST(WetBackDesign, WhatIsWrongIsRefusedWithItsPlace) {
+  const auto refused = [](const std::string& lines) { return complaint(wet(lines)); };
+  expect_messages(
+      refused,
+      {{"share = 0.5", "d.toml:11: wet_back.index: missing, must be >= 1 and <= 3"},
+       {"index = 1.333",
+        "d.toml:11: wet_back: must have one of share, rectangle_mm, disc_mm and half_plane, which say where it is wet"},
+       {"index = 1.333\nshare = 0.5\ndisc_mm = [1, 2, 3]",
+        "d.toml:14: wet_back.disc_mm: must have one of share, rectangle_mm, disc_mm and half_plane, which say where it "
+        "is wet"},
+       {"index = 0.9\nshare = 0.5", "d.toml:12: wet_back.index: must be >= 1 and <= 3, got 0.9"},
+       {"index = 1.333\nshare = 1.5", "d.toml:13: wet_back.share: must be >= 0 and <= 1, got 1.5"},
+       {"index = 1.333\nshare = 0.5\nseed = 0.5", "d.toml:14: wet_back.seed: must be a whole number, got 0.5"},
+       {"index = 1.333\ndisc_mm = [1, 2, 3]\nseed = 1", "d.toml:14: wet_back.seed: only allowed with share, got 1"},
+       {"index = 1.333\ndisc_mm = [1, 2, 0]", "d.toml:13: wet_back.disc_mm: must have a radius > 0, got 1, 2, 0"},
+       {"index = 1.333\ndisc_mm = [1, 2]",
+        "d.toml:13: wet_back.disc_mm: must be a list of 3 lengths, x and y of the centre and the radius, got 2 of "
+        "them"},
+       {"index = 1.333\nrectangle_mm = [1, 2, 1, 3]",
+        "d.toml:13: wet_back.rectangle_mm: must have its least corner first, both lengths > 0, got 1, 2, 1, 3"},
+       {"index = 1.333\nhalf_plane = [1, 2, 2000000]",
+        "d.toml:13: wet_back.half_plane: must be >= -1e+06 and <= 1e+06, got 2000000"},
+       {"index = 1.333\nhalf_plane = [1, 2, 90]", ""}});
+}
+
+TEST(WetBackDesign, ArraysAreFiniteAndStandOnAPlane) {
+  const std::string lines = "index = 1.333\nshare = 0.5\n";
+  const auto refused = [&](const std::string& element, const std::string& array) {
+    return complaint(design_of(element, array) + "[wet_back]\n" + lines);
+  };
+  EXPECT_EQ(refused(kRtp, "arrangement = \"aligned\"; extent = \"infinite\""),
+            "d.toml:11: wet_back.index: [wet_back] is not allowed for extent = \"infinite\", whose elements are all "
+            "alike: give lengths");
+  EXPECT_EQ(refused(kHexagonal, "arrangement = \"single\""),
+            "d.toml:9: wet_back.index: [wet_back] is not allowed for arrangement = \"single\": give body.back_index");
+  EXPECT_EQ(complaint(wet(lines + "[base]\nkind = \"sphere\"\nradius_mm = 100\n")),
+            "d.toml:12: wet_back.index: [wet_back] is not allowed together with [base]");
+  EXPECT_EQ(complaint("[element]\nkind = \"ball\"\ndiameter_mm = 1\n[wet_back]\n" + lines),
+            "d.toml:4: wet_back: not allowed for kind = \"ball\"");
+}
+
+TEST(WetBackDesign, DesignsAreWrittenAsTheyWereRead) {
+  for (const std::string where : {"share = 0.25\nseed = 7\n", "rectangle_mm = [1, 2, 3.5, 4]\n",
+                                  "disc_mm = [1, 2, 0.3]\n", "half_plane = [1, 2, 30]\n"}) {
+    const std::string text = design_text(read("index = 1.333\n" + where));
+    EXPECT_NE(text.find("[wet_back]\nindex = 1.333\n" + where), std::string::npos) << text;
+    EXPECT_EQ(design_text(parse_design(text, "again.toml")), text);
+  }
+}
+
+// Nothing wet, and everything: bytes and engines of the plain designs.
+TEST(WetBackDesign, NoShareAndAllAreTheWholeBack) {
+  expect_same(rre(read("index = 1.333\nshare = 0")), rre(set({})));
+  expect_same(rre(read("index = 1.333\nshare = 1")), rre(set({"body.back_index=1.333"})));
+  expect_same(rre(read("index = 1.333\nrectangle_mm = [0, 0, 10, 10]", {"body.back_index=1.1"})),
+              rre(set({"body.back_index=1.333"})));
+}
+
+TEST(WetBackDesign, PartlyWetBacksAreTracedByRays) {
+  const Design design = read("index = 1.333\nhalf_plane = [5, 5, 0]");
+  const RreResult result = rre(design);
+  for (const RrePoint& point : result.points) EXPECT_EQ(point.engine, "embree");
+  // Half the elements of 20 columns return as dry ones, half as wet ones; rows are shifted over the border.
+  const double dry = rre(set({})).points[0].rre, wet = rre(set({"body.back_index=1.333"})).points[0].rre;
+  EXPECT_NEAR(result.points[0].rre, 0.5 * (dry + wet), 0.03 * (dry - wet));
+  for (const auto& [engine, name] : {std::pair{Engine::exact, "exact"}, {Engine::cell, "cell"}})
+    EXPECT_EQ(refusal_of([&, e = engine] { rre(design, e); }),
+              std::string("--engine: ") + name +
+                  " takes backs that are all alike, d.toml has a [wet_back] behind some elements: use --engine embree");
+  RreRequest footprint;
+  footprint.footprint = true;
+  EXPECT_EQ(refusal_of([&] { RreStudy({design}, footprint); }),
+            "d.toml:12: wet_back.index: --footprint takes no [wet_back], only backs that are all alike");
+}
+
+// Rows 1 and 3 have 10 elements there; 2 and 4, shifted, 10 up to the one over x = 5, and one that the border cuts.
+TEST(WetBackDesign, InspectionTellsWhichElementsAreWet) {
+  const auto library = materials::MaterialLibrary::shipped();
+  const Inspection some = inspect(read("index = 1.333\nrectangle_mm = [0, 0, 5, 2]"), library);
+  ASSERT_TRUE(some.wet_back);
+  EXPECT_EQ(some.wet_back->elements, 42);
+  EXPECT_EQ(some.wet_back->of_all, some.elements_full + some.elements_partial);
+  const std::string text = inspect_text(some);
+  EXPECT_NE(text.find("wet back            " + std::to_string(some.wet_back->elements) +
+                      " of 410 elements, 1.333 behind them: x 0 to 5, y 0 to 2 mm\n"),
+            std::string::npos)
+      << text;
+  const auto json = nlohmann::json::parse(inspect_json(some));
+  EXPECT_EQ(json["wet_back"]["elements"], some.wet_back->elements);
+  EXPECT_EQ(json["wet_back"]["refractive_index"], 1.333);
+  EXPECT_EQ(json["design"]["wet_back"]["index"], 1.333);
+  EXPECT_TRUE(some.tir_limit_deg);             // of the dry ones
+  EXPECT_FALSE(some.wet_back->tir_limit_deg);  // 1.333 > n sin 45
+  EXPECT_FALSE(inspect(set({}), library).wet_back);
+  EXPECT_FALSE(inspect(read("index = 1.333\nshare = 1"), library).tir_limit_deg);
+}
+
+}  // namespace
+}  // namespace retrace::studies::wet_back_test
