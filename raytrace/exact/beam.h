@@ -119,6 +119,18 @@ struct Beam {
   std::uint32_t level_steps = 0;                                        ///< without an interface
 };
 
+/// Where light of a beam meets a rough facet: the light before, and what the facet scatters of its power.
+struct ScatterSite {
+  Corners corners;  ///< of the piece of the facet
+  Vec3 direction = Vec3::UnitZ();
+  Light light;                  ///< before absorption
+  PathLength path_length;       ///< in the material
+  Vec3 normal = Vec3::UnitZ();  ///< of the facet, out of the part
+  double share = 0.0;           ///< of the entrance's cross-section
+  double scattered = 0.0;       ///< power, as a share of the incident
+  bool inside = true;
+};
+
 /// Coordinates across a beam: (u, v) across, w along.
 struct Frame {
   Vec3 u, v, w;

@@ -65,17 +65,29 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   const CoherentLight transmitted = beam.light.transmitted(f);
   tally_.other[Account::absorbed] +=
       transmission_of(beam) * absorbed_at_back(setup_.optics, candidate.role, beam.light, reflected, transmitted);
+  const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::reflection);
+  double scattered = reflected.power() - left.power();
   if (!f.total_reflection) {
     Beam through = beam;
     if (from.inside) through.left_through = candidate.role;
     keep_phases(through, candidate, f, cos_incidence, Lobe::transmission);
-    const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::transmission);
+    const CoherentLight left_through = mean_field(beam, f, candidate.role, cos_incidence, Lobe::transmission);
+    scattered += transmitted.power() - left_through.power();
     send(std::move(through), candidate.plane, -against,
-         refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), left, !from.inside);
+         refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), left_through, !from.inside);
   }
-  const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::reflection);
+  if (scattered > 0.0) book_scattered(beam, candidate.plane, transmission_of(beam) * scattered);
   keep_phases(beam, candidate, f, cos_incidence, Lobe::reflection);
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), left, from.inside);
+}
+
+/// \param beam as it arrives, its light along s and p of the facet
+void BeamWalk::book_scattered(const Beam& beam, const Plane& plane, double power) {
+  if (sites_ == nullptr)
+    tally_.other[Account::truncated] += power;
+  else
+    sites_->push_back(
+        {beam.corners, beam.direction, beam.light, beam.path_length, plane.normal, beam.share, power, beam.inside});
 }
 
 /// \param beam before it is sent on
@@ -98,16 +110,13 @@ void BeamWalk::keep_phases(Beam& beam, const Candidate& candidate, const materia
 }
 
 CoherentLight BeamWalk::mean_field(const Beam& beam, const materials::FresnelCoefficients& f, FacetRole role,
-                                   double cos_incidence, Lobe lobe) {
+                                   double cos_incidence, Lobe lobe) const {
   const auto passed = [&](const materials::FresnelCoefficients& by) {
     return lobe == Lobe::reflection ? beam.light.reflected(by) : beam.light.transmitted(by);
   };
-  CoherentLight light = passed(f);
-  if (role != FacetRole::retro_facet || setup_.optics.is_smooth() || policy_.keeps_phases) return light;
-  const double before = light.power();
-  light = passed(raytrace::mean_field(setup_.optics, beam.inside, cos_incidence, f));
+  if (role != FacetRole::retro_facet || setup_.optics.is_smooth() || policy_.keeps_phases) return passed(f);
+  CoherentLight light = passed(raytrace::mean_field(setup_.optics, beam.inside, cos_incidence, f));
   light.scale(mean_field_share(setup_.optics, beam.inside, cos_incidence, lobe));
-  tally_.other[Account::truncated] += transmission_of(beam) * (before - light.power());
   return light;
 }
 

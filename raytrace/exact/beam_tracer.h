@@ -94,6 +94,9 @@ class BeamTracer {
                    const BeamPolicy& policy, const Cancellation* cancel = nullptr,
                    const BeamObserver& observer = {}) const;
 
+  /// Of the part: beams are relative to it.
+  const Vec2& centre_mm() const { return centre_mm_; }
+
  private:
   friend class BeamTrace;
   friend class StochasticBeams;

@@ -73,6 +73,8 @@ class BeamWalk {
   void lower_cutoff_to(double cutoff);
   /// Follows a beam to the next faces that it meets. \param next its parts that go on from there are added to these
   void step(const Beam& beam, const Cancellation* cancel, std::vector<Beam>& next);
+  /// Where rough facets take from the beams that are followed from here on is added to these, in place of `truncated`.
+  void collect(std::vector<ScatterSite>& sites) { sites_ = &sites; }
   /// Power that is given up.
   void book_truncated(double power) { tally_.other[Account::truncated] += power; }
   const Tally& tally() const { return tally_; }
@@ -115,10 +117,11 @@ class BeamWalk {
   Beam arrived(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane);
   void meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
                   double share);
-  /// A branch of a beam's light at a facet, less what the texture of a retro facet scatters, which is followed no
-  /// further; with phases that are kept: all of it.
+  /// A branch of a beam's light at a facet, less what the texture of a retro facet scatters; with phases that are kept:
+  /// all of it.
   CoherentLight mean_field(const Beam& beam, const materials::FresnelCoefficients& f, geometry::FacetRole role,
-                           double cos_incidence, surface_models::Lobe lobe);
+                           double cos_incidence, surface_models::Lobe lobe) const;
+  void book_scattered(const Beam& beam, const Plane& plane, double power);
   void keep_phases(Beam& beam, const Candidate& candidate, const materials::FresnelCoefficients& f,
                    double cos_incidence, surface_models::Lobe lobe) const;
   void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
@@ -143,6 +146,7 @@ class BeamWalk {
   const BeamPolicy& policy_;
   BeamObserver observer_;
   const Cancellation* cancel_ = nullptr;
+  std::vector<ScatterSite>* sites_ = nullptr;
   Tally tally_;
   std::vector<Beam> pending_;
   double pending_power_ = 0.0;

@@ -15,6 +15,7 @@ namespace {
 
 /// Philox stream of the offsets of systematic resampling.
 constexpr std::uint32_t kResamplingStream = 7;
+constexpr std::uint32_t kScatterStream = 8;  // and of rays of scattered light
 constexpr double kFirstThreshold = 1e-3;
 constexpr double kLastThreshold = 1e-10;
 // The standard error falls about as the threshold to this power, and the work of a round rises as that to the other.
@@ -31,6 +32,13 @@ constexpr std::size_t kMostKept = 200'000;
 constexpr double kOneDirection = 1e-7;
 // Power that is no longer followed.
 constexpr double kLeastPower = 1e-14;
+// What the first and the last rays of scattered light stand for.
+constexpr double kFirstRayPower = 1e-3;
+constexpr double kLastRayPower = 1e-10;
+// Of the target error, that of beams and that of rays where there are both.
+constexpr double kShareOfTarget = 0.7;
+// What a straight piece of a ray takes, in looks.
+constexpr std::uint64_t kLooksPerSegment = 25;
 // The 97.5 % point of Student's distribution of kReplicates - 1 degrees of freedom, over that of the normal one.
 constexpr double kStudent = 2.1314 / 1.9600;
 static_assert(StochasticBeams::kReplicates == 16, "kStudent is that of 16 replicates");
@@ -109,14 +117,21 @@ struct StochasticBeams::Queue {
 };
 
 struct StochasticBeams::Replicate {
-  Tally tally;
-  std::uint64_t work = 0;
-  std::uint64_t beams = 0;
+  Tally beams;
+  Tally rays;  ///< scattered by beams
+  std::uint64_t beam_work = 0;
+  std::uint64_t beam_count = 0;
 };
 
-StochasticBeams::StochasticBeams(const BeamTracer& tracer, const Optics& optics, const Illumination& illumination,
-                                 const std::vector<double>& cones_deg, const Sampling& sampling,
-                                 const Cancellation* cancel)
+bool StochasticBeams::serves(const Optics& optics) {
+  if (!optics.facet_form.is_plane() || !optics.has_one_back() || optics.entrance.scatters()) return false;
+  const auto* rough = std::get_if<surface_models::HarveyShack>(&optics.facet_scatter);
+  return optics.is_smooth() || (rough != nullptr && rough->roughness().waviness_sq_nm == 0.0);
+}
+
+StochasticBeams::StochasticBeams(const BeamTracer& tracer, const BackSurface* surface, const Optics& optics,
+                                 const Illumination& illumination, const std::vector<double>& cones_deg,
+                                 const Sampling& sampling, const Cancellation* cancel)
     : tracer_(tracer),
       setup_(tracer.part_, tracer.centre_mm_, optics, illumination, cones_deg),
       cones_deg_(cones_deg),
@@ -124,7 +139,12 @@ StochasticBeams::StochasticBeams(const BeamTracer& tracer, const Optics& optics,
       cancel_(cancel),
       strong_(
           std::make_unique<BeamWalk>(tracer.part_, tracer.centre_mm_, tracer.cells_, setup_, policy_, BeamObserver{})),
-      threshold_(kFirstThreshold) {
+      threshold_(kFirstThreshold),
+      ray_power_(kFirstRayPower) {
+  if (surface != nullptr) {
+    paths_.emplace(tracer.part_, *surface, tracer.centre_mm_, optics, illumination, cones_deg, PathPolicy{});
+    strong_->collect(strong_sites_);
+  }
   strong_->enter(entrance_outline(tracer.part_), threshold_, BeamWalk::Approach::kept);
 }
 
@@ -132,6 +152,7 @@ StochasticBeams::~StochasticBeams() = default;
 
 bool StochasticBeams::advance() {
   if (round_ > 0) {
+    ray_power_ = next_ray_power();
     threshold_ = next_threshold();
     strong_->lower_cutoff_to(threshold_);
   }
@@ -144,45 +165,57 @@ bool StochasticBeams::advance() {
     replicates[k] = replicate(static_cast<std::uint32_t>(k), first);
     return replicates[k].has_value();
   });
-  std::vector<Tally> tallies;
-  round_work_ = strong_->work() - before;
+  std::vector<Tally> beams;
+  std::vector<Tally> rays;
+  std::vector<Tally> both;
+  beam_work_ = strong_->work() - before;
+  ray_work_ = 0;
   for (const auto& one : replicates) {
     result_.complete = result_.complete && one.has_value();
     if (!result_.complete) return true;
-    tallies.push_back(strong_->tally());
-    tallies.back().add(one->tally);
-    round_work_ += one->work;
-    weak_beams_ += one->beams;
+    beams.push_back(one->beams);
+    rays.push_back(one->rays);
+    both.push_back(strong_->tally());
+    both.back().add(one->beams);
+    both.back().add(one->rays);
+    beam_work_ += one->beam_work;
+    ray_work_ += kLooksPerSegment * one->rays.segments;
+    weak_beams_ += one->beam_count;
   }
-  work_ += round_work_;
-  result_ = result_of(tallies, 1, cones_deg_);
+  work_ += beam_work_ + ray_work_;
+  result_ = result_of(both, 1, cones_deg_);
   result_.rays = 0;
-  const double unseen = std::min(kThinning * threshold_, first.power) / kReplicates;
-  for (ConeResult& cone : result_.cones)
-    if (first.power > kLeastPower) cone.std_error = std::max(kStudent * cone.std_error, unseen);
-  result_.reached_target = largest_error() <= sampling_.target_error;
+  const double unseen = first.power > kLeastPower ? std::min(kThinning * threshold_, first.power) / kReplicates : 0.0;
+  beam_error_ = std::max(unseen, kStudent * largest_error(result_of(beams, 1, cones_deg_)));
+  ray_error_ = kStudent * largest_error(result_of(rays, 1, cones_deg_));
+  for (ConeResult& cone : result_.cones) cone.std_error = std::max(kStudent * cone.std_error, unseen);
+  result_.reached_target = largest_error(result_) <= sampling_.target_error;
   ++round_;
-  return result_.reached_target || threshold_ <= kLastThreshold || first.places.size() > kMostKept;
+  return result_.reached_target || threshold_ <= kLastThreshold || ray_power_ <= kLastRayPower ||
+         first.places.size() > kMostKept;
 }
 
 std::uint64_t StochasticBeams::beams() const {
   return strong_->beams() + weak_beams_;
 }
 
-double StochasticBeams::largest_error() const {
-  double largest = 0.0;
-  for (const ConeResult& cone : result_.cones) largest = std::max(largest, cone.std_error);
-  return largest;
+double StochasticBeams::next_threshold() const {
+  const double target = (paths_ ? kShareOfTarget : 1.0) * sampling_.target_error;
+  if (paths_ && beam_error_ <= target) return threshold_;
+  const double fall = kMargin * std::pow(target / beam_error_, 1.0 / kConvergence);
+  return std::max(kLastThreshold, threshold_ * std::clamp(fall, kSteepestFall, kGentlestFall));
 }
 
-double StochasticBeams::next_threshold() const {
-  const double fall = kMargin * std::pow(sampling_.target_error / largest_error(), 1.0 / kConvergence);
-  return std::max(kLastThreshold, threshold_ * std::clamp(fall, kSteepestFall, kGentlestFall));
+double StochasticBeams::next_ray_power() const {
+  const double target = kShareOfTarget * sampling_.target_error;
+  if (ray_error_ <= target) return ray_power_;
+  return std::max(kLastRayPower, ray_power_ * std::min(kGentlestFall, kMargin * std::pow(target / ray_error_, 2.0)));
 }
 
 double StochasticBeams::expected_work() const {
   if (result_.reached_target) return work();
-  return work() + static_cast<double>(round_work_) * std::pow(threshold_ / next_threshold(), kWorkSlope);
+  return work() + static_cast<double>(beam_work_) * std::pow(threshold_ / next_threshold(), kWorkSlope) +
+         static_cast<double>(ray_work_) * ray_power_ / next_ray_power();
 }
 
 StochasticBeams::Queue StochasticBeams::queue_of(const std::vector<Beam>& beams) const {
@@ -203,6 +236,13 @@ StochasticBeams::Queue StochasticBeams::queue_of(const std::vector<Beam>& beams)
 /// Nothing if it was cancelled.
 std::optional<StochasticBeams::Replicate> StochasticBeams::replicate(std::uint32_t number, const Queue& first) const {
   BeamWalk walk(tracer_.part_, tracer_.centre_mm_, tracer_.cells_, setup_, policy_, BeamObserver{});
+  std::vector<ScatterSite> sites;
+  std::optional<ScatteredRays> rays;
+  if (paths_) {
+    rays.emplace(*paths_, RandomKey{sampling_.seed, kScatterStream}, number, round_, cancel_);
+    walk.collect(sites);
+    rays->launch(strong_sites_, ray_power_);
+  }
   const auto offset = [&](std::uint32_t generation) {
     return unit_interval(philox({sampling_.seed, kResamplingStream}, number, generation, round_)[0]);
   };
@@ -215,12 +255,15 @@ std::optional<StochasticBeams::Replicate> StochasticBeams::replicate(std::uint32
       if (is_cancelled(cancel_)) return std::nullopt;
       walk.step(beam, cancel_, next);
     }
+    if (rays) rays->launch(sites, ray_power_);
+    sites.clear();
     const Queue queue = queue_of(next);
     left = queue.power;
     survivors = queue.survivors(most_power, offset(generation));
   }
+  if (is_cancelled(cancel_)) return std::nullopt;
   walk.book_truncated(left);
-  return Replicate{walk.tally(), walk.work(), walk.beams()};
+  return Replicate{walk.tally(), rays ? rays->tally() : Tally(setup_.cone_chord2.size()), walk.work(), walk.beams()};
 }
 
 }  // namespace retrace::raytrace

@@ -10,6 +10,7 @@
 
 #include "core/progress.h"
 #include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/scattered_rays.h"
 #include "raytrace/paths/monte_carlo.h"
 
 namespace retrace::raytrace {
@@ -24,6 +25,9 @@ namespace retrace::raytrace {
 /// random numbers of its own, give the standard error. It is never told to be less than what a survivor brings over
 /// their number: so much may be in beams that none of them has seen (docs/theory/beams.md).
 ///
+/// At rough facets beams keep their specular light, and what is scattered goes on as rays, of which each replicate has
+/// its own (ScatteredRays).
+///
 /// For one thread at a time; replicates are shared out among threads, and results do not depend on their number.
 class StochasticBeams {
  public:
@@ -32,9 +36,14 @@ class StochasticBeams {
   /// and survivors in every replicate.
   static constexpr double kThinning = 32.0;
 
-  /// \param sampling its seed and target error \pre smooth facets; `tracer` and `cancel` outlive this
-  StochasticBeams(const BeamTracer& tracer, const Optics& optics, const Illumination& illumination,
-                  const std::vector<double>& cones_deg, const Sampling& sampling, const Cancellation* cancel = nullptr);
+  /// Whether facets leave enough light specular for beams: smooth ones, and those of `harvey_shack` without waviness.
+  static bool serves(const Optics& optics);
+
+  /// \param sampling its seed and target error \param surface of the same part, for scattered light; null: facets are
+  /// smooth \pre serves(optics); `tracer`, `surface` and `cancel` outlive this
+  StochasticBeams(const BeamTracer& tracer, const BackSurface* surface, const Optics& optics,
+                  const Illumination& illumination, const std::vector<double>& cones_deg, const Sampling& sampling,
+                  const Cancellation* cancel = nullptr);
   ~StochasticBeams();
 
   /// One more round, at a lower threshold. \return whether that was the last one that is needed or possible; if it was
@@ -54,20 +63,24 @@ class StochasticBeams {
 
   std::optional<Replicate> replicate(std::uint32_t number, const Queue& first) const;
   Queue queue_of(const std::vector<Beam>& beams) const;
-  double largest_error() const;
   double next_threshold() const;
+  double next_ray_power() const;
 
   const BeamTracer& tracer_;
   const LightSetup setup_;
+  std::optional<PathSetup> paths_;  ///< of scattered light
   const BeamPolicy policy_;
   std::vector<double> cones_deg_;
   Sampling sampling_;
   const Cancellation* cancel_;
   std::unique_ptr<BeamWalk> strong_;  ///< above the threshold
+  std::vector<ScatterSite> strong_sites_;
   double threshold_;
+  double ray_power_;                           ///< most that a ray of scattered light stands for
+  double beam_error_ = 0.0, ray_error_ = 0.0;  ///< of the last round: the largest of all cones
   std::uint32_t round_ = 0;
   std::uint64_t work_ = 0;
-  std::uint64_t round_work_ = 0;  ///< of the last round alone
+  std::uint64_t beam_work_ = 0, ray_work_ = 0;  ///< of the last round alone
   std::uint64_t weak_beams_ = 0;
   MonteCarloResult result_;
 };

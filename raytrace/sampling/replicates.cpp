@@ -63,12 +63,6 @@ void add_score(const std::vector<Tally>& replicates, double rays, MonteCarloResu
   }
 }
 
-double largest_error(const MonteCarloResult& result) {
-  double largest = 0.0;
-  for (const ConeResult& cone : result.cones) largest = std::max(largest, cone.std_error);
-  return largest;
-}
-
 void check_lost(const MonteCarloResult& result) {
   for (const ConeResult& cone : result.cones)
     if (cone.ledger[Account::lost] > kLostLimit)
@@ -92,6 +86,12 @@ MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t r
     result.cones.push_back(cone_result(replicates, rays_per_replicate, cones_deg[cone], cone));
   add_score(replicates, rays_per_replicate, result);
   return result;
+}
+
+double largest_error(const MonteCarloResult& result) {
+  double largest = 0.0;
+  for (const ConeResult& cone : result.cones) largest = std::max(largest, cone.std_error);
+  return largest;
 }
 
 /// Of the scrambles of a replicate's entry points.

@@ -27,6 +27,9 @@ std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t rep
 MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t rays_per_replicate,
                            const std::vector<double>& cones_deg);
 
+/// The standard error of the cone where it is largest.
+double largest_error(const MonteCarloResult& result);
+
 /// Traces rays first..last-1 of a replicate; nothing if it was cancelled.
 using ReplicateTask =
     std::function<std::optional<Tally>(std::uint32_t replicate, std::uint32_t first, std::uint32_t last)>;

@@ -108,7 +108,6 @@ RoughnessStudy::RoughnessStudy(Design design, RoughnessRequest request) : prepar
   }
   RreRequest asked = direction_of(request);
   p.smooth_study = std::make_unique<RreStudy>(std::vector{design}, asked);
-  asked.engine = Engine::montecarlo;
   asked.target_error = request.target_error;
   asked.rays = request.rays;
   if (!rough.empty()) p.rough_study = std::make_unique<RreStudy>(std::move(rough), asked);

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "raytrace/exact/stochastic_beams.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "studies/rre/request_tracing.h"
 #include "studies/rre/tracing.h"
@@ -126,14 +127,14 @@ void check_backs(const Design& design, const OpticalModel& model, const RreReque
                                                       engine_name(request.engine), design.source_name()));
 }
 
-/// What would split or bend a beam is for rays.
-void check_beams(const Design& design, const raytrace::Optics& optics) {
-  if (optics.keeps_beams()) return;
-  const auto refused = [](const InputLocation& where, std::string_view what) {
-    return InputError(where,
-                      fmt::format("{} a beam into infinitely many: use --engine montecarlo, without --footprint, "
-                                  "--far-field and --derivatives",
-                                  what));
+/// What would split or bend a beam is for rays, or for beams that are resampled where light stays specular in part.
+void check_beams(const Design& design, const raytrace::Optics& optics, Engine engine) {
+  const bool may_resample = raytrace::StochasticBeams::serves(optics);
+  if (engine == Engine::stochastic ? may_resample : optics.keeps_beams()) return;
+  const auto refused = [&](const InputLocation& where, std::string_view what) {
+    return InputError(where, fmt::format("{} a beam into infinitely many: use --engine {}montecarlo, without "
+                                         "--footprint, --far-field and --derivatives",
+                                         what, may_resample ? "stochastic or " : ""));
   };
   if (!optics.has_plane_facets())
     throw refused(design.where_facets(), optics.is_smooth() ? "facets with a form bend" : "rough facets split");
@@ -177,7 +178,7 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     if (request.derivatives) check_taken(design, {.what = "--derivatives"});
     check_backs(design, prepared_->models.back(), request);
     if (must_be_exact(request) || request.engine == Engine::stochastic)
-      check_beams(design, prepared_->models.back().optics);
+      check_beams(design, prepared_->models.back().optics, request.engine);
     if (request.engine == Engine::cell && !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part))
       throw InputError({"", 0, "--engine"},
                        fmt::format("cell takes endless arrays, and arrays of equal elements that reach more than two "

@@ -9,6 +9,7 @@
 #include "raytrace/balls/ball_tracer.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/exact/stochastic_beams.h"
+#include "raytrace/faces/back_surface.h"
 #include "raytrace/sampling/threads.h"
 
 namespace retrace::studies {
@@ -40,6 +41,7 @@ constexpr std::uint64_t kSpareWork = 100'000;
 constexpr double kHedge = 0.2;
 /// Work after which the engines are compared for the first time: a millisecond.
 constexpr double kFirstLook = 30'000.0;
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 raytrace::Illumination illumination_of(const RrePoint& at, const Design& design) {
   return {Angle::from_deg(at.incidence_deg), Angle::from_deg(at.azimuth_deg), design.light.polarisation};
@@ -179,7 +181,9 @@ class DesignTracing {
       : design_(design), model_(model), request_(request), cancel_(cancel), beams_(beam_policy(request)) {
     paths_.cutoff = request.cutoff.value_or(paths_.cutoff);
     if (design.balls()) return;
-    if (may_follow_beams(design, model, request)) beam_tracer_.emplace(model.part);
+    if (!may_follow_beams(design, model, request)) return;
+    beam_tracer_.emplace(model.part);
+    if (!model.optics.is_smooth()) scattering_.emplace(model.part, beam_tracer_->centre_mm());
   }
 
   /// Whether directions are shared out among the threads; else each takes all of them.
@@ -211,6 +215,8 @@ class DesignTracing {
     return cost.ns +
            cost.ns_per_facet * static_cast<double>(patch.facets.size()) / static_cast<double>(patch.cells.size());
   }
+
+  const raytrace::BackSurface* scattering() const { return scattering_ ? &*scattering_ : nullptr; }
 
   /// Made when it is first needed, by whichever thread needs it.
   const raytrace::MonteCarlo& ray_tracer() {
@@ -266,8 +272,9 @@ class DesignTracing {
   }
 
   bool trace_stochastic(Direction& direction, std::size_t wavelength) {
-    raytrace::StochasticBeams beams(*beam_tracer_, light(wavelength).optics, illumination_of(direction.at, design_),
-                                    cones(), sampling_of(request_, light(wavelength).weight, wavelength), cancel_);
+    raytrace::StochasticBeams beams(*beam_tracer_, scattering(), light(wavelength).optics,
+                                    illumination_of(direction.at, design_), cones(),
+                                    sampling_of(request_, light(wavelength).weight, wavelength), cancel_);
     while (!beams.advance())
       ;
     return keep(direction, wavelength, beams);
@@ -282,21 +289,23 @@ class DesignTracing {
     const double ns_per_segment = ns_of_segment();
     const double first_looks =
         std::holds_alternative<geometry::RtpElement>(model_.part.spec.element) ? kLooksForPrisms : kLooksForCubes;
-    raytrace::BeamTrace beams(*beam_tracer_, optics, illumination, cones(), beams_);
+    std::optional<raytrace::BeamTrace> beams;
+    if (optics.is_smooth()) beams.emplace(*beam_tracer_, optics, illumination, cones(), beams_);
     std::optional<raytrace::StochasticBeams> stochastic;
     bool stochastic_may_do = !request_.cutoff;
     std::optional<raytrace::MonteCarlo::Run> rays;
-    for (double look = kFirstLook;; look = std::max(kFirstLook, 1.1 * beams.work())) {
+    for (;;) {
+      const double beams_take = beams ? kNsPerLook * std::min(beams->expected_work(), beams->work() / kHedge) : kNever;
       const double rays_take = ns_per_segment * (rays ? rays->expected_segments() : kSegmentsOfFirstRound);
       const double stochastic_takes =
-          !stochastic_may_do ? std::numeric_limits<double>::infinity()
-                             : kNsPerStochasticLook * (stochastic ? stochastic->expected_work() : first_looks);
-      if (kNsPerLook * std::min(beams.expected_work(), beams.work() / kHedge) <=
-          std::min(rays_take, stochastic_takes)) {
-        if (beams.advance(static_cast<std::uint64_t>(look), cancel_))
-          return keep(direction, wavelength, beams.result());
+          !stochastic_may_do ? kNever : kNsPerStochasticLook * (stochastic ? stochastic->expected_work() : first_looks);
+      if (beams_take <= std::min(rays_take, stochastic_takes)) {
+        const double look = std::max(kFirstLook, 1.1 * beams->work());
+        if (beams->advance(static_cast<std::uint64_t>(look), cancel_))
+          return keep(direction, wavelength, beams->result());
       } else if (stochastic_takes <= rays_take) {
-        if (!stochastic) stochastic.emplace(*beam_tracer_, optics, illumination, cones(), sampling, cancel_);
+        if (!stochastic)
+          stochastic.emplace(*beam_tracer_, scattering(), optics, illumination, cones(), sampling, cancel_);
         stochastic_may_do = !stochastic->advance();
         if (stochastic->result().reached_target) return keep(direction, wavelength, *stochastic);
       } else {
@@ -314,6 +323,7 @@ class DesignTracing {
   raytrace::BeamPolicy beams_;
   raytrace::PathPolicy paths_;
   std::optional<raytrace::BeamTracer> beam_tracer_;  ///< none: rays alone
+  std::optional<raytrace::BackSurface> scattering_;  ///< for what rough facets take from beams
   std::once_flag ray_tracer_is_made_;
   std::optional<raytrace::MonteCarlo> ray_tracer_;
 };
@@ -325,7 +335,8 @@ bool may_follow_beams(const RreRequest& request) {
 }
 
 bool may_follow_beams(const Design& design, const OpticalModel& model, const RreRequest& request) {
-  return may_follow_beams(request) && !design.balls() && !model.entrance && model.optics.keeps_beams();
+  return may_follow_beams(request) && !design.balls() && !model.entrance &&
+         raytrace::StochasticBeams::serves(model.optics);
 }
 
 bool must_be_exact(const RreRequest& request) {

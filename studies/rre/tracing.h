@@ -25,8 +25,8 @@ struct Direction {
 
 /// Whether beams may be followed: not where rays or plain sampling are requested ...
 bool may_follow_beams(const RreRequest& request);
-/// ... nor where facets or entrance face scatter or bend beams, backs differ, the front is curved, or the part is of
-/// balls.
+/// ... nor where they are bent or scattered without a specular share, backs differ, the front is curved, or the part is
+/// of balls.
 bool may_follow_beams(const Design& design, const OpticalModel& model, const RreRequest& request);
 /// What only the exact engine can tell must not depend on how much work that is.
 bool must_be_exact(const RreRequest& request);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "raytrace/faces/back_surface.h"
 #include "raytrace/sampling/threads.h"
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
@@ -27,8 +28,9 @@ Sampling until(double target_error, std::uint32_t seed = 1) {
 }
 
 MonteCarloResult traced(const BeamTracer& tracer, const Optics& optics, const Illumination& light,
-                        const std::vector<double>& cones_deg, const Sampling& sampling) {
-  StochasticBeams beams(tracer, optics, light, cones_deg, sampling);
+                        const std::vector<double>& cones_deg, const Sampling& sampling,
+                        const BackSurface* scattering = nullptr) {
+  StochasticBeams beams(tracer, scattering, optics, light, cones_deg, sampling);
   while (!beams.advance()) continue;
   return beams.result();
 }
@@ -76,38 +78,57 @@ TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
   }
 }
 
+Optics rough(double sq_nm, double correlation_length_um) {
+  Optics optics = pmma();
+  optics.facet_scatter = surface_models::HarveyShack({sq_nm, correlation_length_um, 0.0, 0.0});
+  return optics;
+}
+
 /// Rounds end when their error is small, which could favour lucky ones: the truth is to lie within 1.96 standard errors
 /// of 90 to 99 % of the answers, and of their mean.
-TEST(StochasticBeams, IntervalsHoldOverSeeds) {
+void expect_intervals_hold(const Question& question, const Optics& optics, double truth, double target_error,
+                           double error_of_truth) {
   constexpr std::uint32_t kSeeds = 200;
+  const BeamTracer tracer(question.part);
+  const BackSurface scattering(question.part, tracer.centre_mm());
+  std::vector<ConeResult> found(kSeeds);
+  for_each_in_parallel(kSeeds, [&](std::size_t k) {
+    found[k] = traced(tracer, optics, question.light, {0.5}, until(target_error, static_cast<std::uint32_t>(k + 1)),
+                      optics.is_smooth() ? nullptr : &scattering)
+                   .cones[0];
+    return true;
+  });
+  double mean = 0.0;
+  double squares = 0.0;
+  int hits = 0;
+  for (const ConeResult& cone : found) {
+    mean += cone.rre / kSeeds;
+    squares += (cone.rre - truth) * (cone.rre - truth) / kSeeds;
+    if (std::abs(cone.rre - truth) <= 1.96 * cone.std_error) ++hits;
+  }
+  EXPECT_GE(hits, 180) << question.name;
+  EXPECT_LE(hits, 200) << question.name;
+  EXPECT_LE(std::abs(mean - truth), normal_bound(4) * std::hypot(std::sqrt(squares / kSeeds), error_of_truth))
+      << question.name;
+  ::testing::Test::RecordProperty(question.name + " of 200", hits);
+}
+
+TEST(StochasticBeams, IntervalsHoldOverSeeds) {
   for (const Question& question : questions()) {
-    const BeamTracer tracer(question.part);
     BeamPolicy policy;
     policy.truncated_goal = 1e-5;
-    const Ledger exact = tracer.trace(pmma(), question.light, {0.5}, policy).ledgers[0];
-    const double truth = exact[Account::retroreflected] + 0.5 * exact[Account::truncated];
-    std::vector<double> found(kSeeds);
-    std::vector<double> error(kSeeds);
-    for_each_in_parallel(kSeeds, [&](std::size_t k) {
-      const ConeResult cone =
-          traced(tracer, pmma(), question.light, {0.5}, until(3e-4, static_cast<std::uint32_t>(k + 1))).cones[0];
-      found[k] = cone.rre;
-      error[k] = cone.std_error;
-      return true;
-    });
-    double mean = 0.0;
-    double squares = 0.0;
-    int hits = 0;
-    for (std::uint32_t k = 0; k < kSeeds; ++k) {
-      mean += found[k] / kSeeds;
-      squares += (found[k] - truth) * (found[k] - truth) / kSeeds;
-      if (std::abs(found[k] - truth) <= 1.96 * error[k]) ++hits;
-    }
-    EXPECT_GE(hits, 180) << question.name;
-    EXPECT_LE(hits, 200) << question.name;
-    EXPECT_LE(std::abs(mean - truth), normal_bound(4) * std::sqrt(squares / kSeeds)) << question.name;
-    RecordProperty(question.name + " of 200", hits);
+    const Ledger exact = BeamTracer(question.part).trace(pmma(), question.light, {0.5}, policy).ledgers[0];
+    expect_intervals_hold(question, pmma(), exact[Account::retroreflected] + 0.5 * exact[Account::truncated], 1e-3,
+                          5e-6);
   }
+}
+
+TEST(StochasticBeams, IntervalsHoldOverSeedsForRoughFacets) {
+  const Question question = questions()[0];
+  const ConeResult truth = MonteCarlo(question.part, MonteCarlo::Engine::cell)
+                               .trace(rough(10.0, 5.0), question.light, {0.5}, until(1e-4, 7), {})
+                               .cones[0];
+  expect_intervals_hold(question, rough(10.0, 5.0), truth.rre, 2e-3, truth.std_error);
 }
 
 TEST(StochasticBeams, SameAtAnyNumberOfThreads) {
@@ -120,6 +141,34 @@ TEST(StochasticBeams, SameAtAnyNumberOfThreads) {
     EXPECT_EQ(result.cones[0].rre, results[0].cones[0].rre);
     EXPECT_EQ(result.cones[0].std_error, results[0].cones[0].std_error);
     EXPECT_EQ(result.cones[0].ledger.power, results[0].cones[0].ledger.power);
+  }
+}
+
+/// What rough facets take from beams goes on as rays: in every cone and account as when all light is rays.
+TEST(StochasticBeams, RoughFacetsAgreeWithRays) {
+  const std::vector<double> cones = {0.5, 3.0, 60.0};
+  std::size_t number = 0;
+  for (const Question& question : questions()) {
+    Optics optics = number++ % 2 == 0 ? rough(60.0, 1.0) : rough(10.0, 5.0);
+    optics.absorption_per_mm = 0.01;
+    const auto engine = question.part.period_mm ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
+    const MonteCarloResult sampled =
+        MonteCarlo(question.part, engine).trace(optics, question.light, cones, until(1e-3, 7), {});
+    const BeamTracer tracer(question.part);
+    const BackSurface scattering(question.part, tracer.centre_mm());
+    const MonteCarloResult result = traced(tracer, optics, question.light, cones, until(5e-4), &scattering);
+    EXPECT_TRUE(result.reached_target && result.complete) << question.name;
+    for (std::size_t cone = 0; cone < cones.size(); ++cone) {
+      const ConeResult& own = result.cones[cone];
+      const ConeResult& other = sampled.cones[cone];
+      EXPECT_NEAR(own.rre, other.rre, normal_bound(12) * std::hypot(own.std_error, other.std_error))
+          << question.name << ", cone " << cones[cone];
+      EXPECT_NEAR(own.ledger.total(), 1.0, 1e-12) << question.name;
+      EXPECT_NEAR(own.ledger[Account::truncated], 0.0, 1e-9) << question.name;
+      for (const Account account : {Account::transmitted, Account::absorbed, Account::side_exit})
+        EXPECT_NEAR(own.ledger[account], other.ledger[account], 5e-3)
+            << question.name << ", " << static_cast<int>(account);
+    }
   }
 }
 
@@ -138,7 +187,7 @@ TEST(StochasticBeams, StopWhenCancelled) {
   const BeamTracer tracer(question.part);
   Cancellation cancel;
   cancel.request();
-  StochasticBeams beams(tracer, pmma(), question.light, {0.5}, until(1e-7), &cancel);
+  StochasticBeams beams(tracer, nullptr, pmma(), question.light, {0.5}, until(1e-7), &cancel);
   EXPECT_TRUE(beams.advance());
   EXPECT_FALSE(beams.result().complete);
 }

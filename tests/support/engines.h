@@ -32,7 +32,7 @@ inline void expect_engines_agree(const geometry::PartSpec& spec, double most_tru
   raytrace::Sampling sampling;
   sampling.target_error = 1e-3;
   const raytrace::BeamTracer tracer(part);
-  raytrace::StochasticBeams stochastic(tracer, pmma(), from(3.0), {0.5}, sampling);
+  raytrace::StochasticBeams stochastic(tracer, nullptr, pmma(), from(3.0), {0.5}, sampling);
   while (!stochastic.advance()) continue;
   const raytrace::ConeResult& resampled = stochastic.result().cones[0];
   EXPECT_NEAR(resampled.rre, sampled.rre, 4.0 * std::hypot(sampled.std_error, resampled.std_error));

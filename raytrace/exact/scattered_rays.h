@@ -1,0 +1,45 @@
+#pragma once
+
+// The light that rough facets scatter out of beams, followed as rays.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/progress.h"
+#include "core/random.h"
+#include "raytrace/exact/beam.h"
+#include "raytrace/paths/path_tracer.h"
+
+namespace retrace::raytrace {
+
+/// Launches rays where beams meet rough facets. A ray stands for scattered power alone, begins at a random place of the
+/// piece of the facet in a random direction of the lobe, and is followed by all physics from there on; it never becomes
+/// a beam again, so that nothing is counted twice. For one replicate and one thread.
+class ScatteredRays {
+ public:
+  /// \param setup outlives this \param key of the random numbers of this replicate and round
+  ScatteredRays(const PathSetup& setup, RandomKey key, std::uint32_t replicate, std::uint32_t round,
+                const Cancellation* cancel = nullptr);
+
+  /// Rays for all that these sites scatter, each for at most `most_power` of it: the sites get them in proportion to
+  /// what they scatter, by systematic sampling. Stops half way if it was cancelled.
+  void launch(const std::vector<ScatterSite>& sites, double most_power);
+
+  const Tally& tally() const { return tally_; }
+
+ private:
+  void launch_one(const ScatterSite& site, double power);
+
+  const PathSetup& setup_;
+  RandomKey key_;
+  std::uint32_t replicate_;
+  std::uint32_t number_;
+  const Cancellation* cancel_;
+  Tally tally_;
+  PathWalker walker_;
+};
+
+/// A point of a convex polygon: uniform over its area for `u` uniform in the unit square.
+Vec3 point_of(const Corners& corners, const Vec2& u);
+
+}  // namespace retrace::raytrace
