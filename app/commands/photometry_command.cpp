@@ -39,6 +39,7 @@ struct PhotometryOptions {
   std::uint64_t samples = 1U << 20;
   std::optional<double> cutoff;
   bool no_diffraction = false;
+  bool window_power = false;
   bool no_advice = false;
 };
 
@@ -91,6 +92,8 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
       {"--cutoff W", "exact: least power that is followed, as a share of what falls on an element [1e-6]",
        &options.cutoff},
       {"--no-diffraction", "geometric far field alone", &options.no_diffraction},
+      {"--window-power", "integrate the power in the far field's window and outside of it, as a check",
+       &options.window_power},
       {"--no-advice", "do not look for what to change if a point fails", &options.no_advice}};
 }
 
@@ -117,6 +120,7 @@ studies::PhotometryRequest with_options(studies::PhotometryRequest request, cons
   request.light = light_of(options.light);
   request.colour = true;
   request.diffraction = !options.no_diffraction;
+  request.window_power = options.window_power;
   request.advice = !options.no_advice;
   request.engine = studies::engine_from_name(options.engine);
   if (options.cutoff && !(*options.cutoff > 0.0 && *options.cutoff < 1.0))

@@ -92,7 +92,7 @@ Plan plan_of(const PhotometryRequest& request, bool mirrors) {
     for (const double v_deg : measured_v_deg(point, mirrors))
       for (const double rotation_deg : request.rotation_deg) {
         const auto [it, is_new] = known.try_emplace({v_deg, point.h_deg, rotation_deg}, plan.settings.size());
-        if (is_new) plan.settings.push_back({v_deg, point.h_deg, rotation_deg, {}, 0, true});
+        if (is_new) plan.settings.push_back({v_deg, point.h_deg, rotation_deg, {}, 0, request.window_power});
         readings.emplace_back(it->second, index_of(plan.settings[it->second].observation_deg, point.observation_deg));
       }
   }

@@ -44,9 +44,10 @@ struct PhotometryRequest {
   std::optional<double> cutoff;       ///< least power followed by the exact engine, as a share of an element's
   std::uint64_t rays = 1U << 20;      ///< of a direction, by Monte Carlo
   std::uint32_t seed = 1;
-  bool pictures = false;  ///< maps and curves
-  bool advice = true;     ///< what to change if it fails
-  bool colour = false;    ///< the chromaticity of the returned light; none of the design's own light
+  bool pictures = false;      ///< maps and curves
+  bool window_power = false;  ///< power in the window and outside of it, by integrations: a check that takes long
+  bool advice = true;         ///< what to change if it fails
+  bool colour = false;        ///< the chromaticity of the returned light; none of the design's own light
 };
 
 /// From best to worst: the worst of several decides.

@@ -442,6 +442,8 @@ TEST(Photometry, DiffractionReachesWhereRaysDoNot) {
   PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 1.0));
   EXPECT_EQ(run(design, request).points[0].r_a, 0.0);
   request.diffraction = true;
+  EXPECT_FALSE(run(design, request).directions[0].split) << "takes long, and was not asked for";
+  request.window_power = true;
   const PhotometryResult result = run(design, request);
   EXPECT_GT(result.points[0].r_a, 50.0);
   ASSERT_TRUE(result.directions[0].split);
