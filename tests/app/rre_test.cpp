@@ -179,19 +179,19 @@ TEST(Rre, AutoIsExactWhereThatIsCheap) {
   EXPECT_EQ(dear["complete"], true);
 }
 
-TEST(Rre, RoughFacetsAreForMonteCarlo) {
+TEST(Rre, RoughFacetsAreForRaysAndBeamsThatScatterThem) {
   const TemporaryFolder folder;
   const Arguments rough = {
       "rre", kDesign, "--set", "surface.roughness_sq_nm=5", "--set", "surface.correlation_length_um=2"};
   const Json json = retrace_json(folder, rough);
-  EXPECT_EQ(json["engine"], "cell");
+  EXPECT_EQ(json["engine"], "stochastic");
   EXPECT_GT(json["points"][0]["ledger"]["scattered_out"].get<double>(), 0.0);
   Arguments exact = rough;
   exact.insert(exact.end(), {"--engine", "exact"});
   const Outcome outcome = retrace(folder, exact);
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("surface.roughness_sq_nm: rough facets split a beam into infinitely many: use --engine "
-                             "montecarlo"),
+                             "stochastic or montecarlo"),
             std::string::npos)
       << outcome.err;
 }
