@@ -18,6 +18,7 @@ double mean_exp(double a, double b) {
 /// there; narrow ones as a series in complete homogeneous symmetric polynomials of the deviations from the mean.
 double mean_exp(double a, double b, double c) {
   constexpr double kWide = 2.0;
+  constexpr double kNegligible = 1e-18;
   std::array<double, 3> at = {a, b, c};
   std::sort(at.begin(), at.end());
   if (at[2] - at[0] > kWide) return 2.0 * (mean_exp(at[0], at[1]) - mean_exp(at[1], at[2])) / (at[2] - at[0]);
@@ -30,12 +31,17 @@ double mean_exp(double a, double b, double c) {
   double h[3] = {1.0, 0.0, -e2};  // h_k = e1 h_(k-1) - e2 h_(k-2) + e3 h_(k-3), e1 = 0
   double factor = 1.0 / 12.0;     // 2 / (k+2)! at k = 2
   double sum = 1.0 + factor * h[2];
+  // h_k has (k + 1)(k + 2) / 2 terms, none above the largest deviation to the power of k.
+  const double largest = at[2] - at[0];
+  double power = largest * largest;
   for (int k = 3; k < 40; ++k) {
     const double next = -e2 * h[1] + e3 * h[0];
     h[0] = h[1];
     h[1] = h[2];
     h[2] = next;
     factor /= -(k + 2.0);
+    power *= largest;
+    if (std::abs(factor) * power * (k + 1.0) * (k + 2.0) < kNegligible) break;
     sum += factor * next;
   }
   return std::exp(-middle) * sum;

@@ -11,8 +11,8 @@ using std::numbers::pi;
 
 // Below this ratio of radii the smaller disc is a point.
 constexpr double kPoint = 1e-9;
-// Steps of a rule to one detail, and the fewest and the most of them.
-constexpr double kStepsToADetail = 2.5;
+// Points of the rule along a radius to one detail, at least and at most.
+constexpr double kPointsAlongADetail = 2.0;
 constexpr double kFewest = 6.0;
 constexpr double kMost = 96.0;
 
@@ -20,8 +20,15 @@ double half_chord_angle(double cosine) {
   return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-std::size_t steps(double length_rad, double detail_rad) {
-  return static_cast<std::size_t>(std::clamp(kStepsToADetail * length_rad / detail_rad, kFewest, kMost));
+std::size_t points_along(double length_rad, double detail_rad) {
+  return static_cast<std::size_t>(std::clamp(kPointsAlongADetail * length_rad / detail_rad, kFewest, kMost));
+}
+
+/// Even steps round a ring whose mean of a wave of that detail, a Bessel function of order 0, is right but for Bessel
+/// functions of the order of their number, which fall steeply once that is beyond their argument x by some x^(1/3).
+std::size_t points_round(double radius_rad, double detail_rad) {
+  const double x = 2.0 * pi * radius_rad / detail_rad;
+  return static_cast<std::size_t>(std::clamp(std::ceil(x + 4.0 * std::cbrt(x)), kFewest, 4.0 * kMost));
 }
 
 }  // namespace
@@ -88,10 +95,10 @@ std::vector<ApertureKernel::Node> ApertureKernel::nodes(double detail_rad) const
   const double kink = larger_rad_ - smaller_rad_;
   for (const auto& [from, to] : {std::pair{0.0, kink}, std::pair{kink, reach_rad()}}) {
     if (!(to > from)) continue;
-    const GaussRule radial = gauss_legendre(steps(to - from, detail_rad));
-    const std::size_t round = steps(2.0 * pi * to, detail_rad);
+    const GaussRule radial = gauss_legendre(points_along(to - from, detail_rad));
     for (std::size_t k = 0; k < radial.nodes.size(); ++k) {
       const double r = std::lerp(from, to, radial.nodes[k]);
+      const std::size_t round = points_round(r, detail_rad);
       const double weight = radial.weights[k] * (to - from) * r * per_sr(r) * 2.0 * pi / static_cast<double>(round);
       for (std::size_t j = 0; j < round; ++j) {
         // Every ring is turned against the one before, so that no direction is preferred.

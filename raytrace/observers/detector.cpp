@@ -20,8 +20,8 @@ namespace {
 
 using geometry::Polygon;
 
-constexpr std::uint32_t kReplicates = 32;
-constexpr std::uint32_t kRaysPerTask = 2048;
+constexpr std::uint32_t kDetectorReplicates = 32;
+constexpr std::uint32_t kRaysPerDetectorTask = 2048;
 
 /// The entrance face, or one period of it.
 Polygon face_of(const geometry::Part& part) {
@@ -183,15 +183,15 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
   const EntranceSampler entrance(part);
   const BackSurface surface(part, entrance.centre_mm());
   const PathSetup setup(part, surface, entrance.centre_mm(), optics, illumination, {setting.acceptance_deg}, policy);
-  const auto per_replicate =
-      static_cast<std::uint32_t>(std::clamp<std::uint64_t>((rays + kReplicates - 1) / kReplicates, 1, UINT32_MAX / 2));
-  const std::size_t tasks = (per_replicate + kRaysPerTask - 1) / kRaysPerTask;
+  const auto per_replicate = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>((rays + kDetectorReplicates - 1) / kDetectorReplicates, 1, UINT32_MAX / 2));
+  const std::size_t tasks = (per_replicate + kRaysPerDetectorTask - 1) / kRaysPerDetectorTask;
   RunningMean leaving(setting.face.size());
   RunningMean entering(setting.face.size());
   RunningMean angles(setting.angles.size() + 1);
   RunningMean rre(1);
   DetectorMaps maps = empty_maps(setting);
-  for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate) {
+  for (std::uint32_t replicate = 0; replicate < kDetectorReplicates; ++replicate) {
     const auto words = philox({seed, kScrambleStream}, replicate, 0);
     const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
     std::vector<Deposits> done(tasks);
@@ -202,8 +202,8 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
       Tally tally(1);
       Recorder recorder(part, entrance.centre_mm(), setup, setting, deposits);
       PathWalker walker(setup, tally, &recorder);
-      const auto first = static_cast<std::uint32_t>(task) * kRaysPerTask;
-      for (std::uint32_t ray = first; ray < std::min(first + kRaysPerTask, per_replicate); ++ray) {
+      const auto first = static_cast<std::uint32_t>(task) * kRaysPerDetectorTask;
+      for (std::uint32_t ray = first; ray < std::min(first + kRaysPerDetectorTask, per_replicate); ++ray) {
         const Vec2 entry = entrance(square(ray));
         recorder.enters(entry);
         walker.trace(entry, {seed, kChoiceStream}, replicate, ray);
@@ -220,7 +220,7 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
       add_to(entering.replicate(), deposits.entering);
       add_to(angles.replicate(), deposits.angles);
       rre.replicate()[0] += deposits.in_cone;
-      maps.truncated += deposits.truncated / per_replicate / kReplicates;
+      maps.truncated += deposits.truncated / per_replicate / kDetectorReplicates;
       if (deposits.lost > kLostLimit * per_replicate)
         throw BudgetError(
             "rays missed every face from inside the part: this is a defect of retrace, please report "
@@ -232,7 +232,7 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
     entering.close(to_irradiance);
     angles.close(share);
     rre.close(share);
-    if (progress != nullptr) progress->at((replicate + 1.0) / kReplicates);
+    if (progress != nullptr) progress->at((replicate + 1.0) / kDetectorReplicates);
   }
   maps.leaving = leaving.values();
   maps.entering = entering.values();
@@ -246,7 +246,7 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
   }
   maps.rre = rre.values().value[0];
   maps.std_error = rre.values().std_error[0];
-  maps.rays = std::uint64_t{per_replicate} * kReplicates;
+  maps.rays = std::uint64_t{per_replicate} * kDetectorReplicates;
   return maps;
 }
 

@@ -53,10 +53,6 @@ Eigen::Matrix2cd coherency_of(const Stokes& s) {
   return 0.5 * c;
 }
 
-double power_of(const JonesMatrix& jones, const Eigen::Matrix2cd& coherency) {
-  return (jones * coherency * jones.adjoint()).trace().real();
-}
-
 double small_angle_between(const Vec3& a, const Vec3& b) {
   return 2.0 * std::asin(std::min(1.0, 0.5 * (a - b).norm()));
 }
@@ -128,21 +124,22 @@ double FarField::detail_rad() const {
 
 /// Power by the cosines of directions. Defined beyond the horizon as well, where the theory leaves a little of cells
 /// that are not much larger than the wavelength.
-double FarField::per_cosines(const Vec2& cosines, const std::vector<CoherentGroup>& groups) const {
-  const double wave_number = 2.0 * pi / wavelength_mm_;
-  double sum = 0.0;
-  for (const CoherentGroup& group : groups) {
-    if (is_cancelled(cancel_)) return 0.0;
-    JonesMatrix field = JonesMatrix::Zero();
-    for (const FieldPolygon& p : group.polygons)
-      field += p.transform.at(wave_number * (cosines - p.cosines)) * p.mean_factor * p.amplitude;
-    sum += group.copies * power_of(field, coherency_);
-  }
-  return sum / (wavelength_mm_ * wavelength_mm_) + scattered_.fringes_per_cosines(cosines);
+std::vector<double> FarField::per_cosines(const std::vector<Vec2>& cosines, const ApertureField& field) const {
+  std::vector<double> power = field.per_cosines(cosines, cancel_);
+  for (std::size_t k = 0; k < power.size(); ++k) power[k] += scattered_.fringes_per_cosines(cosines[k]);
+  return power;
 }
 
 double FarField::diffracted_per_sr(const Vec3& direction) const {
-  return direction.z() > 0.0 ? direction.z() * per_cosines(direction.head<2>(), groups_) : 0.0;
+  return diffracted_per_sr(std::vector{direction}).front();
+}
+
+std::vector<double> FarField::diffracted_per_sr(const std::vector<Vec3>& directions) const {
+  std::vector<Vec2> cosines;
+  for (const Vec3& direction : directions) cosines.push_back(direction.head<2>());
+  std::vector<double> power = per_cosines(cosines, field_);
+  for (std::size_t k = 0; k < power.size(); ++k) power[k] *= std::max(0.0, directions[k].z());
+  return power;
 }
 
 double FarField::scattered_per_sr(const Vec3& direction) const {
@@ -163,8 +160,11 @@ double FarField::intensity_per_sr(const Vec3& direction, const ApertureKernel& k
   frame.up = direction.cross(frame.right);
   sum += direction.z() * scattered_.lobes_per_cosines(direction.head<2>(), axes_of(frame), kernel);
   if (groups_.empty()) return sum;
-  for (const ApertureKernel::Node& node : kernel.nodes(detail_rad()))
-    sum += node.weight * diffracted_per_sr(frame.direction(node.offset_rad));
+  const std::vector<ApertureKernel::Node> nodes = kernel.nodes(detail_rad());
+  std::vector<Vec3> directions;
+  for (const ApertureKernel::Node& node : nodes) directions.push_back(frame.direction(node.offset_rad));
+  const std::vector<double> per_sr = diffracted_per_sr(directions);
+  for (std::size_t k = 0; k < nodes.size(); ++k) sum += nodes[k].weight * per_sr[k];
   return sum;
 }
 
@@ -175,9 +175,11 @@ std::vector<double> FarField::binned(const ReturnFrame& frame, const DirectionGr
   sums.back() += unplaced_power_;
   if (groups_.empty() && scattered_.power() == 0.0) return sums;
   double inside = 0.0;
+  std::vector<Vec3> directions;
+  for (std::size_t bin = 0; bin < grid.size(); ++bin) directions.push_back(frame.direction(grid.middle_rad(bin)));
+  const std::vector<double> diffracted = diffracted_per_sr(directions);
   for (std::size_t bin = 0; bin < grid.size(); ++bin) {
-    const Vec3 direction = frame.direction(grid.middle_rad(bin));
-    const double power = (diffracted_per_sr(direction) + scattered_per_sr(direction)) * grid.solid_angle_sr(bin);
+    const double power = (diffracted[bin] + scattered_per_sr(directions[bin])) * grid.solid_angle_sr(bin);
     sums[bin] += power;
     inside += power;
   }
@@ -195,14 +197,19 @@ FarField::Split FarField::split(const ReturnFrame& frame, double half_angle_rad)
   if (groups_.empty()) return split;
   const double step = std::min(detail_rad() / kPointsToADetail, half_angle_rad / kPointsToARadius);
   const auto reach = static_cast<std::int64_t>(std::ceil(half_angle_rad / step));
-  for (std::int64_t j = -reach; j <= reach; ++j)
+  for (std::int64_t j = -reach; j <= reach; ++j) {
+    std::vector<Vec3> row;
+    std::vector<double> shares;
     for (std::int64_t i = -reach; i <= reach; ++i) {
       const Vec2 at = step * Vec2(static_cast<double>(i), static_cast<double>(j));
       const double angle = at.norm();
       if (angle > half_angle_rad) continue;
-      const double shrink = angle > 0.0 ? std::sin(angle) / angle : 1.0;
-      split.inside += step * step * shrink * diffracted_per_sr(frame.direction(at));
+      row.push_back(frame.direction(at));
+      shares.push_back(step * step * (angle > 0.0 ? std::sin(angle) / angle : 1.0));
     }
+    const std::vector<double> per_sr = diffracted_per_sr(row);
+    for (std::size_t k = 0; k < row.size(); ++k) split.inside += shares[k] * per_sr[k];
+  }
   split.outside += tail(frame, half_angle_rad);
   return split;
 }
@@ -216,8 +223,8 @@ double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
   const double decades = std::log(kFarthestCosine / nearest);
   const SobolSquare square(kTailKey, ~kTailKey);
   const bool is_far = !plane_groups_.empty() && nearest > kFarInBends * bend_;
-  const std::vector<CoherentGroup>& groups = is_far ? plane_groups_ : groups_;
-  double sum = 0.0;
+  std::vector<Vec2> outside;
+  std::vector<double> areas;
   for (std::uint32_t k = 0; k < kTailPoints; ++k) {
     const auto [u, v] = square(k);
     const double distance = nearest * std::exp(u * decades);
@@ -225,8 +232,13 @@ double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
     const double height2 = 1.0 - at.squaredNorm();
     const bool is_inside =
         height2 > 0.0 && small_angle_between({at.x(), at.y(), std::sqrt(height2)}, frame.to_source) <= half_angle_rad;
-    if (!is_inside) sum += per_cosines(at, groups) * distance * distance;
+    if (is_inside) continue;
+    outside.push_back(at);
+    areas.push_back(distance * distance);
   }
+  const std::vector<double> density = per_cosines(outside, is_far ? plane_field_ : field_);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < density.size(); ++k) sum += areas[k] * density[k];
   return 2.0 * pi * decades * sum / kTailPoints;
 }
 
@@ -312,8 +324,7 @@ FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam)
   return piece;
 }
 
-/// Divides the light of a cell by the lengths of its paths.
-std::vector<CoherentGroup> FarFieldCollector::groups_of(const std::vector<Piece>& pieces) const {
+Vec2 FarFieldCollector::middle_of(const std::vector<Piece>& pieces) {
   Vec2 middle = Vec2::Zero();
   double area = 0.0;
   for (const Piece& piece : pieces) {
@@ -321,20 +332,24 @@ std::vector<CoherentGroup> FarFieldCollector::groups_of(const std::vector<Piece>
     middle += own * geometry::centroid(piece.outline_mm);
     area += own;
   }
-  if (area > 0.0) middle /= area;
-  const auto path = [&](const Piece& p) { return p.phase_mm + p.direction.head<2>().dot(middle); };
+  return area > 0.0 ? Vec2(middle / area) : middle;
+}
+
+/// Divides the light of a cell by the lengths of its paths.
+std::vector<CoherentGroup> FarFieldCollector::groups_of(const std::vector<Piece>& pieces, const Vec2& middle_mm) const {
+  const auto path = [&](const Piece& p) { return p.phase_mm + p.direction.head<2>().dot(middle_mm); };
   std::vector<Piece> sorted = pieces;
   std::stable_sort(sorted.begin(), sorted.end(), [&](const Piece& a, const Piece& b) { return path(a) < path(b); });
   std::vector<CoherentGroup> groups;
   std::vector<Piece> open;
   for (const Piece& piece : sorted) {
     if (!open.empty() && path(piece) - path(open.back()) > policy_.coherence_length_mm) {
-      groups.push_back(group_of(std::move(open), middle));
+      groups.push_back(group_of(std::move(open), middle_mm));
       open.clear();
     }
     open.push_back(piece);
   }
-  groups.push_back(group_of(std::move(open), middle));
+  groups.push_back(group_of(std::move(open), middle_mm));
   return groups;
 }
 
@@ -424,9 +439,15 @@ CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2&
 std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
   std::vector<CoherentGroup> groups;
   std::map<Signature, std::size_t> known;
+  // Copies of a cell have the middle of the first, so that what they send out alike is alike in all of them.
+  std::uint64_t cell = 0;
+  Vec2 middle = Vec2::Zero();
   for (const auto& [place, pieces] : cells_) {
     if (is_cancelled(policy_.cancel)) break;
-    for (CoherentGroup& group : groups_of(pieces)) {
+    const bool is_copy = place.beam == 0 && !groups.empty() && place.cell == cell;
+    if (!is_copy) middle = middle_of(pieces);
+    cell = place.cell;
+    for (CoherentGroup& group : groups_of(pieces, middle)) {
       if (group.polygons.empty()) continue;
       const auto [it, is_new] = known.try_emplace(signature_of(group, size_mm_), groups.size());
       if (is_new)
@@ -488,6 +509,11 @@ void FarFieldCollector::add_undiffracted(const CoherentGroup& group, bool has_lo
 FarField FarFieldCollector::finish() {
   keep_strongest(distinct_groups());
   cells_.clear();
+  const auto fields_of = [&](const std::vector<CoherentGroup>& groups) {
+    return ApertureField(groups, field_.wavelength_mm_, field_.coherency_, kLengthStep * size_mm_);
+  };
+  field_.field_ = fields_of(field_.groups_);
+  field_.plane_field_ = fields_of(field_.plane_groups_);
   return std::move(field_);
 }
 

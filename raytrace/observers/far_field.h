@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/exact/point_lookup.h"
+#include "raytrace/observers/aperture_field.h"
 #include "raytrace/observers/direction_score.h"
 #include "raytrace/observers/scattered_field.h"
 
@@ -91,7 +92,8 @@ class FarField {
  private:
   friend class FarFieldCollector;
 
-  double per_cosines(const geometry::Vec2& cosines, const std::vector<CoherentGroup>& groups) const;
+  std::vector<double> per_cosines(const std::vector<geometry::Vec2>& cosines, const ApertureField& field) const;
+  std::vector<double> diffracted_per_sr(const std::vector<Vec3>& directions) const;
   double tail(const ReturnFrame& frame, double half_angle_rad) const;
 
   double wavelength_mm_ = 0.0;
@@ -100,6 +102,8 @@ class FarField {
   /// The same of plane facets, where these have a form that turns light by `bend_` at most: far from the light they
   /// send out nothing else, and they have fewer polygons.
   std::vector<CoherentGroup> plane_groups_;
+  ApertureField field_;        ///< of groups_
+  ApertureField plane_field_;  ///< of plane_groups_
   double bend_ = 0.0;
   std::vector<FarFieldRay> rays_;
   ScatteredField scattered_;
@@ -142,7 +146,8 @@ class FarFieldCollector {
   void add_ray(const Vec3& direction, double power);
   void add_scattering_ray(const Vec3& direction, double power, double phase_variance);
   Piece moved_home(const ReturnedBeam& beam) const;
-  std::vector<CoherentGroup> groups_of(const std::vector<Piece>& pieces) const;
+  static geometry::Vec2 middle_of(const std::vector<Piece>& pieces);
+  std::vector<CoherentGroup> groups_of(const std::vector<Piece>& pieces, const geometry::Vec2& middle_mm) const;
   CoherentGroup group_of(std::vector<Piece> pieces, const geometry::Vec2& middle_mm) const;
   void join(std::vector<Piece>& pieces) const;
   std::vector<CoherentGroup> distinct_groups() const;

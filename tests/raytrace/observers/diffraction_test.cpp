@@ -9,6 +9,7 @@
 
 #include "core/random.h"
 #include "materials/fresnel.h"
+#include "raytrace/observers/aperture_field.h"
 #include "raytrace/observers/far_field.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
@@ -94,6 +95,38 @@ TEST(PolygonTransform, IsSmoothWhereItsSeriesBegins) {
       EXPECT_NEAR(std::abs(hexagon.at(kappa) - quadrature(hexagon.polygon(), kappa)), 0.0, 3e-10);
     }
   EXPECT_EQ(hexagon.at(Vec2::Zero()), Complex(hexagon.area_mm2()));
+}
+
+/// Fields in lanes are those of single transforms, from the middle of the pattern to far outside; of polygons that two
+/// groups share the transform is worked out once, from whichever corner they are told.
+TEST(ApertureField, AgreesWithSingleTransforms) {
+  constexpr double kWavelength_mm = 550e-6;
+  JonesMatrix amplitude;
+  amplitude << Complex(0.3, 0.1), Complex(-0.2, 0.4), Complex(0.0, 0.7), Complex(0.5, -0.6);
+  Polygon hexagon = regular(6, 1.0, {0.3, -0.2});
+  std::vector<CoherentGroup> groups(2);
+  groups[0].polygons.push_back({PolygonTransform(hexagon), {0.1, 0.02}, amplitude, 1.0, {}});
+  std::rotate(hexagon.begin(), hexagon.begin() + 2, hexagon.end());
+  groups[1].polygons.push_back({PolygonTransform(hexagon), {0.1, 0.02}, Complex(0.0, 1.0) * amplitude, 1.0, {}});
+  groups[1].polygons.push_back({PolygonTransform(regular(4, 0.7, {-2.0, 1.0})), {0.1, 0.0201}, amplitude, 1.0, {}});
+  groups[1].polygons.back().mean_factor = 0.8;
+  groups[1].copies = 3.0;
+  Eigen::Matrix2cd coherency;
+  coherency << 0.6, Complex(0.1, -0.2), Complex(0.1, 0.2), 0.4;
+  const ApertureField field(groups, kWavelength_mm, coherency, 1e-7);
+  std::vector<Vec2> cosines = {{0.1, 0.02}, {0.1, 0.0201}, {7.0, -15.0}};
+  for (int k = 0; k < 100; ++k) cosines.push_back({0.1 + 1e-4 * k * std::cos(k), 0.02 + 1e-4 * k * std::sin(k)});
+  const std::vector<double> found = field.per_cosines(cosines, nullptr);
+  for (std::size_t k = 0; k < cosines.size(); ++k) {
+    double expected = 0.0;
+    for (const CoherentGroup& group : groups) {
+      JonesMatrix sum = JonesMatrix::Zero();
+      for (const FieldPolygon& p : group.polygons)
+        sum += p.mean_factor * p.transform.at(2.0 * pi / kWavelength_mm * (cosines[k] - p.cosines)) * p.amplitude;
+      expected += group.copies * (sum * coherency * sum.adjoint()).trace().real();
+    }
+    EXPECT_NEAR(found[k] * kWavelength_mm * kWavelength_mm, expected, 1e-9 * (expected + 1e-3)) << k;
+  }
 }
 
 // The first dark ring of a disc of 1 mm at 550 nm: 1.2197 wavelengths over the diameter (first zero of J1 over pi), and

@@ -1,0 +1,135 @@
+#include "raytrace/observers/field_lanes.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raytrace/observers/field_lanes.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+// After foreach_target.h.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace retrace::raytrace::field_lanes::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<double>;
+using V = hn::Vec<D>;
+
+HWY_INLINE V splat(double value) {
+  return hn::Set(D(), value);
+}
+
+struct Complex {
+  V re, im;
+};
+
+/// Of phases below 1e9, less whole turns of 2 pi in two parts: Highway's sines end at 39,000.
+HWY_INLINE Complex unit(V phase) {
+  const V turns = hn::Round(hn::Mul(phase, splat(0.15915494309189535)));
+  const V left =
+      hn::NegMulAdd(turns, splat(2.4492935982947064e-16), hn::NegMulAdd(turns, splat(6.283185307179586), phase));
+  return {hn::Cos(D(), left), hn::Sin(D(), left)};
+}
+
+/// As mean_along() of polygon_transform.cpp: the mean of exp(-i x) over phases that lie between those of two corners.
+HWY_INLINE Complex mean_along(V phase_from, const Complex& from, V phase_to, const Complex& to) {
+  const V step = hn::Sub(phase_to, phase_from);
+  const auto is_short = hn::Le(hn::Abs(step), splat(0.05));
+  const V inverse = hn::Div(splat(1.0), hn::IfThenElse(is_short, splat(1.0), step));
+  Complex mean{hn::Mul(hn::Sub(from.im, to.im), inverse), hn::Mul(hn::Sub(to.re, from.re), inverse)};
+  if (hn::AllFalse(D(), is_short)) return mean;
+  const V square = hn::Mul(step, step);
+  const V series = hn::NegMulAdd(hn::Mul(square, splat(1.0 / 24.0)),
+                                 hn::NegMulAdd(square, splat(1.0 / 80.0), splat(1.0)), splat(1.0));
+  const Complex middle = unit(hn::Mul(splat(-0.5), hn::Add(phase_from, phase_to)));
+  mean.re = hn::IfThenElse(is_short, hn::Mul(series, middle.re), mean.re);
+  mean.im = hn::IfThenElse(is_short, hn::Mul(series, middle.im), mean.im);
+  return mean;
+}
+
+void transform(const Outline& outline, const Block& block_x, const Block& block_y, ComplexBlock& result) {
+  for (std::size_t k = 0; k < kBlock; k += hn::Lanes(D())) {
+    const V kx = hn::LoadU(D(), block_x.data() + k);
+    const V ky = hn::LoadU(D(), block_y.data() + k);
+    const V square = hn::MulAdd(kx, kx, hn::Mul(ky, ky));
+    const Complex middle =
+        unit(hn::Neg(hn::MulAdd(kx, splat(outline.centroid_mm.x()), hn::Mul(ky, splat(outline.centroid_mm.y())))));
+    const auto phase_at = [&](const geometry::Vec2& corner) {
+      return hn::MulAdd(kx, splat(corner.x()), hn::Mul(ky, splat(corner.y())));
+    };
+    geometry::Vec2 from = outline.corners_mm.back();
+    V phase_from = phase_at(from);
+    Complex wave_from = unit(hn::Neg(phase_from));
+    Complex sum{hn::Zero(D()), hn::Zero(D())};
+    for (const geometry::Vec2& to : outline.corners_mm) {
+      const V phase_to = phase_at(to);
+      const Complex wave_to = unit(hn::Neg(phase_to));
+      const V flux = hn::MulSub(kx, splat(to.y() - from.y()), hn::Mul(ky, splat(to.x() - from.x())));
+      const Complex mean = mean_along(phase_from, wave_from, phase_to, wave_to);
+      sum.re = hn::MulAdd(flux, mean.re, sum.re);
+      sum.im = hn::MulAdd(flux, mean.im, sum.im);
+      from = to;
+      phase_from = phase_to;
+      wave_from = wave_to;
+    }
+    // Phases below 1e-5 over the polygon: its area, turned by the phase of the centroid.
+    const auto is_flat = hn::Lt(hn::Mul(square, splat(outline.size_mm * outline.size_mm)), splat(1e-10));
+    const V over = hn::Div(splat(1.0), hn::IfThenElse(is_flat, splat(1.0), square));
+    const V re = hn::IfThenElse(is_flat, splat(outline.area_mm2), hn::Neg(hn::Mul(over, sum.im)));
+    const V im = hn::IfThenElseZero(hn::Not(is_flat), hn::Mul(over, sum.re));
+    hn::StoreU(hn::MulSub(re, middle.re, hn::Mul(im, middle.im)), D(), result.re.data() + k);
+    hn::StoreU(hn::MulAdd(re, middle.im, hn::Mul(im, middle.re)), D(), result.im.data() + k);
+  }
+}
+
+void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& transforms,
+               const std::array<double, 4>& coherency, double copies, Block& sum) {
+  for (std::size_t k = 0; k < kBlock; k += hn::Lanes(D())) {
+    const V zero = hn::Zero(D());
+    Complex xx{zero, zero}, xy{zero, zero}, yx{zero, zero}, yy{zero, zero};
+    for (const Use& use : uses) {
+      const ComplexBlock& at = transforms[use.outline];
+      const V re = hn::LoadU(D(), at.re.data() + k);
+      const V im = hn::LoadU(D(), at.im.data() + k);
+      const auto add = [&](Complex& to, double a, double b) {
+        to.re = hn::NegMulAdd(im, splat(b), hn::MulAdd(re, splat(a), to.re));
+        to.im = hn::MulAdd(im, splat(a), hn::MulAdd(re, splat(b), to.im));
+      };
+      add(xx, use.amplitude[0], use.amplitude[1]);
+      add(xy, use.amplitude[2], use.amplitude[3]);
+      add(yx, use.amplitude[4], use.amplitude[5]);
+      add(yy, use.amplitude[6], use.amplitude[7]);
+    }
+    const auto power_of_row = [&](const Complex& a, const Complex& b) {
+      const V aa = hn::MulAdd(a.re, a.re, hn::Mul(a.im, a.im));
+      const V bb = hn::MulAdd(b.re, b.re, hn::Mul(b.im, b.im));
+      // a conj(b)
+      const V re = hn::MulAdd(a.re, b.re, hn::Mul(a.im, b.im));
+      const V im = hn::MulSub(a.im, b.re, hn::Mul(a.re, b.im));
+      const V cross = hn::MulSub(splat(coherency[2]), re, hn::Mul(splat(coherency[3]), im));
+      return hn::MulAdd(splat(2.0), cross, hn::MulAdd(splat(coherency[0]), aa, hn::Mul(splat(coherency[1]), bb)));
+    };
+    const V power = hn::Add(power_of_row(xx, xy), power_of_row(yx, yy));
+    hn::StoreU(hn::MulAdd(splat(copies), power, hn::LoadU(D(), sum.data() + k)), D(), sum.data() + k);
+  }
+}
+
+}  // namespace retrace::raytrace::field_lanes::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace retrace::raytrace::field_lanes {
+
+HWY_EXPORT(transform);
+HWY_EXPORT(add_power);
+
+void transform(const Outline& outline, const Block& kx, const Block& ky, ComplexBlock& result) {
+  HWY_DYNAMIC_DISPATCH(transform)(outline, kx, ky, result);
+}
+
+void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& transforms,
+               const std::array<double, 4>& coherency, double copies, Block& sum) {
+  HWY_DYNAMIC_DISPATCH(add_power)(uses, transforms, coherency, copies, sum);
+}
+
+}  // namespace retrace::raytrace::field_lanes
+#endif
