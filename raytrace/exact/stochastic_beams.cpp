@@ -214,7 +214,10 @@ double StochasticBeams::next_ray_power() const {
 
 double StochasticBeams::expected_work() const {
   if (result_.reached_target) return work();
-  return work() + static_cast<double>(beam_work_) * std::pow(threshold_ / next_threshold(), kWorkSlope) +
+  const double more = std::pow(threshold_ / next_threshold(), kWorkSlope);
+  if (more * static_cast<double>(strong_->kept().size()) > static_cast<double>(kMostKept))
+    return std::numeric_limits<double>::infinity();
+  return work() + static_cast<double>(beam_work_) * more +
          static_cast<double>(ray_work_) * ray_power_ / next_ray_power();
 }
 
