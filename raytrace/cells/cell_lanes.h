@@ -20,16 +20,36 @@ namespace retrace::raytrace::lanes {
 inline constexpr std::size_t kPadding = 16;
 
 /// The arrays of rays: place (mm), direction, Stokes parameters (as in Light) and their first axis, of any length; in
-/// finite parts also where on the part the period stands in which the place is given.
-enum RayNumber : std::size_t { kX, kY, kZ, kDx, kDy, kDz, kI, kQ, kU, kV, kAx, kAy, kAz, kOx, kOy, kRayNumbers };
+/// finite parts also where on the part the period stands in which the place is given; of rays that are told apart also
+/// the number of their owner.
+enum RayNumber : std::size_t {
+  kX,
+  kY,
+  kZ,
+  kDx,
+  kDy,
+  kDz,
+  kI,
+  kQ,
+  kU,
+  kV,
+  kAx,
+  kAy,
+  kAz,
+  kOx,
+  kOy,
+  kOwner,
+  kRayNumbers
+};
 inline constexpr std::size_t kNumbersOfEndless = kOx;
+inline constexpr std::size_t kNumbersOfFinite = kOwner;
 
 struct Rays {
   std::array<double*, kRayNumbers> at{};
-  std::size_t numbers = kNumbersOfEndless;  ///< that there are; else kRayNumbers
+  std::size_t numbers = kNumbersOfEndless;  ///< that there are; else kNumbersOfFinite or kRayNumbers
 
   double* operator[](std::size_t number) const { return at[number]; }
-  bool have_periods() const { return numbers == kRayNumbers; }
+  bool have_periods() const { return numbers >= kNumbersOfFinite; }
 };
 
 struct Plane {

@@ -18,20 +18,28 @@ Vec3 lifted(const Vec2& normal) {
   return {normal.x(), normal.y(), 0.0};
 }
 
+std::size_t numbers_of(const CellArray& array, bool has_owners) {
+  if (has_owners) return lanes::kRayNumbers;
+  return array.inner() ? lanes::kNumbersOfFinite : lanes::kNumbersOfEndless;
+}
+
 }  // namespace
 
-CellWalker::CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array, const Vec2& centre_mm)
+CellWalker::CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array, const Vec2& centre_mm,
+                       bool has_owners)
     : setup_(setup),
       policy_(policy),
       array_(array),
       waiting_(64),
-      moved_(array.inner() ? lanes::kRayNumbers : lanes::kNumbersOfEndless),
-      chosen_(array.inner() ? lanes::kRayNumbers : lanes::kNumbersOfEndless),
-      entering_{chosen_, chosen_} {
+      moved_(numbers_of(array, has_owners)),
+      chosen_(moved_),
+      entering_{chosen_, chosen_},
+      left_(has_owners ? lanes::kRayNumbers : lanes::kNumbersOfEndless) {
   if (setup.optics.entrance.scatters()) soiled_.emplace(setup.optics);
+  anchor_mm_ = -centre_mm;
   if (const auto& inner = array.inner()) {
     inner_ = {inner->where_mm.lower - centre_mm, inner->where_mm.upper - centre_mm};
-    anchor_mm_ = inner->anchor_mm - centre_mm;
+    anchor_mm_ += inner->anchor_mm;
   }
   for (const CellArray::Column& column : array.columns()) {
     Shape& shape = shapes_.emplace_back();
@@ -104,8 +112,8 @@ void CellWalker::reserve(std::size_t count) {
   branches_.resize(capacity_);
 }
 
-void CellWalker::trace(const geometry::Rectangle& entrance_mm, std::uint64_t key_x, std::uint64_t key_y,
-                       std::uint32_t first, std::size_t count, RandomKey key, std::uint32_t replicate, Tally& tally) {
+void CellWalker::begin(const geometry::Rectangle& entrance_mm, std::uint32_t first, std::size_t count, RandomKey key,
+                       std::uint32_t replicate, Tally& tally) {
   key_ = key;
   replicate_ = replicate;
   sample_ = first;
@@ -116,6 +124,11 @@ void CellWalker::trace(const geometry::Rectangle& entrance_mm, std::uint64_t key
   handed_over_.clear();
   reserve(count);
   chosen_.resize(count);
+}
+
+void CellWalker::trace(const geometry::Rectangle& entrance_mm, std::uint64_t key_x, std::uint64_t key_y,
+                       std::uint32_t first, std::size_t count, RandomKey key, std::uint32_t replicate, Tally& tally) {
+  begin(entrance_mm, first, count, key, replicate, tally);
   const lanes::Rays rays = chosen_.rays();
   lanes::sobol(key_x, key_y, first, count, entrance_mm.size(), rays[lanes::kX], rays[lanes::kY]);
   std::fill_n(rays[lanes::kZ], count, setup_.thickness_mm);
@@ -129,6 +142,23 @@ void CellWalker::trace(const geometry::Rectangle& entrance_mm, std::uint64_t key
   else
     enter(count);
   while (const auto stream = fullest()) advance(*stream);
+}
+
+void CellWalker::follow(const std::vector<Start>& starts, const geometry::Rectangle& entrance_mm, RandomKey key,
+                        std::uint32_t replicate, std::uint32_t first, Tally& tally, Observer& observer) {
+  begin(entrance_mm, first, starts.size(), key, replicate, tally);
+  observer_ = &observer;
+  const lanes::Rays rays = chosen_.rays();
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    for (std::size_t n = 0; n < 3; ++n) rays[lanes::kX + n][k] = starts[k].position[static_cast<Eigen::Index>(n)];
+    set(rays, k, starts[k].ray);
+    rays[lanes::kOx][k] = rays[lanes::kOy][k] = 0.0;
+    rays[lanes::kOwner][k] = static_cast<double>(starts[k].owner);
+  }
+  lanes::shift(rays, starts.size(), -anchor_mm_);
+  if (!chosen_.empty()) fall(false);
+  while (const auto stream = fullest()) advance(*stream);
+  observer_ = nullptr;
 }
 
 /// The rays of `chosen_` at their places on the entrance face.
@@ -205,8 +235,7 @@ void CellWalker::hand_over(const lanes::Rays& rays, std::size_t count, const std
                            bool inside, bool scattered) {
   for (std::size_t k = 0; k < count; ++k)
     if (which[k] == number)
-      handed_over_.push_back({vector_of(rays, lanes::kX, k) + Vec3(rays[lanes::kOx][k], rays[lanes::kOy][k], 0.0),
-                              ray_of(rays, k, inside, scattered)});
+      handed_over_.push_back({place_of(rays, k), ray_of(rays, k, inside, scattered), owner_of(rays, k)});
 }
 
 /// Where the next rays of a stream go, with room for `most`.
@@ -229,6 +258,16 @@ void CellWalker::book(double number, Account account) {
   const lanes::Share share = lanes::sum_of(met_.data(), number, moved_.rays(), moved_.size());
   tally_->other[account] += share.power;
   tally_->segments += share.count;
+}
+
+void CellWalker::tell_of_transmitted(double number) {
+  const lanes::Rays rays = moved_.rays();
+  for (std::size_t k = 0; k < moved_.size(); ++k)
+    if (met_[k] == number) observer_->is_transmitted(owner_of(rays, k), rays[lanes::kI][k]);
+}
+
+void CellWalker::tell_of_leaving(const lanes::Rays& left, std::size_t k) {
+  observer_->leaves(owner_of(left, k), place_of(left, k), vector_of(left, lanes::kDx, k), left[lanes::kI][k]);
 }
 
 /// From the entrance down to the top of the surface: the rays of `chosen_`.
@@ -289,6 +328,7 @@ void CellWalker::advance(std::uint32_t number) {
     meet_entrance(stream.scattered);
   } else {
     book(kTopOrNothing, Account::transmitted);
+    if (observer_ != nullptr) tell_of_transmitted(kTopOrNothing);
   }
   for (std::size_t k = 0; k < stream.borders.size(); ++k)
     if (stream.borders[k]) cross(stream, *stream.borders[k], static_cast<double>(kFirstBorder + k));
@@ -393,15 +433,16 @@ void CellWalker::meet_entrance(bool scattered) {
   const lanes::Entrance entrance = {
       height_mm,        optics.index,      optics.absorption_per_mm, optics.lossless_entrance,
       setup_.to_source, setup_.cone_chord2};
-  const bool is_scored = setup_.score != nullptr;
-  if (is_scored) left_.reserve(moved_.size());
+  const bool is_kept = setup_.score != nullptr || observer_ != nullptr;
+  if (is_kept) left_.reserve(moved_.size());
   const lanes::Rays left = left_.rays();
   const lanes::Arrivals arrivals =
       lanes::meet_entrance(rays, moved_.size(), meeting(kTopOrNothing, true), entrance, chosen_.rays(),
-                           scattered ? tally_->scattered : tally_->returned, is_scored ? &left : nullptr);
-  for (std::size_t k = 0; k < arrivals.left; ++k)
-    setup_.score->add({left[lanes::kDx][k], left[lanes::kDy][k], left[lanes::kDz][k]}, left[lanes::kI][k],
-                      tally_->score);
+                           scattered ? tally_->scattered : tally_->returned, is_kept ? &left : nullptr);
+  for (std::size_t k = 0; k < arrivals.left; ++k) {
+    if (setup_.score != nullptr) setup_.score->add(vector_of(left, lanes::kDx, k), left[lanes::kI][k], tally_->score);
+    if (observer_ != nullptr) tell_of_leaving(left, k);
+  }
   tally_->segments += arrivals.count;
   tally_->other[Account::absorbed] += arrivals.absorbed;
   chosen_.resize(arrivals.reflected);

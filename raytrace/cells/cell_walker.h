@@ -23,6 +23,15 @@ inline Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k)
   return {rays[first][k], rays[first + 1][k], rays[first + 2][k]};
 }
 
+/// Where on the part a ray is. \pre rays.have_periods()
+inline Vec3 place_of(const lanes::Rays& rays, std::size_t k) {
+  return vector_of(rays, lanes::kX, k) + Vec3(rays[lanes::kOx][k], rays[lanes::kOy][k], 0.0);
+}
+
+inline std::uint32_t owner_of(const lanes::Rays& rays, std::size_t k) {
+  return rays.numbers == lanes::kRayNumbers ? static_cast<std::uint32_t>(rays[lanes::kOwner][k]) : 0;
+}
+
 /// Follows light through an endless array, column by column, many rays at once: all that are over one column, or under
 /// its surface, wait in one stream and are moved in SIMD lanes, the fullest stream first. Rays that leave the inner
 /// piece of a finite part are handed over to PathWalker, which traces its borders. One walker serves one thread.
@@ -32,10 +41,24 @@ class CellWalker {
   struct HandedOver {
     Vec3 position = Vec3::Zero();  ///< relative to the centre of the entrance face
     Ray ray;
+    std::uint32_t owner = 0;
+  };
+  /// A ray that starts just below the entrance face: one that is handed over the other way. Owners are numbers by
+  /// which rays are told apart.
+  using Start = HandedOver;
+  /// Told what becomes of rays by their owners.
+  class Observer {
+   public:
+    virtual ~Observer() = default;
+    /// As ExitObserver::leaves().
+    virtual void leaves(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) = 0;
+    /// Light that leaves through the back.
+    virtual void is_transmitted(std::uint32_t owner, double power) = 0;
   };
 
-  /// \param centre_mm of the entrance face; finite parts
-  CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array, const Vec2& centre_mm);
+  /// \param centre_mm of the entrance face; finite parts \param has_owners for follow(), in place of trace()
+  CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array, const Vec2& centre_mm,
+             bool has_owners = false);
   CellWalker(const CellWalker&) = delete;
   CellWalker(CellWalker&&) = default;
 
@@ -45,7 +68,12 @@ class CellWalker {
   void trace(const geometry::Rectangle& entrance_mm, std::uint64_t key_x, std::uint64_t key_y, std::uint32_t first,
              std::size_t count, RandomKey key, std::uint32_t replicate, Tally& tally);
 
-  /// What the last trace() has not followed to its end; none in infinite parts.
+  /// Follows rays that are in the part. \param entrance_mm of the whole part, as in trace() \pre a plane entrance face
+  /// that does not scatter; the walker has owners
+  void follow(const std::vector<Start>& starts, const geometry::Rectangle& entrance_mm, RandomKey key,
+              std::uint32_t replicate, std::uint32_t first, Tally& tally, Observer& observer);
+
+  /// What the last trace() or follow() has not followed to its end; none in infinite parts.
   const std::vector<HandedOver>& handed_over() const { return handed_over_; }
   /// Random choices made so far under the first point's number.
   std::uint32_t choices() const { return choices_; }
@@ -96,6 +124,8 @@ class CellWalker {
                                       static_cast<std::size_t>(place));
   }
   void prepare(Stream& stream) const;
+  void begin(const geometry::Rectangle& entrance_mm, std::uint32_t first, std::size_t count, RandomKey key,
+             std::uint32_t replicate, Tally& tally);
   void advance(std::uint32_t number);
   void move(const Stream& stream);
   void meet_surface(const Stream& stream);
@@ -117,6 +147,8 @@ class CellWalker {
   void cross(const Stream& stream, const Crossing& crossing, double number);
   void fall(bool scattered);
   void book(double number, Account account);
+  void tell_of_transmitted(double number);
+  void tell_of_leaving(const lanes::Rays& left, std::size_t k);
   lanes::Met met();
   lanes::Meeting meeting(double number, bool inside);
   lanes::Rays end_of(std::uint32_t stream, std::size_t most);
@@ -137,21 +169,22 @@ class CellWalker {
   const PathPolicy& policy_;
   const CellArray& array_;
   Tally* tally_ = nullptr;
+  Observer* observer_ = nullptr;
   geometry::Rectangle inner_;      ///< finite parts: where rays are followed, relative to the centre
   geometry::Rectangle outline_;    ///< finite parts: of the entrance face
-  Vec2 anchor_mm_ = Vec2::Zero();  ///< finite parts: where the array starts
+  Vec2 anchor_mm_ = Vec2::Zero();  ///< where the array starts, relative to the centre
   std::vector<HandedOver> handed_over_;
   std::vector<Shape> shapes_;  ///< of the columns
   std::vector<Stream> streams_;
   std::vector<std::vector<std::uint32_t>> waiting_;  ///< streams by the binary logarithm of their rays
   std::vector<lanes::LinearForm> pieces_;            ///< edges of the array's pieces
   std::vector<std::uint32_t> piece_starts_;
-  RayStore moved_;                           ///< of the stream at hand
-  RayStore chosen_;                          ///< those of them that meet the same
-  std::array<RayStore, 2> entering_;         ///< below a soiled entrance: not scattered, and scattered
-  RayStore left_{lanes::kNumbersOfEndless};  ///< what leaves through the entrance, if it is scored
-  std::vector<double> met_;                  ///< by `moved_`: number, normal
-  std::vector<double> branches_;             ///< marks of `chosen_`, or of weak rays
+  RayStore moved_;                    ///< of the stream at hand
+  RayStore chosen_;                   ///< those of them that meet the same
+  std::array<RayStore, 2> entering_;  ///< below a soiled entrance: not scattered, and scattered
+  RayStore left_;                     ///< what leaves through the entrance, if it is scored or told of
+  std::vector<double> met_;           ///< by `moved_`: number, normal
+  std::vector<double> branches_;      ///< marks of `chosen_`, or of weak rays
   std::size_t capacity_ = 0;
   std::uint64_t batches_ = 0;
   std::optional<SoiledEntrance> soiled_;  ///< where the entrance face scatters

@@ -127,6 +127,8 @@ void CellWalker::meet_layers_of_entrance(bool scattered) {
       const Vec3 out = refracted(ray.direction, down, optics.index, cos_incidence, f.cos_refracted);
       returned[setup_.cone_of(out)] += seen_from_above(transmitted, out);
       if (setup_.score != nullptr) setup_.score->add(out, transmitted.power(), tally_->score);
+      if (observer_ != nullptr)
+        observer_->leaves(owner_of(rays, k), place_of(rays, k) + way_mm * ray.direction, out, transmitted.power());
     }
     if (branch == Branch::transmitted) continue;
     for (std::size_t n = 0; n < rays.numbers; ++n) chosen[n][reflected_count] = rays[n][k];

@@ -15,7 +15,7 @@ namespace retrace::raytrace {
 /// Rays, one array for each of their numbers.
 class RayStore {
  public:
-  /// \param numbers of each ray: lanes::kNumbersOfEndless or lanes::kRayNumbers
+  /// \param numbers of each ray, as lanes::Rays has them
   explicit RayStore(std::size_t numbers) : numbers_(numbers) {}
 
   std::size_t size() const { return size_; }

@@ -1,5 +1,7 @@
 #include "raytrace/observers/camera.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include "core/error.h"
 #include "core/infinity.h"
 #include "core/random.h"
+#include "raytrace/cells/cell_walker.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/ledger.h"
@@ -23,10 +26,14 @@ namespace {
 
 using std::numbers::pi;
 
-// Philox streams: of the scrambles of points, of the choices on the way, and of wavelengths and points of the pupil.
+// Philox streams: of the scrambles of points, of the choices on the way, of wavelengths and points of the pupil, and of
+// choices on the way of many paths together.
 constexpr std::uint32_t kCameraScrambleStream = 11;
 constexpr std::uint32_t kCameraChoiceStream = 12;
 constexpr std::uint32_t kLensStream = 13;
+constexpr std::uint32_t kCameraCellStream = 14;
+// Paths of a wavelength that the cell engine follows together, about.
+constexpr std::size_t kPathsTogether = 4096;
 
 struct WorldRay {
   Vec3 origin;
@@ -126,29 +133,41 @@ class Luminaire {
   double intensity_ = 0.0;  ///< towards the target, lx mm^2
 };
 
-/// Adds up what a path sees where it leaves the entrance face.
-class Sight : public ExitObserver {
- public:
-  Sight(const Luminaire& luminaire, double front) : luminaire_(luminaire), front_(front) {}
+/// A path of the camera, from where it meets the part.
+struct Look {
+  Contact contact;
+  double luminance = 0.0;  ///< that it sees, cd/m^2
+  bool shows_part() const { return contact.what == Contact::What::face || contact.what == Contact::What::side; }
+};
 
+/// Adds up what paths see where they leave the part.
+class Sight : public ExitObserver, public CellWalker::Observer {
+ public:
   /// \param film exits count as where the path began
-  void begin(const Contact& contact, bool film) {
-    contact_ = contact;
-    film_ = film;
-    luminance_ = 0.0;
-  }
+  Sight(const Luminaire& luminaire, const Surroundings& surroundings, bool film, std::vector<Look>& looks)
+      : luminaire_(luminaire), surroundings_(surroundings), film_(film), looks_(looks) {}
+
+  /// Of which path PathWalker tells from here on.
+  void begin(std::size_t look) { look_ = static_cast<std::uint32_t>(look); }
   void leaves(const Vec3& position, const Vec3& direction, double power) override {
-    const Vec3& from = film_ ? contact_.world : position;
-    luminance_ += power * (front_ + luminaire_.luminance(from, contact_.world_from_local * direction));
+    leaves(look_, position, direction, power);
   }
-  double luminance() const { return luminance_; }
+  void leaves(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) override {
+    Look& look = looks_[owner];
+    const Vec3& from = film_ ? look.contact.world : position;
+    look.luminance +=
+        power * (surroundings_.front + luminaire_.luminance(from, look.contact.world_from_local * direction));
+  }
+  void is_transmitted(std::uint32_t owner, double power) override {
+    looks_[owner].luminance += surroundings_.behind * power;
+  }
 
  private:
   const Luminaire& luminaire_;
-  double front_;
-  Contact contact_;
+  const Surroundings& surroundings_;
   bool film_ = false;
-  double luminance_ = 0.0;
+  std::vector<Look>& looks_;
+  std::uint32_t look_ = 0;
 };
 
 Vec2 in_unit_disc(double u, double v) {
@@ -238,15 +257,21 @@ double CameraImage::relative_noise() const {
 }
 
 struct CameraTracer::Hidden {
+  struct Block;
+
   Hidden(const geometry::Part& p, const std::vector<WeighedOptics>& light, const CameraScene& s,
-         const PathPolicy& policy, std::uint32_t number)
+         const PathPolicy& policy, std::uint32_t number, CameraEngine engine)
       : part(p),
         scene(s),
         seed(number),
         centre_mm(EntranceSampler(p).centre_mm()),
         surface(p, centre_mm),
         lens(s.view),
-        luminaire(s.lamp, s.view, s.discs) {
+        luminaire(s.lamp, s.view, s.discs),
+        entrance_mm(EntranceSampler(p).bounding_box()) {
+    const bool has_one_back =
+        std::ranges::all_of(light, [](const WeighedOptics& at) { return at.optics.has_one_back(); });
+    if (engine == CameraEngine::fastest && has_one_back) cells = CellArray::make(p);
     double sum = 0.0;
     for (const WeighedOptics& at : light) {
       // The direction of incidence means nothing here: paths begin on the face with one of their own.
@@ -264,10 +289,12 @@ struct CameraTracer::Hidden {
 
   Contact contact_of(const WorldRay& ray) const;
   std::optional<Contact> contact_with_plate(const WorldRay& ray) const;
-  double follow(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
-                PathWalker& walker, Tally& tally, Sight& sight, bool& shows_part) const;
-  void add_pixel(std::uint32_t pixel, std::uint32_t pass, std::vector<PathWalker>& walkers, Tally& tally, Sight& sight,
-                 double& luminance, double& on_part, double& coverage) const;
+  std::size_t rows_of_block() const {
+    return std::max<std::size_t>(1, kPathsTogether * setups.size() / (kPointsPerPass * scene.view.columns));
+  }
+  void look(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point, Block& block) const;
+  void look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const;
+  void follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block, const Cancellation* cancel) const;
 
   const geometry::Part& part;
   CameraScene scene;
@@ -276,7 +303,9 @@ struct CameraTracer::Hidden {
   BackSurface surface;
   Lens lens;
   Luminaire luminaire;
-  std::vector<PathSetup> setups;  ///< by wavelength
+  geometry::Rectangle entrance_mm;
+  std::optional<CellArray> cells;  ///< of parts whose paths are followed together
+  std::vector<PathSetup> setups;   ///< by wavelength
   std::vector<double> cumulative;
   Vec3 middle;  ///< of a sphere round the finite part
   double radius_mm = 0.0;
@@ -320,22 +349,55 @@ Contact CameraTracer::Hidden::contact_of(const WorldRay& ray) const {
   return {Contact::What::outside, at, at, Eigen::Matrix3d::Identity(), 0};
 }
 
-/// What a ray of the camera sees, cd/m^2.
-double CameraTracer::Hidden::follow(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel,
-                                    std::uint32_t point, PathWalker& walker, Tally& tally, Sight& sight,
-                                    bool& shows_part) const {
-  const Contact contact = contact_of(ray);
-  shows_part = contact.what == Contact::What::face || contact.what == Contact::What::side;
-  if (contact.what == Contact::What::nothing) return scene.surroundings.behind;
-  if (contact.what == Contact::What::dark) return 0.0;
+/// Some rows of one pass. A thread keeps its block, for its memory.
+struct CameraTracer::Hidden::Block {
+  explicit Block(const Hidden& h)
+      : sight(h.luminaire, h.scene.surroundings, h.scene.film.has_value(), looks), starts(h.setups.size()) {
+    for (const PathSetup& setup : h.setups) {
+      walkers.emplace_back(setup, tally, &sight);
+      if (h.cells) cell_walkers.emplace_back(setup, setup.policy, *h.cells, h.centre_mm, true);
+    }
+  }
+  Block(const Block&) = delete;
+
+  void begin() {
+    looks.clear();
+    for (std::vector<CellWalker::Start>& of_wavelength : starts) of_wavelength.clear();
+    tally = Tally(1);
+  }
+
+  /// Follows light of a path by itself.
+  void resume(const CellWalker::Start& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
+              std::uint32_t sample, std::uint32_t& choices) {
+    const auto behind = [&] { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; };
+    const double before = behind();
+    sight.begin(start.owner);
+    walkers[wavelength].resume(start.position, start.ray, key, replicate, sample, choices);
+    sight.is_transmitted(start.owner, behind() - before);
+  }
+
+  std::vector<Look> looks;  ///< by pixel, kPointsPerPass each
+  Tally tally{1};
+  Sight sight;
+  std::vector<PathWalker> walkers;  ///< by wavelength
+  std::vector<CellWalker> cell_walkers;
+  std::vector<std::vector<CellWalker::Start>> starts;  ///< by wavelength: what is followed together
+};
+
+/// One more path of a block.
+void CameraTracer::Hidden::look(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
+                                Block& block) const {
+  const auto number = static_cast<std::uint32_t>(block.looks.size());
+  Look& look = block.looks.emplace_back();
+  look.contact = contact_of(ray);
+  const Contact contact = look.contact;
+  if (contact.what == Contact::What::nothing) look.luminance = scene.surroundings.behind;
+  if (contact.what == Contact::What::nothing || contact.what == Contact::What::dark) return;
   const Optics& optics = setups[wavelength].optics;
   const Vec3 direction = contact.world_from_local.transpose() * ray.direction;
-  sight.begin(contact, scene.film.has_value());
   Ray start{direction, {}, contact.what != Contact::What::outside, false};
   start.light.s_axis = direction.unitOrthogonal();
-  const double elsewhere = tally.other[Account::transmitted] + tally.other[Account::side_exit];
-  double behind = 0.0;
-  if (shows_part) {
+  if (look.shows_part()) {
     const bool is_side = contact.what == Contact::What::side;
     const Vec3 normal = is_side ? setups[wavelength].sides[contact.side].normal : Vec3(Vec3::UnitZ());
     const double cosine = -normal.dot(direction);
@@ -347,20 +409,22 @@ double CameraTracer::Hidden::follow(const WorldRay& ray, std::size_t wavelength,
     if (is_side || !optics.lossless_entrance) {
       start.light = start.light.transmitted(f);
       if (is_side)
-        behind += front.power();
+        block.sight.is_transmitted(number, front.power());
       else
-        sight.leaves(contact.local, mirrored(direction, normal), front.power());
+        block.sight.leaves(number, contact.local, mirrored(direction, normal), front.power());
     }
   }
+  const CellWalker::Start on{contact.local, start, number};
+  if (cells && contact.what == Contact::What::face) {
+    block.starts[wavelength].push_back(on);
+    return;
+  }
   std::uint32_t choices = 0;
-  walker.resume(contact.local, start, {seed, kCameraChoiceStream}, point, pixel, choices);
-  behind += tally.other[Account::transmitted] + tally.other[Account::side_exit] - elsewhere;
-  return sight.luminance() + scene.surroundings.behind * behind;
+  block.resume(on, wavelength, {seed, kCameraChoiceStream}, point, pixel, choices);
 }
 
-void CameraTracer::Hidden::add_pixel(std::uint32_t pixel, std::uint32_t pass, std::vector<PathWalker>& walkers,
-                                     Tally& tally, Sight& sight, double& luminance, double& on_part,
-                                     double& coverage) const {
+/// The paths of a pixel in a pass.
+void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const auto words = philox({seed, kCameraScrambleStream}, pass, pixel);
   const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
@@ -375,20 +439,35 @@ void CameraTracer::Hidden::add_pixel(std::uint32_t pixel, std::uint32_t pass, st
     const Vec2 pupil = scene.discs == DiscAverage::sampled
                            ? in_unit_disc(unit_interval(random[1]), unit_interval(random[2]))
                            : Vec2(Vec2::Zero());
-    const WorldRay ray = lens.ray(
-        {static_cast<double>(pixel % columns) + within[0], static_cast<double>(pixel / columns) + within[1]}, pupil);
-    bool shows_part = false;
-    const double value = follow(ray, wavelength, pixel, point, walkers[wavelength], tally, sight, shows_part);
-    luminance += value / kPointsPerPass;
-    if (shows_part) on_part += value / kPointsPerPass;
-    if (shows_part) coverage += 1.0 / kPointsPerPass;
+    look(lens.ray({static_cast<double>(pixel % columns) + within[0], static_cast<double>(pixel / columns) + within[1]},
+                  pupil),
+         wavelength, pixel, point, block);
+  }
+}
+
+/// By the cell engine, and what that hands over.
+void CameraTracer::Hidden::follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block,
+                                           const Cancellation* cancel) const {
+  const RandomKey key{seed, kCameraCellStream};
+  for (std::size_t w = 0; w < setups.size(); ++w) {
+    if (is_cancelled(cancel)) return;
+    if (block.starts[w].empty()) continue;
+    CellWalker& walker = block.cell_walkers[w];
+    const auto sample = static_cast<std::uint32_t>(block_number * setups.size() + w);
+    walker.follow(block.starts[w], entrance_mm, key, pass, sample, block.tally, block.sight);
+    std::uint32_t choices = walker.choices();
+    for (const CellWalker::HandedOver& ray : walker.handed_over()) block.resume(ray, w, key, pass, sample, choices);
   }
 }
 
 CameraTracer::CameraTracer(const geometry::Part& part, const std::vector<WeighedOptics>& light,
-                           const CameraScene& scene, const PathPolicy& policy, std::uint32_t seed)
-    : hidden_(std::make_unique<Hidden>(part, light, scene, policy, seed)) {}
+                           const CameraScene& scene, const PathPolicy& policy, std::uint32_t seed, CameraEngine engine)
+    : hidden_(std::make_unique<Hidden>(part, light, scene, policy, seed, engine)) {}
 CameraTracer::~CameraTracer() = default;
+
+bool CameraTracer::is_by_cells() const {
+  return hidden_->cells.has_value();
+}
 
 CameraImage CameraTracer::empty_image() const {
   CameraImage image;
@@ -406,18 +485,30 @@ bool CameraTracer::add_pass(CameraImage& image, const Cancellation* cancel) cons
   std::vector<double> luminance(pixels, 0.0);
   std::vector<double> on_part(pixels, 0.0);
   std::vector<double> coverage(pixels, 0.0);
-  std::vector<double> lost(image.rows, 0.0);
-  for_each_in_parallel(image.rows, [&](std::size_t row) {
-    if (cancel != nullptr && cancel->requested()) return;
+  const std::size_t rows = h.rows_of_block();
+  std::vector<double> lost((image.rows + rows - 1) / rows, 0.0);
+  tbb::enumerable_thread_specific<std::unique_ptr<Hidden::Block>> blocks;
+  for_each_in_parallel(lost.size(), [&](std::size_t number) {
     const FlushDenormals flush;
-    Tally tally(1);
-    Sight sight(h.luminaire, h.scene.surroundings.front);
-    std::vector<PathWalker> walkers;
-    for (const PathSetup& setup : h.setups) walkers.emplace_back(setup, tally, &sight);
-    for (std::size_t pixel = row * image.columns; pixel < (row + 1) * image.columns; ++pixel)
-      h.add_pixel(static_cast<std::uint32_t>(pixel), image.passes, walkers, tally, sight, luminance[pixel],
-                  on_part[pixel], coverage[pixel]);
-    lost[row] = tally.other[Account::lost];
+    std::unique_ptr<Hidden::Block>& own = blocks.local();
+    if (!own) own = std::make_unique<Hidden::Block>(h);
+    Hidden::Block& block = *own;
+    block.begin();
+    const std::size_t first = number * rows * image.columns;
+    const std::size_t last = std::min(pixels, first + rows * image.columns);
+    for (std::size_t pixel = first; pixel < last; ++pixel) {
+      if (is_cancelled(cancel)) return;
+      h.look_from(static_cast<std::uint32_t>(pixel), image.passes, block);
+    }
+    if (h.cells) h.follow_together(image.passes, static_cast<std::uint32_t>(number), block, cancel);
+    for (std::size_t k = 0; k < block.looks.size(); ++k) {
+      const Look& look = block.looks[k];
+      const std::size_t pixel = first + k / kPointsPerPass;
+      luminance[pixel] += look.luminance / kPointsPerPass;
+      if (look.shows_part()) on_part[pixel] += look.luminance / kPointsPerPass;
+      if (look.shows_part()) coverage[pixel] += 1.0 / kPointsPerPass;
+    }
+    lost[number] = block.tally.other[Account::lost];
   });
   if (cancel != nullptr && cancel->requested()) return false;
   double lost_power = 0.0;

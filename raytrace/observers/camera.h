@@ -97,7 +97,11 @@ struct CameraImage {
 /// for. A lamp is some 1e5 times as bright as what else is seen, so that a branch of 1e-4 of the power still matters.
 inline constexpr PathPolicy kCameraPolicy{.split_power = 1e-4};
 
-/// Traces light backwards from the pupil through the part, with the same walker as all other light: what a path would
+/// How paths are followed: many together by the cell engine where that serves (CellArray::make()), those that meet
+/// borders one by one by Embree; or all one by one.
+enum class CameraEngine { fastest, embree };
+
+/// Traces light backwards from the pupil through the part, with the same walkers as all other light: what a path would
 /// carry from the lamp to the eye it carries from the eye to the lamp (docs/theory/images.md).
 class CameraTracer {
  public:
@@ -106,9 +110,11 @@ class CameraTracer {
 
   /// \pre a film if and only if the part is infinite; light is unpolarised; `part` outlives the tracer
   CameraTracer(const geometry::Part& part, const std::vector<WeighedOptics>& light, const CameraScene& scene,
-               const PathPolicy& policy, std::uint32_t seed);
+               const PathPolicy& policy, std::uint32_t seed, CameraEngine engine = CameraEngine::fastest);
   ~CameraTracer();
 
+  /// Whether many paths are followed together.
+  bool is_by_cells() const;
   CameraImage empty_image() const;
   /// Adds a pass, on the threads at hand; false and nothing added if it was cancelled. The result depends on seed,
   /// scene and number of passes alone. \throw BudgetError if power is lost

@@ -180,6 +180,7 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   result.observation_deg = angle_deg(to_eye, to_lamp);
   result.entrance_deg = angle_deg(to_lamp, Vec3::UnitZ());
   result.viewing_deg = angle_deg(to_eye, Vec3::UnitZ());
+  result.engine = tracer.is_by_cells() ? "cell" : "embree";
   result.image = tracer.empty_image();
   const std::uint32_t goal = request_.passes.value_or(kMostPasses);
   double furthest = 0.0;

@@ -45,6 +45,7 @@ struct CameraResult {
   CameraRequest request;
   raytrace::CameraScene scene;
   raytrace::CameraImage image;
+  std::string engine;            ///< cell, with Embree at borders, or embree
   double observation_deg = 0.0;  ///< as seen from the middle of the face
   double entrance_deg = 0.0;
   double viewing_deg = 0.0;

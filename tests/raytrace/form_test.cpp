@@ -183,17 +183,19 @@ TEST(FormedFacets, LedgersCloseAndEnginesAgree) {
                                finite(HexagonalCube{0.5}, Arrangement::honeycomb, 3.5, 3.0, 0.8)}) {
     const Part part = build_part(spec);
     for (const bool is_rough : {false, true})
-      for (const auto& [t, p] : {std::pair{0.0, 0.0}, {42.5, 10.0}, {70.0, 85.0}}) {
+      for (const std::pair<double, double>& at : {std::pair{0.0, 0.0}, {42.5, 10.0}, {70.0, 85.0}}) {
         Optics optics = with_form(pmma(), steep);
         if (is_rough) optics.facet_scatter = rough;
         const auto trace = [&](MonteCarlo::Engine engine) {
-          const auto result = MonteCarlo(part, engine).trace(optics, from(t, p), {0.5}, rays(1U << 12, 3), {});
-          expect_booked(result, std::to_string(t));
+          const auto result =
+              MonteCarlo(part, engine).trace(optics, from(at.first, at.second), {0.5}, rays(1U << 12, 3), {});
+          expect_booked(result, std::to_string(at.first));
           return result.cones[0];
         };
         const ConeResult one = trace(MonteCarlo::Engine::embree);
         const ConeResult all = trace(MonteCarlo::Engine::cell);
-        EXPECT_NEAR(one.rre, all.rre, 5.0 * std::hypot(one.std_error, all.std_error) + 1e-6) << t << " " << is_rough;
+        EXPECT_NEAR(one.rre, all.rre, 5.0 * std::hypot(one.std_error, all.std_error) + 1e-6)
+            << at.first << " " << is_rough;
         for (std::size_t k = 0; k < kAccountCount; ++k)
           EXPECT_NEAR(one.ledger.power[k], all.ledger.power[k], 0.02) << kAccountNames[k];
       }

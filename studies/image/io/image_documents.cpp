@@ -60,7 +60,7 @@ std::string detector_json(const DetectorResult& result) {
 std::string camera_json(const CameraResult& result) {
   const CameraRequest& asked = result.request;
   Json json = header("camera", result.design, asked.seed);
-  json["engine"] = "embree";
+  json["engine"] = result.engine;
   json["columns"] = asked.columns;
   json["rows"] = asked.rows;
   json["width_mm"] = result.scene.view.width_mm;
