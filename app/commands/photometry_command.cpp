@@ -89,7 +89,7 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
        one_of(Words{"a", "d65", "design"})},
       engine_argument(options.engine, "exact, montecarlo (embree), or auto: exact where it serves"),
       {"--samples N", "rays for each direction, by Monte Carlo", &options.samples, whole(1)},
-      {"--cutoff W", "exact: least power that is followed, as a share of what falls on an element [1e-6]",
+      {"--cutoff W", "exact: least power that is followed, as a share of what falls on an element [1e-5]",
        &options.cutoff},
       {"--no-diffraction", "geometric far field alone", &options.no_diffraction},
       {"--window-power", "integrate the power in the far field's window and outside of it, as a check",

@@ -16,8 +16,9 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
 
-// Least power of a beam that is followed, as a share of what falls on an element: some 1e-4 is left behind.
-constexpr double kCutoff = 1e-6;
+// Least power of a beam that is followed, as a share of what falls on an element. What is left behind changes readings
+// by up to 5e-4, as the choice of wavelengths does by up to 1e-3.
+constexpr double kCutoff = 1e-5;
 // Beams of a direction and wavelength beyond which the choice is Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
 // Cells this many times as wide as the wavelength over the diameter of the discs, or wider, need no diffraction: what
