@@ -215,6 +215,22 @@ Contact contact_with(const Film& film, double thickness_mm, const WorldRay& ray)
 
 }  // namespace
 
+void CameraImage::add(const CameraPass& pass) {
+  ++passes;
+  paths += luminance.size() * CameraTracer::kPointsPerPass;
+  double part_sum = 0.0;
+  double part_pixels = 0.0;
+  for (std::size_t k = 0; k < luminance.size(); ++k) {
+    const double off = pass.luminance[k] - luminance[k];
+    luminance[k] += off / passes;
+    squares[k] += off * (pass.luminance[k] - luminance[k]);
+    coverage[k] += (pass.coverage[k] - coverage[k]) / passes;
+    part_sum += pass.on_part[k];
+    part_pixels += pass.coverage[k];
+  }
+  if (part_pixels > 0.0) part_means.push_back(part_sum / part_pixels);
+}
+
 double CameraImage::std_error(std::size_t pixel) const {
   const double own = own_variance(pixel);
   if (!(coverage[pixel] > 0.0)) return std::sqrt(own);
@@ -479,58 +495,53 @@ CameraImage CameraTracer::empty_image() const {
   return image;
 }
 
-bool CameraTracer::add_pass(CameraImage& image, const Cancellation* cancel) const {
+std::optional<CameraPass> CameraTracer::pass(std::uint32_t number, const Cancellation* cancel) const {
   const Hidden& h = *hidden_;
-  const std::size_t pixels = image.luminance.size();
-  std::vector<double> luminance(pixels, 0.0);
-  std::vector<double> on_part(pixels, 0.0);
-  std::vector<double> coverage(pixels, 0.0);
+  const std::size_t columns = h.scene.view.columns;
+  const std::size_t pixels = columns * h.scene.view.rows;
+  CameraPass result;
+  for (std::vector<double>* values : {&result.luminance, &result.on_part, &result.coverage})
+    values->assign(pixels, 0.0);
   const std::size_t rows = h.rows_of_block();
-  std::vector<double> lost((image.rows + rows - 1) / rows, 0.0);
+  std::vector<double> lost((h.scene.view.rows + rows - 1) / rows, 0.0);
   tbb::enumerable_thread_specific<std::unique_ptr<Hidden::Block>> blocks;
-  for_each_in_parallel(lost.size(), [&](std::size_t number) {
+  for_each_in_parallel(lost.size(), [&](std::size_t block_number) {
     const FlushDenormals flush;
     std::unique_ptr<Hidden::Block>& own = blocks.local();
     if (!own) own = std::make_unique<Hidden::Block>(h);
     Hidden::Block& block = *own;
     block.begin();
-    const std::size_t first = number * rows * image.columns;
-    const std::size_t last = std::min(pixels, first + rows * image.columns);
+    const std::size_t first = block_number * rows * columns;
+    const std::size_t last = std::min(pixels, first + rows * columns);
     for (std::size_t pixel = first; pixel < last; ++pixel) {
       if (is_cancelled(cancel)) return;
-      h.look_from(static_cast<std::uint32_t>(pixel), image.passes, block);
+      h.look_from(static_cast<std::uint32_t>(pixel), number, block);
     }
-    if (h.cells) h.follow_together(image.passes, static_cast<std::uint32_t>(number), block, cancel);
+    if (h.cells) h.follow_together(number, static_cast<std::uint32_t>(block_number), block, cancel);
     for (std::size_t k = 0; k < block.looks.size(); ++k) {
       const Look& look = block.looks[k];
       const std::size_t pixel = first + k / kPointsPerPass;
-      luminance[pixel] += look.luminance / kPointsPerPass;
-      if (look.shows_part()) on_part[pixel] += look.luminance / kPointsPerPass;
-      if (look.shows_part()) coverage[pixel] += 1.0 / kPointsPerPass;
+      result.luminance[pixel] += look.luminance / kPointsPerPass;
+      if (!look.shows_part()) continue;
+      result.on_part[pixel] += look.luminance / kPointsPerPass;
+      result.coverage[pixel] += 1.0 / kPointsPerPass;
     }
-    lost[number] = block.tally.other[Account::lost];
+    lost[block_number] = block.tally.other[Account::lost];
   });
-  if (cancel != nullptr && cancel->requested()) return false;
+  if (is_cancelled(cancel)) return std::nullopt;
   double lost_power = 0.0;
   for (const double power : lost) lost_power += power;
   if (lost_power > kLostLimit * static_cast<double>(pixels * kPointsPerPass))
     throw BudgetError(
         "rays missed every face from inside the part: this is a defect of retrace, please report the "
         "design");
-  ++image.passes;
-  image.paths += pixels * kPointsPerPass;
-  double part_sum = 0.0;
-  double part_pixels = 0.0;
-  for (std::size_t k = 0; k < pixels; ++k) {
-    const double off = luminance[k] - image.luminance[k];
-    image.luminance[k] += off / image.passes;
-    image.squares[k] += off * (luminance[k] - image.luminance[k]);
-    image.coverage[k] += (coverage[k] - image.coverage[k]) / image.passes;
-    part_sum += on_part[k];
-    part_pixels += coverage[k];
-  }
-  if (part_pixels > 0.0) image.part_means.push_back(part_sum / part_pixels);
-  return true;
+  return result;
+}
+
+bool CameraTracer::add_pass(CameraImage& image, const Cancellation* cancel) const {
+  const std::optional<CameraPass> one = pass(image.passes, cancel);
+  if (one) image.add(*one);
+  return one.has_value();
 }
 
 }  // namespace retrace::raytrace

@@ -67,6 +67,13 @@ struct WeighedOptics {
   double weight = 1.0;  ///< share of the flux; they add to 1
 };
 
+/// One pass over a picture, row by row from above.
+struct CameraPass {
+  std::vector<double> luminance;  ///< cd/m^2
+  std::vector<double> on_part;    ///< of it, what shows the part
+  std::vector<double> coverage;   ///< share of each pixel that shows the part
+};
+
 /// A picture that gets better pass by pass. Passes are independent of each other.
 struct CameraImage {
   std::size_t columns = 0;
@@ -78,6 +85,8 @@ struct CameraImage {
   std::vector<double> part_means;  ///< of each pass: luminance over all that shows the part; empty if nothing does
   std::uint64_t paths = 0;
 
+  /// Takes in the pass that is numbered `passes`.
+  void add(const CameraPass& pass);
   /// Standard error of a pixel: what the spread of its passes says, or the mean of that over the pixels round it (two
   /// on either side) where that is larger and the pixel shows the part. A pixel may have missed the few bright paths
   /// that its neighbours met; its own passes then know of no error. \pre passes > 1
@@ -116,8 +125,10 @@ class CameraTracer {
   /// Whether many paths are followed together.
   bool is_by_cells() const;
   CameraImage empty_image() const;
-  /// Adds a pass, on the threads at hand; false and nothing added if it was cancelled. The result depends on seed,
-  /// scene and number of passes alone. \throw BudgetError if power is lost
+  /// A pass, on the threads at hand; nothing if it was cancelled. It depends on seed, scene and its number alone.
+  /// \throw BudgetError if power is lost
+  std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;
+  /// Adds the next pass; false and nothing added if it was cancelled.
   bool add_pass(CameraImage& image, const Cancellation* cancel = nullptr) const;
 
  private:
