@@ -1,17 +1,16 @@
 #include "app/points_run.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
-#include <thread>
+#include <memory>
 
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
-#include "studies/sweep/mpi_session.h"
+#include "app/ranks.h"
+#include "studies/sweep/shared_sweep.h"
 
 namespace retrace::app {
 namespace {
@@ -37,24 +36,6 @@ class PointsBar : public studies::SweepObserver {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Points that a process has in work at a time.
-std::size_t slots(const CommonOptions& common) {
-  return common.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
-}
-
-/// Another rank than 0: computes what it is dealt and says nothing. What is wrong is told by rank 0, which goes on
-/// without this one; another exit code than 0 would have mpirun end the job.
-ExitCode serve(const CommonOptions& common, const PointsCommand& command, studies::MpiSession& session) {
-  try {
-    const studies::Sweep sweep = command.read();
-    const OrderlyInterrupt interrupt;
-    interrupt.run(common.threads, [&](const Cancellation* cancel) { session.serve(sweep, slots(common), cancel); });
-  } catch (const Error& error) {
-    session.leave(error.what());
-  }
-  return ExitCode::done;
-}
-
 /// Points none of which could be computed answer nothing.
 ExitCode exit_code_of(const std::vector<studies::StoredPoint>& points, ExitCode code) {
   const auto failed = [](const studies::StoredPoint& point) { return point.failed; };
@@ -79,13 +60,13 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
   {
     PointsBar bar(command.doing, !common.quiet);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
-      complete = session != nullptr ? session->deal(sweep, store, slots(common), &bar, cancel)
-                                    : studies::run_sweep(sweep, store, &bar, cancel);
+      const ShareTasks share = share_among(session, common, cancel);
+      complete =
+          share ? studies::share_sweep(sweep, store, &bar, share) : studies::run_sweep(sweep, store, &bar, cancel);
     });
   }
   result.emplace(studies::collect(sweep, store, complete));
-  if (session != nullptr)
-    for (const std::string& remark : session->remarks()) result->warnings.push_back(remark);
+  for (const std::string& remark : remarks_of(session)) result->warnings.push_back(remark);
   result->elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const ExitCode code = command.write(*result, files);
   print_warnings(common, result->warnings);
@@ -98,14 +79,14 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
 
 ExitCode run_points(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command) {
   check_study_options(options, common);
-  if (!studies::MpiSession::is_launched()) return compute(options, common, command, nullptr);
-  studies::MpiSession session;
-  const ExitCode code =
-      session.rank() == 0 ? compute(options, common, command, &session) : serve(common, command, session);
-  if (session.end()) return code;
-  // Ranks are gone, and MPI may wait for them for ever: what is left of it is not tidied up.
-  std::fflush(nullptr);
-  ::_exit(static_cast<int>(code));
+  return run_on_ranks(
+      common, [&](studies::MpiSession* session) { return compute(options, common, command, session); },
+      [&]() -> ComputeTask {
+        const auto sweep = std::make_shared<const studies::Sweep>(command.read());
+        return [sweep](std::uint64_t point, const Cancellation* cancel) {
+          return studies::compute_shared(*sweep, point, cancel);
+        };
+      });
 }
 
 }  // namespace retrace::app

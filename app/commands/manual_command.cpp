@@ -93,7 +93,7 @@ beside the program's
 folder.
 .TP
 .B RETRACE_MPI_SILENCE_S
-Seconds of silence after which a rank of a sweep under MPI is given up; 15 without it.
+Seconds of silence after which a rank under MPI is given up; 15 without it.
 .SH EXIT STATUS
 .TP
 .B 0

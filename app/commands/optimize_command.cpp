@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "app/commands.h"
@@ -9,10 +10,12 @@
 #include "app/job_output.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
+#include "app/ranks.h"
 #include "app/shared_arguments.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/sweep/shared_sweep.h"
 
 namespace retrace::app {
 namespace {
@@ -55,17 +58,18 @@ void check_making_of(const OptimizeOptions& options, const studies::Study& study
   studies::check_element(studies::make_candidate(study, some_values(study)).design(), request);
 }
 
-class LooksBar : public studies::OptimiseObserver {
+class LooksBar : public studies::OptimiseObserver, public studies::SweepObserver {
  public:
   explicit LooksBar(bool enabled) : bar_("looking", enabled) {}
+  void at(std::uint64_t done, std::uint64_t, std::uint64_t) override { at(static_cast<std::size_t>(done)); }
   void at(std::size_t evaluated) override { bar_.count(fmt::format("{} designs looked at", evaluated)); }
 
  private:
   ProgressBar bar_;
 };
 
-ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
-  check_study_options(options, common);
+/// \param session null without MPI
+ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
   const studies::OptimiseRequest request = studies::read_optimise(study);
@@ -82,19 +86,36 @@ ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
   {
     LooksBar bar(!common.quiet);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
+      if (const ShareTasks share = share_among(session, common, cancel))
+        studies::share_sweep(studies::optimise_scan(study, request), store, &bar, share);
       optimum = studies::optimise(study, request, store, &bar, cancel);
     });
   }
   if (optimum.best && !options.job.empty()) made = job_of(options, study, *optimum.best);
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const ExitCode code =
-      files.write(studies::optimum_json(study, request, optimum, elapsed_s),
-                  studies::optimum_text(study, request, optimum), made ? made->warnings : std::vector<std::string>(),
-                  {.complete = optimum.complete,
-                   .interrupted = fmt::format("designs looked at: {}", optimum.evaluations),
-                   .is_yes = optimum.best.has_value()});
+  std::vector<std::string> warnings = remarks_of(session);
+  if (made) warnings.insert(warnings.end(), made->warnings.begin(), made->warnings.end());
+  const ExitCode code = files.write(studies::optimum_json(study, request, optimum, elapsed_s),
+                                    studies::optimum_text(study, request, optimum), warnings,
+                                    {.complete = optimum.complete,
+                                     .interrupted = fmt::format("designs looked at: {}", optimum.evaluations),
+                                     .is_yes = optimum.best.has_value()});
   if (code == ExitCode::answer_is_no) say("retrace: no feasible design: " + optimum.none_because);
   return code;
+}
+
+ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
+  check_study_options(options, common);
+  return run_on_ranks(
+      common, [&](studies::MpiSession* session) { return look(options, common, session); },
+      [&]() -> ComputeTask {
+        const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
+        const auto scan =
+            std::make_shared<const studies::Sweep>(studies::optimise_scan(study, studies::read_optimise(study)));
+        return [scan](std::uint64_t point, const Cancellation* cancel) {
+          return studies::compute_shared(*scan, point, cancel);
+        };
+      });
 }
 
 }  // namespace

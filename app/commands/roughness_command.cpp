@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
+#include "app/ranks.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
 #include "report/results/result_plots.h"
@@ -60,7 +62,8 @@ studies::RoughnessRequest request_of(const RoughnessOptions& options, const Comm
   return request;
 }
 
-ExitCode run(const RoughnessOptions& options, const CommonOptions& common) {
+/// \param session null without MPI
+ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   const studies::Design design = studies::read_design(options.design, common.overrides);
   const std::vector<std::filesystem::path> tables = tables_of(options);
   std::vector<std::string> inputs = files_read({design});
@@ -72,10 +75,24 @@ ExitCode run(const RoughnessOptions& options, const CommonOptions& common) {
   files.add("roughness.csv", [&] { return studies::roughness_csv(result); });
   files.add_drawing("roughness", [&] { return report::roughness_plot(result); });
   files.prepare();
-  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) {
+    result = study.run(bar, cancel, share_among(session, common, cancel));
+  });
+  for (const std::string& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(
       studies::roughness_json(result), studies::roughness_table(result), result.warnings,
       {.complete = result.complete, .interrupted = fmt::format("finished points: {}", result.points.size())});
+}
+
+ExitCode run(const RoughnessOptions& options, const CommonOptions& common) {
+  return run_on_ranks(
+      common, [&](studies::MpiSession* session) { return trace(options, common, session); },
+      [&]() -> ComputeTask {
+        const auto study = std::make_shared<const studies::RoughnessStudy>(
+            studies::read_design(options.design, common.overrides), request_of(options, common, tables_of(options)));
+        return
+            [study](std::uint64_t point, const Cancellation* cancel) { return study->compute_shared(point, cancel); };
+      });
 }
 
 }  // namespace

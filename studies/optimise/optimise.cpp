@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "core/number_format.h"
@@ -25,11 +26,12 @@ constexpr double kNearlyAsGood = 0.01;
 /// What it must gain, as a share of what the chosen one has.
 constexpr double kWorthIt = 1e-3;
 constexpr std::uint64_t kMostCombinations = 10'000;
+constexpr const char* kStoreKind = "retrace.optimum/1";
 
 }  // namespace
 
 StoreLayout optimise_layout(const Study& study) {
-  StoreLayout layout{"retrace.optimum/1", study.source, study.parts, {}, {}};
+  StoreLayout layout{kStoreKind, study.source, study.parts, {}, {}};
   for (const Parameter& parameter : study.parameters) layout.inputs.push_back(parameter.name);
   for (const auto& quantity : study.quantities) layout.outputs.push_back(quantity->name());
   return layout;
@@ -41,20 +43,104 @@ bool is_better(const Variant& a, const Variant& b) {
   return *a.objective > *b.objective;
 }
 
-/// One search, from the first look to the last.
-class Search {
+/// The designs of the first look.
+class Scan {
  public:
-  Search(const Study& study, const OptimiseRequest& request, Evaluator& evaluator)
-      : study_(study), request_(request), evaluator_(evaluator) {
+  Scan(const Study& study, const OptimiseRequest& request) : study_(study), request_(request) {
     for (std::size_t k = 0; k < study.parameters.size(); ++k)
       if (study.parameters[k].interval) continuous_.push_back(k);
   }
 
+  /// Parameters with an interval.
+  const std::vector<std::size_t>& continuous() const { return continuous_; }
+
+  /// Discrete values, each with every other; continuous ones are set to their middle.
+  std::vector<PointValues> combinations() const {
+    std::vector<PointValues> all(1);
+    for (const Parameter& parameter : study_.parameters) {
+      std::vector<PointValues> longer;
+      for (const PointValues& begun : all) {
+        if (parameter.interval) {
+          longer.push_back(begun);
+          longer.back().push_back(Parameter::value_of(parameter.interval->at(0.5)));
+          continue;
+        }
+        for (const ParameterValue& value : parameter.values) {
+          longer.push_back(begun);
+          longer.back().push_back(value);
+        }
+      }
+      if (longer.size() > kMostCombinations)
+        throw InputError(parameter.location,
+                         fmt::format("more than {} combinations of discrete values", kMostCombinations));
+      all = std::move(longer);
+    }
+    return all;
+  }
+
+  PointValues with(PointValues design, const std::vector<double>& shares) const {
+    for (std::size_t k = 0; k < continuous_.size(); ++k)
+      design[continuous_[k]] = Parameter::value_of(study_.parameters[continuous_[k]].interval->at(shares[k]));
+    return design;
+  }
+
+  /// A line from end to end for one continuous parameter; for more, their corners and Sobol points.
+  std::vector<PointValues> of(const PointValues& combination) const {
+    const std::size_t dimensions = continuous_.size();
+    if (dimensions == 0) return {combination};
+    std::vector<PointValues> designs;
+    if (dimensions == 1) {
+      for (std::size_t k = 0; k < request_.scan; ++k)
+        designs.push_back(with(combination, {static_cast<double>(k) / static_cast<double>(request_.scan - 1)}));
+      return designs;
+    }
+    constexpr std::size_t most_corners = 6;
+    for (std::size_t corner = 0; dimensions <= most_corners && corner < (std::size_t{1} << dimensions); ++corner) {
+      std::vector<double> shares;
+      for (std::size_t k = 0; k < dimensions; ++k) shares.push_back((corner >> k) % 2 == 0 ? 0.0 : 1.0);
+      designs.push_back(with(combination, shares));
+    }
+    const UnitSamples samples(UnitSamples::Kind::sobol, dimensions, request_.scan, study_.seed);
+    for (std::size_t k = 0; k < request_.scan; ++k) designs.push_back(with(combination, samples.at(k)));
+    return designs;
+  }
+
+ private:
+  const Study& study_;
+  const OptimiseRequest& request_;
+  std::vector<std::size_t> continuous_;
+};
+
+/// All of them.
+class ScannedPoints : public PointPlan {
+ public:
+  ScannedPoints(const Study& study, const OptimiseRequest& request) {
+    const Scan scan(study, request);
+    for (const PointValues& combination : scan.combinations())
+      for (PointValues& design : scan.of(combination)) points_.push_back(std::move(design));
+  }
+  std::uint64_t size() const override { return points_.size(); }
+  PointValues values(std::uint64_t point) const override { return points_[point]; }
+
+ private:
+  std::vector<PointValues> points_;
+};
+
+/// One search, from the first look to the last.
+class Search {
+ public:
+  Search(const Study& study, const OptimiseRequest& request, Evaluator& evaluator)
+      : study_(study),
+        request_(request),
+        evaluator_(evaluator),
+        scan_(study, request),
+        continuous_(scan_.continuous()) {}
+
   /// The best design there is; nothing if none is feasible.
   std::optional<Variant> run(Optimum& optimum) {
     std::vector<Variant> starts;
-    for (const PointValues& combination : combinations()) {
-      const std::vector<Variant> scanned = evaluator_.look_at(scan(combination));
+    for (const PointValues& combination : scan_.combinations()) {
+      const std::vector<Variant> scanned = evaluator_.look_at(scan_.of(combination));
       look_at_edges(scanned);
       std::optional<Variant> best;
       for (const Variant& variant : scanned)
@@ -93,57 +179,6 @@ class Search {
   }
 
  private:
-  /// Discrete values, each with every other; continuous ones are set to their middle.
-  std::vector<PointValues> combinations() const {
-    std::vector<PointValues> all(1);
-    for (const Parameter& parameter : study_.parameters) {
-      std::vector<PointValues> longer;
-      for (const PointValues& begun : all) {
-        if (parameter.interval) {
-          longer.push_back(begun);
-          longer.back().push_back(Parameter::value_of(parameter.interval->at(0.5)));
-          continue;
-        }
-        for (const ParameterValue& value : parameter.values) {
-          longer.push_back(begun);
-          longer.back().push_back(value);
-        }
-      }
-      if (longer.size() > kMostCombinations)
-        throw InputError(parameter.location,
-                         fmt::format("more than {} combinations of discrete values", kMostCombinations));
-      all = std::move(longer);
-    }
-    return all;
-  }
-
-  PointValues with(PointValues design, const std::vector<double>& shares) const {
-    for (std::size_t k = 0; k < continuous_.size(); ++k)
-      design[continuous_[k]] = Parameter::value_of(study_.parameters[continuous_[k]].interval->at(shares[k]));
-    return design;
-  }
-
-  /// A line from end to end for one continuous parameter; for more, their corners and Sobol points.
-  std::vector<PointValues> scan(const PointValues& combination) const {
-    const std::size_t dimensions = continuous_.size();
-    if (dimensions == 0) return {combination};
-    std::vector<PointValues> designs;
-    if (dimensions == 1) {
-      for (std::size_t k = 0; k < request_.scan; ++k)
-        designs.push_back(with(combination, {static_cast<double>(k) / static_cast<double>(request_.scan - 1)}));
-      return designs;
-    }
-    constexpr std::size_t most_corners = 6;
-    for (std::size_t corner = 0; dimensions <= most_corners && corner < (std::size_t{1} << dimensions); ++corner) {
-      std::vector<double> shares;
-      for (std::size_t k = 0; k < dimensions; ++k) shares.push_back((corner >> k) % 2 == 0 ? 0.0 : 1.0);
-      designs.push_back(with(combination, shares));
-    }
-    const UnitSamples samples(UnitSamples::Kind::sobol, dimensions, request_.scan, study_.seed);
-    for (std::size_t k = 0; k < request_.scan; ++k) designs.push_back(with(combination, samples.at(k)));
-    return designs;
-  }
-
   /// Where feasibility ends between two designs of a line, the last feasible one may be the best: it is looked at.
   void look_at_edges(const std::vector<Variant>& line) {
     if (continuous_.size() != 1) return;
@@ -160,7 +195,7 @@ class Search {
       const double a = share_of(interval, std::get<double>(inside.values[k].shown));
       const double b = share_of(interval, std::get<double>(outside.values[k].shown));
       if (std::abs(a - b) < 1e-9) return;
-      const Variant middle = evaluator_.look_at(with(inside.values, {0.5 * (a + b)}));
+      const Variant middle = evaluator_.look_at(scan_.with(inside.values, {0.5 * (a + b)}));
       (middle.feasible() ? inside : outside) = middle;
     }
   }
@@ -200,7 +235,8 @@ class Search {
   const Study& study_;
   const OptimiseRequest& request_;
   Evaluator& evaluator_;
-  std::vector<std::size_t> continuous_;
+  Scan scan_;
+  const std::vector<std::size_t>& continuous_;
 };
 
 /// Why a design was not chosen.
@@ -365,6 +401,10 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
 }
 
 }  // namespace
+
+Sweep optimise_scan(const Study& study, const OptimiseRequest& request) {
+  return {study, kStoreKind, std::make_shared<ScannedPoints>(study, request)};
+}
 
 Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
                  const Cancellation* cancel) {

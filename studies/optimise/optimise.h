@@ -14,6 +14,7 @@
 #include "studies/quantity/constraint.h"
 #include "studies/quantity/study.h"
 #include "studies/store/store.h"
+#include "studies/sweep/sweep.h"
 
 namespace retrace::studies {
 
@@ -84,6 +85,10 @@ class OptimiseObserver {
 };
 
 StoreLayout optimise_layout(const Study& study);
+
+/// The designs of the first look as points of a sweep, for who wants them in the store before the search: it finds them
+/// there. \throw InputError for too many combinations of discrete values
+Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 
 /// Looks for the best design: every combination of discrete values over a scan of the continuous ones, the edges of
 /// what is feasible, a refinement within bounds and constraints, and rounder numbers where they are as good. What the

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <set>
 #include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "studies/rre/rre.h"
 #include "surface_models/scatter/phase.h"
 
 namespace retrace::studies {
@@ -117,7 +118,77 @@ RoughnessStudy::RoughnessStudy(Design design, RoughnessRequest request) : prepar
 
 RoughnessStudy::~RoughnessStudy() = default;
 
-RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* cancel) const {
+namespace {
+
+/// Traced points, as they come from other processes.
+class RoughnessLedger : public TaskLedger {
+ public:
+  /// \param at where they are \param progress may be null
+  RoughnessLedger(std::size_t size, const RoughnessRequest& at, Progress* progress)
+      : at_(at), progress_(progress), found_(size) {
+    for (std::size_t k = 0; k < size; ++k) open_.insert(k);
+  }
+
+  std::optional<std::uint64_t> take() override {
+    if (open_.empty()) return std::nullopt;
+    return open_.extract(open_.begin()).value();
+  }
+  void give_back(std::uint64_t task) override { open_.insert(task); }
+  void finish(std::uint64_t task, const std::string& bytes) override {
+    const std::vector<double> numbers = numbers_of(bytes);
+    RrePoint& point = found_[task].emplace();
+    point.design = task;
+    point.incidence_deg = at_.incidence_deg;
+    point.azimuth_deg = at_.azimuth_deg;
+    point.rre = numbers.at(0);
+    point.std_error = numbers.at(1);
+    point.ledger[raytrace::Account::truncated] = numbers.at(2);
+    point.missed_target = numbers.at(3) != 0.0;
+    rays_ += static_cast<std::uint64_t>(numbers.at(4));
+    if (progress_ != nullptr) progress_->at(static_cast<double>(++done_) / static_cast<double>(found_.size()));
+  }
+  bool is_finished() override { return done_ == found_.size(); }
+
+  std::vector<RrePoint> points() const {
+    std::vector<RrePoint> points;
+    for (const auto& point : found_)
+      if (point) points.push_back(*point);
+    return points;
+  }
+  std::uint64_t rays() const { return rays_; }
+
+ private:
+  const RoughnessRequest& at_;
+  Progress* progress_;
+  std::set<std::uint64_t> open_;
+  std::vector<std::optional<RrePoint>> found_;
+  std::size_t done_ = 0;
+  std::uint64_t rays_ = 0;
+};
+
+}  // namespace
+
+std::optional<std::string> RoughnessStudy::compute_shared(std::uint64_t number, const Cancellation* cancel) const {
+  const RreResult traced = prepared_->rough_study->run_design(number, cancel);
+  if (!traced.complete) return std::nullopt;
+  const RrePoint& point = traced.points.front();
+  return bytes_of({point.rre, point.std_error, point.ledger[raytrace::Account::truncated],
+                   point.missed_target ? 1.0 : 0.0, static_cast<double>(traced.rays)});
+}
+
+RreResult RoughnessStudy::trace_shared(Progress* progress, const ShareTasks& share) const {
+  const auto start = std::chrono::steady_clock::now();
+  RoughnessLedger ledger(prepared_->rough.size(), prepared_->request, progress);
+  const bool complete = share(
+      [this](std::uint64_t number, const Cancellation* cancel) { return compute_shared(number, cancel); }, ledger);
+  RreResult traced = prepared_->rough_study->result_of(ledger.points());
+  traced.complete = complete;
+  traced.rays = ledger.rays();
+  traced.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return traced;
+}
+
+RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* cancel, const ShareTasks& share) const {
   const Prepared& p = *prepared_;
   RoughnessResult result;
   result.design = p.design;
@@ -128,7 +199,7 @@ RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* canc
   result.smooth_rre = smooth.points.front().rre;
   result.smooth_std_error = smooth.points.front().std_error;
   RreResult traced;
-  if (p.rough_study) traced = p.rough_study->run(progress, cancel);
+  if (p.rough_study) traced = share ? trace_shared(progress, share) : p.rough_study->run(progress, cancel);
   add_warnings(result, traced);
   std::vector<const RrePoint*> found(p.points.size(), nullptr);
   for (const RrePoint& point : traced.points) found[p.rough[point.design]] = &point;

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/shared_tasks.h"
 #include "studies/design/design.h"
+#include "studies/rre/rre.h"
 
 namespace retrace::studies {
 
@@ -70,11 +72,17 @@ class RoughnessStudy {
   RoughnessStudy(Design design, RoughnessRequest request);
   ~RoughnessStudy();
 
+  /// \param share has the points traced by several processes, each with an equal study; none: by this one
   /// \throw BudgetError if power was lost
-  RoughnessResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
+  RoughnessResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
+                      const ShareTasks& share = {}) const;
+  /// A point that is traced, as a task of its number. \throw BudgetError likewise
+  std::optional<std::string> compute_shared(std::uint64_t number, const Cancellation* cancel) const;
 
  private:
   struct Prepared;
+  RreResult trace_shared(Progress* progress, const ShareTasks& share) const;
+
   std::unique_ptr<Prepared> prepared_;
 };
 

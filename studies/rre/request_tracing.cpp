@@ -155,11 +155,13 @@ TracedRequest trace_chosen(const std::vector<Design>& designs, const std::vector
 }  // namespace
 
 TracedRequest trace_request(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                            const RreRequest& request, Progress* progress, const Cancellation* cancel) {
+                            const RreRequest& request, std::optional<std::size_t> only, Progress* progress,
+                            const Cancellation* cancel) {
   if (!request.incidence_spans.empty()) return trace_chosen(designs, models, request, progress, cancel);
   TracedRequest traced;
   DirectionTracing tracing(designs, models, request, cancel);
   traced.directions = directions_of(models, request, request.incidence_deg);
+  if (only) std::erase_if(traced.directions, [&](const Direction& direction) { return direction.at.design != *only; });
   trace_points(designs, models, tracing, traced.directions, progress);
   traced.complete = all_are_traced(traced.directions);
   return traced;

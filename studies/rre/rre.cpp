@@ -68,7 +68,7 @@ void check_light(const Design& design, const OpticalModel& model, const RreReque
                                    option, model.spectral.size(), model.wavelength_nm));
 }
 
-std::string missed_target(const Design& design, const RrePoint& at, const RreRequest& request) {
+std::string missed_target_text(const Design& design, const RrePoint& at, const RreRequest& request) {
   return fmt::format("{}: the standard error at incidence {}, azimuth {} is above the target of {}",
                      design.source_name(), shortest(at.incidence_deg), shortest(at.azimuth_deg),
                      shortest(target_error_of(request)));
@@ -221,8 +221,7 @@ std::string engine_of(const std::vector<RrePoint>& points) {
 
 }  // namespace
 
-RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
-  const auto start = std::chrono::steady_clock::now();
+RreResult RreStudy::begun() const {
   const auto& [designs, request, models] = *prepared_;
   RreResult result;
   result.designs = designs;
@@ -231,25 +230,54 @@ RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
   for (const OpticalModel& model : models) result.light.push_back(model.spectral);
   for (const OpticalModel& model : models)
     result.warnings.insert(result.warnings.end(), model.warnings.begin(), model.warnings.end());
+  return result;
+}
 
-  TracedRequest traced = trace_request(designs, models, request, progress, cancel);
+void RreStudy::finish(RreResult& result) const {
+  if (prepared_->request.footprint)
+    for (const OpticalModel& model : prepared_->models) result.faces.push_back(entrance_face_of(model.part));
+  result.engine = engine_of(result.points);
+  warn_of_truncation(prepared_->request, result);
+}
+
+RreResult RreStudy::run(std::optional<std::size_t> design, Progress* progress, const Cancellation* cancel) const {
+  const auto start = std::chrono::steady_clock::now();
+  const auto& [designs, request, models] = *prepared_;
+  RreResult result = begun();
+  TracedRequest traced = trace_request(designs, models, request, design, progress, cancel);
   result.complete = traced.complete;
   if (!traced.warning.empty()) result.warnings.push_back(traced.warning);
   for (Direction& direction : traced.directions) {
-    const Design& design = designs[direction.at.design];
     for (const std::uint64_t rays : direction.rays) result.rays += rays;
-    if (std::count(direction.missed_target.begin(), direction.missed_target.end(), 1) > 0)
-      result.warnings.push_back(missed_target(design, direction.at, request));
+    const bool missed_target = std::count(direction.missed_target.begin(), direction.missed_target.end(), 1) > 0;
+    if (missed_target)
+      result.warnings.push_back(missed_target_text(designs[direction.at.design], direction.at, request));
+    for (RrePoint& point : direction.points) point.missed_target = missed_target;
     result.points.insert(result.points.end(), direction.points.begin(), direction.points.end());
     if (!direction.points.empty() && (direction.footprint || direction.far_field))
       result.returned.push_back(
           {direction.points.back(), std::move(direction.footprint), std::move(direction.far_field)});
   }
-  if (request.footprint)
-    for (const OpticalModel& model : models) result.faces.push_back(entrance_face_of(model.part));
-  result.engine = engine_of(result.points);
-  warn_of_truncation(request, result);
+  finish(result);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+RreResult RreStudy::run(Progress* progress, const Cancellation* cancel) const {
+  return run(std::nullopt, progress, cancel);
+}
+
+RreResult RreStudy::run_design(std::size_t design, const Cancellation* cancel) const {
+  return run(design, nullptr, cancel);
+}
+
+RreResult RreStudy::result_of(std::vector<RrePoint> points) const {
+  RreResult result = begun();
+  for (const RrePoint& point : points)
+    if (point.missed_target)
+      result.warnings.push_back(missed_target_text(result.designs[point.design], point, prepared_->request));
+  result.points = std::move(points);
+  finish(result);
   return result;
 }
 

@@ -89,6 +89,7 @@ struct RrePoint {
   raytrace::Ledger ledger;
   std::uint64_t beams = 0;                      ///< exact and stochastic engine: followed for this point
   std::uint32_t depth = 0;                      ///< exact engine: interfaces on the longest path
+  bool missed_target = false;                   ///< `std_error` stayed above what was asked for at some wavelength
   std::vector<RreDerivative> derivatives = {};  ///< if they were requested
   std::vector<SpectralRre> by_wavelength = {};  ///< designs with a spectrum: what the point is the mean of
 };
@@ -125,7 +126,18 @@ class RreStudy {
   /// RRE of every design at every direction. \throw BudgetError if power was lost, or too many beams are needed
   RreResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
+  // For who has designs traced by several processes. \pre no incidences are to be chosen
+
+  /// The points of one of the designs alone. \throw BudgetError as run()
+  RreResult run_design(std::size_t design, const Cancellation* cancel) const;
+  /// What run() tells of the points of all designs, but for what was requested beyond RRE.
+  RreResult result_of(std::vector<RrePoint> points) const;
+
  private:
+  RreResult begun() const;
+  void finish(RreResult& result) const;
+  RreResult run(std::optional<std::size_t> design, Progress* progress, const Cancellation* cancel) const;
+
   struct Prepared;
   std::unique_ptr<Prepared> prepared_;
 };

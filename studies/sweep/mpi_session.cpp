@@ -8,11 +8,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <deque>
 #include <exception>
 #include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -26,7 +24,6 @@ namespace retrace::studies {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using MessageJson = nlohmann::json;
 
 /// A rank of which nothing is heard for so long is given up, unless the environment says otherwise.
 constexpr double kSilenceS = 15.0;
@@ -35,19 +32,22 @@ constexpr const char* kSilenceVariable = "RETRACE_MPI_SILENCE_S";
 constexpr std::chrono::seconds kPatience{10};
 // And for those that are interrupted, within the second that an interrupt may take.
 constexpr std::chrono::milliseconds kLastCall{500};
-constexpr std::chrono::milliseconds kWaitForRanks{50};
 constexpr std::chrono::milliseconds kLook{20};
 /// Batches that take less are requested while the one before is computed.
 constexpr std::chrono::seconds kQuick{1};
 
 enum Tag : int {
-  ask = 1,  ///< to rank 0: how many points are wanted
-  result,   ///< to rank 0: a finished point
+  ask = 1,  ///< to rank 0: how many tasks are wanted
+  result,   ///< to rank 0: the number of a task and what it came to
   leaving,  ///< to rank 0: gone after this, and why
-  deal,     ///< from rank 0: numbers of points
+  deal,     ///< from rank 0: numbers of tasks
   go        ///< from rank 0: there is no more; says whether all ranks are there to end MPI together
 };
 constexpr std::string_view kAllAreThere = "all";
+
+std::string bytes_of_result(std::uint64_t task, const std::string& bytes) {
+  return std::string(reinterpret_cast<const char*>(&task), sizeof task) + bytes;
+}
 
 /// \throw InputError
 std::chrono::duration<double> silence_limit() {
@@ -59,34 +59,6 @@ std::chrono::duration<double> silence_limit() {
   if (error != std::errc() || rest != end || !(seconds >= 1.0 && seconds <= 86400.0))
     throw InputError(fmt::format("{}: must be a number of seconds in 1..86400, got \"{}\"", kSilenceVariable, text));
   return std::chrono::duration<double>(seconds);
-}
-
-std::string to_message(const StoredPoint& point) {
-  MessageJson outputs = MessageJson::array();
-  for (const StoredOutput& output : point.outputs)
-    outputs.push_back(output.value ? MessageJson{*output.value, output.std_error} : MessageJson());
-  return MessageJson{{"point", point.point}, {"failed", point.failed},       {"reason", point.reason},
-                     {"outputs", outputs},   {"elapsed_s", point.elapsed_s}, {"version", point.version}}
-      .dump(-1, ' ', false, MessageJson::error_handler_t::replace);
-}
-
-/// \param sweep tells the inputs, which need not travel
-StoredPoint from_message(const std::string& message, const Sweep& sweep) {
-  const MessageJson json = MessageJson::parse(message);
-  StoredPoint point;
-  point.point = json.at("point");
-  point.failed = json.at("failed");
-  point.reason = json.at("reason");
-  point.elapsed_s = json.at("elapsed_s");
-  point.version = json.at("version");
-  for (const MessageJson& output : json.at("outputs")) {
-    StoredOutput stored;
-    if (!output.is_null()) stored.value = output.at(0).get<double>();
-    if (!output.is_null() && output.at(1).is_number()) stored.std_error = output.at(1).get<double>();
-    point.outputs.push_back(stored);
-  }
-  for (const ParameterValue& value : sweep.values(point.point)) point.inputs.push_back(value.shown);
-  return point;
 }
 
 }  // namespace
@@ -113,9 +85,9 @@ struct MpiSession::State {
     looked_last = now;
   }
 
-  void send_points(int to, const std::vector<std::uint64_t>& points) {
+  void send_tasks(int to, const std::vector<std::uint64_t>& tasks) {
     mailbox.post(to, Tag::deal,
-                 std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(std::uint64_t)));
+                 std::string(reinterpret_cast<const char*>(tasks.data()), tasks.size() * sizeof(std::uint64_t)));
   }
 
   void give_up(int rank) {
@@ -197,32 +169,33 @@ std::vector<std::string> MpiSession::remarks() const {
 
 namespace {
 
-/// Points to be dealt, and which rank has which. Safe to call from the thread that deals and those that compute.
+std::vector<std::uint64_t> tasks_of(const std::string& bytes) {
+  std::vector<std::uint64_t> tasks(bytes.size() / sizeof(std::uint64_t));
+  std::memcpy(tasks.data(), bytes.data(), tasks.size() * sizeof(std::uint64_t));
+  return tasks;
+}
+
+/// Which rank has which tasks of a ledger. Safe to call from the thread that deals and those that compute.
 class Dealer {
  public:
-  Dealer(const Sweep& sweep, ResultStore& store, SweepObserver* observer)
-      : sweep_(sweep), store_(store), count_(sweep, store, observer) {
-    refill();
-  }
+  explicit Dealer(TaskLedger& ledger) : ledger_(ledger) {}
 
-  /// Points for a rank, claimed in the store.
+  /// Tasks for a rank.
   std::vector<std::uint64_t> take(int rank, std::size_t wanted) {
     const std::lock_guard lock(mutex_);
-    std::vector<std::uint64_t> points;
-    while (points.size() < wanted && !open_.empty()) {
-      const std::uint64_t point = open_.front();
-      open_.pop_front();
-      if (!store_.claim(point)) continue;
-      points.push_back(point);
-      dealt_[point] = rank;
+    std::vector<std::uint64_t> tasks;
+    while (tasks.size() < wanted) {
+      const std::optional<std::uint64_t> task = ledger_.take();
+      if (!task) break;
+      tasks.push_back(*task);
+      dealt_[*task] = rank;
     }
-    return points;
+    return tasks;
   }
 
-  void record(const StoredPoint& point) {
+  void finish(std::uint64_t task, const std::string& bytes) {
     const std::lock_guard lock(mutex_);
-    store_.record(point);
-    if (dealt_.erase(point.point) > 0) count_.finished(point.failed);
+    if (dealt_.erase(task) > 0) ledger_.finish(task, bytes);
   }
 
   /// What was dealt to a rank is to be dealt again.
@@ -233,53 +206,35 @@ class Dealer {
         ++entry;
         continue;
       }
-      store_.give_up(entry->first);
-      open_.push_front(entry->first);
+      ledger_.give_back(entry->first);
       entry = dealt_.erase(entry);
     }
   }
 
-  /// Whether a rank has points that it has not told the results of.
-  bool has_points(int rank) {
+  /// Whether a rank has tasks that it has not told the results of.
+  bool has_tasks(int rank) {
     const std::lock_guard lock(mutex_);
     return std::any_of(dealt_.begin(), dealt_.end(), [rank](const auto& entry) { return entry.second == rank; });
   }
 
-  bool nothing_open() {
+  bool is_finished() {
     const std::lock_guard lock(mutex_);
-    return open_.empty();
-  }
-
-  /// Whether every point is finished; looks again at what other processes have taken.
-  bool finished() {
-    const std::lock_guard lock(mutex_);
-    if (!open_.empty() || !dealt_.empty()) return false;
-    if (store_.claimed_by_others() > 0) std::this_thread::sleep_for(kWaitForRanks);
-    refill();
-    return open_.empty();
+    return dealt_.empty() && ledger_.is_finished();
   }
 
  private:
-  void refill() {
-    const std::vector<std::uint64_t> open = unfinished(sweep_, store_);
-    open_.assign(open.begin(), open.end());
-  }
-
-  const Sweep& sweep_;
-  ResultStore& store_;
-  SweepCount count_;
+  TaskLedger& ledger_;
   std::mutex mutex_;
-  std::deque<std::uint64_t> open_;
   std::map<std::uint64_t, int> dealt_;
 };
 
 /// Rank 0's own share of the work, on a thread beside the one that deals. What goes wrong is kept for that one.
 class OwnShare {
  public:
-  OwnShare(const Sweep& sweep, Dealer& dealer, std::size_t slots, const Cancellation* cancel)
-      : thread_([this, &sweep, &dealer, slots, cancel] {
+  OwnShare(const ComputeTask& compute, Dealer& dealer, std::size_t slots, const Cancellation* cancel)
+      : thread_([this, &compute, &dealer, slots, cancel] {
           try {
-            work(sweep, dealer, slots, cancel);
+            work(compute, dealer, slots, cancel);
           } catch (...) {
             error_ = std::current_exception();
             failed_ = true;
@@ -295,13 +250,12 @@ class OwnShare {
   }
 
  private:
-  void work(const Sweep& sweep, Dealer& dealer, std::size_t slots, const Cancellation* cancel) {
+  void work(const ComputeTask& compute, Dealer& dealer, std::size_t slots, const Cancellation* cancel) {
     while (!stop_ && !is_cancelled(cancel)) {
-      const std::vector<std::uint64_t> points = dealer.take(0, slots);
-      if (points.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      raytrace::for_each_in_parallel(points.size(), [&](std::size_t k) {
-        const auto point = compute_point(sweep.study(), points[k], sweep.values(points[k]), cancel);
-        if (point) dealer.record(*point);
+      const std::vector<std::uint64_t> tasks = dealer.take(0, slots);
+      if (tasks.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      raytrace::for_each_in_parallel(tasks.size(), [&](std::size_t k) {
+        if (const auto bytes = compute(tasks[k], cancel)) dealer.finish(tasks[k], *bytes);
       });
     }
     dealer.take_back(0);
@@ -313,15 +267,14 @@ class OwnShare {
   std::thread thread_;  ///< last: it uses the others
 };
 
-/// Ranks that wait for points, with how many they want.
+/// Ranks that wait for tasks, with how many they want.
 using Waiting = std::map<int, std::size_t>;
 
 }  // namespace
 
-bool MpiSession::deal(const Sweep& sweep, ResultStore& store, std::size_t slots, SweepObserver* observer,
-                      const Cancellation* cancel) {
+bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots, const Cancellation* cancel) {
   State& state = *state_;
-  Dealer dealer(sweep, store, observer);
+  Dealer dealer(ledger);
   Waiting waiting;
   const auto leaves = [&](int rank, const std::string& why) {
     dealer.take_back(rank);
@@ -332,7 +285,9 @@ bool MpiSession::deal(const Sweep& sweep, ResultStore& store, std::size_t slots,
   const auto read = [&](const Letter& letter) {
     if (!state.there.contains(letter.rank)) return;  // was given up, and is not dead after all
     if (letter.tag == Tag::ask) waiting[letter.rank] = std::stoul(letter.bytes);
-    if (letter.tag == Tag::result) dealer.record(from_message(letter.bytes, sweep));
+    if (letter.tag == Tag::result)
+      dealer.finish(tasks_of(letter.bytes.substr(0, sizeof(std::uint64_t))).front(),
+                    letter.bytes.substr(sizeof(std::uint64_t)));
     if (letter.tag == Tag::leaving) leaves(letter.rank, "left: " + letter.bytes);
   };
   const auto give_up_silent = [&] {
@@ -345,43 +300,32 @@ bool MpiSession::deal(const Sweep& sweep, ResultStore& store, std::size_t slots,
   };
   const auto deal_out = [&] {
     for (auto entry = waiting.begin(); entry != waiting.end();) {
-      const std::vector<std::uint64_t> points = dealer.take(entry->first, entry->second);
-      if (points.empty()) break;
-      state.send_points(entry->first, points);
+      const std::vector<std::uint64_t> tasks = dealer.take(entry->first, entry->second);
+      if (tasks.empty()) break;
+      state.send_tasks(entry->first, tasks);
       entry = waiting.erase(entry);
     }
   };
   {
-    const OwnShare own(sweep, dealer, slots, cancel);
+    const OwnShare own(compute, dealer, slots, cancel);
     while (!is_cancelled(cancel)) {
       own.rethrow();
       state.look();
       if (const std::optional<Letter> letter = state.mailbox.take(kLook)) read(*letter);
       deal_out();
       give_up_silent();
-      if (dealer.nothing_open() && dealer.finished()) break;
+      if (dealer.is_finished()) return true;
     }
   }
   // What the others have in work when everything is to stop may still come in.
   const auto deadline = Clock::now() + kLastCall;
-  const auto has_points = [&](int rank) { return dealer.has_points(rank); };
-  while (is_cancelled(cancel) && std::any_of(state.at_work.begin(), state.at_work.end(), has_points) &&
-         Clock::now() < deadline)
+  const auto has_tasks = [&](int rank) { return dealer.has_tasks(rank); };
+  while (std::any_of(state.at_work.begin(), state.at_work.end(), has_tasks) && Clock::now() < deadline)
     if (const std::optional<Letter> letter = state.mailbox.take(kLook)) read(*letter);
-  return unfinished(sweep, store).empty();
+  return dealer.is_finished();
 }
 
-namespace {
-
-std::vector<std::uint64_t> points_of(const Letter& letter) {
-  std::vector<std::uint64_t> points(letter.bytes.size() / sizeof(std::uint64_t));
-  std::memcpy(points.data(), letter.bytes.data(), points.size() * sizeof(std::uint64_t));
-  return points;
-}
-
-}  // namespace
-
-void MpiSession::serve(const Sweep& sweep, std::size_t slots, const Cancellation* cancel) {
+void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Cancellation* cancel) {
   State& state = *state_;
   const auto ask = [&] { state.mailbox.post(0, Tag::ask, std::to_string(slots)); };
   ask();
@@ -396,14 +340,14 @@ void MpiSession::serve(const Sweep& sweep, std::size_t slots, const Cancellation
       state.lost_ranks = letter->bytes != kAllAreThere;
       return;
     }
-    const std::vector<std::uint64_t> points = points_of(*letter);
-    // The next batch of quick points is requested before this one is computed, to hide the latency of messages. Slow
-    // points are left with rank 0 until some rank is idle.
+    const std::vector<std::uint64_t> tasks = tasks_of(letter->bytes);
+    // The next batch of quick tasks is requested before this one is computed, to hide the latency of messages. Slow
+    // tasks are left with rank 0 until some rank is idle.
     if (is_quick) ask();
     const auto start = Clock::now();
-    raytrace::for_each_in_parallel(points.size(), [&](std::size_t k) {
-      const auto point = compute_point(sweep.study(), points[k], sweep.values(points[k]), cancel);
-      if (point) state.mailbox.post(0, Tag::result, to_message(*point));
+    raytrace::for_each_in_parallel(tasks.size(), [&](std::size_t k) {
+      if (const auto bytes = compute(tasks[k], cancel))
+        state.mailbox.post(0, Tag::result, bytes_of_result(tasks[k], *bytes));
     });
     if (!is_quick && !is_cancelled(cancel)) ask();
     is_quick = Clock::now() - start < kQuick;

@@ -1,20 +1,20 @@
 #pragma once
 
-// One sweep on several machines under MPI: rank 0 deals out points, the others compute them.
+// One work on several machines under MPI: rank 0 deals out tasks, such as the points of a sweep, the others compute
+// them.
 
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
-#include "studies/store/store.h"
-#include "studies/sweep/sweep.h"
+#include "core/shared_tasks.h"
 
 namespace retrace::studies {
 
-/// One sweep on several machines: rank 0 holds the store and deals points out, the others ask for some whenever they
+/// One work on several machines: rank 0 holds its ledger and deals tasks out, the others ask for some whenever they
 /// have none. Nothing of MPI is touched unless the process was launched by mpirun or srun. Ranks that fall silent are
-/// given up, and their points dealt to others; a rank that hears nothing of rank 0 ends. No wait is without a limit.
+/// given up, and their tasks dealt to others; a rank that hears nothing of rank 0 ends. No wait is without a limit.
 class MpiSession {
  public:
   /// Whether mpirun or srun launched this process with MPI.
@@ -29,15 +29,15 @@ class MpiSession {
 
   int rank() const;
 
-  /// Rank 0: deals points out and computes some itself, `slots` at a time. \return whether all are finished
-  /// \throw OutputError as run_sweep()
-  bool deal(const Sweep& sweep, ResultStore& store, std::size_t slots, SweepObserver* observer,
-            const Cancellation* cancel);
+  /// Rank 0: deals tasks out and computes some itself, `slots` at a time. \pre called once \return whether all are
+  /// finished \throw Error of the ledger, or of a task that it computed itself
+  bool deal(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots, const Cancellation* cancel);
   /// What rank 0 learnt about the others that a user should know.
   std::vector<std::string> remarks() const;
 
-  /// The other ranks: compute what they are dealt, `slots` points at a time, until there is no more.
-  void serve(const Sweep& sweep, std::size_t slots, const Cancellation* cancel);
+  /// The other ranks: compute what they are dealt, `slots` tasks at a time, until there is no more. \throw Error of a
+  /// task, after which leave() is to be called
+  void serve(const ComputeTask& compute, std::size_t slots, const Cancellation* cancel);
   /// The other ranks: tells rank 0 that this one cannot serve, and why.
   void leave(const std::string& why);
 

@@ -21,13 +21,13 @@ MpiSession::~MpiSession() = default;
 int MpiSession::rank() const {
   return 0;
 }
-bool MpiSession::deal(const Sweep&, ResultStore&, std::size_t, SweepObserver*, const Cancellation*) {
+bool MpiSession::deal(const ComputeTask&, TaskLedger&, std::size_t, const Cancellation*) {
   return false;
 }
 std::vector<std::string> MpiSession::remarks() const {
   return {};
 }
-void MpiSession::serve(const Sweep&, std::size_t, const Cancellation*) {}
+void MpiSession::serve(const ComputeTask&, std::size_t, const Cancellation*) {}
 void MpiSession::leave(const std::string&) {}
 bool MpiSession::end() {
   return true;

@@ -7,7 +7,7 @@ retrace_test(studies_tests
 # The program: runs that are killed, interrupted, shared and refused.
 set(sweep_app_sources sweep_command_test.cpp tolerance_command_test.cpp)
 if(RETRACE_WITH_MPI)
-  list(APPEND sweep_app_sources mpi_command_test.cpp)
+  list(APPEND sweep_app_sources mpi_command_test.cpp mpi_shared_test.cpp)
 endif()
 list(TRANSFORM sweep_app_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
 retrace_test(command_tests

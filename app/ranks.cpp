@@ -1,0 +1,56 @@
+#include "app/ranks.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <thread>
+
+#include "app/interrupt.h"
+
+namespace retrace::app {
+namespace {
+
+/// Tasks that a process has in work at a time.
+std::size_t slots(const CommonOptions& common) {
+  return common.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+/// Another rank than 0: computes what it is dealt and says nothing. What is wrong is told by rank 0, which goes on
+/// without this one; another exit code than 0 would have mpirun end the job.
+ExitCode serve(const CommonOptions& common, const std::function<ComputeTask()>& help, studies::MpiSession& session) {
+  try {
+    const ComputeTask compute = help();
+    const OrderlyInterrupt interrupt;
+    interrupt.run(common.threads, [&](const Cancellation* cancel) { session.serve(compute, slots(common), cancel); });
+  } catch (const Error& error) {
+    session.leave(error.what());
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+ExitCode run_on_ranks(const CommonOptions& common, const std::function<ExitCode(studies::MpiSession* session)>& lead,
+                      const std::function<ComputeTask()>& help) {
+  if (!studies::MpiSession::is_launched()) return lead(nullptr);
+  studies::MpiSession session;
+  const ExitCode code = session.rank() == 0 ? lead(&session) : serve(common, help, session);
+  if (session.end()) return code;
+  // Ranks are gone, and MPI may wait for them for ever: what is left of it is not tidied up.
+  std::fflush(nullptr);
+  ::_exit(static_cast<int>(code));
+}
+
+ShareTasks share_among(studies::MpiSession* session, const CommonOptions& common, const Cancellation* cancel) {
+  if (session == nullptr) return {};
+  return [session, &common, cancel](const ComputeTask& compute, TaskLedger& ledger) {
+    return session->deal(compute, ledger, slots(common), cancel);
+  };
+}
+
+std::vector<std::string> remarks_of(const studies::MpiSession* session) {
+  return session != nullptr ? session->remarks() : std::vector<std::string>();
+}
+
+}  // namespace retrace::app

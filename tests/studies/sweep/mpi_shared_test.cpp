@@ -1,0 +1,148 @@
+// `mpirun -np N retrace` with the commands beside `sweep` that ranks share: the same files as alone.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "tests/studies/sweep/mpi_run.h"
+#include "tests/studies/sweep/stored_points.h"
+
+namespace retrace::test::mpi_shared_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kBrick =
+    "[element]\nkind = \"rtp\"\nbase_mm = 0.45\nwidth_mm = 0.45\n[array]\narrangement = \"offset\"\n"
+    "extent = \"infinite\"\n[body]\nthickness_mm = 2\n";
+
+class CommandsByMpi : public ByMpi {
+ protected:
+  CommandsByMpi() {
+    folder_.write("d.toml", kBrick);
+    folder_.write("facets.csv", "process,roughness_sa_nm,waviness_sa_nm\nmine,8,30\n");
+  }
+
+  void run(const Arguments& program, int code = 0) {
+    const Outcome outcome = Child(folder_.path(), program).wait(kMpiLimit);
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+  }
+  void run_alone(const std::string& arguments) {
+    run({"/bin/sh", "-c", "exec '" + std::string(RETRACE_PROGRAM) + "' " + arguments});
+  }
+  void expect_same_files(const std::string& a, const std::string& b, std::size_t count) {
+    std::size_t files = 0;
+    for (const auto& entry : fs::directory_iterator(folder_.path() / a)) {
+      const std::string name = entry.path().filename().string();
+      if (name.find(".sqlite") != std::string::npos) continue;
+      ++files;
+      const bool is_json = name.ends_with(".json");
+      const auto text = [&](const std::string& folder) {
+        const std::string read = folder_.read(folder + "/" + name);
+        return is_json ? without_elapsed(read) : read;
+      };
+      EXPECT_TRUE(text(a) == text(b)) << name;
+    }
+    EXPECT_EQ(files, count);
+  }
+  /// One rank and three make what one process does. \param files that it writes, but for stores
+  void expect_same_by_ranks(const std::string& arguments, std::size_t files) {
+    run_alone(arguments + " --quiet -o alone");
+    run(on_ranks(1, arguments + " --quiet -o one"));
+    run(on_ranks(3, arguments + " --quiet -o three"));
+    expect_same_files("alone", "one", files);
+    expect_same_files("alone", "three", files);
+  }
+  /// Ends a rank while there is work. \return what was said
+  std::string outcome_without_rank(int rank, int signal, const std::string& arguments, const std::string& options) {
+    Child child(folder_.path(), on_ranks(3, arguments + " --threads 1 -o out", options));
+    EXPECT_TRUE(comes_about(child, [this] { return fs::exists(folder_.path() / "out"); })) << "nothing was begun";
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    EXPECT_TRUE(is_running(rank)) << "it was over too soon";
+    EXPECT_EQ(::kill(process_of(rank), signal), 0);
+    EXPECT_TRUE(ends(0)) << "rank 0 hangs";
+    return child.wait(kMpiLimit).err;
+  }
+};
+
+/// Some seconds in all.
+const std::string kLongRoughness =
+    "roughness d.toml --sa 5,10,15,20,25,30,35,40,50,60 --correlation-length-um 5 --facets facets.csv --samples 60000";
+
+TEST_F(CommandsByMpi, RoughnessIsTheSame) {
+  expect_same_by_ranks("roughness d.toml --sa 0,10,40 --correlation-length-um 5,50 --facets facets.csv --samples 4096",
+                       4);
+}
+
+TEST_F(CommandsByMpi, RoughnessWarnsOfTheSame) {
+  // The model is out of its range.
+  expect_same_by_ranks(
+      "roughness d.toml --sa 0,300,400 --correlation-length-um 5 --facets facets.csv --target-error 1e-2", 4);
+  EXPECT_FALSE(folder_.json("three/roughness.json")["warnings"].empty());
+}
+
+TEST_F(CommandsByMpi, RoughnessGoesOnWithoutARankThatIsInterrupted) {
+  const std::string said = outcome_without_rank(1, SIGTERM, kLongRoughness, "");
+  EXPECT_NE(said.find("rank 1 left: interrupted; its points went to others"), std::string::npos) << said;
+  run_alone(kLongRoughness + " --quiet -o alone");
+  EXPECT_EQ(folder_.read("out/roughness.csv"), folder_.read("alone/roughness.csv"));
+}
+
+TEST_F(CommandsByMpi, RoughnessGoesOnWithoutARankThatIsKilled) {
+  const std::string said = outcome_without_rank(2, SIGKILL, kLongRoughness, "--enable-recovery");
+  EXPECT_NE(said.find("rank 2 was silent for 3 s; its points went to others"), std::string::npos) << said;
+  run_alone(kLongRoughness + " --quiet -o alone");
+  EXPECT_EQ(folder_.read("out/roughness.csv"), folder_.read("alone/roughness.csv"));
+}
+
+TEST_F(CommandsByMpi, InterruptedRoughnessKeepsWhatIsFinished) {
+  const std::string said = outcome_without_rank(0, SIGTERM, kLongRoughness, "");
+  EXPECT_NE(said.find("retrace: interrupted; finished points: "), std::string::npos) << said;
+  EXPECT_EQ(folder_.json("out/roughness.json")["complete"], false);
+}
+
+/// Discrete values with continuous ones, and feasible designs that end within the line.
+const std::string kOptimum =
+    "design = \"d.toml\"\n[[parameter]]\nkey = \"array.arrangement\"\nvalues = [\"offset\", \"aligned\"]\n"
+    "[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 1\nto = 3\n[[quantity]]\nkind = \"rre\"\n"
+    "[[quantity]]\nkind = \"lens_thickness_mm\"\n[[constraint]]\nquantity = \"lens_thickness_mm\"\nmax = 2.5\n"
+    "[optimize]\nmaximize = \"rre\"\nscan = 9\n[analysis]\nengine = \"cell\"\nsamples = 2000\nincidence_deg = 10\n";
+
+TEST_F(CommandsByMpi, OptimizeIsTheSame) {
+  folder_.write("study.toml", kOptimum);
+  expect_same_by_ranks("optimize study.toml", 2);
+  // What ranks have looked at is there for one process, and the other way round.
+  run_alone("optimize study.toml --quiet --resume -o three");
+  expect_same_files("alone", "three", 2);
+  const auto points = stored_points(folder_.path() / "alone/optimum.sqlite").size();
+  run(on_ranks(3, "optimize study.toml --quiet --resume -o alone"));
+  expect_same_files("alone", "three", 2);
+  EXPECT_EQ(stored_points(folder_.path() / "alone/optimum.sqlite").size(), points);
+}
+
+TEST_F(CommandsByMpi, NoIsTheAnswerIfNoDesignIsFeasible) {
+  std::string study = kOptimum;
+  folder_.write("study.toml", study.replace(study.find("max = 2.5"), 9, "max = 0.5"));
+  const Outcome outcome = Child(folder_.path(), on_ranks(3, "optimize study.toml -o out --quiet")).wait(kMpiLimit);
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("retrace: no feasible design: "), std::string::npos) << outcome.err;
+}
+
+TEST_F(CommandsByMpi, WhatIsWrongIsSaidOnce) {
+  folder_.write("study.toml", "design = 3\n");
+  for (const std::string arguments : {"roughness d.toml --sa=-1", "optimize study.toml"}) {
+    const Outcome outcome = Child(folder_.path(), on_ranks(3, arguments + " -o out")).wait(kMpiLimit);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    const std::vector<std::string> lines = lines_of(outcome.err);
+    const auto count = std::count_if(lines.begin(), lines.end(),
+                                     [](const std::string& line) { return line.starts_with("retrace: "); });
+    EXPECT_EQ(count, 1) << outcome.err;
+    EXPECT_FALSE(fs::exists(folder_.path() / "out")) << arguments;
+  }
+}
+
+}  // namespace
+}  // namespace retrace::test::mpi_shared_test
