@@ -60,7 +60,7 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
   {
     PointsBar bar(command.doing, !common.quiet);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
-      const ShareTasks share = share_among(session, common, cancel);
+      const ShareTasks share = share_among(session, slots(common), cancel);
       complete =
           share ? studies::share_sweep(sweep, store, &bar, share) : studies::run_sweep(sweep, store, &bar, cancel);
     });
@@ -80,7 +80,7 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
 ExitCode run_points(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command) {
   check_study_options(options, common);
   return run_on_ranks(
-      common, [&](studies::MpiSession* session) { return compute(options, common, command, session); },
+      common, slots(common), [&](studies::MpiSession* session) { return compute(options, common, command, session); },
       [&]() -> ComputeTask {
         const auto sweep = std::make_shared<const studies::Sweep>(command.read());
         return [sweep](std::uint64_t point, const Cancellation* cancel) {

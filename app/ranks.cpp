@@ -11,18 +11,14 @@
 namespace retrace::app {
 namespace {
 
-/// Tasks that a process has in work at a time.
-std::size_t slots(const CommonOptions& common) {
-  return common.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
-}
-
 /// Another rank than 0: computes what it is dealt and says nothing. What is wrong is told by rank 0, which goes on
 /// without this one; another exit code than 0 would have mpirun end the job.
-ExitCode serve(const CommonOptions& common, const std::function<ComputeTask()>& help, studies::MpiSession& session) {
+ExitCode serve(const CommonOptions& common, std::size_t at_a_time, const std::function<ComputeTask()>& help,
+               studies::MpiSession& session) {
   try {
     const ComputeTask compute = help();
     const OrderlyInterrupt interrupt;
-    interrupt.run(common.threads, [&](const Cancellation* cancel) { session.serve(compute, slots(common), cancel); });
+    interrupt.run(common.threads, [&](const Cancellation* cancel) { session.serve(compute, at_a_time, cancel); });
   } catch (const Error& error) {
     session.leave(error.what());
   }
@@ -31,21 +27,26 @@ ExitCode serve(const CommonOptions& common, const std::function<ComputeTask()>& 
 
 }  // namespace
 
-ExitCode run_on_ranks(const CommonOptions& common, const std::function<ExitCode(studies::MpiSession* session)>& lead,
+std::size_t slots(const CommonOptions& common) {
+  return common.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
+                      const std::function<ExitCode(studies::MpiSession* session)>& lead,
                       const std::function<ComputeTask()>& help) {
   if (!studies::MpiSession::is_launched()) return lead(nullptr);
   studies::MpiSession session;
-  const ExitCode code = session.rank() == 0 ? lead(&session) : serve(common, help, session);
+  const ExitCode code = session.rank() == 0 ? lead(&session) : serve(common, at_a_time, help, session);
   if (session.end()) return code;
   // Ranks are gone, and MPI may wait for them for ever: what is left of it is not tidied up.
   std::fflush(nullptr);
   ::_exit(static_cast<int>(code));
 }
 
-ShareTasks share_among(studies::MpiSession* session, const CommonOptions& common, const Cancellation* cancel) {
+ShareTasks share_among(studies::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel) {
   if (session == nullptr) return {};
-  return [session, &common, cancel](const ComputeTask& compute, TaskLedger& ledger) {
-    return session->deal(compute, ledger, slots(common), cancel);
+  return [session, at_a_time, cancel](const ComputeTask& compute, TaskLedger& ledger) {
+    return session->deal(compute, ledger, at_a_time, cancel);
   };
 }
 

@@ -19,6 +19,7 @@
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_reader.h"
 #include "studies/sweep/mpi_session.h"
+#include "studies/sweep/shared_sweep.h"
 
 namespace retrace::benchmarks::studies_benchmark {
 namespace {
@@ -137,13 +138,18 @@ int run_under_mpi() {
   const studies::Sweep sweep = sleeping_sweep(points);
   studies::MpiSession session;
   if (session.rank() != 0) {
-    session.serve(sweep, 1, nullptr);
+    const ComputeTask compute = [&](std::uint64_t point, const Cancellation* cancel) {
+      return studies::compute_shared(sweep, point, cancel);
+    };
+    session.serve(compute, 1, nullptr);
     session.end();
     return 0;
   }
   TemporaryStore temporary(sweep);
   const auto start = Clock::now();
-  session.deal(sweep, temporary.store(), 1, nullptr, nullptr);
+  studies::share_sweep(sweep, temporary.store(), nullptr, [&](const ComputeTask& compute, TaskLedger& ledger) {
+    return session.deal(compute, ledger, 1, nullptr);
+  });
   const double elapsed_s = seconds_since(start);
   double points_s = 0.0;
   for (const studies::StoredPoint& point : temporary.store().points()) points_s += point.elapsed_s;

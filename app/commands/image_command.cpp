@@ -4,11 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
+#include "app/ranks.h"
 #include "app/shared_arguments.h"
 #include "core/atomic_file.h"
 #include "core/message_text.h"
@@ -25,6 +27,8 @@ namespace {
 
 // Between two previews of a camera picture that takes long.
 constexpr std::chrono::seconds kPreview{10};
+// By each rank under MPI: a pass is for all threads.
+constexpr std::size_t kPassesAtATime = 1;
 // Written by previews too.
 constexpr const char* kCameraPng = "camera.png";
 
@@ -206,7 +210,9 @@ class Preview {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-ExitCode run_camera(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
+/// \param session null without MPI
+ExitCode photograph(const ImageOptions& options, const CommonOptions& common, studies::MpiSession* session) {
+  studies::Design design = studies::read_design(options.design, common.overrides);
   studies::CameraResult result;
   ResultFiles files(common, files_read({design}), "image.json");
   const auto add = [&](const std::string& name, auto content) {
@@ -222,10 +228,25 @@ ExitCode run_camera(const ImageOptions& options, const CommonOptions& common, st
   files.prepare();
   Preview preview(common);
   interrupt.run(common, "rendering", [&](Progress* bar, const Cancellation* cancel) {
-    result = study.run(bar, cancel, [&](const raytrace::CameraImage& image) { preview(image); });
+    result = study.run(
+        bar, cancel, [&](const raytrace::CameraImage& image) { preview(image); },
+        share_among(session, kPassesAtATime, cancel));
   });
+  for (const std::string& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(studies::camera_json(result), studies::camera_table(result), result.warnings,
                      {.complete = result.complete});
+}
+
+ExitCode run_camera(const ImageOptions& options, const CommonOptions& common) {
+  return run_on_ranks(
+      common, kPassesAtATime, [&](studies::MpiSession* session) { return photograph(options, common, session); },
+      [&]() -> ComputeTask {
+        const auto study = std::make_shared<const studies::CameraStudy>(
+            studies::read_design(options.design, common.overrides), camera_request(options, common));
+        return [study, trace = study->passes()](std::uint64_t pass, const Cancellation* cancel) {
+          return trace(pass, cancel);
+        };
+      });
 }
 
 ExitCode run_road(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
@@ -257,10 +278,10 @@ ExitCode run_road(const ImageOptions& options, const CommonOptions& common, stud
 ExitCode run(const ImageOptions& options, const CommonOptions& common) {
   if (static_cast<int>(options.detector) + static_cast<int>(options.camera) + static_cast<int>(options.road) != 1)
     throw InputError("image: one of --detector, --camera and --road is required; see retrace image --help");
+  if (options.camera) return run_camera(options, common);
   studies::Design design = studies::read_design(options.design, common.overrides);
-  if (options.road) return run_road(options, common, std::move(design));
   return options.detector ? run_detector(options, common, std::move(design))
-                          : run_camera(options, common, std::move(design));
+                          : run_road(options, common, std::move(design));
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
   {
     LooksBar bar(!common.quiet);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
-      if (const ShareTasks share = share_among(session, common, cancel))
+      if (const ShareTasks share = share_among(session, slots(common), cancel))
         studies::share_sweep(studies::optimise_scan(study, request), store, &bar, share);
       optimum = studies::optimise(study, request, store, &bar, cancel);
     });
@@ -107,7 +107,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
 ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
   check_study_options(options, common);
   return run_on_ranks(
-      common, [&](studies::MpiSession* session) { return look(options, common, session); },
+      common, slots(common), [&](studies::MpiSession* session) { return look(options, common, session); },
       [&]() -> ComputeTask {
         const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
         const auto scan =

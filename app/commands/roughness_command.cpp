@@ -76,7 +76,7 @@ ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, stu
   files.add_drawing("roughness", [&] { return report::roughness_plot(result); });
   files.prepare();
   interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) {
-    result = study.run(bar, cancel, share_among(session, common, cancel));
+    result = study.run(bar, cancel, share_among(session, slots(common), cancel));
   });
   for (const std::string& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(
@@ -86,7 +86,7 @@ ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, stu
 
 ExitCode run(const RoughnessOptions& options, const CommonOptions& common) {
   return run_on_ranks(
-      common, [&](studies::MpiSession* session) { return trace(options, common, session); },
+      common, slots(common), [&](studies::MpiSession* session) { return trace(options, common, session); },
       [&]() -> ComputeTask {
         const auto study = std::make_shared<const studies::RoughnessStudy>(
             studies::read_design(options.design, common.overrides), request_of(options, common, tables_of(options)));

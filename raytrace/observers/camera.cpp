@@ -216,19 +216,18 @@ Contact contact_with(const Film& film, double thickness_mm, const WorldRay& ray)
 }  // namespace
 
 void CameraImage::add(const CameraPass& pass) {
+  const std::size_t pixels = luminance.size();
   ++passes;
-  paths += luminance.size() * CameraTracer::kPointsPerPass;
-  double part_sum = 0.0;
+  paths += pixels * CameraTracer::kPointsPerPass;
   double part_pixels = 0.0;
-  for (std::size_t k = 0; k < luminance.size(); ++k) {
-    const double off = pass.luminance[k] - luminance[k];
+  for (std::size_t k = 0; k < pixels; ++k) {
+    const double off = pass[k] - luminance[k];
     luminance[k] += off / passes;
-    squares[k] += off * (pass.luminance[k] - luminance[k]);
-    coverage[k] += (pass.coverage[k] - coverage[k]) / passes;
-    part_sum += pass.on_part[k];
-    part_pixels += pass.coverage[k];
+    squares[k] += off * (pass[k] - luminance[k]);
+    coverage[k] += (pass[pixels + k] - coverage[k]) / passes;
+    part_pixels += pass[pixels + k];
   }
-  if (part_pixels > 0.0) part_means.push_back(part_sum / part_pixels);
+  if (part_pixels > 0.0) part_means.push_back(pass.back() / part_pixels);
 }
 
 double CameraImage::std_error(std::size_t pixel) const {
@@ -499,9 +498,8 @@ std::optional<CameraPass> CameraTracer::pass(std::uint32_t number, const Cancell
   const Hidden& h = *hidden_;
   const std::size_t columns = h.scene.view.columns;
   const std::size_t pixels = columns * h.scene.view.rows;
-  CameraPass result;
-  for (std::vector<double>* values : {&result.luminance, &result.on_part, &result.coverage})
-    values->assign(pixels, 0.0);
+  CameraPass result(2 * pixels + 1, 0.0);
+  std::vector<double> on_part(pixels, 0.0);
   const std::size_t rows = h.rows_of_block();
   std::vector<double> lost((h.scene.view.rows + rows - 1) / rows, 0.0);
   tbb::enumerable_thread_specific<std::unique_ptr<Hidden::Block>> blocks;
@@ -521,10 +519,10 @@ std::optional<CameraPass> CameraTracer::pass(std::uint32_t number, const Cancell
     for (std::size_t k = 0; k < block.looks.size(); ++k) {
       const Look& look = block.looks[k];
       const std::size_t pixel = first + k / kPointsPerPass;
-      result.luminance[pixel] += look.luminance / kPointsPerPass;
+      result[pixel] += look.luminance / kPointsPerPass;
       if (!look.shows_part()) continue;
-      result.on_part[pixel] += look.luminance / kPointsPerPass;
-      result.coverage[pixel] += 1.0 / kPointsPerPass;
+      on_part[pixel] += look.luminance / kPointsPerPass;
+      result[pixels + pixel] += 1.0 / kPointsPerPass;
     }
     lost[block_number] = block.tally.other[Account::lost];
   });
@@ -535,6 +533,7 @@ std::optional<CameraPass> CameraTracer::pass(std::uint32_t number, const Cancell
     throw BudgetError(
         "rays missed every face from inside the part: this is a defect of retrace, please report the "
         "design");
+  for (const double value : on_part) result.back() += value;
   return result;
 }
 

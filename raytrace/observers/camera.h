@@ -67,12 +67,9 @@ struct WeighedOptics {
   double weight = 1.0;  ///< share of the flux; they add to 1
 };
 
-/// One pass over a picture, row by row from above.
-struct CameraPass {
-  std::vector<double> luminance;  ///< cd/m^2
-  std::vector<double> on_part;    ///< of it, what shows the part
-  std::vector<double> coverage;   ///< share of each pixel that shows the part
-};
+/// One pass over a picture: luminance (cd/m^2) of the pixels, row by row from above, the share of each that shows the
+/// part, and the sum of the luminances of all that shows it.
+using CameraPass = std::vector<double>;
 
 /// A picture that gets better pass by pass. Passes are independent of each other.
 struct CameraImage {

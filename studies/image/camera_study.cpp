@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <set>
 #include <string_view>
 
 #include "core/error.h"
@@ -164,12 +166,93 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
   if (view.cross(scene_.view.up).norm() < 1e-6) scene_.view.up = view.unitOrthogonal();
 }
 
-CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
-                              const std::function<void(const raytrace::CameraImage&)>& after_pass) const {
-  const auto start = std::chrono::steady_clock::now();
+namespace {
+
+/// The picture as its passes come in, each added when those before it are.
+class PassLedger : public TaskLedger {
+ public:
+  PassLedger(const CameraRequest& request, raytrace::CameraImage& image, Progress* progress,
+             const std::function<void(const raytrace::CameraImage&)>& after_pass)
+      : request_(request),
+        image_(image),
+        progress_(progress),
+        after_pass_(after_pass),
+        goal_(request.passes.value_or(CameraStudy::kMostPasses)),
+        most_ahead_(std::max(kFewestAhead, kBytesAhead / (image.luminance.size() * 2 * sizeof(double)))) {}
+
+  std::optional<std::uint64_t> take() override {
+    if (is_finished_) return std::nullopt;
+    if (!given_back_.empty()) return given_back_.extract(given_back_.begin()).value();
+    if (next_ >= goal_ || next_ >= image_.passes + most_ahead_) return std::nullopt;
+    return next_++;
+  }
+  void give_back(std::uint64_t pass) override { given_back_.insert(pass); }
+  void finish(std::uint64_t pass, const std::string& bytes) override {
+    ahead_[pass] = bytes;
+    for (auto next = ahead_.find(image_.passes); !is_finished_ && next != ahead_.end();
+         next = ahead_.find(image_.passes)) {
+      add(numbers_of(next->second));
+      ahead_.erase(next);
+    }
+  }
+  bool is_finished() override { return is_finished_; }
+
+  void add(const std::vector<double>& pass) {
+    image_.add(pass);
+    if (after_pass_) after_pass_(image_);
+    double share = static_cast<double>(image_.passes) / goal_;
+    is_finished_ = image_.passes == goal_;
+    if (!request_.passes) {
+      const double noise = image_.passes > 1 ? image_.relative_noise() : 1.0;
+      is_finished_ = is_finished_ || (image_.passes >= CameraStudy::kFewestPasses && noise <= request_.noise);
+      share = image_.passes > 1 ? std::min(0.99, std::pow(request_.noise / std::max(noise, 1e-300), 2.0)) : 0.0;
+    }
+    furthest_ = std::max(furthest_, share);
+    if (progress_ != nullptr && !is_finished_) progress_->at(furthest_);
+  }
+
+ private:
+  static constexpr std::size_t kFewestAhead = 8;
+  static constexpr std::size_t kBytesAhead = std::size_t{1} << 30U;
+
+  const CameraRequest& request_;
+  raytrace::CameraImage& image_;
+  Progress* progress_;
+  const std::function<void(const raytrace::CameraImage&)>& after_pass_;
+  std::uint32_t goal_;
+  std::size_t most_ahead_;  ///< passes that may wait for one before them
+  std::uint64_t next_ = 0;
+  std::set<std::uint64_t> given_back_;
+  std::map<std::uint64_t, std::string> ahead_;
+  double furthest_ = 0.0;
+  bool is_finished_ = false;
+};
+
+ComputeTask passes_by(const std::shared_ptr<const raytrace::CameraTracer>& tracer) {
+  return [tracer](std::uint64_t number, const Cancellation* cancel) -> std::optional<std::string> {
+    const auto pass = tracer->pass(static_cast<std::uint32_t>(number), cancel);
+    return pass ? std::optional(bytes_of(*pass)) : std::nullopt;
+  };
+}
+
+}  // namespace
+
+std::shared_ptr<const raytrace::CameraTracer> CameraStudy::tracer() const {
   std::vector<raytrace::WeighedOptics> light;
   for (const SpectralOptics& at : model_.spectral) light.push_back({at.optics, at.weight});
-  const raytrace::CameraTracer tracer(model_.part, light, scene_, raytrace::kCameraPolicy, request_.seed);
+  return std::make_shared<const raytrace::CameraTracer>(model_.part, light, scene_, raytrace::kCameraPolicy,
+                                                        request_.seed);
+}
+
+ComputeTask CameraStudy::passes() const {
+  return passes_by(tracer());
+}
+
+CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
+                              const std::function<void(const raytrace::CameraImage&)>& after_pass,
+                              const ShareTasks& share) const {
+  const auto start = std::chrono::steady_clock::now();
+  const std::shared_ptr<const raytrace::CameraTracer> tracing = tracer();
   CameraResult result;
   result.design = design_;
   result.request = request_;
@@ -180,25 +263,16 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   result.observation_deg = angle_deg(to_eye, to_lamp);
   result.entrance_deg = angle_deg(to_lamp, Vec3::UnitZ());
   result.viewing_deg = angle_deg(to_eye, Vec3::UnitZ());
-  result.engine = tracer.is_by_cells() ? "cell" : "embree";
-  result.image = tracer.empty_image();
-  const std::uint32_t goal = request_.passes.value_or(kMostPasses);
-  double furthest = 0.0;
-  while (result.image.passes < goal) {
-    if (!tracer.add_pass(result.image, cancel)) {
-      result.complete = false;
-      break;
-    }
-    if (after_pass) after_pass(result.image);
-    double share = static_cast<double>(result.image.passes) / goal;
-    if (!request_.passes) {
-      const double noise = result.image.passes > 1 ? result.image.relative_noise() : 1.0;
-      if (result.image.passes >= kFewestPasses && noise <= request_.noise) break;
-      share = result.image.passes > 1 ? std::min(0.99, std::pow(request_.noise / std::max(noise, 1e-300), 2.0)) : 0.0;
-    }
-    furthest = std::max(furthest, share);
-    if (progress != nullptr) progress->at(furthest);
+  result.engine = tracing->is_by_cells() ? "cell" : "embree";
+  result.image = tracing->empty_image();
+  PassLedger ledger(request_, result.image, progress, after_pass);
+  if (share) share(passes_by(tracing), ledger);
+  while (!share && !ledger.is_finished()) {
+    const auto pass = tracing->pass(result.image.passes, cancel);
+    if (!pass) break;
+    ledger.add(*pass);
   }
+  result.complete = ledger.is_finished();
   if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
     result.warnings.push_back(fmt::format("{}: the noise of {} is above the target of {} after {} passes",
                                           design_.source_name(), shortest(result.image.relative_noise()),

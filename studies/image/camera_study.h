@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
+#include "core/shared_tasks.h"
 #include "raytrace/observers/camera.h"
 #include "studies/design/optical_model.h"
 
@@ -65,13 +67,19 @@ class CameraStudy {
   /// \throw InputError for numbers out of range, an eye or a lamp inside the part, polarised light
   CameraStudy(Design design, CameraRequest request);
 
-  /// \param after_pass told of the picture after every pass, from one thread
+  /// \param after_pass told of the picture after every pass, one call at a time \param share has the passes traced by
+  /// several processes, each with an equal study; none: by this one
   CameraResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
-                   const std::function<void(const raytrace::CameraImage&)>& after_pass = {}) const;
+                   const std::function<void(const raytrace::CameraImage&)>& after_pass = {},
+                   const ShareTasks& share = {}) const;
+  /// Traces passes as tasks of their numbers, each on all threads. \pre the study outlives it
+  ComputeTask passes() const;
 
   const raytrace::CameraScene& scene() const { return scene_; }
 
  private:
+  std::shared_ptr<const raytrace::CameraTracer> tracer() const;
+
   Design design_;
   CameraRequest request_;
   OpticalModel model_;

@@ -131,9 +131,27 @@ TEST_F(CommandsByMpi, NoIsTheAnswerIfNoDesignIsFeasible) {
   EXPECT_NE(outcome.err.find("retrace: no feasible design: "), std::string::npos) << outcome.err;
 }
 
+TEST_F(CommandsByMpi, CameraIsTheSame) {
+  expect_same_by_ranks("image d.toml --camera --pixels 24x18 --passes 7 --ambient-lx 1 --false-colour", 4);
+}
+
+TEST_F(CommandsByMpi, CameraThatLooksAtItsNoiseIsTheSame) {
+  // More passes are dealt than it needs.
+  expect_same_by_ranks("image d.toml --camera --pixels 24x18 --film-mm 5x5 --noise 0.2", 3);
+}
+
+TEST_F(CommandsByMpi, CameraGoesOnWithoutARankThatIsInterrupted) {
+  const std::string camera = "image d.toml --camera --pixels 40x30 --passes 400";
+  const std::string said = outcome_without_rank(1, SIGTERM, camera, "");
+  EXPECT_NE(said.find("rank 1 left: interrupted; its points went to others"), std::string::npos) << said;
+  run_alone(camera + " --quiet -o alone");
+  EXPECT_TRUE(folder_.read("out/camera.exr") == folder_.read("alone/camera.exr"));
+}
+
 TEST_F(CommandsByMpi, WhatIsWrongIsSaidOnce) {
   folder_.write("study.toml", "design = 3\n");
-  for (const std::string arguments : {"roughness d.toml --sa=-1", "optimize study.toml"}) {
+  for (const std::string arguments :
+       {"roughness d.toml --sa=-1", "optimize study.toml", "image d.toml --camera --noise=-1"}) {
     const Outcome outcome = Child(folder_.path(), on_ranks(3, arguments + " -o out")).wait(kMpiLimit);
     EXPECT_EQ(outcome.code, 2) << arguments;
     const std::vector<std::string> lines = lines_of(outcome.err);
