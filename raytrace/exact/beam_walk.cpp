@@ -247,6 +247,7 @@ void BeamWalk::advance(const Beam& beam) {
     for (const FlatPolygon& piece : rest) subtract(piece, candidates_[k].piece, least_area_, merge_mm_, left);
     rest = std::move(left);
   }
+  if (rest.size() > 1) work_ += kWorkOfCut * rest.size() * (rest.size() - 1) / 4;
   join_convex(rest, join_area_);
   for (const FlatPolygon& piece : rest) pass_by(beam, frame, piece, share_of(piece), horizon);
   book_rest(beam, beam.share - used);
@@ -390,6 +391,7 @@ FlatPolygons BeamWalk::visible_on_plane_of(std::size_t k) {
     other.is_met = true;
     for (FlatPolygon& piece : visible_pieces(j)) visible.push_back(std::move(piece));
   }
+  if (visible.size() > 1) work_ += kWorkOfCut * visible.size() * (visible.size() - 1) / 4;
   join_convex(visible, join_area_);
   return visible;
 }

@@ -1,6 +1,8 @@
 #include "raytrace/exact/flat_polygon.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace retrace::raytrace {
 namespace {
@@ -31,11 +33,28 @@ FlatPolygon convex_hull(const FlatPolygon& a, const FlatPolygon& b, double least
   return hull;
 }
 
+using Box = Eigen::AlignedBox2d;
+
+Box box_around(const FlatPolygon& polygon, double slack_mm) {
+  Box box;
+  for (const Vec2& p : polygon) box.extend(p);
+  return {box.min().array() - slack_mm, box.max().array() + slack_mm};
+}
+
 }  // namespace
 
 void join_convex(FlatPolygons& polygons, double least_area) {
+  if (polygons.size() < 2) return;
+  // What does not touch has no convex union.
+  const double slack_mm = std::sqrt(least_area);
+  boost::container::small_vector<Box, 16> boxes;
+  for (const FlatPolygon& polygon : polygons) boxes.push_back(box_around(polygon, slack_mm));
   for (std::size_t i = 0; i < polygons.size(); ++i)
     for (std::size_t j = i + 1; j < polygons.size();) {
+      if (!boxes[i].intersects(boxes[j])) {
+        ++j;
+        continue;
+      }
       FlatPolygon hull = convex_hull(polygons[i], polygons[j], least_area);
       if (std::abs(area(hull) - area(polygons[i]) - area(polygons[j])) > least_area) {
         ++j;
@@ -43,6 +62,8 @@ void join_convex(FlatPolygons& polygons, double least_area) {
       }
       polygons[i] = std::move(hull);
       polygons.erase(polygons.begin() + static_cast<std::ptrdiff_t>(j));
+      boxes[i].extend(boxes[j]);
+      boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(j));
       j = i + 1;  // those that did not fit before may fit now
     }
 }

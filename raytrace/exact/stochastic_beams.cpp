@@ -160,6 +160,7 @@ bool StochasticBeams::advance() {
   result_.complete = strong_->run(std::numeric_limits<std::uint64_t>::max(), cancel_) == BeamWalk::End::done;
   if (!result_.complete) return true;
   const Queue first = queue_of(strong_->kept());
+  first_survivors_ = std::max(1.0, std::ceil(first.power / (kThinning * threshold_)));
   std::vector<std::optional<Replicate>> replicates(kReplicates);
   for_each_in_parallel(kReplicates, [&](std::size_t k) {
     replicates[k] = replicate(static_cast<std::uint32_t>(k), first);
@@ -214,7 +215,14 @@ double StochasticBeams::next_ray_power() const {
 
 double StochasticBeams::expected_work() const {
   if (result_.reached_target) return work();
-  const double more = std::pow(threshold_ / next_threshold(), kWorkSlope);
+  const double next = next_threshold();
+  // Of beams that are weaker than the next threshold as well, as all are of an array of many elements, there are as
+  // many more survivors as that is lower.
+  double still_weak = 0.0;
+  for (const Beam& beam : strong_->kept())
+    if (beam.power < next) still_weak += beam.power;
+  const double more =
+      std::max(std::pow(threshold_ / next, kWorkSlope), still_weak / (kThinning * next) / first_survivors_);
   if (more * static_cast<double>(strong_->kept().size()) > static_cast<double>(kMostKept))
     return std::numeric_limits<double>::infinity();
   return work() + static_cast<double>(beam_work_) * more +

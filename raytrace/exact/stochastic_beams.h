@@ -82,6 +82,7 @@ class StochasticBeams {
   std::uint64_t work_ = 0;
   std::uint64_t beam_work_ = 0, ray_work_ = 0;  ///< of the last round alone
   std::uint64_t weak_beams_ = 0;
+  double first_survivors_ = 1.0;  ///< of a replicate's first generation in the last round
   MonteCarloResult result_;
 };
 

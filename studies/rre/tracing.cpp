@@ -35,6 +35,9 @@ constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
 /// wanders far, and little of it comes back.
 constexpr double kLooksForCubes = 300'000.0;
 constexpr double kLooksForPrisms = 1'000'000.0;
+/// Facets of a cell beyond which they take more, as measured with rounded edges: 300 times as many at 24.
+constexpr double kFewFacets = 4.0;
+constexpr double kGrowthWithFacets = 3.0;
 /// What beams may take below the error that was requested: some 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
 /// Share of what rays are expected to take that beams may take, however long they are expected to.
@@ -211,9 +214,18 @@ class DesignTracing {
   double ns_of_segment() const {
     const bool is_cell = ray_engine() == raytrace::MonteCarlo::Engine::cell;
     const SegmentCost cost = !is_cell ? kEmbree : model_.part.period_mm ? kCell : kCellOfFinite;
+    return cost.ns + cost.ns_per_facet * facets_of_cell();
+  }
+
+  double facets_of_cell() const {
     const geometry::SurfacePatch& patch = model_.part.patches.front();
-    return cost.ns +
-           cost.ns_per_facet * static_cast<double>(patch.facets.size()) / static_cast<double>(patch.cells.size());
+    return static_cast<double>(patch.facets.size()) / static_cast<double>(patch.cells.size());
+  }
+
+  double looks_of_stochastic() const {
+    const double looks =
+        std::holds_alternative<geometry::RtpElement>(model_.part.spec.element) ? kLooksForPrisms : kLooksForCubes;
+    return looks * std::max(1.0, std::pow(facets_of_cell() / kFewFacets, kGrowthWithFacets));
   }
 
   const raytrace::BackSurface* scattering() const { return scattering_ ? &*scattering_ : nullptr; }
@@ -287,8 +299,7 @@ class DesignTracing {
     const raytrace::Optics& optics = light(wavelength).optics;
     const raytrace::Sampling sampling = sampling_of(request_, light(wavelength).weight, wavelength);
     const double ns_per_segment = ns_of_segment();
-    const double first_looks =
-        std::holds_alternative<geometry::RtpElement>(model_.part.spec.element) ? kLooksForPrisms : kLooksForCubes;
+    const double first_looks = looks_of_stochastic();
     std::optional<raytrace::BeamTrace> beams;
     if (optics.is_smooth()) beams.emplace(*beam_tracer_, optics, illumination, cones(), beams_);
     std::optional<raytrace::StochasticBeams> stochastic;
