@@ -9,6 +9,7 @@ retrace_test(command_tests
     app/chiseling_command_test.cpp
     app/fabricate_test.cpp
     app/metrology_test.cpp
+    app/modules_test.cpp
     app/number_list_test.cpp
     app/photometry_test.cpp
     app/plane_test.cpp
