@@ -112,5 +112,24 @@ TEST_F(ToolsRun, ElsewhereNothingIsInstalledAndWhatLacksIsToldInTheEnd) {
   EXPECT_EQ(asked(), "");
 }
 
+TEST(PackageList, IsWhatTheDebianPackageIsBuiltWith) {
+  const std::vector<std::string> control = lines_of(read_text(fs::path(RETRACE_SOURCE_DIR) / "debian/control"));
+  const std::vector<std::string> list = lines_of(read_text(fs::path(RETRACE_SOURCE_DIR) / "tools/packages.txt"));
+  const auto begin = std::find(list.begin(), list.end(), "[run]");
+  const auto end = std::find(begin, list.end(), "[test]");
+  ASSERT_GT(end - begin, 20);
+  for (auto line = begin + 1; line != end; ++line) {
+    const std::string package = line->substr(0, line->find(' '));
+    // The compiler is there in any build of packages, mpirun is not needed in one.
+    if (package.empty() || package == "g++" || package == "openmpi-bin") continue;
+    EXPECT_TRUE(std::any_of(control.begin(), control.end(),
+                            [&](const std::string& wanted) {
+                              return wanted.starts_with(" " + package + ",") ||
+                                     wanted.starts_with(" " + package + " (");
+                            }))
+        << "debian/control builds without " << package;
+  }
+}
+
 }  // namespace
 }  // namespace retrace::test::tools_test
