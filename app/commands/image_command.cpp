@@ -14,6 +14,7 @@
 #include "app/shared_arguments.h"
 #include "core/atomic_file.h"
 #include "core/message_text.h"
+#include "core/pictures.h"
 #include "core/text.h"
 #include "materials/io/spectrum_reader.h"
 #include "report/io/picture_file.h"
@@ -166,8 +167,7 @@ studies::CameraRequest camera_request(const ImageOptions& options, const CommonO
 /// Before any work is done for pictures that could not be written; after what is cheaper to check, as what writes them
 /// takes half a second to load.
 void check_can_draw(const CommonOptions& common) {
-  if (!common.out.empty() && !report::can_write_pictures())
-    throw InputError("this program was built without OpenImageIO, which writes pictures");
+  if (!common.out.empty()) picture_files();
 }
 
 ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, studies::Design design) {

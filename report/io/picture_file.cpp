@@ -6,15 +6,6 @@
 
 namespace retrace::report {
 
-bool can_write_pictures() {
-  try {
-    picture_files();
-    return true;
-  } catch (const OutputError&) {
-    return false;
-  }
-}
-
 std::string exr_file(const FloatPicture& picture) {
   const PictureFiles& files = picture_files();
   try {

@@ -10,9 +10,6 @@
 
 namespace retrace::report {
 
-/// Whether the module that writes pictures is there.
-bool can_write_pictures();
-
 /// The picture as an OpenEXR file; the same picture gives the same bytes. \throw OutputError if it cannot be made
 std::string exr_file(const FloatPicture& picture);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/sweep: messages between the ranks of an MPI job. MPI stays behind this file and its .cpp.
+// Internal to studies/sweep: messages between the ranks of an MPI job. MPI itself is in a module, mpi_module.cpp.
 
 #include <chrono>
 #include <memory>
@@ -21,39 +21,36 @@ struct Letter {
 /// here waits for MPI without a limit. One thread reads; any thread may post.
 class MpiMailbox {
  public:
-  using Clock = std::chrono::steady_clock;
-
-  /// Starts MPI. \param sign_of_life how often the other ranks are told that this one is at work: rank 0 tells all, the
-  /// others tell rank 0 \throw BudgetError if MPI has not started after ten minutes
-  explicit MpiMailbox(std::chrono::milliseconds sign_of_life);
   /// Without close(): leaves MPI as it is.
-  ~MpiMailbox();
-  MpiMailbox(const MpiMailbox&) = delete;
-  MpiMailbox& operator=(const MpiMailbox&) = delete;
+  virtual ~MpiMailbox() = default;
 
-  int rank() const;
-  int size() const;
+  /// Waits for MPI, which starts when the mailbox is made. \return whether it has
+  virtual bool wait_for_start(std::chrono::milliseconds patience) = 0;
+
+  /// \pre MPI has started, here and below
+  virtual int rank() const = 0;
+  virtual int size() const = 0;
 
   /// Sends a letter without waiting for it to go. \param tag > 0
-  void post(int to, int tag, std::string bytes);
+  virtual void post(int to, int tag, std::string bytes) = 0;
   /// The next letter, if one comes in time.
-  std::optional<Letter> take(std::chrono::microseconds patience);
+  virtual std::optional<Letter> take(std::chrono::microseconds patience) = 0;
   /// For how long nothing, not even a sign of life, has come from a rank.
-  std::chrono::duration<double> silence(int rank) const;
+  virtual std::chrono::duration<double> silence(int rank) const = 0;
   /// Counts all silences from now on: when this process itself has been away.
-  void forgive_silence();
+  virtual void forgive_silence() = 0;
   /// Nothing more is told to a rank that was given up; what is on its way to it is not waited for.
-  void forget(int rank);
+  virtual void forget(int rank) = 0;
 
   /// Waits until what was posted has gone. \return whether it has
-  bool flush(std::chrono::milliseconds patience);
+  virtual bool flush(std::chrono::milliseconds patience) = 0;
   /// Ends MPI together with all other ranks. \return whether that came off in time; if not, MPI is left as it is and
   /// the process is to end with _exit()
-  bool close(std::chrono::milliseconds patience);
-
- private:
-  struct State;
-  std::shared_ptr<State> state_;  ///< shared with the thread, which may outlive this
+  virtual bool close(std::chrono::milliseconds patience) = 0;
 };
+
+/// Starts MPI. \param sign_of_life how often the other ranks are told that this one is at work: rank 0 tells all, the
+/// others tell rank 0 \throw OutputError if the module with MPI cannot be loaded
+std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life);
 
 }  // namespace retrace::studies

@@ -28,6 +28,8 @@ using Clock = std::chrono::steady_clock;
 /// A rank of which nothing is heard for so long is given up, unless the environment says otherwise.
 constexpr double kSilenceS = 15.0;
 constexpr const char* kSilenceVariable = "RETRACE_MPI_SILENCE_S";
+/// A large job may take its time to start.
+constexpr std::chrono::minutes kStart{10};
 /// How long rank 0 waits for the others to leave, and every rank for MPI to end.
 constexpr std::chrono::seconds kPatience{10};
 // And for those that are interrupted, within the second that an interrupt may take.
@@ -65,8 +67,8 @@ std::chrono::duration<double> silence_limit() {
 
 struct MpiSession::State {
   std::chrono::duration<double> silence = silence_limit();
-  MpiMailbox mailbox{
-      std::chrono::milliseconds(static_cast<long>(std::min(500.0, 1000.0 * silence_limit().count() / 6.0)))};
+  std::unique_ptr<MpiMailbox> mailbox =
+      open_mpi_mailbox(std::chrono::milliseconds(static_cast<long>(std::min(500.0, 1000.0 * silence.count() / 6.0))));
   std::set<int> there;      ///< rank 0: the others that were not given up
   std::set<int> at_work;    ///< rank 0: those of them that have not said that they leave
   bool lost_ranks = false;  ///< MPI cannot be ended in order
@@ -76,25 +78,25 @@ struct MpiSession::State {
   std::vector<std::string> remarks;
   Clock::time_point looked_last = Clock::now();
 
-  bool is_silent(int rank) const { return mailbox.silence(rank) > silence; }
+  bool is_silent(int rank) const { return mailbox->silence(rank) > silence; }
 
   /// A process that was stopped for a while, or waited for its disk, has heard nothing meanwhile.
   void look() {
     const auto now = Clock::now();
-    if (now - looked_last > std::chrono::seconds(1)) mailbox.forgive_silence();
+    if (now - looked_last > std::chrono::seconds(1)) mailbox->forgive_silence();
     looked_last = now;
   }
 
   void send_tasks(int to, const std::vector<std::uint64_t>& tasks) {
-    mailbox.post(to, Tag::deal,
-                 std::string(reinterpret_cast<const char*>(tasks.data()), tasks.size() * sizeof(std::uint64_t)));
+    mailbox->post(to, Tag::deal,
+                  std::string(reinterpret_cast<const char*>(tasks.data()), tasks.size() * sizeof(std::uint64_t)));
   }
 
   void give_up(int rank) {
     there.erase(rank);
     at_work.erase(rank);
     lost_ranks = true;
-    mailbox.forget(rank);
+    mailbox->forget(rank);
   }
 
   void end_rank_0();
@@ -103,11 +105,11 @@ struct MpiSession::State {
 
 /// Tells all ranks to end; ranks that do not answer within kPatience are given up.
 void MpiSession::State::end_rank_0() {
-  for (const int rank : there) mailbox.post(rank, Tag::go, lost_ranks ? "" : std::string(kAllAreThere));
+  for (const int rank : there) mailbox->post(rank, Tag::go, lost_ranks ? "" : std::string(kAllAreThere));
   const auto deadline = Clock::now() + kPatience;
   std::set<int> open = there;
   while (!open.empty() && Clock::now() < deadline) {
-    const std::optional<Letter> letter = mailbox.take(kLook);
+    const std::optional<Letter> letter = mailbox->take(kLook);
     if (letter && letter->tag == Tag::leaving && letter->bytes.empty()) open.erase(letter->rank);
   }
   for (const int rank : open) give_up(rank);
@@ -116,7 +118,7 @@ void MpiSession::State::end_rank_0() {
 void MpiSession::State::end_other() {
   while (!may_go) {
     look();
-    const std::optional<Letter> letter = mailbox.take(kLook);
+    const std::optional<Letter> letter = mailbox->take(kLook);
     if (letter && letter->tag == Tag::go) {
       may_go = true;
       lost_ranks = letter->bytes != kAllAreThere;
@@ -125,7 +127,7 @@ void MpiSession::State::end_other() {
       lost_ranks = true;
     }
   }
-  mailbox.post(0, Tag::leaving, "");
+  mailbox->post(0, Tag::leaving, "");
 }
 
 bool MpiSession::is_launched() {
@@ -134,8 +136,10 @@ bool MpiSession::is_launched() {
 }
 
 MpiSession::MpiSession() : state_(std::make_unique<State>()) {
+  if (!state_->mailbox->wait_for_start(kStart))
+    throw BudgetError("MPI has not started after ten minutes: is a rank missing?");
   if (rank() != 0) return;
-  for (int other = 1; other < state_->mailbox.size(); ++other) {
+  for (int other = 1; other < state_->mailbox->size(); ++other) {
     state_->there.insert(other);
     state_->at_work.insert(other);
   }
@@ -153,14 +157,14 @@ bool MpiSession::end() {
     state.end_rank_0();
   else
     state.end_other();
-  const bool has_gone = state.mailbox.flush(std::chrono::seconds(2));
+  const bool has_gone = state.mailbox->flush(std::chrono::seconds(2));
   // With ranks gone astray MPI would wait for them for ever.
-  state.ended_well = has_gone && !state.lost_ranks && state.mailbox.close(kPatience);
+  state.ended_well = has_gone && !state.lost_ranks && state.mailbox->close(kPatience);
   return state.ended_well;
 }
 
 int MpiSession::rank() const {
-  return state_->mailbox.rank();
+  return state_->mailbox->rank();
 }
 
 std::vector<std::string> MpiSession::remarks() const {
@@ -311,7 +315,7 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
     while (!is_cancelled(cancel)) {
       own.rethrow();
       state.look();
-      if (const std::optional<Letter> letter = state.mailbox.take(kLook)) read(*letter);
+      if (const std::optional<Letter> letter = state.mailbox->take(kLook)) read(*letter);
       deal_out();
       give_up_silent();
       if (dealer.is_finished()) return true;
@@ -321,18 +325,18 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
   const auto deadline = Clock::now() + kLastCall;
   const auto has_tasks = [&](int rank) { return dealer.has_tasks(rank); };
   while (std::any_of(state.at_work.begin(), state.at_work.end(), has_tasks) && Clock::now() < deadline)
-    if (const std::optional<Letter> letter = state.mailbox.take(kLook)) read(*letter);
+    if (const std::optional<Letter> letter = state.mailbox->take(kLook)) read(*letter);
   return dealer.is_finished();
 }
 
 void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Cancellation* cancel) {
   State& state = *state_;
-  const auto ask = [&] { state.mailbox.post(0, Tag::ask, std::to_string(slots)); };
+  const auto ask = [&] { state.mailbox->post(0, Tag::ask, std::to_string(slots)); };
   ask();
   bool is_quick = false;
   while (!is_cancelled(cancel)) {
     state.look();
-    const std::optional<Letter> letter = state.mailbox.take(kLook);
+    const std::optional<Letter> letter = state.mailbox->take(kLook);
     if (!letter && state.is_silent(0)) return;
     if (!letter) continue;
     if (letter->tag == Tag::go) {
@@ -347,7 +351,7 @@ void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Canc
     const auto start = Clock::now();
     raytrace::for_each_in_parallel(tasks.size(), [&](std::size_t k) {
       if (const auto bytes = compute(tasks[k], cancel))
-        state.mailbox.post(0, Tag::result, bytes_of_result(tasks[k], *bytes));
+        state.mailbox->post(0, Tag::result, bytes_of_result(tasks[k], *bytes));
     });
     if (!is_quick && !is_cancelled(cancel)) ask();
     is_quick = Clock::now() - start < kQuick;
@@ -357,7 +361,7 @@ void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Canc
 }
 
 void MpiSession::leave(const std::string& why) {
-  state_->mailbox.post(0, Tag::leaving, why);
+  state_->mailbox->post(0, Tag::leaving, why);
 }
 
 }  // namespace retrace::studies

@@ -19,8 +19,8 @@ class MpiSession {
  public:
   /// Whether mpirun or srun launched this process with MPI.
   static bool is_launched();
-  /// Initialises MPI. \pre is_launched(); once in a process \throw InputError if retrace was built without MPI, or for
-  /// a limit of silence (RETRACE_MPI_SILENCE_S) out of range; BudgetError if MPI does not start
+  /// Initialises MPI. \pre is_launched(); once in a process \throw OutputError if the module with MPI cannot be loaded;
+  /// InputError for a limit of silence (RETRACE_MPI_SILENCE_S) out of range; BudgetError if MPI does not start
   MpiSession();
   /// As end().
   ~MpiSession();

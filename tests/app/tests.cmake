@@ -9,6 +9,7 @@ retrace_test(command_tests
     app/chiseling_command_test.cpp
     app/fabricate_test.cpp
     app/metrology_test.cpp
+    app/modules_test.cpp
     app/number_list_test.cpp
     app/photometry_test.cpp
     app/plane_test.cpp
@@ -20,6 +21,7 @@ retrace_test(command_tests
     app/rre_test.cpp
     app/schema_command_test.cpp
     app/texture_test.cpp
+    app/tools_test.cpp
     app/validate_test.cpp
     app/verify_parts_test.cpp
     app/verify_test.cpp

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# What tools/run and tools/test share: finding packages, configuring, building. To be sourced; the caller has set `root`
+# What the scripts of tools/ share: finding packages, configuring, building. To be sourced; the caller has set `root`
 # to the repository's folder. Everything said here goes to standard error: standard output belongs to the program.
 
 : "${root:?set by the script that sources this}"
@@ -41,9 +41,37 @@ missing_packages() {
   done
 }
 
+# os KEY - a value of /etc/os-release; RETRACE_OS_RELEASE names another file, for tests.
+os() {
+  # shellcheck source=/dev/null
+  (. "${RETRACE_OS_RELEASE:-/etc/os-release}" 2>/dev/null && printf '%s' "${!1-}")
+}
+
+# is_debian - and one whose packages are new enough, as those of testing are, which has no number. Ends where they are not.
+is_debian() {
+  command -v dpkg-query >/dev/null || return 1
+  [[ $(os ID) == debian ]] || return 1
+  local version
+  version=$(os VERSION_ID)
+  [[ -z $version ]] || ((${version%%.*} >= 12)) ||
+    give_up "$(os PRETTY_NAME) is too old: use Debian 12 or later, or a container of it (docs/install.md)"
+}
+
+# need_cmake - ends where there is one that is too old. Without any it is among the packages.
+need_cmake() {
+  local place wanted found
+  place=$(command -v cmake) || return 0
+  wanted=$(sed --quiet 's/^cmake_minimum_required(VERSION \([0-9.]*\)).*/\1/p' "$root/CMakeLists.txt")
+  found=$(cmake --version 2>/dev/null | sed --quiet 's/^cmake version \([0-9.]*\).*/\1/p') || true
+  printf '%s\n' "$wanted" "${found:-0}" | sort --version-sort --check=quiet ||
+    give_up "$place is CMake ${found:-of no version}, $wanted or later is needed: put a newer one first in PATH (Debian 12 has it in the package cmake)"
+}
+
+is_root() { [[ $(id -u) == 0 ]]; }
+
 # as_root COMMAND... - through sudo unless we are root already.
 as_root() {
-  if ((EUID == 0)); then "$@"; else sudo "$@"; fi
+  if is_root; then "$@"; else sudo "$@"; fi
 }
 
 apt_install() {
@@ -56,12 +84,16 @@ apt_update() {
   as_root apt-get update -o DPkg::Lock::Timeout=300 >&2
 }
 
-# need_packages MAY_INSTALL SECTION... - sees to it that they are there; MAY_INSTALL is yes or no.
+# need_packages MAY_INSTALL SECTION... - sees to it that they are there; MAY_INSTALL is yes or no. What is in the way is found
+# before anything is installed.
 need_packages() {
   local may_install=$1
   shift
-  if ! command -v dpkg-query >/dev/null; then
-    say "no dpkg here: this is not Debian, so the libraries of docs/dependencies.md are taken to be installed"
+  need_cmake
+  if ! is_debian; then
+    local system
+    system=$(os PRETTY_NAME)
+    say "${system:-this system} is not Debian, so the libraries of docs/dependencies.md are taken to be installed"
     return 0
   fi
   local missing
@@ -69,10 +101,9 @@ need_packages() {
   ((${#missing[@]})) || return 0
 
   local command="apt-get install --no-install-recommends ${missing[*]}"
-  [[ $may_install == yes ]] || give_up "missing packages: ${missing[*]}
-  install them as root with:  $command"
+  [[ $may_install == yes ]] || give_up "missing packages; install them as root with:  $command"
   command -v apt-get >/dev/null || give_up "missing packages, and no apt-get to install them: ${missing[*]}"
-  if ((EUID != 0)); then
+  if ! is_root; then
     command -v sudo >/dev/null || give_up "missing packages, and neither root nor sudo to install them; ask for:  $command"
     # Without a terminal sudo could only wait for a password that never comes.
     [[ -t 0 ]] || sudo --non-interactive true 2>/dev/null ||
@@ -80,13 +111,15 @@ need_packages() {
   fi
 
   say "will install with apt-get: ${missing[*]}"
+  local no_lists="apt-get could not fetch the package lists: see to the network or apt's sources, then run this again"
+  local not_installed="apt-get could not install packages, see above; with a network and apt's sources in order, run this again"
   if ! compgen -G '/var/lib/apt/lists/*_Packages*' >/dev/null; then
-    apt_update || give_up "apt-get update failed"
-    apt_install "${missing[@]}" || give_up "apt-get could not install: ${missing[*]}"
+    apt_update || give_up "$no_lists"
+    apt_install "${missing[@]}" || give_up "$not_installed"
   elif ! apt_install "${missing[@]}"; then
     # Old lists name versions that the mirror no longer holds.
-    apt_update || give_up "apt-get update failed"
-    apt_install "${missing[@]}" || give_up "apt-get could not install: ${missing[*]}"
+    apt_update || give_up "$no_lists"
+    apt_install "${missing[@]}" || give_up "$not_installed"
   fi
 }
 
@@ -104,11 +137,19 @@ configure() {
   preset=$1
   [[ " $* " != *" ${known##* } "* || -z $known ]] || preset=${known##* }
   say "configuring $folder"
+  local is_new=
+  [[ -e $folder ]] || is_new=yes
   rm -f "$folder/.configured"
   # The cache of a checkout that was moved is of no use.
   local fresh=()
   [[ ! -f $folder/CMakeCache.txt || $known == "$root "* ]] || fresh=(--fresh)
-  (cd "$root" && cmake --preset "$preset" "${fresh[@]}") >&2 || give_up "cmake could not configure $folder"
+  if ! (cd "$root" && cmake --preset "$preset" "${fresh[@]}") >&2; then
+    if [[ -n $is_new ]]; then
+      rm -rf "$folder"
+      rmdir --ignore-fail-on-non-empty "$root/build" 2>/dev/null || true
+    fi
+    give_up "cmake could not configure $folder: install what it names above, of docs/dependencies.md"
+  fi
   printf '%s\n' "$root $presets $preset" >"$folder/.configured"
 }
 

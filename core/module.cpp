@@ -1,0 +1,37 @@
+#include "core/module.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace retrace {
+namespace {
+
+/// The folder of all modules, before and after installation.
+std::filesystem::path module_folder() {
+  std::error_code ignored;
+  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "lib" / "retrace";
+}
+
+}  // namespace
+
+void* module_function(const Module& module) {
+  const std::filesystem::path file = module_folder() / (std::string(module.name) + ".so");
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw OutputError(
+        fmt::format("{}: retrace was built without {}: {} is missing", module.lack, module.library, file.string()));
+  void* const loaded = ::dlopen(file.c_str(), RTLD_NOW | (module.is_global ? RTLD_GLOBAL : RTLD_LOCAL));
+  void* const function = loaded == nullptr ? nullptr : ::dlsym(loaded, std::string(module.function).c_str());
+  if (function != nullptr) return function;
+  const char* const why = ::dlerror();
+  throw OutputError(fmt::format("{}: {}; {} is in the Debian package {}", module.lack,
+                                why != nullptr ? why : "the module is damaged", module.library, module.package));
+}
+
+}  // namespace retrace

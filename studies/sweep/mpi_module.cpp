@@ -1,0 +1,275 @@
+// The module that is loaded where mpirun or srun launched the program. The one place that names MPI.
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <list>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "studies/sweep/mpi_mailbox.h"
+
+namespace retrace::studies {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::microseconds kPoll{100};
+constexpr int kSignOfLife = 0;
+
+/// A message on its way; its bytes stay where they are until MPI is done with them.
+struct Transfer {
+  MPI_Request request = MPI_REQUEST_NULL;
+  int rank = 0;
+  int tag = 0;
+  std::string bytes;
+};
+
+bool is_done(Transfer& transfer) {
+  int done = 0;
+  MPI_Test(&transfer.request, &done, MPI_STATUS_IGNORE);
+  return done != 0;
+}
+
+/// What the mailbox and the thread that speaks with MPI share.
+struct MailboxState {
+  std::chrono::milliseconds sign_of_life{500};
+
+  // Shared, under the mutex.
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  bool started = false;
+  bool closing = false;
+  bool abandoned = false;
+  bool ended = false;
+  int rank = 0;
+  int size = 1;
+  std::deque<Letter> posted;  ///< with the rank that each is for
+  std::deque<Letter> arrived;
+  bool sending = false;  ///< letters are on their way
+  std::set<int> forgotten;
+  std::vector<Clock::time_point> heard;
+
+  // The thread's own. Lists, as MPI holds addresses of what is in them.
+  std::list<Transfer> outgoing;
+  std::list<Transfer> incoming;
+  std::list<Transfer> given_up;  ///< may be written to as long as the process lives
+  Clock::time_point told_last;
+
+  void run();
+
+ private:
+  void start();
+  bool send_posted();
+  bool receive();
+  void tell_signs_of_life();
+  void send(int to, int tag, std::string bytes);
+  void give_up_forgotten();
+};
+
+void MailboxState::start() {
+  int provided = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+  // A rank that dies must not take this one along.
+  MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+  int own_rank = 0;
+  int ranks = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &own_rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  const std::lock_guard lock(mutex);
+  rank = own_rank;
+  size = ranks;
+  heard.assign(static_cast<std::size_t>(ranks), Clock::now());
+  started = true;
+  changed.notify_all();
+}
+
+void MailboxState::send(int to, int tag, std::string bytes) {
+  Transfer& transfer = outgoing.emplace_back(Transfer{MPI_REQUEST_NULL, to, tag, std::move(bytes)});
+  MPI_Isend(transfer.bytes.data(), static_cast<int>(transfer.bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD,
+            &transfer.request);
+}
+
+bool MailboxState::send_posted() {
+  std::deque<Letter> letters;
+  {
+    const std::lock_guard lock(mutex);
+    letters.swap(posted);
+    sending = sending || !letters.empty();
+  }
+  for (Letter& letter : letters) send(letter.rank, letter.tag, std::move(letter.bytes));
+  outgoing.remove_if(is_done);
+  if (outgoing.empty()) {
+    const std::lock_guard lock(mutex);
+    sending = !posted.empty();
+    changed.notify_all();
+  }
+  return !letters.empty();
+}
+
+/// Takes what has come; a long message may need several calls. \return whether anything had come
+bool MailboxState::receive() {
+  for (;;) {
+    int is_there = 0;
+    MPI_Status status;
+    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &is_there, &status);
+    if (is_there == 0) break;
+    int bytes = 0;
+    MPI_Get_count(&status, MPI_BYTE, &bytes);
+    Transfer& transfer = incoming.emplace_back(Transfer{MPI_REQUEST_NULL, status.MPI_SOURCE, status.MPI_TAG,
+                                                        std::string(static_cast<std::size_t>(bytes), '\0')});
+    MPI_Irecv(transfer.bytes.data(), bytes, MPI_BYTE, transfer.rank, transfer.tag, MPI_COMM_WORLD, &transfer.request);
+  }
+  bool any = false;
+  std::set<int> unfinished;  // letters of a rank arrive in their order
+  for (auto transfer = incoming.begin(); transfer != incoming.end();) {
+    if (unfinished.contains(transfer->rank) || !is_done(*transfer)) {
+      unfinished.insert(transfer->rank);
+      ++transfer;
+      continue;
+    }
+    const std::lock_guard lock(mutex);
+    heard[static_cast<std::size_t>(transfer->rank)] = Clock::now();
+    if (transfer->tag != kSignOfLife) {
+      arrived.push_back({transfer->rank, transfer->tag, std::move(transfer->bytes)});
+      changed.notify_all();
+    }
+    transfer = incoming.erase(transfer);
+    any = true;
+  }
+  return any;
+}
+
+void MailboxState::tell_signs_of_life() {
+  const auto now = Clock::now();
+  if (now - told_last < sign_of_life) return;
+  told_last = now;
+  std::vector<int> others;
+  {
+    const std::lock_guard lock(mutex);
+    for (int other = 0; other < size; ++other)
+      if (other != rank && (rank == 0 || other == 0) && !forgotten.contains(other)) others.push_back(other);
+  }
+  for (const int other : others) send(other, kSignOfLife, "");
+}
+
+void MailboxState::give_up_forgotten() {
+  std::set<int> ranks;
+  {
+    const std::lock_guard lock(mutex);
+    ranks = forgotten;
+  }
+  if (ranks.empty()) return;
+  for (std::list<Transfer>* const list : {&outgoing, &incoming})
+    for (auto transfer = list->begin(); transfer != list->end();) {
+      const auto next = std::next(transfer);
+      if (ranks.contains(transfer->rank)) given_up.splice(given_up.end(), *list, transfer);
+      transfer = next;
+    }
+}
+
+void MailboxState::run() {
+  start();
+  for (;;) {
+    give_up_forgotten();
+    const bool sent = send_posted();
+    const bool received = receive();
+    std::unique_lock lock(mutex);
+    if (abandoned) break;
+    if (closing && posted.empty() && outgoing.empty()) {
+      lock.unlock();
+      MPI_Finalize();
+      break;
+    }
+    const bool tells = !closing;
+    if (!sent && !received) changed.wait_for(lock, kPoll, [this] { return !posted.empty() || abandoned; });
+    lock.unlock();
+    if (tells) tell_signs_of_life();
+  }
+  const std::lock_guard lock(mutex);
+  ended = true;
+  changed.notify_all();
+}
+
+class Mailbox final : public MpiMailbox {
+ public:
+  explicit Mailbox(std::chrono::milliseconds sign_of_life) : state_(std::make_shared<MailboxState>()) {
+    state_->sign_of_life = sign_of_life;
+    // Detached: a thread that MPI keeps for ever cannot be joined.
+    std::thread([state = state_] { state->run(); }).detach();
+  }
+
+  ~Mailbox() override {
+    std::unique_lock lock(state_->mutex);
+    state_->abandoned = true;
+    state_->changed.notify_all();
+    state_->changed.wait_for(lock, std::chrono::seconds(1), [this] { return state_->ended; });
+  }
+
+  bool wait_for_start(std::chrono::milliseconds patience) override {
+    std::unique_lock lock(state_->mutex);
+    return state_->changed.wait_for(lock, patience, [this] { return state_->started; });
+  }
+
+  int rank() const override { return state_->rank; }
+  int size() const override { return state_->size; }
+
+  void post(int to, int tag, std::string bytes) override {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->forgotten.contains(to)) return;
+    state_->posted.push_back({to, tag, std::move(bytes)});
+    state_->sending = true;
+    state_->changed.notify_all();
+  }
+
+  std::optional<Letter> take(std::chrono::microseconds patience) override {
+    std::unique_lock lock(state_->mutex);
+    if (!state_->changed.wait_for(lock, patience, [this] { return !state_->arrived.empty(); })) return std::nullopt;
+    Letter letter = std::move(state_->arrived.front());
+    state_->arrived.pop_front();
+    return letter;
+  }
+
+  std::chrono::duration<double> silence(int rank) const override {
+    const std::lock_guard lock(state_->mutex);
+    return Clock::now() - state_->heard.at(static_cast<std::size_t>(rank));
+  }
+
+  void forgive_silence() override {
+    const std::lock_guard lock(state_->mutex);
+    std::fill(state_->heard.begin(), state_->heard.end(), Clock::now());
+  }
+
+  void forget(int rank) override {
+    const std::lock_guard lock(state_->mutex);
+    state_->forgotten.insert(rank);
+  }
+
+  bool flush(std::chrono::milliseconds patience) override {
+    std::unique_lock lock(state_->mutex);
+    return state_->changed.wait_for(lock, patience, [this] { return !state_->sending; });
+  }
+
+  bool close(std::chrono::milliseconds patience) override {
+    std::unique_lock lock(state_->mutex);
+    state_->closing = true;
+    state_->changed.notify_all();
+    return state_->changed.wait_for(lock, patience, [this] { return state_->ended; });
+  }
+
+ private:
+  std::shared_ptr<MailboxState> state_;  ///< shared with the thread, which may outlive this
+};
+
+}  // namespace
+}  // namespace retrace::studies
+
+extern "C" __attribute__((visibility("default"))) void retrace_mpi_mailbox(
+    std::chrono::milliseconds sign_of_life, std::unique_ptr<retrace::studies::MpiMailbox>& mailbox) {
+  mailbox = std::make_unique<retrace::studies::Mailbox>(sign_of_life);
+}

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/app/program.h"
+
+// A program without the modules that stand beside it, or without the libraries that they need.
+
+namespace retrace::test::modules_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What needs a module, and where it looks for it.
+struct Need {
+  std::string module;
+  std::string command;
+  std::string lack;
+  std::string package;
+};
+
+const std::vector<Need>& needs() {
+  static const std::vector<Need> all = {
+      {"retrace_step", "export d.toml part.step", "STEP cannot be written, STL and OBJ can",
+       "libocct-data-exchange-7.6"},
+      {"retrace_pictures", "image d.toml --detector -o out", "pictures cannot be read or written", "libopenimageio2.4"},
+      {"retrace_mpi", "roughness d.toml -o out", "ranks of mpirun or srun cannot work together", "openmpi-bin"}};
+  return all;
+}
+
+/// The program by itself in bin/, with its data.
+class Modules : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* name : {"bin", "share", "lib/retrace"}) fs::create_directories(folder_.path() / name);
+    std::error_code error;
+    fs::create_hard_link(RETRACE_PROGRAM, folder_.path() / "bin/retrace", error);
+    if (error) fs::copy_file(RETRACE_PROGRAM, folder_.path() / "bin/retrace");
+    fs::create_directory_symlink(fs::path(RETRACE_SOURCE_DIR) / "data", folder_.path() / "share/retrace");
+    folder_.write("d.toml", read_text(example("rtp_single_0p45mm.toml")));
+  }
+  Outcome run(const std::string& command) const {
+    return Child(folder_.path(), {"/bin/sh", "-c", "OMPI_COMM_WORLD_SIZE=2 exec bin/retrace " + command}).wait();
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Modules, WithoutOneTheMessageSaysWhatTheBuildLeftOut) {
+  for (const Need& need : needs()) {
+    const Outcome outcome = run(need.command);
+    expect_refused(outcome, need.lack + ": retrace was built without ", 3);
+    EXPECT_NE(outcome.err.find(need.module + ".so is missing"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(Modules, WithoutItsLibraryTheMessageNamesTheDebianPackage) {
+  for (const Need& need : needs()) {
+    folder_.write("lib/retrace/" + need.module + ".so", "not a library\n");
+    const Outcome outcome = run(need.command);
+    expect_refused(outcome, need.lack + ": ", 3);
+    EXPECT_TRUE(outcome.err.ends_with("is in the Debian package " + need.package + "\n")) << outcome.err;
+  }
+  EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+}
+
+TEST_F(Modules, TheProgramItselfNeedsNoneOfTheirLibraries) {
+  const std::string program = read_text(RETRACE_PROGRAM);
+  for (const char* library : {"libmpi", "libTKernel", "libOpenImageIO"})
+    EXPECT_EQ(program.find(std::string(library) + ".so"), std::string::npos) << library;
+}
+
+}  // namespace
+}  // namespace retrace::test::modules_test
