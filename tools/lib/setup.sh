@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# What tools/run and tools/test share: finding packages, configuring, building. To be sourced; the caller has set `root`
+# What the scripts of tools/ share: finding packages, configuring, building. To be sourced; the caller has set `root`
 # to the repository's folder. Everything said here goes to standard error: standard output belongs to the program.
 
 : "${root:?set by the script that sources this}"

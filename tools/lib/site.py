@@ -16,6 +16,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 import urllib.parse
 
 SOURCE, PROGRAM, BUILD = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
@@ -48,16 +49,37 @@ STYLE = """\
 .md-typeset img { background: #fff; border-radius: .1rem }
 .md-typeset img[src$=".svg"] { color-scheme: light }
 .md-typeset h1 code, .md-typeset td code { word-break: normal; overflow-wrap: anywhere }
+.formula { overflow-x: auto; overflow-y: hidden; margin: 1em 0 }
 .examples { display: grid; grid-template-columns: repeat(auto-fill, minmax(11rem, 1fr)); gap: .8rem }
 .examples a { display: block; font-size: .7rem }
 .examples img { width: 100%; height: 8rem; object-fit: contain }
 """
 
+KATEX = pathlib.Path("/usr/share/javascript/katex")
+SET_FORMULAS = """\
+for (const formula of document.querySelectorAll(".formula"))
+  katex.render(formula.textContent, formula, {displayMode: true});
+"""
+
+# Opened from a disk, a page may neither read the index of the search nor start its worker from a file: both are in a script.
+MAIN = """\
+{% extends "base.html" %}
+{% block extrahead %}
+<script>if (location.protocol === "file:") document.write('<script src="{{ 'search/from_disk.js' | url }}"><\\/script>')</script>
+{% endblock %}
+"""
+FROM_DISK = """\
+var __search = {index: Promise.resolve(%s)};
+window.Worker = class extends Worker {
+  constructor() { super(URL.createObjectURL(new Blob([%s], {type: "text/javascript"}))) }
+};
+"""
+
 faults = []
 
 
-def run(*arguments, **more):
-    return subprocess.run([str(argument) for argument in arguments], check=False, text=True, capture_output=True, **more)
+def run(*arguments):
+    return subprocess.run([str(argument) for argument in arguments], check=False, text=True, capture_output=True)
 
 
 def write(page, text):
@@ -90,8 +112,30 @@ def pipes_in_tables(line, _):
     """A bar within code within a table is written as \\|, which only some readers of Markdown take back."""
     if not line.startswith("|"):
         return line
-    return re.sub(r"`([^`]*\\\|[^`]*)`",
-                  lambda found: "<code>" + html.escape(found.group(1).replace("\\|", "|")).replace("|", "&#124;") + "</code>", line)
+    return re.sub(r"`([^`]*\\\|[^`]*)`", lambda found: "<code>" + html.escape(found.group(1).replace("\\|", "|")).replace(
+        "|", "&#124;") + "</code>", line)
+
+
+def set_formulas(page, text):
+    """Puts formulas of KaTeX in place of the lines that docs/theory/formulas.toml has them for."""
+    name = pathlib.PurePath(page)
+    formulas = tomllib.loads((SOURCE / "docs/theory/formulas.toml").read_text()).get(name.stem, {})
+    if str(name.parent) != "docs/theory":
+        return text
+    for plain, formula in formulas.items():
+        line = "\n    " + plain + "\n"
+        if text.count(line) != 1:
+            faults.append(f"docs/theory/formulas.toml: {page} has no line of its own: {plain}")
+        text = text.replace(line, f'\n<div class="formula">{html.escape(formula)}</div>\n', 1)
+    return text
+
+
+def copy_katex():
+    (PAGES / "katex").mkdir()
+    for name in ("katex.min.js", "katex.min.css"):
+        shutil.copy(KATEX / name, PAGES / "katex")
+    shutil.copytree(KATEX / "fonts", PAGES / "katex/fonts", ignore=shutil.ignore_patterns("*.ttf", "*.woff"))
+    (PAGES / "katex/set.js").write_text(SET_FORMULAS)
 
 
 def list_needs_blank():
@@ -168,6 +212,7 @@ class Pages:
                 continue  # a page that was made, not copied
             text = outside_of_blocks((SOURCE / page).read_text(), list_needs_blank())
             text = outside_of_blocks(outside_of_blocks(text, pipes_in_tables), lambda line, _: self.links(page, line))
+            text = set_formulas(page, text)
             write("index.md" if page == "README.md" else page, text)
 
 
@@ -245,8 +290,8 @@ def document_page():
     """Which JSON documents there are, from what the program says of itself."""
     manual = json.loads(run(PROGRAM, "manual", "--json", "-").stdout)
     formats = json.loads(run(PROGRAM, "schema", "--json", "-").stdout)["formats"]
-    lines = ["# JSON documents", "", "What commands write with `--json` and into their output folders. Each document names its `schema`; "
-             "the keys stand with the command.", "", "| document | written by |", "|---|---|"]
+    lines = ["# JSON documents", "", "What commands write with `--json` and into their output folders. Each document names "
+             "its `schema`; the keys stand with the command.", "", "| document | written by |", "|---|---|"]
     writers = {}
     for command in manual["commands"]:
         for schema in command["writes"]:
@@ -254,9 +299,9 @@ def document_page():
     for schema, names in sorted(writers.items()):
         links = ", ".join(f"[{name}](commands.md#retrace-{name})" for name in names)
         lines.append(f"| `{schema}` | {links} |")
-    lines += ["", "## File formats", "", "`retrace schema FORMAT` prints a JSON Schema of a file format, for editors and validators. FORMAT is one of:",
-              ""]
-    lines += ["- `" + (entry if isinstance(entry, str) else entry.get("format", entry.get("name", ""))) + "`" for entry in formats]
+    lines += ["", "## File formats", "", "`retrace schema FORMAT` prints a JSON Schema of a file format, for editors and "
+              "validators. FORMAT is one of:", ""]
+    lines += [f"- `{entry if isinstance(entry, str) else entry.get('format', entry.get('name', ''))}`" for entry in formats]
     write("docs/json_documents.md", "\n".join(lines) + "\n")
 
 
@@ -326,6 +371,7 @@ def main():
     shutil.rmtree(SITE, ignore_errors=True)
     PAGES.mkdir(parents=True)
     (PAGES / "site.css").write_text(STYLE)
+    copy_katex()
     example_pages()
     document_page()
     pages = Pages()
@@ -336,12 +382,19 @@ def main():
             pages.want(str(file.relative_to(SOURCE)))
     pages.gather()
     config = BUILD / "site.yml"
+    (BUILD / "site_theme").mkdir(exist_ok=True)
+    (BUILD / "site_theme/main.html").write_text(MAIN)
     config.write_text("INHERIT: " + json.dumps(str(SOURCE / "mkdocs.yml")) + "\n" +
                       "".join(f"{key}: {json.dumps(value)}\n" for key, value in (
-                          ("docs_dir", str(PAGES)), ("site_dir", str(SITE)), ("nav", navigation()))))
+                          ("docs_dir", str(PAGES)), ("site_dir", str(SITE)), ("nav", navigation()),
+                          ("theme", {"custom_dir": str(BUILD / "site_theme")}))))
     built = subprocess.run(["mkdocs", "build", "--strict", "--quiet", "--config-file", str(config)], check=False)
     if built.returncode != 0:
         faults.append("mkdocs build --strict: see above")
+    else:
+        worker = next(SITE.glob("assets/javascripts/workers/search.*.js")).read_text()
+        index = (SITE / "search/search_index.json").read_text()
+        (SITE / "search/from_disk.js").write_text(FROM_DISK % (index, json.dumps(worker)))
     count = check()
     for fault in faults:
         print(f"site: {fault}", file=sys.stderr)
