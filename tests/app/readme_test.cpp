@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 #include <optional>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -288,6 +289,61 @@ TEST(TutorialPages, AreReadStepByStep) {
   EXPECT_TRUE(is_line_like("a 99.0 b", "  a   99.9  b"));
   EXPECT_FALSE(is_line_like("a 99.0 b", "a 95.0 b"));
   EXPECT_FALSE(is_line_like("a 1", "a 1 2"));
+}
+
+/// Where a heading of a page may be linked to, as GitHub and mkdocs name it.
+std::string anchor_of(const std::string& heading) {
+  std::string anchor;
+  for (const char c : trimmed(heading)) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-')
+      anchor += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (c == ' ')
+      anchor += '-';
+  }
+  return anchor;
+}
+
+/// Lines that stand in no fenced block.
+std::vector<std::string> prose_of(const fs::path& page) {
+  std::vector<std::string> prose;
+  bool in_block = false;
+  for (const std::string& line : lines_of(read_text(page))) {
+    if (trimmed(line).starts_with("```"))
+      in_block = !in_block;
+    else if (!in_block)
+      prose.push_back(line);
+  }
+  return prose;
+}
+
+bool has_anchor(const fs::path& page, const std::string& anchor) {
+  return std::ranges::any_of(prose_of(page), [&](const std::string& line) {
+    return line.starts_with("#") && anchor_of(line.substr(line.find_first_not_of('#'))) == anchor;
+  });
+}
+
+TEST(Documentation, LinksLeadSomewhere) {
+  const fs::path root = RETRACE_SOURCE_DIR;
+  std::vector<fs::path> pages = {root / "README.md", root / "CONVENTIONS.md", root / "CONTRIBUTING.md",
+                                 root / "CHANGELOG.md"};
+  for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
+    if (entry.path().extension() == ".md") pages.push_back(entry.path());
+  const std::regex link(R"(\]\(([^()\s]+)\))");
+  int count = 0;
+  for (const fs::path& page : pages)
+    for (const std::string& line : prose_of(page))
+      for (std::sregex_iterator found(line.begin(), line.end(), link), end; found != end; ++found) {
+        const std::string target = (*found)[1];
+        if (target.find("://") != std::string::npos) continue;
+        const std::string path = target.substr(0, target.find('#'));
+        const fs::path goal = path.empty() ? page : page.parent_path() / path;
+        EXPECT_TRUE(fs::exists(goal)) << page << ": " << target;
+        const std::string anchor = target.substr(path.size() == target.size() ? target.size() : path.size() + 1);
+        const bool has_one = target.find('#') != std::string::npos && fs::exists(goal);
+        EXPECT_TRUE(!has_one || has_anchor(goal, anchor)) << page << ": " << target;
+        ++count;
+      }
+  EXPECT_GE(count, 100);
 }
 
 TEST(Readme, CommandsOfReadmeAndDocumentationRun) {

@@ -48,7 +48,10 @@ STYLE = """\
 .md-typeset table:not([class]) { font-size: .66rem }
 .md-typeset img { background: #fff; border-radius: .1rem }
 .md-typeset img[src$=".svg"] { color-scheme: light }
-.md-typeset h1 code, .md-typeset td code { word-break: normal; overflow-wrap: anywhere }
+.md-typeset h1 code { overflow-wrap: anywhere }
+.md-typeset td code { word-break: normal; overflow-wrap: break-word }
+.md-typeset td:first-child code { white-space: nowrap }
+.md-grid { max-width: 72rem }
 .formula { overflow-x: auto; overflow-y: hidden; margin: 1em 0 }
 .examples { display: grid; grid-template-columns: repeat(auto-fill, minmax(11rem, 1fr)); gap: .8rem }
 .examples a { display: block; font-size: .7rem }
