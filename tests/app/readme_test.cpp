@@ -2,18 +2,22 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <optional>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/app/program.h"
 
-// Every command that README.md and docs/*.md show is run as it stands there, in a folder that looks like the project's:
-// tools/run and retrace are the program, examples/ is the project's. Results such as build/... land in that folder.
+// Every command that README.md, docs/*.md and docs/tutorials/*.md show is run as it stands there, in a folder that
+// looks like the project's: tools/run and retrace are the program, examples/ is the project's. Results such as
+// build/... land in that folder. Of tutorials the files that they ask to be saved are written, and what they show is
+// what the program says.
 
 namespace retrace::test::readme_test {
 namespace {
@@ -35,27 +39,67 @@ std::string command_in(const std::string& line) {
   return trimmed(line.substr(0, line.find(" #")));
 }
 
-/// The commands of a page: lines of sh blocks, and indented lines with retrace that are no synopsis.
-std::vector<std::string> commands_of(const std::string& page) {
-  std::vector<std::string> commands;
-  bool in_block = false;
-  bool in_shell = false;
+/// What a page asks its reader to do, or shows.
+struct Step {
+  enum Kind { kCommand, kFile, kShown };
+  Kind kind = kCommand;
+  std::string text;  ///< a command; a file's content; a line that the commands before it print
+  std::string name;  ///< of a file
+  int code = 0;      ///< that a command ends with: told in its comment, "# exit code 1"
+};
+
+int code_in(const std::string& line) {
+  const std::string mark = "# exit code ";
+  const std::size_t at = line.find(mark);
+  return at == std::string::npos ? 0 : std::stoi(line.substr(at + mark.size()));
+}
+
+/// A block whose first line is "# my_NAME.ENDING" is a file to be saved; of text blocks the lines are what is printed.
+void add_block(const std::string& kind, const std::vector<std::string>& lines, std::vector<Step>& steps) {
+  const bool is_file = !lines.empty() && lines.front().starts_with("# my_") && kind != "sh" && kind != "text";
+  if (is_file) {
+    Step file{Step::kFile, "", lines.front().substr(2)};
+    for (const std::string& line : lines) file.text += line + "\n";
+    steps.push_back(file);
+  }
+  if (kind == "text")
+    for (const std::string& line : lines)
+      if (line != "...") steps.push_back({Step::kShown, line, ""});
+  if (kind != "sh") return;
   std::string begun;  // of a command that goes on in the next line
-  for (const std::string& line : lines_of(page)) {
-    if (trimmed(line).starts_with("```")) {
-      in_shell = !in_block && trimmed(line) == "```sh";
-      in_block = !in_block;
-      continue;
-    }
-    const bool is_indented = !in_block && line.starts_with("    retrace ") && line.find('[') == std::string::npos;
-    if (!in_shell && !is_indented) continue;
+  for (const std::string& line : lines) {
     std::string command = begun + command_in(line);
     begun.clear();
     if (command.ends_with('\\'))
       begun = command.substr(0, command.size() - 1);
     else if (!command.empty())
-      commands.push_back(command);
+      steps.push_back({Step::kCommand, command, "", code_in(line)});
   }
+}
+
+/// Its blocks, and indented lines with retrace that are no synopsis.
+std::vector<Step> steps_of(const std::string& page) {
+  std::vector<Step> steps;
+  std::optional<std::string> kind;  // of the block that is being read
+  std::vector<std::string> block;
+  for (const std::string& line : lines_of(page)) {
+    if (trimmed(line).starts_with("```")) {
+      if (kind) add_block(*kind, block, steps);
+      kind = kind ? std::nullopt : std::optional(trimmed(line).substr(3));
+      block.clear();
+    } else if (kind) {
+      block.push_back(line);
+    } else if (line.starts_with("    retrace ") && line.find('[') == std::string::npos) {
+      add_block("sh", {line}, steps);
+    }
+  }
+  return steps;
+}
+
+std::vector<std::string> commands_of(const std::string& page) {
+  std::vector<std::string> commands;
+  for (const Step& step : steps_of(page))
+    if (step.kind == Step::kCommand) commands.push_back(step.text);
   return commands;
 }
 
@@ -120,15 +164,23 @@ class Written {
   std::vector<std::string> kept_;
 };
 
-/// Runs the commands of a page one after another, as a reader would. \param written what needs not be run again
-/// \return how many commands the page shows
-int run_page(const fs::path& page, Written& written) {
-  const TemporaryFolder folder;
+void make_like_the_project(const TemporaryFolder& folder) {
   fs::create_directory(folder.path() / "tools");
   fs::create_directory(folder.path() / "build");
   fs::create_directory_symlink(fs::path(RETRACE_SOURCE_DIR) / "examples", folder.path() / "examples");
   fs::create_symlink(RETRACE_PROGRAM, folder.path() / "tools/run");
   fs::create_symlink(RETRACE_PROGRAM, folder.path() / "tools/retrace");
+}
+
+Outcome run_in(const TemporaryFolder& folder, const std::string& command) {
+  return Child(folder.path(), {"/bin/sh", "-c", "PATH=\"$PWD/tools:$PATH\"; " + command}).wait();
+}
+
+/// Runs the commands of a page one after another, as a reader would. \param written what needs not be run again
+/// \return how many commands the page shows
+int run_page(const fs::path& page, Written& written) {
+  const TemporaryFolder folder;
+  make_like_the_project(folder);
   int count = 0;
   for (const std::string& command : commands_of(read_text(page))) {
     SCOPED_TRACE(page.filename().string() + ": " + command);
@@ -137,11 +189,161 @@ int run_page(const fs::path& page, Written& written) {
     ++count;
     const std::optional<Example> example = example_of(command);
     if (example && written.give(*example, folder.path())) continue;
-    const Outcome outcome = Child(folder.path(), {"/bin/sh", "-c", "PATH=\"$PWD/tools:$PATH\"; " + command}).wait();
+    const Outcome outcome = run_in(folder, command);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     if (example && outcome.code == 0) written.keep(*example, folder.path());
   }
   return count;
+}
+
+std::vector<std::string> words_of(const std::string& line) {
+  std::istringstream text(line);
+  return {std::istream_iterator<std::string>(text), {}};
+}
+
+/// Equal words, or numbers within 2 % or 0.02 of each other: instruction sets draw other rays.
+bool is_like(const std::string& shown, const std::string& printed) {
+  if (shown == printed) return true;
+  const auto number = [](const std::string& word, double& value) {
+    char* end = nullptr;
+    value = std::strtod(word.c_str(), &end);
+    return !word.empty() && *end == '\0';
+  };
+  double a = 0.0;
+  double b = 0.0;
+  return number(shown, a) && number(printed, b) &&
+         std::abs(a - b) <= std::max(0.02, 0.02 * std::max(std::abs(a), std::abs(b)));
+}
+
+bool is_line_like(const std::string& shown, const std::string& printed) {
+  return std::ranges::equal(words_of(shown), words_of(printed), is_like);
+}
+
+/// Does all that a tutorial asks for, and looks for what it shows in what was printed since it last showed something.
+void follow(const fs::path& page) {
+  const TemporaryFolder folder;
+  make_like_the_project(folder);
+  std::vector<std::string> printed;
+  std::size_t at = 0;
+  bool has_shown = false;
+  for (const Step& step : steps_of(read_text(page))) {
+    SCOPED_TRACE(page.filename().string() + ": " + step.text);
+    if (step.kind == Step::kFile) {
+      folder.write(step.name, step.text);
+    } else if (step.kind == Step::kCommand) {
+      if (has_shown) printed.clear();
+      if (has_shown) at = 0;
+      has_shown = false;
+      const Outcome outcome = run_in(folder, step.text);
+      EXPECT_EQ(outcome.code, step.code) << outcome.out << outcome.err;
+      for (const std::string& line : lines_of(outcome.out + outcome.err)) printed.push_back(line);
+    } else {
+      has_shown = true;
+      std::size_t found = at;
+      while (found < printed.size() && !is_line_like(step.text, printed[found])) ++found;
+      EXPECT_LT(found, printed.size()) << "the program does not print this";
+      if (found < printed.size()) at = found + 1;
+    }
+  }
+}
+
+/// mpirun as a tutorial calls it, wherever the tests run.
+void let_mpirun_run_here() {
+  for (const char* name :
+       {"OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "OMPI_MCA_rmaps_base_oversubscribe"})
+    ::setenv(name, "1", 1);
+  ::setenv("OMPI_MCA_plm", "isolated", 1);
+  ::setenv("OMPI_MCA_hwloc_base_binding_policy", "none", 1);
+}
+
+class Tutorials : public testing::TestWithParam<std::string> {};
+
+TEST_P(Tutorials, DoAsTheySay) {
+  let_mpirun_run_here();
+  follow(fs::path(RETRACE_SOURCE_DIR) / "docs/tutorials" / (GetParam() + ".md"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Light, Tutorials, testing::Values("first_curve", "measured_facet", "nc_program"),
+                         [](const auto& tutorial) { return tutorial.param; });
+INSTANTIATE_TEST_SUITE_P(Studies, Tutorials, testing::Values("regulation", "cluster"),
+                         [](const auto& tutorial) { return tutorial.param; });
+
+TEST(TutorialPages, AreAllFollowed) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "docs/tutorials"))
+    names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"cluster", "first_curve", "measured_facet", "nc_program", "regulation"}));
+}
+
+TEST(TutorialPages, AreReadStepByStep) {
+  const std::vector<Step> steps = steps_of(
+      "Save this:\n```toml\n# my_a.toml\nx = 1\n```\n```toml\nshown = 1\n```\n```sh\nretrace a b  # exit code 1\n```\n"
+      "```text\n  a  1\n...\nb\n```\n");
+  ASSERT_EQ(steps.size(), 4u);
+  EXPECT_EQ(steps[0].name, "my_a.toml");
+  EXPECT_EQ(steps[0].text, "# my_a.toml\nx = 1\n");
+  EXPECT_EQ(steps[1].text, "retrace a b");
+  EXPECT_EQ(steps[1].code, 1);
+  EXPECT_EQ(steps[3].text, "b");
+  EXPECT_TRUE(is_line_like("a 99.0 b", "  a   99.9  b"));
+  EXPECT_FALSE(is_line_like("a 99.0 b", "a 95.0 b"));
+  EXPECT_FALSE(is_line_like("a 1", "a 1 2"));
+}
+
+/// Where a heading of a page may be linked to, as GitHub and mkdocs name it.
+std::string anchor_of(const std::string& heading) {
+  std::string anchor;
+  for (const char c : trimmed(heading)) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-')
+      anchor += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (c == ' ')
+      anchor += '-';
+  }
+  return anchor;
+}
+
+/// Lines that stand in no fenced block.
+std::vector<std::string> prose_of(const fs::path& page) {
+  std::vector<std::string> prose;
+  bool in_block = false;
+  for (const std::string& line : lines_of(read_text(page))) {
+    if (trimmed(line).starts_with("```"))
+      in_block = !in_block;
+    else if (!in_block)
+      prose.push_back(line);
+  }
+  return prose;
+}
+
+bool has_anchor(const fs::path& page, const std::string& anchor) {
+  return std::ranges::any_of(prose_of(page), [&](const std::string& line) {
+    return line.starts_with("#") && anchor_of(line.substr(line.find_first_not_of('#'))) == anchor;
+  });
+}
+
+TEST(Documentation, LinksLeadSomewhere) {
+  const fs::path root = RETRACE_SOURCE_DIR;
+  std::vector<fs::path> pages = {root / "README.md", root / "CONVENTIONS.md", root / "CONTRIBUTING.md",
+                                 root / "CHANGELOG.md"};
+  for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
+    if (entry.path().extension() == ".md") pages.push_back(entry.path());
+  const std::regex link(R"(\]\(([^()\s]+)\))");
+  int count = 0;
+  for (const fs::path& page : pages)
+    for (const std::string& line : prose_of(page))
+      for (std::sregex_iterator found(line.begin(), line.end(), link), end; found != end; ++found) {
+        const std::string target = (*found)[1];
+        if (target.find("://") != std::string::npos) continue;
+        const std::string path = target.substr(0, target.find('#'));
+        const fs::path goal = path.empty() ? page : page.parent_path() / path;
+        EXPECT_TRUE(fs::exists(goal)) << page << ": " << target;
+        const std::string anchor = target.substr(path.size() == target.size() ? target.size() : path.size() + 1);
+        const bool has_one = target.find('#') != std::string::npos && fs::exists(goal);
+        EXPECT_TRUE(!has_one || has_anchor(goal, anchor)) << page << ": " << target;
+        ++count;
+      }
+  EXPECT_GE(count, 100);
 }
 
 TEST(Readme, CommandsOfReadmeAndDocumentationRun) {
