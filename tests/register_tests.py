@@ -15,7 +15,8 @@ import tempfile
 MOST_TESTS = 12
 # ctest starts the dearest first, so that no long one is left when the others are done: seconds of processor of those
 # that take long, by suite (or part of it), else of their folder. Only their order matters.
-COSTS = {"raytrace/Kinds/Leaks": 140, "app/Readme": 90, "app/Studies/Tutorials": 40, "raytrace/Cases/Canted:2": 60, "raytrace/BeamTracer": 60,
+COSTS = {"raytrace/Kinds/Leaks": 140, "app/Readme": 90, "app/Photometry/Tutorials": 20,
+         "app/Studies/Tutorials": 15, "raytrace/Cases/Canted:2": 60, "raytrace/BeamTracer": 60,
          "sweep/CommandsByMpi": 50, "surface_models/HarveyShack": 40, "sweep/SweepByMpi": 38,
          "studies/DesignTexture": 33, "app/Inputs": 30,
          "raytrace/Cases/AgainstReference": 30, "studies/EngineChoice": 27, "turning/Turn": 24,

@@ -263,10 +263,14 @@ TEST_P(Tutorials, DoAsTheySay) {
   follow(fs::path(RETRACE_SOURCE_DIR) / "docs/tutorials" / (GetParam() + ".md"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Light, Tutorials, testing::Values("first_curve", "measured_facet", "nc_program"),
-                         [](const auto& tutorial) { return tutorial.param; });
-INSTANTIATE_TEST_SUITE_P(Studies, Tutorials, testing::Values("regulation", "cluster"),
-                         [](const auto& tutorial) { return tutorial.param; });
+std::string name_of(const testing::TestParamInfo<std::string>& tutorial) {
+  return tutorial.param;
+}
+
+// Apart, so that they run beside each other.
+INSTANTIATE_TEST_SUITE_P(Short, Tutorials, testing::Values("first_curve", "measured_facet", "nc_program"), name_of);
+INSTANTIATE_TEST_SUITE_P(Photometry, Tutorials, testing::Values("regulation"), name_of);
+INSTANTIATE_TEST_SUITE_P(Studies, Tutorials, testing::Values("cluster"), name_of);
 
 TEST(TutorialPages, AreAllFollowed) {
   std::vector<std::string> names;
