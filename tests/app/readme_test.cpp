@@ -109,7 +109,8 @@ bool is_run(const std::string& command) {
 
 /// What builds, tests or installs is not run from within a test.
 bool is_known(const std::string& command) {
-  for (const char* word : {"tools/run", "tools/test", "tools/package", "tools/try_packages", "cmake", "apt-get", "podman"})
+  for (const char* word :
+       {"tools/run", "tools/test", "tools/package", "tools/try_packages", "cmake", "apt-get", "podman"})
     if (starts_with_word(command, word)) return true;
   return starts_with_word(command, "retrace");
 }
