@@ -14,12 +14,14 @@
 #include "core/error.h"
 #include "core/text.h"
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__has_feature)  // clang, with which the sanitizers are built
+#if __has_feature(address_sanitizer)
 // Fontconfig keeps what it learned of the fonts until the process ends; the leak checker asks here what to pass over.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libfontconfig\n";
 }
+#endif
 #endif
 
 namespace retrace::report {
