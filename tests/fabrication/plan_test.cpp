@@ -361,7 +361,7 @@ RC_GTEST_PROP(Positions, DoNotDrift, ()) {
     const geometry::Vec2 centre = plan.elements[static_cast<std::size_t>(visit.element)].centre_mm;
     const AxisPositions root = inverse(m, Vec3(centre.x(), centre.y(), -pose.section.depth_mm), pose.rounded);
     // Where a routine starts relative to its element is the same for all, to the rounding of either.
-    const Visit& first = visits_of(plan).front();
+    const Visit first = visits_of(plan).front();
     if (visit.subroutine != first.subroutine) continue;
     const geometry::Vec2 centre0 = plan.elements[static_cast<std::size_t>(first.element)].centre_mm;
     const AxisPositions root0 = inverse(m, Vec3(centre0.x(), centre0.y(), -pose.section.depth_mm), pose.rounded);
