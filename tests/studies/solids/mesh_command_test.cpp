@@ -22,8 +22,7 @@ void export_part(const TemporaryFolder& folder, const std::string& design) {
 
 std::vector<double> rre(const TemporaryFolder& folder, Arguments arguments) {
   std::vector<double> values;
-  const Json result = retrace_json(folder, std::move(arguments));
-  for (const Json& p : result.at("points")) {
+  for (const Json& p : retrace_json(folder, std::move(arguments)).at("points")) {
     values.push_back(p.at("rre"));
     EXPECT_LT(p.at("ledger").at("lost"), 1e-9);
   }
