@@ -5,25 +5,17 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/installation.h"
 
 namespace retrace {
 namespace fs = std::filesystem;
-namespace {
-
-/// share/ beside the program's own folder.
-fs::path share() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / "share";
-}
-
-}  // namespace
 
 fs::path data_directory() {
   if (const char* chosen = std::getenv("RETRACE_DATA_DIR"); chosen != nullptr && *chosen != '\0') {
     if (!fs::is_directory(chosen)) throw InputError(std::string("RETRACE_DATA_DIR: no such folder: ") + chosen);
     return chosen;
   }
-  fs::path folder = share() / "retrace";
+  fs::path folder = installation_folder() / "share" / "retrace";
   if (!fs::is_directory(folder))
     throw InputError("the data folder " + folder.string() +
                      " is missing; set RETRACE_DATA_DIR to retrace's data folder");
@@ -31,7 +23,7 @@ fs::path data_directory() {
 }
 
 fs::path schema_file(std::string_view format) {
-  fs::path file = share() / "retrace_schemas" / (std::string(format) + ".schema.json");
+  fs::path file = installation_folder() / "share" / "retrace_schemas" / (std::string(format) + ".schema.json");
   if (!fs::is_regular_file(file)) throw InputError(file.string() + ": is missing; retrace schema prints it");
   return file;
 }

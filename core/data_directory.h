@@ -9,8 +9,8 @@
 
 namespace retrace {
 
-/// The folder of shipped data (materials): $RETRACE_DATA_DIR if set, else share/retrace beside the program's own bin/
-/// folder, which holds for the build tree and for an installation. \throw InputError if there is no such folder.
+/// The folder of shipped data: $RETRACE_DATA_DIR if set, else share/retrace of installation_folder().
+/// \throw InputError if there is no such folder
 std::filesystem::path data_directory();
 
 /// The JSON Schema of a file format, which lies beside that folder. \throw InputError if it is not there

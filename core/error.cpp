@@ -17,6 +17,6 @@ std::string located(const InputLocation& where, std::string_view text) {
 }  // namespace
 
 InputError::InputError(const InputLocation& where, std::string_view text)
-    : Error(ExitCode::bad_input, located(where, text)) {}
+    : Error(ExitCode::bad_input, located(where, text)), where_(where), text_(text) {}
 
 }  // namespace retrace

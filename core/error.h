@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "api.h"  // of this folder: these headers are installed with the library
+
 namespace retrace {
 
 /// What the process returns to the shell. The numbers are part of the contract with scripts.
@@ -18,7 +20,7 @@ enum class ExitCode : int {
 };
 
 /// Base of every error that retrace throws on purpose: one line of text and the exit code it leads to.
-class Error : public std::runtime_error {
+class RETRACE_API Error : public std::runtime_error {
  public:
   Error(ExitCode exit_code, const std::string& message) : std::runtime_error(message), exit_code_(exit_code) {}
   ExitCode exit_code() const noexcept { return exit_code_; }
@@ -35,20 +37,28 @@ struct InputLocation {
 };
 
 /// An input that cannot be used. The message reads `file:line: key: text` (exit code 2).
-class InputError : public Error {
+class RETRACE_API InputError : public Error {
  public:
   InputError(const InputLocation& where, std::string_view text);
   explicit InputError(std::string_view text) : InputError(InputLocation{}, text) {}
+
+  const InputLocation& where() const noexcept { return where_; }
+  /// The message without the location.
+  const std::string& text() const noexcept { return text_; }
+
+ private:
+  InputLocation where_;
+  std::string text_;
 };
 
 /// An output that cannot be written (exit code 3).
-class OutputError : public Error {
+class RETRACE_API OutputError : public Error {
  public:
   explicit OutputError(const std::string& message) : Error(ExitCode::failed, message) {}
 };
 
 /// A limit on time, memory or accuracy that was reached before the answer was (exit code 3).
-class BudgetError : public Error {
+class RETRACE_API BudgetError : public Error {
  public:
   explicit BudgetError(const std::string& message) : Error(ExitCode::failed, message) {}
 };

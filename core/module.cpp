@@ -8,20 +8,11 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/installation.h"
 
 namespace retrace {
-namespace {
-
-/// The folder of all modules, before and after installation.
-std::filesystem::path module_folder() {
-  std::error_code ignored;
-  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "lib" / "retrace";
-}
-
-}  // namespace
-
 void* module_function(const Module& module) {
-  const std::filesystem::path file = module_folder() / (std::string(module.name) + ".so");
+  const std::filesystem::path file = installation_folder() / "lib" / "retrace" / (std::string(module.name) + ".so");
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored))
     throw OutputError(

@@ -7,7 +7,7 @@
 
 namespace retrace {
 
-/// A library behind lib/retrace/NAME.so beside the program's bin/ folder.
+/// A library behind lib/retrace/NAME.so of installation_folder().
 struct Module {
   std::string_view name;      ///< of its file, without .so
   std::string_view function;  ///< that it offers, with C linkage

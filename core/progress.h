@@ -4,6 +4,8 @@
 
 #include <atomic>
 
+#include "api.h"  // of this folder: these headers are installed with the library
+
 namespace retrace {
 
 /// Asked between pieces of work whether to stop. Safe to set from a signal handler.
@@ -22,7 +24,7 @@ inline bool is_cancelled(const Cancellation* cancel) {
 }
 
 /// Told how far long work has come. Calls come from one thread at a time.
-class Progress {
+class RETRACE_API Progress {
  public:
   virtual ~Progress() = default;
   /// `share` in 0..1, never falling.

@@ -28,6 +28,7 @@ const std::map<std::string, Names>& folders() {
       {"fabrication", {"core", "geometry"}},
       {"studies", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication"}},
       {"report", {"core", "geometry", "studies"}},
+      {"library", {"core", "geometry", "raytrace", "fabrication", "studies"}},
       {"app", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication", "studies", "report"}}};
   return order;
 }
@@ -181,7 +182,14 @@ struct Include {
   std::string target;
 };
 
-std::vector<Include> includes_of(const fs::path& file) {
+/// From the root of the tree. Headers that are installed with the library name each other as those who use them do.
+std::string from_root(const std::string& target, const std::string& path) {
+  if (path.starts_with("library/") && target.starts_with("retrace/")) return "library/" + target;
+  if (path.starts_with("core/") && target == "api.h") return "core/" + target;
+  return target;
+}
+
+std::vector<Include> includes_of(const fs::path& file, const std::string& path) {
   std::ifstream stream(file);
   if (!stream) throw std::runtime_error("cannot read " + file.string());
   static const std::regex directive(R"re(^\s*#\s*include\s*(["<])([^">]+)[">])re");
@@ -189,7 +197,8 @@ std::vector<Include> includes_of(const fs::path& file) {
   std::string text;
   for (int line = 1; std::getline(stream, text); ++line) {
     std::smatch match;
-    if (std::regex_search(text, match, directive)) includes.push_back({line, match[1] == "\"", match[2]});
+    if (std::regex_search(text, match, directive))
+      includes.push_back({line, match[1] == "\"", from_root(match[2], path)});
   }
   return includes;
 }
@@ -203,8 +212,9 @@ class Checker {
       if (!top.is_directory() || is_outside_the_layers(folder)) continue;
       for (const fs::directory_entry& entry : fs::recursive_directory_iterator(top.path())) {
         const std::string extension = entry.path().extension().string();
-        if (entry.is_regular_file() && (extension == ".h" || extension == ".cpp"))
-          files_[fs::relative(entry.path(), root).generic_string()] = includes_of(entry.path());
+        if (!entry.is_regular_file() || (extension != ".h" && extension != ".cpp")) continue;
+        const std::string path = fs::relative(entry.path(), root).generic_string();
+        files_[path] = includes_of(entry.path(), path);
       }
     }
     if (files_.empty()) throw std::runtime_error("no source files below " + root.string());

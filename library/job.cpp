@@ -1,0 +1,42 @@
+#include "retrace/job.h"
+
+#include "fabrication/job/io/job_files.h"
+#include "fabrication/post/post.h"
+#include "library/content.h"
+#include "studies/fabrication/fabricate.h"
+#include "studies/fabrication/io/fabrication_files.h"
+#include "studies/fabrication/job_maker.h"
+
+namespace retrace {
+
+Job make_job(const Design& design, const JobRequest& request) {
+  studies::JobRequest of_study;
+  of_study.machine = request.machine;
+  of_study.tool_width_mm = request.tool_width_mm;
+  of_study.strategy = request.strategy;
+  of_study.process = request.process;
+  of_study.workpiece = request.workpiece;
+  of_study.shrinkage_percent = request.shrinkage_percent;
+  const studies::MadeJob made = studies::make_job(design.content().design, of_study);
+  return {fabrication::job_text(made.job), made.elements, made.partial_elements, made.warnings};
+}
+
+Fabrication fabricate(const std::filesystem::path& job, const FabricationRequest& request) {
+  studies::FabricationRequest of_study;
+  of_study.job_file = job;
+  of_study.dialect = request.dialect;
+  of_study.options.phase = request.phase;
+  of_study.options.from_element = request.from_element;
+  of_study.options.stop_every = request.stop_every;
+  of_study.options.split_hours = request.split_hours;
+  const studies::FabricationResult found = studies::fabricate(of_study);
+  Fabrication result;
+  for (std::size_t k = 0; k < found.plan.programs.size(); ++k)
+    result.programs.push_back({found.program_file(k), fabrication::nc_text(found.plan.programs[k], found.dialect)});
+  result.warnings = found.warnings;
+  result.json = studies::fabrication_json(found);
+  result.table = studies::fabrication_table(found);
+  return result;
+}
+
+}  // namespace retrace

@@ -1,0 +1,64 @@
+#include "retrace/photometry.h"
+
+#include <string_view>
+#include <utility>
+
+#include "library/content.h"
+#include "raytrace/sampling/threads.h"
+#include "studies/photometry/io/photometry_files.h"
+#include "studies/photometry/io/standard_reader.h"
+#include "studies/photometry/photometry.h"
+
+namespace retrace {
+namespace {
+
+studies::PhotometryRequest to_study(const Design& design, const PhotometryRequest& request) {
+  studies::PhotometryRequest of_study =
+      studies::photometry_request({request.standard, request.part_class, request.colour});
+  const std::filesystem::path dye =
+      studies::dye_file_of(request.dye, design.content().design.substance.is_coloured(), of_study.programme.colour);
+  studies::set_dye(of_study, request.dye, dye);
+  of_study.area_cm2 = request.area_cm2;
+  if (request.rotation_deg) of_study.rotation_deg = *request.rotation_deg;
+  of_study.engine = studies::engine_from_name(request.engine);
+  of_study.cutoff = request.cutoff;
+  of_study.rays = request.samples;
+  of_study.seed = request.seed;
+  of_study.diffraction = request.diffraction;
+  of_study.advice = request.advice;
+  of_study.colour = true;
+  return of_study;
+}
+
+PhotometricPoint from_study(const studies::PhotometricPoint& point) {
+  PhotometricPoint told;
+  told.observation_deg = point.asked.observation_deg;
+  told.v_deg = point.v_deg;
+  told.h_deg = point.asked.h_deg;
+  told.rotation_deg = point.rotation_deg;
+  told.r_i_mcd_per_lx = point.r_i_mcd_per_lx;
+  told.r_a = point.r_a;
+  told.std_error_mcd_per_lx = point.std_error_mcd_per_lx;
+  told.limit_mcd_per_lx = point.limit_mcd_per_lx;
+  told.verdict = studies::verdict_name(point.verdict());
+  return told;
+}
+
+}  // namespace
+
+PhotometryResult photometry(const Design& design, const PhotometryRequest& request, const Running& running) {
+  const studies::PhotometryStudy study(design.content().design, to_study(design, request));
+  studies::PhotometryResult found;
+  raytrace::run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
+  PhotometryResult result;
+  for (const studies::PhotometricPoint& point : found.points) result.points.push_back(from_study(point));
+  result.verdict = studies::verdict_name(found.verdict);
+  result.passes = found.passes();
+  result.warnings = found.warnings;
+  result.complete = found.complete;
+  result.json = studies::photometry_json(found);
+  result.table = studies::photometry_table(found);
+  return result;
+}
+
+}  // namespace retrace

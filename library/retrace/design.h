@@ -1,0 +1,42 @@
+#pragma once
+
+// Designs: arrays of retroreflectors as design files tell them (docs/design_file.md).
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+
+namespace retrace {
+
+/// A design, read and checked, with its defaults filled in. Copies share what they hold; nothing changes it.
+class RETRACE_API Design {
+ public:
+  /// Reads a design file (retrace.design/1); "-" is standard input.
+  /// \param overrides `key=value` texts that take precedence over the file, such as `element.base_mm=0.4`
+  /// \throw InputError naming file, line and key
+  static Design load(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+  /// The same of the text of a design file. \param source stands for the file in messages; files that the text names
+  /// are sought from its folder
+  static Design parse(std::string_view text, const std::string& source, const std::vector<std::string>& overrides = {});
+  /// The same design with some keys at other values. \throw InputError likewise
+  Design with(const std::vector<std::string>& overrides) const;
+
+  std::string title() const;  ///< empty if it has none
+  /// Its keys as results quote them, as JSON.
+  std::string json() const;
+  /// Every file that it names, from the working directory.
+  std::vector<std::filesystem::path> files() const;
+
+  struct Content;
+  explicit Design(std::shared_ptr<const Content> content);
+  const Content& content() const { return *content_; }
+
+ private:
+  std::shared_ptr<const Content> content_;
+};
+
+}  // namespace retrace

@@ -1,0 +1,47 @@
+#pragma once
+
+// What NC programs really cut, against their fabrication job.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "retrace/running.h"
+
+namespace retrace {
+
+/// As the options of `retrace verify`.
+struct VerificationRequest {
+  std::filesystem::path job = {};  ///< file
+  std::vector<std::string> programs =
+      {};                        ///< files in the order in which they run; FILE@LINE: stopped behind that line
+  std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc or pmac, or told from the text
+  double tolerance_nm = 10.0;    ///< that facet planes may differ from the design by
+  std::string standing = {};     ///< stage before which all has been cut; empty: the blank stands
+  std::filesystem::path as_machined = {};  ///< design file to write of the part that is left; empty: none
+};
+
+/// Something that a program does and should not, or does not and should.
+struct Finding {
+  std::string kind;     ///< such as "gouge"; docs/commands.md lists them
+  std::string program;  ///< file; empty: of none, or of all together
+  int line = 0;         ///< of the NC text; 0: of no line
+  std::string message;
+  double value = 0.0;  ///< in the unit that the message names
+  double limit = 0.0;
+};
+
+struct Verification {
+  bool passes = false;
+  std::string verdict;  ///< pass, incomplete or fail
+  std::vector<Finding> findings;
+  std::vector<std::string> warnings;
+  std::string json;   ///< document retrace.verification/1
+  std::string table;  ///< for people
+};
+
+/// \throw InputError for a file that cannot be read or understood, with its line; OutputError
+RETRACE_API Verification verify(const VerificationRequest& request, const Running& running = {});
+
+}  // namespace retrace

@@ -1,0 +1,65 @@
+#include "retrace/rre.h"
+
+#include <utility>
+
+#include "library/content.h"
+#include "raytrace/sampling/threads.h"
+#include "studies/rre/io/rre_files.h"
+#include "studies/rre/rre.h"
+
+namespace retrace {
+namespace {
+
+studies::RreRequest to_study(const RreRequest& request) {
+  studies::RreRequest of_study;
+  of_study.incidence_deg = request.incidence_deg;
+  of_study.azimuth_deg = request.azimuth_deg;
+  of_study.engine = studies::engine_from_name(request.engine);
+  of_study.target_error = request.target_error;
+  of_study.rays = request.samples;
+  of_study.cutoff = request.cutoff;
+  of_study.seed = request.seed;
+  of_study.footprint = request.footprint;
+  return of_study;
+}
+
+RrePoint from_study(const studies::RrePoint& point) {
+  RrePoint told;
+  told.design = point.design;
+  told.incidence_deg = point.incidence_deg;
+  told.azimuth_deg = point.azimuth_deg;
+  told.wavelength_nm = point.wavelength_nm;
+  told.acceptance_half_angle_deg = point.acceptance_half_angle_deg;
+  told.rre = point.rre;
+  told.std_error = point.std_error;
+  told.engine = point.engine;
+  for (std::size_t k = 0; k < raytrace::kAccountCount; ++k)
+    told.ledger.emplace(raytrace::kAccountNames[k], point.ledger.power[k]);
+  told.missed_target = point.missed_target;
+  return told;
+}
+
+}  // namespace
+
+RreResult rre(const std::vector<Design>& designs, const RreRequest& request, const Running& running) {
+  std::vector<studies::Design> of_study;
+  of_study.reserve(designs.size());
+  for (const Design& design : designs) of_study.push_back(design.content().design);
+  const studies::RreStudy study(std::move(of_study), to_study(request));
+  studies::RreResult found;
+  raytrace::run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
+  RreResult result;
+  for (const studies::RrePoint& point : found.points) result.points.push_back(from_study(point));
+  result.warnings = found.warnings;
+  result.complete = found.complete;
+  result.json = studies::rre_json(found);
+  result.csv = studies::rre_csv(found);
+  if (request.footprint) result.footprint = studies::footprint_json(found);
+  return result;
+}
+
+RreResult rre(const Design& design, const RreRequest& request, const Running& running) {
+  return rre(std::vector<Design>{design}, request, running);
+}
+
+}  // namespace retrace

@@ -1,0 +1,47 @@
+#include "retrace/verify.h"
+
+#include <chrono>
+
+#include "core/atomic_file.h"
+#include "raytrace/sampling/threads.h"
+#include "studies/closed_loop/as_machined.h"
+#include "studies/closed_loop/io/verification_files.h"
+#include "studies/closed_loop/verification.h"
+#include "studies/design/io/facet_planes_reader.h"
+
+namespace retrace {
+namespace {
+
+/// A design and, where it has planes of its own for its facets, their table beside it: part.toml and part_facets.csv.
+void write_as_machined(studies::VerificationRun& run, const std::filesystem::path& file) {
+  const studies::AsMachined part = studies::as_machined(run);
+  run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());
+  const std::filesystem::path facets = file.parent_path() / (file.stem().string() + "_facets.csv");
+  const std::string design = studies::as_machined_toml(run, part, facets.filename().string());
+  if (part.planes) write_file_atomically(facets, studies::facet_planes_text(*part.planes));
+  write_file_atomically(file, design);
+}
+
+}  // namespace
+
+Verification verify(const VerificationRequest& request, const Running& running) {
+  const auto start = std::chrono::steady_clock::now();
+  const studies::VerificationRequest of_study = {request.job.string(), request.programs, request.dialect,
+                                                 request.tolerance_nm, request.standing};
+  studies::VerificationRun run;
+  raytrace::run_with_threads(running.threads, [&] { run = studies::run_verification(of_study, running.cancellation); });
+  const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!request.as_machined.empty()) write_as_machined(run, request.as_machined);
+  Verification result;
+  result.passes = run.result.passes();
+  result.verdict = run.result.verdict();
+  for (const fabrication::Finding& finding : run.result.findings)
+    result.findings.push_back(
+        {finding.kind, finding.program, finding.line, finding.message, finding.value, finding.limit});
+  result.warnings = run.warnings;
+  result.json = studies::verification_json(run, elapsed_s);
+  result.table = studies::verification_table(run);
+  return result;
+}
+
+}  // namespace retrace

@@ -1,0 +1,271 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "retrace/design.h"
+#include "retrace/job.h"
+#include "retrace/part.h"
+#include "retrace/photometry.h"
+#include "retrace/rre.h"
+#include "retrace/running.h"
+#include "retrace/verify.h"
+#include "tests/app/program.h"
+
+// The library as programs outside meet it: what it shows of itself, that it says what the program says, and that a
+// project of a few lines builds against an installation.
+
+namespace retrace::test::library_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSource = RETRACE_SOURCE_DIR;
+
+/// A program with what it prints. \pre it returns 0
+std::string output_of(const Arguments& arguments, const fs::path& folder = fs::temp_directory_path()) {
+  const Outcome outcome = Child(folder, arguments).wait();
+  EXPECT_EQ(outcome.code, 0) << arguments[0] << ": " << outcome.err << outcome.out;
+  return outcome.out;
+}
+
+/// The document that the program prints.
+std::string document(const TemporaryFolder& folder, const Arguments& arguments, int code = 0) {
+  const Outcome outcome = retrace(folder, with(arguments, {"--json", "-", "--quiet"}));
+  EXPECT_EQ(outcome.code, code) << outcome.err;
+  return without_elapsed(outcome.out);
+}
+
+TEST(Library, ShowsItsHeadersAndNothingElse) {
+  const std::string symbols = output_of({"/usr/bin/nm", "--dynamic", "--defined-only", "--demangle", RETRACE_LIBRARY});
+  const std::regex shown(R"([0-9a-f]+ \w (?:typeinfo for |typeinfo name for |vtable for )?retrace::[A-Z]?\w+.*)");
+  const std::regex of_parts(
+      R"(.*retrace::(studies|raytrace|fabrication|geometry|materials|surface_models|report)::.*)");
+  ASSERT_GT(lines_of(symbols).size(), 20U);
+  for (const std::string& line : lines_of(symbols)) {
+    EXPECT_TRUE(std::regex_match(line, shown)) << line;
+    EXPECT_FALSE(std::regex_match(line, of_parts)) << line;
+  }
+}
+
+TEST(Library, HeadersNeedTheStandardLibraryAlone) {
+  std::vector<fs::path> headers = {kSource / "core/api.h", kSource / "core/error.h", kSource / "core/progress.h"};
+  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "library/retrace"))
+    headers.push_back(entry.path());
+  ASSERT_GE(headers.size(), 10U);
+  const std::regex include(R"(\s*#\s*include\s*(.*))");
+  const std::regex allowed(R"((<[a-z_]+>|"retrace/\w+\.h"|"core/(error|progress)\.h"|"api\.h").*)");
+  for (const fs::path& header : headers) {
+    std::smatch found;
+    for (const std::string& line : lines_of(read_text(header)))
+      if (std::regex_match(line, found, include)) {
+        EXPECT_TRUE(std::regex_match(found[1].str(), allowed)) << header << ": " << line;
+      }
+  }
+}
+
+TEST(Library, RreIsThatOfTheProgram) {
+  const TemporaryFolder folder;
+  const std::string file = example("honeycomb_daylight.toml");
+  RreRequest request;
+  request.incidence_deg = {-20, 0, 35};
+  request.azimuth_deg = {0, 30};
+  request.engine = "montecarlo";
+  request.samples = 2048;
+  request.seed = 7;
+  Running running;
+  running.threads = 1;
+  const RreResult result = rre(Design::load(file), request, running);
+  EXPECT_EQ(without_elapsed(result.json), document(folder, {"rre", file, "--incidence=-20,0,35", "--azimuth=0,30",
+                                                            "--engine=montecarlo", "--samples=2048", "--seed=7"}));
+  const Json points = Json::parse(result.json)["points"];
+  ASSERT_EQ(result.points.size(), points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const RrePoint& point = result.points[k];
+    EXPECT_EQ(point.rre, points[k]["rre"].get<double>());
+    EXPECT_EQ(point.std_error, points[k]["std_error"].get<double>());
+    double sum = 0.0;
+    for (const auto& [account, power] : point.ledger) {
+      EXPECT_EQ(power, points[k]["ledger"][account].get<double>()) << account;
+      sum += power;
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-12);
+  }
+}
+
+TEST(Library, DesignsAreReadVariedAndQuoted) {
+  const TemporaryFolder folder;
+  const fs::path file = example("honeycomb_infinite.toml");
+  const Design design = Design::load(file, {"body.thickness_mm=3"});
+  EXPECT_EQ(Json::parse(design.json())["body"]["thickness_mm"], 3.0);
+  const Design other = design.with({"body.thickness_mm=4"});
+  EXPECT_EQ(Json::parse(other.json())["body"]["thickness_mm"], 4.0);
+  EXPECT_EQ(Json::parse(design.json())["body"]["thickness_mm"], 3.0);
+  EXPECT_EQ(Design::parse(read_text(file), file.string(), {"body.thickness_mm=3"}).json(), design.json());
+}
+
+TEST(Library, WrongInputIsAnErrorWithItsPlace) {
+  try {
+    Design::parse("schema = \"retrace.design/1\"\n[element]\nkind = \"prism\"\n", "my.toml");
+    FAIL() << "is no element";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where().file, "my.toml");
+    EXPECT_EQ(error.where().line, 3);
+    EXPECT_EQ(error.where().key, "element.kind");
+    EXPECT_EQ(std::string(error.what()), "my.toml:3: element.kind: " + error.text());
+    EXPECT_EQ(error.exit_code(), ExitCode::bad_input);
+  }
+  const Design design = Design::load(example("rtp_single_0p45mm.toml"));
+  RreRequest wrong;
+  wrong.engine = "fast";
+  EXPECT_THROW(rre(design, wrong), InputError);
+  wrong = {};
+  wrong.incidence_deg = {90};
+  EXPECT_THROW(rre(design, wrong), InputError);
+  EXPECT_THROW(mesh(design, {"corner", {}}), InputError);
+  EXPECT_THROW(make_job(design, {}), InputError);
+  EXPECT_THROW(fabricate("no_such_job.toml"), InputError);
+  EXPECT_THROW(photometry(design, {}), InputError);
+  EXPECT_THROW(export_solid(design, "no/such/folder/part.stl"), OutputError);
+}
+
+TEST(Library, WorkIsWatchedAndStopped) {
+  class Last : public Progress {
+   public:
+    void at(double share) override { share_ = share; }
+    double share_ = -1.0;
+  };
+  const Design design = Design::load(example("rtp_single_0p45mm.toml"));
+  Last seen;
+  EXPECT_TRUE(rre(design, {}, {&seen, nullptr, 0}).complete);
+  EXPECT_EQ(seen.share_, 1.0);
+  Cancellation cancellation;
+  cancellation.request();
+  const RreResult none = rre(design, {}, {nullptr, &cancellation, 0});
+  EXPECT_FALSE(none.complete);
+  EXPECT_TRUE(none.points.empty());
+}
+
+TEST(Library, PhotometryIsThatOfTheProgram) {
+  const TemporaryFolder folder;
+  const std::string file = example("rtp_brick_2mm.toml");
+  PhotometryRequest request;
+  request.standard = "r150";
+  request.part_class = "IA";
+  request.colour = "red";
+  request.area_cm2 = 30;
+  request.engine = "montecarlo";
+  request.samples = 512;
+  request.advice = false;
+  const PhotometryResult result = photometry(Design::load(file), request);
+  EXPECT_EQ(without_elapsed(result.json),
+            document(folder,
+                     {"photometry", file, "--standard=r150", "--class=IA", "--colour=red", "--area-cm2=30",
+                      "--engine=montecarlo", "--samples=512", "--no-advice"},
+                     result.passes ? 0 : 1));
+  ASSERT_FALSE(result.points.empty());
+  EXPECT_EQ(result.verdict, Json::parse(result.json)["verdict"].get<std::string>());
+}
+
+TEST(Library, MeshIsClosedAndTheSameAsTheExportedOne) {
+  const TemporaryFolder folder;
+  const Design design = Design::load(example("rtp_brick_5mm.toml"));
+  const Mesh part = mesh(design);
+  ASSERT_EQ(part.triangles.size(), part.kinds.size());
+  double six_volumes_mm3 = 0.0;
+  for (const auto& [a, b, c] : part.triangles) {
+    const auto& p = part.vertices_mm[a];
+    const auto& q = part.vertices_mm[b];
+    const auto& r = part.vertices_mm[c];
+    six_volumes_mm3 +=
+        p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) + p[2] * (q[0] * r[1] - q[1] * r[0]);
+  }
+  EXPECT_NEAR(six_volumes_mm3 / 6.0, part.volume_mm3, 1e-9 * part.volume_mm3);
+  export_solid(design, folder.path() / "library.stl");
+  retrace(folder, {"export", example("rtp_brick_5mm.toml"), "program.stl", "--quiet"});
+  EXPECT_EQ(folder.read("library.stl"), folder.read("program.stl"));
+}
+
+TEST(Library, ADesignIsCutAndReadBack) {
+  const TemporaryFolder folder;
+  const std::string file = example("rtp_brick_5mm.toml");
+  JobRequest request;
+  request.tool_width_mm = 1;
+  const Job job = make_job(Design::load(file), request);
+  EXPECT_GT(job.elements, 0);
+  folder.write("job.toml", job.text);
+  EXPECT_EQ(job.text, output_of({RETRACE_PROGRAM, "job", file, "--tool-width-mm=1"}, folder.path()));
+  const Fabrication made = fabricate(folder.path() / "job.toml");
+  ASSERT_EQ(made.programs.size(), 1U);
+  const NcText& program = made.programs[0];
+  output_of({RETRACE_PROGRAM, "fabricate", "job.toml", "-o", "nc", "--quiet"}, folder.path());
+  EXPECT_EQ(program.text, folder.read("nc/" + program.file));
+
+  VerificationRequest asked;
+  asked.job = folder.path() / "job.toml";
+  asked.programs = {(folder.path() / "nc" / program.file).string()};
+  asked.as_machined = folder.path() / "left.toml";
+  const Verification verified = verify(asked);
+  EXPECT_TRUE(verified.passes) << verified.table;
+  EXPECT_EQ(verified.verdict, "pass");
+  EXPECT_NO_THROW(Design::load(folder.path() / "left.toml"));
+
+  // A block that goes deeper is found, with its line.
+  std::string wrong = program.text;
+  const std::size_t deep = wrong.find("Z-");
+  ASSERT_NE(deep, std::string::npos);
+  folder.write("nc/" + program.file, wrong.insert(deep + 2, "1"));
+  asked.as_machined.clear();
+  const Verification found = verify(asked);
+  EXPECT_FALSE(found.passes);
+  ASSERT_FALSE(found.findings.empty());
+  EXPECT_GT(found.findings[0].line, 0);
+}
+
+class InstalledLibrary : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    output_of({"/usr/bin/cmake", "--install", RETRACE_BUILD_DIR, "--prefix", prefix().string()});
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix()))
+      if (entry.path().filename() == "retrace.pc") libraries_ = entry.path().parent_path().parent_path();
+    ASSERT_FALSE(libraries_.empty()) << "no retrace.pc below " << prefix();
+  }
+  fs::path prefix() const { return folder_.path() / "installed"; }
+
+  TemporaryFolder folder_;
+  fs::path libraries_;
+};
+
+TEST_F(InstalledLibrary, TheExampleBuildsAgainstItAndRuns) {
+  const fs::path build = folder_.path() / "build";
+  output_of({"/usr/bin/cmake", "-S", (kSource / "examples/library").string(), "-B", build.string(),
+             "-DCMAKE_PREFIX_PATH=" + prefix().string()});
+  output_of({"/usr/bin/cmake", "--build", build.string()});
+  const std::string design = (prefix() / "share/doc/retrace/examples/rtp_single_0p45mm.toml").string();
+  const std::string printed = output_of({(build / "curve").string(), design});
+  const RreResult expected = rre(Design::load(design), {.incidence_deg = {0, 10, 20, 30}});
+  ASSERT_EQ(lines_of(printed).size(), expected.points.size());
+  for (std::size_t k = 0; k < expected.points.size(); ++k)
+    EXPECT_NEAR(std::stod(lines_of(printed)[k].substr(lines_of(printed)[k].find(": ") + 2)), expected.points[k].rre,
+                1e-6);
+  const Outcome refused = Child(folder_.path(), {(build / "curve").string(), "none.toml"}).wait();
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(lines_of(refused.err).size(), 1U) << refused.err;
+}
+
+TEST_F(InstalledLibrary, PkgConfigKnowsIt) {
+  folder_.write("v.cpp",
+                "#include <retrace/running.h>\n#include <iostream>\nint main() { std::cout << retrace::version(); }\n");
+  const std::string build = "PKG_CONFIG_PATH='" + (libraries_ / "pkgconfig").string() +
+                            "' && export PKG_CONFIG_PATH && c++ v.cpp -o v $(pkg-config --cflags --libs retrace) && "
+                            "pkg-config --modversion retrace && LD_LIBRARY_PATH='" +
+                            libraries_.string() + "' ./v";
+  const std::string said = output_of({"/bin/sh", "-c", build}, folder_.path());
+  EXPECT_EQ(said, std::string(version()) + "\n" + version());
+}
+
+}  // namespace
+}  // namespace retrace::test::library_test
