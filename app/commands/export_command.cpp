@@ -25,7 +25,7 @@ std::vector<Argument> arguments(ExportOptions& options) {
     return words;
   };
   return {design_argument(options.design),
-          {"FILE", "file to write: .stl, .obj, .step or .stp; the same as --out FILE", &options.file, files("")},
+          {"FILE", "file to write: .stl, .obj, .glb, .step or .stp; the same as --out FILE", &options.file, files("")},
           {"--what WHAT", "element, array or mould: the block behind the part's back", &options.what, one_of(kinds)},
           {"--block-mm T", "of a mould, below its deepest point [the plate's thickness]", &options.block_mm}};
 }
@@ -55,10 +55,10 @@ ExitCode run(const ExportOptions& options, const CommonOptions& common) {
 
 Command export_command() {
   return {.name = "export",
-          .summary = "a design's solid as STL, OBJ or STEP",
-          .manual = "Writes a solid of a design as STL, OBJ or STEP, by the ending of FILE.",
+          .summary = "a design's solid as STL, OBJ, glTF or STEP",
+          .manual = "Writes a solid of a design as STL, OBJ, glTF or STEP, by the ending of FILE.",
           .reads = {"retrace.design/1"},
-          .writes = {"retrace.export/1", "STL", "OBJ", "STEP"},
+          .writes = {"retrace.export/1", "STL", "OBJ", "glTF", "STEP"},
           .begin = begins<ExportOptions>(arguments, run)};
 }
 

@@ -2,30 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <iterator>
-#include <utility>
 
 #include "core/number_format.h"
+#include "geometry/io/face_groups.h"
 
 namespace retrace::geometry {
-namespace {
-
-constexpr std::array<std::pair<FacetRole, std::string_view>, 6> kGroups = {{{FacetRole::entrance, "entrance"},
-                                                                            {FacetRole::retro_facet, "facets"},
-                                                                            {FacetRole::flat_back, "flat_back"},
-                                                                            {FacetRole::inner_wall, "gables"},
-                                                                            {FacetRole::border_wall, "border_walls"},
-                                                                            {FacetRole::side, "sides"}}};
-
-}  // namespace
-
 std::string obj_text(const BoundaryMesh& mesh, std::string_view title) {
   std::string text = fmt::format("# {}\n# lengths in mm\n", title);
   const auto out = std::back_inserter(text);
   for (const Vec3& p : mesh.vertices)
     fmt::format_to(out, "v {} {} {}\n", shortest(p.x()), shortest(p.y()), shortest(p.z()));
-  for (const auto& [role, name] : kGroups) {
+  for (const auto& [role, name] : kFaceGroups) {
     bool is_begun = false;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       if (mesh.roles[t] != role) continue;

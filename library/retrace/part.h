@@ -36,7 +36,7 @@ struct Mesh {
 /// \throw InputError for an infinite array (an element of it is allowed), or too many elements
 RETRACE_API Mesh mesh(const Design& design, const SolidRequest& request = {});
 
-/// Writes it as STL, OBJ or STEP, by the ending of the file's name. \throw InputError likewise, OutputError
+/// Writes it as STL, OBJ, glTF or STEP, by the ending of the file's name. \throw InputError likewise, OutputError
 RETRACE_API void export_solid(const Design& design, const std::filesystem::path& file,
                               const SolidRequest& request = {});
 

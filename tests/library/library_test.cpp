@@ -67,6 +67,12 @@ TEST(Library, HeadersNeedTheStandardLibraryAlone) {
   }
 }
 
+TEST(Library, ItsPageShowsTheExampleAsItIs) {
+  const std::string page = read_text(kSource / "docs/library.md");
+  for (const char* file : {"CMakeLists.txt", "curve.cpp"})
+    EXPECT_NE(page.find("\n" + read_text(kSource / "examples/library" / file) + "```"), std::string::npos) << file;
+}
+
 TEST(Library, RreIsThatOfTheProgram) {
   const TemporaryFolder folder;
   const std::string file = example("honeycomb_daylight.toml");

@@ -11,11 +11,13 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/version.h"
+#include "geometry/io/gltf_file.h"
 #include "geometry/io/obj_file.h"
 #include "geometry/io/step_file.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/part/faceted_solid.h"
 #include "studies/design/io/design_json.h"
+#include "studies/design/optical_model.h"
 
 namespace retrace::studies {
 namespace {
@@ -32,6 +34,16 @@ std::string title_of(const Solid& solid) {
   return title;
 }
 
+/// A part is as clear as its body at the wavelength of its light; a mould is of metal.
+std::string gltf_text(const Solid& solid) {
+  if (solid.what == SolidKind::mould) return geometry::gltf_text(solid.mesh, title_of(solid), std::nullopt, 0.0);
+  Design body = solid.design;
+  body.surface = {};
+  body.wet_back.reset();
+  const raytrace::Optics optics = make_light_model(body, materials::MaterialLibrary::shipped()).optics;
+  return geometry::gltf_text(solid.mesh, title_of(solid), optics.index, optics.absorption_per_mm);
+}
+
 Json vector_json(const geometry::Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
@@ -44,8 +56,10 @@ SolidFormat solid_format(const std::string& file) {
                  [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
   if (ending == ".stl") return SolidFormat::stl;
   if (ending == ".obj") return SolidFormat::obj;
+  if (ending == ".glb") return SolidFormat::gltf;
   if (ending == ".step" || ending == ".stp") return SolidFormat::step;
-  throw InputError({"", 0, "--out"}, fmt::format("must end in .stl, .obj, .step or .stp, got {}", in_quotes(file)));
+  throw InputError({"", 0, "--out"},
+                   fmt::format("must end in .stl, .obj, .glb, .step or .stp, got {}", in_quotes(file)));
 }
 
 std::string solid_text(const Solid& solid, SolidFormat format) {
@@ -54,6 +68,7 @@ std::string solid_text(const Solid& solid, SolidFormat format) {
       return geometry::stl_text(solid.mesh, "retrace " + std::string(kVersion) + ", mm: " + title_of(solid));
     case SolidFormat::obj:
       return geometry::obj_text(solid.mesh, "retrace " + std::string(kVersion) + ": " + title_of(solid));
+    case SolidFormat::gltf: return gltf_text(solid);
     case SolidFormat::step: break;
   }
   if (!solid.is_manifold)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Writes solids as STL, OBJ or STEP, and the document of `retrace export`.
+// Writes solids as STL, OBJ, glTF or STEP, and the document of `retrace export`.
 
 #include <string>
 
@@ -8,13 +8,14 @@
 
 namespace retrace::studies {
 
-enum class SolidFormat { stl, obj, step };
+enum class SolidFormat { stl, obj, gltf, step };
 
-/// By the ending of a file's name: .stl, .obj, .step or .stp, in small or capital letters. \throw InputError otherwise
+/// By the ending of a file's name: .stl, .obj, .glb, .step or .stp, in small or capital letters. \throw InputError
+/// otherwise
 SolidFormat solid_format(const std::string& file);
 
 /// The content of a file of that format. \throw InputError if STEP cannot hold the solid: it touches itself along
-/// edges, or an edge is too short
+/// edges, or an edge is too short; if it is too large for glTF; or for a material that glTF is to tell the index of
 std::string solid_text(const Solid& solid, SolidFormat format);
 
 /// The document `retrace.export/1`. \param file empty if none is written

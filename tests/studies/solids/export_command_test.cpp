@@ -12,14 +12,14 @@ namespace {
 
 const std::string kPrism = example("rtp_single_0p45mm.toml");
 
-TEST(Export, WritesTheThreeFormats) {
+TEST(Export, WritesEveryFormat) {
   const TemporaryFolder folder;
-  for (const std::string name : {"a.stl", "a.obj", "a.STEP", "b.stp"}) {
+  for (const std::string name : {"a.stl", "a.obj", "a.glb", "a.STEP", "b.stp"}) {
     const Outcome outcome = retrace(folder, {"export", kPrism, "-o", name});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("wrote " + name), std::string::npos);
   }
-  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.STEP", "a.obj", "a.stl", "b.stp"}));
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.STEP", "a.glb", "a.obj", "a.stl", "b.stp"}));
   EXPECT_EQ(folder.read("a.STEP"), folder.read("b.stp"));
   EXPECT_TRUE(folder.read("b.stp").starts_with("ISO-10303-21;"));
   EXPECT_EQ(folder.read("a.stl").substr(0, 7), "retrace");
@@ -59,7 +59,7 @@ TEST(Export, AnElementOfAnEndlessArrayIsWritten) {
 TEST(Export, WhatCannotBeIsRefusedAndNothingWritten) {
   const TemporaryFolder folder;
   expect_refused(retrace(folder, {"export", kPrism, "-o", "a.dxf"}),
-                 "--out: must end in .stl, .obj, .step or .stp, got \"a.dxf\"");
+                 "--out: must end in .stl, .obj, .glb, .step or .stp, got \"a.dxf\"");
   expect_refused(retrace(folder, {"export", kPrism, "-o", "a.stl", "--what", "tool"}),
                  "--what: must be \"element\", \"array\" or \"mould\", got \"tool\"");
   expect_refused(retrace(folder, {"export", kPrism, "a.stl", "-o", "b.stl"}),

@@ -1,9 +1,17 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
+#include "geometry/io/face_groups.h"
+#include "geometry/io/gltf_file.h"
 #include "geometry/io/obj_file.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/part/faceted_solid.h"
@@ -101,6 +109,91 @@ TEST(Obj, HoldsEveryVertexAndTriangleByRole) {
   EXPECT_EQ(faces, mesh.triangles.size());
   EXPECT_EQ(groups, 4U);  // entrance, facets, gables on the border, sides
   EXPECT_NE(text.find("g facets\n"), std::string::npos);
+}
+
+/// A glTF file as its two chunks. Shares nothing with the writer.
+struct Glb {
+  nlohmann::json head;
+  std::string binary;
+
+  std::uint32_t word(std::size_t at) const {
+    std::uint32_t value = 0;
+    std::memcpy(&value, binary.data() + at, sizeof value);
+    return value;
+  }
+  float number(std::size_t at) const { return std::bit_cast<float>(word(at)); }
+};
+
+Glb read_glb(const std::string& text) {
+  Glb glb;
+  glb.binary = text;
+  EXPECT_EQ(text.substr(0, 4), "glTF");
+  EXPECT_EQ(glb.word(4), 2U);
+  EXPECT_EQ(glb.word(8), text.size());
+  const std::uint32_t head = glb.word(12);
+  EXPECT_EQ(text.substr(16, 4), "JSON");
+  EXPECT_EQ(head % 4, 0U);
+  EXPECT_EQ(glb.word(20 + head), text.size() - 28 - head);
+  EXPECT_EQ(text.substr(24 + head, 4), std::string("BIN\0", 4));
+  glb.head = nlohmann::json::parse(text.substr(20, head));
+  glb.binary = text.substr(28 + head);
+  return glb;
+}
+
+TEST(Gltf, HoldsEveryVertexAndTriangleByRole) {
+  const BoundaryMesh mesh = prism();
+  const Glb glb = read_glb(gltf_text(mesh, "prism", 1.49, 0.0));
+  const auto& accessors = glb.head["accessors"];
+  const auto begin_of = [&](const nlohmann::json& accessor) {
+    return glb.head["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteOffset"].get<std::size_t>();
+  };
+  ASSERT_EQ(accessors[0]["count"], mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float value = glb.number(begin_of(accessors[0]) + 12 * v + 4 * axis);
+      EXPECT_EQ(value, static_cast<float>(mesh.vertices[v][static_cast<Eigen::Index>(axis)]));
+      EXPECT_GE(value, accessors[0]["min"][axis].get<float>());
+      EXPECT_LE(value, accessors[0]["max"][axis].get<float>());
+    }
+  // Every triangle is in the mesh that its role names, in the order that it had.
+  std::size_t triangles = 0;
+  for (const auto& [role, name] : kFaceGroups) {
+    std::vector<std::uint32_t> expected;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      if (mesh.roles[t] == role) expected.insert(expected.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+    triangles += expected.size() / 3;
+    const auto node = std::find_if(glb.head["nodes"].begin(), glb.head["nodes"].end(),
+                                   [&name = name](const auto& one) { return one["name"] == name; });
+    ASSERT_EQ(node != glb.head["nodes"].end(), !expected.empty()) << name;
+    if (expected.empty()) continue;
+    const auto& primitive = glb.head["meshes"][(*node)["mesh"].get<std::size_t>()]["primitives"][0];
+    const auto& indices = accessors[primitive["indices"].get<std::size_t>()];
+    ASSERT_EQ(indices["count"], expected.size()) << name;
+    for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_EQ(glb.word(begin_of(indices) + 4 * k), expected[k]);
+  }
+  EXPECT_EQ(triangles, mesh.triangles.size());
+  EXPECT_EQ(glb.head["buffers"][0]["byteLength"], glb.binary.size());
+}
+
+TEST(Gltf, TurnsZUpAndMillimetresToMetres) {
+  const auto part = read_glb(gltf_text(prism(), "prism", 1.49, 0.0)).head["nodes"][0];
+  const Eigen::Quaterniond turn(part["rotation"][3].get<double>(), part["rotation"][0].get<double>(),
+                                part["rotation"][1].get<double>(), part["rotation"][2].get<double>());
+  EXPECT_LT((turn * Vec3::UnitZ() - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((turn * Vec3::UnitX() - Vec3::UnitX()).norm(), 1e-12);
+  EXPECT_EQ(part["scale"], (std::vector<double>{1e-3, 1e-3, 1e-3}));
+}
+
+TEST(Gltf, TellsWhatTheSolidIsOf) {
+  const auto clear = read_glb(gltf_text(prism(), "prism", 1.49, 0.02)).head["materials"][0]["extensions"];
+  EXPECT_EQ(clear["KHR_materials_ior"]["ior"], 1.49);
+  // Beer's law over 7 mm, from the file's own numbers.
+  const auto& volume = clear["KHR_materials_volume"];
+  EXPECT_NEAR(std::pow(volume["attenuationColor"][0].get<double>(), 7e-3 / volume["attenuationDistance"].get<double>()),
+              std::exp(-7 * 0.02), 1e-12);
+  const auto metal = read_glb(gltf_text(prism(), "prism", std::nullopt, 0.0)).head;
+  EXPECT_FALSE(metal.contains("extensionsUsed"));
+  EXPECT_EQ(metal["materials"][0]["pbrMetallicRoughness"]["metallicFactor"], 1.0);
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+#pragma once
+
+// What files of meshes call the faces of a part, by their role.
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "geometry/elements/element_cells.h"
+
+namespace retrace::geometry {
+
+inline constexpr std::array<std::pair<FacetRole, std::string_view>, 6> kFaceGroups = {
+    {{FacetRole::entrance, "entrance"},
+     {FacetRole::retro_facet, "facets"},
+     {FacetRole::flat_back, "flat_back"},
+     {FacetRole::inner_wall, "gables"},
+     {FacetRole::border_wall, "border_walls"},
+     {FacetRole::side, "sides"}}};
+
+}  // namespace retrace::geometry
