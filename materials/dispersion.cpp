@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "core/number_format.h"
@@ -48,6 +49,46 @@ double index_at(const GasRefractivity& d, double w_um) {
   return n;
 }
 
+double index_at(const RecordFormula& d, double w_um) {
+  const auto c = [&](std::size_t k) { return k <= d.c.size() ? d.c[k - 1] : 0.0; };  // from 1
+  const double w2 = w_um * w_um;
+  /// Of pairs from c_first on.
+  const auto sum = [&](std::size_t first, const auto& term) {
+    double total = 0.0;
+    for (std::size_t k = first; k <= d.c.size(); k += 2)
+      if (c(k) != 0.0) total += term(c(k), c(k + 1));
+    return total;
+  };
+  const auto power = [&](double factor, double exponent) { return factor * std::pow(w_um, exponent); };
+  const auto resonance = [&](std::size_t first) {
+    return c(first) == 0.0 ? 0.0 : power(c(first), c(first + 1)) / (w2 - std::pow(c(first + 2), c(first + 3)));
+  };
+  switch (d.number) {
+    case 1: return std::sqrt(1.0 + c(1) + sum(2, [&](double a, double b) { return a * w2 / (w2 - b * b); }));
+    case 2: return std::sqrt(1.0 + c(1) + sum(2, [&](double a, double b) { return a * w2 / (w2 - b); }));
+    case 3: return std::sqrt(c(1) + sum(2, power));
+    case 4: return std::sqrt(c(1) + resonance(2) + resonance(6) + sum(10, power));
+    case 5: return c(1) + sum(2, power);
+    case 6: return 1.0 + c(1) + sum(2, [&](double a, double b) { return a / (b - 1.0 / w2); });
+    case 7: return index_at(Herzberger{c(1), c(2), c(3), c(4), c(5), c(6)}, w_um);
+    case 8: {
+      const double y = c(1) + (c(2) == 0.0 ? 0.0 : c(2) * w2 / (w2 - c(3))) + c(4) * w2;
+      return std::sqrt((1.0 + 2.0 * y) / (1.0 - y));
+    }
+    default: {
+      const double w = w_um - c(5);
+      return std::sqrt(c(1) + (c(2) == 0.0 ? 0.0 : c(2) / (w2 - c(3))) +
+                       (c(4) == 0.0 ? 0.0 : c(4) * w / (w * w + c(6))));
+    }
+  }
+}
+
+double index_at(const TabulatedIndex& d, double w_um) {
+  const double wavelength_nm = 1e3 * w_um;
+  const bool is_within = wavelength_nm >= d.n.wavelengths_nm.front() && wavelength_nm <= d.n.wavelengths_nm.back();
+  return is_within ? d.n.at(wavelength_nm) : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// By how much the index against vacuum grows. \param n at the temperature of the data, relative to air
 double growth_of_index(const ThermoOptic& t, double n, double w_um, double warmer_k) {
   const double by_wavelength =
@@ -67,8 +108,12 @@ double index_of_air(const Material& air, double wavelength_nm, double temperatur
 
 double refractive_index(const Dispersion& dispersion, double wavelength_nm) {
   const double n = std::visit([&](const auto& d) { return index_at(d, 1e-3 * wavelength_nm); }, dispersion);
-  if (!std::isfinite(n)) throw InputError(fmt::format("the dispersion formula has no index at {} nm", wavelength_nm));
-  return n;
+  if (std::isfinite(n)) return n;
+  if (const auto* const table = std::get_if<TabulatedIndex>(&dispersion))
+    throw InputError(fmt::format("the table of the index reaches from {} to {} nm, got {} nm",
+                                 shortest(table->n.wavelengths_nm.front()), shortest(table->n.wavelengths_nm.back()),
+                                 shortest(wavelength_nm)));
+  throw InputError(fmt::format("the dispersion formula has no index at {} nm", wavelength_nm));
 }
 
 double index_relative_to_air(const Material& material, const Material& air, double wavelength_nm) {

@@ -13,6 +13,7 @@
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "materials/io/glass_catalogue.h"
+#include "materials/io/index_record.h"
 #include "materials/io/spectrum_reader.h"
 #include "studies/design/entrance_condition.h"
 #include "studies/design/entrance_of_design.h"
@@ -33,7 +34,7 @@ InputLocation light_location(const Design& design) {
   return design.where(design.light.spectrum() ? "light.spectrum" : "light.wavelength_nm");
 }
 
-/// What the design is made of: a glass of its catalogue, or a shipped material.
+/// What the design is made of: a glass of its catalogue, the material of a record, or a shipped material.
 materials::Material material_of(const Design& design, const materials::MaterialLibrary& library) {
   const Substance& substance = design.substance;
   const InputLocation where = design.where("body.material");
@@ -45,6 +46,8 @@ materials::Material material_of(const Design& design, const materials::MaterialL
       throw InputError(design.where("body.catalogue"), error.what());  // adds the key that names the file
     }
   };
+  if (materials::is_index_record(substance.catalogue->file))
+    return in_catalogue([&] { return materials::read_index_record(substance.catalogue->file); });
   const auto catalogue = in_catalogue([&] { return materials::GlassCatalogue::read(substance.catalogue->file); });
   catalogue.require(substance.material, where);
   return in_catalogue([&] { return catalogue.glass(substance.material); });

@@ -146,6 +146,8 @@ const std::vector<Library>& libraries() {
       {"Embree", "embree", "a .cpp file of raytrace/",
        [](const std::string& path) { return path.starts_with("raytrace/") && !is_header(path); }},
       {"toml++", "toml++/", "core/io/", [](const std::string& path) { return path.starts_with("core/io/"); }},
+      {"yaml-cpp", "yaml-cpp/", "materials/io/index_record.cpp",
+       [](const std::string& path) { return path == "materials/io/index_record.cpp"; }},
       {"SQLite", "SQLiteCpp/", "a .cpp file of studies/store/",
        [](const std::string& path) { return path.starts_with("studies/store/") && !is_header(path); }},
       {"SQLite", "sqlite3", "a .cpp file of studies/store/",

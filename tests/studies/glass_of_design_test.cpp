@@ -71,6 +71,22 @@ TEST(GlassOfDesign, ItsFileIsTheDesigns) {
   EXPECT_FALSE(design({}).substance.catalogue);
 }
 
+TEST(GlassOfDesign, MayBeOfARecord) {
+  const std::string record = std::string(RETRACE_SOURCE_DIR) + "/tests/data/refractiveindex/N-BK7.yml";
+  const Overrides from_record = {"body.catalogue=" + record};
+  EXPECT_EQ(design(from_record).substance.material, "N-BK7");
+  EXPECT_NEAR(inspected(from_record).refractive_index, inspected({"body.material=N-BK7"}).refractive_index, 1e-9);
+  EXPECT_EQ(inspected({"body.catalogue=" + record, "body.material=N-BK7"}).refractive_index,
+            inspected(from_record).refractive_index);
+  EXPECT_EQ(refusal_of([&] {
+              design({"body.catalogue=" + record, "body.material=BASF5"});
+            }),
+            "--set body.material=BASF5: body.material: must be \"N-BK7\", the material of the record, or not be given, "
+            "got \"BASF5\"");
+  const Design again = parse_design(design_text(design(from_record)), "again.toml", {});
+  EXPECT_EQ(again.substance.material, "N-BK7");
+}
+
 // A name is taken from the folder of the design.
 TEST(GlassOfDesign, LiesBesideTheDesign) {
   const fs::path folder = fs::temp_directory_path() / "retrace_glass_of_design";

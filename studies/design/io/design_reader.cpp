@@ -16,6 +16,7 @@
 #include "core/overloaded.h"
 #include "core/schema/reader.h"
 #include "geometry/io/substrate_rows.h"
+#include "materials/io/index_record.h"
 #include "studies/design/io/design_document.h"
 #include "studies/design/io/design_format.h"
 #include "studies/design/io/part_reader.h"
@@ -218,6 +219,17 @@ std::optional<GlassCatalogueFile> read_catalogue(const Document& document) {
   return GlassCatalogueFile{document.text("body.catalogue"), document.file("body.catalogue")};
 }
 
+/// Of a record its file's name, which a design need not repeat.
+std::string read_material(const Document& document) {
+  std::string material = document.text("body.material");
+  if (!document.has("body.catalogue") || !materials::is_index_record(document.file("body.catalogue"))) return material;
+  const std::string recorded = printable(document.file("body.catalogue").stem().string());
+  if (document.has("body.material") && material != recorded)
+    document.fail("body.material", fmt::format("must be {}, the material of the record, or not be given, got {}",
+                                               in_quotes(recorded), in_quotes(material)));
+  return recorded;
+}
+
 /// Which elements are wet; none without such a table.
 std::optional<WetElements> read_wet_back(const Document& document) {
   if (!document.has("wet_back")) return std::nullopt;
@@ -246,9 +258,12 @@ Design resolved(std::shared_ptr<const Document> given) {
   design.title = document.text_if("title");
   design.shape = read_shape(document);
   design.entrance = read_entrance(document);
-  design.substance = {
-      document.text("body.material"),           read_catalogue(document),  document.number_if("body.refractive_index"),
-      document.number_if("body.temperature_c"), read_absorption(document), document.number("body.back_index")};
+  design.substance = {read_material(document),
+                      read_catalogue(document),
+                      document.number_if("body.refractive_index"),
+                      document.number_if("body.temperature_c"),
+                      read_absorption(document),
+                      document.number("body.back_index")};
   design.wet_back = read_wet_back(document);
   design.surface = read_surface(document);
   design.light = {read_colour(document), read_polarisation(document)};

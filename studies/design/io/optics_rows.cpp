@@ -43,7 +43,9 @@ constexpr Row kBodyRows[] = {
     {"thickness_mm", kSize, kNone, "The mesh's own, if it is given.", kThicknessOfMesh},
     {"material", Text{}, "PMMA", "A name that `retrace list materials` shows."},
     {"catalogue", File{"a glass catalogue"}, kNone,
-     "A catalogue of glasses in the AGF format, such as makers publish: `material` is then the name of one of them."},
+     "A catalogue of glasses in the AGF format, such as makers publish: `material` is then the name of one of them. Or "
+     "a "
+     "record of refractiveindex.info (`.yml`), which has one material: `material` is then not needed."},
     {"refractive_index", Number{{.low = 1.0}}, Computed{"the material's"}, "Relative to air; wins over the material."},
     {"temperature_c", Number{{.low = -200.0, .high = 400.0}}, Computed{"that of the material's data"},
      "Of the part and the air around it, whose indices change with it; lengths are those at that temperature. For "

@@ -1,0 +1,123 @@
+// Records of the refractiveindex.info database. tests/data/refractiveindex/N-BK7.yml is one as it is published (CC0).
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "materials/io/index_record.h"
+#include "materials/io/material_library.h"
+#include "tests/support/refusals.h"
+
+namespace retrace::materials::index_record_test {
+namespace {
+
+Material record(const std::string& data) {
+  return parse_index_record("DATA:\n" + data, "glass.yml");
+}
+
+Material formula(int number, const std::string& coefficients) {
+  return record("  - type: formula " + std::to_string(number) +
+                "\n    wavelength_range: 0.2 3\n    coefficients: " + coefficients + "\n");
+}
+
+double index_at(const Material& material, double w_um) {
+  return refractive_index(material.dispersion, 1e3 * w_um);
+}
+
+std::string complaint(const std::string& text) {
+  return refusal_of([&] { parse_index_record(text, "glass.yml"); });
+}
+
+TEST(IndexRecord, IsTheGlassThatIsShipped) {
+  const Material read = read_index_record(std::string(RETRACE_SOURCE_DIR) + "/tests/data/refractiveindex/N-BK7.yml");
+  const MaterialLibrary library = MaterialLibrary::shipped();
+  const Material& shipped = library.find("N-BK7");
+  EXPECT_EQ(read.name, "N-BK7");
+  EXPECT_EQ(read.valid_from_nm, 300.0);
+  EXPECT_EQ(read.valid_to_nm, 2500.0);
+  EXPECT_EQ(read.temperature_c, 20.0);
+  EXPECT_FALSE(read.relative_to_vacuum);
+  // As the record itself says.
+  const double n_d = index_at(read, 0.58756);
+  EXPECT_NEAR(n_d, 1.5168, 1e-5);
+  EXPECT_NEAR((n_d - 1.0) / (index_at(read, 0.48613) - index_at(read, 0.65627)), 64.17, 5e-3);
+  for (const double wavelength_nm : {400.0, 500.0, 700.0}) {
+    EXPECT_NEAR(index_relative_to_air(read, library.air(), wavelength_nm, 60.0),
+                index_relative_to_air(shipped, library.air(), wavelength_nm, 60.0), 1e-9);
+    EXPECT_NEAR(absorption_per_mm(read, wavelength_nm), absorption_per_mm(shipped, wavelength_nm), 2e-6);
+  }
+}
+
+TEST(IndexRecord, KnowsTheNineFormulas) {
+  for (const double w : {0.4, 0.5876, 1.1}) {
+    const double w2 = w * w;
+    EXPECT_NEAR(index_at(formula(1, "0.5 1.1 0.1 0.9 9"), w),
+                std::sqrt(1.5 + 1.1 * w2 / (w2 - 0.01) + 0.9 * w2 / (w2 - 81.0)), 1e-14);
+    EXPECT_NEAR(index_at(formula(2, "0.5 1.1 0.01 0.9 81"), w), index_at(formula(1, "0.5 1.1 0.1 0.9 9"), w), 1e-14);
+    EXPECT_NEAR(index_at(formula(3, "2.2 -0.01 2 0.02 -2 0.001 -4"), w),
+                std::sqrt(2.2 - 0.01 * w2 + 0.02 / w2 + 0.001 / (w2 * w2)), 1e-14);
+    EXPECT_NEAR(index_at(formula(4, "2.1 0.3 1 0.1 2 0.2 2 5 2 0.03 -2"), w),
+                std::sqrt(2.1 + 0.3 * w / (w2 - 0.01) + 0.2 * w2 / (w2 - 25.0) + 0.03 / w2), 1e-14);
+    EXPECT_NEAR(index_at(formula(5, "1.48 0.004 -2 0.0001 -4"), w), 1.48 + 0.004 / w2 + 0.0001 / (w2 * w2), 1e-14);
+    EXPECT_NEAR(index_at(formula(6, "0 0.0579 238 0.00168 57.4"), w),
+                1.0 + 0.0579 / (238.0 - 1.0 / w2) + 0.00168 / (57.4 - 1.0 / w2), 1e-14);
+    const double l = 1.0 / (w2 - 0.028);
+    EXPECT_NEAR(index_at(formula(7, "1.5 0.004 0.0002 -0.003 0.0004 0.00005"), w),
+                1.5 + 0.004 * l + 0.0002 * l * l - 0.003 * w2 + 0.0004 * w2 * w2 + 0.00005 * w2 * w2 * w2, 1e-14);
+    const double n = index_at(formula(8, "0.2 0.1 0.02 -0.01"), w);
+    EXPECT_NEAR((n * n - 1.0) / (n * n + 2.0), 0.2 + 0.1 * w2 / (w2 - 0.02) - 0.01 * w2, 1e-14);
+    const double off = w - 0.3;
+    EXPECT_NEAR(index_at(formula(9, "2.5 0.015 0.03 0.02 0.3 1.2"), w),
+                std::sqrt(2.5 + 0.015 / (w2 - 0.03) + 0.02 * off / (off * off + 1.2)), 1e-14);
+  }
+  // Coefficients that are not there are 0, and a resonance without strength is no pole.
+  EXPECT_NEAR(index_at(formula(2, "1.25"), 0.5), 1.5, 1e-15);
+  EXPECT_NEAR(index_at(formula(4, "2.25"), 0.5), 1.5, 1e-15);
+  EXPECT_NEAR(index_at(formula(2, "1.25 0 0.25"), 0.5), 1.5, 1e-15);
+}
+
+TEST(IndexRecord, TablesAreLinearAndEndWhereTheyEnd) {
+  const Material material = record("  - type: tabulated nk\n    data: |\n      0.6 1.49 2e-7\n      0.4 1.51 1e-7\n");
+  EXPECT_NEAR(index_at(material, 0.45), 1.505, 1e-15);
+  EXPECT_NEAR(absorption_per_mm(material, 400.0), 4.0 * std::numbers::pi * 1e-7 / 400e-6, 1e-12);
+  EXPECT_EQ(refusal_of([&] { index_at(material, 0.61); }),
+            "the table of the index reaches from 400 to 600 nm, got 610 nm");
+}
+
+TEST(IndexRecord, ConditionsAreHeard) {
+  const std::string data = "DATA:\n  - type: formula 5\n    wavelength_range: 0.3 1\n    coefficients: 1.5\n";
+  EXPECT_TRUE(parse_index_record(data + "CONDITIONS:\n  n_is_absolute: true\n", "a.yml").relative_to_vacuum);
+  EXPECT_FALSE(parse_index_record(data, "a.yml").relative_to_vacuum);
+  EXPECT_NEAR(parse_index_record(data + "CONDITIONS:\n  temperature: 313.15\n", "a.yml").temperature_c, 40.0, 1e-9);
+}
+
+TEST(IndexRecord, WhatIsWrongIsToldWithItsLine) {
+  EXPECT_EQ(complaint(""), "glass.yml: DATA: must be a list of what the record knows");
+  EXPECT_EQ(complaint("DATA: []"), "glass.yml: DATA: must be a list of what the record knows");
+  EXPECT_TRUE(complaint("DATA: [").starts_with("glass.yml:1: no YAML: ")) << complaint("DATA: [");
+  EXPECT_EQ(complaint("DATA:\n  - type: tabulated k\n    data: 0.5 1e-7\n"),
+            "glass.yml:2: DATA: has neither a formula nor a table of n");
+  const std::string formula = "DATA:\n  - type: formula 2\n    wavelength_range: 0.3 1\n    coefficients: 0 1 x\n";
+  EXPECT_EQ(complaint(formula), "glass.yml:4: coefficients: must be finite numbers, got \"x\"");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = formula;
+    return complaint(text.replace(text.find(from), from.size(), to));
+  };
+  EXPECT_EQ(with("formula 2", "formula 10"), "glass.yml:2: type: must be formula 1 to formula 9, got \"formula 10\"");
+  EXPECT_EQ(with("formula 2", "polynomial").substr(0, 55), "glass.yml:2: type: must be formula 1 to formula 9, tabu");
+  EXPECT_EQ(with("0.3 1", "1 0.3"),
+            "glass.yml:3: wavelength_range: must be wavelengths in um that ascend from above 0, got 1 and 0.3");
+  EXPECT_EQ(with("coefficients", "factors"), "glass.yml:2: coefficients: is missing");
+  const auto table = [&](const std::string& data) {
+    return complaint("DATA:\n  - type: tabulated n\n    data: |\n      " + data + "\n");
+  };
+  EXPECT_EQ(table("0.4 1.5 0.5"), "glass.yml:3: data: must have 2 numbers a line, got 3 in all");
+  EXPECT_EQ(table("0.4 1.5 0.4 1.6"), "glass.yml:3: data: must have each wavelength once, got 0.4 um twice");
+  EXPECT_EQ(table("-0.4 1.5"), "glass.yml:3: data: wavelengths must be > 0, got -0.4 um");
+  EXPECT_EQ(table("0.4 nan"), "glass.yml:3: data: must be finite numbers, got \"nan\"");
+}
+
+}  // namespace
+}  // namespace retrace::materials::index_record_test
