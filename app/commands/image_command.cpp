@@ -21,6 +21,7 @@
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/image/io/image_documents.h"
+#include "studies/image/io/lamp_reader.h"
 #include "studies/photometry/io/standard_reader.h"
 
 namespace retrace::app {
@@ -51,6 +52,7 @@ struct ImageOptions {
   std::string film_mm = "100x100";
   bool false_colour = false;
   std::string road_distance_m = "10,30,100";
+  std::optional<std::string> lamp;
   std::string dye = "none";
   std::optional<std::string> pixels;
 };
@@ -99,6 +101,15 @@ std::vector<Argument> road_arguments(ImageOptions& o) {
   return {{"--road", "two such reflectors on a car ahead at night, from a driver's eye", &o.road},
           {"--road-distance-m LIST", "road: distances of the car ahead", &o.road_distance_m},
           {"--lamp-cd I", "road: intensity of each headlamp towards the reflectors", &o.driven.lamp_cd},
+          {"--lamp FILE",
+           "road: what each headlamp is, an IES or EULUMDAT file (.ies, .ldt)",
+           &o.lamp,
+           {.files = "", .excludes = "--lamp-cd"}},
+          {"--lamp-height-m H", "road: of the headlamps' middles", &o.driven.lamp_height_m},
+          {"--lamp-aim-deg D",
+           "road: by which the axes of headlamps from a file point down",
+           &o.driven.lamp_aim_deg,
+           {.needs = "--lamp"}},
           dye_argument(o.dye, "road: none, red, amber (illustrative) or a file")};
 }
 
@@ -253,6 +264,10 @@ ExitCode run_road(const ImageOptions& options, const CommonOptions& common, stud
   std::vector<std::string> inputs = files_read({design});
   studies::RoadRequest request = options.driven;
   request.distance_m = read_number_list(options.road_distance_m, "--road-distance-m");
+  if (options.lamp) {
+    request.lamp = studies::read_lamp(*options.lamp, "--lamp");
+    inputs.push_back(*options.lamp);
+  }
   const std::filesystem::path dye = studies::dye_file_of(options.dye, false, {});
   if (!dye.empty()) {
     request.dye = options.dye;
@@ -293,7 +308,7 @@ Command image_command() {
               "Pictures: maps of a detector on the entrance face, the part as a camera sees it in the light of a "
               "lamp, or two such reflectors on a car ahead at night; one of `--detector`, `--camera` and `--road` "
               "says which. Pictures need `--out`; OpenEXR files have the numbers.",
-          .reads = {"retrace.design/1", "absorption of a dye (CSV)"},
+          .reads = {"retrace.design/1", "absorption of a dye (CSV)", "lamps (IES LM-63, EULUMDAT)"},
           .writes = {"retrace.image/1"},
           .begin = begins<ImageOptions>(arguments, run)};
 }

@@ -92,15 +92,21 @@ double road_reflectance(const RoadScene& s, const Vec3& p) {
   return on_edge || on_middle ? kWhite : kAsphalt;
 }
 
-/// Illuminance of a surface by the headlamps, dipped: above the horizon they send a tenth.
+/// Intensity of a headlamp towards a place: of a dipped beam a tenth above the horizon, or what its file says.
+double intensity(const RoadRequest& r, const Vec3& lamp, const Vec3& at) {
+  const Vec3 way = at - lamp;
+  if (r.lamp) return r.lamp->intensity.cd(from_aimed(way, r.lamp_aim_deg));
+  const double rise_deg = std::atan2(way.y(), std::abs(way.z())) * 180.0 / pi;
+  return way.z() < 0.0 ? std::clamp(0.55 - 1.5 * rise_deg, 0.1, 1.0) * r.lamp_cd : 0.0;
+}
+
+/// Illuminance of a surface by the headlamps and the night.
 double illuminance(const RoadRequest& r, const std::array<Vec3, 2>& lamps, const Vec3& at, const Vec3& normal) {
   double sum = kNightLight;
   for (const Vec3& lamp : lamps) {
     const Vec3 way = lamp - at;
     const double cosine = std::max(0.0, normal.dot(way.normalized()));
-    const double rise_deg = std::atan2(at.y() - lamp.y(), std::abs(way.z())) * 180.0 / pi;
-    const double share = std::clamp(0.55 - 1.5 * rise_deg, 0.1, 1.0);
-    if (way.z() > 0.0) sum += share * r.lamp_cd * cosine / way.squaredNorm();
+    sum += intensity(r, lamp, at) * cosine / way.squaredNorm();
   }
   return sum;
 }
@@ -155,6 +161,13 @@ void check(const RoadRequest& r) {
   for (const double d : r.distance_m)
     if (!(d >= 5.0 && d <= 1000.0))
       throw InputError({"", 0, "--road-distance-m"}, fmt::format("must lie between 5 and 1000, got {}", shortest(d)));
+  const auto within = [](double value, double least, double most, const char* option) {
+    if (!(value >= least && value <= most))
+      throw InputError({"", 0, option}, fmt::format("must lie between {} and {}, got {}", shortest(least),
+                                                    shortest(most), shortest(value)));
+  };
+  within(r.lamp_height_m, 0.2, 3.0, "--lamp-height-m");
+  within(r.lamp_aim_deg, -45.0, 45.0, "--lamp-aim-deg");
   if (!(r.lamp_cd > 0.0 && r.lamp_cd <= 1e6))
     throw InputError({"", 0, "--lamp-cd"}, fmt::format("must be above 0 and at most 1e6, got {}", shortest(r.lamp_cd)));
 }
@@ -268,6 +281,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
   RoadResult result;
   result.design = design_;
   result.request = request_;
+  result.scene.lamp_height = request_.lamp_height_m;
   const double share = 1.0 / static_cast<double>(request_.distance_m.size());
   for (const double distance_m : request_.distance_m) {
     Photometer photometer(design_, photometry_at(request_, result.scene, distance_m, seed_), 1);
@@ -290,8 +304,10 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
       RoadReflector& reflector = view.reflectors[side];
       reflector.observation_deg[lamp] = settings[k].observation_deg.front();
       reflector.r_a[lamp] = (*readings)[k].r_a.front();
-      reflector.illuminance_lx[lamp] =
-          request_.lamp_cd / (lamps[lamp] - reflector_place(result.scene, side)).squaredNorm();
+      const Vec3 place = reflector_place(result.scene, side);
+      // Without a file lamp_cd is what they send to the reflectors themselves.
+      const double cd = request_.lamp ? intensity(request_, lamps[lamp], place) : request_.lamp_cd;
+      reflector.illuminance_lx[lamp] = cd / (lamps[lamp] - place).squaredNorm();
       reflector.luminance += (*readings)[k].r_l.front() * reflector.illuminance_lx[lamp];
     }
     draw_road(result.scene, request_, view);

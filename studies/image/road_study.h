@@ -4,19 +4,21 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
 #include "materials/spectrum.h"
 #include "studies/design/design.h"
+#include "studies/image/lamp.h"
 
 namespace retrace::studies {
 
 /// Two cars on a road at night: the one in front carries two reflectors on its rear, the one behind lights them.
 /// Lengths in m; x to the right and y up as its driver sees it, z from the reflectors towards him.
 struct RoadScene {
-  double lamp_height = 0.65;   ///< of the headlamps' middles
+  double lamp_height = 0.65;   ///< of the headlamps' middles, unless the request says otherwise
   double lamp_half_gap = 0.6;  ///< of each from the middle of the car
   double lamp_diameter = 0.15;
   double eye_height = 1.2;
@@ -30,8 +32,11 @@ struct RoadScene {
 
 struct RoadRequest {
   std::vector<double> distance_m = {10.0, 30.0, 100.0};  ///< of reflectors and headlamps; 1 to 6 of 5 to 1000
-  double lamp_cd = 10'000.0;  ///< intensity of each headlamp towards the reflectors, dipped; > 0
-  std::string dye;            ///< what the reflectors' dye is called: red, amber or another; empty: none
+  double lamp_cd = 10'000.0;  ///< intensity of each headlamp towards the reflectors, dipped; > 0; without a lamp
+  std::optional<PhotometricLamp> lamp;  ///< what each headlamp is
+  double lamp_height_m = 0.65;          ///< of the headlamps' middles; 0.2 to 3
+  double lamp_aim_deg = 0.0;            ///< by which a lamp's axis is turned down; -45 to 45
+  std::string dye;                      ///< what the reflectors' dye is called: red, amber or another; empty: none
   materials::SpectralCurve dye_absorption_per_mm;
   std::size_t columns = 480;  ///< of each view
   std::size_t rows = 330;

@@ -96,7 +96,15 @@ std::string camera_json(const CameraResult& result) {
 std::string road_json(const RoadResult& result) {
   Json json = {{"kind", "road"}, {"design", to_json(result.design)}};
   json["engine"] = result.engine;
-  json["lamp_cd"] = result.request.lamp_cd;
+  if (const auto& lamp = result.request.lamp)
+    json["lamp"] = {{"file", lamp->name},
+                    {"title", lamp->title},
+                    {"aim_deg", result.request.lamp_aim_deg},
+                    {"lumens", lamp->intensity.lumens()},
+                    {"printed_lumens", lamp->printed_lumens},
+                    {"largest_cd", lamp->intensity.largest_cd()}};
+  else
+    json["lamp_cd"] = result.request.lamp_cd;
   json["dye"] = result.request.dye;
   json["columns"] = result.request.columns;
   json["rows"] = result.request.rows;

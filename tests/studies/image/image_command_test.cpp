@@ -106,6 +106,13 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--camera", "--noise=0"}, "--noise: must lie between 0 and 1, got 0"},
       {{"--camera", "--passes=1"}, "--passes: must be 2 to 65536, got 1"},
       {{"--camera", "--passes=some"}, "--passes: must be a whole number from 0 to 4294967295, got some"},
+      {{"--road", "--lamp=no.ies"}, "no.ies: cannot be read"},
+      {{"--road", "--lamp=brick.toml"}, "--lamp: must end in .ies or .ldt, got \"brick.toml\""},
+      {{"--road", "--lamp=no.ies", "--lamp-cd=5"}, "--lamp"},
+      {{"--road", "--lamp-aim-deg=1"}, "--lamp-aim-deg"},
+      {{"--road", "--lamp-height-m=0"}, "--lamp-height-m: must lie between 0.2 and 3, got 0"},
+      {{"--road", "--lamp=" + example("low_beam.ies"), "--lamp-aim-deg=46"},
+       "--lamp-aim-deg: must lie between -45 and 45, got 46"},
       {{"--camera", "--cylinder-mm=50"}, "--cylinder-mm: needs a design with extent = \"infinite\""},
       {{"--camera", "--set", "light.polarisation=linear"}, "light.polarisation: "},
   };

@@ -1,0 +1,307 @@
+#include "studies/image/io/lamp_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "core/text.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr std::size_t kMostLampBytes = std::size_t{16} << 20;
+constexpr double kMostAngles = 3601;  ///< planes, and angles of a plane
+constexpr double kFullTurnDeg = 360.0;
+
+/// A text line by line, which knows where it is.
+class Lines {
+ public:
+  Lines(std::string_view text, const std::string& file) : file_(file), lines_(split(text, '\n')) {}
+
+  bool at_end() const { return next_ == lines_.size(); }
+  std::string_view next(std::string_view what) {
+    if (at_end()) throw InputError({file_, static_cast<int>(lines_.size()), ""}, fmt::format("ends before {}", what));
+    return lines_[next_++];
+  }
+  [[noreturn]] void fail(std::string_view key, std::string_view text) const {
+    throw InputError({file_, static_cast<int>(next_), std::string(key)}, text);
+  }
+  /// The line as one finite number of a range; a decimal comma is taken.
+  double number(std::string_view key, double least, double most) {
+    std::string text(next(key));
+    std::replace(text.begin(), text.end(), ',', '.');
+    return checked(number_in(text), text, key, least, most);
+  }
+  /// The next number of those that stand on this and further lines.
+  double word(std::string_view key, double least, double most) {
+    constexpr const char* kBetween = " \t\r,";
+    while (word_ == std::string_view::npos) word_ = next(key).find_first_not_of(kBetween);
+    const std::string_view line = lines_[next_ - 1];
+    const std::size_t end = std::min(line.find_first_of(kBetween, word_), line.size());
+    const std::string text(line.substr(word_, end - word_));
+    word_ = line.find_first_not_of(kBetween, end);
+    return checked(number_in(text), text, key, least, most);
+  }
+  void leave_line() { word_ = std::string_view::npos; }
+
+ private:
+  double checked(std::optional<double> value, const std::string& text, std::string_view key, double least,
+                 double most) const {
+    if (value && *value >= least && *value <= most) return *value;
+    fail(key, fmt::format("must be a number of {} to {}, got {}", shortest(least), shortest(most), in_quotes(text)));
+  }
+
+  const std::string& file_;
+  std::vector<std::string_view> lines_;
+  std::size_t next_ = 0;
+  std::size_t word_ = std::string_view::npos;  ///< where the next one begins in the line before
+};
+
+constexpr double kMost = 1e12;
+
+std::size_t whole(Lines& lines, double number, std::string_view key) {
+  if (number != std::floor(number)) lines.fail(key, fmt::format("must be a whole number, got {}", shortest(number)));
+  return static_cast<std::size_t>(number);
+}
+
+using Row = std::vector<double>;
+
+/// Planes and the candela in each.
+struct Table {
+  std::vector<double> planes_deg;
+  std::vector<double> angles_deg;
+  std::vector<Row> rows;
+};
+
+void check_ascending(const Lines& lines, const std::vector<double>& angles, std::string_view key) {
+  for (std::size_t k = 1; k < angles.size(); ++k)
+    if (!(angles[k] > angles[k - 1]))
+      lines.fail(key, fmt::format("must ascend, got {} behind {}", shortest(angles[k]), shortest(angles[k - 1])));
+}
+
+/// Adds what lies on the other side of a plane, whose angles are 2 * mirror_deg minus those that are there.
+void mirror(Table& table, double mirror_deg, bool in_front) {
+  Table made{{}, table.angles_deg, {}};
+  const std::size_t count = table.planes_deg.size();
+  for (std::size_t k = count; k-- > 0;) {
+    const double other = 2.0 * mirror_deg - table.planes_deg[k];
+    if (other == table.planes_deg[k]) continue;  // the plane of symmetry itself
+    made.planes_deg.push_back(other);
+    made.rows.push_back(table.rows[k]);
+  }
+  if (in_front) std::swap(made, table);
+  table.planes_deg.insert(table.planes_deg.end(), made.planes_deg.begin(), made.planes_deg.end());
+  table.rows.insert(table.rows.end(), made.rows.begin(), made.rows.end());
+}
+
+/// Planes from -90 or so to 270 as planes from 0 to 360.
+void turn_to_zero(Table& table) {
+  std::vector<std::pair<double, Row>> planes;
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    const double at = table.planes_deg[k];
+    planes.emplace_back(at < 0.0 ? at + kFullTurnDeg : at, table.rows[k]);
+  }
+  std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  table.planes_deg.clear();
+  table.rows.clear();
+  for (auto& [at, row] : planes) {
+    if (!table.planes_deg.empty() && at == table.planes_deg.back()) continue;
+    table.planes_deg.push_back(at);
+    table.rows.push_back(std::move(row));
+  }
+  if (table.planes_deg.back() != kFullTurnDeg) {
+    table.planes_deg.push_back(kFullTurnDeg);
+    table.rows.push_back(table.rows.front());
+  }
+}
+
+LuminousIntensity intensity_of(LuminousIntensity::Planes kind, Table table, double factor) {
+  std::vector<double> cd;
+  for (const Row& row : table.rows)
+    for (const double value : row) cd.push_back(factor * value);
+  return {kind, std::move(table.planes_deg), std::move(table.angles_deg), std::move(cd)};
+}
+
+/// By the first and last plane of LM-63 (LM-63-2002, 5.3; -19, 5.3).
+void complete_ies(Lines& lines, Table& table, LuminousIntensity::Planes kind) {
+  constexpr std::string_view key = "horizontal angles";
+  const double first = table.planes_deg.front();
+  const double last = table.planes_deg.back();
+  const auto refuse = [&](std::string_view allowed) {
+    lines.fail(key, fmt::format("must {}, got {} to {}", allowed, shortest(first), shortest(last)));
+  };
+  if (kind != LuminousIntensity::Planes::c) {
+    const double most = kind == LuminousIntensity::Planes::a ? 180.0 : 90.0;
+    if (table.planes_deg.size() < 2 || last > most || first < -most)
+      refuse(fmt::format("be two or more of -{0} to {0}", shortest(most)));
+    if (first == 0.0)
+      mirror(table, 0.0, true);
+    else if (!(first < 0.0 && last > 0.0))
+      refuse("begin at 0, for both sides alike, or reach from one side to the other");
+    return;
+  }
+  if (table.planes_deg.size() == 1 && first == 0.0) return;
+  if (first == 0.0 && last == 90.0) {
+    mirror(table, 90.0, false);
+    mirror(table, 180.0, false);
+  } else if (first == 0.0 && last == 180.0) {
+    mirror(table, 180.0, false);
+  } else if (first == 90.0 && last == 270.0) {
+    mirror(table, 90.0, true);
+    turn_to_zero(table);
+  } else if (first == 0.0 && last > 180.0 && last <= kFullTurnDeg) {
+    if (last < kFullTurnDeg) turn_to_zero(table);  // the last plane is the first
+  } else {
+    refuse("reach from 0 to 0, 90, 180 or 360, or from 90 to 270");
+  }
+}
+
+/// Of an IES file a keyword's text, such as "[LUMINAIRE] Headlamp".
+std::string text_behind(std::string_view line, std::string_view keyword) {
+  return line.starts_with(keyword) ? printable(trimmed(line.substr(keyword.size()))) : std::string();
+}
+
+}  // namespace
+
+PhotometricLamp parse_ies(std::string_view text, const std::string& file) {
+  Lines lines(text, file);
+  std::string title;
+  std::string tilt;
+  while (tilt.empty()) {
+    const std::string_view line = lines.next("a line TILT=");
+    if (std::string found = text_behind(line, "[LUMINAIRE]"); !found.empty()) title = std::move(found);
+    tilt = text_behind(line, "TILT=");
+  }
+  if (tilt == "INCLUDE") {
+    lines.word("tilt", 1, 3);
+    lines.leave_line();
+    const std::size_t pairs = whole(lines, lines.word("tilt", 1, kMostAngles), "tilt");
+    for (std::size_t k = 0; k < 2 * pairs; ++k) lines.word("tilt", -kMost, kMost);
+    lines.leave_line();
+  } else if (tilt != "NONE") {
+    lines.fail("TILT", fmt::format("must be NONE or INCLUDE, got {}", in_quotes(tilt)));
+  }
+  const double lamps = lines.word("number of lamps", 1, 1e6);
+  const double lumens = lines.word("lumens per lamp", -1, kMost);
+  const double multiplier = lines.word("candela multiplier", 1e-12, kMost);
+  const std::size_t angles =
+      whole(lines, lines.word("number of vertical angles", 2, kMostAngles), "number of vertical angles");
+  const std::size_t planes =
+      whole(lines, lines.word("number of horizontal angles", 1, kMostAngles), "number of horizontal angles");
+  const std::size_t type = whole(lines, lines.word("photometric type", 1, 3), "photometric type");
+  lines.word("units", 1, 2);
+  for (const char* const size : {"width", "length", "height"}) lines.word(size, -kMost, kMost);
+  const double ballast = lines.word("ballast factor", 1e-12, kMost);
+  // Of LM-63-86, whose files begin without their standard's name; later it has another meaning or none.
+  const double of_1986 = lines.word("ballast-lamp factor", 0, kMost);
+  const double with_lamp = text.starts_with("IESNA") ? 1.0 : of_1986;
+  lines.word("input watts", 0, kMost);
+  using enum LuminousIntensity::Planes;
+  const auto kind = type == 1 ? c : type == 2 ? b : a;
+  Table table;
+  const double least = kind == c ? 0.0 : -90.0;
+  const double most = kind == c ? 180.0 : 90.0;
+  for (std::size_t k = 0; k < angles; ++k) table.angles_deg.push_back(lines.word("vertical angles", least, most));
+  check_ascending(lines, table.angles_deg, "vertical angles");
+  for (std::size_t k = 0; k < planes; ++k)
+    table.planes_deg.push_back(lines.word("horizontal angles", -kFullTurnDeg, kFullTurnDeg));
+  check_ascending(lines, table.planes_deg, "horizontal angles");
+  for (std::size_t k = 0; k < planes; ++k) {
+    Row row;
+    for (std::size_t j = 0; j < angles; ++j) row.push_back(lines.word("candela", 0, kMost));
+    table.rows.push_back(std::move(row));
+  }
+  complete_ies(lines, table, kind);
+  // In files of types A and B the horizontal angle of A is that of its planes, of B that within them.
+  if (kind == b) {
+    Table turned{table.angles_deg, table.planes_deg, std::vector<Row>(angles, Row(table.planes_deg.size()))};
+    for (std::size_t k = 0; k < table.planes_deg.size(); ++k)
+      for (std::size_t j = 0; j < angles; ++j) turned.rows[j][k] = table.rows[k][j];
+    table = std::move(turned);
+  }
+  return {file, title, intensity_of(kind, std::move(table), multiplier * ballast * with_lamp),
+          lumens > 0.0 ? lamps * lumens : 0.0};
+}
+
+PhotometricLamp parse_ldt(std::string_view text, const std::string& file) {
+  Lines lines(text, file);
+  lines.next("the company");
+  lines.number("type indicator", 0, 3);
+  const std::size_t symmetry = whole(lines, lines.number("symmetry indicator", 0, 4), "symmetry indicator");
+  const std::size_t planes = whole(lines, lines.number("number of C planes", 1, kMostAngles), "number of C planes");
+  lines.number("distance of C planes", 0, kFullTurnDeg);
+  const std::size_t angles = whole(lines, lines.number("number of angles", 2, kMostAngles), "number of angles");
+  lines.number("distance of angles", 0, 180);
+  lines.next("the report's number");
+  const std::string title = printable(lines.next("the luminaire's name"));
+  for (const char* const what : {"the luminaire's number", "the file's name", "the date"}) lines.next(what);
+  for (int k = 0; k < 9; ++k) lines.number("size", 0, kMost);
+  lines.number("downward flux fraction", 0, 100);
+  const double light_output_percent = lines.number("light output ratio", 0, 1000);
+  const double conversion = lines.number("conversion factor", 1e-12, kMost);
+  lines.number("tilt", -kFullTurnDeg, kFullTurnDeg);
+  const std::size_t sets = whole(lines, lines.number("number of sets", 1, 20), "number of sets");
+  double lumens = 0.0;
+  for (std::size_t k = 0; k < sets; ++k) {
+    lines.number("number of light sources", -1e6, 1e6);  // negative where intensities are measured as they are
+    lines.next("the type of light sources");
+    const double of_set = lines.number("luminous flux", 1e-9, kMost);
+    if (k == 0) lumens = of_set;
+    for (const char* const what : {"the colour", "the colour rendering"}) lines.next(what);
+    lines.number("power", 0, kMost);
+  }
+  for (int k = 0; k < 10; ++k) lines.number("direct ratio", 0, kMost);
+  std::vector<double> all_planes;
+  for (std::size_t k = 0; k < planes; ++k) all_planes.push_back(lines.number("C planes", 0, kFullTurnDeg));
+  check_ascending(lines, all_planes, "C planes");
+  Table table;
+  for (std::size_t k = 0; k < angles; ++k) table.angles_deg.push_back(lines.number("angles", 0, 180));
+  check_ascending(lines, table.angles_deg, "angles");
+
+  // First plane and number of those whose intensities stand there, by symmetry: none, about the axis, about C0 - C180,
+  // C90 - C270, both.
+  const std::size_t begins[] = {0, 0, 0, 3 * planes / 4, 0};
+  const std::size_t counts[] = {planes, 1, planes / 2 + 1, planes / 2 + 1, planes / 4 + 1};
+  if ((symmetry > 1 && planes % (symmetry == 2 ? 2 : 4) != 0) || all_planes.front() != 0.0)
+    lines.fail("C planes",
+               fmt::format("must begin at 0 and be as many as symmetry {} parts, got {}", symmetry, planes));
+  for (std::size_t k = 0; k < counts[symmetry]; ++k) {
+    const std::size_t plane = begins[symmetry] + k;
+    // Those of symmetry 3 go from 270 through 0 to 90.
+    table.planes_deg.push_back(all_planes[plane % planes] - (symmetry == 3 && plane < planes ? kFullTurnDeg : 0.0));
+    Row row;
+    for (std::size_t j = 0; j < angles; ++j) row.push_back(lines.number("luminous intensity", 0, kMost));
+    table.rows.push_back(std::move(row));
+  }
+  check_ascending(lines, table.planes_deg, "C planes");
+  if (symmetry == 0) turn_to_zero(table);
+  if (symmetry == 4) mirror(table, 90.0, false);
+  if (symmetry == 2 || symmetry == 4) mirror(table, 180.0, false);
+  if (symmetry == 3) {
+    mirror(table, 90.0, false);
+    turn_to_zero(table);
+  }
+  return {file, title, intensity_of(LuminousIntensity::Planes::c, std::move(table), 1e-3 * lumens * conversion),
+          1e-2 * light_output_percent * lumens};
+}
+
+PhotometricLamp read_lamp(const std::filesystem::path& file, const std::string& option) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char character) { return static_cast<char>(std::tolower(character)); });
+  if (ending != ".ies" && ending != ".ldt")
+    throw InputError({"", 0, option}, fmt::format("must end in .ies or .ldt, got {}", in_quotes(file.string())));
+  const std::string text = read_file(file, kMostLampBytes);
+  return ending == ".ies" ? parse_ies(text, file.string()) : parse_ldt(text, file.string());
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,29 @@
+// Any bytes as a photometric file, LM-63 or EULUMDAT by the first byte: it is understood or refused in one line, and
+// what is understood has a flux and an intensity everywhere.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/error.h"
+#include "studies/image/io/lamp_reader.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace retrace;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    const studies::PhotometricLamp lamp =
+        size > 0 && data[0] == 'I' ? studies::parse_ies(text, "fuzz.ies") : studies::parse_ldt(text, "fuzz.ldt");
+    if (!std::isfinite(lamp.intensity.lumens())) std::abort();
+    for (int k = 0; k < 64; ++k)
+      if (!(lamp.intensity.cd({std::cos(k), std::sin(0.7 * k), std::cos(1.3 * k)}) >= 0.0)) std::abort();
+  } catch (const InputError& error) {
+    const std::string_view message = error.what();
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+  }
+  return 0;
+}
