@@ -153,9 +153,6 @@ studies::DetectorRequest detector_request(const ImageOptions& options, const Com
   studies::DetectorRequest request = options.detected;
   if (options.pixels) request.pixels = pixels_of(*options.pixels, 1, "a whole number")[0];
   request.engine = studies::engine_from_name(options.engine);
-  if (request.cutoff && !(*request.cutoff > 0.0 && *request.cutoff < 1.0))
-    throw InputError({"", 0, "--cutoff"}, fmt::format("must lie between 0 and 1, got {}", *request.cutoff));
-  if (request.rays < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
   request.seed = common.seed;
   return request;
 }

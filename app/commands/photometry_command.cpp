@@ -21,8 +21,6 @@
 namespace retrace::app {
 namespace {
 
-constexpr double kMostRotations = 720;
-
 struct PhotometryOptions {
   std::string design;
   std::string standard;
@@ -108,12 +106,7 @@ studies::PhotometricLight light_of(const std::string& name) {
 studies::PhotometryRequest with_options(studies::PhotometryRequest request, const PhotometryOptions& options,
                                         const CommonOptions& common) {
   request.area_cm2 = options.area_cm2;
-  if (options.rotation) {
-    request.rotation_deg = read_number_list(*options.rotation, "--rotation");
-    if (static_cast<double>(request.rotation_deg.size()) > kMostRotations)
-      throw InputError({"", 0, "--rotation"},
-                       fmt::format("must be at most {} turns, got {}", kMostRotations, request.rotation_deg.size()));
-  }
+  if (options.rotation) request.rotation_deg = read_number_list(*options.rotation, "--rotation");
   if (options.source_arcmin) request.apertures.source = Angle::from_deg(*options.source_arcmin / 60.0);
   if (options.receiver_arcmin) request.apertures.receiver = Angle::from_deg(*options.receiver_arcmin / 60.0);
   request.window_deg = options.window_deg;
@@ -123,8 +116,6 @@ studies::PhotometryRequest with_options(studies::PhotometryRequest request, cons
   request.window_power = options.window_power;
   request.advice = !options.no_advice;
   request.engine = studies::engine_from_name(options.engine);
-  if (options.cutoff && !(*options.cutoff > 0.0 && *options.cutoff < 1.0))
-    throw InputError({"", 0, "--cutoff"}, fmt::format("must lie between 0 and 1, got {}", *options.cutoff));
   request.cutoff = options.cutoff;
   request.rays = options.samples;
   request.seed = common.seed;

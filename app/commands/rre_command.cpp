@@ -49,12 +49,6 @@ std::vector<Argument> arguments(RreOptions& options) {
            &request.far_field}};
 }
 
-void check_share(double value, bool zero_allowed, const char* option) {
-  if (!(value > 0.0 && value < 1.0) && !(zero_allowed && value == 0.0))
-    throw InputError({"", 0, option},
-                     fmt::format("must lie between 0 {}and 1, got {}", zero_allowed ? "(included) " : "", value));
-}
-
 void check_has_folder(const CommonOptions& common, bool asked, const char* option) {
   if (asked && common.out.empty()) throw InputError({"", 0, option}, "needs --out DIR for its files");
 }
@@ -67,8 +61,6 @@ studies::RreRequest request_of(const RreOptions& options, const CommonOptions& c
   request.azimuth_deg = read_number_list(options.azimuth, "--azimuth");
   request.engine = studies::engine_from_name(options.engine);
   request.sampling = studies::sampling_from_name(options.sampling);
-  if (request.target_error) check_share(*request.target_error, false, "--target-error");
-  if (request.cutoff) check_share(*request.cutoff, true, "--cutoff");
   request.seed = common.seed;
   check_has_folder(common, request.footprint, "--footprint");
   check_has_folder(common, request.far_field, "--far-field");

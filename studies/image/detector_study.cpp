@@ -34,6 +34,10 @@ void check(const DetectorRequest& request) {
   if (!(request.window_deg > 0.0 && request.window_deg <= 90.0))
     throw InputError({"", 0, "--window-deg"},
                      fmt::format("must be above 0 and at most 90 degrees, got {}", shortest(request.window_deg)));
+  if (request.cutoff) check_share(*request.cutoff, false, "--cutoff");
+  if (request.rays < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
+  if (!std::isfinite(request.azimuth_deg))
+    throw InputError({"", 0, "--azimuth"}, fmt::format("must be finite, got {}", request.azimuth_deg));
   if (request.engine == Engine::cell || request.engine == Engine::stochastic)
     throw InputError({"", 0, "--engine"}, fmt::format("must be auto, exact, montecarlo or embree for pictures, got {}",
                                                       engine_name(request.engine)));

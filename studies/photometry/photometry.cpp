@@ -31,6 +31,7 @@ constexpr std::size_t kMostMaps = 6;
 // Entrance angles and observation angles of the curves.
 constexpr std::array<double, 4> kCurveEntranceDeg = {0.0, 10.0, 20.0, 30.0};
 constexpr std::size_t kCurvePoints = 41;
+constexpr std::size_t kMostRotations = 720;
 
 void check_number(double value, double low, double high, const std::string& option) {
   if (!(value >= low && value <= high))
@@ -52,6 +53,13 @@ void check(const PhotometryRequest& request) {
   if (request.engine == Engine::cell || request.engine == Engine::stochastic)
     throw InputError({"", 0, "--engine"},
                      fmt::format("must be auto, exact, montecarlo or embree, got {}", engine_name(request.engine)));
+  if (request.cutoff) check_share(*request.cutoff, false, "--cutoff");
+  if (request.rays < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
+  if (request.rotation_deg.empty() || request.rotation_deg.size() > kMostRotations)
+    throw InputError({"", 0, "--rotation"},
+                     fmt::format("must be 1 to {} turns, got {}", kMostRotations, request.rotation_deg.size()));
+  for (const double turn : request.rotation_deg)
+    if (!std::isfinite(turn)) throw InputError({"", 0, "--rotation"}, fmt::format("must be finite, got {}", turn));
   for (const TestPoint& point : request.programme.points)
     if (!(point.observation_deg <= request.window_deg))
       throw InputError({request.limits_source, point.line, "observation_deg"},

@@ -40,6 +40,11 @@ void check(const RreRequest& request) {
                                       {request.derivatives, "--derivatives"}})
     if (asked && (!may_follow_beams(request) || request.engine == Engine::stochastic))
       throw InputError({"", 0, option}, "needs --engine exact");
+  if (request.target_error) check_share(*request.target_error, false, "--target-error");
+  if (request.cutoff) check_share(*request.cutoff, true, "--cutoff");
+  if (request.rays && *request.rays < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
+  for (const double p : request.azimuth_deg)
+    if (!std::isfinite(p)) throw InputError({"", 0, "--azimuth"}, fmt::format("must be finite, got {}", p));
   for (const double t : request.incidence_deg) check_incidence(t);
   for (const CurveSpan& span : request.incidence_spans) {
     check_incidence(span.low);
@@ -78,6 +83,12 @@ std::string missed_target_text(const Design& design, const RrePoint& at, const R
 
 double target_error_of(const RreRequest& request) {
   return request.target_error.value_or(request.incidence_spans.empty() ? kUsualTargetError : 0.5 * kCurveTolerance);
+}
+
+void check_share(double value, bool zero_allowed, const char* option) {
+  if (!(value > 0.0 && value < 1.0) && !(zero_allowed && value == 0.0))
+    throw InputError({"", 0, option},
+                     fmt::format("must lie between 0 {}and 1, got {}", zero_allowed ? "(included) " : "", value));
 }
 
 Engine engine_from_name(std::string_view name) {

@@ -32,6 +32,9 @@ Engine engine_from_name(std::string_view name);
 raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
+/// Of a share of power. \throw InputError at `option` unless it lies between 0 and 1
+void check_share(double value, bool zero_allowed, const char* option);
+
 /// Default of RreRequest::target_error, of RRE as a fraction.
 inline constexpr double kUsualTargetError = 1e-4;
 /// Of RRE as a fraction: how far straight lines between chosen incidences may miss it, if target_error is less.

@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
+#include <limits>
 #include <regex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "retrace/design.h"
@@ -131,11 +132,49 @@ TEST(Library, WrongInputIsAnErrorWithItsPlace) {
   wrong = {};
   wrong.incidence_deg = {90};
   EXPECT_THROW(rre(design, wrong), InputError);
+  // Numbers that the command line never lets through.
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {nan, infinity, -infinity, -1.0, 0.0, 1.0, 2.0}) {
+    EXPECT_THROW(rre(design, {.target_error = bad}), InputError) << bad;
+    if (bad != 0.0) {
+      EXPECT_THROW(rre(design, {.engine = "exact", .cutoff = bad}), InputError) << bad;
+    }
+    PhotometryRequest table;
+    table.standard = "r150";
+    table.part_class = "IA";
+    table.colour = "red";
+    table.area_cm2 = 30;
+    table.cutoff = bad;
+    EXPECT_THROW(photometry(design, table), InputError) << bad;
+  }
+  for (const double bad : {nan, infinity, -infinity}) {
+    EXPECT_THROW(rre(design, {.incidence_deg = {bad}}), InputError);
+    EXPECT_THROW(rre(design, {.azimuth_deg = {bad}}), InputError);
+  }
+  EXPECT_THROW(rre(design, {.samples = 0}), InputError);
   EXPECT_THROW(mesh(design, {"corner", {}}), InputError);
   EXPECT_THROW(make_job(design, {}), InputError);
   EXPECT_THROW(fabricate("no_such_job.toml"), InputError);
   EXPECT_THROW(photometry(design, {}), InputError);
   EXPECT_THROW(export_solid(design, "no/such/folder/part.stl"), OutputError);
+}
+
+TEST(Library, ThreadsOfTheCallerDoNotMeet) {
+  const std::vector<std::string> files = {"honeycomb_infinite.toml", "rtp_single_0p45mm.toml",
+                                          "triangular_infinite.toml"};
+  const auto answer = [](const std::string& file) {
+    return without_elapsed(rre(Design::load(example(file)), {.incidence_deg = {0, 7, 25}, .target_error = 1e-3}).json);
+  };
+  std::vector<std::string> alone;
+  for (const std::string& file : files) alone.push_back(answer(file));
+  for (int round = 0; round < 3; ++round) {
+    std::vector<std::string> together(files.size());
+    std::vector<std::thread> threads;
+    for (std::size_t k = 0; k < files.size(); ++k) threads.emplace_back([&, k] { together[k] = answer(files[k]); });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(together, alone);
+  }
 }
 
 TEST(Library, WorkIsWatchedAndStopped) {
