@@ -53,6 +53,7 @@ struct ImageOptions {
   bool false_colour = false;
   std::string road_distance_m = "10,30,100";
   std::optional<std::string> lamp;
+  double lamp_aim_deg = 0.0;
   std::string dye = "none";
   std::optional<std::string> pixels;
 };
@@ -101,15 +102,7 @@ std::vector<Argument> road_arguments(ImageOptions& o) {
   return {{"--road", "two such reflectors on a car ahead at night, from a driver's eye", &o.road},
           {"--road-distance-m LIST", "road: distances of the car ahead", &o.road_distance_m},
           {"--lamp-cd I", "road: intensity of each headlamp towards the reflectors", &o.driven.lamp_cd},
-          {"--lamp FILE",
-           "road: what each headlamp is, an IES or EULUMDAT file (.ies, .ldt)",
-           &o.lamp,
-           {.files = "", .excludes = "--lamp-cd"}},
           {"--lamp-height-m H", "road: of the headlamps' middles", &o.driven.lamp_height_m},
-          {"--lamp-aim-deg D",
-           "road: by which the axes of headlamps from a file point down",
-           &o.driven.lamp_aim_deg,
-           {.needs = "--lamp"}},
           dye_argument(o.dye, "road: none, red, amber (illustrative) or a file")};
 }
 
@@ -117,7 +110,14 @@ std::vector<Argument> arguments(ImageOptions& options) {
   std::vector<Argument> all = {
       design_argument(options.design),
       {"--pixels N|CxR", "detector: along the longer side of the face [400]; camera: columns and rows [400x300]",
-       &options.pixels}};
+       &options.pixels},
+      {"--lamp FILE",
+       "camera, road: the lamp or each headlamp, an IES or EULUMDAT file (.ies, .ldt) [--illuminance-lx; --lamp-cd]",
+       &options.lamp, files("")},
+      {"--lamp-aim-deg D",
+       "camera, road: by which the axis of a lamp from a file points down",
+       &options.lamp_aim_deg,
+       {.needs = "--lamp"}}};
   for (const auto& some : {detector_arguments(options), camera_arguments(options), road_arguments(options)})
     all.insert(all.end(), some.begin(), some.end());
   return all;
@@ -157,6 +157,11 @@ studies::DetectorRequest detector_request(const ImageOptions& options, const Com
   return request;
 }
 
+std::optional<studies::PhotometricLamp> lamp_of(const ImageOptions& options) {
+  if (!options.lamp) return std::nullopt;
+  return studies::read_lamp(*options.lamp, "--lamp");
+}
+
 studies::CameraRequest camera_request(const ImageOptions& options, const CommonOptions& common) {
   studies::CameraRequest request = options.photographed;
   if (options.eye_mm) request.eye_mm = place_of(*options.eye_mm, "--eye-mm");
@@ -168,6 +173,8 @@ studies::CameraRequest camera_request(const ImageOptions& options, const CommonO
   }
   const auto film = numbers_of(options.film_mm, 'x', 2, "--film-mm", "width and height, such as 100x100");
   request.film_mm = {film[0], film[1]};
+  request.lamp = lamp_of(options);
+  request.lamp_aim_deg = options.lamp_aim_deg;
   request.seed = common.seed;
   return request;
 }
@@ -222,7 +229,9 @@ class Preview {
 ExitCode photograph(const ImageOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   studies::Design design = studies::read_design(options.design, common.overrides);
   studies::CameraResult result;
-  ResultFiles files(common, files_read({design}), "image.json");
+  std::vector<std::string> inputs = files_read({design});
+  if (options.lamp) inputs.push_back(*options.lamp);
+  ResultFiles files(common, inputs, "image.json");
   const auto add = [&](const std::string& name, auto content) {
     files.add(name, [&result, content] { return result.image.passes > 0 ? content(result) : ""; });
   };
@@ -261,10 +270,9 @@ ExitCode run_road(const ImageOptions& options, const CommonOptions& common, stud
   std::vector<std::string> inputs = files_read({design});
   studies::RoadRequest request = options.driven;
   request.distance_m = read_number_list(options.road_distance_m, "--road-distance-m");
-  if (options.lamp) {
-    request.lamp = studies::read_lamp(*options.lamp, "--lamp");
-    inputs.push_back(*options.lamp);
-  }
+  if (options.lamp) inputs.push_back(*options.lamp);
+  request.lamp = lamp_of(options);
+  request.lamp_aim_deg = options.lamp_aim_deg;
   const std::filesystem::path dye = studies::dye_file_of(options.dye, false, {});
   if (!dye.empty()) {
     request.dye = options.dye;

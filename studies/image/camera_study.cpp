@@ -50,6 +50,7 @@ void check(const CameraRequest& r) {
   require(r.lamp_arcmin > 0.0 && r.lamp_arcmin <= 600.0, "--lamp-arcmin", "be above 0 and at most 600", r.lamp_arcmin);
   require(r.pupil_arcmin >= 0.0 && r.pupil_arcmin <= 600.0, "--pupil-arcmin", "be 0 to 600", r.pupil_arcmin);
   require(r.illuminance_lx >= 0.0, "--illuminance-lx", "be >= 0", r.illuminance_lx);
+  require(std::abs(r.lamp_aim_deg) <= 45.0, "--lamp-aim-deg", "lie between -45 and 45", r.lamp_aim_deg);
   require(r.ambient_lx >= 0.0, "--ambient-lx", "be >= 0", r.ambient_lx);
   require(r.backlight_lx >= 0.0, "--backlight-lx", "be >= 0", r.backlight_lx);
   for (const double length : r.film_mm) require(length > 0.0 && length <= 1e5, "--film-mm", "be above 0", length);
@@ -129,7 +130,9 @@ raytrace::CameraScene scene_of(const CameraRequest& r, const geometry::Part& par
   scene.view.width_mm = shown_width(r, part);
   scene.view.pupil = Angle::from_deg(r.pupil_arcmin / 60.0);
   scene.lamp.position_mm = r.lamp_mm ? to_vec(*r.lamp_mm) : Vec3(target + distance_mm * towards.to_source);
-  scene.lamp.illuminance_lx = r.illuminance_lx;
+  const double lamp_m = 1e-3 * (scene.lamp.position_mm - target).norm();
+  scene.lamp.illuminance_lx =
+      r.lamp ? r.lamp->intensity.cd(from_aimed(-Vec3::UnitZ(), r.lamp_aim_deg)) / (lamp_m * lamp_m) : r.illuminance_lx;
   scene.lamp.diameter = Angle::from_deg(r.lamp_arcmin / 60.0);
   // A half space of even luminance L lights a plane with pi L.
   scene.surroundings = {r.ambient_lx / std::numbers::pi, r.backlight_lx / std::numbers::pi};

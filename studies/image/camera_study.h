@@ -14,6 +14,7 @@
 #include "core/shared_tasks.h"
 #include "raytrace/observers/camera.h"
 #include "studies/design/optical_model.h"
+#include "studies/image/lamp.h"
 
 namespace retrace::studies {
 
@@ -28,9 +29,11 @@ struct CameraRequest {
   std::optional<std::array<double, 3>> lamp_mm;  ///< likewise
   double lamp_arcmin = 10.0;                     ///< diameter of its disc; > 0, up to 600
   double pupil_arcmin = 10.0;                    ///< likewise, of the eye's pupil; >= 0
-  double illuminance_lx = 10.0;                  ///< of the lamp across its beam, at the part
-  double ambient_lx = 0.0;                       ///< of even light from all of the half space in front, on the face
-  double backlight_lx = 0.0;                     ///< likewise from behind and round the part
+  double illuminance_lx = 10.0;                  ///< of the lamp across its beam, at the part; without `lamp`
+  std::optional<PhotometricLamp> lamp;  ///< whose intensity gives it; its axis points at the middle of the face
+  double lamp_aim_deg = 0.0;            ///< by which that axis is turned down; -45 to 45
+  double ambient_lx = 0.0;              ///< of even light from all of the half space in front, on the face
+  double backlight_lx = 0.0;            ///< likewise from behind and round the part
   std::size_t columns = 400;
   std::size_t rows = 300;
   std::optional<double> field_mm;  ///< what the picture's width shows at the part; none: the part and some margin

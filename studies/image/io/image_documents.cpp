@@ -31,6 +31,15 @@ std::string image_text(Json json, double elapsed_s, const std::vector<std::strin
   return result_text("retrace.image/1", std::move(json), warnings, complete);
 }
 
+Json lamp_json(const PhotometricLamp& lamp, double aim_deg) {
+  return {{"file", lamp.name},
+          {"title", lamp.title},
+          {"aim_deg", aim_deg},
+          {"lumens", lamp.intensity.lumens()},
+          {"printed_lumens", lamp.printed_lumens},
+          {"largest_cd", lamp.intensity.largest_cd()}};
+}
+
 }  // namespace
 
 std::string detector_json(const DetectorResult& result) {
@@ -73,7 +82,8 @@ std::string camera_json(const CameraResult& result) {
   json["rotation_deg"] = asked.rotation_deg;
   json["lamp_arcmin"] = asked.lamp_arcmin;
   json["pupil_arcmin"] = asked.pupil_arcmin;
-  json["illuminance_lx"] = asked.illuminance_lx;
+  json["illuminance_lx"] = result.scene.lamp.illuminance_lx;
+  if (asked.lamp) json["lamp"] = lamp_json(*asked.lamp, asked.lamp_aim_deg);
   json["ambient_lx"] = asked.ambient_lx;
   json["backlight_lx"] = asked.backlight_lx;
   if (result.scene.film) {
@@ -97,12 +107,7 @@ std::string road_json(const RoadResult& result) {
   Json json = {{"kind", "road"}, {"design", to_json(result.design)}};
   json["engine"] = result.engine;
   if (const auto& lamp = result.request.lamp)
-    json["lamp"] = {{"file", lamp->name},
-                    {"title", lamp->title},
-                    {"aim_deg", result.request.lamp_aim_deg},
-                    {"lumens", lamp->intensity.lumens()},
-                    {"printed_lumens", lamp->printed_lumens},
-                    {"largest_cd", lamp->intensity.largest_cd()}};
+    json["lamp"] = lamp_json(*lamp, result.request.lamp_aim_deg);
   else
     json["lamp_cd"] = result.request.lamp_cd;
   json["dye"] = result.request.dye;

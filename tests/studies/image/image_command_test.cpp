@@ -64,6 +64,17 @@ TEST_F(Image, CameraSeesASheetOnACylinder) {
   EXPECT_GT(json["luminance_max_cd_per_m2"].get<double>(), 0.0);
 }
 
+TEST_F(Image, CameraTakesALampOfAFile) {
+  const auto lit = [&](const std::string& aim) {
+    return retrace_json(folder_, {"image", "brick.toml", "--camera", "--passes=2", "--pixels=8x6", "--distance-m=20",
+                                  "--lamp=" + example("low_beam.ies"), "--lamp-aim-deg=" + aim, "-o", "out"});
+  };
+  // What the file has in the row of X = 0 at Y = -1 and Y = 1, in cd.
+  EXPECT_NEAR(lit("-1")["illuminance_lx"].get<double>() * 400.0, 26637.0, 3000.0);
+  EXPECT_LT(lit("1")["illuminance_lx"].get<double>() * 400.0, 300.0);
+  EXPECT_EQ(lit("1")["lamp"]["aim_deg"], 1);
+}
+
 TEST_F(Image, WrongOptionsAreRefused) {
   const std::vector<std::pair<Arguments, std::string>> cases = {
       {{}, "image: one of --detector, --camera and --road is required"},
@@ -108,7 +119,6 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--camera", "--passes=some"}, "--passes: must be a whole number from 0 to 4294967295, got some"},
       {{"--road", "--lamp=no.ies"}, "no.ies: cannot be read"},
       {{"--road", "--lamp=brick.toml"}, "--lamp: must end in .ies or .ldt, got \"brick.toml\""},
-      {{"--road", "--lamp=no.ies", "--lamp-cd=5"}, "--lamp"},
       {{"--road", "--lamp-aim-deg=1"}, "--lamp-aim-deg"},
       {{"--road", "--lamp-height-m=0"}, "--lamp-height-m: must lie between 0.2 and 3, got 0"},
       {{"--road", "--lamp=" + example("low_beam.ies"), "--lamp-aim-deg=46"},
