@@ -1,9 +1,12 @@
 #include "retrace/verify.h"
 
 #include <chrono>
+#include <memory>
 
 #include "core/atomic_file.h"
+#include "library/drawing_content.h"
 #include "raytrace/sampling/threads.h"
+#include "report/results/result_plots.h"
 #include "studies/closed_loop/as_machined.h"
 #include "studies/closed_loop/io/verification_files.h"
 #include "studies/closed_loop/verification.h"
@@ -27,8 +30,9 @@ void write_as_machined(studies::VerificationRun& run, const std::filesystem::pat
 Verification verify(const VerificationRequest& request, const Running& running) {
   const auto start = std::chrono::steady_clock::now();
   const studies::VerificationRequest of_study = {request.job.string(), request.programs, request.dialect,
-                                                 request.tolerance_nm, request.standing};
-  studies::VerificationRun run;
+                                                 request.tolerance_nm, request.standing, request.texts};
+  const auto held = std::make_shared<studies::VerificationRun>();
+  studies::VerificationRun& run = *held;
   raytrace::run_with_threads(running.threads, [&] { run = studies::run_verification(of_study, running.cancellation); });
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!request.as_machined.empty()) write_as_machined(run, request.as_machined);
@@ -41,6 +45,7 @@ Verification verify(const VerificationRequest& request, const Running& running) 
   result.warnings = run.warnings;
   result.json = studies::verification_json(run, elapsed_s);
   result.table = studies::verification_table(run);
+  result.map = drawing_of([held] { return report::error_map_plot(studies::error_map(*held)); });
   return result;
 }
 

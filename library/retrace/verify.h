@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "retrace/drawing.h"
 #include "retrace/running.h"
 
 namespace retrace {
@@ -19,7 +21,8 @@ struct VerificationRequest {
   std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc or pmac, or told from the text
   double tolerance_nm = 10.0;    ///< that facet planes may differ from the design by
   std::string standing = {};     ///< stage before which all has been cut; empty: the blank stands
-  std::filesystem::path as_machined = {};  ///< design file to write of the part that is left; empty: none
+  std::filesystem::path as_machined = {};         ///< design file to write of the part that is left; empty: none
+  std::map<std::string, std::string> texts = {};  ///< of job and programs, by name, in place of files
 };
 
 /// Something that a program does and should not, or does not and should.
@@ -39,6 +42,7 @@ struct Verification {
   std::vector<std::string> warnings;
   std::string json;   ///< document retrace.verification/1
   std::string table;  ///< for people
+  Drawing map;        ///< the array from above, coloured by what the programs leave
 };
 
 /// \throw InputError for a file that cannot be read or understood, with its line; OutputError
