@@ -61,6 +61,8 @@ surface_models::HeightMapFile to_file(const HeightMap& heights, const surface_mo
   surface_models::HeightMapFile file;
   file.format = "heights in memory";
   file.map = {heights.columns, heights.rows, *reading.x_pixel_um, *reading.y_pixel_um, heights.heights_nm};
+  if (surface_models::measured_points(file.map) == 0)
+    throw InputError({"", 0, "heights"}, "must hold a height that was measured, all are NaN");
   return file;
 }
 

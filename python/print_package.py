@@ -9,6 +9,7 @@ FOLDER/_options.py: the help of each option of the commands that the package has
 
 import json
 import pathlib
+import pprint
 import re
 import subprocess
 import sys
@@ -178,7 +179,7 @@ def options_module(program: str) -> str:
     options = {command: options_of(said(program, command, "--help")) for command in COMMANDS}
     return (
         '"""Help and default of each option of a command: printed by the program."""\n\n'
-        f"OPTIONS: dict[str, dict[str, tuple[str, str]]] = {json.dumps(options, indent=1)}\n"
+        f"OPTIONS: dict[str, dict[str, tuple[str, str]]] = {pprint.pformat(options, width=LINE)}\n"
     )
 
 

@@ -9,15 +9,27 @@ Names, units, defaults and numbers are those of the command line and its JSON do
 (docs/python.md).
 """
 
+from . import image
 from ._core import version as _version
 from ._design import Design
 from ._errors import BudgetError, Error, InputError, OutputError
 from ._fabrication import Fabrication, Job, Verification, fabricate, job, verify
 from ._light import Footprint, PhotometryResult, RreResult, footprint, photometry, rre
 from ._part import ExportResult, FaceKind, Inspection, Mesh, export, inspect, mesh
+from ._report import Page, report
 from ._results import Columns, Drawing, Result
+from ._studies import (
+    FoundOptimum,
+    Optimum,
+    SweepResult,
+    ToleranceResult,
+    optimize,
+    sweep,
+    tolerance,
+)
+from ._surface import MetrologyResult, metrology
 
-__version__ = _version()
+__version__: str = _version()
 
 __all__ = [
     "BudgetError",
@@ -26,25 +38,37 @@ __all__ = [
     "Drawing",
     "Error",
     "ExportResult",
-    "FaceKind",
     "Fabrication",
+    "FaceKind",
     "Footprint",
+    "FoundOptimum",
     "InputError",
     "Inspection",
     "Job",
     "Mesh",
+    "MetrologyResult",
+    "Optimum",
     "OutputError",
+    "Page",
     "PhotometryResult",
     "Result",
     "RreResult",
+    "SweepResult",
+    "ToleranceResult",
     "Verification",
     "export",
     "fabricate",
     "footprint",
+    "image",
     "inspect",
     "job",
     "mesh",
+    "metrology",
+    "optimize",
     "photometry",
+    "report",
     "rre",
+    "sweep",
+    "tolerance",
     "verify",
 ]
