@@ -157,7 +157,8 @@ def files_module(program: str) -> str:
         "",
         "from __future__ import annotations",
         "",
-        "from typing import Any, Literal, Mapping, Sequence, TypedDict",
+        "from collections.abc import Mapping, Sequence",
+        "from typing import Any, Literal, TypedDict",
         "",
     ]
     names = []

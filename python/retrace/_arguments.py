@@ -8,7 +8,8 @@ import inspect
 import math
 import numbers
 import os
-from typing import Any, Callable, Iterable, Mapping, ParamSpec, Sequence, TypeVar, Union
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, ParamSpec, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike

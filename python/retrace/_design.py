@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import math
 import re
-from typing import TYPE_CHECKING, Any, Mapping, Sequence, Union
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 
@@ -215,9 +216,9 @@ class Design:
         return self.text, self.source, tuple(self._core.overrides)
 
     def __eq__(self, other: object) -> bool:
-        return (
-            self._identity() == other._identity() if isinstance(other, Design) else NotImplemented
-        )
+        if not isinstance(other, Design):
+            return NotImplemented
+        return self._identity() == other._identity()
 
     def __hash__(self) -> int:
         return hash(self._identity())

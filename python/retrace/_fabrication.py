@@ -6,7 +6,8 @@ import os
 import shutil
 import tempfile
 import weakref
-from typing import Any, Mapping, Sequence, Union
+from collections.abc import Mapping, Sequence
+from typing import Any, Union
 
 from . import _core
 from ._arguments import (

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import sys
-from typing import Any, Callable, Iterator, Union
+from collections.abc import Callable, Iterator
+from typing import Any, Union
 
 from ._errors import InputError
 
@@ -33,7 +35,7 @@ def teller(progress: Progress, doing: str) -> Iterator[Callable[[float], object]
         yield progress
     elif progress is True:
         try:
-            from tqdm.auto import tqdm
+            tqdm = importlib.import_module("tqdm.auto").tqdm
         except ImportError:
             yield _line(doing)
             return

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import Sequence, Union
+from collections.abc import Sequence
+from typing import Union
 
 from . import _core
 from ._arguments import PathLike, path, refuse
@@ -34,11 +35,8 @@ def _parts(result: Result, number: int) -> list[tuple[str, Union[str, bytes]]]:
     parts: list[tuple[str, Union[str, bytes]]] = [(f"{kind}{behind}.json", result.json)]
     for name, drawing in result.drawings.items():
         if drawing.is_there:
-            parts.append(
-                (f"{name}{behind}.svg", drawing.svg)
-                if drawing.svg
-                else (f"{name}{behind}.png", drawing.png)
-            )
+            content: Union[str, bytes] = drawing.svg or drawing.png
+            parts.append((f"{name}{behind}.{'svg' if drawing.svg else 'png'}", content))
     if isinstance(result, RreResult) and result.footprint is not None:
         parts.append((f"footprint{behind}.json", result.footprint.json))
     return [part for part in parts if part[1]]

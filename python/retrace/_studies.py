@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 import itertools
 import json
 import math
-from typing import Any, Callable, Iterator, Mapping, Sequence, Union
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Union
 
 import numpy as np
 
@@ -567,7 +569,7 @@ def _search(
     step = 0.5 / max(2, round(scan ** (1 / len(ends))))
     left = max(1, evaluations - len(rows))
     try:
-        from scipy.optimize import minimize as of_scipy
+        of_scipy = importlib.import_module("scipy.optimize").minimize
     except ImportError:
         method = "compass search"
         _compass(loss, start, step, left)
@@ -594,7 +596,8 @@ def _search(
             f"{rows[0].get('reason', 'no number')}",
             key="parameters",
         )
-    best = (min if minimize else max)(good, key=lambda row: row["objective"])
+    sign = 1.0 if minimize else -1.0
+    best = min(good, key=lambda row: sign * float(row["objective"]))
     values = {key: best[key] for key in ends}
     return FoundOptimum(design.replace(values), values, best["objective"], Columns(rows), method)
 

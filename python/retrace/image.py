@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Mapping
+from collections.abc import Mapping
+from typing import Any
 
 from . import _core
 from ._arguments import Numbers, checked, give, number, number_list, path, thread_count, whole, word
