@@ -103,6 +103,7 @@ class Verification(Result):
     """What NC programs really cut, against their job."""
 
     _told = ("verdict",)
+    _costly = ("map",)
 
     verdict: str  #: pass, incomplete or fail
     passes: bool
@@ -123,7 +124,8 @@ class Verification(Result):
     def findings(self) -> Columns:
         """What programs do and should not, or do not and should: kind, program, line, message,
         value, limit."""
-        return Columns(self.document.get("findings", []))
+        names = ("kind", "program", "line", "message", "value", "limit")
+        return Columns(self.document.get("findings", []), names)
 
     @property
     def as_machined(self) -> Design:

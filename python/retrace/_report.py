@@ -34,7 +34,7 @@ def _parts(result: Result, number: int) -> list[tuple[str, Union[str, bytes]]]:
     kind = str(result.document.get("schema", "")).removeprefix("retrace.").partition("/")[0]
     parts: list[tuple[str, Union[str, bytes]]] = [(f"{kind}{behind}.json", result.json)]
     for name, drawing in result.drawings.items():
-        if drawing.is_there:
+        if drawing.is_there and (drawing.is_made or name not in result._costly):
             content: Union[str, bytes] = drawing.svg or drawing.png
             parts.append((f"{name}{behind}.{'svg' if drawing.svg else 'png'}", content))
     if isinstance(result, RreResult) and result.footprint is not None:

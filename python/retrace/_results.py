@@ -108,10 +108,11 @@ class Columns(Mapping[str, Any]):
     """A list of objects with the same keys, by columns: numbers are read-only float64 arrays, NaN
     where a key is missing."""
 
-    def __init__(self, rows: Sequence[Mapping[str, Any]]) -> None:
+    def __init__(self, rows: Sequence[Mapping[str, Any]], names: Sequence[str] = ()) -> None:
+        """names: of columns that are there even without rows."""
         #: As the document has them.
         self.rows = rows
-        self._names = list(dict.fromkeys(name for row in rows for name in row))
+        self._names = list(dict.fromkeys([*names, *(name for row in rows for name in row)]))
         self._columns: dict[str, Any] = {}
 
     def __getitem__(self, name: str) -> Any:
@@ -233,6 +234,11 @@ class Drawing:
         """It is not after pickling, unless it was made before."""
         return self._source is not None or self._svg is not None
 
+    @property
+    def is_made(self) -> bool:
+        """It was asked for before."""
+        return self._svg is not None
+
     def _repr_svg_(self) -> str | None:
         return self.svg or None if self.is_there else None
 
@@ -264,6 +270,8 @@ class Result:
 
     #: Key of the list of objects whose keys are attributes as well.
     _rows: ClassVar[str] = ""
+    #: Drawings that take long: pages have them only if they were made.
+    _costly: ClassVar[Sequence[str]] = ()
     #: What of it is told in one line.
     _told: ClassVar[Sequence[str]] = ()
 
