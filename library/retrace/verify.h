@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -43,9 +44,16 @@ struct Verification {
   std::string json;   ///< document retrace.verification/1
   std::string table;  ///< for people
   Drawing map;        ///< the array from above, coloured by what the programs leave
+
+  struct Content;
+  std::shared_ptr<Content> content;  ///< the run itself
 };
 
 /// \throw InputError for a file that cannot be read or understood, with its line; OutputError
 RETRACE_API Verification verify(const VerificationRequest& request, const Running& running = {});
+
+/// Writes the part that programs leave as a design file and, where its facets have planes of their own, a table of them
+/// beside it: part.toml and part_facets.csv. \throw InputError if none could be measured, OutputError
+RETRACE_API void write_as_machined(const Verification& verification, const std::filesystem::path& design);
 
 }  // namespace retrace

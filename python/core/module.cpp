@@ -243,6 +243,12 @@ void bind_making(py::module_& module) {
       .def_readonly("passes", &Verification::passes)
       .def_readonly("verdict", &Verification::verdict)
       .def_readonly("map", &Verification::map);
+  module.def("write_as_machined", [](const Verification& verification, const std::filesystem::path& design) {
+    return watched(py::none(), 0, [verification, design](const Running&) {
+      write_as_machined(verification, design);
+      return true;
+    });
+  });
   module.def("verify", [](const VerificationRequest& request, const py::object& progress, unsigned threads) {
     return watched(progress, threads, [request](const Running& running) { return verify(request, running); });
   });

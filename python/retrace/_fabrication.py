@@ -111,6 +111,7 @@ class Verification(Result):
     def __init__(self, core: Any, request: Any) -> None:
         super().__init__(core, drawings={"map": core.map})
         self.passes = core.passes
+        self._core: Any = core
         self._asked = {
             "job": str(request.job),
             "programs": list(request.programs),
@@ -129,16 +130,18 @@ class Verification(Result):
 
     @property
     def as_machined(self) -> Design:
-        """The part that is left, as a design. The programs are carried out again."""
+        """The part that is left, as a design. After pickling the programs are carried out again."""
         folder = _Folder()
         file = os.path.join(folder.name, "as_machined.toml")
-        _core.verify(give(_core.VerificationRequest(), **self._asked, as_machined=file), None, 0)
+        if self._core is None:
+            self._core = _core.verify(give(_core.VerificationRequest(), **self._asked), None, 0)
+        _core.write_as_machined(self._core, file)
         # Its facets may be in a table beside it.
         return Design._of(_core.Design.load(file, []), keeps=folder)
 
     def __getstate__(self) -> dict[str, Any]:
         # The picture of what is left is one of pixels, as large as the part is.
-        return {**super().__getstate__(), "drawings": {}}
+        return {**super().__getstate__(), "drawings": {}, "_core": None}
 
     def _repr_html_(self) -> str | None:
         verdict = html_table([{"verdict": self.verdict, "findings": len(self.findings.rows)}])

@@ -243,7 +243,7 @@ def question(file, text):
         return ["turn", file], ["maps.png", "profile.svg"]
     if schema.startswith("retrace.plan"):
         return ["plane", file], ["profile.svg"]
-    if file.suffix == ".txt":
+    if file.suffix == ".txt" and file.name != "CMakeLists.txt":
         return ["metrology", file] + (["--edge", "--cutoff-um", 20] if "edge" in file.name else []), ["metrology.png"]
     return None, []
 
