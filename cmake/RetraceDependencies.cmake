@@ -26,6 +26,10 @@ pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3>=3.3)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo>=1.16 cairo-svg cairo-png)
 pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser>=2.3)
 
+if(RETRACE_WITH_PYTHON)
+  find_package(Python 3.10 COMPONENTS Interpreter Development.Module REQUIRED)
+  find_package(pybind11 2.10 CONFIG REQUIRED)
+endif()
 if(RETRACE_WITH_OPENIMAGEIO)
   # Its own CMake package asks for OpenEXR's and others', which reading pictures does not need.
   pkg_check_modules(OPENIMAGEIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)

@@ -2,7 +2,9 @@
 
 // Internal to library/: what a Design of the library holds.
 
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "retrace/design.h"
 #include "studies/design/design.h"
@@ -11,6 +13,8 @@ namespace retrace {
 
 struct Design::Content {
   studies::Design design;
+  std::string text;
+  std::vector<std::string> overrides;
 };
 
 }  // namespace retrace

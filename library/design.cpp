@@ -12,8 +12,9 @@
 namespace retrace {
 namespace {
 
-Design holding(studies::Design design) {
-  return Design(std::make_shared<const Design::Content>(Design::Content{std::move(design)}));
+Design holding(studies::Design design, std::string text, std::vector<std::string> overrides) {
+  return Design(std::make_shared<const Design::Content>(
+      Design::Content{std::move(design), std::move(text), std::move(overrides)}));
 }
 
 }  // namespace
@@ -25,19 +26,33 @@ const char* version() {
 Design::Design(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
 
 Design Design::load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  return holding(studies::read_design(file, overrides));
+  return parse(studies::read_toml_text(file), file == "-" ? "standard input" : file.string(), overrides);
 }
 
 Design Design::parse(std::string_view text, const std::string& source, const std::vector<std::string>& overrides) {
-  return holding(studies::parse_design(text, source, overrides));
+  return holding(studies::parse_design(text, source, overrides), std::string(text), overrides);
 }
 
 Design Design::with(const std::vector<std::string>& overrides) const {
-  return holding(studies::with(content_->design, overrides));
+  std::vector<std::string> all = content_->overrides;
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return holding(studies::with(content_->design, overrides), content_->text, std::move(all));
 }
 
 std::string Design::title() const {
   return content_->design.title;
+}
+
+std::string Design::source() const {
+  return content_->design.source;
+}
+
+std::string Design::text() const {
+  return content_->text;
+}
+
+std::vector<std::string> Design::overrides() const {
+  return content_->overrides;
 }
 
 std::string Design::json() const {

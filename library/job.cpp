@@ -1,8 +1,12 @@
 #include "retrace/job.h"
 
+#include <memory>
+
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/post/post.h"
 #include "library/content.h"
+#include "library/drawing_content.h"
+#include "report/results/result_plots.h"
 #include "studies/fabrication/fabricate.h"
 #include "studies/fabrication/io/fabrication_files.h"
 #include "studies/fabrication/job_maker.h"
@@ -18,7 +22,8 @@ Job make_job(const Design& design, const JobRequest& request) {
   of_study.workpiece = request.workpiece;
   of_study.shrinkage_percent = request.shrinkage_percent;
   const studies::MadeJob made = studies::make_job(design.content().design, of_study);
-  return {fabrication::job_text(made.job), made.elements, made.partial_elements, made.warnings};
+  return {fabrication::job_text(made.job), made.elements,           made.partial_elements, made.warnings,
+          studies::job_json(made),         studies::job_table(made)};
 }
 
 Fabrication fabricate(const std::filesystem::path& job, const FabricationRequest& request) {
@@ -29,13 +34,19 @@ Fabrication fabricate(const std::filesystem::path& job, const FabricationRequest
   of_study.options.from_element = request.from_element;
   of_study.options.stop_every = request.stop_every;
   of_study.options.split_hours = request.split_hours;
-  const studies::FabricationResult found = studies::fabricate(of_study);
+  if (request.job_text) of_study.texts = {{job.string(), *request.job_text}};
+  const auto held = std::make_shared<const studies::FabricationResult>(studies::fabricate(of_study));
+  const studies::FabricationResult& found = *held;
   Fabrication result;
   for (std::size_t k = 0; k < found.plan.programs.size(); ++k)
     result.programs.push_back({found.program_file(k), fabrication::nc_text(found.plan.programs[k], found.dialect)});
   result.warnings = found.warnings;
   result.json = studies::fabrication_json(found);
   result.table = studies::fabrication_table(found);
+  for (const auto& stage : found.plan.stages)
+    (stage.roughs ? result.roughing : result.finishing) =
+        drawing_of([held, roughs = stage.roughs] { return report::tool_path_plot(*held, roughs); });
+  result.arrangement = drawing_of([held] { return report::arrangement_plot(*held); });
   return result;
 }
 

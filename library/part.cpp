@@ -40,9 +40,11 @@ Mesh mesh(const Design& design, const SolidRequest& request) {
   return mesh;
 }
 
-void export_solid(const Design& design, const std::filesystem::path& file, const SolidRequest& request) {
+ExportResult export_solid(const Design& design, const std::filesystem::path& file, const SolidRequest& request) {
   const studies::SolidFormat format = studies::solid_format(file.string());
-  write_file_atomically(file, studies::solid_text(solid_of(design, request), format));
+  const studies::Solid solid = solid_of(design, request);
+  write_file_atomically(file, studies::solid_text(solid, format));
+  return {solid.warnings, studies::solid_json(solid, file.string()), studies::solid_table(solid)};
 }
 
 }  // namespace retrace

@@ -1,10 +1,13 @@
 #include "retrace/photometry.h"
 
+#include <memory>
 #include <string_view>
 #include <utility>
 
 #include "library/content.h"
+#include "library/drawing_content.h"
 #include "raytrace/sampling/threads.h"
+#include "report/results/result_plots.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/io/standard_reader.h"
 #include "studies/photometry/photometry.h"
@@ -20,12 +23,18 @@ studies::PhotometryRequest to_study(const Design& design, const PhotometryReques
   studies::set_dye(of_study, request.dye, dye);
   of_study.area_cm2 = request.area_cm2;
   if (request.rotation_deg) of_study.rotation_deg = *request.rotation_deg;
+  if (request.source_arcmin) of_study.apertures.source = Angle::from_deg(*request.source_arcmin / 60.0);
+  if (request.receiver_arcmin) of_study.apertures.receiver = Angle::from_deg(*request.receiver_arcmin / 60.0);
+  of_study.window_deg = request.window_deg;
+  of_study.light = studies::light_from_name(request.light);
   of_study.engine = studies::engine_from_name(request.engine);
   of_study.cutoff = request.cutoff;
   of_study.rays = request.samples;
   of_study.seed = request.seed;
   of_study.diffraction = request.diffraction;
+  of_study.window_power = request.window_power;
   of_study.advice = request.advice;
+  of_study.pictures = request.pictures;
   of_study.colour = true;
   return of_study;
 }
@@ -48,7 +57,8 @@ PhotometricPoint from_study(const studies::PhotometricPoint& point) {
 
 PhotometryResult photometry(const Design& design, const PhotometryRequest& request, const Running& running) {
   const studies::PhotometryStudy study(design.content().design, to_study(design, request));
-  studies::PhotometryResult found;
+  const auto held = std::make_shared<studies::PhotometryResult>();
+  studies::PhotometryResult& found = *held;
   raytrace::run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
   PhotometryResult result;
   for (const studies::PhotometricPoint& point : found.points) result.points.push_back(from_study(point));
@@ -57,7 +67,10 @@ PhotometryResult photometry(const Design& design, const PhotometryRequest& reque
   result.warnings = found.warnings;
   result.complete = found.complete;
   result.json = studies::photometry_json(found);
+  result.csv = studies::photometry_csv(found);
   result.table = studies::photometry_table(found);
+  if (!found.maps.empty()) result.far_field = drawing_of([held] { return report::far_field_plot(*held); });
+  if (!found.curves.empty()) result.observation = drawing_of([held] { return report::observation_plot(*held); });
   return result;
 }
 

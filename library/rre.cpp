@@ -1,9 +1,12 @@
 #include "retrace/rre.h"
 
+#include <memory>
 #include <utility>
 
 #include "library/content.h"
+#include "library/drawing_content.h"
 #include "raytrace/sampling/threads.h"
+#include "report/results/result_plots.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 
@@ -13,13 +16,17 @@ namespace {
 studies::RreRequest to_study(const RreRequest& request) {
   studies::RreRequest of_study;
   of_study.incidence_deg = request.incidence_deg;
+  for (const auto& [from, to] : request.incidence_spans_deg) of_study.incidence_spans.push_back({from, to});
   of_study.azimuth_deg = request.azimuth_deg;
   of_study.engine = studies::engine_from_name(request.engine);
   of_study.target_error = request.target_error;
   of_study.rays = request.samples;
   of_study.cutoff = request.cutoff;
   of_study.seed = request.seed;
+  of_study.sampling = studies::sampling_from_name(request.sampling);
+  of_study.derivatives = request.derivatives;
   of_study.footprint = request.footprint;
+  of_study.far_field = request.far_field;
   return of_study;
 }
 
@@ -46,7 +53,8 @@ RreResult rre(const std::vector<Design>& designs, const RreRequest& request, con
   of_study.reserve(designs.size());
   for (const Design& design : designs) of_study.push_back(design.content().design);
   const studies::RreStudy study(std::move(of_study), to_study(request));
-  studies::RreResult found;
+  const auto held = std::make_shared<studies::RreResult>();
+  studies::RreResult& found = *held;
   raytrace::run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
   RreResult result;
   for (const studies::RrePoint& point : found.points) result.points.push_back(from_study(point));
@@ -54,7 +62,11 @@ RreResult rre(const std::vector<Design>& designs, const RreRequest& request, con
   result.complete = found.complete;
   result.json = studies::rre_json(found);
   result.csv = studies::rre_csv(found);
+  result.table = studies::rre_table(found) + studies::derivative_table(found);
   if (request.footprint) result.footprint = studies::footprint_json(found);
+  if (request.far_field) result.far_field = studies::far_field_json(found);
+  if (!found.points.empty()) result.curve = drawing_of([held] { return report::rre_plot(*held); });
+  if (!found.faces.empty()) result.footprint_map = drawing_of([held] { return report::footprint_plot(*held); });
   return result;
 }
 

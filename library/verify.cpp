@@ -1,15 +1,23 @@
 #include "retrace/verify.h"
 
 #include <chrono>
+#include <memory>
 
 #include "core/atomic_file.h"
+#include "library/drawing_content.h"
 #include "raytrace/sampling/threads.h"
+#include "report/results/result_plots.h"
 #include "studies/closed_loop/as_machined.h"
 #include "studies/closed_loop/io/verification_files.h"
 #include "studies/closed_loop/verification.h"
 #include "studies/design/io/facet_planes_reader.h"
 
 namespace retrace {
+
+struct Verification::Content {
+  studies::VerificationRun run;
+};
+
 namespace {
 
 /// A design and, where it has planes of its own for its facets, their table beside it: part.toml and part_facets.csv.
@@ -27,8 +35,9 @@ void write_as_machined(studies::VerificationRun& run, const std::filesystem::pat
 Verification verify(const VerificationRequest& request, const Running& running) {
   const auto start = std::chrono::steady_clock::now();
   const studies::VerificationRequest of_study = {request.job.string(), request.programs, request.dialect,
-                                                 request.tolerance_nm, request.standing};
-  studies::VerificationRun run;
+                                                 request.tolerance_nm, request.standing, request.texts};
+  const auto held = std::make_shared<Verification::Content>();
+  studies::VerificationRun& run = held->run;
   raytrace::run_with_threads(running.threads, [&] { run = studies::run_verification(of_study, running.cancellation); });
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!request.as_machined.empty()) write_as_machined(run, request.as_machined);
@@ -41,7 +50,14 @@ Verification verify(const VerificationRequest& request, const Running& running) 
   result.warnings = run.warnings;
   result.json = studies::verification_json(run, elapsed_s);
   result.table = studies::verification_table(run);
+  result.map = drawing_of([held] { return report::error_map_plot(studies::error_map(held->run)); });
+  result.content = held;
   return result;
+}
+
+void write_as_machined(const Verification& verification, const std::filesystem::path& design) {
+  studies::VerificationRun run = verification.content->run;  // it is told of warnings
+  write_as_machined(run, design);
 }
 
 }  // namespace retrace

@@ -9,7 +9,6 @@
 #include "app/output.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
-#include "core/message_text.h"
 #include "core/number_format.h"
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_reader.h"
@@ -95,13 +94,6 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
       {"--no-advice", "do not look for what to change if a point fails", &options.no_advice}};
 }
 
-studies::PhotometricLight light_of(const std::string& name) {
-  using enum studies::PhotometricLight;
-  for (const studies::PhotometricLight light : {illuminant_a, illuminant_d65, of_design})
-    if (name == studies::light_name(light)) return light;
-  throw InputError({"", 0, "--light"}, fmt::format("must be a, d65 or design, got {}", in_quotes(name)));
-}
-
 /// \param request with what the standard asks
 studies::PhotometryRequest with_options(studies::PhotometryRequest request, const PhotometryOptions& options,
                                         const CommonOptions& common) {
@@ -110,7 +102,7 @@ studies::PhotometryRequest with_options(studies::PhotometryRequest request, cons
   if (options.source_arcmin) request.apertures.source = Angle::from_deg(*options.source_arcmin / 60.0);
   if (options.receiver_arcmin) request.apertures.receiver = Angle::from_deg(*options.receiver_arcmin / 60.0);
   request.window_deg = options.window_deg;
-  request.light = light_of(options.light);
+  request.light = studies::light_from_name(options.light);
   request.colour = true;
   request.diffraction = !options.no_diffraction;
   request.window_power = options.window_power;

@@ -9,7 +9,6 @@
 #include "core/json_text.h"
 #include "report/page/scene_view.h"
 #include "report/page/sections.h"
-#include "studies/scene/scene.h"
 
 namespace retrace::app {
 namespace fs = std::filesystem;
@@ -41,30 +40,6 @@ std::vector<std::string> results_read(const report::ResultFolder& folder) {
   return files;
 }
 
-/// A page without its view in three dimensions is better than none.
-void add_scene(report::Page& page, const report::ResultFolder& folder, std::vector<std::string>& warnings) {
-  const auto* const design = report::first_design(folder);
-  if (design == nullptr) return;
-  for (report::PageSection& section : page.sections) {
-    if (!section.has_scene) continue;
-    try {
-      std::vector<studies::SceneLight> lights;
-      for (const auto& [incidence_deg, azimuth_deg] : report::extreme_directions_deg(folder))
-        lights.push_back({incidence_deg, azimuth_deg});
-      const studies::DesignScene scene = studies::make_scene(studies::design_of_json(*design), lights);
-      page.scene = report::scene_view(scene);
-      std::string text =
-          "The most frequent ways of light that falls on an element in the middle, each drawn along its strongest "
-          "branch.";
-      if (!scene.remarks.empty()) text += fmt::format(" For the eye, {}.", fmt::join(scene.remarks, ", "));
-      section.paragraphs.push_back(text);
-    } catch (const Error& error) {
-      section.paragraphs.push_back(std::string("The design cannot be shown here: ") + error.what());
-      warnings.push_back(std::string("no view in three dimensions: ") + error.what());
-    }
-  }
-}
-
 std::string report_json(const report::Page& page, const report::ResultFolder& folder, const fs::path& file,
                         std::size_t bytes, const std::vector<std::string>& warnings) {
   using Json = nlohmann::ordered_json;
@@ -84,8 +59,7 @@ std::string report_json(const report::Page& page, const report::ResultFolder& fo
 ExitCode run(const ReportOptions& options, const CommonOptions& common) {
   const report::ResultFolder folder = report::read_result_folder(options.folder);
   report::Page page = report::study_page(folder, options.title);
-  std::vector<std::string> warnings;
-  add_scene(page, folder, warnings);
+  const std::vector<std::string> warnings = report::add_scene(page, folder);
   const std::string html = report::page_html(page, report::shipped_page_assets());
   const fs::path file = page_file(options, common);
   ResultFiles files(without_folder(common), results_read(folder));

@@ -25,7 +25,11 @@ class RETRACE_API Design {
   /// The same design with some keys at other values. \throw InputError likewise
   Design with(const std::vector<std::string>& overrides) const;
 
-  std::string title() const;  ///< empty if it has none
+  std::string title() const;   ///< empty if it has none
+  std::string source() const;  ///< its file, or what stands for it
+  std::string text() const;    ///< of its file, as it was read
+  /// What it was read with, so that parse(text(), source(), overrides()) is this design again.
+  std::vector<std::string> overrides() const;
   /// Its keys as results quote them, as JSON.
   std::string json() const;
   /// Every file that it names, from the working directory.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "retrace/design.h"
+#include "retrace/drawing.h"
 
 namespace retrace {
 
@@ -27,6 +28,8 @@ struct Job {
   std::int64_t elements = 0;          ///< that are cut
   std::int64_t partial_elements = 0;  ///< that the design has and the job leaves out
   std::vector<std::string> warnings;
+  std::string json;   ///< document retrace.job_summary/1
+  std::string table;  ///< for people
 };
 
 /// The fabrication job of a design. \throw InputError for what cannot be cut
@@ -39,6 +42,7 @@ struct FabricationRequest {
   std::optional<std::uint64_t> from_element = {};
   std::optional<std::uint64_t> stop_every = {};
   std::optional<double> split_hours = {};
+  std::optional<std::string> job_text = {};  ///< of the job, whose file is then a name alone
 };
 
 struct NcText {
@@ -49,8 +53,11 @@ struct NcText {
 struct Fabrication {
   std::vector<NcText> programs;  ///< in the order in which they run
   std::vector<std::string> warnings;
-  std::string json;   ///< document retrace.fabrication/1
-  std::string table;  ///< for people
+  std::string json;     ///< document retrace.fabrication/1
+  std::string table;    ///< for people
+  Drawing roughing;     ///< the way of the tool through one element; none without such stages
+  Drawing finishing;    ///< likewise
+  Drawing arrangement;  ///< which elements are cut, in which order
 };
 
 /// Plans a job and writes its programs. \param job its file \throw InputError

@@ -36,8 +36,14 @@ struct Mesh {
 /// \throw InputError for an infinite array (an element of it is allowed), or too many elements
 RETRACE_API Mesh mesh(const Design& design, const SolidRequest& request = {});
 
+struct ExportResult {
+  std::vector<std::string> warnings;
+  std::string json;   ///< document retrace.export/1
+  std::string table;  ///< for people
+};
+
 /// Writes it as STL, OBJ, glTF or STEP, by the ending of the file's name. \throw InputError likewise, OutputError
-RETRACE_API void export_solid(const Design& design, const std::filesystem::path& file,
-                              const SolidRequest& request = {});
+RETRACE_API ExportResult export_solid(const Design& design, const std::filesystem::path& file,
+                                      const SolidRequest& request = {});
 
 }  // namespace retrace

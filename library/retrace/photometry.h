@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "retrace/design.h"
+#include "retrace/drawing.h"
 #include "retrace/running.h"
 
 namespace retrace {
@@ -19,13 +20,19 @@ struct PhotometryRequest {
   std::optional<std::string> colour = {};      ///< likewise
   double area_cm2 = 0.0;                       ///< of the part, > 0; the design shows its make
   std::optional<std::vector<double>> rotation_deg = {};
-  std::optional<std::string> dye = {};  ///< none, red, amber or a file
-  std::string engine = "auto";          ///< auto, exact, montecarlo or embree
-  std::optional<double> cutoff = {};    ///< least power that is followed, as a share of what falls on an element
+  std::optional<std::string> dye = {};         ///< none, red, amber or a file
+  std::optional<double> source_arcmin = {};    ///< diameter of the source
+  std::optional<double> receiver_arcmin = {};  ///< of the receiver
+  double window_deg = 2.0;                     ///< half angle of the far field that is computed
+  std::string light = "a";                     ///< a, d65: a CIE illuminant as the eye sees it; design: the design's
+  std::string engine = "auto";                 ///< auto, exact, montecarlo or embree
+  std::optional<double> cutoff = {};           ///< least power that is followed, as a share of what falls on an element
   std::uint64_t samples = 1U << 20;
   std::uint32_t seed = 1;
   bool diffraction = true;
-  bool advice = true;  ///< what to change if a point fails
+  bool window_power = false;  ///< power in the far field's window and outside of it, as a check
+  bool advice = true;         ///< what to change if a point fails
+  bool pictures = false;      ///< the drawings of the result
 };
 
 struct PhotometricPoint {
@@ -45,8 +52,11 @@ struct PhotometryResult {
   bool passes = false;  ///< every point and the area, and the colour is none that fails
   std::vector<std::string> warnings;
   bool complete = true;
-  std::string json;   ///< document retrace.photometry/1
-  std::string table;  ///< for people
+  std::string json;     ///< document retrace.photometry/1
+  std::string csv;      ///< one line a point
+  std::string table;    ///< for people
+  Drawing far_field;    ///< R_A round the direction back to the source; none unless pictures were asked for
+  Drawing observation;  ///< R_A over the observation angle, likewise
 };
 
 /// \throw InputError, BudgetError if power was lost

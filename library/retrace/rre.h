@@ -2,6 +2,7 @@
 
 // Retroreflective efficiency against angle, with a ledger of where all other light goes.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "retrace/design.h"
+#include "retrace/drawing.h"
 #include "retrace/running.h"
 
 namespace retrace {
@@ -16,13 +18,18 @@ namespace retrace {
 /// What is asked, as the options of `retrace rre` (docs/commands.md).
 struct RreRequest {
   std::vector<double> incidence_deg = {0.0};  ///< each in (-90, 90)
+  /// Pieces in (-90, 90) over which incidences are chosen besides, as `start:stop:auto` does.
+  std::vector<std::array<double, 2>> incidence_spans_deg = {};
   std::vector<double> azimuth_deg = {0.0};    ///< of the source
   std::string engine = "auto";                ///< auto, exact, stochastic, montecarlo, cell or embree
   std::optional<double> target_error = {};    ///< standard error of RRE to reach, as a fraction; by default 1e-4
   std::optional<std::uint64_t> samples = {};  ///< rays for each point, in place of a target
   std::optional<double> cutoff = {};          ///< least power that is followed, as a share of the incident power
+  std::string sampling = "stratified";        ///< or plain: random points and no splitting
   std::uint32_t seed = 1;
-  bool footprint = false;  ///< which regions of the entrance face send light back (engine exact)
+  bool derivatives = false;  ///< of RRE by the parameters of the design (engine exact)
+  bool footprint = false;    ///< which regions of the entrance face send light back (engine exact)
+  bool far_field = false;    ///< the directions in which light leaves the entrance face (engine exact)
 };
 
 /// RRE at one direction, for one acceptance cone of one design.
@@ -45,7 +52,11 @@ struct RreResult {
   bool complete = true;   ///< it was not cancelled
   std::string json;       ///< document retrace.rre/1
   std::string csv;        ///< one line a point
+  std::string table;      ///< for people
   std::string footprint;  ///< document retrace.footprint/1 (GeoJSON); empty unless it was asked for
+  std::string far_field;  ///< document retrace.far_field/1, likewise
+  Drawing curve;          ///< RRE over the angles; none without points
+  Drawing footprint_map;  ///< none unless it was asked for
 };
 
 /// \throw InputError for a direction out of range or an engine that does not exist, BudgetError if power was lost or

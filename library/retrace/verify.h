@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "retrace/drawing.h"
 #include "retrace/running.h"
 
 namespace retrace {
@@ -19,7 +22,8 @@ struct VerificationRequest {
   std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc or pmac, or told from the text
   double tolerance_nm = 10.0;    ///< that facet planes may differ from the design by
   std::string standing = {};     ///< stage before which all has been cut; empty: the blank stands
-  std::filesystem::path as_machined = {};  ///< design file to write of the part that is left; empty: none
+  std::filesystem::path as_machined = {};         ///< design file to write of the part that is left; empty: none
+  std::map<std::string, std::string> texts = {};  ///< of job and programs, by name, in place of files
 };
 
 /// Something that a program does and should not, or does not and should.
@@ -39,9 +43,17 @@ struct Verification {
   std::vector<std::string> warnings;
   std::string json;   ///< document retrace.verification/1
   std::string table;  ///< for people
+  Drawing map;        ///< the array from above, coloured by what the programs leave
+
+  struct Content;
+  std::shared_ptr<Content> content;  ///< the run itself
 };
 
 /// \throw InputError for a file that cannot be read or understood, with its line; OutputError
 RETRACE_API Verification verify(const VerificationRequest& request, const Running& running = {});
+
+/// Writes the part that programs leave as a design file and, where its facets have planes of their own, a table of them
+/// beside it: part.toml and part_facets.csv. \throw InputError if none could be measured, OutputError
+RETRACE_API void write_as_machined(const Verification& verification, const std::filesystem::path& design);
 
 }  // namespace retrace

@@ -42,8 +42,8 @@ std::string kind_of(const nlohmann::ordered_json& json) {
   return schema.substr(kSchema.size(), schema.find('/') - kSchema.size());
 }
 
-void add_document(ResultFolder& result, const fs::path& file, const std::string& name) {
-  const std::string text = read_file(file, kLongestDocumentBytes);
+/// \param file for messages
+void add_document(ResultFolder& result, const fs::path& file, const std::string& name, const std::string& text) {
   ResultDocument document;
   try {
     document.json = nlohmann::ordered_json::parse(text);
@@ -59,7 +59,18 @@ void add_document(ResultFolder& result, const fs::path& file, const std::string&
   result.documents.push_back(std::move(document));
 }
 
+/// The media type of a picture; empty of what is none.
+std::string media_type_of(const std::string& ending) {
+  return ending == ".svg" ? "image/svg+xml" : ending == ".png" ? "image/png" : "";
+}
+
 }  // namespace
+
+void add_result(ResultFolder& result, const std::string& name, const std::string& text) {
+  const std::string ending = fs::path(name).extension().string();
+  if (ending == ".json") add_document(result, name, name, text);
+  if (const std::string type = media_type_of(ending); !type.empty()) result.pictures.push_back({name, type, text});
+}
 
 ResultFolder read_result_folder(const fs::path& folder) {
   std::error_code ignored;
@@ -73,11 +84,11 @@ ResultFolder read_result_folder(const fs::path& folder) {
   for (const fs::path& file : files) {
     const std::string ending = file.extension().string();
     const std::string name = printable(file.lexically_relative(folder).generic_string(), 200);
-    if (ending == ".json") add_document(result, file, name);
-    const bool is_drawing = ending == ".svg";
-    if (!is_drawing && (ending != ".png" || known.contains(fs::path(file).replace_extension(".svg")))) continue;
+    if (ending == ".json") add_document(result, file, name, read_file(file, kLongestDocumentBytes));
+    const std::string type = media_type_of(ending);
+    if (type.empty() || (ending == ".png" && known.contains(fs::path(file).replace_extension(".svg")))) continue;
     if (fs::file_size(file, ignored) > kLargestPictureBytes) continue;
-    result.pictures.push_back({name, is_drawing ? "image/svg+xml" : "image/png", read_file(file)});
+    result.pictures.push_back({name, type, read_file(file)});
   }
   if (result.documents.empty())
     throw InputError({folder.string(), 0, ""},

@@ -34,6 +34,10 @@ struct ResultFolder {
 /// Longest document that is read.
 inline constexpr std::size_t kLongestDocumentBytes = std::size_t{256} << 20;
 
+/// Adds a document or a picture that is in memory, by the ending of the name of the file that it might be in. What is
+/// neither is passed over. \throw InputError for JSON that cannot be read
+void add_result(ResultFolder& result, const std::string& name, const std::string& text);
+
 /// Reads all documents of retrace (JSON with a `schema` of its own) in a folder and in the folders in it; other files
 /// are passed over. \throw InputError if it is no folder, if there is no result in it, or if one is no JSON
 ResultFolder read_result_folder(const std::filesystem::path& folder);

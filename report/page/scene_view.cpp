@@ -1,10 +1,13 @@
 #include "report/page/scene_view.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "core/error.h"
 #include "core/number_format.h"
+#include "report/page/sections.h"
 
 namespace retrace::report {
 namespace {
@@ -76,6 +79,31 @@ SceneView scene_view(const studies::DesignScene& scene) {
     view.paths.push_back(std::move(shown));
   }
   return view;
+}
+
+std::vector<std::string> add_scene(Page& page, const ResultFolder& folder) {
+  std::vector<std::string> warnings;
+  const auto* const design = first_design(folder);
+  if (design == nullptr) return warnings;
+  for (PageSection& section : page.sections) {
+    if (!section.has_scene) continue;
+    try {
+      std::vector<studies::SceneLight> lights;
+      for (const auto& [incidence_deg, azimuth_deg] : extreme_directions_deg(folder))
+        lights.push_back({incidence_deg, azimuth_deg});
+      const studies::DesignScene scene = studies::make_scene(studies::design_of_json(*design), lights);
+      page.scene = scene_view(scene);
+      std::string text =
+          "The most frequent ways of light that falls on an element in the middle, each drawn along its strongest "
+          "branch.";
+      if (!scene.remarks.empty()) text += fmt::format(" For the eye, {}.", fmt::join(scene.remarks, ", "));
+      section.paragraphs.push_back(text);
+    } catch (const Error& error) {
+      section.paragraphs.push_back(std::string("The design cannot be shown here: ") + error.what());
+      warnings.push_back(std::string("no view in three dimensions: ") + error.what());
+    }
+  }
+  return warnings;
 }
 
 }  // namespace retrace::report

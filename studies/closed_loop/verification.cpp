@@ -38,11 +38,12 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
     throw InputError({"", 0, "--tolerance-nm"}, "must be > 0, got " + shortest(request.tolerance_nm));
   VerificationRun run;
   run.request = request;
-  run.job = read_job(request.job);
+  run.job = read_job(request.job, request.texts);
   run.machine = load_machine(run.job.machine, run.job.where("machine"));
   if (!request.standing.empty()) run.programs = programs_before(request.standing, run.job, run.machine);
   run.standing = run.programs.size();
-  for (NcProgram& program : read_programs(request.programs, request.dialect, nc_texts_of(run.machine.control)))
+  for (NcProgram& program :
+       read_programs(request.programs, request.dialect, nc_texts_of(run.machine.control), request.texts))
     run.programs.push_back(std::move(program));
   VerifyOptions options;
   options.tolerance_nm = request.tolerance_nm;

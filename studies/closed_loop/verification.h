@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file_texts.h"
 #include "core/progress.h"
 #include "fabrication/chisel/check/simulation/error_field.h"
 #include "fabrication/chisel/check/verify.h"
@@ -22,6 +23,7 @@ struct VerificationRequest {
   std::string dialect = "auto";       ///< a word of fabrication::kNcDialectWords, or told from the text
   double tolerance_nm = 10.0;
   std::string standing;  ///< stage before which all was cut by the job's own program; empty: the blank stands
+  FileTexts texts = {};  ///< of job and programs that are given in place of being read
 };
 
 struct VerificationRun {

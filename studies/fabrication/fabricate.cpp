@@ -51,7 +51,7 @@ FabricationResult fabricate(const FabricationRequest& request) {
   const fabrication::Dialect& dialect = dialect_of(request.dialect);
   result.dialect = dialect.name;
   result.file_ending = dialect.ending;
-  result.job = fabrication::read_job(request.job_file);
+  result.job = fabrication::read_job(request.job_file, request.texts);
   result.machine = fabrication::load_machine(result.job.machine, result.job.where("machine"));
   result.machine.increments = fabrication::word_increments(dialect.name, result.machine.control);
   result.plan = fabrication::make_plan(result.job, result.machine, request.options);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file_texts.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
@@ -15,6 +16,7 @@ namespace retrace::studies {
 struct FabricationRequest {
   std::filesystem::path job_file;
   std::string dialect = "rs274ngc";
+  FileTexts texts = {};  ///< of files that are given in place of being read
   fabrication::PlanOptions options;
 };
 

@@ -121,7 +121,10 @@ double frequency_hz(double frequency_per_mm, double feed_mm_per_min) {
 }
 
 MetrologyResult measure_surface(const MetrologyRequest& request) {
-  HeightMapFile file = read_height_map(request.file, request.reading);
+  return measure_surface(request, read_height_map(request.file, request.reading));
+}
+
+MetrologyResult measure_surface(const MetrologyRequest& request, HeightMapFile file) {
   check(request, file.map);
   MetrologyResult result;
   result.request = request;

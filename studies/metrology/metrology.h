@@ -69,6 +69,9 @@ std::string form_name(int degree);
 /// The frequency in time of a wave that was cut at that feed.
 double frequency_hz(double frequency_per_mm, double feed_mm_per_min);
 
+/// Measures a surface that was read. \param request its file and reading are not looked at \throw InputError likewise
+MetrologyResult measure_surface(const MetrologyRequest& request, surface_models::HeightMapFile file);
+
 /// Reads and measures a surface. \throw InputError for a file or a request that makes no sense
 MetrologyResult measure_surface(const MetrologyRequest& request);
 

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "core/error.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "studies/photometry/advice.h"
 #include "studies/photometry/colour.h"
@@ -191,6 +192,13 @@ std::string_view light_name(PhotometricLight light) {
     case PhotometricLight::of_design: return "design";
   }
   return {};
+}
+
+PhotometricLight light_from_name(std::string_view name) {
+  using enum PhotometricLight;
+  for (const PhotometricLight light : {illuminant_a, illuminant_d65, of_design})
+    if (name == light_name(light)) return light;
+  throw InputError({"", 0, "--light"}, fmt::format("must be a, d65 or design, got {}", in_quotes(name)));
 }
 
 std::string_view verdict_name(Verdict verdict) {

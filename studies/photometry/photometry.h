@@ -27,6 +27,8 @@ enum class PhotometricLight {
 };
 /// "a", "d65" or "design"
 std::string_view light_name(PhotometricLight light);
+/// \throw InputError for a name that is none of them
+PhotometricLight light_from_name(std::string_view name);
 
 /// What is asked: the coefficients of retroreflection of a part at the test points of a standard.
 struct PhotometryRequest {

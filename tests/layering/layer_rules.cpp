@@ -28,7 +28,8 @@ const std::map<std::string, Names>& folders() {
       {"fabrication", {"core", "geometry"}},
       {"studies", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication"}},
       {"report", {"core", "geometry", "studies"}},
-      {"library", {"core", "geometry", "raytrace", "fabrication", "studies"}},
+      {"library", {"core", "geometry", "materials", "raytrace", "fabrication", "studies", "report"}},
+      {"python", {"library", "core"}},
       {"app", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication", "studies", "report"}}};
   return order;
 }
@@ -145,6 +146,7 @@ const std::vector<Library>& libraries() {
        [](const std::string& path) { return path.starts_with("geometry/check/") || in_io_room(path); }},
       {"Embree", "embree", "a .cpp file of raytrace/",
        [](const std::string& path) { return path.starts_with("raytrace/") && !is_header(path); }},
+      {"pybind11", "pybind11/", "python/", [](const std::string& path) { return path.starts_with("python/"); }},
       {"toml++", "toml++/", "core/io/", [](const std::string& path) { return path.starts_with("core/io/"); }},
       {"yaml-cpp", "yaml-cpp/", "materials/io/index_record.cpp",
        [](const std::string& path) { return path == "materials/io/index_record.cpp"; }},
@@ -186,7 +188,8 @@ struct Include {
 
 /// From the root of the tree. Headers that are installed with the library name each other as those who use them do.
 std::string from_root(const std::string& target, const std::string& path) {
-  if (path.starts_with("library/") && target.starts_with("retrace/")) return "library/" + target;
+  if ((path.starts_with("library/") || path.starts_with("python/")) && target.starts_with("retrace/"))
+    return "library/" + target;
   if (path.starts_with("core/") && target == "api.h") return "core/" + target;
   return target;
 }

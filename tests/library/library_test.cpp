@@ -8,11 +8,17 @@
 #include <vector>
 
 #include "retrace/design.h"
+#include "retrace/drawing.h"
+#include "retrace/image.h"
+#include "retrace/inspect.h"
 #include "retrace/job.h"
+#include "retrace/metrology.h"
 #include "retrace/part.h"
 #include "retrace/photometry.h"
+#include "retrace/report.h"
 #include "retrace/rre.h"
 #include "retrace/running.h"
+#include "retrace/study.h"
 #include "retrace/verify.h"
 #include "tests/app/program.h"
 
@@ -268,6 +274,70 @@ TEST(Library, ADesignIsCutAndReadBack) {
   EXPECT_FALSE(found.passes);
   ASSERT_FALSE(found.findings.empty());
   EXPECT_GT(found.findings[0].line, 0);
+}
+
+TEST(Library, WhatADesignIsIsToldAndDrawn) {
+  const TemporaryFolder folder;
+  const std::string file = example("rtp_brick_5mm.toml");
+  const Inspection inspection = inspect(Design::load(file));
+  EXPECT_EQ(inspection.json, output_of({RETRACE_PROGRAM, "inspect", file, "--json=-", "--quiet"}, folder.path()));
+  EXPECT_NE(inspection.plan.svg().find("<svg"), std::string::npos);
+  EXPECT_EQ(inspection.view.png().substr(1, 3), "PNG");
+  EXPECT_TRUE(inspection.plan.png().empty());
+  EXPECT_FALSE(Drawing());
+}
+
+TEST(Library, AStudyOfADesignInMemoryIsCarriedOut) {
+  const std::string text =
+      "schema = \"retrace.study/1\"\ndesign = \"mine\"\n[[parameter]]\nkey = \"element.base_mm\"\nvalues = [0.4, 0.5]\n"
+      "[[quantity]]\nkind = \"entrance_area_mm2\"\n";
+  const Study study{text, "study", {{"mine", read_text(example("rtp_single_0p45mm.toml"))}}};
+  const StudyResult result = sweep(study);
+  EXPECT_TRUE(result.complete);
+  const Json points = Json::parse(result.json)["points"];
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_NEAR(points[1]["entrance_area_mm2"].get<double>(), 0.5 * 0.45, 1e-12);
+  EXPECT_THROW(sweep({text, "study", {}}), InputError);
+  EXPECT_THROW(sweep(study, {.if_exists = "ask"}), InputError);
+  EXPECT_THROW(tolerance(study), InputError);
+  EXPECT_THROW(optimize(study), InputError);
+}
+
+TEST(Library, SurfacesAreMeasuredFromFilesAndMemory) {
+  const TemporaryFolder folder;
+  const std::string file = example("facet_height_map.txt");
+  const Metrology of_file = metrology(file);
+  EXPECT_EQ(of_file.json, output_of({RETRACE_PROGRAM, "metrology", file, "--json=-", "--quiet"}, folder.path()));
+  MetrologyRequest request;
+  request.form = "none";
+  EXPECT_THROW(metrology(of_file.surface, request), InputError);
+  request.x_pixel_um = of_file.x_pixel_um;
+  const Json again = Json::parse(metrology(of_file.surface, request).json);
+  EXPECT_NEAR(again["sa_nm"].get<double>(), Json::parse(of_file.json)["sa_nm"].get<double>(), 1e-9);
+}
+
+TEST(Library, PicturesAreNumbers) {
+  const TemporaryFolder folder;
+  const std::string file = example("rtp_brick_5mm.toml");
+  DetectorRequest request;
+  request.engine = "montecarlo";
+  request.samples = 512;
+  request.pixels = 20;
+  const ImageResult result = detector(Design::load(file), request);
+  EXPECT_EQ(without_elapsed(result.json),
+            document(folder, {"image", file, "--detector", "--engine=montecarlo", "--samples=512", "--pixels=20"}));
+  ASSERT_EQ(result.pictures.size(), 2U);
+  EXPECT_EQ(result.pictures[0].name, "irradiance");
+  for (const auto& [channel, values] : result.pictures[0].channels) EXPECT_EQ(values.size(), 400U) << channel;
+}
+
+TEST(Library, OnePageHasSeveralResults) {
+  const Design design = Design::load(example("rtp_single_0p45mm.toml"));
+  const RreResult curve = rre(design, {.incidence_deg = {0, 10}});
+  const ReportPage page = report_page({{"rre.json", curve.json}, {"rre.svg", curve.curve.svg()}}, "Mine");
+  EXPECT_NE(page.html.find("<title>Mine"), std::string::npos);
+  EXPECT_THROW(report_page({}), InputError);
+  EXPECT_THROW(report_page({{"rre.json", "{\"schema\": \"retrace.rre/1\""}}), InputError);
 }
 
 class InstalledLibrary : public ::testing::Test {

@@ -10,6 +10,7 @@ that PROGRAM makes of it. The site is BUILD/site.
 import html
 import html.parser
 import json
+import os
 import pathlib
 import posixpath
 import re
@@ -21,6 +22,7 @@ import urllib.parse
 
 SOURCE, PROGRAM, BUILD = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 PAGES, SITE, PICTURES = BUILD / "site_pages", BUILD / "site", BUILD / "site_pictures"
+NOTEBOOKS = BUILD / "site_notebooks"
 PICTURE_ENDINGS = (".png", ".svg")
 LANGUAGES = {".toml": "toml", ".h": "cpp", ".cpp": "cpp", ".py": "python", ".slurm": "sh", ".cff": "yaml"}
 MOST_LINES = 200  # of a file that is shown
@@ -31,7 +33,8 @@ SECTIONS = {
     "Start": ["README.md", "docs/install.md"],
     "Tutorials": ["docs/tutorials/first_curve.md", "docs/tutorials/regulation.md", "docs/tutorials/nc_program.md",
                   "docs/tutorials/measured_facet.md", "docs/tutorials/cluster.md", "docs/tutorials/*.md"],
-    "How to": ["docs/nc_dialects.md", "docs/adding_a_dialect.md", "docs/library.md", "CONTRIBUTING.md", "docs/*.md"],
+    "Notebooks": ["examples/notebooks/*.md"],
+    "How to": ["docs/nc_dialects.md", "docs/adding_a_dialect.md", "docs/python.md", "docs/library.md", "CONTRIBUTING.md", "docs/*.md"],
     "Reference": ["docs/commands.md", "docs/design_file.md", "docs/study_file.md", "docs/job_file.md",
                   "docs/machine_file.md", "docs/turning_file.md", "docs/planing_file.md", "docs/json_documents.md",
                   "CONVENTIONS.md"],
@@ -240,7 +243,7 @@ def question(file, text):
         return ["turn", file], ["maps.png", "profile.svg"]
     if schema.startswith("retrace.plan"):
         return ["plane", file], ["profile.svg"]
-    if file.suffix == ".txt":
+    if file.suffix == ".txt" and file.name != "CMakeLists.txt":
         return ["metrology", file] + (["--edge", "--cutoff-um", 20] if "edge" in file.name else []), ["metrology.png"]
     return None, []
 
@@ -287,6 +290,27 @@ def example_pages():
     write("examples/README.md", "# Examples\n\nEvery design, study and part of the folder `examples/`, with a picture "
           "that retrace makes of it; of a study, that of its design. What the program does with them is in the "
           "[gallery](../docs/gallery.md).\n\n<div class=\"examples\" markdown>\n\n" + "\n".join(cards) + "\n</div>\n")
+
+
+def notebook_pages():
+    """Notebooks as they come out when they are run, unless that has been done since they and the package changed."""
+    package = PROGRAM.parent.parent / "python"
+    newest_of_package = max((file.stat().st_mtime for file in (package / "retrace").iterdir()), default=0)
+    for file in sorted((SOURCE / "examples/notebooks").glob("*.ipynb")):
+        page = NOTEBOOKS / f"{file.stem}.md"
+        if not page.exists() or page.stat().st_mtime < max(file.stat().st_mtime, newest_of_package):
+            made = subprocess.run(
+                [sys.executable, "-m", "nbconvert", "--to", "markdown", "--execute", "--log-level", "ERROR",
+                 "--output-dir", NOTEBOOKS, file], check=False, text=True, capture_output=True, cwd=file.parent,
+                env={**os.environ, "PYTHONPATH": str(package), "PYDEVD_DISABLE_FILE_VALIDATION": "1"})
+            if made.returncode != 0:
+                faults.append(f"{file.relative_to(SOURCE)}: {made.stderr.strip().splitlines()[-1]}")
+                continue
+        path = file.relative_to(SOURCE)
+        write(f"{path}.md", page.read_text() + f"\nThe notebook is `{path}`.\n")
+        pictures = NOTEBOOKS / f"{file.stem}_files"
+        if pictures.exists():
+            shutil.copytree(pictures, PAGES / path.parent / pictures.name)
 
 
 def document_page():
@@ -376,6 +400,7 @@ def main():
     (PAGES / "site.css").write_text(STYLE)
     copy_katex()
     example_pages()
+    notebook_pages()
     document_page()
     pages = Pages()
     pages.want("README.md")

@@ -32,11 +32,11 @@ ProgramName program_name(const std::string& given) {
 }
 
 std::vector<NcProgram> read_programs(const std::vector<std::string>& names, const std::string& dialect,
-                                     const NcTexts& texts) {
+                                     const NcTexts& texts, const FileTexts& given_texts) {
   std::vector<NcProgram> programs;
   for (const std::string& given : names) {
     const auto [file, stop_line] = program_name(given);
-    const std::string text = read_file(file, kMostDataBytes);
+    const std::string text = text_of_file(file, given_texts, kMostDataBytes);
     NcProgram& program = programs.emplace_back(parse_nc(text, file, dialect_of(dialect, text, file), texts));
     if (stop_line > program.lines)
       throw InputError({file, 0, ""},

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/file_texts.h"
 #include "fabrication/read/nc_program.h"
 
 namespace retrace::fabrication {
@@ -24,9 +25,9 @@ struct ProgramName {
 ProgramName program_name(const std::string& given);
 
 /// Reads programs, in their order. \param names as program_name() takes them \param texts lines that a PMAC is to take
-/// as they are \throw InputError for a file that cannot be read or understood, with its line, and for a line that it
-/// does not have
+/// as they are \param given programs in place of files that would be read \throw InputError for a file that cannot be
+/// read or understood, with its line, and for a line that it does not have
 std::vector<NcProgram> read_programs(const std::vector<std::string>& names, const std::string& dialect,
-                                     const NcTexts& texts = {});
+                                     const NcTexts& texts = {}, const FileTexts& given = {});
 
 }  // namespace retrace::fabrication

@@ -406,8 +406,8 @@ Job parse_job(std::string_view text, const std::string& source_name) {
   return job;
 }
 
-Job read_job(const fs::path& file) {
-  Job job = parse_job(read_file(file), file.string());
+Job read_job(const fs::path& file, const FileTexts& texts) {
+  Job job = parse_job(text_of_file(file.string(), texts), file.string());
   // A name without a folder or an ending is one of the shipped machines.
   const fs::path machine = job.machine;
   if (machine.has_extension() && machine.is_relative()) job.machine = (file.parent_path() / machine).string();

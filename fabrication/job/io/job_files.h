@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/file_texts.h"
 #include "core/schema/schema.h"
 #include "fabrication/job/job.h"
 
@@ -17,7 +18,8 @@ const schema::Format& job_format();
 
 /// Reads and checks a job file. A machine named by a file is taken from the folder of the job.
 /// \throw InputError naming file, line, key, what was given and what is allowed, on one line
-Job read_job(const std::filesystem::path& file);
+/// \param texts of files that are given in place of being read
+Job read_job(const std::filesystem::path& file, const FileTexts& texts = {});
 
 /// The same for the text of a job file; `source_name` stands for the file in messages.
 Job parse_job(std::string_view text, const std::string& source_name);

@@ -226,24 +226,27 @@ std::vector<std::pair<std::string, std::string>> parts_of(const Study& study, co
   return parts;
 }
 
-void read_designs(const Document& document, Study& study) {
+void read_designs(const Document& document, const FileTexts& given, Study& study) {
+  const auto text_of = [&](const std::string& file) {
+    const auto found = given.find(file);
+    return found == given.end() ? read_toml_text(file) : found->second;
+  };
   const auto varied = std::find_if(study.parameters.begin(), study.parameters.end(),
                                    [](const Parameter& p) { return p.keys.front() == "design"; });
   if (varied != study.parameters.end()) {
     if (document.has("design")) document.fail("design", "a parameter names the designs");
-    for (const ParameterValue& value : varied->values)
-      study.design_texts.emplace(value.toml, read_toml_text(value.toml));
+    for (const ParameterValue& value : varied->values) study.design_texts.emplace(value.toml, text_of(value.toml));
     return;
   }
   if (!document.has("design")) document.fail("design", "missing, must be the name of a design file");
   study.design_file = document.file("design").string();
-  study.design_texts.emplace(study.design_file, read_toml_text(study.design_file));
+  study.design_texts.emplace(study.design_file, text_of(study.design_file));
 }
 
 }  // namespace
 
 Study parse_study(const std::string& text, const std::string& source_name, std::span<const std::string> overrides,
-                  std::uint32_t seed) {
+                  std::uint32_t seed, const FileTexts& designs) {
   Study study;
   study.document = std::make_shared<const Document>(
       schema::read_document(study_format(), text, source_name, kShortTomlBytes, overrides_for(overrides, true)));
@@ -263,7 +266,7 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
     }
   check_columns(study, quantity_locations);
   check_keys_once(study);
-  read_designs(document, study);
+  read_designs(document, designs, study);
   std::vector<fs::path> named = files_of_designs(study);
   named.insert(named.end(), of_quantities.begin(), of_quantities.end());
   study.files = {source_name};

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/file_texts.h"
 #include "studies/quantity/candidate.h"
 #include "studies/quantity/study.h"
 
@@ -19,9 +20,9 @@ namespace retrace::studies {
 Study read_study(const std::filesystem::path& file, std::span<const std::string> overrides = {},
                  std::uint32_t seed = 1);
 
-/// The same for the text of a study; the designs that it names are read.
+/// The same for the text of a study; the designs that it names are read. \param designs that are given in place of it
 Study parse_study(const std::string& text, const std::string& source_name, std::span<const std::string> overrides = {},
-                  std::uint32_t seed = 1);
+                  std::uint32_t seed = 1, const FileTexts& designs = {});
 
 /// The design of a study at one point, with its analysis. \param values one for each parameter \throw InputError
 Candidate make_candidate(const Study& study, std::span<const ParameterValue> values);

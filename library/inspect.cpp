@@ -1,0 +1,43 @@
+#include "retrace/inspect.h"
+
+#include <memory>
+#include <mutex>
+
+#include "library/content.h"
+#include "library/drawing_content.h"
+#include "report/drawing/design_drawings.h"
+#include "studies/inspect/inspect.h"
+#include "studies/inspect/io/inspect_files.h"
+
+namespace retrace {
+namespace {
+
+/// The drawings of an inspection, made together when the first is asked for.
+struct DrawnLater {
+  studies::Inspection inspection;
+  std::once_flag once;
+  report::DesignDrawings drawings;
+
+  const report::DesignDrawings& made() {
+    std::call_once(once, [this] { drawings = report::design_drawings(inspection); });
+    return drawings;
+  }
+};
+
+}  // namespace
+
+Inspection inspect(const Design& design) {
+  const auto held = std::make_shared<DrawnLater>();
+  held->inspection = studies::inspect(design.content().design, materials::MaterialLibrary::shipped());
+  Inspection result;
+  result.warnings = held->inspection.warnings;
+  result.json = studies::inspect_json(held->inspection);
+  result.table = studies::inspect_text(held->inspection);
+  result.plan = drawing_of_text([held] { return held->made().plan; }, true);
+  result.section = drawing_of_text([held] { return held->made().section; }, true);
+  result.front = drawing_of_text([held] { return held->made().entrance; }, true);
+  result.view = drawing_of_text([held] { return held->made().view; }, false);
+  return result;
+}
+
+}  // namespace retrace

@@ -1,0 +1,24 @@
+#include "retrace/report.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "report/page/page.h"
+#include "report/page/result_folder.h"
+#include "report/page/scene_view.h"
+#include "report/page/sections.h"
+
+namespace retrace {
+
+ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& title) {
+  report::ResultFolder folder;
+  for (const ReportPart& part : parts) report::add_result(folder, part.file, part.text);
+  if (folder.documents.empty()) throw InputError({"", 0, "results"}, "must hold a document of retrace");
+  report::Page page = report::study_page(folder, title);
+  ReportPage made;
+  made.warnings = report::add_scene(page, folder);
+  made.html = report::page_html(page, report::shipped_page_assets());
+  return made;
+}
+
+}  // namespace retrace

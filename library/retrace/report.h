@@ -1,0 +1,26 @@
+#pragma once
+
+// One page of several results.
+
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+
+namespace retrace {
+
+/// What a page is made from: a document, or the drawing of one.
+struct ReportPart {
+  std::string file;  ///< name of a file that it might be in, by whose ending it is told: .json, .svg or .png
+  std::string text;
+};
+
+struct ReportPage {
+  std::string html;  ///< a file that needs no other and no network
+  std::vector<std::string> warnings;
+};
+
+/// \param title empty: that of the design \throw InputError for no documents, or one that is no document of retrace
+RETRACE_API ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& title = {});
+
+}  // namespace retrace

@@ -1,0 +1,127 @@
+#include "retrace/study.h"
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "core/message_text.h"
+#include "library/drawing_content.h"
+#include "raytrace/sampling/threads.h"
+#include "report/results/result_plots.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/optimise/io/optimise_reader.h"
+#include "studies/optimise/io/optimum_files.h"
+#include "studies/quantity/io/study_reader.h"
+#include "studies/sweep/io/sweep_files.h"
+#include "studies/sweep/io/sweep_reader.h"
+#include "studies/tolerance/io/tolerance_files.h"
+#include "studies/tolerance/io/tolerance_reader.h"
+
+namespace retrace {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+studies::Study to_study(const Study& study, const StudyRequest& request) {
+  return studies::parse_study(study.text, study.source, request.overrides, request.seed, study.designs);
+}
+
+studies::IfExists if_exists_of(const StudyRequest& request) {
+  using enum studies::IfExists;
+  for (const auto& [word, meaning] : {std::pair{"refuse", refuse}, {"resume", resume}, {"overwrite", overwrite}})
+    if (request.if_exists == word) return meaning;
+  throw InputError({"", 0, "if_exists"}, "must be refuse, resume or overwrite, got " + in_quotes(request.if_exists));
+}
+
+/// Tells a Progress how far a sweep has come.
+class Share : public studies::SweepObserver {
+ public:
+  explicit Share(Progress* progress) : progress_(progress) {}
+  void at(std::uint64_t done, std::uint64_t total, std::uint64_t) override {
+    if (progress_ != nullptr) progress_->at(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0);
+  }
+
+ private:
+  Progress* progress_;
+};
+
+/// A sweep that is carried out, and what came of it.
+struct Swept {
+  explicit Swept(studies::Sweep of) : sweep(std::move(of)) {}
+  studies::Sweep sweep;
+};
+
+/// Computes what the store lacks. \param held kept by who draws the result
+studies::SweepResult carried_out(Swept& held, const StudyRequest& request, const Running& running) {
+  const Clock::time_point start = Clock::now();
+  studies::ResultStore store(request.store, held.sweep.layout(), if_exists_of(request));
+  Share share(running.progress);
+  bool complete = false;
+  raytrace::run_with_threads(running.threads,
+                             [&] { complete = studies::run_sweep(held.sweep, store, &share, running.cancellation); });
+  studies::SweepResult result = studies::collect(held.sweep, store, complete);
+  result.elapsed_s = seconds_since(start);
+  return result;
+}
+
+}  // namespace
+
+Study Study::load(const std::filesystem::path& file) {
+  return {studies::read_toml_text(file), file == "-" ? "standard input" : file.string(), {}};
+}
+
+StudyResult sweep(const Study& study, const StudyRequest& request, const Running& running) {
+  Swept held(studies::read_sweep(to_study(study, request)));
+  const studies::SweepResult found = carried_out(held, request, running);
+  StudyResult result;
+  result.complete = found.complete;
+  result.warnings = found.warnings;
+  result.json = studies::sweep_json(found);
+  result.csv = studies::sweep_csv(found);
+  result.table = studies::sweep_table(found);
+  return result;
+}
+
+StudyResult tolerance(const Study& study, const StudyRequest& request, const Running& running) {
+  studies::Study of_study = to_study(study, request);
+  const studies::ToleranceRequest asked = studies::read_tolerance(of_study);
+  const auto held = std::make_shared<Swept>(studies::tolerance_sweep(std::move(of_study), asked));
+  studies::SweepResult swept = carried_out(*held, request, running);
+  const auto found =
+      std::make_shared<const studies::ToleranceResult>(studies::analyse(held->sweep, asked, swept.points));
+  swept.warnings.insert(swept.warnings.end(), found->warnings.begin(), found->warnings.end());
+  StudyResult result;
+  result.complete = swept.complete;
+  result.is_yes = found->is_enough;
+  result.warnings = swept.warnings;
+  result.json = studies::tolerance_json(swept, asked, *found);
+  result.csv = studies::sweep_csv(swept);
+  result.table = studies::tolerance_text(held->sweep.study(), asked, *found);
+  result.drawing =
+      drawing_of([held, asked, found] { return report::tolerance_plot(held->sweep.study(), asked, *found); });
+  return result;
+}
+
+StudyResult optimize(const Study& study, const StudyRequest& request, const Running& running) {
+  const Clock::time_point start = Clock::now();
+  const studies::Study of_study = to_study(study, request);
+  const studies::OptimiseRequest asked = studies::read_optimise(of_study);
+  studies::ResultStore store(request.store, studies::optimise_layout(of_study), if_exists_of(request));
+  studies::Optimum optimum;
+  raytrace::run_with_threads(
+      running.threads, [&] { optimum = studies::optimise(of_study, asked, store, nullptr, running.cancellation); });
+  StudyResult result;
+  result.complete = optimum.complete;
+  result.is_yes = optimum.best.has_value();
+  result.json = studies::optimum_json(of_study, asked, optimum, seconds_since(start));
+  result.csv = studies::front_csv(of_study, optimum);
+  result.table = studies::optimum_text(of_study, asked, optimum);
+  return result;
+}
+
+}  // namespace retrace

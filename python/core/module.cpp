@@ -1,0 +1,427 @@
+// retrace._core: the library (docs/library.md) for the package retrace, which checks what goes in and shapes what comes
+// out. Functions here are thin: they take requests of the library and give its results.
+
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/core/arrays.h"
+#include "python/core/watched.h"
+#include "retrace/design.h"
+#include "retrace/drawing.h"
+#include "retrace/image.h"
+#include "retrace/inspect.h"
+#include "retrace/job.h"
+#include "retrace/metrology.h"
+#include "retrace/part.h"
+#include "retrace/photometry.h"
+#include "retrace/report.h"
+#include "retrace/rre.h"
+#include "retrace/running.h"
+#include "retrace/study.h"
+#include "retrace/verify.h"
+
+namespace retrace::python {
+namespace {
+
+/// Raises what the package calls it.
+void raise(const char* name, const py::args& arguments) {
+  const py::object type = py::module_::import("retrace._errors").attr(name);
+  PyErr_SetObject(type.ptr(), type(*arguments).ptr());
+}
+
+void translate(std::exception_ptr error) {
+  try {
+    if (error) std::rethrow_exception(error);
+  } catch (const InputError& input) {
+    const InputLocation& where = input.where();
+    raise("InputError", py::make_tuple(input.text(), where.file, where.line, where.key));
+  } catch (const OutputError& output) {
+    raise("OutputError", py::make_tuple(output.what()));
+  } catch (const BudgetError& budget) {
+    raise("BudgetError", py::make_tuple(budget.what()));
+  } catch (const Error& other) {
+    raise("Error", py::make_tuple(other.what()));
+  } catch (const Forked& forked) {
+    raise("Error", py::make_tuple(forked.what()));
+  }
+}
+
+/// What the results of most questions have.
+template <class Result>
+py::class_<Result> result_class(py::module_& module, const char* name) {
+  return py::class_<Result>(module, name)
+      .def_readonly("warnings", &Result::warnings)
+      .def_readonly("json", &Result::json)
+      .def_readonly("table", &Result::table);
+}
+
+void bind_design(py::module_& module) {
+  using Released = py::call_guard<py::gil_scoped_release>;
+  py::class_<Design>(module, "Design")
+      .def_static("load", &Design::load, Released())
+      .def_static("parse", &Design::parse, Released())
+      .def("replaced", &Design::with, Released())
+      .def_property_readonly("title", &Design::title)
+      .def_property_readonly("source", &Design::source)
+      .def_property_readonly("text", &Design::text)
+      .def_property_readonly("overrides", &Design::overrides)
+      .def_property_readonly("files", &Design::files)
+      .def("json", &Design::json);
+  py::class_<Drawing>(module, "Drawing")
+      .def("__bool__", [](const Drawing& drawing) { return static_cast<bool>(drawing); })
+      .def("svg", &Drawing::svg, Released())
+      .def("png", [](const Drawing& drawing) {
+        std::string file;
+        {
+          const py::gil_scoped_release others_run;
+          file = drawing.png();
+        }
+        return py::bytes(file);
+      });
+}
+
+void bind_light(py::module_& module) {
+  py::class_<RreRequest>(module, "RreRequest")
+      .def(py::init<>())
+      .def_readwrite("incidence_deg", &RreRequest::incidence_deg)
+      .def_readwrite("incidence_spans_deg", &RreRequest::incidence_spans_deg)
+      .def_readwrite("azimuth_deg", &RreRequest::azimuth_deg)
+      .def_readwrite("engine", &RreRequest::engine)
+      .def_readwrite("target_error", &RreRequest::target_error)
+      .def_readwrite("samples", &RreRequest::samples)
+      .def_readwrite("cutoff", &RreRequest::cutoff)
+      .def_readwrite("sampling", &RreRequest::sampling)
+      .def_readwrite("seed", &RreRequest::seed)
+      .def_readwrite("derivatives", &RreRequest::derivatives)
+      .def_readwrite("footprint", &RreRequest::footprint)
+      .def_readwrite("far_field", &RreRequest::far_field);
+  result_class<RreResult>(module, "RreResult")
+      .def_readonly("complete", &RreResult::complete)
+      .def_readonly("csv", &RreResult::csv)
+      .def_readonly("footprint", &RreResult::footprint)
+      .def_readonly("far_field", &RreResult::far_field)
+      .def_readonly("curve", &RreResult::curve)
+      .def_readonly("footprint_map", &RreResult::footprint_map);
+  module.def("rre", [](const std::vector<Design>& designs, const RreRequest& request, const py::object& progress,
+                       unsigned threads) {
+    return watched(progress, threads,
+                   [designs, request](const Running& running) { return rre(designs, request, running); });
+  });
+  module.def(
+      "seconds_of_rre",
+      [](const std::vector<Design>& designs, const RreRequest& request) {
+        const auto start = std::chrono::steady_clock::now();
+        rre(designs, request);
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      },
+      "What the library alone takes, to tell what Python adds.");
+  py::class_<PhotometryRequest>(module, "PhotometryRequest")
+      .def(py::init<>())
+      .def_readwrite("standard", &PhotometryRequest::standard)
+      .def_readwrite("class_", &PhotometryRequest::part_class)
+      .def_readwrite("colour", &PhotometryRequest::colour)
+      .def_readwrite("area_cm2", &PhotometryRequest::area_cm2)
+      .def_readwrite("rotation_deg", &PhotometryRequest::rotation_deg)
+      .def_readwrite("dye", &PhotometryRequest::dye)
+      .def_readwrite("source_arcmin", &PhotometryRequest::source_arcmin)
+      .def_readwrite("receiver_arcmin", &PhotometryRequest::receiver_arcmin)
+      .def_readwrite("window_deg", &PhotometryRequest::window_deg)
+      .def_readwrite("light", &PhotometryRequest::light)
+      .def_readwrite("engine", &PhotometryRequest::engine)
+      .def_readwrite("cutoff", &PhotometryRequest::cutoff)
+      .def_readwrite("samples", &PhotometryRequest::samples)
+      .def_readwrite("seed", &PhotometryRequest::seed)
+      .def_readwrite("diffraction", &PhotometryRequest::diffraction)
+      .def_readwrite("window_power", &PhotometryRequest::window_power)
+      .def_readwrite("advice", &PhotometryRequest::advice)
+      .def_readwrite("pictures", &PhotometryRequest::pictures);
+  result_class<PhotometryResult>(module, "PhotometryResult")
+      .def_readonly("complete", &PhotometryResult::complete)
+      .def_readonly("passes", &PhotometryResult::passes)
+      .def_readonly("csv", &PhotometryResult::csv)
+      .def_readonly("far_field", &PhotometryResult::far_field)
+      .def_readonly("observation", &PhotometryResult::observation);
+  module.def("photometry",
+             [](const Design& design, const PhotometryRequest& request, const py::object& progress, unsigned threads) {
+               return watched(progress, threads, [design, request](const Running& running) {
+                 return photometry(design, request, running);
+               });
+             });
+}
+
+void bind_part(py::module_& module) {
+  result_class<Inspection>(module, "Inspection")
+      .def_readonly("plan", &Inspection::plan)
+      .def_readonly("section", &Inspection::section)
+      .def_readonly("front", &Inspection::front)
+      .def_readonly("view", &Inspection::view);
+  module.def("inspect", [](const Design& design) {
+    return watched(py::none(), 0, [design](const Running&) { return inspect(design); });
+  });
+  result_class<ExportResult>(module, "ExportResult");
+  module.def("export_solid", [](const Design& design, const std::filesystem::path& file, const std::string& what,
+                                const std::optional<double>& block_mm) {
+    return watched(py::none(), 0, [design, file, request = SolidRequest{what, block_mm}](const Running&) {
+      return export_solid(design, file, request);
+    });
+  });
+  module.def("mesh", [](const Design& design, const std::string& what, const std::optional<double>& block_mm) {
+    Mesh made = watched(py::none(), 0, [design, request = SolidRequest{what, block_mm}](const Running&) {
+      return mesh(design, request);
+    });
+    static_assert(sizeof(FaceKind) == sizeof(std::int32_t));
+    const auto vertices = static_cast<py::ssize_t>(made.vertices_mm.size());
+    const auto triangles = static_cast<py::ssize_t>(made.triangles.size());
+    py::dict result;
+    result["vertices_mm"] = array_of<double>(std::move(made.vertices_mm), {vertices, 3});
+    result["triangles"] = array_of<std::uint32_t>(std::move(made.triangles), {triangles, 3});
+    result["kinds"] = array_of<std::int32_t>(std::move(made.kinds), {triangles});
+    result["volume_mm3"] = made.volume_mm3;
+    result["area_mm2"] = made.area_mm2;
+    result["is_manifold"] = made.is_manifold;
+    result["warnings"] = made.warnings;
+    return result;
+  });
+}
+
+void bind_making(py::module_& module) {
+  py::class_<JobRequest>(module, "JobRequest")
+      .def(py::init<>())
+      .def_readwrite("machine", &JobRequest::machine)
+      .def_readwrite("tool_width_mm", &JobRequest::tool_width_mm)
+      .def_readwrite("strategy", &JobRequest::strategy)
+      .def_readwrite("process", &JobRequest::process)
+      .def_readwrite("workpiece", &JobRequest::workpiece)
+      .def_readwrite("shrinkage_percent", &JobRequest::shrinkage_percent);
+  result_class<Job>(module, "Job")
+      .def_readonly("text", &Job::text)
+      .def_readonly("elements", &Job::elements)
+      .def_readonly("partial_elements", &Job::partial_elements);
+  module.def("make_job", [](const Design& design, const JobRequest& request) {
+    return watched(py::none(), 0, [design, request](const Running&) { return make_job(design, request); });
+  });
+  py::class_<FabricationRequest>(module, "FabricationRequest")
+      .def(py::init<>())
+      .def_readwrite("dialect", &FabricationRequest::dialect)
+      .def_readwrite("phase", &FabricationRequest::phase)
+      .def_readwrite("from_element", &FabricationRequest::from_element)
+      .def_readwrite("stop_every", &FabricationRequest::stop_every)
+      .def_readwrite("split_hours", &FabricationRequest::split_hours)
+      .def_readwrite("job_text", &FabricationRequest::job_text);
+  result_class<Fabrication>(module, "Fabrication")
+      .def_property_readonly("programs",
+                             [](const Fabrication& made) {
+                               py::dict programs;
+                               for (const NcText& program : made.programs)
+                                 programs[py::str(program.file)] = program.text;
+                               return programs;
+                             })
+      .def_readonly("roughing", &Fabrication::roughing)
+      .def_readonly("finishing", &Fabrication::finishing)
+      .def_readonly("arrangement", &Fabrication::arrangement);
+  module.def("fabricate", [](const std::filesystem::path& job, const FabricationRequest& request) {
+    return watched(py::none(), 0, [job, request](const Running&) { return fabricate(job, request); });
+  });
+  py::class_<VerificationRequest>(module, "VerificationRequest")
+      .def(py::init<>())
+      .def_readwrite("job", &VerificationRequest::job)
+      .def_readwrite("programs", &VerificationRequest::programs)
+      .def_readwrite("dialect", &VerificationRequest::dialect)
+      .def_readwrite("tolerance_nm", &VerificationRequest::tolerance_nm)
+      .def_readwrite("standing", &VerificationRequest::standing)
+      .def_readwrite("as_machined", &VerificationRequest::as_machined)
+      .def_readwrite("texts", &VerificationRequest::texts);
+  result_class<Verification>(module, "Verification")
+      .def_readonly("passes", &Verification::passes)
+      .def_readonly("verdict", &Verification::verdict)
+      .def_readonly("map", &Verification::map);
+  module.def("write_as_machined", [](const Verification& verification, const std::filesystem::path& design) {
+    return watched(py::none(), 0, [verification, design](const Running&) {
+      write_as_machined(verification, design);
+      return true;
+    });
+  });
+  module.def("verify", [](const VerificationRequest& request, const py::object& progress, unsigned threads) {
+    return watched(progress, threads, [request](const Running& running) { return verify(request, running); });
+  });
+}
+
+/// sweep, tolerance or optimize.
+using StudyFunction = StudyResult (*)(const Study&, const StudyRequest&, const Running&);
+
+void bind_studies(py::module_& module) {
+  py::class_<Study>(module, "Study")
+      .def(py::init<std::string, std::string, std::map<std::string, std::string>>())
+      .def_static("load", &Study::load)
+      .def_readonly("text", &Study::text)
+      .def_readonly("source", &Study::source)
+      .def_readonly("designs", &Study::designs);
+  py::class_<StudyRequest>(module, "StudyRequest")
+      .def(py::init<>())
+      .def_readwrite("overrides", &StudyRequest::overrides)
+      .def_readwrite("seed", &StudyRequest::seed)
+      .def_readwrite("store", &StudyRequest::store)
+      .def_readwrite("if_exists", &StudyRequest::if_exists);
+  result_class<StudyResult>(module, "StudyResult")
+      .def_readonly("complete", &StudyResult::complete)
+      .def_readonly("is_yes", &StudyResult::is_yes)
+      .def_readonly("csv", &StudyResult::csv)
+      .def_readonly("drawing", &StudyResult::drawing);
+  for (const auto& [name, function] :
+       {std::pair<const char*, StudyFunction>{"sweep", sweep}, {"tolerance", tolerance}, {"optimize", optimize}})
+    module.def(name, [function = function](const Study& study, const StudyRequest& request, const py::object& progress,
+                                           unsigned threads) {
+      return watched(progress, threads,
+                     [function, study, request](const Running& running) { return function(study, request, running); });
+    });
+}
+
+/// Maps as (rows, columns) arrays by the names of their channels.
+py::dict channels_of(Picture& picture) {
+  py::dict channels;
+  for (auto& [name, values] : picture.channels)
+    channels[py::str(name)] = array_of<double>(
+        std::move(values), {static_cast<py::ssize_t>(picture.rows), static_cast<py::ssize_t>(picture.columns)});
+  return channels;
+}
+
+/// The result and its pictures by name: channels, drawing.
+py::tuple told(ImageResult result) {
+  py::dict pictures;
+  for (Picture& picture : result.pictures)
+    pictures[py::str(picture.name)] = py::make_tuple(channels_of(picture), picture.drawing);
+  result.pictures.clear();
+  return py::make_tuple(std::move(result), pictures);
+}
+
+void bind_images(py::module_& module) {
+  py::class_<DetectorRequest>(module, "DetectorRequest")
+      .def(py::init<>())
+      .def_readwrite("incidence_deg", &DetectorRequest::incidence_deg)
+      .def_readwrite("azimuth_deg", &DetectorRequest::azimuth_deg)
+      .def_readwrite("pixels", &DetectorRequest::pixels)
+      .def_readwrite("angle_pixels", &DetectorRequest::angle_pixels)
+      .def_readwrite("window_deg", &DetectorRequest::window_deg)
+      .def_readwrite("engine", &DetectorRequest::engine)
+      .def_readwrite("cutoff", &DetectorRequest::cutoff)
+      .def_readwrite("samples", &DetectorRequest::samples)
+      .def_readwrite("seed", &DetectorRequest::seed);
+  py::class_<CameraRequest>(module, "CameraRequest")
+      .def(py::init<>())
+      .def_readwrite("distance_m", &CameraRequest::distance_m)
+      .def_readwrite("observation_deg", &CameraRequest::observation_deg)
+      .def_readwrite("v_deg", &CameraRequest::v_deg)
+      .def_readwrite("h_deg", &CameraRequest::h_deg)
+      .def_readwrite("rotation_deg", &CameraRequest::rotation_deg)
+      .def_readwrite("eye_mm", &CameraRequest::eye_mm)
+      .def_readwrite("lamp_mm", &CameraRequest::lamp_mm)
+      .def_readwrite("lamp_arcmin", &CameraRequest::lamp_arcmin)
+      .def_readwrite("pupil_arcmin", &CameraRequest::pupil_arcmin)
+      .def_readwrite("illuminance_lx", &CameraRequest::illuminance_lx)
+      .def_readwrite("ambient_lx", &CameraRequest::ambient_lx)
+      .def_readwrite("backlight_lx", &CameraRequest::backlight_lx)
+      .def_readwrite("columns", &CameraRequest::columns)
+      .def_readwrite("rows", &CameraRequest::rows)
+      .def_readwrite("field_mm", &CameraRequest::field_mm)
+      .def_readwrite("film_mm", &CameraRequest::film_mm)
+      .def_readwrite("cylinder_mm", &CameraRequest::cylinder_mm)
+      .def_readwrite("noise", &CameraRequest::noise)
+      .def_readwrite("passes", &CameraRequest::passes)
+      .def_readwrite("seed", &CameraRequest::seed);
+  py::class_<RoadRequest>(module, "RoadRequest")
+      .def(py::init<>())
+      .def_readwrite("distance_m", &RoadRequest::distance_m)
+      .def_readwrite("lamp_cd", &RoadRequest::lamp_cd)
+      .def_readwrite("dye", &RoadRequest::dye)
+      .def_readwrite("seed", &RoadRequest::seed);
+  result_class<ImageResult>(module, "ImageResult").def_readonly("complete", &ImageResult::complete);
+  const auto bind = [&]<class Request>(const char* name,
+                                       ImageResult (*function)(const Design&, const Request&, const Running&)) {
+    module.def(name,
+               [function](const Design& design, const Request& request, const py::object& progress, unsigned threads) {
+                 return told(watched(progress, threads, [function, design, request](const Running& running) {
+                   return function(design, request, running);
+                 }));
+               });
+  };
+  bind("detector", detector);
+  bind("camera", camera);
+  bind("road", road);
+}
+
+py::array_t<double> heights_of(HeightMap& map) {
+  return array_of<double>(std::move(map.heights_nm),
+                          {static_cast<py::ssize_t>(map.rows), static_cast<py::ssize_t>(map.columns)});
+}
+
+/// The result and its maps.
+py::tuple told(Metrology measured) {
+  const py::tuple maps =
+      py::make_tuple(heights_of(measured.surface), heights_of(measured.roughness), heights_of(measured.waviness));
+  return py::make_tuple(std::move(measured), maps);
+}
+
+void bind_surfaces(py::module_& module) {
+  py::class_<MetrologyRequest>(module, "MetrologyRequest")
+      .def(py::init<>())
+      .def_readwrite("form", &MetrologyRequest::form)
+      .def_readwrite("cutoff_um", &MetrologyRequest::cutoff_um)
+      .def_readwrite("x_pixel_um", &MetrologyRequest::x_pixel_um)
+      .def_readwrite("y_pixel_um", &MetrologyRequest::y_pixel_um)
+      .def_readwrite("height_unit", &MetrologyRequest::height_unit)
+      .def_readwrite("lateral_unit", &MetrologyRequest::lateral_unit)
+      .def_readwrite("channel", &MetrologyRequest::channel)
+      .def_readwrite("feed_mm_per_min", &MetrologyRequest::feed_mm_per_min)
+      .def_readwrite("edge", &MetrologyRequest::edge);
+  result_class<Metrology>(module, "Metrology")
+      .def_readonly("surface_toml", &Metrology::surface_toml)
+      .def_readonly("spectra_csv", &Metrology::spectra_csv)
+      .def_readonly("drawing", &Metrology::drawing)
+      .def_readonly("x_pixel_um", &Metrology::x_pixel_um)
+      .def_readonly("y_pixel_um", &Metrology::y_pixel_um);
+  module.def("measure_file", [](const std::filesystem::path& file, const MetrologyRequest& request) {
+    return told(watched(py::none(), 0, [file, request](const Running&) { return metrology(file, request); }));
+  });
+  using Heights = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  module.def("measure_heights", [](const Heights& heights, const MetrologyRequest& request) {
+    HeightMap map;
+    map.rows = static_cast<std::size_t>(heights.shape(0));
+    map.columns = static_cast<std::size_t>(heights.shape(1));
+    map.heights_nm.assign(heights.data(), heights.data() + heights.size());
+    return told(
+        watched(py::none(), 0, [map = std::move(map), request](const Running&) { return metrology(map, request); }));
+  });
+  module.def(
+      "report_page", [](const std::vector<std::pair<std::string, std::string>>& parts, const std::string& title) {
+        std::vector<ReportPart> all;
+        for (const auto& [file, text] : parts) all.push_back({file, text});
+        const ReportPage page =
+            watched(py::none(), 0, [all = std::move(all), title](const Running&) { return report_page(all, title); });
+        return py::make_tuple(page.html, page.warnings);
+      });
+}
+
+}  // namespace
+}  // namespace retrace::python
+
+PYBIND11_MODULE(_core, module) {
+  using namespace retrace::python;
+  module.doc() = "The library of retrace, for the package.";
+  pybind11::register_exception_translator(translate);
+  module.def("version", &retrace::version);
+  bind_design(module);
+  bind_light(module);
+  bind_part(module);
+  bind_making(module);
+  bind_studies(module);
+  bind_images(module);
+  bind_surfaces(module);
+}

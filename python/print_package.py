@@ -1,0 +1,194 @@
+"""Writes what the package holds of keys and options, as the program prints it.
+
+    python3 print_package.py PROGRAM FOLDER
+
+FOLDER/files.py: a TypedDict for each table of designs, jobs, studies and so on, of their JSON
+Schemas.
+FOLDER/_options.py: the help of each option of the commands that the package has.
+"""
+
+import json
+import pathlib
+import pprint
+import re
+import subprocess
+import sys
+
+FORMATS = {
+    "design": "Design",
+    "job": "Job",
+    "study": "Study",
+    "machine": "Machine",
+    "process": "Process",
+}
+COMMANDS = (
+    "rre",
+    "photometry",
+    "export",
+    "job",
+    "fabricate",
+    "verify",
+    "inspect",
+    "sweep",
+    "tolerance",
+    "optimize",
+    "metrology",
+    "image",
+)
+LINE = 100
+
+
+def said(program: str, *arguments: str) -> str:
+    return subprocess.run(
+        [program, *arguments], check=True, capture_output=True, text=True, timeout=60
+    ).stdout
+
+
+def options_of(help_text: str) -> dict[str, tuple[str, str]]:
+    """By name: the help of an option, and its default as text, empty if it has none."""
+    options: dict[str, tuple[str, str]] = {}
+    name = ""
+    for line in help_text.splitlines():
+        told = re.match(
+            r"  (?:-\w,)?--([a-z][a-z-]*)(?: [A-Z](?:[A-Z|,]|x(?=[A-Z]))*(?=[= ]|$))?"
+            r"(?:=(\S+))?(.*)",
+            line,
+        )
+        if told and told[1] != "help":
+            name = told[1]
+            text = re.sub(
+                r"^ *(?:REQUIRED|Excludes: \S+|Needs: \S+|\.\.\.)* *", "", told[3]
+            ).strip()
+            options[name] = (text, told[2] or "")
+        elif name and re.match(r" {20,}\S", line):
+            text, default = options[name]
+            options[name] = ((text + " " + line.strip()).strip(), default)
+        else:
+            name = ""
+    return options
+
+
+def schemas_in(schema, path: tuple[str, ...] = ()):
+    """Every (path, schema) of a key, those that only hold under conditions too."""
+    if isinstance(schema, list):
+        for one in schema:
+            yield from schemas_in(one, path)
+    if not isinstance(schema, dict):
+        return
+    for key, inner in schema.get("properties", {}).items():
+        if isinstance(inner, dict):
+            yield path + (key,), inner
+            yield from schemas_in(inner, path + (key,))
+    for word in ("allOf", "anyOf", "oneOf", "then", "else"):
+        yield from schemas_in(schema.get(word, []), path)
+    if isinstance(schema.get("items"), dict):
+        yield from schemas_in(schema["items"], path)
+
+
+def types_of(schema: dict) -> set[str]:
+    """What a value may be in Python, as far as one schema tells."""
+    if "enum" in schema:
+        return {f"Literal[{', '.join(map(repr, schema['enum']))}]"}
+    if "const" in schema:
+        return {f"Literal[{schema['const']!r}]"}
+    types: set[str] = set()
+    for word in ("anyOf", "oneOf"):
+        for inner in schema.get(word, []):
+            types |= types_of(inner)
+    kinds = schema.get("type", [])
+    for kind in [kinds] if isinstance(kinds, str) else kinds:
+        types |= {
+            "number": {"float"},
+            "integer": {"int"},
+            "string": {"str"},
+            "boolean": {"bool"},
+            "array": {"Sequence[Any]"},
+            "object": {"Mapping[str, Any]"},
+        }.get(kind, set())
+    return types
+
+
+def class_name(path: tuple[str, ...]) -> str:
+    return "".join(part.title() for name in path for part in name.split("_"))
+
+
+def tables_of(name: str, schema: dict):
+    """(class, its keys: type and description) of a format, the inner tables first."""
+    keys: dict[tuple[str, ...], list[dict]] = {}
+    for path, inner in schemas_in(schema):
+        keys.setdefault(path, []).append(inner)
+    tables: dict[tuple[str, ...], dict[str, tuple[str, str]]] = {(): {}}
+    lists = {
+        path for path, all_of in keys.items() if any("array" in str(s.get("type")) for s in all_of)
+    }
+    for path in sorted(keys, key=len, reverse=True):
+        tables.setdefault(path[:-1], {})
+    for path, all_of in keys.items():
+        described = next((s["description"] for s in all_of if "description" in s), "")
+        types = set().union(*(types_of(s) for s in all_of))
+        if path in tables:
+            inner = class_name((name, *path))
+            types = (types - {"Mapping[str, Any]", "Sequence[Any]"}) | {
+                f"Sequence[{inner}]" if path in lists else inner
+            }
+        if "float" in types:
+            types.discard("int")
+        tables[path[:-1]][path[-1]] = (" | ".join(sorted(types)) or "Any", described)
+    for path in sorted(tables, key=len, reverse=True):
+        yield class_name((name, *path)), ".".join(path), tables[path]
+
+
+def wrapped(text: str, indent: str, first: str) -> list[str]:
+    lines, line = [], indent + first
+    for word in text.split():
+        if len(line) + 1 + len(word) > LINE:
+            lines.append(line)
+            line = indent + "#:"
+        line += " " + word
+    return [*lines, line]
+
+
+def files_module(program: str) -> str:
+    lines = [
+        '"""Tables of files as dicts, for type checkers and editors: printed by the program.',
+        "",
+        "Which keys go together, and their ranges, are checked when a file is read.",
+        '"""',
+        "",
+        "from __future__ import annotations",
+        "",
+        "from collections.abc import Mapping, Sequence",
+        "from typing import Any, Literal, TypedDict",
+        "",
+    ]
+    names = []
+    for word, name in FORMATS.items():
+        for class_, table, keys in tables_of(name, json.loads(said(program, "schema", word))):
+            names.append(class_)
+            what = f"[{table}] of a {word}" if table else f"A {word}"
+            lines += ["", f"{class_} = TypedDict(  # {what}", f'    "{class_}",', "    {"]
+            for key, (type_, described) in keys.items():
+                if described:
+                    lines += wrapped(described, "        ", "#:")
+                lines.append(f'        "{key}": {type_!r},  # noqa: E501')
+            lines += ["    },", "    total=False,", ")"]
+    lines += ["", f"__all__ = {sorted(names)!r}"]
+    return "\n".join(lines) + "\n"
+
+
+def options_module(program: str) -> str:
+    options = {command: options_of(said(program, command, "--help")) for command in COMMANDS}
+    return (
+        '"""Help and default of each option of a command: printed by the program."""\n\n'
+        f"OPTIONS: dict[str, dict[str, tuple[str, str]]] = {pprint.pformat(options, width=LINE)}\n"
+    )
+
+
+def main() -> None:
+    program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "files.py").write_text(files_module(program), encoding="utf-8")
+    (folder / "_options.py").write_text(options_module(program), encoding="utf-8")
+
+
+main()

@@ -1,0 +1,74 @@
+"""retrace: optical ray tracing of retroreflectors, and programs that cut them.
+
+    import retrace as rt
+    design = rt.Design.load("honeycomb.toml").replace({"element.aperture_mm": 0.5})
+    result = rt.rre(design, incidence_deg=[0, 10, 20])
+    result.rre, result.ledger["transmitted"], result.to_pandas()
+
+Names, units, defaults and numbers are those of the command line and its JSON documents
+(docs/python.md).
+"""
+
+from . import image
+from ._core import version as _version
+from ._design import Design
+from ._errors import BudgetError, Error, InputError, OutputError
+from ._fabrication import Fabrication, Job, Verification, fabricate, job, verify
+from ._light import Footprint, PhotometryResult, RreResult, footprint, photometry, rre
+from ._part import ExportResult, FaceKind, Inspection, Mesh, export, inspect, mesh
+from ._report import Page, report
+from ._results import Columns, Drawing, Result
+from ._studies import (
+    FoundOptimum,
+    Optimum,
+    SweepResult,
+    ToleranceResult,
+    optimize,
+    sweep,
+    tolerance,
+)
+from ._surface import MetrologyResult, metrology
+
+__version__: str = _version()
+
+__all__ = [
+    "BudgetError",
+    "Columns",
+    "Design",
+    "Drawing",
+    "Error",
+    "ExportResult",
+    "Fabrication",
+    "FaceKind",
+    "Footprint",
+    "FoundOptimum",
+    "InputError",
+    "Inspection",
+    "Job",
+    "Mesh",
+    "MetrologyResult",
+    "Optimum",
+    "OutputError",
+    "Page",
+    "PhotometryResult",
+    "Result",
+    "RreResult",
+    "SweepResult",
+    "ToleranceResult",
+    "Verification",
+    "export",
+    "fabricate",
+    "footprint",
+    "image",
+    "inspect",
+    "job",
+    "mesh",
+    "metrology",
+    "optimize",
+    "photometry",
+    "report",
+    "rre",
+    "sweep",
+    "tolerance",
+    "verify",
+]

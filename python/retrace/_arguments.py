@@ -1,0 +1,206 @@
+"""Checks arguments: every message names the argument and says what is allowed."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import inspect
+import math
+import numbers
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, ParamSpec, TypeVar, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._errors import InputError
+
+PathLike = Union[str, "os.PathLike[str]"]
+Numbers = ArrayLike  #: a number, or a list or an array of numbers
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+_SHOWN = 60  # characters of a value that messages show
+
+
+def shown(value: object) -> str:
+    """A value as messages show it."""
+    try:
+        text = repr(value).replace("\n", " ")
+    except Exception:  # a repr() of somebody else
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= _SHOWN else text[:_SHOWN] + "..."
+
+
+def refuse(name: str, allowed: str, value: object) -> InputError:
+    return InputError(f"must be {allowed}, got {shown(value)}", key=name)
+
+
+def nearest(word: object, words: Iterable[str]) -> str:
+    """Words that a mistaken one might stand for, as the end of a message."""
+    close = difflib.get_close_matches(str(word), list(words), n=1, cutoff=0.6)
+    return f"; did you mean {close[0]}?" if close else ""
+
+
+def number(
+    name: str,
+    value: object,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    low_included: bool = True,
+    high_included: bool = True,
+) -> float:
+    """A finite number in a range."""
+    allowed = "a number"
+    if low > -math.inf:
+        allowed += f" {'>=' if low_included else '>'} {low:g}"
+    if high < math.inf:
+        allowed += f"{' and' if low > -math.inf else ''} {'<=' if high_included else '<'} {high:g}"
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
+        raise refuse(name, allowed, value)
+    try:
+        result = float(value)
+    except OverflowError:
+        raise refuse(name, allowed, value) from None
+    inside = (result > low or (low_included and result == low)) and (
+        result < high or (high_included and result == high)
+    )
+    if not math.isfinite(result) or not inside:
+        raise refuse(name, allowed, value)
+    return result
+
+
+def whole(name: str, value: object, low: int = 0, high: int = 2**36) -> int:
+    """A whole number in a range."""
+    allowed = f"a whole number from {low} to {high}"
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
+        raise refuse(name, allowed, value)
+    if not math.isfinite(value) or value != int(value) or not low <= int(value) <= high:
+        raise refuse(name, allowed, value)
+    return int(value)
+
+
+def number_list(
+    name: str,
+    values: object,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    included: bool = True,
+    may_be_empty: bool = False,
+) -> list[float]:
+    """One number, or a list or a one-dimensional array of them."""
+    allowed = "a number or a list of numbers"
+    if isinstance(values, (str, bytes, Mapping)):
+        raise refuse(name, allowed, values)
+    try:
+        array = np.asarray(values)
+    except Exception:  # whatever an __array__ of somebody else raises
+        raise refuse(name, allowed, values) from None
+    if array.dtype == object and array.ndim <= 1:
+        items = array.tolist() if array.ndim else [array.item()]
+        return [
+            number(name, item, low, high, low_included=included, high_included=included)
+            for item in items
+        ]
+    if array.dtype.kind not in "iuf" and array.size:
+        raise refuse(name, allowed, values)
+    if array.ndim > 1:
+        raise InputError(f"must be {allowed}, got an array of shape {array.shape}", key=name)
+    result: list[float] = array.astype(float).reshape(-1).tolist()
+    if not result and not may_be_empty:
+        raise InputError("must be one number or more, got none", key=name)
+    for value in result:
+        number(name, value, low, high, low_included=included, high_included=included)
+    return result
+
+
+def pairs(name: str, values: object) -> list[tuple[float, float]]:
+    """Pairs of numbers, first the smaller."""
+    if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
+        raise refuse(name, "a list of pairs (from, to)", values)
+    result = []
+    for pair in values:
+        ends = number_list(name, pair)
+        if len(ends) != 2 or not ends[0] < ends[1]:
+            raise refuse(name, "a list of pairs (from, to)", pair)
+        result.append((ends[0], ends[1]))
+    return result
+
+
+def word(name: str, value: object, words: Sequence[str] = ()) -> str:
+    """A text, one of some words if there are such."""
+    allowed = ", ".join(words) if words else "a text"
+    if not isinstance(value, str) or not value:
+        raise refuse(name, allowed, value)
+    if words and value not in words:
+        raise InputError(f"must be {allowed}, got {shown(value)}{nearest(value, words)}", key=name)
+    return value
+
+
+def flag(name: str, value: object) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        raise refuse(name, "True or False", value)
+    return bool(value)
+
+
+def path(name: str, value: object) -> str:
+    """The name of a file."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise refuse(name, "the name of a file", value)
+    text = os.fspath(value)
+    if not isinstance(text, str) or not text or "\0" in text:
+        raise refuse(name, "the name of a file", value)
+    return text
+
+
+def thread_count(value: object) -> int:
+    """0: as many as there are cores."""
+    return 0 if value is None else whole("threads", value, 1, 4096)
+
+
+def checked(
+    options: Mapping[str, tuple[str, str]], names: Mapping[str, str] | None = None
+) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
+    """Of a function whose keywords are the options of a command: tells what the command says of
+    them in its doc string,
+    and the nearest name of a keyword that it has not.
+
+    names: options of keywords that are called otherwise, empty for those that are none."""
+
+    def wrap(function: Callable[_P, _R]) -> Callable[_P, _R]:
+        keywords = [name for name in inspect.signature(function).parameters]
+        lines = []
+        for keyword in keywords:
+            option = (names or {}).get(keyword, keyword.rstrip("_").replace("_", "-"))
+            if option in options and options[option][0]:
+                lines.append(f"    {keyword}: {options[option][0]}")
+        if lines:
+            function.__doc__ = (function.__doc__ or "").rstrip() + "\n\n" + "\n".join(lines) + "\n"
+
+        @functools.wraps(function)
+        def call(*args: _P.args, **kwargs: _P.kwargs) -> _R:
+            for keyword in kwargs:
+                if keyword not in keywords:
+                    raise TypeError(
+                        f"{function.__name__}() has no keyword {keyword}"
+                        f"{nearest(keyword, keywords)}"
+                    )
+            return function(*args, **kwargs)
+
+        return call
+
+    return wrap
+
+
+def give(request: Any, **values: object) -> Any:
+    """Sets what a request of the library is to have."""
+    for name, value in values.items():
+        setattr(request, name, value)
+    return request

@@ -1,0 +1,264 @@
+"""Designs: arrays of retroreflectors as design files tell them (docs/design_file.md)."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+
+from . import _core
+from ._arguments import PathLike, path, refuse, shown
+from ._errors import InputError
+
+if TYPE_CHECKING:
+    from . import files
+
+__all__ = ["Design"]
+
+_DEEPEST = 16  # lists and dicts in each other
+_IN_MEMORY = "Design(...)"  # stands for a file in messages of the library
+
+
+def _key(name: object) -> str:
+    if not isinstance(name, str):
+        raise InputError(f"keys must be texts, got {shown(name)}")
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _text(name)
+
+
+def _text(value: str) -> str:
+    """As TOML's basic string."""
+    if any(0xD800 <= ord(c) <= 0xDFFF for c in value):
+        raise InputError(f"texts must be Unicode, got {shown(value)}")
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def toml_value(name: str, value: object, depth: int = 0) -> str:
+    """A value as TOML. name: for messages."""
+    allowed = "a number, a text, True, False, or a list or dict of such"
+    if depth > _DEEPEST:
+        raise InputError(f"lists and dicts may lie {_DEEPEST} deep in each other", key=name)
+    if isinstance(value, (np.generic, np.ndarray)):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        if not -(2**63) <= value < 2**63:
+            raise refuse(name, "a number", value)
+        return str(value)
+    if isinstance(value, float):
+        if not math.isfinite(value):
+            raise refuse(name, "a finite number", value)
+        return repr(float(value))
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, Mapping):
+        items = (
+            f"{_key(key)} = {toml_value(f'{name}.{key}', one, depth + 1)}"
+            for key, one in value.items()
+        )
+        return "{" + ", ".join(items) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(toml_value(name, one, depth + 1) for one in value) + "]"
+    if hasattr(value, "__fspath__"):
+        return _text(path(name, value))
+    raise refuse(name, allowed, value)
+
+
+def toml_text(tables: Mapping[str, object]) -> str:
+    """A file with these keys and tables."""
+    plain, sections = [], []
+    for key, value in tables.items():
+        if isinstance(value, Mapping):
+            lines = [
+                f"{_key(inner)} = {toml_value(f'{key}.{inner}', one)}"
+                for inner, one in value.items()
+            ]
+            sections += ["", f"[{_key(key)}]", *lines]
+        elif (
+            isinstance(value, (list, tuple))
+            and value
+            and all(isinstance(v, Mapping) for v in value)
+        ):
+            for table in value:
+                sections += ["", f"[[{_key(key)}]]"]
+                sections += [
+                    f"{_key(inner)} = {toml_value(f'{key}.{inner}', one)}"
+                    for inner, one in table.items()
+                ]
+        else:
+            plain.append(f"{_key(key)} = {toml_value(key, value)}")
+    return "\n".join(plain + sections) + "\n"
+
+
+def overrides_of(changes: Mapping[str, object]) -> list[str]:
+    """As --set of the command line takes them."""
+    if not isinstance(changes, Mapping):
+        raise refuse("changes", 'a dict such as {"element.base_mm": 0.5}', changes)
+    for key in changes:
+        if not isinstance(key, str) or not re.fullmatch(r"[A-Za-z0-9_.\[\]-]+", key):
+            raise InputError(f'keys must be such as "element.base_mm", got {shown(key)}')
+    return [f"{key}={toml_value(key, value)}" for key, value in changes.items()]
+
+
+class Design:
+    """A design, read and checked, with its defaults filled in. Nothing changes it.
+
+        Design.load("honeycomb.toml").replace({"element.aperture_mm": 0.5})
+        Design(element={"kind": "rtp", "base_mm": 2}, body={"thickness_mm": 2})
+
+    Keys are those of design files (docs/design_file.md; retrace.files has them as TypedDicts).
+    Files that it names are
+    sought from the working directory, those of a design that was loaded from the folder of its
+    file.
+    """
+
+    __slots__ = ("_core", "_keeps")
+
+    def __init__(self, **tables: Any) -> None:
+        text = toml_text({"schema": "retrace.design/1", **tables})
+        try:
+            self._core = _core.Design.parse(text, _IN_MEMORY, [])
+        except InputError as error:
+            raise _without_place(error) from None
+        self._keeps: object = None  # what must live as long as it does
+
+    @classmethod
+    def from_dict(cls, tables: files.Design) -> Design:
+        """The same of a dict, which a type checker knows the keys of."""
+        if not isinstance(tables, Mapping):
+            raise refuse("tables", "a dict of tables", tables)
+        for key in tables:
+            _key(key)
+        return cls(**tables)
+
+    @classmethod
+    def load(cls, file: PathLike, changes: Mapping[str, object] | None = None) -> Design:
+        """Reads a design file. changes: values of keys that take precedence over the file."""
+        return cls._of(_core.Design.load(path("file", file), overrides_of(changes or {})))
+
+    @classmethod
+    def parse(
+        cls, text: str, source: str = "design", changes: Mapping[str, object] | None = None
+    ) -> Design:
+        """The same of the text of a design file. source: stands for the file in messages."""
+        if not isinstance(text, str):
+            raise refuse("text", "a text", text)
+        return cls._of(
+            _core.Design.parse(text, path("source", source), overrides_of(changes or {}))
+        )
+
+    def replace(self, changes: Mapping[str, object]) -> Design:
+        """The same design with some keys at other values."""
+        try:
+            return self._of(self._core.replaced(overrides_of(changes)), self._keeps)
+        except InputError as error:
+            raise (_without_place(error) if self.source == _IN_MEMORY else error) from None
+
+    @classmethod
+    def _of(cls, core: _core.Design, keeps: object = None) -> Design:
+        design = cls.__new__(cls)
+        design._core = core
+        design._keeps = keeps
+        return design
+
+    @classmethod
+    def _restored(cls, text: str, source: str, overrides: list[str]) -> Design:
+        return cls._of(_core.Design.parse(text, source, overrides))
+
+    def __reduce__(self) -> tuple[Any, tuple[str, str, list[str]]]:
+        return Design._restored, (self.text, self.source, self._core.overrides)
+
+    @property
+    def title(self) -> str:
+        """Empty if it has none."""
+        return self._core.title
+
+    @property
+    def source(self) -> str:
+        """Its file, or what stands for it."""
+        return self._core.source
+
+    @property
+    def text(self) -> str:
+        """Of its file, as it was read; changes are not in it."""
+        return self._core.text
+
+    @property
+    def files(self) -> list[str]:
+        """Every file that it names."""
+        return [str(file) for file in self._core.files]
+
+    @property
+    def json(self) -> str:
+        """Its keys as results quote them."""
+        return self._core.json()
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The same as a dict."""
+        result: dict[str, Any] = json.loads(self.json)
+        return result
+
+    def __getitem__(self, key: str) -> Any:
+        """The value of a key such as "element.base_mm", its default if it has none."""
+        value: Any = self.document
+        for part in key.split("."):
+            if not isinstance(value, dict) or part not in value:
+                raise KeyError(key)
+            value = value[part]
+        return value
+
+    def _identity(self) -> tuple[str, str, tuple[str, ...]]:
+        return self.text, self.source, tuple(self._core.overrides)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Design):
+            return NotImplemented
+        return self._identity() == other._identity()
+
+    def __hash__(self) -> int:
+        return hash(self._identity())
+
+    def __repr__(self) -> str:
+        quoted = self.document
+        kind = quoted.get("element", {}).get("kind", "part")
+        arrangement = quoted.get("array", {}).get("arrangement", "")
+        return (
+            f"<Design {shown(self.title or self.source)}: {' '.join((kind, arrangement)).strip()}>"
+        )
+
+    def _repr_svg_(self) -> str | None:
+        """Its plan, in a notebook."""
+        try:
+            return _core.inspect(self._core).plan.svg() or None
+        except (InputError, OSError):
+            return None
+
+
+def _without_place(error: InputError) -> InputError:
+    return InputError(error.message, key=error.key) if error.file == _IN_MEMORY else error
+
+
+#: A design, or the name of its file.
+AnyDesign = Union[Design, PathLike]
+
+
+def design_of(value: object) -> Design:
+    """A design that was given, or the name of its file."""
+    if isinstance(value, Design):
+        return value
+    if isinstance(value, str) or hasattr(value, "__fspath__"):
+        return Design.load(path("design", value))
+    raise refuse("design", "a Design or the name of its file", value)
+
+
+def designs_of(value: object) -> Sequence[Design]:
+    if isinstance(value, (list, tuple)):
+        if not value:
+            raise InputError("must be one or more, got none", key="designs")
+        return [design_of(one) for one in value]
+    return [design_of(value)]

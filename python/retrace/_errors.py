@@ -1,0 +1,59 @@
+"""Errors, one line of text each."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["BudgetError", "Error", "InputError", "OutputError"]
+
+# Keywords whose option of the command line is called otherwise.
+_KEYWORDS = {
+    "incidence": "incidence_deg",
+    "azimuth": "azimuth_deg",
+    "class": "class_",
+    "rotation": "rotation_deg",
+    "pixel-um": "pixel_um",
+    "road-distance-m": "distance_m",
+    "no-diffraction": "diffraction",
+    "no-advice": "advice",
+}
+
+
+def _keyword(option: str) -> str:
+    """The keyword of an option, such as target_error of --target-error."""
+    name = option.removeprefix("--")
+    return _KEYWORDS.get(name, name.replace("-", "_"))
+
+
+class Error(Exception):
+    """What retrace raises on purpose."""
+
+
+class InputError(Error, ValueError):
+    """An input that cannot be used: a file, or an argument, which is then its key."""
+
+    def __init__(
+        self, message: str, file: str | None = None, line: int | None = None, key: str | None = None
+    ) -> None:
+        #: What is wrong, and what is allowed; without its place.
+        self.message = re.sub(r"--[a-z][a-z-]+", lambda option: _keyword(option[0]), message)
+        # What a dict of changes says wrong is no file's, though the command line says so of its
+        # --set.
+        changed = (file or "").startswith("--set ")
+        self.file = None if changed else file or None  #: in which it is wrong
+        self.line = line or None  #: of that file, from 1
+        #: Key of the file, such as "element.base_mm", or name of the argument.
+        self.key = (_keyword(key) if key.startswith("--") else key) if key else None
+        place = ":".join(str(part) for part in (self.file, self.line) if part is not None)
+        super().__init__(": ".join(part for part in (place, self.key, self.message) if part))
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str | None, int | None, str | None]]:
+        return type(self), (self.message, self.file, self.line, self.key)
+
+
+class OutputError(Error, OSError):
+    """A file that cannot be written."""
+
+
+class BudgetError(Error, RuntimeError):
+    """A limit on time, memory or accuracy that was reached before the answer was."""

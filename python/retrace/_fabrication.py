@@ -1,0 +1,256 @@
+"""How a design is cut, and what NC programs really cut."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import weakref
+from collections.abc import Mapping, Sequence
+from typing import Any, Union
+
+from . import _core
+from ._arguments import (
+    PathLike,
+    checked,
+    give,
+    number,
+    path,
+    refuse,
+    shown,
+    thread_count,
+    whole,
+    word,
+)
+from ._design import AnyDesign, Design, design_of
+from ._errors import InputError
+from ._options import OPTIONS
+from ._progress import Progress, teller
+from ._results import Columns, Result, html_table, write_file
+
+__all__ = ["Fabrication", "Job", "Verification", "fabricate", "job", "verify"]
+
+_DIALECTS = ("rs274ngc", "sinumerik", "fanuc", "pmac")
+_MOST_NUMBER = 2**31 - 1
+_IN_MEMORY = "job.toml"  # stands for the file of a job that is in memory
+
+
+class Job(Result):
+    """A fabrication job: the text of a job file."""
+
+    _told = ("elements", "machine", "strategy")
+
+    text: str  #: of the job file
+    elements: int  #: that are cut
+    partial_elements: int  #: that the design has and the job leaves out
+
+    def __init__(self, core: Any) -> None:
+        super().__init__(core)
+        self.text = core.text
+
+    def save(self, file: PathLike) -> None:
+        """Writes the job file."""
+        write_file(path("file", file), self.text.encode())
+
+
+class Fabrication(Result):
+    """The NC programs of a job."""
+
+    _told = ("elements", "time_s", "dialect")
+
+    programs: dict[
+        str, str
+    ]  #: texts by the usual names of their files, in the order in which they run
+
+    def __init__(self, core: Any) -> None:
+        super().__init__(
+            core,
+            drawings={
+                "roughing": core.roughing,
+                "finishing": core.finishing,
+                "arrangement": core.arrangement,
+            },
+        )
+        self.programs = dict(core.programs)
+
+    def save(self, file: PathLike) -> None:
+        """Writes the programs to a folder."""
+        folder = path("file", file)
+        os.makedirs(folder, exist_ok=True)
+        for name, text in self.programs.items():
+            write_file(os.path.join(folder, name), text.encode())
+
+    def _repr_svg_(self) -> str | None:
+        return self._shown_drawing("finishing", "roughing")
+
+
+#: A job, or the name of its file.
+AnyJob = Union[Job, PathLike]
+#: What fabricate() gave, texts by names, or names of files in the order in which they run;
+#: FILE@LINE: stopped behind it.
+AnyPrograms = Union[Fabrication, Mapping[str, str], PathLike, Sequence[PathLike]]
+
+
+class _Folder:
+    """A temporary folder that goes when nobody holds it."""
+
+    def __init__(self) -> None:
+        self.name = tempfile.mkdtemp(prefix="retrace-")
+        weakref.finalize(self, shutil.rmtree, self.name, ignore_errors=True)
+
+
+class Verification(Result):
+    """What NC programs really cut, against their job."""
+
+    _told = ("verdict",)
+    _costly = ("map",)
+
+    verdict: str  #: pass, incomplete or fail
+    passes: bool
+
+    def __init__(self, core: Any, request: Any) -> None:
+        super().__init__(core, drawings={"map": core.map})
+        self.passes = core.passes
+        self._core: Any = core
+        self._asked = {
+            "job": str(request.job),
+            "programs": list(request.programs),
+            "dialect": request.dialect,
+            "tolerance_nm": request.tolerance_nm,
+            "standing": request.standing,
+            "texts": dict(request.texts),
+        }
+
+    @property
+    def findings(self) -> Columns:
+        """What programs do and should not, or do not and should: kind, program, line, message,
+        value, limit."""
+        names = ("kind", "program", "line", "message", "value", "limit")
+        return Columns(self.document.get("findings", []), names)
+
+    @property
+    def as_machined(self) -> Design:
+        """The part that is left, as a design. After pickling the programs are carried out again."""
+        folder = _Folder()
+        file = os.path.join(folder.name, "as_machined.toml")
+        if self._core is None:
+            self._core = _core.verify(give(_core.VerificationRequest(), **self._asked), None, 0)
+        _core.write_as_machined(self._core, file)
+        # Its facets may be in a table beside it.
+        return Design._of(_core.Design.load(file, []), keeps=folder)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # The picture of what is left is one of pixels, as large as the part is.
+        return {**super().__getstate__(), "drawings": {}, "_core": None}
+
+    def _repr_html_(self) -> str | None:
+        verdict = html_table([{"verdict": self.verdict, "findings": len(self.findings.rows)}])
+        return verdict + (html_table(self.findings.rows) if self.findings.rows else "")
+
+
+@checked(OPTIONS["job"])
+def job(
+    design: AnyDesign,
+    *,
+    tool_width_mm: float,
+    machine: str = "ideal",
+    strategy: str = "two-step",
+    process: str = "thesis-acrylic",
+    workpiece: str = "mould",
+    shrinkage_percent: float = 0.0,
+) -> Job:
+    """The fabrication job of a design, as `retrace job`."""
+    request = give(
+        _core.JobRequest(),
+        tool_width_mm=number("tool_width_mm", tool_width_mm, 0, low_included=False),
+        machine=path("machine", machine),
+        strategy=word("strategy", strategy),
+        process=path("process", process),
+        workpiece=word("workpiece", workpiece, ("mould", "direct")),
+        shrinkage_percent=number("shrinkage_percent", shrinkage_percent),
+    )
+    return Job(_core.make_job(design_of(design)._core, request))
+
+
+def _job_file(value: object) -> tuple[str, str | None]:
+    """Name of a job's file, and its text if it is in memory."""
+    if isinstance(value, Job):
+        return _IN_MEMORY, value.text
+    if isinstance(value, str) or hasattr(value, "__fspath__"):
+        return path("job", value), None
+    raise refuse("job", "a Job or the name of its file", value)
+
+
+@checked(OPTIONS["fabricate"])
+def fabricate(
+    job: AnyJob,
+    *,
+    dialect: str = "rs274ngc",
+    phase: str = "all",
+    from_element: int | None = None,
+    stop_every: int | None = None,
+    split_hours: float | None = None,
+) -> Fabrication:
+    """NC programs of a job, and the time that they take, as `retrace fabricate`."""
+    name, text = _job_file(job)
+    request = give(
+        _core.FabricationRequest(),
+        dialect=word("dialect", dialect, _DIALECTS),
+        phase=word("phase", phase),
+        job_text=text,
+    )
+    if from_element is not None:
+        request.from_element = whole("from_element", from_element, 0, _MOST_NUMBER)
+    if stop_every is not None:
+        request.stop_every = whole("stop_every", stop_every, 1, _MOST_NUMBER)
+    if split_hours is not None:
+        request.split_hours = number("split_hours", split_hours)
+    return Fabrication(_core.fabricate(name, request))
+
+
+def _programs(value: object) -> tuple[list[str], dict[str, str]]:
+    """Names of programs, and the texts of those that are in memory."""
+    if isinstance(value, Fabrication):
+        return list(value.programs), dict(value.programs)
+    if isinstance(value, Mapping):
+        for name, text in value.items():
+            if not isinstance(name, str) or not isinstance(text, str):
+                raise InputError(
+                    f"must be texts by their names, got {shown(value)}", key="programs"
+                )
+        return list(value), dict(value)
+    if isinstance(value, str) or hasattr(value, "__fspath__"):
+        return [path("programs", value)], {}
+    if isinstance(value, (list, tuple)):
+        return [path("programs", one) for one in value], {}
+    raise refuse("programs", "what fabricate() gave, texts by names, or names of files", value)
+
+
+@checked(OPTIONS["verify"])
+def verify(
+    job: AnyJob,
+    programs: AnyPrograms,
+    *,
+    dialect: str = "auto",
+    tolerance_nm: float = 10.0,
+    standing: str = "",
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Verification:
+    """What NC programs really cut, against their job, as `retrace verify`."""
+    name, text = _job_file(job)
+    names, texts = _programs(programs)
+    if not names:
+        raise InputError("must be one or more, got none", key="programs")
+    request = give(
+        _core.VerificationRequest(),
+        job=name,
+        programs=names,
+        texts={**texts, **({} if text is None else {name: text})},
+        dialect=word("dialect", dialect, ("auto", *_DIALECTS)),
+        tolerance_nm=number("tolerance_nm", tolerance_nm, 0, low_included=False),
+        standing=word("standing", standing) if standing else "",
+    )
+    count = thread_count(threads)
+    with teller(progress, "cutting") as tell:
+        return Verification(_core.verify(request, tell, count), request)

@@ -1,0 +1,340 @@
+"""What becomes of light: efficiency, footprints, photometry."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arguments import (
+    Numbers,
+    checked,
+    flag,
+    give,
+    number,
+    number_list,
+    pairs,
+    path,
+    thread_count,
+    whole,
+    word,
+)
+from ._design import AnyDesign, design_of, designs_of
+from ._errors import InputError
+from ._options import OPTIONS
+from ._progress import Progress, teller
+from ._results import Array, Columns, Result, dataset_of, frozen, html_table
+
+__all__ = ["Footprint", "PhotometryResult", "RreResult", "footprint", "photometry", "rre"]
+
+ENGINES = ("auto", "exact", "stochastic", "montecarlo", "cell", "embree")
+_MOST_SEED = 2**32 - 1
+_LIGHT_NAMES = {
+    "incidence_deg": "incidence",
+    "azimuth_deg": "azimuth",
+    "rotation_deg": "rotation",
+    "designs": "",
+    "design": "",
+}
+
+
+class RreResult(Result):
+    """Retroreflective efficiency over directions: arrays with one value a point, in the order of
+    designs, azimuths,
+    incidences, acceptance cones."""
+
+    _rows = "points"
+    _told = ("title", "rre", "engine")
+
+    rre: Array  #: share of the incident power that comes back, 0 to 1
+    std_error: Array
+    incidence_deg: Array
+    azimuth_deg: Array
+    acceptance_half_angle_deg: Array
+    ledger: Columns  #: shares of the incident power by account, which add up to 1
+    points: Columns
+    engine: str
+    complete: bool
+
+    def __init__(self, core: Any) -> None:
+        super().__init__(core, drawings={"rre": core.curve, "footprint": core.footprint_map})
+        self._footprint: str = core.footprint
+        self._far_field: str = core.far_field
+
+    @property
+    def title(self) -> str:
+        """Of the designs, or their files."""
+        return ", ".join(
+            str(design.get("title") or design.get("source", ""))
+            for design in self.document["designs"]
+        )
+
+    @property
+    def footprint(self) -> Footprint | None:
+        """Which regions of the entrance face send light back, if it was asked for."""
+        return Footprint(self) if self._footprint else None
+
+    @property
+    def far_field(self) -> dict[str, Any] | None:
+        """The document of the directions in which light leaves, if it was asked for."""
+        return json.loads(self._far_field) if self._far_field else None
+
+    @property
+    def engines(self) -> Any:
+        """That ran, for each point."""
+        return self.points["engine"]
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset over design, azimuth, incidence and acceptance, with units; attrs has
+        seed and version."""
+        dims = ["design", "azimuth_deg", "incidence_deg", "acceptance_half_angle_deg"]
+        return dataset_of(self.points, dims, {**self._attributes(), "title": self.title})
+
+    def _repr_svg_(self) -> str | None:
+        return self._shown_drawing("rre")
+
+
+class Footprint(Result):
+    """Which regions of the entrance face send light back, of all directions of a result."""
+
+    _told = ("regions",)
+
+    def __init__(self, rre: RreResult) -> None:
+        super().__init__(json=rre._footprint, table=rre.table, warnings=rre.warnings)
+        self.drawings = {
+            name: drawing for name, drawing in rre.drawings.items() if name == "footprint"
+        }
+        #: The efficiency of the same directions.
+        self.rre = rre
+
+    @property
+    def _features(self) -> list[dict[str, Any]]:
+        features: list[dict[str, Any]] = self.document["features"]
+        return features
+
+    @property
+    def regions(self) -> int:
+        """How many there are."""
+        return len(self._features)
+
+    @property
+    def polygons(self) -> list[Array]:
+        """Outlines of the regions, (n, 2) arrays of x and y in mm, the first point again at the
+        end."""
+        return [frozen(feature["geometry"]["coordinates"][0]) for feature in self._features]
+
+    @property
+    def holes(self) -> list[list[Array]]:
+        """Of each region."""
+        return [
+            [frozen(ring) for ring in feature["geometry"]["coordinates"][1:]]
+            for feature in self._features
+        ]
+
+    @property
+    def efficiency(self) -> Array:
+        """Share of what enters a region that comes back, for each."""
+        return frozen([feature["properties"]["efficiency"] for feature in self._features])
+
+    @property
+    def properties(self) -> Columns:
+        """Direction and design of each region."""
+        return Columns([feature["properties"] for feature in self._features])
+
+    @property
+    def geojson(self) -> dict[str, Any]:
+        """A GeoJSON feature collection, in mm."""
+        return self.document
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame with a row for each region."""
+        return self.properties.to_pandas()
+
+    def _repr_svg_(self) -> str | None:
+        return self._shown_drawing("footprint")
+
+
+@checked(OPTIONS["rre"], _LIGHT_NAMES)
+def rre(
+    designs: AnyDesign | Sequence[AnyDesign],
+    *,
+    incidence_deg: Numbers = 0.0,
+    azimuth_deg: Numbers = 0.0,
+    incidence_spans_deg: Sequence[tuple[float, float]] = (),
+    engine: str = "auto",
+    target_error: float | None = None,
+    samples: int | None = None,
+    cutoff: float | None = None,
+    sampling: str = "stratified",
+    derivatives: bool = False,
+    footprint: bool = False,
+    far_field: bool = False,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> RreResult:
+    """Retroreflective efficiency (RRE) over angles of incidence and azimuths, with its standard
+    error and a ledger of
+    where all other light went, as `retrace rre`.
+
+    designs: a design or several, or their files. incidence_spans_deg: pieces (from, to) in which
+    incidences are chosen
+    besides, as many as the curve needs. threads: at most [all cores]."""
+    taken = designs_of(designs)
+    request = give(
+        _core.RreRequest(),
+        incidence_deg=number_list(
+            "incidence_deg",
+            incidence_deg,
+            -90,
+            90,
+            included=False,
+            may_be_empty=bool(incidence_spans_deg),
+        ),
+        incidence_spans_deg=pairs("incidence_spans_deg", incidence_spans_deg),
+        azimuth_deg=number_list("azimuth_deg", azimuth_deg),
+        engine=word("engine", engine, ENGINES),
+        sampling=word("sampling", sampling, ("stratified", "plain")),
+        derivatives=flag("derivatives", derivatives),
+        footprint=flag("footprint", footprint),
+        far_field=flag("far_field", far_field),
+        seed=whole("seed", seed, 0, _MOST_SEED),
+    )
+    if target_error is not None:
+        if samples is not None:
+            raise InputError("not together with samples", key="target_error")
+        request.target_error = number(
+            "target_error", target_error, 0, 1, low_included=False, high_included=False
+        )
+    if samples is not None:
+        request.samples = whole("samples", samples, 1)
+    if cutoff is not None:
+        request.cutoff = number("cutoff", cutoff, 0, 1, high_included=False)
+    count = thread_count(threads)
+    with teller(progress, "tracing") as tell:
+        return RreResult(_core.rre([design._core for design in taken], request, tell, count))
+
+
+@checked(OPTIONS["rre"], _LIGHT_NAMES)
+def footprint(
+    design: AnyDesign,
+    *,
+    incidence_deg: Numbers = 0.0,
+    azimuth_deg: Numbers = 0.0,
+    target_error: float | None = None,
+    cutoff: float | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Footprint:
+    """Which regions of the entrance face send light back, as `retrace rre --footprint`."""
+    result = rre(
+        design_of(design),
+        incidence_deg=incidence_deg,
+        azimuth_deg=azimuth_deg,
+        footprint=True,
+        target_error=target_error,
+        cutoff=cutoff,
+        threads=threads,
+        progress=progress,
+    )
+    return Footprint(result)
+
+
+class PhotometryResult(Result):
+    """Coefficients of retroreflection at the test points of a standard: arrays with one value a
+    point."""
+
+    _rows = "points"
+    _told = ("verdict", "margin")
+
+    verdict: str  #: pass, unconfirmed, undetermined or fail
+    passes: bool  #: every point and the area, and the colour is none that fails
+    points: Columns
+    complete: bool
+
+    def __init__(self, core: Any) -> None:
+        super().__init__(core, drawings={"far_field": core.far_field, "r_a": core.observation})
+        self.passes = core.passes
+
+    def _repr_html_(self) -> str | None:
+        names = (
+            "observation_deg",
+            "v_deg",
+            "h_deg",
+            "rotation_deg",
+            "value_mcd_per_lx",
+            "limit_mcd_per_lx",
+            "margin",
+            "verdict",
+        )
+        rows = [{name: row[name] for name in names if name in row} for row in self.points.rows]
+        return html_table(rows) + f"<p>{self.verdict}</p>"
+
+
+@checked(OPTIONS["photometry"], _LIGHT_NAMES)
+def photometry(
+    design: AnyDesign,
+    *,
+    standard: str,
+    area_cm2: float,
+    class_: str | None = None,
+    colour: str | None = None,
+    rotation_deg: Numbers | None = None,
+    dye: str | None = None,
+    source_arcmin: float | None = None,
+    receiver_arcmin: float | None = None,
+    window_deg: float = 2.0,
+    light: str = "a",
+    engine: str = "auto",
+    samples: int = 1 << 20,
+    cutoff: float | None = None,
+    diffraction: bool = True,
+    window_power: bool = False,
+    advice: bool = True,
+    pictures: bool = False,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> PhotometryResult:
+    """Coefficients of retroreflection at the test points of a standard, their limits and a verdict,
+    as
+    `retrace photometry`.
+
+    diffraction: False: geometric far field alone. advice: what to change if a point fails.
+    pictures: drawings
+    "far_field" and "r_a", which take time."""
+    taken = design_of(design)
+    request = give(
+        _core.PhotometryRequest(),
+        standard=path("standard", standard),
+        area_cm2=number("area_cm2", area_cm2, 0, low_included=False),
+        window_deg=number("window_deg", window_deg, 0.05, 10),
+        light=word("light", light, ("a", "d65", "design")),
+        engine=word("engine", engine, ("auto", "exact", "montecarlo", "embree")),
+        samples=whole("samples", samples, 1),
+        diffraction=flag("diffraction", diffraction),
+        window_power=flag("window_power", window_power),
+        advice=flag("advice", advice),
+        pictures=flag("pictures", pictures),
+        seed=whole("seed", seed, 0, _MOST_SEED),
+    )
+    for name, text in (("class_", class_), ("colour", colour), ("dye", dye)):
+        if text is not None:
+            setattr(request, name, word(name, text))
+    for name, value in (("source_arcmin", source_arcmin), ("receiver_arcmin", receiver_arcmin)):
+        if value is not None:
+            setattr(request, name, number(name, value, 0))
+    if rotation_deg is not None:
+        request.rotation_deg = number_list("rotation_deg", rotation_deg)
+        if len(request.rotation_deg) > 720:
+            raise InputError(
+                f"must be at most 720 turns, got {len(request.rotation_deg)}", key="rotation_deg"
+            )
+    if cutoff is not None:
+        request.cutoff = number("cutoff", cutoff, 0, 1, low_included=False, high_included=False)
+    count = thread_count(threads)
+    with teller(progress, "tracing") as tell:
+        return PhotometryResult(_core.photometry(taken._core, request, tell, count))

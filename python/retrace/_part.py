@@ -1,0 +1,127 @@
+"""What a design is: figures, drawings, solids."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._arguments import PathLike, checked, number, path, word
+from ._design import AnyDesign, design_of
+from ._options import OPTIONS
+from ._results import Array, Result, needed
+
+__all__ = ["ExportResult", "FaceKind", "Inspection", "Mesh", "export", "inspect", "mesh"]
+
+_SOLIDS = ("element", "array", "mould")
+
+
+class FaceKind(enum.IntEnum):
+    """What a face of a part is: labels of a mesh."""
+
+    ENTRANCE = 0
+    RETRO_FACET = 1
+    FLAT_BACK = 2
+    INNER_WALL = 3
+    BORDER_WALL = 4
+    SIDE = 5
+
+
+class Mesh:
+    """A closed triangle mesh in the part's frame: `vertices, faces, labels = mesh`.
+
+    Arrays hold the library's own numbers and cannot be changed."""
+
+    vertices_mm: Array  #: (n, 3)
+    faces: NDArray[np.uint32]  #: (m, 3), counter-clockwise seen from outside
+    labels: NDArray[np.int32]  #: (m,), values of FaceKind
+    volume_mm3: float
+    area_mm2: float
+    is_manifold: bool  #: it touches itself along no edge
+    warnings: tuple[str, ...]
+
+    def __init__(self, made: dict[str, Any]) -> None:
+        self.vertices_mm = made["vertices_mm"]
+        self.faces = made["triangles"]
+        self.labels = made["kinds"]
+        self.volume_mm3 = made["volume_mm3"]
+        self.area_mm2 = made["area_mm2"]
+        self.is_manifold = made["is_manifold"]
+        self.warnings = tuple(made["warnings"])
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.vertices_mm, self.faces, self.labels))
+
+    def to_trimesh(self) -> Any:
+        """A trimesh.Trimesh with the labels as face attribute."""
+        trimesh = needed("trimesh", "to_trimesh()")
+        return trimesh.Trimesh(
+            np.array(self.vertices_mm),
+            np.array(self.faces, dtype=np.int64),
+            process=False,
+            face_attributes={"label": np.array(self.labels)},
+        )
+
+    def __repr__(self) -> str:
+        return f"<Mesh: {len(self.faces)} triangles, {self.volume_mm3:.6g} mm3>"
+
+
+class ExportResult(Result):
+    """A solid that was written."""
+
+    _told = ("file", "triangles", "volume_mm3")
+
+
+class Inspection(Result):
+    """What a design is, before any light is traced. Drawings: plan, section, front, view."""
+
+    _told = ("elements_full", "element_depth_mm", "tir_limit_deg")
+
+    def _repr_svg_(self) -> str | None:
+        return self._shown_drawing("plan")
+
+
+def _block(block_mm: float | None) -> float | None:
+    return None if block_mm is None else number("block_mm", block_mm, 0, low_included=False)
+
+
+@checked(OPTIONS["export"])
+def mesh(design: AnyDesign, *, what: str = "array", block_mm: float | None = None) -> Mesh:
+    """A design's solid as triangles."""
+    return Mesh(_core.mesh(design_of(design)._core, word("what", what, _SOLIDS), _block(block_mm)))
+
+
+@checked(OPTIONS["export"])
+def export(
+    design: AnyDesign, file: PathLike, *, what: str = "array", block_mm: float | None = None
+) -> ExportResult:
+    """Writes a design's solid as STL, OBJ or STEP, by the ending of the file's name, as `retrace
+    export`."""
+    return ExportResult(
+        _core.export_solid(
+            design_of(design)._core,
+            path("file", file),
+            word("what", what, _SOLIDS),
+            _block(block_mm),
+        )
+    )
+
+
+@checked(OPTIONS["inspect"])
+def inspect(design: AnyDesign) -> Inspection:
+    """What a design is, before any light is traced: counts, areas, limits of total reflection, as
+    `retrace inspect`."""
+    core = _core.inspect(design_of(design)._core)
+    return Inspection(
+        core,
+        drawings={
+            "plan": core.plan,
+            "section": core.section,
+            "front": core.front,
+            "view": core.view,
+        },
+    )

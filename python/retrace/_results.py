@@ -1,0 +1,434 @@
+"""What questions come to: documents of the program, their numbers as arrays."""
+
+from __future__ import annotations
+
+import html
+import importlib
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._arguments import PathLike, nearest, path
+from ._errors import Error, OutputError
+
+Array = NDArray[np.float64]
+
+_VERDICTS = {
+    "pass": "#dff0d8",
+    "unconfirmed": "#fcf3cf",
+    "undetermined": "#fcf3cf",
+    "incomplete": "#fcf3cf",
+    "fail": "#f8d7da",
+}
+_ELAPSED = re.compile(r'"elapsed_s": [^,\n]*')
+_MOST_ROWS = 60  # of a table in a notebook
+_UNITS = {
+    "deg": "degree",
+    "arcmin": "arcmin",
+    "mm": "mm",
+    "um": "um",
+    "nm": "nm",
+    "m": "m",
+    "mm2": "mm2",
+    "cm2": "cm2",
+    "mm3": "mm3",
+    "h": "h",
+    "s": "s",
+    "percent": "percent",
+    "lx": "lx",
+    "cd": "cd",
+}
+
+
+def needed(package: str, purpose: str) -> Any:
+    """A package that retrace takes if it is there."""
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(
+            f"{purpose} needs the package {package}, which is not installed "
+            f"(Debian: python3-{package}; else: pip install {package})"
+        ) from error
+
+
+def unit_of(name: str) -> str:
+    """The unit that a name ends in; "1" if it has none."""
+    for most in (3, 2, 1):  # r_a_cd_per_lx_m2, psd_per_mm, base_mm
+        tail = name.split("_")[-most:]
+        if len(tail) == most > 1 and tail[0] == "per" and tail[1] in _UNITS:
+            return "1/" + _UNITS[tail[1]]
+        if most == 1 and tail[0] in _UNITS and tail[0] != name:
+            if "_per_" in name:
+                return name[name.rindex("_", 0, name.index("_per_")) + 1 :].replace("_per_", "/")
+            return _UNITS[tail[0]]
+    return "1"
+
+
+def frozen(values: Any) -> Array:
+    """Numbers as an array that nobody can change."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def column_of(values: Sequence[Any]) -> Any:
+    """Values of one key: numbers as float64, what is missing (None) as NaN; tables as Columns; else
+    as they are."""
+    there = [value for value in values if value is not None]
+    if all(map(_is_number, there)):
+        return frozen([np.nan if value is None else value for value in values])
+    if all(isinstance(value, bool) for value in values):
+        flags = np.array(values, dtype=np.bool_)
+        flags.setflags(write=False)
+        return flags
+    if all(isinstance(value, dict) for value in there):
+        return Columns([value or {} for value in values])
+    if len(there) == len(values) and all(isinstance(value, list) for value in there):
+        lengths = {len(value) for value in there}
+        if len(lengths) == 1 and all(_is_number(one) for value in there for one in value):
+            return frozen(there)
+    column = np.empty(len(values), dtype=object)
+    column[:] = [
+        ("" if value is None else value) if all(isinstance(v, str) for v in there) else value
+        for value in values
+    ]
+    column.setflags(write=False)
+    return column
+
+
+class Columns(Mapping[str, Any]):
+    """A list of objects with the same keys, by columns: numbers are read-only float64 arrays, NaN
+    where a key is missing."""
+
+    def __init__(self, rows: Sequence[Mapping[str, Any]], names: Sequence[str] = ()) -> None:
+        """names: of columns that are there even without rows."""
+        #: As the document has them.
+        self.rows = rows
+        self._names = list(dict.fromkeys([*names, *(name for row in rows for name in row)]))
+        self._columns: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._columns:
+            if name not in self._names:
+                raise KeyError(f"{name}{nearest(name, self._names)}")
+            self._columns[name] = column_of([row.get(name) for row in self.rows])
+        return self._columns[name]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError as error:
+            raise AttributeError(str(error.args[0])) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._names]
+
+    def __repr__(self) -> str:
+        return f"<{len(self.rows)} rows of {', '.join(self._names)}>"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.rows)
+
+    def flat(self, prefix: str = "") -> dict[str, Any]:
+        """Its columns, those of inner tables as table_key; lists of numbers as columns of lists."""
+        flat: dict[str, Any] = {}
+        for name in self._names:
+            column = self[name]
+            if isinstance(column, Columns):
+                flat.update(column.flat(f"{prefix}{name}_"))
+            else:
+                flat[prefix + name] = list(column) if column.ndim > 1 else column
+        return flat
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame with a row for each."""
+        pandas = needed("pandas", "to_pandas()")
+        return pandas.DataFrame(
+            {
+                name: np.array(column) if isinstance(column, np.ndarray) else column
+                for name, column in self.flat().items()
+            }
+        )
+
+
+def _cell(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def html_table(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Objects as a table, verdicts in their colours; what is no number or text is left out."""
+    names = [
+        name
+        for name in dict.fromkeys(name for row in rows for name in row)
+        if all(not isinstance(row.get(name), (dict, list)) for row in rows)
+    ]
+    lines = [
+        "<table><thead><tr>",
+        *(f"<th>{html.escape(name)}</th>" for name in names),
+        "</tr></thead><tbody>",
+    ]
+    for row in rows[:_MOST_ROWS]:
+        colour = _VERDICTS.get(str(row.get("verdict")), "")
+        lines.append(f'<tr style="background:{colour};color:black">' if colour else "<tr>")
+        lines += [
+            f"<td>{html.escape(_cell(row[name])) if name in row else ''}</td>" for name in names
+        ]
+        lines.append("</tr>")
+    lines.append("</tbody></table>")
+    if len(rows) > _MOST_ROWS:
+        lines.append(f"<p>{len(rows) - _MOST_ROWS} more rows</p>")
+    return "".join(lines)
+
+
+class Drawing:
+    """A drawing of a result, made when it is asked for."""
+
+    def __init__(self, source: Any) -> None:
+        self._source = source
+        self._svg: str | None = None
+
+    @property
+    def svg(self) -> str:
+        """As an SVG document; empty if it is a picture of pixels alone."""
+        if self._svg is None:
+            self._svg = self._made().svg()
+        return self._svg or ""
+
+    def _made(self) -> Any:
+        if self._source is None:
+            raise Error("a drawing that was not made before its result was pickled is gone")
+        return self._source
+
+    @property
+    def png(self) -> bytes:
+        """As a PNG file."""
+        result: bytes = self._made().png()
+        return result
+
+    def save(self, file: PathLike) -> None:
+        """Writes it, as SVG or PNG by the ending of the file's name."""
+        name = path("file", file)
+        write_file(name, self.png if name.lower().endswith(".png") else self.svg.encode())
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"_source": None, "_svg": self._svg}
+
+    @property
+    def is_there(self) -> bool:
+        """It is not after pickling, unless it was made before."""
+        return self._source is not None or self._svg is not None
+
+    @property
+    def is_made(self) -> bool:
+        """It was asked for before."""
+        return self._svg is not None
+
+    def _repr_svg_(self) -> str | None:
+        return self.svg or None if self.is_there else None
+
+    def _repr_png_(self) -> bytes | None:
+        return self.png if self._source is not None and not self.svg else None
+
+    def __repr__(self) -> str:
+        return "<Drawing>"
+
+
+def write_file(name: str, content: bytes) -> None:
+    try:
+        with open(name, "wb") as file:
+            file.write(content)
+    except OSError as error:
+        raise OutputError(f"{name}: cannot be written: {error.strerror}") from error
+
+
+def drawing_of(source: Any) -> Drawing | None:
+    return Drawing(source) if source else None
+
+
+class Result:
+    """What a question came to. Its attributes are the keys of its document; those of the objects in
+    its list, such as
+    the points of a curve, are read-only arrays with one value each, NaN where the document leaves a
+    key out.
+    """
+
+    #: Key of the list of objects whose keys are attributes as well.
+    _rows: ClassVar[str] = ""
+    #: Drawings that take long: pages have them only if they were made.
+    _costly: ClassVar[Sequence[str]] = ()
+    #: What of it is told in one line.
+    _told: ClassVar[Sequence[str]] = ()
+
+    json: str  #: its document, as the program prints it with --json
+    table: str  #: for people, as the program prints it
+    warnings: tuple[str, ...]  #: what is to be known about it
+    csv: str  #: one line a point; empty if it has none
+    drawings: dict[str, Drawing]  #: by name
+
+    def __init__(
+        self,
+        core: Any = None,
+        *,
+        json: str = "",
+        table: str = "",
+        warnings: Sequence[str] = (),
+        drawings: Mapping[str, Any] | None = None,
+    ) -> None:
+        self.json = core.json if core is not None else json
+        self.table = core.table if core is not None else table
+        self.warnings = tuple(core.warnings if core is not None else warnings)
+        self.csv = getattr(core, "csv", "")
+        self.drawings = {
+            name: Drawing(source) for name, source in (drawings or {}).items() if source
+        }
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The document, read."""
+        document: dict[str, Any] | None = self.__dict__.get("_document")
+        if document is None:
+            document = self.__dict__["_document"] = json.loads(self.json)
+        return document
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or "json" not in self.__dict__:
+            raise AttributeError(name)
+        document = self.document
+        rows = self.__dict__.get("_columns")
+        if rows is None and self._rows:
+            rows = self.__dict__["_columns"] = Columns(document.get(self._rows, []))
+        if name == self._rows:
+            return rows
+        if rows is not None and name in rows and name not in document:
+            return rows[name]
+        if name in document:
+            return document[name]
+        names = [*document, *(rows or ())]
+        raise AttributeError(f"{type(self).__name__} has no {name}{nearest(name, names)}")
+
+    def __dir__(self) -> list[str]:
+        rows = getattr(self, self._rows) if self._rows else ()
+        return sorted({*super().__dir__(), *self.document, *rows})
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {
+            name: value
+            for name, value in self.__dict__.items()
+            if name not in ("_document", "_columns")
+        }
+
+    def __eq__(self, other: object) -> bool:
+        """Whether it says the same, however long it took."""
+        if not isinstance(other, type(self)):
+            return NotImplemented
+        return _ELAPSED.sub("", self.json) == _ELAPSED.sub("", other.json)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def save(self, file: PathLike) -> None:
+        """Writes its document."""
+        write_file(path("file", file), self.json.encode())
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame with a row for each point; attrs has seed, version and so on."""
+        if not self._rows:
+            raise Error(f"{type(self).__name__} is no list of points")
+        frame = getattr(self, self._rows).to_pandas()
+        frame.attrs.update(self._attributes())
+        return frame
+
+    def _attributes(self) -> dict[str, Any]:
+        """What is said of the whole, texts and numbers alone."""
+        return {
+            name: value
+            for name, value in self.document.items()
+            if isinstance(value, (str, int, float)) and name not in ("elapsed_s",)
+        }
+
+    def _summary(self) -> str:
+        """Of the one line."""
+        parts = []
+        for name in self._told:
+            value = getattr(self, name, None)
+            if isinstance(value, np.ndarray):
+                if value.size:
+                    low, high = np.nanmin(value), np.nanmax(value)
+                    parts.append(f"{name} {low:.6g}" + (f" to {high:.6g}" if high > low else ""))
+            elif value is not None:
+                parts.append(f"{name} {_cell(value)}")
+        return ", ".join(parts)
+
+    def __repr__(self) -> str:
+        parts = [self._summary()]
+        if self.warnings:
+            parts.append(f"{len(self.warnings)} warning{'s' if len(self.warnings) > 1 else ''}")
+        return f"<{type(self).__name__}: {', '.join(part for part in parts if part)}>"
+
+    def _shown_drawing(self, *names: str) -> str | None:
+        """The SVG of the first of these drawings that there is."""
+        for name in names:
+            if name in self.drawings and self.drawings[name].is_there and self.drawings[name].svg:
+                return self.drawings[name].svg
+        return None
+
+    def _repr_html_(self) -> str | None:
+        return None if self._repr_svg_() else f"<pre>{html.escape(self.table)}</pre>"
+
+    def _repr_svg_(self) -> str | None:
+        return None
+
+
+def dataset_of(
+    columns: Columns,
+    dims: Sequence[str],
+    attributes: Mapping[str, Any],
+    exclude: Callable[[str], bool] = lambda name: False,
+) -> Any:
+    """An xarray.Dataset over the values of some columns. A dimension with one value stays, as
+    coordinate of length 1."""
+    xarray = needed("xarray", "to_xarray()")
+    flat = columns.flat()
+    coordinates = {dim: list(dict.fromkeys(np.asarray(flat[dim]).tolist())) for dim in dims}
+    places = tuple(
+        np.array(
+            [
+                {value: k for k, value in enumerate(coordinates[dim])}[one]
+                for one in np.asarray(flat[dim]).tolist()
+            ],
+            dtype=int,
+        )
+        for dim in dims
+    )
+    shape = tuple(len(coordinates[dim]) for dim in dims)
+    dataset = xarray.Dataset(
+        coords={dim: (dim, values, {"units": unit_of(dim)}) for dim, values in coordinates.items()},
+        attrs=dict(attributes),
+    )
+    for name, column in flat.items():
+        if name in dims or exclude(name) or not isinstance(column, np.ndarray):
+            continue
+        if column.dtype == np.float64:
+            values = np.full(shape, np.nan)
+        elif column.dtype == np.bool_:
+            values = np.zeros(shape, dtype=np.bool_)
+        else:
+            values = np.full(shape, "", dtype=object)
+        values[places] = column
+        dataset[name] = (tuple(dims), values, {"units": unit_of(name)})
+    return dataset

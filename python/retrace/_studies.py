@@ -1,0 +1,688 @@
+"""Studies: designs over ranges, in manufacture, and the best of them."""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Union
+
+import numpy as np
+
+from . import _core
+from ._arguments import (
+    PathLike,
+    checked,
+    flag,
+    give,
+    number,
+    number_list,
+    path,
+    refuse,
+    shown,
+    thread_count,
+    whole,
+    word,
+)
+from ._design import AnyDesign, Design, design_of, overrides_of, toml_text
+from ._errors import InputError
+from ._light import rre
+from ._options import OPTIONS
+from ._progress import Progress, teller
+from ._results import Columns, Result, dataset_of, html_table
+
+__all__ = [
+    "FoundOptimum",
+    "Optimum",
+    "SweepResult",
+    "ToleranceResult",
+    "optimize",
+    "sweep",
+    "tolerance",
+]
+
+#: What is asked of every design: the kind of a quantity, a table [[quantity]] of a study file, or a
+#: function of a result.
+Quantity = Union[str, Mapping[str, Any], Callable[[Any], Any]]
+#: Values, or keys of a table [[parameter]] such as {"from": 0.1, "to": 5}.
+Values = Any
+
+_MOST_SEED = 2**32 - 1
+_KEY = '{"element.base_mm": [0.5, 1, 2]}'
+
+
+class SweepResult(Result):
+    """Designs over ranges: arrays with one value a point, `result["element.base_mm"]`,
+    `result["rre"]`."""
+
+    _rows = "points"
+    _told = ("points_in_all", "failed")
+
+    parameters: list[str]
+    quantities: list[str]
+    points: Columns
+    complete: bool
+
+    def __getitem__(self, name: str) -> Any:
+        return self.points[name]
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset over the parameters where their values are a grid, else over the
+        points."""
+        sizes = [len(dict.fromkeys(map(str, self.points[name]))) for name in self.parameters]
+        is_grid = math.prod(sizes) == len(self.points.rows) > 0
+        dims = self.parameters if is_grid else ["point"]
+        return dataset_of(
+            self.points, dims, self._attributes(), lambda name: is_grid and name == "point"
+        )
+
+    def _repr_html_(self) -> str | None:
+        return html_table(self.points.rows)
+
+
+class ToleranceResult(Result):
+    """What becomes of a design in manufacture: a row for each quantity."""
+
+    _rows = "quantities"
+    _told = ("title", "parts", "failed")
+
+    is_enough: bool  #: the yield is what the study asks for
+
+    def __init__(self, core: Any) -> None:
+        super().__init__(core, drawings={"tolerance": core.drawing})
+        self.is_enough = core.is_yes
+
+    def _repr_svg_(self) -> str | None:
+        return self._shown_drawing("tolerance")
+
+
+class Optimum(Result):
+    """The best design within constraints; rows of the Pareto front are `pareto`."""
+
+    _rows = "pareto"
+    _told = ("title", "objective_at_best")
+
+    is_feasible: bool  #: there is a design that holds the constraints
+    #: What was varied, if it was given as a design.
+    design: Design | None
+
+    def __init__(self, core: Any, design: Design | None = None) -> None:
+        super().__init__(core)
+        self.is_feasible = core.is_yes
+        self.design = design
+
+    @property
+    def objective_at_best(self) -> float:
+        """NaN if no design is feasible."""
+        return float(self.document.get("best", {}).get("objective", math.nan))
+
+    @property
+    def best_design(self) -> Design:
+        """Of the keys that the chosen one has."""
+        if self.design is None or not self.is_feasible:
+            raise InputError(
+                "there is one only where a design was given, and a feasible one was found",
+                key="best_design",
+            )
+        best = self.document["best"]
+        return self.design.replace({key: value for key, value in best.items() if "." in key})
+
+
+def _parameter(key: object, values: Values) -> dict[str, Any]:
+    """A table [[parameter]]."""
+    if not isinstance(key, str) or not key:
+        raise refuse("parameters", f"a dict such as {_KEY}", key)
+    if isinstance(values, Mapping):
+        return {"key": key, **values}
+    listed = values.tolist() if isinstance(values, np.ndarray) else values
+    if isinstance(listed, (str, bytes)) or not isinstance(listed, (list, tuple, range)):
+        raise InputError(
+            f"{key}: must be a list of values, or a dict such as "
+            f'{{"from": 0.1, "to": 5}}, got {shown(values)}',
+            key="parameters",
+        )
+    if not listed:
+        raise InputError(f"{key}: must be one value or more, got none", key="parameters")
+    return {"key": key, "values": list(listed)}
+
+
+def _name_of(function: Callable[..., Any]) -> str:
+    name = getattr(function, "__name__", type(function).__name__)
+    return "value" if name == "<lambda>" else name
+
+
+def _split(quantities: object) -> tuple[list[dict[str, Any]], dict[str, Callable[[Any], Any]]]:
+    """Tables [[quantity]], and functions by their names."""
+    if isinstance(quantities, str) or callable(quantities):
+        quantities = [quantities]
+    if isinstance(quantities, Mapping) and all(map(callable, quantities.values())):
+        return [], dict(quantities)
+    if not isinstance(quantities, (list, tuple)) or not quantities:
+        raise refuse(
+            "quantities",
+            'a list of names such as "rre", tables, or functions of a result',
+            quantities,
+        )
+    tables: list[dict[str, Any]] = []
+    functions: dict[str, Callable[[Any], Any]] = {}
+    for quantity in quantities:
+        if isinstance(quantity, str):
+            tables.append({"kind": quantity})
+        elif isinstance(quantity, Mapping):
+            tables.append(dict(quantity))
+        elif callable(quantity):
+            functions[_name_of(quantity)] = quantity
+        else:
+            raise refuse(
+                "quantities", 'names such as "rre", tables, or functions of a result', quantity
+            )
+    return tables, functions
+
+
+def _constraints(constraints: object) -> list[dict[str, Any]]:
+    """Tables [[constraint]] of {"quantity": (least, most)}."""
+    if not isinstance(constraints, Mapping):
+        raise refuse("constraints", 'a dict such as {"machining_time_h": (None, 5)}', constraints)
+    tables = []
+    for name, ends in constraints.items():
+        if not isinstance(ends, (tuple, list)) or len(ends) != 2:
+            raise InputError(
+                f"{name}: must be a pair (least, most) with None for none, got {shown(ends)}",
+                key="constraints",
+            )
+        limits = {
+            end: number("constraints", limit)
+            for end, limit in zip(("min", "max"), ends)
+            if limit is not None
+        }
+        tables.append({"quantity": name, **limits})
+    return tables
+
+
+def _settings(**tables: object) -> dict[str, Any]:
+    """Tables of a study that were given."""
+    given: dict[str, Any] = {}
+    for name, table in tables.items():
+        if table is None:
+            continue
+        if not isinstance(table, Mapping):
+            raise refuse(name, f"a dict: the table [{name}] of a study file", table)
+        given[name] = dict(table)
+    return given
+
+
+def _study_of(
+    design: Design, parameters: object, quantities: list[dict[str, Any]], tables: Mapping[str, Any]
+) -> tuple[_core.Study, list[str]]:
+    """A study of a design in memory, and the changes that the design has."""
+    if not isinstance(parameters, Mapping) or not parameters:
+        raise refuse("parameters", f"a dict such as {_KEY}", parameters)
+    rows = [_parameter(key, values) for key, values in parameters.items()]
+    text = toml_text(
+        {
+            "schema": "retrace.study/1",
+            "title": design.title or design.source,
+            "design": design.source,
+            **tables,
+            "parameter": rows,
+            "quantity": quantities,
+        }
+    )
+    varied = {row["key"] for row in rows}
+    changes = [
+        change for change in design._core.overrides if change.partition("=")[0] not in varied
+    ]
+    return _core.Study(text, "study", {design.source: design.text}), changes
+
+
+def _request(
+    changes: list[str], seed: int, store: PathLike | None, resume: bool, overwrite: bool
+) -> Any:
+    if flag("resume", resume) and flag("overwrite", overwrite):
+        raise InputError("not together with overwrite", key="resume")
+    request = give(_core.StudyRequest(), overrides=changes, seed=whole("seed", seed, 0, _MOST_SEED))
+    if store is not None:
+        request.store = path("store", store)
+    elif resume or overwrite:
+        raise InputError("needs a store", key="resume" if resume else "overwrite")
+    request.if_exists = "resume" if resume else "overwrite" if overwrite else "refuse"
+    return request
+
+
+def _from_file(study: object, parameters: object) -> bool:
+    """Whether a study file is meant; else a design is."""
+    is_name = isinstance(study, str) or hasattr(study, "__fspath__")
+    if parameters is None and not is_name:
+        raise InputError(f"are required with a design, a dict such as {_KEY}", key="parameters")
+    return parameters is None
+
+
+def _grid(parameters: object) -> list[dict[str, Any]]:
+    """Every value with every other, the last parameter fastest."""
+    if not isinstance(parameters, Mapping) or not parameters:
+        raise refuse("parameters", f"a dict such as {_KEY}", parameters)
+    lists = []
+    for key, values in parameters.items():
+        row = _parameter(key, values)
+        if "values" not in row:
+            raise InputError(f"{key}: functions take lists of values", key="parameters")
+        lists.append([(key, value) for value in row["values"]])
+    return [dict(point) for point in itertools.product(*lists)]
+
+
+def _value(name: str, value: object) -> float:
+    """What a function of a result has returned."""
+    array = np.asarray(value)
+    if array.size != 1 or array.dtype.kind not in "iufb":
+        raise InputError(f"must return one number, has returned {shown(value)}", key=name)
+    return float(array.reshape(-1)[0])
+
+
+def _with_functions(
+    design: Design,
+    points: list[dict[str, Any]],
+    keys: Sequence[str],
+    functions: Mapping[str, Callable[[Any], Any]],
+    of: Callable[[Design], Any],
+    tell: Any,
+) -> None:
+    """Adds to points what functions say of the result of each."""
+    for k, point in enumerate(points):
+        if point["status"] == "done":
+            try:
+                result = of(design.replace({key: point[key] for key in keys}))
+            except InputError as error:
+                point.update(status="failed", reason=str(error))
+            else:
+                for name, function in functions.items():
+                    value = _value(name, function(result))
+                    if math.isfinite(value):
+                        point[name] = value
+        if tell is not None:
+            tell((k + 1) / len(points))
+
+
+def _swept(study: Any, seed: int) -> dict[str, Any]:
+    """The document of a sweep that functions alone are asked of."""
+    return {
+        "schema": "retrace.sweep/1",
+        "study": "study",
+        "parameters": list(study),
+        "quantities": [],
+        "seed": seed,
+        "version": _core.version(),
+        "warnings": [],
+        "complete": True,
+    }
+
+
+@checked(OPTIONS["sweep"])
+def sweep(
+    study: AnyDesign,
+    parameters: Mapping[str, Values] | None = None,
+    *,
+    quantities: Any = ("rre",),
+    of: Callable[[Design], Any] = rre,
+    combine: str = "grid",
+    samples: int | None = None,
+    analysis: Mapping[str, Any] | None = None,
+    machining: Mapping[str, Any] | None = None,
+    changes: Mapping[str, object] | None = None,
+    store: PathLike | None = None,
+    resume: bool = False,
+    overwrite: bool = False,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> SweepResult:
+    """Designs over ranges, as `retrace sweep`: of a study file, or of a design and what is varied.
+
+        sweep("study.toml", store="s.sqlite", resume=True)
+        sweep(design, {"element.base_mm": [0.5, 1, 2]}, quantities=["rre", "machining_time_h"])
+        sweep(design, {"element.base_mm": [0.5, 1, 2]}, quantities={"worst": lambda r: r.rre.min()},
+              of=lambda d: rre(d, incidence_deg=[0, 10, 20]))
+
+    quantities: kinds of [[quantity]] of a study file, such tables, or functions of a result. of:
+    what makes the result
+    that functions get [rre at normal incidence]. combine: grid, zip, sobol, latin_hypercube or
+    monte_carlo, as [sweep]
+    of a study file; samples: of the last three. analysis, machining: these tables of a study file.
+    changes: values of
+    keys of designs and of these tables, of a study file. store: SQLite file that keeps finished
+    points."""
+    count = thread_count(threads)
+    if _from_file(study, parameters):
+        request = _request(overrides_of(changes or {}), seed, store, resume, overwrite)
+        read = _core.Study.load(path("study", study))
+        with teller(progress, "sweeping") as tell:
+            return SweepResult(_core.sweep(read, request, tell, count))
+    design = design_of(study)
+    if changes is not None:
+        raise InputError("are for study files; a design has replace()", key="changes")
+    tables, functions = _split(quantities)
+    if functions and store is not None:
+        raise InputError("keeps quantities of retrace, not functions", key="store")
+    if not callable(of):
+        raise refuse("of", "a function of a design", of)
+    assert parameters is not None
+    result: SweepResult
+    if tables:
+        how: dict[str, Any] = {"combine": word("combine", combine)}
+        if samples is not None:
+            how["samples"] = whole("samples", samples, 1)
+        settings = _settings(sweep=how, analysis=analysis, machining=machining)
+        read, given = _study_of(design, parameters, tables, settings)
+        request = _request(given, seed, store, resume, overwrite)
+        with teller(None if functions else progress, "sweeping") as tell:
+            result = SweepResult(_core.sweep(read, request, tell, count))
+        if not functions:
+            return result
+        document = result.document
+    else:
+        points = [
+            {"point": k, "status": "done", **point} for k, point in enumerate(_grid(parameters))
+        ]
+        document = {**_swept(parameters, whole("seed", seed, 0, _MOST_SEED)), "points": points}
+    taken = {*document["parameters"], *document["quantities"]}
+    for name in functions:
+        if name in taken:
+            raise InputError(f"{name} is taken: give the function another name", key="quantities")
+    with teller(progress, "sweeping") as tell:
+        _with_functions(design, document["points"], document["parameters"], functions, of, tell)
+    document["quantities"] += list(functions)
+    document["points_in_all"] = len(document["points"])
+    document["failed"] = sum(point["status"] != "done" for point in document["points"])
+    table = Columns(document["points"])
+    return SweepResult(
+        json=json.dumps(document, indent=2) + "\n",
+        table=_text_table(table),
+        warnings=document["warnings"],
+    )
+
+
+def _text_table(columns: Columns) -> str:
+    """For people."""
+    names = [name for name in columns if name not in ("point", "status")]
+    rows = [names] + [
+        [
+            f"{row[name]:.6g}" if isinstance(row.get(name), float) else str(row.get(name, ""))
+            for name in names
+        ]
+        for row in columns.rows
+    ]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(names))]
+    return "".join(
+        "  ".join(cell.rjust(width) for cell, width in zip(row, widths)) + "\n" for row in rows
+    )
+
+
+@checked(OPTIONS["tolerance"])
+def tolerance(
+    study: AnyDesign,
+    parameters: Mapping[str, Values] | None = None,
+    *,
+    quantities: Any = ("rre",),
+    constraints: Mapping[str, tuple[float | None, float | None]] | None = None,
+    tolerance: Mapping[str, Any] | None = None,
+    analysis: Mapping[str, Any] | None = None,
+    machining: Mapping[str, Any] | None = None,
+    changes: Mapping[str, object] | None = None,
+    store: PathLike | None = None,
+    resume: bool = False,
+    overwrite: bool = False,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> ToleranceResult:
+    """What becomes of a design in manufacture, as `retrace tolerance`: of a study file, or of a
+    design and how its keys
+    are spread.
+
+        tolerance(design, {"surface.dihedral_error_arcmin": {"distribution": "normal", "mean": 0,
+        "sigma": 3}},
+                  constraints={"rre": (0.96, None)})
+
+    constraints: least and most of quantities that a good part has. tolerance, analysis, machining:
+    these tables of a
+    study file. Else as sweep()."""
+    count = thread_count(threads)
+    if _from_file(study, parameters):
+        read, given = _core.Study.load(path("study", study)), overrides_of(changes or {})
+    else:
+        tables, functions = _split(quantities)
+        if functions:
+            raise InputError(
+                "must be quantities of retrace; functions are for sweep() and optimize()",
+                key="quantities",
+            )
+        settings = _settings(tolerance=tolerance, analysis=analysis, machining=machining)
+        read, given = _study_of(
+            design_of(study),
+            parameters,
+            tables,
+            {**settings, "constraint": _constraints(constraints or {})},
+        )
+    request = _request(given, seed, store, resume, overwrite)
+    with teller(progress, "making parts") as tell:
+        return ToleranceResult(_core.tolerance(read, request, tell, count))
+
+
+class FoundOptimum:
+    """The best design by a function of a result."""
+
+    def __init__(
+        self,
+        design: Design,
+        values: dict[str, float],
+        objective: float,
+        points: Columns,
+        method: str,
+    ) -> None:
+        self.design = design  #: the best
+        self.values = values  #: of the parameters
+        self.objective = objective
+        self.points = points  #: every design that was looked at
+        self.method = method
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{key} {value:.6g}" for key, value in self.values.items())
+        looked = len(self.points.rows)
+        return f"<FoundOptimum: {self.objective:.6g} at {values}, {looked} designs looked at>"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.points.rows)
+
+
+def _compass(
+    function: Callable[[list[float]], float], start: list[float], step: float, evaluations: int
+) -> None:
+    """Looks for the least value in the unit cube along its axes, the step halved where no side is
+    better (Kolda, Lewis
+    and Torczon 2003)."""
+    best, at = function(start), start
+    left = evaluations - 1
+    while step > 1e-4 and left > 0:
+        moved = False
+        for axis, side in itertools.product(range(len(at)), (1, -1)):
+            there = [*at]
+            there[axis] = min(1.0, max(0.0, at[axis] + side * step))
+            if there == at or left <= 0:
+                continue
+            left -= 1
+            value = function(there)
+            if value < best:
+                best, at, moved = value, there, True
+        if not moved:
+            step /= 2
+
+
+def _first_look(dimensions: int, scan: int) -> Iterator[list[float]]:
+    """Middles of equal parts of the unit cube, about `scan` of them."""
+    side = max(2, round(scan ** (1 / dimensions)))
+    for point in itertools.product(range(side), repeat=dimensions):
+        yield [(k + 0.5) / side for k in point]
+
+
+def _search(
+    design: Design,
+    parameters: Mapping[str, Values],
+    objective: Callable[[Any], Any],
+    of: Callable[[Design], Any],
+    minimize: bool,
+    scan: int,
+    evaluations: int,
+    tell: Any,
+) -> FoundOptimum:
+    ends: dict[str, tuple[float, float]] = {}
+    for key, interval in parameters.items():
+        low_high = number_list("parameters", interval)
+        if len(low_high) != 2 or not low_high[0] < low_high[1]:
+            raise InputError(
+                f"{key}: must be a pair (least, most), got {shown(interval)}", key="parameters"
+            )
+        ends[key] = (low_high[0], low_high[1])
+    rows: list[dict[str, Any]] = []
+
+    def loss(shares: Sequence[float]) -> float:
+        values = {
+            key: low + min(1.0, max(0.0, float(share))) * (high - low)
+            for share, (key, (low, high)) in zip(shares, ends.items())
+        }
+        row: dict[str, Any] = dict(values)
+        rows.append(row)
+        if tell is not None:
+            tell(min(0.999, len(rows) / evaluations))
+        try:
+            value = _value("objective", objective(of(design.replace(values))))
+        except InputError as error:
+            if error.key == "objective":
+                raise
+            row["reason"] = str(error)
+            return math.inf
+        row["objective"] = value
+        return math.inf if math.isnan(value) else value if minimize else -value
+
+    looked = [(loss(shares), shares) for shares in _first_look(len(ends), scan)]
+    start = min(looked, key=lambda one: one[0])[1]
+    step = 0.5 / max(2, round(scan ** (1 / len(ends))))
+    left = max(1, evaluations - len(rows))
+    try:
+        of_scipy = importlib.import_module("scipy.optimize").minimize
+    except ImportError:
+        method = "compass search"
+        _compass(loss, start, step, left)
+    else:
+        method = "Nelder-Mead (scipy)"
+        simplex = [start] + [
+            [
+                share + (step if share < 0.5 else -step) * (k == axis)
+                for k, share in enumerate(start)
+            ]
+            for axis in range(len(start))
+        ]
+        of_scipy(
+            loss,
+            start,
+            method=method.split()[0],
+            bounds=[(0.0, 1.0)] * len(start),
+            options={"maxfev": left, "initial_simplex": simplex, "xatol": 1e-4, "fatol": 1e-9},
+        )
+    good = [row for row in rows if math.isfinite(row.get("objective", math.nan))]
+    if not good:
+        raise InputError(
+            f"no design could be computed, the first of {len(rows)}: "
+            f"{rows[0].get('reason', 'no number')}",
+            key="parameters",
+        )
+    sign = 1.0 if minimize else -1.0
+    best = min(good, key=lambda row: sign * float(row["objective"]))
+    values = {key: best[key] for key in ends}
+    return FoundOptimum(design.replace(values), values, best["objective"], Columns(rows), method)
+
+
+@checked(OPTIONS["optimize"])
+def optimize(
+    study: AnyDesign,
+    parameters: Mapping[str, Values] | None = None,
+    *,
+    objective: Any = "rre",
+    minimize: bool = False,
+    of: Callable[[Design], Any] = rre,
+    quantities: Any = (),
+    constraints: Mapping[str, tuple[float | None, float | None]] | None = None,
+    optimize: Mapping[str, Any] | None = None,
+    analysis: Mapping[str, Any] | None = None,
+    machining: Mapping[str, Any] | None = None,
+    changes: Mapping[str, object] | None = None,
+    scan: int = 17,
+    evaluations: int = 200,
+    store: PathLike | None = None,
+    resume: bool = False,
+    overwrite: bool = False,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Union[Optimum, FoundOptimum]:
+    """The best design within constraints, as `retrace optimize`: of a study file, or of a design
+    and what is varied.
+
+        optimize("study.toml")
+        optimize(design, {"element.base_mm": {"from": 0.1, "to": 5}},
+        constraints={"machining_time_h": (None, 10)})
+        optimize(design, {"element.base_mm": (0.1, 5)}, objective=lambda r: r.rre.min(),
+                 of=lambda d: rre(d, incidence_deg=[0, 10, 20]))
+
+    objective: a quantity of retrace, or a function of a result: then parameters are pairs (least,
+    most) and scipy looks
+    (Nelder-Mead; without scipy a compass search), from the best of `scan` designs on, at
+    `evaluations` of them at most.
+    of: what makes the result that it gets. quantities: what else is computed. optimize, analysis,
+    machining: these
+    tables of a study file. Else as sweep() and tolerance()."""
+    count = thread_count(threads)
+    flag("minimize", minimize)
+    if _from_file(study, parameters):
+        read, given = _core.Study.load(path("study", study)), overrides_of(changes or {})
+        request = _request(given, seed, store, resume, overwrite)
+        with teller(progress, "looking") as tell:
+            return Optimum(_core.optimize(read, request, tell, count))
+    design = design_of(study)
+    if not isinstance(parameters, Mapping) or not parameters:
+        raise refuse("parameters", 'a dict such as {"element.base_mm": (0.1, 5)}', parameters)
+    if callable(objective):
+        if not callable(of):
+            raise refuse("of", "a function of a design", of)
+        overrides_of({key: 0 for key in parameters})
+        with teller(progress, "looking") as tell:
+            return _search(
+                design,
+                parameters,
+                objective,
+                of,
+                minimize,
+                whole("scan", scan, 2, 10000),
+                whole("evaluations", evaluations, 1),
+                tell,
+            )
+    limits = _constraints(constraints or {})
+    wanted = [word("objective", objective), *(limit["quantity"] for limit in limits)]
+    tables = _split(quantities)[0] if quantities else []
+    named = {table.get("name", table.get("kind")) for table in tables}
+    tables += [{"kind": kind} for kind in dict.fromkeys(wanted) if kind not in named]
+    settings = _settings(
+        optimize={("minimize" if minimize else "maximize"): objective, **(optimize or {})},
+        analysis=analysis,
+        machining=machining,
+    )
+    ranges = {
+        key: {"from": float(values[0]), "to": float(values[1])}
+        if isinstance(values, tuple) and len(values) == 2
+        else values
+        for key, values in parameters.items()
+    }
+    read, given = _study_of(design, ranges, tables, {**settings, "constraint": limits})
+    request = _request(given, seed, store, resume, overwrite)
+    with teller(progress, "looking") as tell:
+        return Optimum(_core.optimize(read, request, tell, count), design)

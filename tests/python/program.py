@@ -1,0 +1,63 @@
+"""The program and its examples, for tests that hold the package to them."""
+
+import os
+import pathlib
+import re
+import subprocess
+
+import retrace as rt
+
+PROGRAM = os.environ["RETRACE_PROGRAM"]
+SOURCE = pathlib.Path(os.environ["RETRACE_SOURCE_DIR"])
+EXAMPLES = SOURCE / "examples"
+
+
+def example(name):
+    return str(EXAMPLES / name)
+
+
+def files_of(schema, folder=""):
+    """Every file below examples/ with that schema."""
+    found = [
+        file
+        for file in sorted((EXAMPLES / folder).rglob("*.toml"))
+        if re.search(rf'^schema = "{schema}"', file.read_text(), re.MULTILINE)
+    ]
+    assert found, schema
+    return [str(file) for file in found]
+
+
+def designs():
+    """Every design below examples/."""
+    return files_of("retrace.design/1")
+
+
+def same(text):
+    """A document without what differs from run to run."""
+    return re.sub(r'"elapsed_s": [-+.e0-9]+', '"elapsed_s": 0', text)
+
+
+def run(*arguments, folder=None):
+    """What the program returns, prints, and says is wrong."""
+    ended = subprocess.run(
+        [PROGRAM, *map(str, arguments), "--quiet"], capture_output=True, cwd=folder, timeout=600
+    )
+    return ended.returncode, ended.stdout.decode(), ended.stderr.decode()
+
+
+def document(*arguments, folder=None):
+    """The document of a command, or None and the error that the package is to raise."""
+    code, out, err = run(*arguments, "--json", "-", folder=folder)
+    if code in (0, 1) and out:
+        return same(out), ""
+    # Options are keywords there.
+    text = err.strip().removeprefix("retrace: ")
+    return None, rt.InputError(text).message if code == 2 else text
+
+
+def answer(call, *arguments, **keywords):
+    """The same of a call of the package."""
+    try:
+        return same(call(*arguments, **keywords).json), ""
+    except rt.Error as error:
+        return None, str(error)

@@ -1,0 +1,69 @@
+"""The notebooks of examples/, executed as a reader would."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import program
+
+NOTEBOOKS = sorted((program.EXAMPLES / "notebooks").glob("*.ipynb"))
+
+
+class Notebooks(unittest.TestCase):
+    def test_they_are_kept_without_outputs(self):
+        self.assertEqual(len(NOTEBOOKS), 4)
+        for notebook in NOTEBOOKS:
+            cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+            with self.subTest(notebook=notebook.name):
+                self.assertFalse(
+                    [cell for cell in cells if cell.get("outputs") or cell.get("execution_count")]
+                )
+
+    def test_they_run(self):
+        for notebook in NOTEBOOKS:
+            with self.subTest(notebook=notebook.name), tempfile.TemporaryDirectory() as folder:
+                # What a kernel keeps goes there too.
+                environment = {
+                    **os.environ,
+                    "HOME": folder,
+                    "JUPYTER_RUNTIME_DIR": folder,
+                    "IPYTHONDIR": folder,
+                    "PYDEVD_DISABLE_FILE_VALIDATION": "1",
+                }
+                ended = subprocess.run(
+                    [
+                        sys.executable,
+                        "-m",
+                        "nbconvert",
+                        "--to",
+                        "notebook",
+                        "--execute",
+                        "--output-dir",
+                        folder,
+                        "--ExecutePreprocessor.timeout=300",
+                        str(notebook),
+                    ],
+                    capture_output=True,
+                    text=True,
+                    env=environment,
+                    cwd=notebook.parent,
+                    timeout=600,
+                )
+                self.assertEqual(ended.returncode, 0, ended.stderr[-3000:])
+                with open(os.path.join(folder, notebook.name), encoding="utf-8") as stream:
+                    cells = json.load(stream)["cells"]
+                drawn = [
+                    output
+                    for cell in cells
+                    for output in cell.get("outputs", ())
+                    if "image/svg+xml" in output.get("data", ())
+                    or "text/html" in output.get("data", ())
+                ]
+                self.assertGreaterEqual(len(drawn), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,221 @@
+"""What results are in Python: arrays, tables, drawings, one line; designs and solids."""
+
+import json
+import os
+import pickle
+import tempfile
+import unittest
+
+import numpy as np
+
+import program
+import retrace as rt
+
+PRISM = program.example("rtp_single_0p45mm.toml")
+
+
+class Results(unittest.TestCase):
+    def setUp(self):
+        self.result = rt.rre(
+            PRISM,
+            incidence_deg=np.arange(-10, 11, 10),
+            azimuth_deg=[0, 30],
+            engine="montecarlo",
+            samples=64,
+        )
+
+    def test_arrays_are_read_only_float64(self):
+        for array in (self.result.rre, self.result.std_error, self.result.ledger["absorbed"]):
+            self.assertEqual(array.dtype, np.float64)
+            self.assertEqual(array.shape, (6,))
+            with self.assertRaises(ValueError):
+                array[0] = 1
+
+    def test_keys_that_are_left_out_are_nan(self):
+        exact = rt.rre(program.example("honeycomb_infinite.toml"), incidence_deg=[0, 10])
+        depths = [point.get("depth") for point in json.loads(exact.json)["points"]]
+        self.assertIn(None, depths)
+        np.testing.assert_array_equal(
+            exact.depth, [np.nan if depth is None else depth for depth in depths]
+        )
+
+    def test_unknown_names_say_the_nearest(self):
+        with self.assertRaisesRegex(AttributeError, "did you mean std_error"):
+            self.result.std_eror
+        with self.assertRaisesRegex(KeyError, "did you mean transmitted"):
+            self.result.ledger["transmited"]
+
+    def test_one_line(self):
+        line = repr(self.result)
+        self.assertNotIn("\n", line)
+        self.assertRegex(line, r"^<RreResult: title Single RTP.*rre .* to .*>$")
+
+    def test_they_show_themselves(self):
+        self.assertTrue(self.result._repr_svg_().startswith("<?xml"))
+        self.assertIn("<path", self.result._repr_svg_())
+        self.assertIn("footprint", dir(self.result))
+        verdicts = rt.photometry(
+            program.example("rtp_brick_2mm.toml"),
+            standard="r150",
+            class_="IA",
+            colour="red",
+            area_cm2=30,
+            engine="montecarlo",
+            samples=64,
+            advice=False,
+        )
+        self.assertIn("background:#", verdicts._repr_html_())
+        self.assertIn(verdicts.verdict, repr(verdicts))
+
+    def test_drawings_are_saved(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, begin in (("curve.svg", b"<?xml"), ("curve.png", b"\x89PNG")):
+                file = os.path.join(folder, name)
+                self.result.drawings["rre"].save(file)
+                with open(file, "rb") as stream:
+                    self.assertTrue(stream.read().startswith(begin))
+        with self.assertRaises(rt.OutputError):
+            self.result.save("no/such/folder/rre.json")
+
+    def test_pandas(self):
+        frame = self.result.to_pandas()
+        self.assertEqual(len(frame), 6)
+        self.assertEqual(frame["rre"].tolist(), self.result.rre.tolist())
+        self.assertEqual(frame["ledger_lost"].tolist(), self.result.ledger["lost"].tolist())
+        self.assertEqual(frame.attrs["seed"], 1)
+        self.assertEqual(frame.attrs["version"], rt.__version__)
+
+    def test_xarray(self):
+        dataset = self.result.to_xarray()
+        self.assertEqual(
+            dataset.rre.dims,
+            ("design", "azimuth_deg", "incidence_deg", "acceptance_half_angle_deg"),
+        )
+        self.assertEqual(dataset.incidence_deg.attrs["units"], "degree")
+        self.assertEqual(dataset.attrs["version"], rt.__version__)
+        points = self.result.points
+        for k, rre in enumerate(points.rre):
+            at = dataset.rre.sel(
+                azimuth_deg=points.azimuth_deg[k], incidence_deg=points.incidence_deg[k]
+            )
+            self.assertEqual(at.item(), rre)
+
+    def test_pickle(self):
+        copy = pickle.loads(pickle.dumps(self.result))
+        self.assertEqual(copy, self.result)
+        self.assertEqual(copy.rre.tolist(), self.result.rre.tolist())
+        self.assertIsNone(copy._repr_svg_())
+        self.assertIn("incidence", copy._repr_html_())
+        self.result._repr_svg_()  # what was made goes with it
+        self.assertEqual(
+            pickle.loads(pickle.dumps(self.result))._repr_svg_(), self.result._repr_svg_()
+        )
+        error = pickle.loads(pickle.dumps(rt.InputError("text", "file", 3, "key")))
+        self.assertEqual(
+            (error.file, error.line, error.key, error.message), ("file", 3, "key", "text")
+        )
+
+    def test_footprint(self):
+        found = rt.footprint(program.example("honeycomb_infinite.toml"), incidence_deg=10)
+        self.assertEqual(found.geojson["type"], "FeatureCollection")
+        self.assertEqual(len(found.polygons), len(found.efficiency))
+        self.assertEqual(found.polygons[0].shape[1], 2)
+        area = sum(
+            abs(np.dot(p[:-1, 0], p[1:, 1]) - np.dot(p[1:, 0], p[:-1, 1])) / 2 * share
+            for p, share in zip(found.polygons, found.efficiency)
+        )
+        self.assertGreater(area, 0)
+        self.assertIn("<svg", found._repr_svg_())
+        self.assertEqual(len(found.to_pandas()), found.regions)
+
+
+class Designs(unittest.TestCase):
+    def test_of_keywords(self):
+        design = rt.Design(
+            title="mine",
+            element={"kind": "rtp", "base_mm": np.float64(2), "width_mm": 2},
+            array={"arrangement": "single"},
+            body={"thickness_mm": 1},
+        )
+        self.assertEqual(design.title, "mine")
+        self.assertEqual(design["element.base_mm"], 2)
+        self.assertEqual(rt.Design.parse(design.text)["body.thickness_mm"], 1)
+        same = rt.Design.from_dict(
+            {
+                "title": "mine",
+                "element": {"kind": "rtp", "base_mm": 2.0, "width_mm": 2},
+                "array": {"arrangement": "single"},
+                "body": {"thickness_mm": 1},
+            }
+        )
+        self.assertEqual(same, design)
+        self.assertEqual(hash(same), hash(design))
+        self.assertNotEqual(design.replace({"title": "yours"}), design)
+
+    def test_every_example_of_its_keys(self):
+        """A design as results quote it, without what is filled in, is that design."""
+        import tomllib
+
+        for file in program.designs():
+            with self.subTest(file=file), open(file, "rb") as stream:
+                tables = tomllib.load(stream)
+                folder = os.getcwd()
+                os.chdir(os.path.dirname(file))
+                try:
+                    again = rt.Design.from_dict(tables)
+                finally:
+                    os.chdir(folder)
+                expected = rt.Design.load(file).document
+                self.assertEqual({**again.document, "source": ""}, {**expected, "source": ""})
+
+    def test_pickle(self):
+        design = rt.Design.load(PRISM).replace({"element.base_mm": 0.6})
+        copy = pickle.loads(pickle.dumps(design))
+        self.assertEqual(copy, design)
+        self.assertEqual(copy.json, design.json)
+
+    def test_it_shows_itself(self):
+        self.assertEqual(repr(rt.Design.load(PRISM)), "<Design 'Single RTP, 0.45 mm': rtp single>")
+        self.assertIn("<svg", rt.Design.load(PRISM)._repr_svg_())
+        self.assertIsNone(rt.Design.load(program.example("beads_n193.toml"))._repr_svg_())
+
+    def test_inspect(self):
+        found = rt.inspect(program.example("rtp_brick_5mm.toml"))
+        self.assertEqual(found.elements_full, 3)
+        self.assertIn("<svg", found.drawings["plan"].svg)
+        self.assertTrue(found.drawings["view"].png.startswith(b"\x89PNG"))
+
+    def test_mesh(self):
+        vertices, faces, labels = made = rt.mesh(program.example("rtp_brick_5mm.toml"))
+        corners = vertices[faces]
+        volume = (
+            np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
+        )
+        self.assertAlmostEqual(volume, made.volume_mm3, 9)
+        self.assertEqual(len(labels), len(faces))
+        self.assertTrue(np.all(vertices[faces[labels == rt.FaceKind.ENTRANCE]][..., 2] == 2))
+        for array in made:
+            self.assertFalse(array.flags.writeable)
+            self.assertFalse(array.flags.owndata)  # no copy
+        del made
+        self.assertGreater(vertices.max(), 0)  # still there
+
+    def test_as_machined(self):
+        job = rt.job(program.example("rtp_brick_5mm.toml"), tool_width_mm=1)
+        left = rt.verify(job, rt.fabricate(job)).as_machined
+        self.assertIn("as machined", left.title)
+        self.assertGreater(rt.rre(left, engine="montecarlo", samples=64).rre.max(), 0)
+
+    def test_packages_that_are_not_there_are_named(self):
+        import sys
+
+        sys.modules["trimesh"] = None
+        try:
+            with self.assertRaisesRegex(ImportError, "python3-trimesh"):
+                rt.mesh(program.example("rtp_brick_5mm.toml")).to_trimesh()
+        finally:
+            del sys.modules["trimesh"]
+
+
+if __name__ == "__main__":
+    unittest.main()
