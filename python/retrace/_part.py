@@ -99,7 +99,7 @@ def mesh(design: AnyDesign, *, what: str = "array", block_mm: float | None = Non
 def export(
     design: AnyDesign, file: PathLike, *, what: str = "array", block_mm: float | None = None
 ) -> ExportResult:
-    """Writes a design's solid as STL, OBJ or STEP, by the ending of the file's name, as `retrace
+    """Writes a design's solid as STL, OBJ, glTF or STEP, by the ending of the file's name, as `retrace
     export`."""
     return ExportResult(
         _core.export_solid(
