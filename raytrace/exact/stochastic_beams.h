@@ -15,13 +15,14 @@
 
 namespace retrace::raytrace {
 
+class BeamGeneration;
+
 /// One direction of a BeamTracer, traced round by round at falling thresholds until the standard error of RRE is below
 /// a target.
 ///
 /// Beams of a power above the threshold w are followed as BeamTrace follows them. A generation of weaker ones, with the
 /// power P together, is resampled: of it n = ceil(P / (kThinning w)) survive with P / n each, chosen by systematic
-/// resampling, which is unbiased and keeps the power, after they were sorted by direction and place, as alike beams
-/// have alike ends (Array-RQMC: L'Ecuyer, Lecot and Tuffin, Operations Research 56, 958, 2008). Replicates, each with
+/// resampling, which is unbiased and keeps the power (BeamGeneration). Replicates, each with
 /// random numbers of its own, give the standard error. It is never told to be less than what a survivor brings over
 /// their number: so much may be in beams that none of them has seen (docs/theory/beams.md).
 ///
@@ -58,11 +59,9 @@ class StochasticBeams {
   double threshold() const { return threshold_; }
 
  private:
-  struct Queue;
   struct Replicate;
 
-  std::optional<Replicate> replicate(std::uint32_t number, const Queue& first) const;
-  Queue queue_of(const std::vector<Beam>& beams) const;
+  std::optional<Replicate> replicate(std::uint32_t number, const BeamGeneration& first) const;
   double next_threshold() const;
   double next_ray_power() const;
 

@@ -1,0 +1,125 @@
+#include "raytrace/exact/beam_generation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/random.h"
+#include "raytrace/exact/beam_walk.h"
+
+namespace retrace::raytrace {
+namespace {
+
+/// Philox stream of the offsets of systematic resampling.
+constexpr std::uint32_t kResamplingStream = 7;
+// Directions whose components differ by less are sorted as one.
+constexpr double kOneDirection = 1e-7;
+// Power that is no longer followed.
+constexpr double kLeastPower = 1e-14;
+
+/// Bits of a and b in turn: neighbours in the plane are mostly neighbours in this order.
+std::uint64_t interleaved(std::uint32_t a, std::uint32_t b) {
+  const auto spread = [](std::uint64_t x) {
+    x = (x | (x << 16)) & 0x0000ffff0000ffffU;
+    x = (x | (x << 8)) & 0x00ff00ff00ff00ffU;
+    x = (x | (x << 4)) & 0x0f0f0f0f0f0f0f0fU;
+    x = (x | (x << 2)) & 0x3333333333333333U;
+    return (x | (x << 1)) & 0x5555555555555555U;
+  };
+  return spread(a) | (spread(b) << 1);
+}
+
+/// What beams are sorted by: where they go, then where in the period or outline they start.
+struct SortKey {
+  std::tuple<bool, std::int64_t, std::int64_t, std::int64_t, std::uint64_t> state;
+  std::size_t beam = 0;
+
+  bool operator<(const SortKey& other) const { return std::tie(state, beam) < std::tie(other.state, other.beam); }
+};
+
+/// Over the size of a period or outline.
+Vec2 scale_of(const geometry::Part& part) {
+  if (part.period_mm) return part.period_mm->cwiseInverse();
+  const geometry::Rectangle box = geometry::bounding_box(part.outline);
+  return (box.upper - box.lower).cwiseInverse();
+}
+
+SortKey key_of(const Beam& beam, std::size_t number, const Vec2& scale) {
+  const auto rounded = [](double x) { return static_cast<std::int64_t>(std::llround(x / kOneDirection)); };
+  const auto place = [](double x) { return static_cast<std::uint32_t>((x - std::floor(x)) * 65535.0); };
+  Vec2 at = Vec2::Zero();
+  for (const Vec3& p : beam.corners) at += p.head<2>();
+  at = (at / static_cast<double>(beam.corners.size())).cwiseProduct(scale);
+  return {{beam.inside, rounded(beam.direction.x()), rounded(beam.direction.y()), rounded(beam.direction.z()),
+           interleaved(place(at.x()), place(at.y()))},
+          number};
+}
+
+}  // namespace
+
+BeamGeneration::BeamGeneration(const geometry::Part& part, const std::vector<Beam>& beams) : beams_(beams) {
+  const Vec2 scale = scale_of(part);
+  std::vector<SortKey> keys;
+  keys.reserve(beams.size());
+  for (std::size_t k = 0; k < beams.size(); ++k) keys.push_back(key_of(beams[k], k, scale));
+  std::sort(keys.begin(), keys.end());
+  places_.reserve(beams.size());
+  for (const SortKey& key : keys) {
+    places_.push_back({key.beam, beams[key.beam].power});
+    power_ += beams[key.beam].power;
+  }
+}
+
+bool BeamGeneration::counts() const {
+  return power_ > kLeastPower;
+}
+
+double BeamGeneration::survivor_count(double most_power) const {
+  return std::ceil(power_ / most_power);
+}
+
+std::vector<Beam> BeamGeneration::survivors(double most_power, double offset) const {
+  std::vector<Beam> chosen;
+  if (!counts()) return chosen;
+  const double count = survivor_count(most_power);
+  const double each = power_ / count;
+  chosen.reserve(static_cast<std::size_t>(std::min(count, static_cast<double>(places_.size()))));
+  double passed = 0.0;
+  double taken = 0.0;
+  for (const Place& place : places_) {
+    passed += place.power / each;
+    const double until = &place == &places_.back() ? count : std::floor(passed + offset);
+    if (until <= taken) continue;
+    chosen.push_back(beams_[place.beam]);
+    chosen.back().share *= (until - taken) * each / place.power;
+    chosen.back().power = (until - taken) * each;
+    taken = until;
+  }
+  return chosen;
+}
+
+double Resampling::offset(std::uint32_t generation) const {
+  return unit_interval(philox({seed, kResamplingStream}, replicate, generation, round)[0]);
+}
+
+bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGeneration& first, const Resampling& how,
+                      const Cancellation* cancel, const std::function<void()>& after_each) {
+  std::vector<Beam> survivors = first.survivors(how.most_power, how.offset(0));
+  double left = first.power();
+  for (std::uint32_t generation = 1; !survivors.empty(); ++generation) {
+    std::vector<Beam> next;
+    for (const Beam& beam : survivors) {
+      if (is_cancelled(cancel)) return false;
+      walk.step(beam, cancel, next);
+    }
+    if (after_each) after_each();
+    const BeamGeneration parts(part, next);
+    left = parts.power();
+    survivors = parts.survivors(how.most_power, how.offset(generation));
+  }
+  if (is_cancelled(cancel)) return false;
+  walk.book_truncated(left);
+  return true;
+}
+
+}  // namespace retrace::raytrace

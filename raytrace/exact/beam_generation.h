@@ -1,0 +1,63 @@
+#pragma once
+
+// Beams too weak to be followed one by one: resampled generation by generation, in independent replicates.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/progress.h"
+#include "geometry/part/part.h"
+#include "raytrace/exact/beam.h"
+
+namespace retrace::raytrace {
+
+class BeamWalk;
+
+/// Beams that are as many interfaces away from where they were first too weak, in the order in which survivors are
+/// chosen: sorted by direction and place, as alike beams have alike ends (Array-RQMC: L'Ecuyer, Lecot and Tuffin,
+/// Operations Research 56, 958, 2008).
+class BeamGeneration {
+ public:
+  /// \param part whose periods or outline places are compared by \param beams outlive this
+  BeamGeneration(const geometry::Part& part, const std::vector<Beam>& beams);
+
+  double power() const { return power_; }
+  std::size_t size() const { return places_.size(); }
+  /// Whether there is enough of it to be followed.
+  bool counts() const;
+  /// How many survive if each may stand for so much.
+  double survivor_count(double most_power) const;
+  /// Chosen by systematic resampling: each stands for `most_power` or less, and all together for what the generation
+  /// has. None if it does not count.
+  /// \param offset in [0, 1): where the first of equally spaced marks falls
+  std::vector<Beam> survivors(double most_power, double offset) const;
+
+ private:
+  struct Place {
+    std::size_t beam;
+    double power;
+  };
+  const std::vector<Beam>& beams_;
+  std::vector<Place> places_;
+  double power_ = 0.0;
+};
+
+/// What one replicate keeps of weak beams.
+struct Resampling {
+  double most_power = 0.0;  ///< that a survivor stands for
+  std::uint32_t seed = 1;
+  std::uint32_t replicate = 0;
+  std::uint32_t round = 0;  ///< of as many first generations as share seed and replicate
+
+  /// A random number of its own for each generation.
+  double offset(std::uint32_t generation) const;
+};
+
+/// Follows the survivors of a generation, those of the parts that they fall into, and so on, until nothing is left that
+/// counts; that is booked as `truncated`. \param after_each is called after each generation \return false if it was
+/// cancelled
+bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGeneration& first, const Resampling& how,
+                      const Cancellation* cancel, const std::function<void()>& after_each = {});
+
+}  // namespace retrace::raytrace
