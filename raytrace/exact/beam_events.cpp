@@ -186,6 +186,7 @@ ReturnedBeam BeamWalk::returned_beam(const Beam& beam, CoherentLight light, cons
   returned.transmission = transmission_of(beam);
   // Continuous on the face, and counted in its plane.
   returned.phase_mm = beam.phase_mm + setup_.optics.index * beam.direction.z() * setup_.thickness_mm;
+  returned.replicate = replicate_;
   returned.centre_mm = centre_mm_;
   returned.trail = beam.trail;
   returned.hits = beam.hits;

@@ -4,8 +4,10 @@
 #include <limits>
 #include <utility>
 
+#include "raytrace/exact/beam_generation.h"
 #include "raytrace/exact/beam_walk.h"
 #include "raytrace/sampling/entrance_sampler.h"
+#include "raytrace/sampling/replicates.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -16,6 +18,8 @@ constexpr double kFirstCutoff = 1e-6;
 constexpr double kHighestFirstCutoff = 1e-3;
 // Power left behind falls at least about as the cut-off to this power.
 constexpr double kSlowestFall = 0.7;
+// Weak beams that wait to be resampled: some 30 MB.
+constexpr std::size_t kMostWaiting = 50'000;
 
 }  // namespace
 
@@ -30,6 +34,7 @@ BeamTracer::BeamTracer(const geometry::Part& part)
 BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illumination,
                              const std::vector<double>& cones_deg, const BeamPolicy& policy, const Cancellation* cancel,
                              const BeamObserver& observer) const {
+  if (policy.weak) return trace_with_weak(optics, illumination, cones_deg, policy, cancel, observer);
   const auto traced = [&](const BeamPolicy& how, const BeamObserver& told) {
     BeamTrace trace(*this, optics, illumination, cones_deg, how, told);
     trace.advance(std::numeric_limits<std::uint64_t>::max(), cancel);
@@ -40,6 +45,65 @@ BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illuminat
   const BeamResult first = traced(policy, {});
   found.cutoff = first.cutoff;
   return first.complete ? traced(found, observer) : first;
+}
+
+namespace {
+
+/// Beams that were followed exactly, and the replicates of weak ones. \param unseen power that may be in beams that no
+/// replicate has seen
+BeamResult with_replicates(const BeamWalk& strong, const std::vector<BeamWalk>& replicates,
+                           const std::vector<double>& cones_deg, double unseen) {
+  BeamResult result = strong.result();
+  std::vector<Tally> sums;
+  for (const BeamWalk& walk : replicates) {
+    sums.push_back(strong.tally());
+    sums.back().add(walk.tally());
+    result.beams += walk.beams();
+    result.depth = std::max(result.depth, walk.depth());
+  }
+  const MonteCarloResult means = result_of(sums, 1, cones_deg);
+  const double widened = student_factor(replicates.size());
+  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone) {
+    result.ledgers[cone] = means.cones[cone].ledger;
+    result.stokes[cone] = means.cones[cone].stokes;
+    result.std_error[cone] = std::max(unseen, widened * means.cones[cone].std_error);
+  }
+  return result;
+}
+
+}  // namespace
+
+BeamResult BeamTracer::trace_with_weak(const Optics& optics, const Illumination& illumination,
+                                       const std::vector<double>& cones_deg, const BeamPolicy& policy,
+                                       const Cancellation* cancel, const BeamObserver& observer) const {
+  const WeakBeams& weak = *policy.weak;
+  const LightSetup setup(part_, centre_mm_, optics, illumination, cones_deg);
+  BeamWalk strong(part_, centre_mm_, cells_, setup, policy, observer);
+  std::vector<BeamWalk> replicates;
+  for (std::uint32_t k = 0; k < weak.replicates; ++k) {
+    replicates.emplace_back(part_, centre_mm_, cells_, setup, policy, observer);
+    replicates.back().serve_replicate(k);
+  }
+  strong.pause_at_kept(kMostWaiting);
+  strong.enter(entrance_outline(part_), *policy.cutoff, BeamWalk::Approach::kept);
+  const double most_power = weak.thinning * *policy.cutoff;
+  double power = 0.0;
+  bool is_done = false;
+  for (std::uint32_t round = 0; !is_done; ++round) {
+    const auto end = strong.run(std::numeric_limits<std::uint64_t>::max(), cancel);
+    is_done = end == BeamWalk::End::done;
+    bool goes_on = is_done || end == BeamWalk::End::paused;
+    const std::vector<Beam> kept = strong.take_kept();
+    const BeamGeneration first(part_, kept);
+    if (first.counts()) power += first.power();
+    for (std::uint32_t k = 0; k < weak.replicates && goes_on; ++k)
+      goes_on = follow_survivors(replicates[k], part_, first, {most_power, weak.seed, k, round}, cancel);
+    if (goes_on) continue;
+    BeamResult none = strong.result();
+    none.complete = false;
+    return none;
+  }
+  return with_replicates(strong, replicates, cones_deg, std::min(most_power, power) / weak.replicates);
 }
 
 BeamTrace::BeamTrace(const BeamTracer& tracer, const Optics& optics, const Illumination& illumination,

@@ -133,6 +133,7 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
       pending_power_ -= beam.power;
       if (beam.power < cutoff_) {
         defer(beam);
+        if (deferred_.size() >= most_kept_) return End::paused;
         continue;
       }
       if (++beams_ > policy_.max_beams) fail_on_budget();
@@ -197,6 +198,7 @@ BeamResult BeamWalk::result() const {
   for (std::size_t cone = 0; cone < setup_.cone_chord2.size(); ++cone) {
     result.ledgers.push_back(tally_.ledger(cone));
     result.stokes.push_back(tally_.retroreflected(cone));
+    result.std_error.push_back(0.0);
   }
   result.beams = beams_;
   result.depth = depth_;
@@ -208,6 +210,11 @@ BeamResult BeamWalk::result() const {
 void BeamWalk::defer(const Beam& beam) {
   deferred_power_ += beam.power;
   if (approach_ == Approach::kept || deferred_.size() <= kMostDeferred) deferred_.push_back(beam);
+}
+
+std::vector<Beam> BeamWalk::take_kept() {
+  deferred_power_ = 0.0;
+  return std::exchange(deferred_, {});
 }
 
 void BeamWalk::step(const Beam& beam, const Cancellation* cancel, std::vector<Beam>& next) {

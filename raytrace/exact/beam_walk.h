@@ -3,6 +3,8 @@
 // One run of the exact engine: which facets a beam meets, which hide others, and what becomes of its pieces.
 
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -64,15 +66,20 @@ class BeamWalk {
   /// it are kept: until lower_cutoff_to()
   void enter(const geometry::Polygon& entrance, double cutoff, Approach approach);
   enum class End { done, paused, cancelled, cutoff_too_high };
-  /// Follows beams above the cut-off until the goal is reached, or as much work is done in all.
+  /// Follows beams above the cut-off until the goal is reached, as much work is done in all, or many are kept.
   End run(std::uint64_t most_work, const Cancellation* cancel);
 
   /// Beams below the cut-off, in the order in which they were found. \pre Approach::kept, and run() is done
   const std::vector<Beam>& kept() const { return deferred_; }
+  /// From now on run() pauses where so many are kept, for take_kept().
+  void pause_at_kept(std::size_t most) { most_kept_ = most; }
+  std::vector<Beam> take_kept();
   /// What is below the old cut-off and not below this one is for the next run() to follow. \pre likewise
   void lower_cutoff_to(double cutoff);
   /// Follows a beam to the next faces that it meets. \param next its parts that go on from there are added to these
   void step(const Beam& beam, const Cancellation* cancel, std::vector<Beam>& next);
+  /// Beams that it tells of belong to this replicate.
+  void serve_replicate(std::uint32_t replicate) { replicate_ = replicate; }
   /// Where rough facets take from the beams that are followed from here on is added to these, in place of `truncated`.
   void collect(std::vector<ScatterSite>& sites) { sites_ = &sites; }
   /// Power that is given up.
@@ -81,6 +88,7 @@ class BeamWalk {
 
   BeamResult result() const;
   std::uint64_t beams() const { return beams_; }
+  std::uint32_t depth() const { return depth_; }
   double cutoff() const { return cutoff_; }
   double left_behind() const { return deferred_power_; }
   /// Done so far, in looks at a facet's bounding box: some 20 ns each. The same on every machine.
@@ -147,11 +155,13 @@ class BeamWalk {
   BeamObserver observer_;
   const Cancellation* cancel_ = nullptr;
   std::vector<ScatterSite>* sites_ = nullptr;
+  std::optional<std::uint32_t> replicate_;
   Tally tally_;
   std::vector<Beam> pending_;
   double pending_power_ = 0.0;
   std::vector<Beam> deferred_;  ///< below the cut-off
   double deferred_power_ = 0.0;
+  std::size_t most_kept_ = std::numeric_limits<std::size_t>::max();
   double cutoff_ = 0.0;
   Approach approach_ = Approach::fixed;
   /// Where the pass of a cut-off began.

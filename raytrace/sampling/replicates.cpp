@@ -88,6 +88,17 @@ MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t r
   return result;
 }
 
+double student_factor(std::size_t replicates) {
+  // Abramowitz and Stegun, 26.7.5; over z.
+  constexpr double z2 = 1.959964 * 1.959964;
+  const double nu = static_cast<double>(replicates - 1);
+  const double first = (z2 + 1.0) / 4.0;
+  const double second = ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0;
+  const double third = (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0;
+  const double fourth = ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) / 92160.0;
+  return 1.0 + (first + (second + (third + fourth / nu) / nu) / nu) / nu;
+}
+
 double largest_error(const MonteCarloResult& result) {
   double largest = 0.0;
   for (const ConeResult& cone : result.cones) largest = std::max(largest, cone.std_error);

@@ -27,6 +27,10 @@ std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t rep
 MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t rays_per_replicate,
                            const std::vector<double>& cones_deg);
 
+/// By how much the standard error of so few replicates is to be widened for 1.96 of it to hold the truth in 95 of 100
+/// cases: the 97.5 % point of Student's distribution over that of the normal one.
+double student_factor(std::size_t replicates);
+
 /// The standard error of the cone where it is largest.
 double largest_error(const MonteCarloResult& result);
 
