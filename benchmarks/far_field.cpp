@@ -59,7 +59,7 @@ void intensity_at_a_receiver(benchmark::State& state) {
   const raytrace::ApertureKernel kernel({Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)});
   const Angle t = Angle::from_deg(static_cast<double>(state.range(1)) + 0.33);
   const raytrace::Vec3 direction(std::sin(t.rad()), 0.0, std::cos(t.rad()));
-  for (auto _ : state) benchmark::DoNotOptimize(field.intensity_per_sr(direction, kernel));
+  for (auto _ : state) benchmark::DoNotOptimize(field.intensity(direction, kernel).per_sr);
   state.SetLabel(scene.name);
   state.counters["polygons"] = static_cast<double>(polygons_of(field));
 }

@@ -84,9 +84,11 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
       {"--window-deg W", "half angle of the far field that is computed", &options.window_deg},
       {"--light LIGHT", "a, d65: a CIE illuminant as the eye sees it; design: what the design says", &options.light,
        one_of(Words{"a", "d65", "design"})},
-      engine_argument(options.engine, "exact, montecarlo (embree), or auto: exact where it serves"),
+      engine_argument(options.engine, "exact, montecarlo (embree), or auto: beams where they serve"),
       {"--samples N", "rays for each direction, by Monte Carlo", &options.samples, whole(1)},
-      {"--cutoff W", "exact: least power that is followed, as a share of what falls on an element [1e-5]",
+      {"--cutoff W",
+       "least power of beams that are followed exactly, as a share of what falls on an element; weaker ones are "
+       "resampled, with exact given up [1e-5; resampled, of finite parts: 5e-5]",
        &options.cutoff},
       {"--no-diffraction", "geometric far field alone", &options.no_diffraction},
       {"--window-power", "integrate the power in the far field's window and outside of it, as a check",

@@ -46,13 +46,15 @@ field_lanes::Use use_of(std::size_t wave, const FieldPolygon& polygon) {
 }  // namespace
 
 ApertureField::ApertureField(const std::vector<CoherentGroup>& groups, double wavelength_mm,
-                             const Eigen::Matrix2cd& coherency, double same_mm)
+                             const Eigen::Matrix2cd& coherency, double same_mm, std::size_t replicates)
     : wavelength_mm_(wavelength_mm),
-      coherency_{coherency(0, 0).real(), coherency(1, 1).real(), coherency(0, 1).real(), coherency(0, 1).imag()} {
+      coherency_{coherency(0, 0).real(), coherency(1, 1).real(), coherency(0, 1).real(), coherency(0, 1).imag()},
+      columns_(1 + replicates) {
   std::map<std::vector<std::int64_t>, std::size_t> known;
   for (const CoherentGroup& group : groups) {
     Field& field = fields_.emplace_back();
     field.copies = group.copies;
+    if (group.replicate) field.column = 1 + *group.replicate;
     for (const FieldPolygon& polygon : group.polygons) {
       const auto [it, is_new] = known.try_emplace(wave_key(polygon, same_mm), waves_.size());
       if (is_new) waves_.push_back({outline_of(polygon.transform), polygon.cosines});
@@ -61,9 +63,10 @@ ApertureField::ApertureField(const std::vector<CoherentGroup>& groups, double wa
   }
 }
 
-std::vector<double> ApertureField::per_cosines(std::span<const Vec2> cosines, const Cancellation* cancel) const {
+Eigen::ArrayXXd ApertureField::per_cosines(std::span<const Vec2> cosines, const Cancellation* cancel) const {
   const double wave_number = 2.0 * std::numbers::pi / wavelength_mm_;
-  std::vector<double> result(cosines.size(), 0.0);
+  Eigen::ArrayXXd result =
+      Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(cosines.size()), static_cast<Eigen::Index>(columns_));
   std::vector<field_lanes::ComplexBlock> transforms(waves_.size());
   for (std::size_t first = 0; first < cosines.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, cosines.size() - first);
@@ -77,9 +80,13 @@ std::vector<double> ApertureField::per_cosines(std::span<const Vec2> cosines, co
       }
       field_lanes::transform(waves_[wave].outline, kx, ky, transforms[wave]);
     }
-    field_lanes::Block sum{};
-    for (const Field& field : fields_) field_lanes::add_power(field.uses, transforms, coherency_, field.copies, sum);
-    for (std::size_t k = 0; k < count; ++k) result[first + k] = sum[k] / (wavelength_mm_ * wavelength_mm_);
+    std::vector<field_lanes::Block> sums(columns_);
+    for (const Field& field : fields_)
+      field_lanes::add_power(field.uses, transforms, coherency_, field.copies, sums[field.column]);
+    for (std::size_t column = 0; column < columns_; ++column)
+      for (std::size_t k = 0; k < count; ++k)
+        result(static_cast<Eigen::Index>(first + k), static_cast<Eigen::Index>(column)) =
+            sums[column][k] / (wavelength_mm_ * wavelength_mm_);
   }
   return result;
 }

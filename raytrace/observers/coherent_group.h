@@ -3,6 +3,8 @@
 // What of the returned light interferes: the plane waves through polygons that one cell sends back.
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "raytrace/light/coherent_light.h"
@@ -40,8 +42,9 @@ struct FieldPolygon {
 /// All that interferes: the light of one cell by paths of about the same length.
 struct CoherentGroup {
   std::vector<FieldPolygon> polygons;
-  double copies = 1.0;     ///< cells that send back the same
+  double copies = 1.0;     ///< cells that send back the same, or of resampled light what comes back by the same way
   double extent_mm = 0.0;  ///< diameter of the circle round all polygons, about their common middle
+  std::optional<std::uint32_t> replicate = {};  ///< of a resampled beam; its power is then over their number
 
   double power() const;           ///< of all copies
   double specular_power() const;  ///< of it what the mean field carries

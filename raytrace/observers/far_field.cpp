@@ -11,6 +11,7 @@
 #include "raytrace/exact/flat_polygon.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/observers/formed_aperture.h"
+#include "raytrace/sampling/replicates.h"
 #include "raytrace/sampling/sobol.h"
 
 namespace retrace::raytrace {
@@ -64,6 +65,16 @@ Eigen::Matrix2d axes_of(const ReturnFrame& frame) {
   return axes;
 }
 
+/// \param sums of what was followed exactly, and of each replicate over their number
+FarFieldIntensity mean_of_replicates(const Eigen::ArrayXd& sums) {
+  const Eigen::Index count = sums.size() - 1;
+  if (count == 0) return {sums[0], 0.0};
+  const auto replicates = static_cast<double>(count);
+  const Eigen::ArrayXd own = replicates * sums.tail(count);
+  const double variance = (own - own.mean()).square().sum() / (replicates - 1.0);
+  return {sums[0] + own.mean(), student_factor(static_cast<std::size_t>(count)) * std::sqrt(variance / replicates)};
+}
+
 /// What tells fields of two cells apart.
 using Signature = std::vector<std::int64_t>;
 
@@ -77,8 +88,17 @@ void add_form_keys(const std::vector<FieldHit>& hits, double size_mm, Signature&
   }
 }
 
+/// The shape of a convex polygon.
+void add_corner_keys(const geometry::Polygon& polygon, double size_mm, Signature& key) {
+  std::vector<std::array<std::int64_t, 2>> corners;
+  for (const Vec2& p : polygon)
+    corners.push_back({step_of(p.x(), kLengthStep * size_mm), step_of(p.y(), kLengthStep * size_mm)});
+  std::sort(corners.begin(), corners.end());
+  for (const auto& corner : corners) key.insert(key.end(), corner.begin(), corner.end());
+}
+
 Signature signature_of(const CoherentGroup& group, double size_mm) {
-  Signature all;
+  Signature all = {group.replicate ? 1 + std::int64_t{*group.replicate} : 0};
   for (const FieldPolygon& p : group.polygons) {
     const Vec2 centroid = geometry::centroid(p.transform.polygon());
     for (const double length : {centroid.x(), centroid.y(), std::sqrt(p.transform.area_mm2())})
@@ -92,8 +112,15 @@ Signature signature_of(const CoherentGroup& group, double size_mm) {
       all.push_back(step_of(unit.imag(), 1e3 * kAmplitudeStep));
     }
     add_form_keys(p.hits, size_mm, all);
+    // Resampled light is alone in its place, whose middle says nothing.
+    if (group.replicate) add_corner_keys(p.transform.polygon(), size_mm, all);
   }
   return all;
+}
+
+/// How many of a group, whose power may be any where it is of resampled light, are in another of the same shape.
+double copies_in(const CoherentGroup& group, const CoherentGroup& other) {
+  return other.power() * group.copies / group.power();
 }
 
 }  // namespace
@@ -124,10 +151,16 @@ double FarField::detail_rad() const {
 
 /// Power by the cosines of directions. Defined beyond the horizon as well, where the theory leaves a little of cells
 /// that are not much larger than the wavelength.
-std::vector<double> FarField::per_cosines(const std::vector<Vec2>& cosines, const ApertureField& field) const {
-  std::vector<double> power = field.per_cosines(cosines, cancel_);
-  for (std::size_t k = 0; k < power.size(); ++k) power[k] += scattered_.fringes_per_cosines(cosines[k]);
+Eigen::ArrayXXd FarField::by_replicate(const std::vector<Vec2>& cosines, const ApertureField& field) const {
+  Eigen::ArrayXXd power = field.per_cosines(cosines, cancel_);
+  for (std::size_t k = 0; k < cosines.size(); ++k)
+    power(static_cast<Eigen::Index>(k), 0) += scattered_.fringes_per_cosines(cosines[k]);
   return power;
+}
+
+std::vector<double> FarField::per_cosines(const std::vector<Vec2>& cosines, const ApertureField& field) const {
+  const Eigen::ArrayXd sums = by_replicate(cosines, field).rowwise().sum();
+  return {sums.begin(), sums.end()};
 }
 
 double FarField::diffracted_per_sr(const Vec3& direction) const {
@@ -151,21 +184,29 @@ double FarField::scattered_within(const ReturnFrame& frame, double half_angle_ra
                                  std::sin(half_angle_rad) * axes_of(frame));
 }
 
-double FarField::intensity_per_sr(const Vec3& direction, const ApertureKernel& kernel) const {
-  double sum = 0.0;
-  for (const FarFieldRay& ray : rays_) sum += ray.power * kernel.per_sr(small_angle_between(ray.direction, direction));
+FarFieldIntensity FarField::intensity(const Vec3& direction, const ApertureKernel& kernel) const {
+  Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(1 + replicates_);
+  for (const FarFieldRay& ray : rays_)
+    sums[ray.replicate ? 1 + *ray.replicate : 0] +=
+        ray.power * kernel.per_sr(small_angle_between(ray.direction, direction));
   ReturnFrame frame;
   frame.to_source = direction;
   frame.right = source_axis(direction);
   frame.up = direction.cross(frame.right);
-  sum += direction.z() * scattered_.lobes_per_cosines(direction.head<2>(), axes_of(frame), kernel);
-  if (groups_.empty()) return sum;
+  sums[0] += direction.z() * scattered_.lobes_per_cosines(direction.head<2>(), axes_of(frame), kernel);
+  if (groups_.empty()) return mean_of_replicates(sums);
   const std::vector<ApertureKernel::Node> nodes = kernel.nodes(detail_rad());
   std::vector<Vec3> directions;
-  for (const ApertureKernel::Node& node : nodes) directions.push_back(frame.direction(node.offset_rad));
-  const std::vector<double> per_sr = diffracted_per_sr(directions);
-  for (std::size_t k = 0; k < nodes.size(); ++k) sum += nodes[k].weight * per_sr[k];
-  return sum;
+  std::vector<Vec2> cosines;
+  for (const ApertureKernel::Node& node : nodes) {
+    directions.push_back(frame.direction(node.offset_rad));
+    cosines.push_back(directions.back().head<2>());
+  }
+  const Eigen::ArrayXXd per_cosines = by_replicate(cosines, field_);
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    sums += nodes[k].weight *
+            (per_cosines.row(static_cast<Eigen::Index>(k)).transpose() * std::max(0.0, directions[k].z()));
+  return mean_of_replicates(sums);
 }
 
 std::vector<double> FarField::binned(const ReturnFrame& frame, const DirectionGrid& grid) const {
@@ -250,41 +291,44 @@ FarFieldCollector::FarFieldCollector(const geometry::Part& part, const Illuminat
       thickness_mm_(part.thickness_mm),
       to_source_(direction_to_source(illumination)),
       directions_(kOneDirection_rad) {
+  field_.replicates_ = policy.replicates;
   field_.wavelength_mm_ = 1e-6 * policy.wavelength_nm;
   field_.coherency_ = coherency_of(illumination.stokes);
   field_.cancel_ = policy.cancel;
 }
 
-void FarFieldCollector::add_ray(const Vec3& direction, double power) {
+void FarFieldCollector::add_ray(const FarFieldRay& ray) {
   std::size_t index = field_.rays_.size();
-  directions_.visit(direction, [&](std::size_t known) { index = std::min(index, known); });
+  directions_.visit(ray.direction, [&](std::size_t known) {
+    if (field_.rays_[known].replicate == ray.replicate) index = std::min(index, known);
+  });
   if (index == field_.rays_.size()) {
-    field_.rays_.push_back({direction, 0.0});
-    directions_.insert(direction, index);
+    field_.rays_.push_back({ray.direction, 0.0, ray.replicate});
+    directions_.insert(ray.direction, index);
   }
-  field_.rays_[index].power += power;
+  field_.rays_[index].power += ray.power;
 }
 
 /// What is specular of it.
-void FarFieldCollector::add_scattering_ray(const Vec3& direction, double power, double phase_variance) {
-  const double specular = std::exp(-phase_variance) * power;
-  field_.unplaced_power_ += power - specular;
-  add_ray(direction, specular);
+void FarFieldCollector::add_scattering_ray(const FarFieldRay& ray, double phase_variance) {
+  const double specular = std::exp(-phase_variance) * ray.power;
+  field_.unplaced_power_ += ray.power - specular;
+  add_ray({ray.direction, specular, ray.replicate});
 }
 
 void FarFieldCollector::add(const ReturnedBeam& beam) {
-  field_.total_power_ += beam.stokes.i;
-  const bool is_diffracted = policy_.diffraction && beam.trail.first && beam.left_mm.size() >= 3 &&
-                             beam.stokes.i > kFaint &&
+  const double power = beam.stokes.i / replicates_of(beam);
+  field_.total_power_ += power;
+  const bool is_diffracted = policy_.diffraction && beam.trail.first && beam.left_mm.size() >= 3 && power > kFaint &&
                              small_angle_between(beam.direction, to_source_) <= policy_.window_rad;
   if (!is_diffracted) {
     double phase_variance = 0.0;
     for (const TexturedHit& hit : beam.hits) phase_variance += hit.phase.variance();
-    return add_scattering_ray(beam.direction, beam.stokes.i, phase_variance);
+    return add_scattering_ray({beam.direction, power, beam.replicate}, phase_variance);
   }
   Place place{0, 0, 0, 0};
-  if (beam.trail.is_mixed) {
-    place.beam = ++mixed_;
+  if (beam.trail.is_mixed || beam.replicate) {
+    place.beam = ++alone_;
   } else {
     place.cell = beam.trail.first->id;
     if (!is_infinite_) {
@@ -295,6 +339,11 @@ void FarFieldCollector::add(const ReturnedBeam& beam) {
   cells_[place].push_back(moved_home(beam));
 }
 
+/// What a beam counts for is its power over this.
+double FarFieldCollector::replicates_of(const ReturnedBeam& beam) const {
+  return beam.replicate ? static_cast<double>(policy_.replicates) : 1.0;
+}
+
 /// The part without errors repeats, and its fields with it: moved by T they are those of light that comes in with the
 /// phase that it has at T.
 FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam) const {
@@ -303,9 +352,10 @@ FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam)
   for (const Vec2& p : beam.left_mm) piece.outline_mm.push_back(p - beam.centre_mm - by);
   piece.direction = beam.direction;
   piece.jones = beam.jones;
-  piece.transmission = beam.transmission;
+  piece.transmission = beam.transmission / replicates_of(beam);
   piece.phase_mm = beam.phase_mm + (beam.direction + to_source_).head<2>().dot(by);
-  piece.power = beam.stokes.i;
+  piece.power = beam.stokes.i / replicates_of(beam);
+  piece.replicate = beam.replicate;
   const Vec3 moved(by.x(), by.y(), 0.0);
   for (const TexturedHit& hit : beam.hits) {
     FieldHit at_home;
@@ -413,6 +463,7 @@ CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2&
   };
   std::stable_sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) { return key(a) < key(b); });
   CoherentGroup group;
+  if (!pieces.empty()) group.replicate = pieces.front().replicate;
   const double first_path = pieces.empty() ? 0.0 : path(pieces.front());
   for (const Piece& piece : pieces) {
     geometry::Polygon outline;
@@ -453,7 +504,7 @@ std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
       if (is_new)
         groups.push_back(std::move(group));
       else
-        groups[it->second].copies += 1.0;
+        groups[it->second].copies += group.replicate ? copies_in(groups[it->second], group) : 1.0;
     }
   }
   return groups;
@@ -501,7 +552,7 @@ void FarFieldCollector::add_undiffracted(const CoherentGroup& group, bool has_lo
   for (const FieldPolygon& p : group.polygons) {
     const double height = std::sqrt(std::max(0.0, 1.0 - p.cosines.squaredNorm()));
     const double specular = p.mean_factor * p.mean_factor * p.power;
-    add_ray({p.cosines.x(), p.cosines.y(), height}, group.copies * specular);
+    add_ray({{p.cosines.x(), p.cosines.y(), height}, group.copies * specular, group.replicate});
     if (!has_lobes) field_.unplaced_power_ += group.copies * (p.power - specular);
   }
 }
@@ -510,7 +561,7 @@ FarField FarFieldCollector::finish() {
   keep_strongest(distinct_groups());
   cells_.clear();
   const auto fields_of = [&](const std::vector<CoherentGroup>& groups) {
-    return ApertureField(groups, field_.wavelength_mm_, field_.coherency_, kLengthStep * size_mm_);
+    return ApertureField(groups, field_.wavelength_mm_, field_.coherency_, kLengthStep * size_mm_, policy_.replicates);
   };
   field_.field_ = fields_of(field_.groups_);
   field_.plane_field_ = fields_of(field_.plane_groups_);

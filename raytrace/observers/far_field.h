@@ -31,6 +31,8 @@ struct FarFieldPolicy {
   std::size_t most_polygons = 20'000;  ///< that are diffracted; the faintest beyond are not
   /// Cells so large that their pattern is finer than this are not diffracted: the discs of source and receiver hide it.
   double finest_detail_rad = 0.0;
+  /// Of WeakBeams, if their beams are added: resampled light interferes with none. 0: there are none.
+  std::uint32_t replicates = 0;
   /// Of the retro facets, as the tracer's optics have it; null: they are plane. Outlives the collector. It bends what
   /// is diffracted, and the rays of cells that are not for their size.
   const surface_models::FacetForm* form = nullptr;
@@ -41,7 +43,15 @@ struct FarFieldPolicy {
 /// Light in one direction, without a shape.
 struct FarFieldRay {
   Vec3 direction;
-  double power = 0.0;
+  double power = 0.0;                           ///< of a replicate: over their number
+  std::optional<std::uint32_t> replicate = {};  ///< of resampled beams
+};
+
+/// An intensity, and its standard error from the spread of the replicates of resampled beams: 1.96 of it hold the truth
+/// in 95 of 100 cases, but for the interference of these beams.
+struct FarFieldIntensity {
+  double per_sr = 0.0;
+  double error_per_sr = 0.0;  ///< 0 without replicates
 };
 
 /// Light that leaves the entrance face for one direction of incidence and one wavelength, by direction. Powers are
@@ -55,7 +65,7 @@ struct FarFieldRay {
 class FarField {
  public:
   /// What the receivers of `frame` see at angles (right, up), per steradian. \param kernel of source and receiver
-  double intensity_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;
+  FarFieldIntensity intensity(const Vec3& direction, const ApertureKernel& kernel) const;
   /// The diffracted part alone, for a point as source and as receiver: the mean field, and the fringes of what
   /// scatters.
   double diffracted_per_sr(const Vec3& direction) const;
@@ -92,6 +102,7 @@ class FarField {
  private:
   friend class FarFieldCollector;
 
+  Eigen::ArrayXXd by_replicate(const std::vector<geometry::Vec2>& cosines, const ApertureField& field) const;
   std::vector<double> per_cosines(const std::vector<geometry::Vec2>& cosines, const ApertureField& field) const;
   std::vector<double> diffracted_per_sr(const std::vector<Vec3>& directions) const;
   double tail(const ReturnFrame& frame, double half_angle_rad) const;
@@ -110,6 +121,7 @@ class FarField {
   double unplaced_power_ = 0.0;
   double total_power_ = 0.0;
   double beyond_budget_power_ = 0.0;
+  std::uint32_t replicates_ = 0;
   const Cancellation* cancel_ = nullptr;
 };
 
@@ -133,8 +145,9 @@ class FarFieldCollector {
     double phase_mm = 0.0;
     double power = 0.0;
     std::vector<FieldHit> hits;
+    std::optional<std::uint32_t> replicate;
   };
-  /// One cell; of a beam that met several, the beam itself.
+  /// One cell; of a beam that met several or was resampled, the beam itself.
   struct Place {
     std::uint64_t cell = 0;
     std::int64_t x = 0;
@@ -143,8 +156,9 @@ class FarFieldCollector {
     auto operator<=>(const Place&) const = default;
   };
 
-  void add_ray(const Vec3& direction, double power);
-  void add_scattering_ray(const Vec3& direction, double power, double phase_variance);
+  void add_ray(const FarFieldRay& ray);
+  void add_scattering_ray(const FarFieldRay& ray, double phase_variance);
+  double replicates_of(const ReturnedBeam& beam) const;
   Piece moved_home(const ReturnedBeam& beam) const;
   static geometry::Vec2 middle_of(const std::vector<Piece>& pieces);
   std::vector<CoherentGroup> groups_of(const std::vector<Piece>& pieces, const geometry::Vec2& middle_mm) const;
@@ -162,7 +176,7 @@ class FarFieldCollector {
   Vec3 to_source_;
   FarField field_;
   std::map<Place, std::vector<Piece>> cells_;
-  std::uint64_t mixed_ = 0;
+  std::uint64_t alone_ = 0;              ///< beams that are a place of their own
   PointLookup<std::size_t> directions_;  ///< indices into the rays
 };
 

@@ -210,7 +210,7 @@ class Cutter {
 }  // namespace
 
 CoherentGroup formed(const CoherentGroup& group, const FacetForm& form, const FormedPolicy& policy) {
-  CoherentGroup made{{}, group.copies, group.extent_mm};
+  CoherentGroup made{{}, group.copies, group.extent_mm, group.replicate};
   Cutter cutter(made, form, policy);
   for (const FieldPolygon& polygon : group.polygons) cutter.cut(polygon);
   return made;

@@ -107,7 +107,7 @@ std::string reason_of(const PhotometricColour& colour, const PhotometryRequest& 
   if (!colour.chromaticity) return "no light comes back there";
   if (colour.lacks_diffraction) return "diffraction is left out, as " + photometer.why_undiffracted();
   if (request.light != PhotometricLight::illuminant_a) return "the boundaries are of CIE A";
-  return "the colour is nearer to a boundary than two standard errors: give more samples";
+  return "the colour is nearer to a boundary than two standard errors: " + photometer.remedy_for_noise();
 }
 
 }  // namespace

@@ -16,9 +16,12 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
 
-// Least power of a beam that is followed, as a share of what falls on an element. What is left behind changes readings
-// by up to 5e-4, as the choice of wavelengths does by up to 1e-3.
+// Least power of a beam that is followed exactly, as a share of what falls on an element. What is left behind, or does
+// not interfere, changes readings by up to 5e-4, as the choice of wavelengths does by up to 1e-3.
 constexpr double kCutoff = 1e-5;
+// The same where weaker beams of a finite part are resampled: its many elements take their time.
+constexpr double kCutoffOfFinite = 5e-5;
+constexpr std::uint32_t kReplicates = 16;
 // Beams of a direction and wavelength beyond which the choice is Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
 // Cells this many times as wide as the wavelength over the diameter of the discs, or wider, need no diffraction: what
@@ -226,6 +229,12 @@ std::optional<Photometer> Photometer::mean_field() const {
   return bound;
 }
 
+std::string Photometer::engine_name() const {
+  if (design_.balls()) return "balls";
+  if (!is_exact_) return "embree";
+  return resamples_weak() ? "stochastic" : "exact";
+}
+
 std::string Photometer::why_undiffracted() const {
   if (!request_.diffraction) return "it was not asked for";
   if (design_.balls()) return "balls are traced by rays";
@@ -259,8 +268,23 @@ std::size_t Photometer::middle_wavelength() const {
   return best;
 }
 
-Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, const SpectralOptics& light, bool split,
+std::uint32_t Photometer::seed_of(std::size_t wavelength) const {
+  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
+  return request_.seed + kGolden * static_cast<std::uint32_t>(wavelength);
+}
+
+/// Where the exact engine was asked for, or facets scatter or bend light, weak beams are given up.
+bool Photometer::resamples_weak() const {
+  return is_exact_ && request_.engine == Engine::automatic && model_.optics.is_smooth() && !has_form_;
+}
+
+double Photometer::usual_cutoff() const {
+  return resamples_weak() && !model_.part.period_mm ? kCutoffOfFinite : kCutoff;
+}
+
+Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, std::size_t wavelength, bool split,
                                               const raytrace::BeamTracer& tracer, const Cancellation* cancel) const {
+  const SpectralOptics& light = model_.spectral[wavelength];
   const PhotometricGeometry geometry = geometry_at(setting, 0.0);
   const raytrace::ReturnFrame frame = raytrace::return_frame(geometry);
   const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
@@ -271,9 +295,11 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
   policy.window_rad = deg(1.5 * request_.window_deg).rad();
   policy.finest_detail_rad = kernel_.reach_rad() / kWidthsWithoutDiffraction;
   if (has_form_) policy.form = &light.optics.facet_form;
+  if (resamples_weak()) policy.replicates = kReplicates;
   policy.cancel = cancel;
   raytrace::BeamPolicy beams;
-  beams.cutoff = request_.cutoff.value_or(kCutoff) /
+  if (resamples_weak()) beams.weak = raytrace::WeakBeams{.seed = seed_of(wavelength), .replicates = kReplicates};
+  beams.cutoff = request_.cutoff.value_or(usual_cutoff()) /
                  std::max(1.0, static_cast<double>(model_.part.period_mm ? 1 : model_.part.elements_full));
   beams.by_cell = request_.diffraction;
   beams.keeps_phases = keeps_phases_;
@@ -291,15 +317,19 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
   const raytrace::FarField field = collector.finish();
   piece.beyond_budget = field.beyond_budget_power();
   piece.rre = traced.ledgers.back()[raytrace::Account::retroreflected];
+  piece.std_error = traced.std_error.back();
   piece.truncated = traced.ledgers.back()[raytrace::Account::truncated];
   if (keeps_phases_) {
     // What textures take from the cone's beams, and what falls into the cone of all that they scatter.
     piece.rre += field.scattered_within(frame, deg(cones.back()).rad()) - scattered_from_cone;
     piece.truncated += field.unplaced_power();
   }
-  for (const double observation_deg : setting.observation_deg)
-    piece.per_sr.push_back(field.intensity_per_sr(frame.direction({0.0, deg(observation_deg).rad()}), kernel_));
-  piece.error_per_sr.assign(piece.per_sr.size(), 0.0);
+  for (const double observation_deg : setting.observation_deg) {
+    const raytrace::FarFieldIntensity seen =
+        field.intensity(frame.direction({0.0, deg(observation_deg).rad()}), kernel_);
+    piece.per_sr.push_back(seen.per_sr);
+    piece.error_per_sr.push_back(seen.error_per_sr);
+  }
   if (setting.map_columns > 0) {
     const raytrace::DirectionGrid grid(raytrace::DirectionGrid::Layout::square, deg(request_.window_deg).rad(),
                                        setting.map_columns, setting.map_columns);
@@ -319,7 +349,6 @@ Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, 
 
 Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
                                               const raytrace::MonteCarlo* tracer, const Cancellation* cancel) const {
-  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
   const SpectralOptics& light = model_.spectral[wavelength];
   const raytrace::ReturnFrame frame = raytrace::return_frame(geometry_at(setting, 0.0));
   const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
@@ -330,7 +359,7 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
     score.grid.emplace(raytrace::DirectionGrid::Layout::square, deg(request_.window_deg).rad(), setting.map_columns,
                        setting.map_columns);
   raytrace::Sampling sampling;
-  sampling.seed = request_.seed + kGolden * static_cast<std::uint32_t>(wavelength);
+  sampling.seed = seed_of(wavelength);
   sampling.rays = std::max<std::uint64_t>(1, request_.rays / model_.spectral.size());
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
@@ -411,8 +440,7 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vec
     for_each_told(settings.size() * wavelengths, progress, [&](std::size_t k) {
       const PhotometerSetting& setting = settings[k / wavelengths];
       const std::size_t w = k % wavelengths;
-      pieces[k / wavelengths][w] =
-          measure_exactly(setting, model_.spectral[w], setting.split && w == middle, tracer, cancel);
+      pieces[k / wavelengths][w] = measure_exactly(setting, w, setting.split && w == middle, tracer, cancel);
     });
   } else {
     std::optional<raytrace::MonteCarlo> tracer;

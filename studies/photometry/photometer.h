@@ -50,7 +50,9 @@ class Photometer {
 
   const std::vector<std::string>& warnings() const { return model_.warnings; }
   std::vector<double> wavelengths_nm() const;
-  std::string engine_name() const { return design_.balls() ? "balls" : is_exact_ ? "exact" : "embree"; }
+  std::string engine_name() const;
+  /// What makes standard errors smaller.
+  std::string remedy_for_noise() const { return is_exact_ ? "give a lower --cutoff" : "give more samples"; }
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
   /// Why readings lack diffraction, if they do.
   std::string why_undiffracted() const;
@@ -66,13 +68,16 @@ class Photometer {
 
  private:
   struct Piece;  ///< what one wavelength adds
-  Piece measure_exactly(const PhotometerSetting& setting, const SpectralOptics& light, bool split,
+  Piece measure_exactly(const PhotometerSetting& setting, std::size_t wavelength, bool split,
                         const raytrace::BeamTracer& tracer, const Cancellation* cancel) const;
   /// \param tracer null for balls, which have their own
   Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
                         const Cancellation* cancel) const;
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
   std::size_t middle_wavelength() const;
+  std::uint32_t seed_of(std::size_t wavelength) const;
+  bool resamples_weak() const;  ///< beams below the cut-off, in place of giving them up
+  double usual_cutoff() const;
 
   Design design_;
   PhotometryRequest request_;

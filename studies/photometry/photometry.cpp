@@ -288,7 +288,7 @@ std::string reason_of(const std::vector<PhotometricPoint>& points, const Photome
   const auto is_open = [](const PhotometricPoint& p) { return p.verdict() == Verdict::undetermined; };
   if (std::none_of(points.begin(), points.end(), is_open)) return {};
   if (std::none_of(points.begin(), points.end(), [](const PhotometricPoint& p) { return p.lacks_diffraction; }))
-    return "a value is nearer to its limit than two standard errors: give more samples";
+    return "a value is nearer to its limit than two standard errors: " + photometer.remedy_for_noise();
   return fmt::format("diffraction is left out, as {}, and counts for cells narrower than {} mm",
                      photometer.why_undiffracted(), fixed(photometer.least_undiffracted_mm(), 1));
 }

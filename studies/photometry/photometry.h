@@ -43,7 +43,7 @@ struct PhotometryRequest {
   materials::SpectralCurve dye_absorption_per_mm;  ///< empty: none
   bool diffraction = true;
   Engine engine = Engine::automatic;  ///< neither stochastic nor cell
-  std::optional<double> cutoff;       ///< least power followed by the exact engine, as a share of an element's
+  std::optional<double> cutoff;       ///< least power of beams that are followed exactly, as a share of an element's
   std::uint64_t rays = 1U << 20;      ///< of a direction, by Monte Carlo
   std::uint32_t seed = 1;
   bool pictures = false;      ///< maps and curves
@@ -65,9 +65,9 @@ struct PhotometricPoint {
   double v_deg = 0.0;         ///< at which it was measured: that of the test point unless the face mirrors there
   double rotation_deg = 0.0;  ///< at which the value is least
   double r_i_mcd_per_lx = 0.0;
-  double r_a = 0.0;  ///< cd/(lx m^2)
-  double r_l = 0.0;  ///< cd/(lx m^2)
-  double std_error_mcd_per_lx = 0.0;
+  double r_a = 0.0;                   ///< cd/(lx m^2)
+  double r_l = 0.0;                   ///< cd/(lx m^2)
+  double std_error_mcd_per_lx = 0.0;  ///< of rays, and of beams that are resampled
   double limit_mcd_per_lx = 0.0;
   bool lacks_diffraction = false;  ///< although it would count: the value says nothing against the limit
   bool is_lower_bound = false;     ///< the part reaches the value at least

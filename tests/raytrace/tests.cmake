@@ -23,6 +23,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scratches_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/stochastic_beams_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/weak_beams_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/wet_back_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/soiled_entrance_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp

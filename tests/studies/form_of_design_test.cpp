@@ -247,6 +247,7 @@ TEST(FormOfDesign, PhotometryIsContinuousInTheSink) {
   Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
   PhotometryRequest request = request_of(points_at({0.2}, 100.0));
   request.diffraction = true;
+  request.engine = Engine::exact;  // facets with a form have weak beams given up, and so must plane ones
   const auto r_a = [&](double sink_um) {
     design.surface.form.sink_um = sink_um;
     const Photometer photometer(design, request, 1);

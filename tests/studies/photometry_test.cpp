@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "materials/io/spectrum_reader.h"
+#include "raytrace/sampling/threads.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/standards.h"
@@ -369,6 +370,64 @@ TEST(Photometry, IsMeasuredBesideTheMirrorImage) {
   EXPECT_EQ(lossless.points[0].r_a, run(design_of(spec, true), request_of(points_at({0.2}, 1.0))).points[0].r_a);
 }
 
+/// Diffracted, at 20 degrees, where light is trapped.
+PhotometryRequest diffracted(Engine engine) {
+  TestProgramme programme = points_at({0.0, 0.2, 0.33, 0.5}, 1.0);
+  for (TestPoint& point : programme.points) point.h_deg = 20.0;
+  PhotometryRequest request = request_of(programme);
+  request.diffraction = true;
+  request.engine = engine;
+  return request;
+}
+
+// Beams below the cut-off are resampled, so that nothing is given up and the error of points is known; the exact engine
+// gives them up.
+TEST(Photometry, ResamplesWeakBeams) {
+  geometry::PartSpec small = finite(geometry::HexagonalCube{1.0}, Arrangement::honeycomb, 4.0, 4.0, 1.0);
+  small.angle_errors.dihedral_error_arcmin.fill(2.0);
+  for (const geometry::PartSpec& spec : {honeycomb(2.0), small}) {
+    const Design design = design_of(spec);
+    PhotometryRequest request = diffracted(Engine::exact);
+    const PhotometryResult exact = run(design, request);
+    request.cutoff = 1e-7;
+    const PhotometryResult further = run(design, request);
+    const PhotometryResult resampled = run(design, diffracted(Engine::automatic));
+    EXPECT_EQ(exact.engine, "exact");
+    EXPECT_EQ(resampled.engine, "stochastic");
+    EXPECT_GT(exact.directions[0].truncated, 1e-5);
+    EXPECT_EQ(exact.directions[0].std_error, 0.0);
+    EXPECT_LT(std::abs(resampled.directions[0].truncated), 1e-12);
+    EXPECT_GT(resampled.directions[0].std_error, 0.0);
+    EXPECT_NEAR(resampled.directions[0].rre, further.directions[0].rre,
+                student_bound(2, 16) * resampled.directions[0].std_error + further.directions[0].truncated);
+    for (std::size_t k = 0; k < resampled.points.size(); ++k) {
+      const PhotometricPoint& point = resampled.points[k];
+      EXPECT_EQ(exact.points[k].std_error_mcd_per_lx, 0.0);
+      EXPECT_GT(point.std_error_mcd_per_lx, 0.0);
+      EXPECT_LT(point.std_error_mcd_per_lx, 2e-3 * point.r_i_mcd_per_lx);
+      // Interference that is lost takes or gives some 1e-3 more.
+      EXPECT_NEAR(point.r_i_mcd_per_lx, further.points[k].r_i_mcd_per_lx,
+                  student_bound(8, 16) * point.std_error_mcd_per_lx + 2e-3 * point.r_i_mcd_per_lx)
+          << k;
+    }
+  }
+}
+
+TEST(Photometry, ResampledBeamsDependOnTheSeedAndNotOnThreads) {
+  const Design design = design_of(honeycomb(2.0));
+  PhotometryRequest request = diffracted(Engine::automatic);
+  std::vector<PhotometryResult> results;
+  for (const unsigned threads : {1U, 3U})
+    raytrace::run_with_threads(threads, [&] { results.push_back(run(design, request)); });
+  request.seed = 2;
+  const PhotometryResult other = run(design, request);
+  for (std::size_t k = 0; k < other.points.size(); ++k) {
+    EXPECT_EQ(results[0].points[k].r_a, results[1].points[k].r_a);
+    EXPECT_EQ(results[0].points[k].std_error_mcd_per_lx, results[1].points[k].std_error_mcd_per_lx);
+    EXPECT_NE(results[0].points[k].r_a, other.points[k].r_a);
+  }
+}
+
 // However bright it is, a part of another size is not one of its class, and no change of its cells mends that.
 TEST(Photometry, APartOfTheWrongAreaFails) {
   PhotometryRequest request = request_of(points_at({0.1}, 1.0));
@@ -422,6 +481,7 @@ TEST(Photometry, MonteCarloAgreesWithTheExactEngine) {
   const Design design = design_of(honeycomb(4.0));
   PhotometryRequest request = request_of(r150("IA", "red"));
   request.programme.points.resize(4);
+  request.engine = Engine::exact;
   const PhotometryResult exact = run(design, request);
   request.engine = Engine::montecarlo;
   request.rays = 1U << 17;

@@ -116,7 +116,7 @@ TEST(ApertureField, AgreesWithSingleTransforms) {
   const ApertureField field(groups, kWavelength_mm, coherency, 1e-7);
   std::vector<Vec2> cosines = {{0.1, 0.02}, {0.1, 0.0201}, {7.0, -15.0}};
   for (int k = 0; k < 100; ++k) cosines.push_back({0.1 + 1e-4 * k * std::cos(k), 0.02 + 1e-4 * k * std::sin(k)});
-  const std::vector<double> found = field.per_cosines(cosines, nullptr);
+  const Eigen::ArrayXXd found = field.per_cosines(cosines, nullptr);
   for (std::size_t k = 0; k < cosines.size(); ++k) {
     double expected = 0.0;
     for (const CoherentGroup& group : groups) {
@@ -125,7 +125,9 @@ TEST(ApertureField, AgreesWithSingleTransforms) {
         sum += p.mean_factor * p.transform.at(2.0 * pi / kWavelength_mm * (cosines[k] - p.cosines)) * p.amplitude;
       expected += group.copies * (sum * coherency * sum.adjoint()).trace().real();
     }
-    EXPECT_NEAR(found[k] * kWavelength_mm * kWavelength_mm, expected, 1e-9 * (expected + 1e-3)) << k;
+    EXPECT_NEAR(found(static_cast<Eigen::Index>(k), 0) * kWavelength_mm * kWavelength_mm, expected,
+                1e-9 * (expected + 1e-3))
+        << k;
   }
 }
 

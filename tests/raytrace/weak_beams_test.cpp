@@ -1,0 +1,286 @@
+// Beams of the exact engine whose weak ones are resampled: without bias, with intervals that hold, with all power in
+// the ledger, and in far fields.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/observers/far_field.h"
+#include "raytrace/sampling/replicates.h"
+#include "raytrace/sampling/threads.h"
+#include "tests/support/closed_forms.h"
+#include "tests/support/designs.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing::weak_beams_test {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+struct Question {
+  std::string name;
+  Part part;
+  Illumination light;
+};
+
+/// Arrays that trap light, so that weak beams matter.
+std::vector<Question> questions() {
+  PartSpec finite_cubes = finite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 8.0, 8.0, 1.0);
+  finite_cubes.angle_errors.dihedral_error_arcmin.fill(3.0);
+  return {
+      {"honeycomb", build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0)), from(20, 10)},
+      {"triangular", build_part(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0)), from(10, 10)},
+      {"prisms", build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0)), from(20, 25)},
+      {"finite cubes", build_part(finite_cubes), from(15, 40)}};
+}
+
+BeamPolicy resampled(double cutoff, double thinning, std::uint32_t seed = 1) {
+  BeamPolicy policy;
+  policy.cutoff = cutoff;
+  policy.weak = WeakBeams{.seed = seed, .replicates = 16, .thinning = thinning};
+  return policy;
+}
+
+/// Followed exactly until next to nothing is left.
+Ledger reference(const Question& question, const Optics& optics, double cone_deg) {
+  BeamPolicy policy;
+  policy.truncated_goal = 1e-5;
+  return BeamTracer(question.part).trace(optics, question.light, {cone_deg}, policy).ledgers[0];
+}
+
+TEST(WeakBeams, AgreeWithBeamsAndBookAllPower) {
+  Optics optics = pmma();
+  optics.absorption_per_mm = 0.01;
+  for (const Question& question : questions()) {
+    const std::vector<double> cones = {0.5, 60.0};
+    const BeamResult result = BeamTracer(question.part).trace(optics, question.light, cones, resampled(1e-4, 4.0));
+    ASSERT_TRUE(result.complete) << question.name;
+    for (std::size_t cone = 0; cone < cones.size(); ++cone) {
+      const Ledger& own = result.ledgers[cone];
+      EXPECT_NEAR(own.total(), 1.0, 1e-13) << question.name;
+      EXPECT_NEAR(own[Account::truncated], 0.0, 1e-12) << question.name;
+      const Ledger exact = reference(question, optics, cones[cone]);
+      EXPECT_GT(result.std_error[cone], 0.0) << question.name;
+      EXPECT_NEAR(own[Account::retroreflected], exact[Account::retroreflected],
+                  student_bound(8, 16) * result.std_error[cone] + 1e-5)
+          << question.name << ", cone " << cones[cone];
+      EXPECT_NEAR(result.stokes[cone].i, own[Account::retroreflected], 1e-13) << question.name;
+      for (const Account account : {Account::transmitted, Account::absorbed, Account::side_exit})
+        EXPECT_NEAR(own[account], exact[account], 1e-3) << question.name << ", " << static_cast<int>(account);
+    }
+  }
+}
+
+/// Over 100 seeds the mean is right, and the truth lies within 1.96 standard errors of 88 or more.
+TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
+  constexpr std::uint32_t kSeeds = 100;
+  for (const Question& question : questions()) {
+    const Ledger exact = reference(question, pmma(), 0.5);
+    const double error = 0.5 * exact[Account::truncated];
+    const double truth = exact[Account::retroreflected] + error;
+    const BeamTracer tracer(question.part);
+    std::vector<BeamResult> found(kSeeds);
+    for_each_in_parallel(kSeeds, [&](std::size_t k) {
+      found[k] = tracer.trace(pmma(), question.light, {0.5}, resampled(1e-4, 8.0, static_cast<std::uint32_t>(k + 1)));
+    });
+    double mean = 0.0;
+    double squares = 0.0;
+    int hits = 0;
+    for (const BeamResult& one : found) {
+      const double off = one.ledgers[0][Account::retroreflected] - truth;
+      mean += off / kSeeds;
+      squares += std::pow(off / kSeeds, 2.0);
+      if (std::abs(off) <= 1.96 * one.std_error[0] + error) ++hits;
+    }
+    EXPECT_LE(std::abs(mean), normal_bound(4) * std::hypot(std::sqrt(squares), error)) << question.name;
+    EXPECT_GE(hits, 88) << question.name;
+    ::testing::Test::RecordProperty(question.name + " of 100", hits);
+  }
+}
+
+/// Beams above the cut-off are those of a run that gives up the others, and what replicates send back adds up to the
+/// ledger.
+TEST(WeakBeams, LeaveStrongBeamsAsTheyAre) {
+  for (const Question& question : questions()) {
+    const BeamTracer tracer(question.part);
+    std::vector<ReturnedBeam> strong;
+    std::vector<ReturnedBeam> all;
+    BeamPolicy policy = resampled(1e-4, 32.0);
+    const BeamResult result = tracer.trace(pmma(), question.light, {0.5}, policy, nullptr,
+                                           [&](const ReturnedBeam& beam) { all.push_back(beam); });
+    policy.weak.reset();
+    const BeamResult plain = tracer.trace(pmma(), question.light, {0.5}, policy, nullptr,
+                                          [&](const ReturnedBeam& beam) { strong.push_back(beam); });
+    EXPECT_EQ(plain.std_error[0], 0.0);
+    EXPECT_GT(plain.ledgers[0][Account::truncated], 1e-4) << question.name;
+    double power = 0.0;
+    std::size_t exact = 0;
+    for (const ReturnedBeam& beam : all) {
+      power += beam.stokes.i / (beam.replicate ? 16.0 : 1.0);
+      if (beam.replicate) {
+        EXPECT_LT(*beam.replicate, 16U);
+        continue;
+      }
+      ASSERT_LT(exact, strong.size());
+      EXPECT_EQ(beam.stokes.i, strong[exact].stokes.i);
+      EXPECT_EQ(beam.phase_mm, strong[exact].phase_mm);
+      EXPECT_EQ(beam.left_mm, strong[exact].left_mm);
+      ++exact;
+    }
+    EXPECT_EQ(exact, strong.size()) << question.name;
+    EXPECT_GT(all.size(), exact) << question.name;
+    const Ledger& ledger = result.ledgers[0];
+    EXPECT_NEAR(power,
+                ledger[Account::retroreflected] + ledger[Account::front_specular] + ledger[Account::returned_elsewhere],
+                1e-12)
+        << question.name;
+  }
+}
+
+/// What needs no resampling has no error.
+TEST(WeakBeams, NothingIsLeftToChanceWhereBeamsEnd) {
+  const Part part = build_part(single(RtpElement{0.6, 0.4, 90.0}, 0.7));
+  const BeamResult result = BeamTracer(part).trace(ideal(), from(0.0), {0.5}, resampled(1e-3, 32.0));
+  EXPECT_NEAR(result.ledgers[0][Account::retroreflected], 1.0, 1e-12);
+  EXPECT_EQ(result.std_error[0], 0.0);
+}
+
+TEST(WeakBeams, StopWhenCancelled) {
+  const Question question = questions()[1];
+  Cancellation cancel;
+  cancel.request();
+  EXPECT_FALSE(BeamTracer(question.part).trace(pmma(), question.light, {0.5}, resampled(1e-4, 32.0), &cancel).complete);
+}
+
+struct Seen {
+  BeamResult result;
+  FarField field;
+};
+
+Seen seen(const Question& question, const BeamPolicy& beams, FarFieldPolicy policy) {
+  policy.replicates = beams.weak ? beams.weak->replicates : 0;
+  FarFieldCollector collector(question.part, question.light, policy);
+  BeamPolicy by_cell = beams;
+  by_cell.by_cell = true;
+  Seen seen;
+  seen.result =
+      BeamTracer(question.part).trace(pmma(), question.light, {0.5}, by_cell, nullptr, [&](const ReturnedBeam& beam) {
+        collector.add(beam);
+      });
+  seen.field = collector.finish();
+  return seen;
+}
+
+/// Towards receivers round the light.
+std::vector<Vec3> receivers(const Illumination& light) {
+  ReturnFrame frame;
+  frame.to_source = direction_to_source(light);
+  frame.right = source_axis(frame.to_source);
+  frame.up = frame.to_source.cross(frame.right);
+  std::vector<Vec3> directions;
+  for (const double angle_deg : {0.0, 0.2, 0.5})
+    for (const double turn_deg : {20.0, 110.0, 250.0})
+      directions.push_back(
+          frame.direction(angle_deg * kDeg * Vec2(std::cos(turn_deg * kDeg), std::sin(turn_deg * kDeg))));
+  return directions;
+}
+
+Question wide_cubes() {
+  PartSpec spec = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
+  spec.angle_errors.dihedral_error_arcmin = {1.0, 2.0, 3.0};
+  return {"wide cubes", build_part(spec), from(20, 10)};
+}
+
+/// Without interference intensities have no bias: over seeds their mean is that of beams that are followed much
+/// further, and their errors are those that the spread shows.
+TEST(WeakBeams, FarFieldIsUnbiased) {
+  constexpr std::uint32_t kSeeds = 60;
+  const Question question = wide_cubes();
+  FarFieldPolicy policy;
+  policy.diffraction = false;
+  BeamPolicy further;
+  further.cutoff = 1e-7;
+  const Seen truth = seen(question, further, policy);
+  const ApertureKernel kernel({Angle::from_deg(0.5), Angle::from_deg(0.5)});
+  const std::vector<Vec3> directions = receivers(question.light);
+  std::vector<std::vector<FarFieldIntensity>> found(kSeeds);
+  for_each_in_parallel(kSeeds, [&](std::size_t k) {
+    const Seen own = seen(question, resampled(1e-3, 8.0, static_cast<std::uint32_t>(k + 1)), policy);
+    EXPECT_NEAR(own.field.total_power(), own.result.ledgers[0].total() - own.result.ledgers[0][Account::transmitted],
+                1e-10);
+    for (const Vec3& direction : directions) found[k].push_back(own.field.intensity(direction, kernel));
+  });
+  for (std::size_t at = 0; at < directions.size(); ++at) {
+    const FarFieldIntensity expected = truth.field.intensity(directions[at], kernel);
+    EXPECT_EQ(expected.error_per_sr, 0.0);
+    double mean = 0.0;
+    double squares = 0.0;
+    double told = 0.0;
+    for (const auto& one : found) {
+      const double off = one[at].per_sr - expected.per_sr;
+      mean += off / kSeeds;
+      squares += off * off / kSeeds;
+      told += one[at].error_per_sr * one[at].error_per_sr / kSeeds;
+    }
+    const double left = kernel.per_sr(0.0) * truth.result.ledgers[0][Account::truncated];
+    EXPECT_LE(std::abs(mean), normal_bound(9) * std::sqrt(squares / kSeeds) + left) << at;
+    // Errors are told 9 % wide, as they are of 16 replicates alone.
+    EXPECT_NEAR(std::sqrt(told), std::sqrt(squares), 0.35 * std::sqrt(squares) + left) << at;
+  }
+}
+
+/// Diffracted, the light that interferes no longer counts for little.
+TEST(WeakBeams, DiffractedFarFieldAgreesWithBeams) {
+  const ApertureKernel kernel({Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)});
+  const Question question = wide_cubes();
+  BeamPolicy further;
+  further.cutoff = 1e-7;
+  const Seen truth = seen(question, further, {});
+  const Seen own = seen(question, resampled(1e-5, 32.0), {});
+  EXPECT_NEAR(own.field.total_power(), truth.field.total_power(), 1e-4 + truth.result.ledgers[0][Account::truncated]);
+  std::size_t weak = 0;
+  for (const CoherentGroup& group : own.field.groups())
+    if (group.replicate) ++weak;
+  EXPECT_GT(weak, 0U) << "resampled light is diffracted as well";
+  for (const Vec3& direction : receivers(question.light)) {
+    const FarFieldIntensity found = own.field.intensity(direction, kernel);
+    const double expected = truth.field.intensity(direction, kernel).per_sr;
+    EXPECT_GT(found.error_per_sr, 0.0);
+    EXPECT_LT(found.error_per_sr, 2e-3 * expected);
+    EXPECT_NEAR(found.per_sr, expected, student_bound(9, 16) * found.error_per_sr + 1e-3 * expected);
+  }
+}
+
+/// The same resampled light in the sums over directions: bins, and power in a cone and outside.
+TEST(WeakBeams, SumsOverDirectionsHoldAllReplicates) {
+  const Question question = wide_cubes();
+  const BeamPolicy beams = resampled(1e-4, 32.0);
+  FarFieldPolicy geometric;
+  geometric.diffraction = false;
+  const Seen rays = seen(question, beams, geometric);
+  const Seen own = seen(question, beams, {});
+  ReturnFrame frame;
+  frame.to_source = direction_to_source(question.light);
+  frame.right = source_axis(frame.to_source);
+  frame.up = frame.to_source.cross(frame.right);
+  const std::vector<double> bins = rays.field.binned(frame, {DirectionGrid::Layout::square, 0.03, 30, 30});
+  double sum = 0.0;
+  for (const double bin : bins) sum += bin;
+  EXPECT_NEAR(sum, rays.field.total_power(), 1e-12);
+  EXPECT_NEAR(own.field.total_power(), rays.field.total_power(), 1e-12);
+  const FarField::Split split = own.field.split(frame, 0.035);
+  EXPECT_NEAR(split.inside + split.outside, own.field.total_power(), 1e-3);
+}
+
+TEST(Replicates, AreFewerThanNormal) {
+  for (const std::size_t count : {4U, 8U, 16U, 32U, 1000U})
+    EXPECT_NEAR(student_factor(count), student_bound_of(0.05, count) / 1.959964, count < 8 ? 2e-2 : 1e-3) << count;
+}
+
+}  // namespace
+}  // namespace retrace::testing::weak_beams_test
