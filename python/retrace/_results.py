@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arguments import PathLike, nearest, path
-from ._errors import Error, OutputError
+from ._core import version
+from ._errors import Error, InputError, OutputError
 
 Array = NDArray[np.float64]
 
@@ -331,7 +332,18 @@ class Result:
             name: value
             for name, value in self.__dict__.items()
             if name not in ("_document", "_columns")
-        }
+        } | {"_version": version()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        made_by = str(state.pop("_version", "an unknown version"))
+        # Minor versions count until 1.0, as the library's do.
+        if made_by.split(".")[:2] != version().split(".")[:2]:
+            raise InputError(
+                f"was pickled by retrace {made_by}, must be of {version()}; "
+                "its document (save()) can be read by any",
+                key=type(self).__name__,
+            )
+        self.__dict__.update(state)
 
     def __eq__(self, other: object) -> bool:
         """Whether it says the same, however long it took."""

@@ -110,6 +110,9 @@ class Results(unittest.TestCase):
         self.assertEqual(
             pickle.loads(pickle.dumps(self.result))._repr_svg_(), self.result._repr_svg_()
         )
+        state = self.result.__getstate__()
+        with self.assertRaisesRegex(rt.InputError, "pickled by retrace 9.1.0, must be of"):
+            self.result.__setstate__({**state, "_version": "9.1.0"})
         error = pickle.loads(pickle.dumps(rt.InputError("text", "file", 3, "key")))
         self.assertEqual(
             (error.file, error.line, error.key, error.message), ("file", 3, "key", "text")
