@@ -5,7 +5,6 @@ import gc
 import multiprocessing
 import os
 import signal
-import statistics
 import subprocess
 import sys
 import threading
@@ -62,7 +61,8 @@ class Progress(unittest.TestCase):
         self.assertLess(time.monotonic() - begin, 2)
 
     def test_bar(self):
-        code = f"import retrace as rt; rt.rre({HONEYCOMB!r}, engine='montecarlo', samples=2**20, progress=True)"
+        keywords = "engine='montecarlo', samples=2**20, progress=True"
+        code = f"import retrace as rt; rt.rre({HONEYCOMB!r}, {keywords})"
         ended = python(code)
         self.assertEqual(ended.returncode, 0, ended.stderr)
         without_tqdm = python(
@@ -135,7 +135,8 @@ class Processes(unittest.TestCase):
         code = (
             "import multiprocessing, retrace as rt, sys\n"
             "def rre(file): return rt.rre(file).rre.tolist()\n"
-            "with multiprocessing.get_context('fork').Pool(2) as pool: print(pool.map(rre, [sys.argv[1]] * 2))\n"
+            "with multiprocessing.get_context('fork').Pool(2) as pool:\n"
+            "    print(pool.map(rre, [sys.argv[1]] * 2))\n"
         )
         ended = python(code, PRISM)
         self.assertEqual(ended.returncode, 0, ended.stderr)
@@ -165,19 +166,18 @@ class Costs(unittest.TestCase):
         self.assertLess(grown, 4)
 
     def test_a_call_costs_less_than_a_millisecond_more(self):
-        """Than the library's function, its arrays included."""
+        """Than the library's function, its arrays included: the least of many, as other work makes
+        both longer."""
         design = rt.Design.load(PRISM)
         request = _core.RreRequest()
         of_python, of_library = [], []
-        for _ in range(100):
+        for _ in range(300):
             begin = time.perf_counter()
             rt.rre(design).rre.sum()
             of_python.append(time.perf_counter() - begin)
             of_library.append(_core.seconds_of_rre([design._core], request))
-        more = statistics.median(of_python) - statistics.median(of_library)
-        print(
-            f"a call of rre: {1e3 * statistics.median(of_library):.2f} ms, by Python {1e3 * more:.2f} ms more"
-        )
+        more = min(of_python) - min(of_library)
+        print(f"a call of rre: {1e3 * min(of_library):.2f} ms, by Python {1e3 * more:.2f} ms more")
         self.assertLess(more, 1e-3)
 
     def test_import(self):
