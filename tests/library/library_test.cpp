@@ -47,7 +47,7 @@ std::string document(const TemporaryFolder& folder, const Arguments& arguments, 
 }
 
 TEST(Library, ShowsItsHeadersAndNothingElse) {
-  const std::string symbols = output_of({"/usr/bin/nm", "--dynamic", "--defined-only", "--demangle", RETRACE_LIBRARY});
+  const std::string symbols = output_of({RETRACE_NM, "--dynamic", "--defined-only", "--demangle", RETRACE_LIBRARY});
   const std::regex shown(R"([0-9a-f]+ \w (?:typeinfo for |typeinfo name for |vtable for )?retrace::[A-Z]?\w+.*)");
   const std::regex of_parts(
       R"(.*retrace::(studies|raytrace|fabrication|geometry|materials|surface_models|report)::.*)");
@@ -343,7 +343,7 @@ TEST(Library, OnePageHasSeveralResults) {
 class InstalledLibrary : public ::testing::Test {
  protected:
   void SetUp() override {
-    output_of({"/usr/bin/cmake", "--install", RETRACE_BUILD_DIR, "--prefix", prefix().string()});
+    output_of({RETRACE_CMAKE, "--install", RETRACE_BUILD_DIR, "--prefix", prefix().string()});
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix()))
       if (entry.path().filename() == "retrace.pc") libraries_ = entry.path().parent_path().parent_path();
     ASSERT_FALSE(libraries_.empty()) << "no retrace.pc below " << prefix();
@@ -356,9 +356,9 @@ class InstalledLibrary : public ::testing::Test {
 
 TEST_F(InstalledLibrary, TheExampleBuildsAgainstItAndRuns) {
   const fs::path build = folder_.path() / "build";
-  output_of({"/usr/bin/cmake", "-S", (kSource / "examples/library").string(), "-B", build.string(),
+  output_of({RETRACE_CMAKE, "-S", (kSource / "examples/library").string(), "-B", build.string(),
              "-DCMAKE_PREFIX_PATH=" + prefix().string()});
-  output_of({"/usr/bin/cmake", "--build", build.string()});
+  output_of({RETRACE_CMAKE, "--build", build.string()});
   const std::string design = (prefix() / "share/doc/retrace/examples/rtp_single_0p45mm.toml").string();
   const std::string printed = output_of({(build / "curve").string(), design});
   const RreResult expected = rre(Design::load(design), {.incidence_deg = {0, 10, 20, 30}});

@@ -1,5 +1,6 @@
 """The package as it is installed: it finds its library and data wherever the whole was put."""
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -17,7 +18,7 @@ class Install(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             prefix = pathlib.Path(folder, "here")
             installed = subprocess.run(
-                ["/usr/bin/cmake", "--install", str(BUILD), "--prefix", str(prefix)],
+                [os.environ["RETRACE_CMAKE"], "--install", str(BUILD), "--prefix", str(prefix)],
                 capture_output=True,
                 text=True,
                 timeout=300,
