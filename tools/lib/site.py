@@ -269,7 +269,7 @@ def picture(file, text, name):
 def example_pages():
     cards = []
     for file in sorted((SOURCE / "examples").rglob("*")):
-        if not file.is_file() or file.suffix not in (".toml", ".txt", ".csv", ".slurm", ".pgm"):
+        if not file.is_file() or file.suffix not in (".toml", ".txt", ".csv", ".slurm", ".pgm", ".ies"):
             continue
         path = file.relative_to(SOURCE)
         text = file.read_text(errors="replace")
