@@ -15,6 +15,9 @@ std::string_view trimmed(std::string_view text);
 /// What stands between separators, trimmed; at least one part.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
+/// What stands between blanks, tabs and ends of lines.
+std::vector<std::string_view> words_in(std::string_view text);
+
 /// The finite number that `text` is, with a decimal point whatever the locale; none if it is anything else.
 std::optional<double> number_in(std::string_view text);
 

@@ -1,10 +1,10 @@
 #include "geometry/io/gltf_file.h"
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -55,79 +55,101 @@ Json material(std::optional<double> refractive_index, double absorption_per_mm) 
   return clear;
 }
 
+/// The description and the numbers of a file, which grow together.
+class GltfFile {
+ public:
+  GltfFile(std::string_view title, std::optional<double> refractive_index, double absorption_per_mm) {
+    json_ = {{"asset", {{"version", "2.0"}, {"generator", "retrace " + std::string(kVersion)}}}, {"scene", 0}};
+    json_["scenes"] = {{{"name", title}, {"nodes", {0}}}};
+    // A quarter turn about x, as a quaternion x y z w.
+    constexpr double kHalfRoot = 0.70710678118654752;
+    json_["nodes"] = {{{"name", "part"},
+                       {"rotation", {-kHalfRoot, 0.0, 0.0, kHalfRoot}},
+                       {"scale", {1e-3, 1e-3, 1e-3}},
+                       {"children", Json::array()}}};
+    json_["materials"] = {material(refractive_index, absorption_per_mm)};
+    if (refractive_index)
+      json_["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume"};
+    for (const char* const list : {"accessors", "bufferViews", "meshes"}) json_[list] = Json::array();
+  }
+
+  /// The first accessor: what all faces name the numbers of.
+  void add_vertices(const std::vector<Vec3>& vertices) {
+    Eigen::Vector3f lower = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
+    Eigen::Vector3f upper = -lower;
+    for (const Vec3& vertex : vertices) {
+      const Eigen::Vector3f place = vertex.cast<float>();
+      lower = lower.cwiseMin(place);
+      upper = upper.cwiseMax(place);
+      for (const float value : place) append(binary_, std::bit_cast<std::uint32_t>(value));
+    }
+    add_accessor(0, kArrayBuffer,
+                 {{"componentType", kFloat},
+                  {"count", vertices.size()},
+                  {"type", "VEC3"},
+                  {"min", vector_json(lower)},
+                  {"max", vector_json(upper)}});
+  }
+
+  /// A mesh of the faces of a role, and its node; none if there are no such faces.
+  void add_faces(const BoundaryMesh& mesh, FacetRole role, std::string_view name) {
+    const std::size_t begin = binary_.size();
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      if (mesh.roles[t] == role)
+        for (const std::uint32_t vertex : mesh.triangles[t]) append(binary_, vertex);
+    if (binary_.size() == begin) return;
+    const std::size_t indices =
+        add_accessor(begin, kElementArrayBuffer,
+                     {{"componentType", kUnsignedInt}, {"count", (binary_.size() - begin) / 4}, {"type", "SCALAR"}});
+    json_["meshes"].push_back(
+        {{"name", name}, {"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", indices}, {"material", 0}}}}});
+    json_["nodes"][0]["children"].push_back(json_["nodes"].size());
+    json_["nodes"].push_back({{"name", name}, {"mesh", json_["meshes"].size() - 1}});
+  }
+
+  /// Head, description, numbers.
+  std::string text() {
+    json_["buffers"] = {{{"byteLength", binary_.size()}}};
+    std::string description = json_.dump();
+    description.append((4 - description.size() % 4) % 4, ' ');
+    std::string text;
+    append(text, kMagic);
+    append(text, 2);
+    append(text, static_cast<std::uint32_t>(12 + 8 + description.size() + 8 + binary_.size()));
+    append(text, static_cast<std::uint32_t>(description.size()));
+    append(text, kJsonChunk);
+    text += description;
+    append(text, static_cast<std::uint32_t>(binary_.size()));
+    append(text, kBinaryChunk);
+    return text + binary_;
+  }
+
+ private:
+  /// Of the numbers from `begin` on. \return its number
+  std::size_t add_accessor(std::size_t begin, int target, Json accessor) {
+    accessor["bufferView"] = json_["bufferViews"].size();
+    json_["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", binary_.size() - begin}, {"target", target}});
+    json_["accessors"].push_back(std::move(accessor));
+    return json_["accessors"].size() - 1;
+  }
+
+  Json json_;
+  std::string binary_;
+};
+
 }  // namespace
 
 std::string gltf_text(const BoundaryMesh& mesh, std::string_view title, std::optional<double> refractive_index,
                       double absorption_per_mm) {
   // The head and what describes the mesh take far less than this.
   constexpr std::size_t kHead = 16384;
-  const std::size_t bytes = 12 * (mesh.vertices.size() + mesh.triangles.size());
-  if (bytes + kHead > kMostGltfBytes)
+  if (12 * (mesh.vertices.size() + mesh.triangles.size()) + kHead > kMostGltfBytes)
     throw InputError("the mesh is too large for glTF, which ends at 4 GiB; OBJ takes it");
-
-  Json json = {{"asset", {{"version", "2.0"}, {"generator", "retrace " + std::string(kVersion)}}}, {"scene", 0}};
-  json["scenes"] = {{{"name", title}, {"nodes", {0}}}};
-  // A quarter turn about x, as a quaternion x y z w.
-  constexpr double kHalfRoot = 0.70710678118654752;
-  json["nodes"] = {{{"name", "part"},
-                    {"rotation", {-kHalfRoot, 0.0, 0.0, kHalfRoot}},
-                    {"scale", {1e-3, 1e-3, 1e-3}},
-                    {"children", Json::array()}}};
-  json["materials"] = {material(refractive_index, absorption_per_mm)};
-  if (refractive_index)
-    json["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume"};
-
-  std::string binary;
-  binary.reserve(bytes);
-  Eigen::Vector3f lower = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
-  Eigen::Vector3f upper = -lower;
-  for (const Vec3& vertex : mesh.vertices) {
-    const Eigen::Vector3f place = vertex.cast<float>();
-    lower = lower.cwiseMin(place);
-    upper = upper.cwiseMax(place);
-    for (const float value : place) append(binary, std::bit_cast<std::uint32_t>(value));
-  }
-  json["accessors"] = {{{"bufferView", 0},
-                        {"componentType", kFloat},
-                        {"count", mesh.vertices.size()},
-                        {"type", "VEC3"},
-                        {"min", vector_json(lower)},
-                        {"max", vector_json(upper)}}};
-  json["bufferViews"] = {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", binary.size()}, {"target", kArrayBuffer}}};
-  json["meshes"] = Json::array();
-  for (const auto& [role, name] : kFaceGroups) {
-    const std::size_t begin = binary.size();
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      if (mesh.roles[t] == role)
-        for (const std::uint32_t vertex : mesh.triangles[t]) append(binary, vertex);
-    if (binary.size() == begin) continue;
-    json["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", binary.size() - begin}, {"target", kElementArrayBuffer}});
-    json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
-                                 {"componentType", kUnsignedInt},
-                                 {"count", (binary.size() - begin) / 4},
-                                 {"type", "SCALAR"}});
-    json["meshes"].push_back(
-        {{"name", name},
-         {"primitives",
-          {{{"attributes", {{"POSITION", 0}}}, {"indices", json["accessors"].size() - 1}, {"material", 0}}}}});
-    json["nodes"][0]["children"].push_back(json["nodes"].size());
-    json["nodes"].push_back({{"name", name}, {"mesh", json["meshes"].size() - 1}});
-  }
-  json["buffers"] = {{{"byteLength", binary.size()}}};
-
-  std::string head = json.dump();
-  head.append((4 - head.size() % 4) % 4, ' ');
-  std::string text;
-  append(text, kMagic);
-  append(text, 2);
-  append(text, static_cast<std::uint32_t>(12 + 8 + head.size() + 8 + binary.size()));
-  append(text, static_cast<std::uint32_t>(head.size()));
-  append(text, kJsonChunk);
-  text += head;
-  append(text, static_cast<std::uint32_t>(binary.size()));
-  append(text, kBinaryChunk);
-  return text + binary;
+  GltfFile file(title, refractive_index, absorption_per_mm);
+  file.add_vertices(mesh.vertices);
+  for (const auto& [role, name] : kFaceGroups) file.add_faces(mesh, role, name);
+  return file.text();
 }
 
 }  // namespace retrace::geometry

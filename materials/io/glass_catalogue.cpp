@@ -41,16 +41,6 @@ std::string narrow(std::string_view text) {
   return narrowed;
 }
 
-std::vector<std::string> fields_of(std::string_view line) {
-  std::vector<std::string> fields;
-  for (std::size_t at = line.find_first_not_of(" \t\r"); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
-    fields.emplace_back(line.substr(at, end - at));
-    at = line.find_first_not_of(" \t\r", end);
-  }
-  return fields;
-}
-
 bool same_letters(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::toupper(x) == std::toupper(y); });
 }
@@ -76,7 +66,8 @@ GlassCatalogue::GlassCatalogue(std::string_view text, std::string file) : file_(
   int number = 0;
   for (const std::string_view line : split(lines, '\n')) {
     ++number;
-    Line read{number, fields_of(line)};
+    const std::vector<std::string_view> fields = words_in(line);
+    Line read{number, {fields.begin(), fields.end()}};
     if (read.fields.empty()) continue;
     if (read.fields.front() == "NM") {
       if (read.fields.size() < 2) fail(read, "NM: must have a name");

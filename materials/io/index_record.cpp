@@ -68,7 +68,7 @@ class Record {
   std::vector<double> numbers_in(const YAML::Node& map, const char* key, std::size_t least, std::size_t most) const {
     const std::string text = text_of(map, key);
     std::vector<double> values;
-    for (const std::string_view word : words(text)) {
+    for (const std::string_view word : words_in(text)) {
       const std::optional<double> value = number_in(word);
       if (!value) fail(map[key], key, fmt::format("must be finite numbers, got {}", in_quotes(word)));
       values.push_back(*value);
@@ -76,16 +76,6 @@ class Record {
     if (values.size() < least || values.size() > most)
       fail(map[key], key, fmt::format("must be {} to {} numbers, got {}", least, most, values.size()));
     return values;
-  }
-
-  static std::vector<std::string_view> words(std::string_view text) {
-    std::vector<std::string_view> found;
-    for (std::size_t at = text.find_first_not_of(" \t\r\n"); at != std::string_view::npos;) {
-      const std::size_t end = std::min(text.find_first_of(" \t\r\n", at), text.size());
-      found.push_back(text.substr(at, end - at));
-      at = text.find_first_not_of(" \t\r\n", end);
-    }
-    return found;
   }
 
   void add(const YAML::Node& entry, Material& material) {

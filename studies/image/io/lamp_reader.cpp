@@ -53,11 +53,20 @@ class Lines {
   }
   void leave_line() { word_ = std::string_view::npos; }
 
+  // The same of whole numbers.
+  std::size_t count(std::string_view key, double least, double most) { return whole(key, number(key, least, most)); }
+  std::size_t count_word(std::string_view key, double least, double most) { return whole(key, word(key, least, most)); }
+
  private:
   double checked(std::optional<double> value, const std::string& text, std::string_view key, double least,
                  double most) const {
     if (value && *value >= least && *value <= most) return *value;
     fail(key, fmt::format("must be a number of {} to {}, got {}", shortest(least), shortest(most), in_quotes(text)));
+  }
+
+  std::size_t whole(std::string_view key, double value) const {
+    if (value != std::floor(value)) fail(key, fmt::format("must be a whole number, got {}", shortest(value)));
+    return static_cast<std::size_t>(value);
   }
 
   const std::string& file_;
@@ -67,11 +76,6 @@ class Lines {
 };
 
 constexpr double kMost = 1e12;
-
-std::size_t whole(Lines& lines, double number, std::string_view key) {
-  if (number != std::floor(number)) lines.fail(key, fmt::format("must be a whole number, got {}", shortest(number)));
-  return static_cast<std::size_t>(number);
-}
 
 using Row = std::vector<double>;
 
@@ -170,46 +174,22 @@ std::string text_behind(std::string_view line, std::string_view keyword) {
   return line.starts_with(keyword) ? printable(trimmed(line.substr(keyword.size()))) : std::string();
 }
 
-}  // namespace
-
-PhotometricLamp parse_ies(std::string_view text, const std::string& file) {
-  Lines lines(text, file);
-  std::string title;
-  std::string tilt;
-  while (tilt.empty()) {
-    const std::string_view line = lines.next("a line TILT=");
-    if (std::string found = text_behind(line, "[LUMINAIRE]"); !found.empty()) title = std::move(found);
-    tilt = text_behind(line, "TILT=");
-  }
-  if (tilt == "INCLUDE") {
-    lines.word("tilt", 1, 3);
-    lines.leave_line();
-    const std::size_t pairs = whole(lines, lines.word("tilt", 1, kMostAngles), "tilt");
-    for (std::size_t k = 0; k < 2 * pairs; ++k) lines.word("tilt", -kMost, kMost);
-    lines.leave_line();
-  } else if (tilt != "NONE") {
+/// Factors for other positions of burning, which are left out.
+void pass_tilt(Lines& lines, const std::string& tilt) {
+  if (tilt != "NONE" && tilt != "INCLUDE")
     lines.fail("TILT", fmt::format("must be NONE or INCLUDE, got {}", in_quotes(tilt)));
-  }
-  const double lamps = lines.word("number of lamps", 1, 1e6);
-  const double lumens = lines.word("lumens per lamp", -1, kMost);
-  const double multiplier = lines.word("candela multiplier", 1e-12, kMost);
-  const std::size_t angles =
-      whole(lines, lines.word("number of vertical angles", 2, kMostAngles), "number of vertical angles");
-  const std::size_t planes =
-      whole(lines, lines.word("number of horizontal angles", 1, kMostAngles), "number of horizontal angles");
-  const std::size_t type = whole(lines, lines.word("photometric type", 1, 3), "photometric type");
-  lines.word("units", 1, 2);
-  for (const char* const size : {"width", "length", "height"}) lines.word(size, -kMost, kMost);
-  const double ballast = lines.word("ballast factor", 1e-12, kMost);
-  // Of LM-63-86, whose files begin without their standard's name; later it has another meaning or none.
-  const double of_1986 = lines.word("ballast-lamp factor", 0, kMost);
-  const double with_lamp = text.starts_with("IESNA") ? 1.0 : of_1986;
-  lines.word("input watts", 0, kMost);
-  using enum LuminousIntensity::Planes;
-  const auto kind = type == 1 ? c : type == 2 ? b : a;
+  if (tilt == "NONE") return;
+  lines.word("tilt", 1, 3);
+  lines.leave_line();
+  const std::size_t pairs = lines.count_word("tilt", 1, kMostAngles);
+  for (std::size_t k = 0; k < 2 * pairs; ++k) lines.word("tilt", -kMost, kMost);
+  lines.leave_line();
+}
+
+Table read_ies_table(Lines& lines, LuminousIntensity::Planes kind, std::size_t angles, std::size_t planes) {
   Table table;
-  const double least = kind == c ? 0.0 : -90.0;
-  const double most = kind == c ? 180.0 : 90.0;
+  const double least = kind == LuminousIntensity::Planes::c ? 0.0 : -90.0;
+  const double most = kind == LuminousIntensity::Planes::c ? 180.0 : 90.0;
   for (std::size_t k = 0; k < angles; ++k) table.angles_deg.push_back(lines.word("vertical angles", least, most));
   check_ascending(lines, table.angles_deg, "vertical angles");
   for (std::size_t k = 0; k < planes; ++k)
@@ -221,35 +201,58 @@ PhotometricLamp parse_ies(std::string_view text, const std::string& file) {
     table.rows.push_back(std::move(row));
   }
   complete_ies(lines, table, kind);
-  // In files of types A and B the horizontal angle of A is that of its planes, of B that within them.
-  if (kind == b) {
-    Table turned{table.angles_deg, table.planes_deg, std::vector<Row>(angles, Row(table.planes_deg.size()))};
-    for (std::size_t k = 0; k < table.planes_deg.size(); ++k)
-      for (std::size_t j = 0; j < angles; ++j) turned.rows[j][k] = table.rows[k][j];
-    table = std::move(turned);
+  return table;
+}
+
+/// Its angles as planes, and its planes as angles.
+Table turned_over(const Table& table) {
+  Table turned{table.angles_deg, table.planes_deg,
+               std::vector<Row>(table.angles_deg.size(), Row(table.planes_deg.size()))};
+  for (std::size_t k = 0; k < table.planes_deg.size(); ++k)
+    for (std::size_t j = 0; j < table.angles_deg.size(); ++j) turned.rows[j][k] = table.rows[k][j];
+  return turned;
+}
+
+}  // namespace
+
+PhotometricLamp parse_ies(std::string_view text, const std::string& file) {
+  Lines lines(text, file);
+  std::string title;
+  std::string tilt;
+  while (tilt.empty()) {
+    const std::string_view line = lines.next("a line TILT=");
+    if (std::string found = text_behind(line, "[LUMINAIRE]"); !found.empty()) title = std::move(found);
+    tilt = text_behind(line, "TILT=");
   }
+  pass_tilt(lines, tilt);
+  const double lamps = lines.word("number of lamps", 1, 1e6);
+  const double lumens = lines.word("lumens per lamp", -1, kMost);
+  const double multiplier = lines.word("candela multiplier", 1e-12, kMost);
+  const std::size_t angles = lines.count_word("number of vertical angles", 2, kMostAngles);
+  const std::size_t planes = lines.count_word("number of horizontal angles", 1, kMostAngles);
+  const std::size_t type = lines.count_word("photometric type", 1, 3);
+  lines.word("units", 1, 2);
+  for (const char* const size : {"width", "length", "height"}) lines.word(size, -kMost, kMost);
+  const double ballast = lines.word("ballast factor", 1e-12, kMost);
+  // Of LM-63-86, whose files begin without their standard's name (IESNA91, IESNA:LM-63-2002, IES:LM-63-2019); later it
+  // means nothing, or how the file was made.
+  const double of_1986 = lines.word("ballast-lamp factor", 0, kMost);
+  const double with_lamp = text.starts_with("IES") ? 1.0 : of_1986;
+  lines.word("input watts", 0, kMost);
+  using enum LuminousIntensity::Planes;
+  const auto kind = type == 1 ? c : type == 2 ? b : a;
+  Table table = read_ies_table(lines, kind, angles, planes);
+  // The horizontal angle of A is that of its planes, of B that within them.
+  if (kind == b) table = turned_over(table);
   return {file, title, intensity_of(kind, std::move(table), multiplier * ballast * with_lamp),
           lumens > 0.0 ? lamps * lumens : 0.0};
 }
 
-PhotometricLamp parse_ldt(std::string_view text, const std::string& file) {
-  Lines lines(text, file);
-  lines.next("the company");
-  lines.number("type indicator", 0, 3);
-  const std::size_t symmetry = whole(lines, lines.number("symmetry indicator", 0, 4), "symmetry indicator");
-  const std::size_t planes = whole(lines, lines.number("number of C planes", 1, kMostAngles), "number of C planes");
-  lines.number("distance of C planes", 0, kFullTurnDeg);
-  const std::size_t angles = whole(lines, lines.number("number of angles", 2, kMostAngles), "number of angles");
-  lines.number("distance of angles", 0, 180);
-  lines.next("the report's number");
-  const std::string title = printable(lines.next("the luminaire's name"));
-  for (const char* const what : {"the luminaire's number", "the file's name", "the date"}) lines.next(what);
-  for (int k = 0; k < 9; ++k) lines.number("size", 0, kMost);
-  lines.number("downward flux fraction", 0, 100);
-  const double light_output_percent = lines.number("light output ratio", 0, 1000);
-  const double conversion = lines.number("conversion factor", 1e-12, kMost);
-  lines.number("tilt", -kFullTurnDeg, kFullTurnDeg);
-  const std::size_t sets = whole(lines, lines.number("number of sets", 1, 20), "number of sets");
+namespace {
+
+/// Of the first of the sets of light sources that the lamp may have.
+double read_ldt_lumens(Lines& lines) {
+  const std::size_t sets = lines.count("number of sets", 1, 20);
   double lumens = 0.0;
   for (std::size_t k = 0; k < sets; ++k) {
     lines.number("number of light sources", -1e6, 1e6);  // negative where intensities are measured as they are
@@ -259,14 +262,16 @@ PhotometricLamp parse_ldt(std::string_view text, const std::string& file) {
     for (const char* const what : {"the colour", "the colour rendering"}) lines.next(what);
     lines.number("power", 0, kMost);
   }
-  for (int k = 0; k < 10; ++k) lines.number("direct ratio", 0, kMost);
+  return lumens;
+}
+
+Table read_ldt_table(Lines& lines, std::size_t symmetry, std::size_t planes, std::size_t angles) {
   std::vector<double> all_planes;
   for (std::size_t k = 0; k < planes; ++k) all_planes.push_back(lines.number("C planes", 0, kFullTurnDeg));
   check_ascending(lines, all_planes, "C planes");
   Table table;
   for (std::size_t k = 0; k < angles; ++k) table.angles_deg.push_back(lines.number("angles", 0, 180));
   check_ascending(lines, table.angles_deg, "angles");
-
   // First plane and number of those whose intensities stand there, by symmetry: none, about the axis, about C0 - C180,
   // C90 - C270, both.
   const std::size_t begins[] = {0, 0, 0, 3 * planes / 4, 0};
@@ -283,13 +288,39 @@ PhotometricLamp parse_ldt(std::string_view text, const std::string& file) {
     table.rows.push_back(std::move(row));
   }
   check_ascending(lines, table.planes_deg, "C planes");
-  if (symmetry == 0) turn_to_zero(table);
-  if (symmetry == 4) mirror(table, 90.0, false);
+  return table;
+}
+
+/// By its symmetry.
+void complete_ldt(Table& table, std::size_t symmetry) {
+  if (symmetry == 3 || symmetry == 4) mirror(table, 90.0, false);
   if (symmetry == 2 || symmetry == 4) mirror(table, 180.0, false);
-  if (symmetry == 3) {
-    mirror(table, 90.0, false);
-    turn_to_zero(table);
-  }
+  if (symmetry == 0 || symmetry == 3) turn_to_zero(table);
+}
+
+}  // namespace
+
+PhotometricLamp parse_ldt(std::string_view text, const std::string& file) {
+  Lines lines(text, file);
+  lines.next("the company");
+  lines.number("type indicator", 0, 3);
+  const std::size_t symmetry = lines.count("symmetry indicator", 0, 4);
+  const std::size_t planes = lines.count("number of C planes", 1, kMostAngles);
+  lines.number("distance of C planes", 0, kFullTurnDeg);
+  const std::size_t angles = lines.count("number of angles", 2, kMostAngles);
+  lines.number("distance of angles", 0, 180);
+  lines.next("the report's number");
+  const std::string title = printable(lines.next("the luminaire's name"));
+  for (const char* const what : {"the luminaire's number", "the file's name", "the date"}) lines.next(what);
+  for (int k = 0; k < 9; ++k) lines.number("size", 0, kMost);
+  lines.number("downward flux fraction", 0, 100);
+  const double light_output_percent = lines.number("light output ratio", 0, 1000);
+  const double conversion = lines.number("conversion factor", 1e-12, kMost);
+  lines.number("tilt", -kFullTurnDeg, kFullTurnDeg);
+  const double lumens = read_ldt_lumens(lines);
+  for (int k = 0; k < 10; ++k) lines.number("direct ratio", 0, kMost);
+  Table table = read_ldt_table(lines, symmetry, planes, angles);
+  complete_ldt(table, symmetry);
   return {file, title, intensity_of(LuminousIntensity::Planes::c, std::move(table), 1e-3 * lumens * conversion),
           1e-2 * light_output_percent * lumens};
 }
