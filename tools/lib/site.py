@@ -54,6 +54,7 @@ STYLE = """\
 .md-typeset h1 code { overflow-wrap: anywhere }
 .md-typeset td code { word-break: normal; overflow-wrap: break-word }
 .md-typeset td:first-child code { white-space: nowrap }
+.md-typeset table.dataframe { display: block; overflow-x: auto; border: 0; font-size: .66rem }
 .md-grid { max-width: 72rem }
 .formula { overflow-x: auto; overflow-y: hidden; margin: 1em 0 }
 .examples { display: grid; grid-template-columns: repeat(auto-fill, minmax(11rem, 1fr)); gap: .8rem }
