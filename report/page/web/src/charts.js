@@ -5,7 +5,7 @@ import { colour } from "./theme.js";
 const WIDTHS = [2, 2, 2, 2, 2, 2, 2];
 
 /** All x of all series, rising; and each series over them, null where it has no value. */
-function aligned(series) {
+export function aligned(series) {
   const xs = [...new Set(series.flatMap((s) => s.x))].sort((a, b) => a - b);
   const place = new Map(xs.map((x, i) => [x, i]));
   const ys = series.map((s) => {
@@ -16,11 +16,11 @@ function aligned(series) {
   return [xs, ...ys];
 }
 
-function shown(value) {
+export function shown(value) {
   return value == null ? "-" : String(Number(value.toPrecision(6)));
 }
 
-function axis(label, values) {
+export function axis(label, values) {
   return {
     label,
     labelSize: 26,
@@ -70,7 +70,7 @@ function optionsOf(chart, width, figure) {
 }
 
 /** Arrow keys walk along the curve, + and - zoom round the place, 0 shows all. */
-function addKeys(plot, figure, spoken) {
+export function addKeys(plot, figure, spoken) {
   const area = figure.querySelector(".plot");
   let at = 0;
   const whole = () => [plot.data[0][0], plot.data[0][plot.data[0].length - 1]];

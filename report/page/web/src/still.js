@@ -35,11 +35,13 @@ export function drawStill(view, scene, shown) {
   const far = (t) => t.reduce((sum, v) => sum + points[v][2], 0);
   for (const t of [...scene.triangles].sort((a, b) => far(b) - far(a)))
     add(svg, "polygon", { points: corners(t.map((v) => points[v])), fill: colour("--glass"), "fill-opacity": 0.12 });
+  for (const patch of scene.patches || [])
+    add(svg, "polygon", { points: corners(patch.points.map(seen)), fill: colour(patch.colour || "--active"), "fill-opacity": patch.opacity });
   for (const [a, b] of scene.edges)
     add(svg, "polyline", { points: corners([points[a], points[b]]), fill: "none", stroke: colour("--edge"), "stroke-width": 0.002 * size });
   paths.forEach((path) => {
     const index = scene.paths.indexOf(path);
-    add(svg, "polyline", { points: corners(path.points.map(seen)), fill: "none", stroke: colour(`--curve-${index % 7}`), "stroke-width": 0.006 * size });
+    add(svg, "polyline", { points: corners(path.points.map(seen)), fill: "none", stroke: colour(path.colour || `--curve-${index % 7}`), "stroke-width": 0.006 * size });
   });
   view.replaceChildren(svg);
 }
