@@ -1,4 +1,5 @@
-"""The checked-in bundle of the page is that of its sources: data/report_page against report/page/web.
+"""The checked-in bundles of the pages are those of their sources: data/report_page against report/page/web, and
+data/live_page against live/web and what it takes from there.
 
     python3 bundle_test.py SOURCE
 """
@@ -12,12 +13,15 @@ import unittest
 SOURCE = None
 
 
-def source_hash(folder):
-    """As build.mjs has it."""
-    files = ["build.mjs", "package.json", "package-lock.json", *(f"src/{f.name}" for f in (folder / "src").iterdir())]
+def files_of(folder):
+    return [file for file in folder.rglob("*") if file.is_file()]
+
+
+def source_hash(names):
+    """As the build.mjs of both have it. \param names of the files, and what each is called there"""
     total = hashlib.sha256()
-    for name in sorted(files):
-        total.update(f"{name}\n".encode() + (folder / name).read_bytes())
+    for name, file in sorted(names.items()):
+        total.update(f"{name}\n".encode() + file.read_bytes())
     return total.hexdigest()
 
 
@@ -26,12 +30,16 @@ class Bundle(unittest.TestCase):
         self.web = SOURCE / "report" / "page" / "web"
         self.data = SOURCE / "data" / "report_page"
 
+    def sources(self):
+        names = ["build.mjs", "package.json", "package-lock.json", *(f"src/{f.name}" for f in (self.web / "src").iterdir())]
+        return {name: self.web / name for name in names}
+
     def test_is_fresh(self):
-        wanted = source_hash(self.web)
+        wanted = source_hash(self.sources())
         for name in ("page.js", "page.css"):
-            found = re.match(r"/\* sources ([0-9a-f]{64}) ", (self.data / name).read_text())
+            found = re.match(r"/\* sources ([0-9a-f]{64}) .* made by (tools/\w+)", (self.data / name).read_text())
             self.assertIsNotNone(found)
-            self.assertEqual(found[1], wanted, f"{name} is stale: run tools/report_page")
+            self.assertEqual(found[1], wanted, f"{name} is stale: run {found[2]}")
 
     def test_carries_licences(self):
         text = (self.data / "LICENCES.txt").read_text()
@@ -49,6 +57,18 @@ class Bundle(unittest.TestCase):
     def test_cannot_end_the_element_it_stands_in(self):
         self.assertNotIn("</script", (self.data / "page.js").read_text())
         self.assertNotIn("</style", (self.data / "page.css").read_text())
+
+
+class LiveBundle(Bundle):
+    def setUp(self):
+        super().setUp()
+        self.data = SOURCE / "data" / "live_page"
+
+    def sources(self):
+        live = SOURCE / "live" / "web"
+        files = [live / "build.mjs", *files_of(live / "src"), self.web / "package.json", self.web / "package-lock.json",
+                 *files_of(self.web / "src")]
+        return {file.relative_to(SOURCE).as_posix(): file for file in files}
 
 
 if __name__ == "__main__":

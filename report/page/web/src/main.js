@@ -1,18 +1,3 @@
-// The page works without this script: tables, figures and findings are in the document. It adds charts, the view in
-// three dimensions, downloads and the choice between light and dark.
-import { drawCharts } from "./charts.js";
-import { drawPaths } from "./paths.js";
-import { startScene } from "./scene.js";
-import { addDownloads } from "./tables.js";
-import { addThemeSwitch } from "./theme.js";
+import { startReport } from "./report.js";
 
-const data = JSON.parse(document.getElementById("page-data").textContent);
-const redraw = [];
-
-addThemeSwitch(() => redraw.forEach((draw) => draw()));
-addDownloads();
-redraw.push(drawCharts(data.charts || []));
-drawPaths(data.paths || []);
-const view = document.getElementById("scene");
-if (view && data.scene) redraw.push(startScene(view, data.scene));
-document.documentElement.dataset.ready = "yes";
+startReport();

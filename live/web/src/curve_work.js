@@ -1,0 +1,102 @@
+// RRE against incidence at the azimuth that is pointed at: a coarse curve first, which is finished even while the
+// design moves on, then finer ones, at rest to the full accuracy.
+import { MOVING, RESTING } from "./session.js";
+
+const CHUNK_S = 0.012;
+export const CURVE_STEPS_DEG = [5, 2.5, 1];
+
+function range(from, to, step) {
+  const list = [];
+  for (let k = Math.round(from / step); k * step <= to + 1e-9; ++k) list.push(k * step);
+  return list;
+}
+
+/** A curve of one design that is being traced, from coarse to fine. */
+export class CurvePass {
+  constructor(design, azimuth_deg, half_range_deg, stamp) {
+    Object.assign(this, { design, azimuth_deg, half_range_deg, stamp });
+    this.key = `${design.source}\n${design.toml}\n${azimuth_deg}\n${half_range_deg}`;
+    this.points = new Map(); // by incidence: [rre, truncated]
+    this.level = -1;
+    this.target_error = MOVING;
+    this.queue = [];
+    this.advance();
+  }
+
+  isWhole() {
+    return this.queue.length === 0;
+  }
+
+  /** The next finer steps. \return whether there are any */
+  advance() {
+    if (this.level + 1 >= CURVE_STEPS_DEG.length) return false;
+    this.level += 1;
+    this.queue = range(-this.half_range_deg, this.half_range_deg, CURVE_STEPS_DEG[this.level]).filter(
+      (incidence) => !this.points.has(incidence),
+    );
+    return true;
+  }
+
+  /** Once more, to the accuracy of rest. */
+  refine() {
+    if (this.target_error === RESTING) return false;
+    this.target_error = RESTING;
+    this.queue = [...this.points.keys()].sort((a, b) => Math.abs(a) - Math.abs(b));
+    return true;
+  }
+
+  job() {
+    const directions = this.queue.map((incidence) => [incidence, this.azimuth_deg]);
+    const { toml, source } = this.design;
+    return { toml, source, pass: this, asks: [{ ask: "rre", directions, target_error: this.target_error, seconds: CHUNK_S }] };
+  }
+
+  take(answer) {
+    answer.points.forEach((point, k) => this.points.set(this.queue[k], point));
+    this.queue = this.queue.slice(answer.points.length);
+  }
+
+  /** Rising incidences and what was found there. */
+  rows() {
+    return [...this.points.entries()].sort((a, b) => a[0] - b[0]).map(([x, [rre, truncated]]) => ({ x, rre, truncated }));
+  }
+}
+
+export class Curve {
+  constructor(session) {
+    this.session = session;
+    this.half_range_deg = 60;
+    this.pass = null;
+    this.shown = null; // the last pass that was whole once
+    session.engine.lane({ next: () => this.next(), done: (job, data) => this.take(job, data) });
+  }
+
+  wanted() {
+    const { base, direction, measure } = this.session;
+    return new CurvePass(base, direction.azimuth_deg, this.half_range_deg, measure.drawn.point);
+  }
+
+  next() {
+    const { base, isMoving } = this.session;
+    if (!base || !base.traces) return null;
+    const pass = this.pass;
+    if (!pass || (pass.level > 0 || pass.isWhole())) {
+      const wanted = this.wanted();
+      if (!pass || wanted.key !== pass.key) this.pass = wanted;
+    }
+    if (this.pass.isWhole() && (isMoving || !(this.pass.advance() || this.pass.refine()))) return null;
+    return this.pass.isWhole() ? null : this.pass.job();
+  }
+
+  take(job, data) {
+    const answer = data.answers && data.answers[0];
+    if (!answer || !answer.ok || job.pass !== this.pass) {
+      if (job.pass === this.pass) this.pass.queue = []; // what one direction cannot, the others will not
+      return;
+    }
+    this.pass.take(answer);
+    if (this.pass.level === 0 && !this.pass.isWhole()) return;
+    this.shown = this.pass;
+    this.session.tell("curve", this.pass);
+  }
+}

@@ -1,0 +1,67 @@
+// Elements of the document, made in one expression.
+const SVG = "http://www.w3.org/2000/svg";
+
+function fill(node, attributes, children) {
+  for (const [name, value] of Object.entries(attributes || {})) {
+    if (value == null || value === false) continue;
+    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
+    else node.setAttribute(name, value === true ? "" : value);
+  }
+  node.append(...children.flat().filter((child) => child != null && child !== false));
+  return node;
+}
+
+/** h("button", { type: "button", onclick: run }, "Run"); attributes that are null or false are left out. */
+export function h(name, attributes, ...children) {
+  return fill(document.createElement(name), attributes, children);
+}
+
+/** The same in SVG. */
+export function s(name, attributes, ...children) {
+  return fill(document.createElementNS(SVG, name), attributes, children);
+}
+
+let count = 0;
+/** A name for an element that labels refer to. */
+export function newId(what) {
+  count += 1;
+  return `live-${what}-${count}`;
+}
+
+/** A canvas that fills its element sharply; `draw` is called when its size changes. */
+export class Canvas {
+  constructor(element, draw) {
+    this.element = element;
+    this.node = h("canvas", { "aria-hidden": "true" });
+    this.context = this.node.getContext("2d");
+    element.append(this.node);
+    new ResizeObserver(() => {
+      if (this.fit()) draw();
+    }).observe(element);
+    this.fit();
+  }
+
+  fit() {
+    const ratio = Math.min(2, window.devicePixelRatio || 1);
+    const width = Math.floor(this.element.clientWidth);
+    const height = Math.floor(this.element.clientHeight);
+    if (width === this.width && height === this.height && ratio === this.ratio) return false;
+    Object.assign(this, { width, height, ratio });
+    this.node.width = Math.max(1, Math.round(width * ratio));
+    this.node.height = Math.max(1, Math.round(height * ratio));
+    return true;
+  }
+
+  /** An empty canvas in units of CSS pixels. */
+  begin() {
+    this.context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    this.context.clearRect(0, 0, this.width, this.height);
+    return this.context;
+  }
+
+  /** Where a pointer is, from the upper left corner. */
+  placeOf(event) {
+    const box = this.node.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+}

@@ -1,0 +1,96 @@
+// Controls of the form: one for each kind of key. A control shows a value and says when it is changed.
+import { h, newId } from "./dom.js";
+import { clean, sliderOf } from "./sliders.js";
+import { short, words } from "./units.js";
+
+/** A number with a slider beside it. */
+function numberField(row, entry, { id, size_mm, change }) {
+  const slider = sliderOf(row, entry.value, size_mm);
+  const step = row.kind === "whole" ? 1 : "any";
+  const number = h("input", { type: "number", id, step, onchange: () => number.value !== "" && change(Number(number.value)) });
+  const range =
+    slider &&
+    h("input", {
+      type: "range",
+      min: slider.low,
+      max: slider.high,
+      step: slider.step,
+      "aria-label": `${words(row.name)}, slider`,
+      "data-path": row.path,
+      oninput: () => {
+        const value = clean(Number(range.value), slider.step);
+        number.value = value;
+        change(value);
+      },
+    });
+  const show = (value) => {
+    number.value = value ?? "";
+    number.placeholder = value == null ? row.otherwise || "" : "";
+    if (!range) return;
+    range.value = value ?? slider.low;
+    range.classList.toggle("unset", value == null);
+  };
+  return { nodes: [number, range], show, holds: [number, range] };
+}
+
+function wordField(row, entry, { id, change }) {
+  if (row.words.length > 4) {
+    const select = h("select", { id, onchange: () => change(select.value) }, ...row.words.map((word) => h("option", { value: word }, words(word))));
+    return { nodes: [select], show: (value) => (select.value = value), holds: [select] };
+  }
+  const name = newId("word");
+  const inputs = row.words.map((word) => h("input", { type: "radio", name, value: word, onchange: () => change(word) }));
+  const labels = row.words.map((word, k) => h("label", {}, inputs[k], h("span", {}, words(word))));
+  const box = h("div", { class: "segments", role: "radiogroup", "aria-labelledby": id }, ...labels);
+  return { nodes: [box], show: (value) => inputs.forEach((input) => (input.checked = input.value === value)), holds: inputs, isGroup: true };
+}
+
+function flagField(row, entry, { id, change }) {
+  const input = h("input", { type: "checkbox", id, onchange: () => change(input.checked) });
+  return { nodes: [input], show: (value) => (input.checked = Boolean(value)), holds: [input] };
+}
+
+function textField(row, entry, { id, change, materials }) {
+  const list = row.path === "body.material" && materials.length > 0 ? newId("list") : null;
+  const input = h("input", { type: "text", id, list, spellcheck: "false", onchange: () => change(input.value === "" ? null : input.value) });
+  const options = list && h("datalist", { id: list }, ...materials.map(({ name, description }) => h("option", { value: name }, description || "")));
+  return { nodes: [input, options], show: (value) => (input.value = value ?? ""), holds: [input] };
+}
+
+/** Numbers in a row, with commas between. */
+function numbersField(row, entry, { id, change }) {
+  const input = h("input", {
+    type: "text",
+    id,
+    inputmode: "decimal",
+    onchange: () => {
+      const values = input.value.split(/[\s,;]+/).filter((text) => text !== "").map(Number);
+      if (values.length === 0) change(null);
+      else if (values.every(Number.isFinite)) change(values);
+    },
+  });
+  const show = (value) => (input.value = value == null ? "" : [].concat(value).map((v) => short(v, 12).replace("−", "-")).join(", "));
+  return { nodes: [input], show, holds: [input] };
+}
+
+/** What only the text can say: it is shown, and the text is where it is changed. Of a list it is told how long it is. */
+function writtenField(row, entry, { edit }) {
+  const text = h("code", {});
+  const show = (value) => (text.textContent = entry.list ? entry.entries || "none" : value == null ? "–" : JSON.stringify(value).slice(0, 60));
+  return { nodes: [text, h("button", { type: "button", class: "plain", onclick: edit }, "in the text")], show, holds: [] };
+}
+
+const FIELDS = {
+  number: numberField,
+  whole: numberField,
+  word: wordField,
+  flag: flagField,
+  text: textField,
+  numbers: numbersField,
+};
+
+/** \param row of the form \param entry of the design's keys \param given id, size_mm, materials, change(value), edit() */
+export function fieldOf(row, entry, given) {
+  const isList = Array.isArray(entry.value) && row.kind === "number";
+  return (isList ? numbersField : FIELDS[row.kind] || writtenField)(row, entry, given);
+}

@@ -1,0 +1,117 @@
+// RRE over all directions: rings of incidence with more places the wider they are, from coarse to fine. Where the engine
+// knows that directions are alike by symmetry, one of them is traced.
+import { MOVING } from "./session.js";
+
+const CHUNK_S = 0.014;
+const RING_STEPS_DEG = [10, 5, 2.5];
+const PLACES = 6; // of the first ring; the k-th has k times as many
+
+function turned(azimuth_deg) {
+  return ((azimuth_deg % 360) + 360) % 360;
+}
+
+/** The one direction that stands for all that are alike. */
+function representative(azimuth_deg, symmetry) {
+  let azimuth = turned(azimuth_deg);
+  if (!symmetry) return azimuth;
+  const period = symmetry.period_deg || 360;
+  azimuth = azimuth % period;
+  if (symmetry.mirror_deg != null) {
+    const across = (((2 * symmetry.mirror_deg - azimuth) % period) + period) % period;
+    azimuth = Math.min(azimuth, across);
+  }
+  return azimuth;
+}
+
+export class MapPass {
+  constructor(design, most_deg, stamp) {
+    Object.assign(this, { design, most_deg, stamp });
+    this.key = `${design.source}\n${design.toml}\n${most_deg}`;
+    this.values = new Map(); // by direction: rre
+    this.level = -1;
+    this.rings = null; // of the finest level that is whole: [{incidence_deg, values}]
+    this.advance();
+  }
+
+  nameOf(incidence, azimuth) {
+    const at = incidence === 0 ? 0 : representative(azimuth, this.design.azimuth_symmetry);
+    return `${incidence} ${Number(at.toFixed(6))}`;
+  }
+
+  places(level) {
+    const step = RING_STEPS_DEG[level];
+    const rings = [];
+    for (let k = 0; k * step <= this.most_deg + 1e-9; ++k) {
+      const count = k === 0 ? 1 : PLACES * k;
+      rings.push({ incidence_deg: k * step, names: Array.from({ length: count }, (_, i) => this.nameOf(k * step, (360 * i) / count)) });
+    }
+    return rings;
+  }
+
+  isWhole() {
+    return this.queue.length === 0;
+  }
+
+  advance() {
+    if (this.level + 1 >= RING_STEPS_DEG.length) return false;
+    this.level += 1;
+    const names = new Set(this.places(this.level).flatMap((ring) => ring.names));
+    this.queue = [...names].filter((name) => !this.values.has(name));
+    return true;
+  }
+
+  job() {
+    const asked = this.queue;
+    const directions = asked.map((name) => name.split(" ").map(Number));
+    const { toml, source } = this.design;
+    return { toml, source, pass: this, asks: [{ ask: "rre", directions, target_error: MOVING, seconds: CHUNK_S }] };
+  }
+
+  take(answer) {
+    answer.points.forEach(([rre], k) => this.values.set(this.queue[k], rre));
+    this.queue = this.queue.slice(answer.points.length);
+    if (this.isWhole())
+      this.rings = this.places(this.level).map(({ incidence_deg, names }) => ({
+        incidence_deg,
+        values: names.map((name) => this.values.get(name)),
+      }));
+  }
+}
+
+export class DirectionMap {
+  constructor(session) {
+    this.session = session;
+    this.most_deg = 60;
+    this.pass = null;
+    this.shown = null;
+    session.engine.lane({ next: () => this.next(), done: (job, data) => this.take(job, data) });
+  }
+
+  next() {
+    const { base, measure } = this.session;
+    if (!base || !base.traces) return null;
+    if (!this.pass || this.pass.level > 0 || this.pass.isWhole()) {
+      const wanted = new MapPass(base, this.most_deg, measure.drawn.point);
+      if (!this.pass || wanted.key !== this.pass.key) this.pass = wanted;
+    }
+    if (this.pass.isWhole() && (this.session.isMoving || !this.pass.advance())) return null;
+    return this.pass.job();
+  }
+
+  take(job, data) {
+    const answer = data.answers && data.answers[0];
+    if (job.pass !== this.pass) return;
+    if (!answer || !answer.ok) {
+      this.pass.queue = [];
+      this.pass.level = RING_STEPS_DEG.length;
+      return;
+    }
+    this.pass.take(answer);
+    if (!this.pass.isWhole()) {
+      this.session.tell("map_progress", this.pass);
+      return;
+    }
+    this.shown = this.pass;
+    this.session.tell("map", this.pass);
+  }
+}

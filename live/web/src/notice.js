@@ -1,0 +1,54 @@
+// What the page has to say of the design: errors, what it cannot do and what does, warnings.
+import { h } from "./dom.js";
+import { copy } from "./files.js";
+import { button } from "./frame.js";
+
+/** A command line that does what the page cannot, to be copied. */
+function commandLine(command, source) {
+  const text = command.replaceAll("DESIGN", source || "design.toml");
+  return h("span", { class: "command" }, h("code", {}, text), button("Copy", (event) => copy(text).then((done) => (event.target.textContent = done ? "Copied" : "Copy"))));
+}
+
+export class Notice {
+  constructor(session) {
+    this.session = session;
+    this.refusal = h("div", { class: "refusal", role: "alert" });
+    this.remarks = h("div", { class: "remarks", role: "status" });
+    this.node = h("div", { class: "notice" }, this.refusal, this.remarks);
+    this.told = "";
+  }
+
+  start() {
+    this.session.on("refused", ({ error }) => this.refuse(error));
+    this.session.on("design", ({ design }) => this.tell(design));
+    this.session.on("answer", () => this.blame());
+  }
+
+  /** The last design stays in view; this says why the new one is not. */
+  refuse(error) {
+    const shown = this.session.base ? " The last design that can be built stays in view." : "";
+    this.refusal.replaceChildren(h("p", {}, h("strong", {}, "Not like this: "), error.text, h("span", { class: "quiet" }, shown)));
+    if (error.command) this.refusal.append(commandLine(error.command, this.session.base && this.session.base.source));
+  }
+
+  tell(design) {
+    this.refusal.replaceChildren();
+    const told = JSON.stringify([design.traces, design.why_not, design.command, design.notes, design.warnings, design.source]);
+    if (told === this.told) return;
+    this.told = told;
+    const lines = [...(design.notes || []), ...(design.warnings || [])].map((text) => h("p", {}, text));
+    if (!design.traces) {
+      lines.unshift(h("p", { class: "cannot" }, h("strong", {}, "This page does not trace it: "), design.why_not));
+      if (design.command) lines.splice(1, 0, commandLine(design.command, design.source));
+    }
+    this.remarks.replaceChildren(...lines);
+  }
+
+  /** A direction that was not traced, of a design that is. */
+  blame() {
+    const { why, base } = this.session;
+    if (!why || (base && !base.traces)) return;
+    this.refusal.replaceChildren(h("p", {}, why.text));
+    if (why.command) this.refusal.append(commandLine(why.command, base && base.source));
+  }
+}

@@ -1,0 +1,100 @@
+// The directions in which light comes back, seen from the source: spots round the cone that counts.
+import { h, s } from "../dom.js";
+import { panel } from "../frame.js";
+import { angle, percent, short } from "../units.js";
+
+const MOST = 6; // spots that are named
+const HALF = 110; // of the drawing, in its units
+const REACHES_DEG = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 90, 180];
+const LEAST = 1e-5; // power of a spot that decides how far the drawing reaches
+
+export class FarFieldPanel {
+  constructor(session) {
+    this.session = session;
+    this.drawing = s("svg", { viewBox: `${-HALF - 8} ${-HALF - 8} ${2 * HALF + 16} ${2 * HALF + 16}`, role: "img", "aria-label": "Spots of the far field" });
+    this.reach = h(
+      "select",
+      { "aria-label": "How far round the return is shown", onchange: () => this.show() },
+      h("option", { value: "near" }, "round the return"),
+      h("option", { value: "far" }, "all of it"),
+    );
+    this.rows = h("tbody", {});
+    this.rest = h("p", { class: "caption" });
+    const table = h(
+      "table",
+      {},
+      h("thead", {}, h("tr", {}, ...["", "Deviation", "Towards", "Power", "Hits"].map((text, k) => h("th", { scope: "col", class: k > 0 ? "n" : "" }, text)))),
+      this.rows,
+    );
+    this.node = panel("far", "Far field", { tools: [this.reach] }, h("div", { class: "far-box" }, this.drawing, h("div", { class: "table-box" }, table)), this.rest);
+  }
+
+  start() {
+    this.session.on("answer", () => this.take(this.session.answer));
+    this.session.on("rested", (answer) => answer && this.take(answer));
+  }
+
+  take(answer) {
+    this.field = answer && answer.far_field;
+    this.cone_deg = answer ? answer.acceptance_half_angle_deg : 0.5;
+    this.show();
+  }
+
+  /** The half width of the drawing: the cone and the spots near it, or the farthest. */
+  width() {
+    const away = this.field.spots.filter(({ power }) => power > LEAST).map(({ deviation_deg }) => deviation_deg);
+    const near = this.reach.value === "near" ? away.filter((deg) => deg <= Math.max(5, 3 * this.cone_deg)) : away;
+    const most = 1.15 * Math.max(this.cone_deg, ...near);
+    return REACHES_DEG.find((deg) => deg >= most) || 180;
+  }
+
+  show() {
+    if (!this.field) {
+      this.drawing.replaceChildren();
+      this.rows.replaceChildren();
+      this.rest.textContent = "";
+      return;
+    }
+    const reach = this.width();
+    const scale = HALF / reach;
+    const rings = [0.5, 1].map((share) => s("circle", { class: "guide", r: share * HALF }));
+    const cone = s("circle", { class: "cone", r: Math.max(1.5, this.cone_deg * scale) });
+    const label = s("text", { x: HALF * 0.71 + 3, y: HALF * 0.71 + 8 }, angle(reach));
+    const spots = this.field.spots
+      .map((spot, k) => ({ ...spot, k }))
+      .filter(({ deviation_deg }) => deviation_deg <= reach)
+      .reverse()
+      .map((spot) => this.spotOf(spot, scale));
+    this.drawing.replaceChildren(...rings, cone, label, ...spots);
+    this.list();
+  }
+
+  spotOf({ deviation_deg, orientation_deg, power, depth, k }, scale) {
+    const turn = (orientation_deg * Math.PI) / 180;
+    const x = deviation_deg * scale * Math.cos(turn);
+    const y = -deviation_deg * scale * Math.sin(turn);
+    const radius = Math.max(1.4, 13 * Math.sqrt(power));
+    const group = s("g", { class: depth === 0 ? "spot front" : "spot" }, s("circle", { cx: x, cy: y, r: radius }, s("title", {}, `${percent(power)} at ${angle(deviation_deg)}`)));
+    if (k < MOST) group.append(s("text", { x: x + radius + 2, y: y + 3 }, String(k + 1)));
+    return group;
+  }
+
+  list() {
+    const { spots, other_power, total_power } = this.field;
+    this.rows.replaceChildren(
+      ...spots.slice(0, MOST).map((spot, k) =>
+        h(
+          "tr",
+          {},
+          h("th", { scope: "row" }, k + 1),
+          h("td", { class: "n" }, angle(spot.deviation_deg)),
+          h("td", { class: "n" }, spot.deviation_deg < 1e-6 ? "source" : `${short(spot.orientation_deg, 3)}°`),
+          h("td", { class: "n" }, percent(spot.power)),
+          h("td", { class: "n" }, spot.depth || "front"),
+        ),
+      ),
+    );
+    const more = spots.slice(MOST).reduce((sum, { power }) => sum + power, other_power || 0);
+    this.rest.textContent = `The ring of colour is the cone that counts, ${angle(this.cone_deg)}. ${percent(total_power)} leaves the front; ${percent(more)} in other directions.`;
+  }
+}

@@ -1,0 +1,201 @@
+// RRE over all directions, as the source sees the part: the middle is light along its normal, +x to the right.
+import { Canvas, h } from "../dom.js";
+import { panel } from "../frame.js";
+import { percent, short } from "../units.js";
+import { colour, isDark } from "../../../../report/page/web/src/theme.js";
+
+// ColorBrewer's YlGnBu, as maps of reports have it; turned over in the dark, so that nothing is the colour of the paper.
+const SCALE = ["#ffffd9", "#edf8b1", "#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8", "#253494", "#081d58"].map((text) =>
+  [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)),
+);
+const SIZE = 240; // of the picture that is stretched over the disc, in pixels
+
+/** 256 colours from least to most. */
+function coloursOf(dark) {
+  const scale = dark ? [...SCALE].reverse() : SCALE;
+  return Array.from({ length: 256 }, (_, k) => {
+    const at = (k / 255) * (scale.length - 1);
+    const low = Math.min(scale.length - 2, Math.floor(at));
+    return scale[low].map((c, i) => Math.round(c + (at - low) * (scale[low + 1][i] - c)));
+  });
+}
+
+/** For each pixel of the picture how far from the middle it lies, as a share of the radius, and its turn. */
+function polarPixels() {
+  const away = new Float32Array(SIZE * SIZE);
+  const turn = new Float32Array(SIZE * SIZE);
+  for (let k = 0; k < SIZE * SIZE; ++k) {
+    const x = (2 * ((k % SIZE) + 0.5)) / SIZE - 1;
+    const y = 1 - (2 * (Math.floor(k / SIZE) + 0.5)) / SIZE;
+    away[k] = Math.hypot(x, y);
+    turn[k] = (Math.atan2(y, x) / (2 * Math.PI) + 1) % 1;
+  }
+  return { away, turn };
+}
+
+/** The value on a ring, linear between its places. */
+function onRing(values, turn) {
+  const at = turn * values.length;
+  const k = Math.floor(at) % values.length;
+  return values[k] + (at - Math.floor(at)) * (values[(k + 1) % values.length] - values[k]);
+}
+
+export class MapPanel {
+  constructor(session) {
+    this.session = session;
+    this.element = h("div", {
+      class: "picture map-view",
+      tabindex: "0",
+      role: "application",
+      "aria-label":
+        "RRE over all directions of the light. Left and right arrows turn the azimuth that is pointed at, up and down change the incidence.",
+    });
+    this.caption = h("p", { class: "caption" });
+    this.bar = h("div", { class: "map-bar", "aria-hidden": "true" }, h("span", {}, "0"), h("i"), h("span", {}, "100 %"));
+    this.spoken = h("p", { class: "spoken", "aria-live": "polite" });
+    this.node = panel("map", "RRE over all directions", {}, this.element, this.bar, this.caption, this.spoken);
+    this.picture = document.createElement("canvas");
+    this.picture.width = this.picture.height = SIZE;
+    this.pixels = polarPixels();
+  }
+
+  start() {
+    this.canvas = new Canvas(this.element, () => this.draw());
+    this.session.on("map", (pass) => this.show(pass));
+    this.session.on("map_progress", (pass) => this.tell(pass));
+    this.session.on("direction", () => this.draw());
+    this.paintBar();
+    const at = (event) => {
+      const { x, y, radius } = this.disc();
+      const [px, py] = this.canvas.placeOf(event);
+      const away = Math.min(1, Math.hypot(px - x, py - y) / radius);
+      const incidence = Math.round(2 * away * this.session.map.most_deg) / 2;
+      this.session.look(incidence, incidence ? Math.round((Math.atan2(y - py, px - x) * 180) / Math.PI) : 0);
+    };
+    this.canvas.node.addEventListener("pointerdown", (event) => {
+      this.canvas.node.setPointerCapture(event.pointerId);
+      this.isHeld = true;
+      at(event);
+    });
+    this.canvas.node.addEventListener("pointermove", (event) => this.isHeld && at(event));
+    for (const end of ["pointerup", "pointercancel"]) this.canvas.node.addEventListener(end, () => (this.isHeld = false));
+    this.element.addEventListener("keydown", (event) => this.press(event));
+  }
+
+  press(event) {
+    const moves = { ArrowLeft: [0, 5], ArrowRight: [0, -5], ArrowUp: [1, 0], ArrowDown: [-1, 0] };
+    if (!moves[event.key]) return;
+    event.preventDefault();
+    const { incidence_deg, azimuth_deg } = this.session.direction;
+    const [more, turn] = moves[event.key];
+    this.session.look(Math.max(0, incidence_deg + more), azimuth_deg + turn);
+    const { direction } = this.session;
+    this.spoken.textContent = `Incidence ${direction.incidence_deg}, azimuth ${direction.azimuth_deg} degrees`;
+  }
+
+  paintBar() {
+    const stops = coloursOf(isDark()).filter((_, k) => k % 15 === 0);
+    this.bar.querySelector("i").style.background = `linear-gradient(to right, ${stops.map((c) => `rgb(${c})`).join(",")})`;
+  }
+
+  /** In other colours. */
+  recolour() {
+    this.paintBar();
+    if (this.pass) this.paint();
+    this.draw();
+  }
+
+  disc() {
+    const { width, height } = this.canvas;
+    const radius = Math.max(20, Math.min(width / 2 - 26, height / 2 - 18));
+    return { x: width / 2, y: height / 2, radius };
+  }
+
+  show(pass) {
+    this.pass = pass;
+    this.paint();
+    this.draw();
+    this.tell(pass);
+    this.session.measure.shown("map", pass.stamp);
+    this.element.dataset.level = pass.level;
+  }
+
+  tell(pass) {
+    const done = pass.values.size;
+    const finer = pass.queue.length ? `, ${pass.queue.length} to come` : "";
+    this.caption.textContent = `${done} directions at 10⁻⁴${finer}. Light from +x is to the right; the rim is ${pass.most_deg}°.`;
+  }
+
+  /** The disc in pixels, linear between rings; what lies outside stays clear. */
+  paint() {
+    const context = this.picture.getContext("2d");
+    const image = context.createImageData(SIZE, SIZE);
+    const pixels = new Uint32Array(image.data.buffer);
+    const colours = Uint32Array.from(coloursOf(isDark()), ([r, g, b]) => (255 << 24) | (b << 16) | (g << 8) | r);
+    const { away, turn } = this.pixels;
+    const { rings } = this.pass;
+    const values = rings.map((ring) => ring.values);
+    for (let k = 0; k < pixels.length; ++k) {
+      if (away[k] > 1.01) continue;
+      const at = Math.min(1, away[k]) * (rings.length - 1);
+      const low = Math.min(rings.length - 2, Math.floor(at));
+      const value = onRing(values[low], turn[k]) * (1 - at + low) + onRing(values[low + 1], turn[k]) * (at - low);
+      pixels[k] = colours[Math.max(0, Math.min(255, Math.round(255 * value)))];
+    }
+    context.putImageData(image, 0, 0);
+  }
+
+  draw() {
+    if (this.canvas.width < 2) return;
+    const context = this.canvas.begin();
+    const { x, y, radius } = this.disc();
+    if (this.pass) {
+      context.save();
+      context.beginPath();
+      context.arc(x, y, radius, 0, 2 * Math.PI);
+      context.clip();
+      context.imageSmoothingQuality = "high";
+      context.drawImage(this.picture, x - radius, y - radius, 2 * radius, 2 * radius);
+      context.restore();
+    }
+    this.drawGrid(context, x, y, radius);
+    this.drawPointer(context, x, y, radius);
+  }
+
+  drawGrid(context, x, y, radius) {
+    const most = this.session.map.most_deg;
+    context.font = "11px DejaVu Sans, system-ui, sans-serif";
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    const step = most > 40 ? 20 : 10;
+    for (let deg = step; deg <= most; deg += step) {
+      context.beginPath();
+      context.arc(x, y, (radius * deg) / most, 0, 2 * Math.PI);
+      context.strokeStyle = deg === most ? colour("--line") : "rgba(128,138,150,0.45)";
+      context.lineWidth = 1;
+      context.stroke();
+    }
+    context.fillStyle = colour("--quiet");
+    for (let turn = 0; turn < 360; turn += 90) {
+      const angle = (turn * Math.PI) / 180;
+      context.fillText(`${turn}°`, x + (radius + 15) * Math.cos(angle), y - (radius + 10) * Math.sin(angle));
+    }
+  }
+
+  drawPointer(context, x, y, radius) {
+    const { incidence_deg, azimuth_deg } = this.session.direction;
+    const away = Math.min(1, Math.abs(incidence_deg) / this.session.map.most_deg) * radius;
+    const turn = ((azimuth_deg + (incidence_deg < 0 ? 180 : 0)) * Math.PI) / 180;
+    const at = [x + away * Math.cos(turn), y - away * Math.sin(turn)];
+    for (const [width, name] of [
+      [4, "--paper"],
+      [2, "--text"],
+    ]) {
+      context.strokeStyle = colour(name);
+      context.lineWidth = width;
+      context.beginPath();
+      context.arc(...at, 6, 0, 2 * Math.PI);
+      context.stroke();
+    }
+  }
+}

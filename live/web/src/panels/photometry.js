@@ -1,0 +1,105 @@
+// Test points of a standard: the coefficient of retroreflection at each, its limit, and the verdict.
+import { h } from "../dom.js";
+import { panel } from "../frame.js";
+import { short, words } from "../units.js";
+
+const VERDICTS = { pass: "good", fail: "bad", unconfirmed: "open", undetermined: "open" };
+
+export class PhotometryPanel {
+  constructor(session) {
+    this.session = session;
+    const choice = (label) => h("select", { "aria-label": label, onchange: () => this.choose(label) });
+    this.standard = choice("Standard");
+    this.part_class = choice("Class");
+    this.colour = choice("Colour");
+    this.area = h("input", { type: "number", min: 0.01, step: "any", value: 100, "aria-label": "Area in square centimetres", onchange: () => this.choose() });
+    this.verdict = h("p", { class: "verdict", "aria-live": "polite" });
+    this.rows = h("tbody", {});
+    this.table = h(
+      "div",
+      { class: "table-box", tabindex: "0", role: "region", "aria-label": "Test points", hidden: true },
+      h("table", {}, h("thead", {}, h("tr", {}, ...["Observation", "V", "H", "R_I (mcd/lx)", "Limit", "Verdict"].map((text, k) => h("th", { scope: "col", class: k < 5 ? "n" : "" }, text)))), this.rows),
+    );
+    this.remarks = h("p", { class: "caption" });
+    const controls = h("div", { class: "programme" }, this.standard, this.part_class, this.colour, h("label", {}, this.area, " cm²"));
+    this.node = panel("test", "Test points of a standard", {}, controls, this.verdict, this.table, this.remarks);
+  }
+
+  start(standards) {
+    this.standards = standards;
+    this.standard.append(h("option", { value: "" }, "choose a standard"), ...standards.map(({ name, description }) => h("option", { value: name }, `${name} – ${description}`)));
+    this.fillChoices();
+    this.session.on("judging", () => (this.verdict.textContent = "working it out …"));
+    this.session.on("judged", (answer) => this.show(answer));
+    this.session.on("moving", (moving) => this.node.classList.toggle("stale", moving && Boolean(this.standard.value)));
+  }
+
+  fillChoices() {
+    const chosen = this.standards.find(({ name }) => name === this.standard.value);
+    for (const [select, list] of [
+      [this.part_class, chosen ? chosen.classes : []],
+      [this.colour, chosen ? chosen.colours : []],
+    ]) {
+      const before = select.value;
+      select.replaceChildren(...list.map((name) => h("option", { value: name }, name)));
+      if (list.includes(before)) select.value = before;
+      select.hidden = list.length < 2;
+    }
+  }
+
+  /** What is asked for, as the address keeps it; nothing where no standard is chosen. */
+  programme() {
+    if (!this.standard.value) return null;
+    const programme = { standard: this.standard.value, area_cm2: Number(this.area.value) };
+    if (this.part_class.value) programme.class = this.part_class.value;
+    if (this.colour.value) programme.colour = this.colour.value;
+    return programme;
+  }
+
+  restore(programme) {
+    if (!programme) return;
+    this.standard.value = programme.standard;
+    this.fillChoices();
+    if (programme.class) this.part_class.value = programme.class;
+    if (programme.colour) this.colour.value = programme.colour;
+    this.area.value = programme.area_cm2;
+    this.session.rest.choose(this.programme());
+  }
+
+  choose(label) {
+    if (label === "Standard") this.fillChoices();
+    this.clear();
+    this.session.rest.choose(this.programme());
+    this.session.tell("state");
+  }
+
+  clear() {
+    this.verdict.replaceChildren();
+    this.table.hidden = true;
+    this.remarks.textContent = "";
+  }
+
+  show(answer) {
+    this.node.classList.remove("stale");
+    if (!answer.ok) {
+      this.clear();
+      this.verdict.textContent = answer.text;
+      return;
+    }
+    const chip = (verdict) => h("span", { class: `chip ${VERDICTS[verdict] || ""}` }, verdict);
+    this.verdict.replaceChildren(chip(answer.verdict), answer.reason ? ` ${answer.reason}` : "");
+    this.rows.replaceChildren(
+      ...answer.points.map((point) =>
+        h(
+          "tr",
+          {},
+          ...[`${short(60 * point.observation_deg, 3)}′`, `${short(point.v_deg)}°`, `${short(point.h_deg)}°`, short(point.value_mcd_per_lx, 3), short(point.limit_mcd_per_lx, 3)].map((text) => h("td", { class: "n" }, text)),
+          h("td", {}, chip(point.verdict)),
+        ),
+      ),
+    );
+    this.table.hidden = false;
+    const notes = [...(answer.left_out || []), ...(answer.warnings || [])];
+    this.remarks.textContent = [answer.has_diffraction ? "With diffraction." : "Without diffraction.", ...notes.map(words)].join(" ");
+  }
+}

@@ -1,0 +1,101 @@
+// The ways of the light in words: which there are, and one of them interface by interface, its angles against the critical
+// one.
+import { h } from "../dom.js";
+import { panel } from "../frame.js";
+import { percent, short, words } from "../units.js";
+import { colourOf } from "./scene.js";
+
+const MARKS = { total_reflection: "good", reflection: "open", exits: "bad", escapes: "bad", leaves_side: "bad", ends: "bad", leaves: "good" };
+
+/** From 0 to 90 degrees: where the light stands, and beyond what angle all of it is reflected. */
+function gauge({ incidence_deg, critical_deg, event }) {
+  if (incidence_deg == null) return "";
+  const share = (deg) => `${((100 * deg) / 90).toFixed(1)}%`;
+  return h(
+    "span",
+    { class: "gauge", "aria-hidden": "true" },
+    critical_deg == null ? null : h("i", { class: "total", style: `left: ${share(critical_deg)}` }),
+    h("b", { class: MARKS[event] || "", style: `left: ${share(incidence_deg)}` }),
+  );
+}
+
+export class RayPanel {
+  constructor(session) {
+    this.session = session;
+    this.chosen = 0; // of the paths; -1 is all of them
+    this.listed = "";
+    this.list = h("fieldset", { class: "paths" });
+    this.rows = h("tbody", {});
+    const heads = [["", ""], ["Interface", ""], ["Angle", "n"], ["Critical", "n"], ["0 – 90°", "g"], ["Power", "n"]];
+    const table = h(
+      "table",
+      {},
+      h("thead", {}, h("tr", {}, ...heads.map(([text, style]) => h("th", { scope: "col", class: style }, text)))),
+      this.rows,
+    );
+    this.node = panel(
+      "ray",
+      "Ray, interface by interface",
+      {},
+      this.list,
+      h("div", { class: "table-box", tabindex: "0", role: "region", "aria-label": "Interfaces of the ray" }, table),
+    );
+  }
+
+  start() {
+    this.session.on("answer", () => this.show());
+  }
+
+  choose(index) {
+    this.chosen = index;
+    this.tell();
+    this.session.tell("path", index);
+  }
+
+  show() {
+    const { paths } = this.session;
+    if (this.chosen >= paths.length) this.choose(0);
+    this.listPaths();
+    this.tell();
+  }
+
+  /** The paths to choose from; they stay while only their angles change. */
+  listPaths() {
+    const { paths, spot } = this.session;
+    const texts = paths.map((path) => (path.share == null ? path.fate : `${path.fate} · ${percent(path.share, 0)}`));
+    const listed = JSON.stringify([texts, paths.map(colourOf), Boolean(spot)]);
+    if (listed === this.listed) return;
+    this.listed = listed;
+    this.list.replaceChildren(
+      h("legend", {}, spot ? "The ray at the spot that was picked" : "Light paths, the most frequent first"),
+      ...texts.map((text, index) => this.choice(index, text, colourOf(paths[index], index))),
+      ...(paths.length > 1 ? [this.choice(-1, "all of them", null)] : []),
+    );
+  }
+
+  choice(index, text, colour) {
+    const input = h("input", { type: "radio", name: "live-path", value: index, onchange: () => this.choose(index) });
+    input.checked = index === this.chosen;
+    const swatch = h("span", { class: "swatch", style: colour ? `background: var(${colour})` : "visibility: hidden" });
+    return h("label", {}, input, swatch, h("span", {}, text));
+  }
+
+  tell() {
+    const path = this.session.paths[Math.max(0, this.chosen)];
+    this.rows.replaceChildren(...(path ? path.steps.map((step, k) => this.row(step, k)) : []));
+  }
+
+  row(step, k) {
+    const degrees = (deg) => (deg == null ? "" : `${deg.toFixed(1)}°`);
+    return h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, k + 1),
+      h("td", { title: step.at_mm ? `at (${step.at_mm.map((c) => short(c)).join(", ")}) mm` : null }, step.text ? step.text.replace(/\.$/, "") : words(step.event)),
+      h("td", { class: "n" }, degrees(step.incidence_deg)),
+      h("td", { class: "n" }, degrees(step.critical_deg)),
+      h("td", { class: "g" }, gauge(step)),
+      h("td", { class: "n" }, percent(step.power, 1)),
+    );
+  }
+}

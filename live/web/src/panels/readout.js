@@ -1,0 +1,107 @@
+// The number that all is about, how sure it is while something moves and at rest, and the direction that it is of.
+import { h, newId } from "../dom.js";
+import { short } from "../units.js";
+
+/** RRE and what may be missing of it, in percent: "76.231 to 76.240". */
+function bounds({ rre, truncated }) {
+  const decimals = truncated > 5e-6 ? 3 : 5;
+  const low = (100 * rre).toFixed(decimals);
+  const high = (100 * (rre + Math.max(0, truncated))).toFixed(decimals);
+  return low === high ? `${low} %` : `${low} … ${high} %`;
+}
+
+function milliseconds(answer) {
+  return answer.ms < 1000 ? `${answer.ms.toFixed(answer.ms < 10 ? 1 : 0)} ms` : `${(answer.ms / 1000).toFixed(1)} s`;
+}
+
+/** A line of the accuracies: which, between what RRE lies, how long it took. */
+class Accuracy {
+  constructor(name, title) {
+    this.value = h("output", {}, "–");
+    this.cost = h("span", { class: "quiet" });
+    this.node = h("div", { class: `accuracy ${name}`, title }, h("i", { class: "lamp" }), h("span", { class: "power" }, name === "moving" ? "10⁻⁴" : "10⁻⁶"), this.value, this.cost);
+  }
+
+  show(answer) {
+    this.value.textContent = bounds(answer);
+    this.cost.textContent = `${milliseconds(answer)} · ${answer.beams} beams`;
+    this.node.classList.toggle("incomplete", answer.complete === false);
+    this.node.classList.remove("old");
+  }
+
+  stale() {
+    this.node.classList.add("old");
+  }
+}
+
+export class Readout {
+  constructor(session, ledger) {
+    this.session = session;
+    this.number = h("output", { class: "number" }, "–");
+    this.small = h("output", { "aria-hidden": "true" }, "–"); // beside the pictures of a phone
+    this.what = h("span", { class: "what" }, "of the light comes back");
+    this.moving = new Accuracy("moving", "While something moves at most 1e-4 of the light is left untraced");
+    this.resting = new Accuracy("resting", "At rest at most 1e-6 of the light is left untraced");
+    this.spoken = h("p", { class: "spoken", "aria-live": "polite" });
+    this.controls = [this.control("incidence_deg", "Incidence", -80, 80, 0.5), this.control("azimuth_deg", "Azimuth", 0, 360, 1)];
+    this.node = h(
+      "section",
+      { class: "readout", "aria-label": "Retroreflective efficiency" },
+      h("div", { class: "main-number" }, h("span", { class: "name", title: "Retroreflective efficiency: the share of the light that comes back within the cone of acceptance" }, "RRE"), this.number, this.what),
+      h("div", { class: "accuracies" }, this.moving.node, this.resting.node),
+      h("fieldset", { class: "direction" }, h("legend", { class: "spoken" }, "Direction of the light"), ...this.controls.map(({ node }) => node)),
+      ledger.node,
+      this.spoken,
+    );
+  }
+
+  control(key, name, low, high, step) {
+    const id = newId(key);
+    const look = (value) => {
+      if (!Number.isFinite(value)) return;
+      const next = { ...this.session.direction, [key]: value };
+      this.session.look(next.incidence_deg, next.azimuth_deg);
+    };
+    const number = h("input", { type: "number", id, min: low, max: high, step, onchange: () => look(Number(number.value)) });
+    const slider = h("input", { type: "range", min: low, max: high, step, "aria-label": `${name} in degrees`, "data-direction": key, oninput: () => look(Number(slider.value)) });
+    const node = h("div", { class: "control" }, h("label", { for: id }, name), h("span", { class: "with-unit" }, number, h("span", {}, "°")), slider);
+    return { key, node, number, slider };
+  }
+
+  start() {
+    this.session.on("direction", (direction) => this.point(direction));
+    this.session.on("answer", () => this.show());
+    this.session.on("rested", (answer) => answer && this.rest(answer));
+    this.session.on("moving", (moving) => {
+      this.node.classList.toggle("is-moving", moving);
+      if (moving) this.resting.stale();
+    });
+    this.point(this.session.direction);
+  }
+
+  point(direction) {
+    for (const { key, number, slider } of this.controls) {
+      number.value = direction[key];
+      slider.value = direction[key];
+    }
+  }
+
+  show() {
+    const { answer, why } = this.session;
+    this.node.classList.toggle("absent", !answer);
+    if (!answer) {
+      this.number.textContent = "–";
+      this.what.textContent = why ? why.text : "";
+      return;
+    }
+    this.number.textContent = this.small.textContent = `${(100 * answer.rre).toFixed(2)} %`;
+    this.what.textContent = `comes back within ${short(answer.acceptance_half_angle_deg)}°`;
+    this.moving.show(answer);
+  }
+
+  rest(answer) {
+    this.number.textContent = `${(100 * answer.rre).toFixed(3)} %`;
+    this.resting.show(answer);
+    this.spoken.textContent = `RRE ${(100 * answer.rre).toFixed(2)} percent`;
+  }
+}

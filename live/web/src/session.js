@@ -1,0 +1,143 @@
+// What the page is about: a design, a direction of the light, perhaps a spot of the plan - and what the engine has said of
+// them. Everything that changes goes through here; what shows it listens.
+import { Curve } from "./curve_work.js";
+import { DirectionMap } from "./map_work.js";
+import { Measure } from "./measure.js";
+import { Rest } from "./rest_work.js";
+
+export const MOVING = 1e-4; // most that may be left untraced while something moves, as a share of the light
+export const RESTING = 1e-6; // the same at rest
+const REST_MS = 260; // without a change, until the picture is traced in full
+const MOST_S = 1.5; // for one direction while moving
+
+export class Session {
+  constructor(engine) {
+    this.engine = engine;
+    this.listeners = new Map();
+    this.base = null; // the design that is shown, as the engine opened it
+    this.changes = {}; // keys that are to be other than in `base`, but have not been traced yet
+    this.adapt = false;
+    this.wanted = null; // a text that is to take the place of `base`
+    this.direction = { incidence_deg: 0, azimuth_deg: 0 };
+    this.spot = null;
+    this.answer = null; // of the direction, while moving
+    this.part = null;
+    this.isDue = false;
+    this.isMoving = false;
+    this.revision = 0;
+    this.measure = new Measure();
+    this.point = engine.lane({ next: () => this.nextPoint(), done: (job, data) => this.takePoint(job, data) });
+    this.curve = new Curve(this);
+    this.map = new DirectionMap(this);
+    this.rest = new Rest(this);
+  }
+
+  on(event, listener) {
+    if (!this.listeners.has(event)) this.listeners.set(event, []);
+    this.listeners.get(event).push(listener);
+  }
+
+  tell(event, value) {
+    for (const listener of this.listeners.get(event) || []) listener(value);
+  }
+
+  /** A key of the form; nothing takes it back. `adapt`: what no longer means anything beside it goes too. */
+  change(path, value, adapt = false) {
+    this.changes[path] = value;
+    this.adapt = this.adapt || adapt;
+    this.touch();
+  }
+
+  /** Another design. `then` is called with the engine's answer. */
+  open(toml, source, then = () => {}) {
+    this.wanted = { toml, source, then };
+    this.changes = {};
+    this.adapt = false;
+    this.touch();
+  }
+
+  look(incidence_deg, azimuth_deg) {
+    const turns = ((azimuth_deg % 360) + 360) % 360;
+    this.direction = { incidence_deg: Math.max(-89, Math.min(89, incidence_deg)), azimuth_deg: turns };
+    this.tell("direction", this.direction);
+    this.touch();
+  }
+
+  pick(spot) {
+    this.spot = spot;
+    this.touch();
+  }
+
+  /** Something has moved: a quick picture at once, a full one when all is at rest. */
+  touch() {
+    this.isDue = true;
+    this.isMoving = true;
+    this.measure.touched();
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.settle(), REST_MS);
+    this.tell("moving", true);
+    this.engine.pump();
+  }
+
+  settle() {
+    if (this.isDue || this.point.running > 0) {
+      this.timer = setTimeout(() => this.settle(), REST_MS);
+      return;
+    }
+    this.isMoving = false;
+    this.tell("moving", false);
+    this.tell("rest");
+    this.engine.pump();
+  }
+
+  // --- the lane of the direction that is pointed at
+
+  nextPoint() {
+    if (!this.isDue || (!this.base && !this.wanted)) return null;
+    this.isDue = false;
+    const job = this.wanted
+      ? { ...this.wanted, wanted: this.wanted }
+      : { toml: this.base.toml, source: this.base.source };
+    if (Object.keys(this.changes).length > 0) Object.assign(job, { changes: { ...this.changes }, adapt: this.adapt });
+    const at = { ...this.direction };
+    job.asks = [
+      { ask: "direction", ...at, target_error: MOVING, seconds: MOST_S },
+      this.spot ? { ask: "path", ...at, at_mm: this.spot } : { ask: "stories", ...at },
+    ];
+    if (job.changes || job.wanted || !this.part) job.asks.push({ ask: "part" });
+    return Object.assign(job, { at, spot: this.spot, stamp: this.measure.stamp });
+  }
+
+  takePoint(job, data) {
+    if (data.fault || data.error) {
+      this.refuse(job, data.error || { kind: "fault", text: data.fault });
+      return;
+    }
+    this.accept(job, data.design);
+    const [direction, paths, part] = data.answers;
+    if (part && part.ok) this.part = part;
+    this.answer = direction.ok ? { ...direction, ...job.at } : null;
+    this.why = direction.ok ? null : direction;
+    this.paths = !paths.ok ? [] : job.spot ? [{ ...paths, spot: job.spot }] : paths.paths;
+    this.tell("answer", { isNewPart: Boolean(part && part.ok), stamp: job.stamp });
+  }
+
+  /** What was asked for cannot be: it is said, and the last picture stays. */
+  refuse(job, error) {
+    if (job.wanted && this.wanted === job.wanted) this.wanted = null;
+    this.tell("refused", { error, changes: job.changes || null, text: job.wanted ? job.wanted.toml : null });
+    if (job.wanted) job.wanted.then(error);
+  }
+
+  accept(job, design) {
+    const isNew = !this.base || this.base.toml !== design.toml || this.base.source !== design.source;
+    if (job.wanted && this.wanted === job.wanted) this.wanted = null;
+    for (const [path, value] of Object.entries(job.changes || {}))
+      if (this.changes[path] === value) delete this.changes[path];
+    if (Object.keys(this.changes).length === 0) this.adapt = false;
+    this.base = design;
+    if (isNew) this.revision += 1;
+    this.tell("design", { design, isNew, isOpened: Boolean(job.wanted) });
+    if (job.wanted) job.wanted.then(design);
+  }
+}

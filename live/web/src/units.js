@@ -1,0 +1,40 @@
+// Names and numbers as people read them.
+
+const SUFFIXES = [
+  ["_per_mm", "1/mm"],
+  ["_arcmin", "′"],
+  ["_percent", "%"],
+  ["_deg", "°"],
+  ["_mm", "mm"],
+  ["_um", "µm"],
+  ["_nm", "nm"],
+  ["_c", "°C"],
+];
+
+/** "apex_angle_deg" is an "apex angle" in "°". */
+export function named(key) {
+  for (const [suffix, unit] of SUFFIXES)
+    if (key.endsWith(suffix)) return { label: key.slice(0, -suffix.length).replaceAll("_", " "), unit };
+  return { label: key.replaceAll("_", " "), unit: "" };
+}
+
+export function words(name) {
+  return name.replaceAll("_", " ");
+}
+
+/** The shortest text of a number with so many digits that count. */
+export function short(value, digits = 4) {
+  return value == null ? "–" : String(Number(value.toPrecision(digits))).replace("-", "−");
+}
+
+export function percent(share, decimals = 2) {
+  return share == null ? "–" : `${(100 * share).toFixed(decimals).replace("-", "−")} %`;
+}
+
+/** Degrees, or minutes of arc where they are small. */
+export function angle(deg) {
+  if (deg === 0) return "0°";
+  const size = Math.abs(deg);
+  if (size < 1e-6) return "0°";
+  return size < 0.5 ? `${short(60 * deg, 3)}′` : `${short(deg, 4)}°`;
+}

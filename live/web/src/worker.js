@@ -1,0 +1,58 @@
+// Runs in the worker: the engine, and the designs that it has open. A job is a design - a text, and keys that are changed -
+// and what is asked of it; each answer goes back with the time it took.
+
+const MOST_OPEN = 40;
+let call = null;
+const opened = new Map(); // by source and text, the latest last
+
+function ask(request) {
+  const begin = performance.now();
+  const response = JSON.parse(call(JSON.stringify(request)));
+  response.ms = performance.now() - begin;
+  return response;
+}
+
+function keep(key, response) {
+  opened.delete(key);
+  opened.set(key, response);
+  if (opened.size <= MOST_OPEN) return;
+  const [oldest, { design }] = opened.entries().next().value;
+  opened.delete(oldest);
+  ask({ ask: "close", design });
+}
+
+function open({ toml, source }) {
+  const key = `${source}\n${toml}`;
+  const response = opened.get(key) || ask({ ask: "open", toml, source });
+  if (response.ok) keep(key, response);
+  return response;
+}
+
+/** The design of a job, opened; or what is wrong with it. */
+function designOf(job) {
+  const base = open(job);
+  if (!base.ok || !job.changes) return base;
+  const changed = ask({ ask: "set", design: base.design, changes: job.changes, adapt: Boolean(job.adapt) });
+  if (changed.ok) keep(`${job.source}\n${changed.toml}`, changed);
+  return changed;
+}
+
+function run(job) {
+  if (job.toml == null) return { answers: job.asks.map(ask) };
+  const design = designOf(job);
+  if (!design.ok) return { error: design };
+  return { design, answers: job.asks.map((request) => ask({ ...request, design: design.design })) };
+}
+
+self.onmessage = async ({ data }) => {
+  try {
+    if (data.wasm) {
+      call = await self.retraceEngine(data.wasm);
+      self.postMessage({ ready: true });
+      return;
+    }
+    self.postMessage({ id: data.id, ...run(data) });
+  } catch (fault) {
+    self.postMessage({ id: data.id, fault: String(fault && fault.message ? fault.message : fault) });
+  }
+};
