@@ -33,7 +33,8 @@ export class Canvas {
   constructor(element, draw) {
     this.element = element;
     this.node = h("canvas", { "aria-hidden": "true" });
-    this.context = this.node.getContext("2d");
+    // Few strokes and many frames: drawn by the processor it costs less than its way through the graphics card.
+    this.context = this.node.getContext("2d", { willReadFrequently: true });
     element.append(this.node);
     new ResizeObserver(() => {
       if (this.fit()) draw();

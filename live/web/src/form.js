@@ -54,12 +54,14 @@ export class Form {
     for (const entry of design.keys) {
       const control = this.controls.get(entry.path);
       if (!control) continue;
-      control.node.classList.remove("refused");
-      control.error.textContent = "";
+      if (!(entry.path in this.session.refused)) {
+        control.node.classList.remove("refused");
+        control.error.textContent = "";
+      }
       control.node.classList.toggle("given", entry.given);
       control.back.hidden = !entry.given || this.rowOf(entry).required;
       const isHeld = control.field.holds.includes(document.activeElement) && this.session.isMoving;
-      if (!isHeld && !(entry.path in this.session.changes)) control.field.show(entry.value);
+      if (!isHeld && !(entry.path in this.session.changes) && !(entry.path in this.session.refused)) control.field.show(entry.value);
     }
     this.count(design);
   }

@@ -85,6 +85,7 @@ class LivePage {
     await this.begin(about.kinds);
     for (const event of ["rest", "state", "pins"]) this.session.on(event, () => this.remember());
     this.session.on("answer", ({ stamp }) => this.ready(stamp));
+    this.session.on("refused", ({ text }) => text != null && this.design.choose("text"));
     window.addEventListener("hashchange", () => this.restore());
   }
 

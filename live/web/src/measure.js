@@ -5,6 +5,7 @@ export class Measure {
     this.stamp = 0; // of the last change
     this.times = new Map();
     this.latencies_ms = { point: [], curve: [], map: [] };
+    this.first_ms = null; // from the opening of the page to its first picture
     this.drawn = { point: 0, curve: 0, map: 0 }; // the stamp of what is shown
   }
 
@@ -18,6 +19,7 @@ export class Measure {
   shown(what, stamp) {
     if (stamp <= this.drawn[what]) return;
     this.drawn[what] = stamp;
+    if (what === "point") this.first_ms = this.first_ms ?? performance.now();
     this.latencies_ms[what].push(performance.now() - this.times.get(stamp));
   }
 }

@@ -14,12 +14,14 @@ export class Notice {
     this.session = session;
     this.refusal = h("div", { class: "refusal", role: "alert" });
     this.remarks = h("div", { class: "remarks", role: "status" });
-    this.node = h("div", { class: "notice" }, this.refusal, this.remarks);
+    this.trouble = h("div", { class: "remarks", role: "status" });
+    this.node = h("div", { class: "notice" }, this.refusal, this.trouble, this.remarks);
     this.told = "";
   }
 
   start() {
     this.session.on("refused", ({ error }) => this.refuse(error));
+    this.session.on("accepted", () => this.refusal.replaceChildren());
     this.session.on("design", ({ design }) => this.tell(design));
     this.session.on("answer", () => this.blame());
   }
@@ -32,7 +34,6 @@ export class Notice {
   }
 
   tell(design) {
-    this.refusal.replaceChildren();
     const told = JSON.stringify([design.traces, design.why_not, design.command, design.notes, design.warnings, design.source]);
     if (told === this.told) return;
     this.told = told;
@@ -47,8 +48,9 @@ export class Notice {
   /** A direction that was not traced, of a design that is. */
   blame() {
     const { why, base } = this.session;
+    this.trouble.replaceChildren();
     if (!why || (base && !base.traces)) return;
-    this.refusal.replaceChildren(h("p", {}, why.text));
-    if (why.command) this.refusal.append(commandLine(why.command, base && base.source));
+    this.trouble.append(h("p", {}, why.text));
+    if (why.command) this.trouble.append(commandLine(why.command, base && base.source));
   }
 }

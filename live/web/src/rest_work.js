@@ -51,7 +51,7 @@ export class Rest {
 
   pin(design) {
     if (this.pins.length >= 4) return false;
-    this.pins.push({ toml: design.toml, source: design.source, title: design.title, pass: null });
+    this.pins = [...this.pins, { toml: design.toml, source: design.source, title: design.title, pass: null }];
     this.session.tell("pins");
     this.session.engine.pump();
     return true;

@@ -16,6 +16,7 @@ export class Session {
     this.listeners = new Map();
     this.base = null; // the design that is shown, as the engine opened it
     this.changes = {}; // keys that are to be other than in `base`, but have not been traced yet
+    this.refused = {}; // keys whose values could not be: they are tried again together with the next that is changed
     this.adapt = false;
     this.wanted = null; // a text that is to take the place of `base`
     this.direction = { incidence_deg: 0, azimuth_deg: 0 };
@@ -43,7 +44,8 @@ export class Session {
 
   /** A key of the form; nothing takes it back. `adapt`: what no longer means anything beside it goes too. */
   change(path, value, adapt = false) {
-    this.changes[path] = value;
+    Object.assign(this.changes, this.refused, { [path]: value });
+    this.refused = {};
     this.adapt = this.adapt || adapt;
     this.touch();
   }
@@ -52,6 +54,7 @@ export class Session {
   open(toml, source, then = () => {}) {
     this.wanted = { toml, source, then };
     this.changes = {};
+    this.refused = {};
     this.adapt = false;
     this.touch();
   }
@@ -125,6 +128,12 @@ export class Session {
   /** What was asked for cannot be: it is said, and the last picture stays. */
   refuse(job, error) {
     if (job.wanted && this.wanted === job.wanted) this.wanted = null;
+    for (const [path, value] of Object.entries(job.changes || {})) {
+      if (this.changes[path] !== value) continue;
+      delete this.changes[path];
+      this.refused[path] = value;
+    }
+    this.isDue = Boolean(this.base); // where the light comes from may have changed as well
     this.tell("refused", { error, changes: job.changes || null, text: job.wanted ? job.wanted.toml : null });
     if (job.wanted) job.wanted.then(error);
   }
@@ -135,6 +144,7 @@ export class Session {
     for (const [path, value] of Object.entries(job.changes || {}))
       if (this.changes[path] === value) delete this.changes[path];
     if (Object.keys(this.changes).length === 0) this.adapt = false;
+    if (job.changes || job.wanted) this.tell("accepted");
     this.base = design;
     if (isNew) this.revision += 1;
     this.tell("design", { design, isNew, isOpened: Boolean(job.wanted) });

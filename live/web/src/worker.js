@@ -1,5 +1,6 @@
 // Runs in the worker: the engine, and the designs that it has open. A job is a design - a text, and keys that are changed -
 // and what is asked of it; each answer goes back with the time it took.
+import { edited } from "./toml_edit.js";
 
 const MOST_OPEN = 40;
 let call = null;
@@ -28,10 +29,27 @@ function open({ toml, source }) {
   return response;
 }
 
+/** A number and a list of it alone are the same. */
+function sameValue(a, b) {
+  return JSON.stringify([].concat(a)) === JSON.stringify([].concat(b));
+}
+
+/** The design with other values written into its text; nothing where the text cannot be changed line by line. */
+function rewritten(job) {
+  const toml = job.adapt ? null : edited(job.toml, job.changes);
+  if (toml == null) return null;
+  const response = open({ toml, source: job.source });
+  if (!response.ok) return null;
+  const values = new Map(response.keys.map(({ path, value, given }) => [path, given ? value : null]));
+  return Object.entries(job.changes).every(([path, value]) => sameValue(values.get(path) ?? null, value)) ? response : null;
+}
+
 /** The design of a job, opened; or what is wrong with it. */
 function designOf(job) {
   const base = open(job);
   if (!base.ok || !job.changes) return base;
+  const inPlace = rewritten(job);
+  if (inPlace) return inPlace;
   const changed = ask({ ask: "set", design: base.design, changes: job.changes, adapt: Boolean(job.adapt) });
   if (changed.ok) keep(`${job.source}\n${changed.toml}`, changed);
   return changed;

@@ -5,82 +5,33 @@
 --keep writes the screenshots anew into this folder instead of comparing with them.
 """
 
-import os
 import pathlib
 import sys
-import tempfile
 import time
 import unittest
 
-from PIL import Image, ImageChops, ImageFilter
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
-from selenium.webdriver.support.ui import WebDriverWait
 
+from browser import BrowserCase
 from page_results import make_page
 
 HERE = pathlib.Path(__file__).resolve().parent
 PROGRAM = SOURCE = None
-KEEP = False
 WIDTH, HEIGHT = 1200, 1000
-BLUR_PX = 3
-DIFFERENT = 24  # of 255, after blurring
-MOST_DIFFERENT = 0.02  # of the pixels
 
 
-def browser(profile, *more):
-    options = Options()
-    options.binary_location = "/usr/bin/chromium"
-    for argument in ("--headless=new", f"--window-size={WIDTH},{HEIGHT}", "--force-device-scale-factor=1",
-                     "--hide-scrollbars", "--font-render-hinting=none", "--disable-lcd-text",
-                     "--disable-background-networking", "--no-first-run", "--disable-dev-shm-usage",
-                     f"--user-data-dir={profile}", *more):
-        options.add_argument(argument)
-    if os.geteuid() == 0:
-        options.add_argument("--no-sandbox")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-    driver.set_page_load_timeout(120)
-    # The window's border takes some of its size: the page itself is to have it.
-    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                           {"width": WIDTH, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": False})
-    return driver
-
-
-SOFTWARE_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
-
-
-class PageCase(unittest.TestCase):
-    webgl = SOFTWARE_WEBGL
-
+class PageCase(BrowserCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        cls.addClassCleanup(cls.folder.cleanup)
+        super().setUpClass()
+        cls.resize(WIDTH, HEIGHT)
         cls.page = make_page(PROGRAM, SOURCE, cls.folder.name)
-        cls.driver = browser(os.path.join(cls.folder.name, "profile"), *cls.webgl)
-        cls.addClassCleanup(cls.driver.quit)
 
     def setUp(self):
         self.driver.get(self.page.as_uri())
         self.wait(lambda d: d.execute_script("return document.documentElement.dataset.ready") == "yes")
-
-    def wait(self, condition):
-        return WebDriverWait(self.driver, 60).until(condition)
-
-    def all(self, selector):
-        return self.driver.find_elements(By.CSS_SELECTOR, selector)
-
-    def one(self, selector):
-        return self.driver.find_element(By.CSS_SELECTOR, selector)
-
-    def tearDown(self):
-        faults = [entry for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
-        self.assertEqual(faults, [], "the console has errors")
 
 
 class PageWorks(PageCase):
@@ -179,9 +130,7 @@ class PageWorks(PageCase):
         self.wait(lambda d: [step.text for step in self.all("#scene-steps li")] != steps)
 
     def test_tables_are_saved_as_csv(self):
-        target = pathlib.Path(self.folder.name) / "saved"
-        target.mkdir(exist_ok=True)
-        self.driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(target)})
+        target = self.downloads_to("saved")
         button = next(b for b in self.all("button.download") if "Where the light goes" in b.get_attribute("aria-label"))
         self.driver.execute_script("arguments[0].click()", button)
         file = target / "rre_ledger.csv"
@@ -194,19 +143,18 @@ class PageWorks(PageCase):
         self.assertEqual(len(lines[1].split(",")), len(lines[0].split(",")))
 
     def test_light_and_dark(self):
-        def paper():
+        def shown():
             return self.driver.execute_script("return getComputedStyle(document.body).backgroundColor")
 
         colours = set()
         for name in ("light", "dark"):
-            self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia",
-                                        {"features": [{"name": "prefers-color-scheme", "value": name}]})
-            colours.add(paper())
+            self.paper(name)
+            colours.add(shown())
         self.assertEqual(len(colours), 2)
         self.one("#theme").click()
         self.assertEqual(self.one("html").get_attribute("data-theme"), "light")
-        self.assertIn(paper(), colours)
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+        self.assertIn(shown(), colours)
+        self.paper(None)
 
     def test_prints(self):
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
@@ -218,28 +166,12 @@ class PageWorks(PageCase):
 
     def test_looks_as_it_did(self):
         for name in ("light", "dark"):
-            self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia",
-                                        {"features": [{"name": "prefers-color-scheme", "value": name}]})
+            self.paper(name)
             self.driver.get(self.page.as_uri())
             self.wait(lambda d: d.execute_script("return document.documentElement.dataset.ready") == "yes")
             time.sleep(0.5)
-            self.compare(name)
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
-
-    def compare(self, name):
-        file = HERE / f"screenshot_{name}.png"
-        taken = pathlib.Path(self.folder.name) / file.name
-        self.driver.save_screenshot(str(taken))
-        picture = Image.open(taken).convert("RGB")
-        if KEEP:
-            picture.quantize(256).save(file, optimize=True)
-            return
-        wanted = Image.open(file).convert("RGB")  # a missing one is a fault
-        self.assertEqual(picture.size, wanted.size)
-        blurred = [p.filter(ImageFilter.GaussianBlur(BLUR_PX)) for p in (picture, wanted)]
-        difference = ImageChops.difference(*blurred).convert("L").point(lambda v: 255 if v > DIFFERENT else 0)
-        share = difference.histogram()[255] / (WIDTH * HEIGHT)
-        self.assertLess(share, MOST_DIFFERENT, f"{name}: {share:.1%} of the pixels differ")
+            self.compare(HERE / f"screenshot_{name}.png")
+        self.paper(None)
 
 
 class PageWithoutWebgl(PageCase):
@@ -259,5 +191,5 @@ class PageWithoutWebgl(PageCase):
 
 if __name__ == "__main__":
     PROGRAM, SOURCE = sys.argv[1:3]
-    KEEP = "--keep" in sys.argv
+    BrowserCase.keep = "--keep" in sys.argv
     unittest.main(argv=sys.argv[:1])

@@ -16,6 +16,16 @@ function seriesOf(label, pass) {
   return { label, x: rows.map((row) => row.x), y: rows.map((row) => 100 * row.rre) };
 }
 
+/** What a curve says at an incidence, linear between its places; nothing outside. */
+function valueAt(pass, incidence) {
+  const rows = pass ? pass.rows() : [];
+  const k = rows.findIndex(({ x }) => x >= incidence);
+  if (k < 0 || (k === 0 && rows[0].x > incidence)) return null;
+  if (k === 0 || rows[k].x === incidence) return rows[k].rre;
+  const share = (incidence - rows[k - 1].x) / (rows[k].x - rows[k - 1].x);
+  return rows[k - 1].rre + share * (rows[k].rre - rows[k - 1].rre);
+}
+
 export class CurvePanel {
   constructor(session) {
     this.session = session;
@@ -42,7 +52,7 @@ export class CurvePanel {
     this.fit();
     this.point();
     this.session.on("curve", (pass) => this.show(pass));
-    this.session.on("pins", () => this.show(this.session.curve.shown));
+    this.session.on("pins", () => (this.tellPins(), this.show(this.session.curve.shown)));
     this.session.on("direction", () => this.plot.redraw(false, false));
     this.session.on("answer", () => this.plot.redraw(false, false));
     this.session.on("rested", () => this.tellPins());
@@ -155,31 +165,26 @@ export class CurvePanel {
   }
 
   /** The designs whose curves are shown: this one, and what it is compared with. */
-  tellPins() {
+  listPins() {
     const { pins } = this.session.rest;
-    const at = this.session.direction.incidence_deg;
-    const valueAt = (pass) => {
-      const rows = pass ? pass.rows() : [];
-      const k = rows.findIndex(({ x }) => x >= at);
-      if (k < 0 || (k === 0 && rows[0].x > at)) return null;
-      if (k === 0 || rows[k].x === at) return rows[k].rre;
-      const share = (at - rows[k - 1].x) / (rows[k].x - rows[k - 1].x);
-      return rows[k - 1].rre + share * (rows[k].rre - rows[k - 1].rre);
-    };
     const line = (name) => h("span", { class: "stroke", style: `border-color: var(${name})` });
-    this.legend.replaceChildren(
-      h("li", {}, line("--curve-0"), `azimuth ${short(this.session.direction.azimuth_deg)}°`),
-      ...pins.map((pin, k) =>
-        h(
-          "li",
-          { class: "ghost" },
-          line(GHOSTS[k]),
-          h("button", { type: "button", class: "plain", title: "Take this design up again", onclick: () => this.session.open(pin.toml, pin.source) }, pin.title || `Pinned ${k + 1}`),
-          h("output", {}, percent(valueAt(pin.pass), 1)),
-          h("button", { type: "button", class: "plain", "aria-label": `Unpin ${pin.title}`, onclick: () => this.session.rest.unpin(pin) }, "×"),
-        ),
-      ),
-    );
+    this.azimuth = h("span", {});
+    this.values = pins.map(() => h("output", {}));
+    const entry = (pin, k) => {
+      const name = pin.title || `pinned ${k + 1}`;
+      const again = h("button", { type: "button", class: "plain", title: "Take this design up again", onclick: () => this.session.open(pin.toml, pin.source) }, name);
+      const off = h("button", { type: "button", class: "plain", "aria-label": `Unpin ${name}`, onclick: () => this.session.rest.unpin(pin) }, "×");
+      return h("li", { class: "ghost" }, line(GHOSTS[k]), again, this.values[k], off);
+    };
+    this.legend.replaceChildren(h("li", {}, line("--curve-0"), this.azimuth), ...pins.map(entry));
+    this.listed = pins;
+  }
+
+  tellPins() {
+    const { rest, direction } = this.session;
+    if (this.listed !== rest.pins) this.listPins();
+    this.azimuth.textContent = `azimuth ${short(direction.azimuth_deg)}°`;
+    rest.pins.forEach((pin, k) => (this.values[k].textContent = percent(valueAt(pin.pass, direction.incidence_deg), 1)));
   }
 
   save(kind) {

@@ -58,6 +58,14 @@ class Plan {
     return steps.flatMap((i) => steps.map((j) => [i * a[0] + j * b[0], i * a[1] + j * b[1]]));
   }
 
+  /** Those of which something lies between two corners. */
+  tilesWithin([left, bottom], [right, top]) {
+    const { x, y, width, height } = this.box;
+    return this.tiles().filter(
+      ([dx, dy]) => x + dx < right && x + dx + width > left && y + dy < top && y + dy + height > bottom,
+    );
+  }
+
   /** The same place in the period in the middle. */
   home([x, y]) {
     if (contains(this.outline, [x, y])) return [x, y];
@@ -119,6 +127,7 @@ export class PlanPanel {
   }
 
   recolour() {
+    this.hatching = null;
     this.draw();
   }
 
@@ -173,9 +182,10 @@ export class PlanPanel {
     const left = width / 2 - scale * (seen.x + seen.width / 2);
     const top = height / 2 + scale * (seen.y + seen.height / 2);
     this.transform = { scale, left, top };
+    this.hatching = this.hatching || this.makeHatching();
     context.save();
     context.setTransform(this.canvas.ratio * scale, 0, 0, -this.canvas.ratio * scale, this.canvas.ratio * left, this.canvas.ratio * top);
-    for (const tile of this.plan.tiles()) this.drawTile(context, tile, 1 / scale);
+    for (const tile of this.plan.tilesWithin(this.toPlan([0, height]), this.toPlan([width, 0]))) this.drawTile(context, tile, 1 / scale);
     this.drawRay(context, 1 / scale);
     context.restore();
     this.drawScale(context, scale);
@@ -214,19 +224,25 @@ export class PlanPanel {
 
   /** Dead zones: what no region covers stays hatched. */
   hatch(context, unit) {
-    const { x, y, width, height } = this.plan.box;
-    const step = 7 * unit;
-    context.save();
-    context.clip();
-    context.beginPath();
-    for (let k = Math.floor((x - y - height) / step); k * step < x - y + width; ++k) {
-      context.moveTo(k * step + y, y);
-      context.lineTo(k * step + y + height, y + height);
-    }
+    context.fillStyle = this.hatching;
+    this.hatching.setTransform(new DOMMatrix([unit / this.canvas.ratio, 0, 0, unit / this.canvas.ratio, 0, 0]));
+    context.fill();
+  }
+
+  /** A pattern of lines aslant, in pixels of the screen. */
+  makeHatching() {
+    const size = Math.round(8 * this.canvas.ratio);
+    const tile = document.createElement("canvas");
+    tile.width = tile.height = size;
+    const context = tile.getContext("2d");
     context.strokeStyle = colour("--line");
-    context.lineWidth = unit;
+    context.lineWidth = this.canvas.ratio;
+    for (const shift of [-size, 0, size]) {
+      context.moveTo(shift, 0);
+      context.lineTo(shift + size, size);
+    }
     context.stroke();
-    context.restore();
+    return context.createPattern(tile, "repeat");
   }
 
   lines(context, flat, width, name, alpha) {

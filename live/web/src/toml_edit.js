@@ -1,0 +1,93 @@
+// Changes values in the text of a design where they stand, so that its comments and its order stay. What is written in
+// another way than "key = value" on a line below its "[table]" is left to the engine, which writes the text anew.
+
+function headerOf(line) {
+  const found = /^\s*\[([A-Za-z0-9_.-]+)\]\s*(#.*)?$/.exec(line);
+  return found ? found[1] : null;
+}
+
+/** From the line after the header of a table to that of the next; of the root from the first line. Null where it is not there. */
+function reachOf(lines, table) {
+  const begin = table === "" ? 0 : lines.findIndex((line) => headerOf(line) === table) + 1;
+  if (begin === 0 && table !== "") return null;
+  const length = lines.slice(begin).findIndex((line) => /^\s*\[/.test(line));
+  return [begin, length < 0 ? lines.length : begin + length];
+}
+
+function textOf(value) {
+  if (Array.isArray(value)) return `[${value.map(textOf).join(", ")}]`;
+  return JSON.stringify(value);
+}
+
+const SCALAR = `("(?:[^"\\\\]|\\\\.)*"|'[^']*'|\\[[^\\]\\n]*\\]|[^\\s#"'\\[{]+)`;
+
+/** The line with that key; of several none. \param mark what stands before the key */
+function find(lines, [from, to], key, mark) {
+  const shape = new RegExp(`^(\\s*)(${mark})(${key})(\\s*=\\s*)${SCALAR}(\\s*)(#.*)?$`);
+  const places = [];
+  for (let k = from; k < to; ++k) if (shape.test(lines[k])) places.push(k);
+  return places.length === 1 ? { place: places[0], parts: shape.exec(lines[places[0]]) } : null;
+}
+
+function mentions(lines, [from, to], key) {
+  return lines.slice(from, to).some((line) => new RegExp(`^\\s*["']?${key}["']?\\s*[=.]`).test(line));
+}
+
+/** A comment stays where it stood, if there is room. */
+function rewritten([, indent, mark, key, equals, old, gap, comment], value) {
+  const text = textOf(value);
+  if (!comment) return `${indent}${key}${equals}${text}`;
+  const room = Math.max(1, mark.length + gap.length + old.length - text.length);
+  return `${indent}${key}${equals}${text}${" ".repeat(room)}${comment}`;
+}
+
+/** After the last line of the table that is neither empty nor a comment. */
+function insertAt(lines, [from, to]) {
+  for (let k = to; k > from; --k) if (/^\s*[^\s#]/.test(lines[k - 1])) return k;
+  return from;
+}
+
+/** The lines with a header for that table, empty or one that was a comment; null where the table is written in another way. */
+function withTable(lines, table) {
+  const name = table.split(".")[0];
+  if (table === "" || lines.some((line) => new RegExp(`^\\s*\\[*\\s*["']?${name}["']?\\s*[\\].=]`).test(line))) return null;
+  const hint = lines.findIndex((line) => /^\s*#/.test(line) && headerOf(line.replace(/#\s*/, "")) === table);
+  if (hint >= 0) return lines.map((line, k) => (k === hint ? line.replace(/#\s*/, "") : line));
+  const end = lines.length - [...lines].reverse().findIndex((line) => line.trim() !== "");
+  return [...lines.slice(0, end), "", `[${table}]`, ...lines.slice(end)];
+}
+
+function changed(lines, path, value) {
+  const dot = path.lastIndexOf(".");
+  const table = dot < 0 ? "" : path.slice(0, dot);
+  const key = path.slice(dot + 1);
+  const reach = reachOf(lines, table);
+  if (!reach) {
+    if (value === null) return lines;
+    const more = withTable(lines, table);
+    return more && changed(more, path, value);
+  }
+  const given = find(lines, reach, key, "");
+  if (given && value === null) return lines.filter((_, k) => k !== given.place);
+  if (given) return lines.map((line, k) => (k === given.place ? rewritten(given.parts, value) : line));
+  if (mentions(lines, reach, key)) return null;
+  if (value === null) return lines;
+  const hint = find(lines, reach, key, "#\\s*");
+  if (hint) return lines.map((line, k) => (k === hint.place ? rewritten(hint.parts, value) : line));
+  const place = insertAt(lines, reach);
+  return [...lines.slice(0, place), `${key} = ${textOf(value)}`, ...lines.slice(place)];
+}
+
+/** \return the text with those values, null where it cannot be done line by line */
+export function edited(toml, changes) {
+  const end = toml.includes("\r\n") ? "\r\n" : "\n";
+  let lines = toml.split(end);
+  for (const [path, value] of Object.entries(changes)) {
+    if (value !== null && typeof value === "object" && !Array.isArray(value)) return null;
+    if (Array.isArray(value) && value.some((entry) => typeof entry === "object")) return null;
+    if (/[^A-Za-z0-9_.-]/.test(path)) return null;
+    lines = changed(lines, path, value);
+    if (!lines) return null;
+  }
+  return lines.join(end);
+}

@@ -1,0 +1,103 @@
+"""A browser without a screen and without a network, and what tests of pages ask of it."""
+
+import os
+import pathlib
+import tempfile
+import unittest
+
+from PIL import Image, ImageChops, ImageFilter
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import WebDriverWait
+
+BLUR_PX = 3
+DIFFERENT = 24  # of 255, after blurring
+MOST_DIFFERENT = 0.02  # of the pixels
+SOFTWARE_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+
+
+def browser(profile, *more):
+    options = Options()
+    options.binary_location = "/usr/bin/chromium"
+    for argument in ("--headless=new", "--force-device-scale-factor=1",
+                     "--hide-scrollbars", "--font-render-hinting=none", "--disable-lcd-text",
+                     "--disable-background-networking", "--no-first-run", "--disable-dev-shm-usage",
+                     f"--user-data-dir={profile}", *more):
+        options.add_argument(argument)
+    if os.geteuid() == 0:
+        options.add_argument("--no-sandbox")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    driver.set_page_load_timeout(120)
+    return driver
+
+
+def save_small(picture, file):
+    picture.quantize(256).save(file, optimize=True)
+
+
+def share_that_differs(picture, wanted):
+    """Of the pixels, after blurring both."""
+    blurred = [p.filter(ImageFilter.GaussianBlur(BLUR_PX)) for p in (picture, wanted)]
+    difference = ImageChops.difference(*blurred).convert("L").point(lambda v: 255 if v > DIFFERENT else 0)
+    return difference.histogram()[255] / (picture.size[0] * picture.size[1])
+
+
+class BrowserCase(unittest.TestCase):
+    """Each class has a folder and a browser; a test fails if the console has errors."""
+
+    webgl = SOFTWARE_WEBGL
+    keep = False  # write screenshots anew instead of comparing with them
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.driver = browser(os.path.join(cls.folder.name, "profile"), *cls.webgl)
+        cls.addClassCleanup(cls.driver.quit)
+
+    @classmethod
+    def resize(cls, width, height):
+        """The page itself, without the window's border, which takes some of its size."""
+        cls.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                   {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+
+    def paper(self, name):
+        """Light or dark, as the system would say; nothing leaves it open."""
+        features = [{"name": "prefers-color-scheme", "value": name}] if name else []
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+
+    def wait(self, condition):
+        return WebDriverWait(self.driver, 60, poll_frequency=0.1).until(condition)
+
+    def all(self, selector):
+        return self.driver.find_elements(By.CSS_SELECTOR, selector)
+
+    def one(self, selector):
+        return self.driver.find_element(By.CSS_SELECTOR, selector)
+
+    def downloads_to(self, name):
+        """A folder of that name for what the page saves."""
+        target = pathlib.Path(self.folder.name) / name
+        target.mkdir(exist_ok=True)
+        self.driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(target)})
+        return target
+
+    def compare(self, file):
+        """The page as it is seen against a kept picture; a missing one is a fault."""
+        taken = pathlib.Path(self.folder.name) / file.name
+        self.driver.save_screenshot(str(taken))
+        picture = Image.open(taken).convert("RGB")
+        if self.keep:
+            save_small(picture, file)
+            return
+        wanted = Image.open(file).convert("RGB")
+        self.assertEqual(picture.size, wanted.size)
+        share = share_that_differs(picture, wanted)
+        self.assertLess(share, MOST_DIFFERENT, f"{file.name}: {share:.1%} of the pixels differ")
+
+    def tearDown(self):
+        faults = [entry for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
+        self.assertEqual(faults, [], "the console has errors")
