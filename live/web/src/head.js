@@ -11,6 +11,7 @@ function fileName(design, ending) {
 export class Head {
   constructor(session, { isEmbedded, version }) {
     this.session = session;
+    this.isEmbedded = isEmbedded;
     this.title = h("span", { class: "title" });
     this.done = h("span", { class: "done", role: "status" });
     this.templates = h("select", { class: "new", "aria-label": "Start from a template", onchange: () => this.template() }, h("option", { value: "" }, "New"));
@@ -20,13 +21,13 @@ export class Head {
       button("Open", () => this.file.click(), { title: "Open a design from a file" }),
       button("Save", () => this.save(), { title: "Download the design as TOML" }),
       button("Copy", () => this.copyText(), { title: "Copy the design as TOML" }),
-      button("Link", () => this.copyLink(), { title: "Copy an address that holds the design and all that is chosen here" }),
+      button("Link", () => this.copyLink(), { id: "live-link", title: "Copy an address that holds the design and all that is chosen here" }),
       button("STL", () => this.stl(), { title: "Download one element on its plate as STL" }),
       button("Pin", () => this.pin(), { title: "Keep this design to compare with: up to four" }),
       h("button", { type: "button", id: "theme", hidden: true }),
     ];
     const name = isEmbedded ? null : h("h1", {}, "retrace ", h("small", { title: version }, "live"));
-    this.node = h("header", { class: "live-head" }, name, this.title, h("div", { class: "tools", role: "toolbar", "aria-label": "Design" }, ...tools.filter((tool) => !isEmbedded || tool.id !== "theme")), this.done, this.file);
+    this.node = h("header", { class: "live-head" }, name, this.title, h("div", { class: "tools", role: "toolbar", "aria-label": "Design" }, ...tools.filter((tool) => !isEmbedded || !["theme", "live-link"].includes(tool.id))), this.done, this.file);
   }
 
   start(kinds, link) {
@@ -39,7 +40,7 @@ export class Head {
       this.templates.append(h("optgroup", { label: title }, ...extents.map(([extent, text]) => h("option", { value: `${kind} ${extent}` }, `${title}, ${text}`))));
     this.session.on("design", ({ design }) => {
       this.title.textContent = design.title || design.source || "";
-      document.title = design.title ? `${design.title} – retrace` : "retrace";
+      if (!this.isEmbedded) document.title = design.title ? `${design.title} – retrace` : "retrace";
     });
     document.addEventListener("dragover", (event) => event.preventDefault());
     document.addEventListener("drop", (event) => {

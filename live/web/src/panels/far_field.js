@@ -60,12 +60,12 @@ export class FarFieldPanel {
     const rings = [0.5, 1].map((share) => s("circle", { class: "guide", r: share * HALF }));
     const cone = s("circle", { class: "cone", r: Math.max(1.5, this.cone_deg * scale) });
     const label = s("text", { x: HALF * 0.71 + 3, y: HALF * 0.71 + 8 }, angle(reach));
+    this.labels = [];
     const spots = this.field.spots
       .map((spot, k) => ({ ...spot, k }))
       .filter(({ deviation_deg }) => deviation_deg <= reach)
-      .reverse()
       .map((spot) => this.spotOf(spot, scale));
-    this.drawing.replaceChildren(...rings, cone, label, ...spots);
+    this.drawing.replaceChildren(...rings, cone, label, ...spots.reverse());
     this.list();
   }
 
@@ -75,7 +75,11 @@ export class FarFieldPanel {
     const y = -deviation_deg * scale * Math.sin(turn);
     const radius = Math.max(1.4, 13 * Math.sqrt(power));
     const group = s("g", { class: depth === 0 ? "spot front" : "spot" }, s("circle", { cx: x, cy: y, r: radius }, s("title", {}, `${percent(power)} at ${angle(deviation_deg)}`)));
-    if (k < MOST) group.append(s("text", { x: x + radius + 2, y: y + 3 }, String(k + 1)));
+    const isFree = !this.labels.some(([lx, ly]) => Math.hypot(lx - x, ly - y) < 8);
+    if (k < MOST && isFree) {
+      this.labels.push([x, y]);
+      group.append(s("text", { x: x + radius + 2, y: y + 3 }, String(k + 1)));
+    }
     return group;
   }
 

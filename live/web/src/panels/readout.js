@@ -24,7 +24,7 @@ class Accuracy {
 
   show(answer) {
     this.value.textContent = bounds(answer);
-    this.cost.textContent = `${milliseconds(answer)} · ${answer.beams} beams`;
+    this.cost.replaceChildren(milliseconds(answer), h("span", { class: "beams" }, ` · ${answer.beams} beams`));
     this.node.classList.toggle("incomplete", answer.complete === false);
     this.node.classList.remove("old");
   }

@@ -29,6 +29,8 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { drawStill } from "./still.js";
 import { colour } from "./theme.js";
 
+const FIELD_DEG = 32; // of the camera, up and down
+
 function boundsOf(points) {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
@@ -224,7 +226,7 @@ class WebglView {
     this.solid = new Solid();
     this.paths = new Paths();
     this.world.add(new AmbientLight(0xffffff, 1.6), sun, this.solid.group, this.paths.group);
-    this.camera = new PerspectiveCamera(32, 1, 0.01, 100);
+    this.camera = new PerspectiveCamera(FIELD_DEG, 1, 0.01, 100);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, renderer.domElement);
     this.controls.enableDamping = false;
@@ -282,6 +284,9 @@ class WebglView {
     const height = Math.max(200, this.element.clientHeight);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
+    // Upright, it is the width that is to hold the part.
+    const half = Math.tan((FIELD_DEG * Math.PI) / 360) / Math.min(1, this.camera.aspect);
+    this.camera.fov = (360 / Math.PI) * Math.atan(half);
     this.camera.updateProjectionMatrix();
     this.render();
   }
