@@ -14,11 +14,11 @@ function allowedText(row) {
   return ends.join(" ");
 }
 
-/** What stands behind a label: meaning, range, default. */
+/** What a key means, in which range, and what holds without it. */
 function meaningOf(row) {
-  const without = row.default != null ? `Without it: ${row.default}.` : row.otherwise ? `Without it: ${row.otherwise}.` : row.required ? "It must be given." : "";
+  const without = row.default != null ? `Without it: ${row.default}.` : row.otherwise ? `Without it: ${row.otherwise}.` : "";
   const allowed = allowedText(row);
-  return [row.path, row.meaning, allowed && `Allowed: ${allowed}.`, without].filter(Boolean).join("\n");
+  return [row.meaning, allowed && `Allowed: ${allowed}.`, without].filter(Boolean).join(" ");
 }
 
 export class Form {
@@ -26,7 +26,10 @@ export class Form {
   constructor(session, edit) {
     this.session = session;
     this.edit = edit;
-    this.node = h("form", { class: "form", onsubmit: (event) => event.preventDefault() });
+    this.keys = h("form", { class: "form", onsubmit: (event) => event.preventDefault() });
+    this.help = h("p", { class: "help" });
+    this.node = h("div", {}, this.keys, this.help);
+    for (const event of ["pointerover", "focusin"]) this.keys.addEventListener(event, ({ target }) => this.explain(target));
     this.controls = new Map();
     this.states = new Map(); // of groups: whether they are open
     this.built = "";
@@ -39,6 +42,15 @@ export class Form {
     for (const group of groups) for (const row of group.rows) this.rows.set(row.path, [...(this.rows.get(row.path) || []), row]);
     this.session.on("design", ({ design, isOpened }) => this.show(design, isOpened));
     this.session.on("refused", ({ error, changes }) => this.blame(error, changes));
+  }
+
+  /** The key under the pointer, or in use: what it means stands at the foot of the form. */
+  explain(target) {
+    const field = target.closest(".field");
+    const control = field && this.controls.get(field.dataset.key);
+    if (!control || control.node === this.explained) return;
+    this.explained = control.node;
+    this.help.replaceChildren(h("code", {}, control.row.path), ` ${meaningOf(control.row)}`);
   }
 
   rowOf({ path, row, list }) {
@@ -72,7 +84,7 @@ export class Form {
     const focused = document.activeElement && document.activeElement.id;
     this.controls.clear();
     this.groupNodes = [];
-    this.node.replaceChildren(...this.groups.map((group) => this.group(group, design)).filter(Boolean));
+    this.keys.replaceChildren(...this.groups.map((group) => this.group(group, design)).filter(Boolean));
     if (focused && document.getElementById(focused)) document.getElementById(focused).focus();
   }
 
@@ -106,9 +118,10 @@ export class Form {
     const field = fieldOf(row, entry, { id, size_mm: this.size_mm, materials: this.materials, change, edit: this.edit });
     const back = h("button", { type: "button", class: "plain back", title: "Take it back: the default holds", "aria-label": `${label}: take it back`, onclick: () => this.session.change(row.path, null, true) }, "↺");
     const error = h("p", { class: "error", id: newId("error"), role: "alert" });
-    const name = h(field.isGroup ? "span" : "label", { for: field.isGroup ? null : id, id: field.isGroup ? id : null, title: meaningOf(row) }, label);
+    const name = h(field.isGroup ? "span" : "label", { for: field.isGroup ? null : id, id: field.isGroup ? id : null }, label);
+    for (const part of field.holds) if (part) part.setAttribute("aria-description", meaningOf(row));
     const node = h("div", { class: `field ${row.kind}`, "data-key": row.path }, name, h("span", { class: "with-unit" }, field.nodes[0], unit && h("span", { class: "unit" }, unit)), back, ...field.nodes.slice(1).filter(Boolean), error);
-    this.controls.set(row.path, { node, field, back, error });
+    this.controls.set(row.path, { node, row, field, back, error });
     field.show(entry.value);
     return node;
   }

@@ -22,19 +22,31 @@ import { addThemeSwitch } from "../../../report/page/web/src/theme.js";
 
 const FIRST = { incidence_deg: 12, azimuth_deg: 30 };
 
-/** The form and the text of the design, one of which is shown. */
+/** The form and the text of the design, one of which is shown. Arrow keys go from tab to tab. */
 function designPanel(form, editor) {
-  const tabs = [
-    ["form", "Form"],
-    ["text", "TOML"],
-  ].map(([name, text]) => h("button", { type: "button", role: "tab", id: `live-tab-${name}`, "aria-controls": `live-${name}`, onclick: () => choose(name) }, text));
-  const pages = { form: h("div", { id: "live-form", role: "tabpanel", "aria-labelledby": "live-tab-form" }, form.node), text: h("div", { id: "live-text", role: "tabpanel", "aria-labelledby": "live-tab-text" }, editor.node) };
+  const pages = {
+    form: h("div", { id: "live-form", role: "tabpanel", "aria-labelledby": "live-tab-form" }, form.node),
+    text: h("div", { id: "live-text", role: "tabpanel", "aria-labelledby": "live-tab-text" }, editor.node),
+  };
+  const tab = (name, text) =>
+    h("button", { type: "button", role: "tab", id: `live-tab-${name}`, "aria-controls": `live-${name}`, onclick: () => choose(name) }, text);
+  const tabs = { form: tab("form", "Form"), text: tab("text", "TOML") };
   const choose = (name) => {
-    for (const [other, page] of Object.entries(pages)) page.hidden = other !== name;
-    for (const tab of tabs) tab.setAttribute("aria-selected", String(tab.id === `live-tab-${name}`));
+    for (const [other, page] of Object.entries(pages)) {
+      page.hidden = other !== name;
+      tabs[other].setAttribute("aria-selected", String(other === name));
+      tabs[other].tabIndex = other === name ? 0 : -1;
+    }
+  };
+  const press = (event) => {
+    if (!/^Arrow(Left|Right)$/.test(event.key)) return;
+    const other = pages.form.hidden ? "form" : "text";
+    choose(other);
+    tabs[other].focus();
   };
   choose("form");
-  return { node: h("aside", { class: "design", "aria-label": "Design" }, h("div", { class: "tabs", role: "tablist" }, ...tabs), pages.form, pages.text), choose };
+  const list = h("div", { class: "tabs", role: "tablist", onkeydown: press }, ...Object.values(tabs));
+  return { node: h("aside", { class: "design", "aria-label": "Design" }, list, ...Object.values(pages)), choose };
 }
 
 class LivePage {
