@@ -30,7 +30,6 @@ namespace {
 
 struct VerifyOptions {
   studies::VerificationRequest request;
-  std::optional<double> tolerance_nm;
   std::string as_machined;  ///< design file to write; empty: none
   std::string map;          ///< PNG to write; empty: none
   std::string servo;        ///< table of strokes to read; empty: none
@@ -50,8 +49,8 @@ std::vector<Argument> arguments(VerifyOptions& options) {
            &options.request.standing},
           {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc or pmac, or auto: told from the text",
            &options.request.dialect, one_of(dialects)},
-          {"--tolerance-nm T", "of a job: that facet planes may differ from the design by; 10 unless it is given",
-           &options.tolerance_nm},
+          {"--tolerance-nm T", "of a job: that facet planes may differ from the design by; 10, or what a Fanuc's increments leave, unless it is given",
+           &options.request.tolerance_nm},
           {"--map FILE", "of a job: draw what the programs leave over the facets to a PNG FILE", &options.map,
            files(".png")},
           {"--as-machined FILE", "of a job: write the part that is left as a design to FILE", &options.as_machined,
@@ -92,7 +91,7 @@ void refuse_others(const VerifyOptions& options, Kind kind) {
   if (kind != Kind::turned_part && !options.servo.empty()) refuse("--servo", "turned parts");
   if (kind == Kind::job) return;
   const std::pair<const char*, bool> of_jobs[] = {{"--standing", !options.request.standing.empty()},
-                                                  {"--tolerance-nm", options.tolerance_nm.has_value()},
+                                                  {"--tolerance-nm", options.request.tolerance_nm.has_value()},
                                                   {"--map", !options.map.empty()},
                                                   {"--as-machined", !options.as_machined.empty()}};
   for (const auto& [option, is_given] : of_jobs)
@@ -145,9 +144,7 @@ ExitCode run_job(const VerifyOptions& options, const CommonOptions& common) {
                   [&] { return report::render_png(report::error_map_plot(studies::error_map(run))); });
   files.check();
   double elapsed_s = 0.0;
-  studies::VerificationRequest request = options.request;
-  request.tolerance_nm = options.tolerance_nm.value_or(request.tolerance_nm);
-  run = timed(common, elapsed_s, [&] { return studies::run_verification(request); });
+  run = timed(common, elapsed_s, [&] { return studies::run_verification(options.request); });
   if (!options.as_machined.empty()) {
     const studies::AsMachined part = studies::as_machined(run);
     run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());

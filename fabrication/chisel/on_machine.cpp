@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 #include "core/error.h"
@@ -22,6 +23,22 @@ void check_tilt(const Job& job, const Machine& machine) {
           : fmt::format("must be a machine whose table tilts (A) for this strategy, got {}", machine.name));
 }
 
+/// Cuts whose positions are rounded by a good part of their depth take chips of any thickness.
+void check_increments(const Job& job, const Machine& machine) {
+  constexpr double kLeastDiagonals = 10.0;
+  const double step_um = 1e-3 * static_cast<double>(machine.increments.linear_nm);
+  const double least_um = kLeastDiagonals * std::numbers::sqrt3 * step_um;
+  const auto check = [&](const char* key, double depth_um) {
+    if (depth_um < least_um)
+      throw InputError(
+          job.where(key),
+          fmt::format("must be at least {}, as the control of machine {} rounds positions to {} um, got {}",
+                      fixed(least_um, 2), machine.name, shortest(step_um), shortest(depth_um)));
+  };
+  check("process.roughing_depth_um", job.process.roughing_depth_um);
+  if (has_finishing_cuts(job)) check("process.finishing_depth_um", job.process.finishing_depth_um);
+}
+
 }  // namespace
 
 bool has_finishing_cuts(const Job& job) {
@@ -30,6 +47,7 @@ bool has_finishing_cuts(const Job& job) {
 
 void check_on_machine(const Job& job, const Machine& machine) {
   check_tilt(job, machine);
+  check_increments(job, machine);
   const Process& p = job.process;
   if (has_finishing_cuts(job) && p.finishing_depth_um > p.roughing_depth_um)
     throw InputError(job.where("process.finishing_depth_um"),

@@ -315,7 +315,7 @@ class VerificationRequest:
     job: Path | str
     programs: list[str]
     dialect: str
-    tolerance_nm: float
+    tolerance_nm: float | None
     standing: str
     as_machined: Path | str
     texts: dict[str, str]

@@ -232,7 +232,7 @@ def verify(
     programs: AnyPrograms,
     *,
     dialect: str = "auto",
-    tolerance_nm: float = 10.0,
+    tolerance_nm: float | None = None,
     standing: str = "",
     threads: int | None = None,
     progress: Progress = None,
@@ -248,7 +248,9 @@ def verify(
         programs=names,
         texts={**texts, **({} if text is None else {name: text})},
         dialect=word("dialect", dialect, ("auto", *_DIALECTS)),
-        tolerance_nm=number("tolerance_nm", tolerance_nm, 0, low_included=False),
+        tolerance_nm=None
+        if tolerance_nm is None
+        else number("tolerance_nm", tolerance_nm, 0, low_included=False),
         standing=word("standing", standing) if standing else "",
     )
     count = thread_count(threads)

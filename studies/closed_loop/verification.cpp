@@ -34,8 +34,8 @@ std::vector<NcProgram> programs_before(const std::string& stage, const Job& job,
 }  // namespace
 
 VerificationRun run_verification(const VerificationRequest& request, const Cancellation* cancellation) {
-  if (!(request.tolerance_nm > 0.0) || !std::isfinite(request.tolerance_nm))
-    throw InputError({"", 0, "--tolerance-nm"}, "must be > 0, got " + shortest(request.tolerance_nm));
+  if (const auto given = request.tolerance_nm; given && !(*given > 0.0 && std::isfinite(*given)))
+    throw InputError({"", 0, "--tolerance-nm"}, "must be > 0, got " + shortest(*given));
   VerificationRun run;
   run.request = request;
   run.job = read_job(request.job, request.texts);

@@ -387,18 +387,32 @@ TEST_P(ControlState, WhatControlsRefuse) {
 /// What a coarse increment leaves on facets is no more than the tolerance, also where both meet.
 TEST_P(ControlState, CoarseIncrementsLeaveWhatTheyRound) {
   if (GetParam() != NcDialect::fanuc) return;
-  for (const auto& [system, tolerance_nm] : {std::pair{IncrementSystem::d, 30.0}, {IncrementSystem::c, 300.0}})
-    for (const std::string name : {"ideal", "paper"}) {
+  for (const IncrementSystem system : {IncrementSystem::d, IncrementSystem::c})
+    for (const auto& [name, width_mm] :
+         {std::pair<std::string, double>{"ideal", 0.451}, {"paper", 0.451}, {"thesis", 0.2}}) {
       const std::string file = std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml";
       Machine machine = parse_machine(read_file(file), file);
       machine.control.increment_system = system;
       machine = for_dialect(machine, "fanuc");
-      const std::string text = nc_text(make_plan(job_, machine).programs.front(), "fanuc");
-      VerifyOptions options;
-      options.tolerance_nm = tolerance_nm;
-      const Verification v = verify_programs(job_, machine, {parse_nc(text, "p", NcDialect::fanuc)}, options, {});
-      EXPECT_TRUE(v.passes()) << name << " " << tolerance_nm << "\n" << listed(v);
+      Job job = square_job(3, Arrangement::offset);
+      job.tool.width_mm = width_mm;
+      const std::string text = nc_text(make_plan(job, machine).programs.front(), "fanuc");
+      const Verification v = verify_programs(job, machine, {parse_nc(text, "p", NcDialect::fanuc)}, {}, {});
+      EXPECT_TRUE(v.passes()) << name << " " << v.tolerance_nm << "\n" << listed(v);
     }
+}
+
+TEST_P(ControlState, IncrementsAreFinerThanCuts) {
+  if (GetParam() != NcDialect::fanuc) return;
+  Machine machine = machine_;
+  machine.control.increment_system = IncrementSystem::b;
+  try {
+    make_plan(job_, for_dialect(machine, "fanuc"));
+    ADD_FAILURE() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("process.finishing_depth_um: must be at least 17.32"), std::string::npos)
+        << error.what();
+  }
 }
 
 /// A tolerance wider than the chips are thick says nothing of whether they come free.

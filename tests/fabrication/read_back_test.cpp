@@ -103,6 +103,7 @@ RC_GTEST_PROP(ReadBack, EveryDialectToThePlannedPositions, ()) {
 /// Positions are solved from rounded poses and rounded to what a Fanuc takes, so that writing them loses nothing.
 TEST(ReadBack, EveryIncrementSystemSaysWhatWasPlanned) {
   Job job = square_job(2, Arrangement::checker);
+  job.process.roughing_depth_um = job.process.finishing_depth_um = 20.0;  // as thin as increments of 1 um allow
   for (std::size_t system = 0; system < std::size(kIncrementSystemWords); ++system) {
     Machine on = machine("paper");
     on.control.increment_system = static_cast<IncrementSystem>(system);

@@ -31,7 +31,7 @@ using geometry::Vec3;
 
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 
-bool has_poses_of(const Machine& machine, const Workpiece3d& workpiece, const std::vector<RotaryPose>& words) {
+bool has_poses_of(const Workpiece3d& workpiece, const std::vector<RotaryPose>& words) {
   // Poses are written with seven digits; between the shipped machines they differ by far more.
   constexpr double same_deg = 1e-5;
   const auto is_solved = [&](const RotaryPose& word) {
@@ -43,19 +43,17 @@ bool has_poses_of(const Machine& machine, const Workpiece3d& workpiece, const st
       }
     return false;
   };
-  static_cast<void>(machine);
   return !words.empty() && std::all_of(words.begin(), words.end(), is_solved);
 }
 
 /// Refuses a program whose poses are those that another measured machine needs.
 void refuse_other_machine(const Job& job, const Machine& machine, const std::vector<Machine>& others,
-                          const VerifyOptions& options, const Workpiece3d& workpiece,
-                          const std::vector<RotaryPose>& words, const std::string& file) {
-  if (has_poses_of(machine, workpiece, words)) return;
+                          const Workpiece3d& workpiece, const std::vector<RotaryPose>& words, const std::string& file) {
+  if (has_poses_of(workpiece, words)) return;
   for (const Machine& other : others) {
     if (other.name == machine.name || other.tilt != machine.tilt || other.a.direction.basis != Basis::measured)
       continue;
-    if (has_poses_of(other, workpiece_of(job, other, options.tolerance_nm), words))
+    if (has_poses_of(workpiece_of(job, other), words))
       throw InputError({file, 0, ""}, fmt::format("is a program for machine {}, the job is for {}: its poses are those "
                                                   "of the other machine's axes",
                                                   other.name, machine.name));
@@ -223,7 +221,8 @@ void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, cons
 ChipFigures chips_of(const Workpiece3d& workpiece, const BlankFace& face, std::size_t element,
                      std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses, const ToolWedge& wedge) {
   const Job& job = *workpiece.job;
-  StandingMaterial material(workpiece.grooves[element], face, workpiece.prediction(element).wall_mm, job.tool.width_mm,
+  const double wander_mm = workpiece.prediction(element).wall_mm + workpiece.tolerance_mm;
+  StandingMaterial material(workpiece.grooves[element], face, wander_mm, job.tool.width_mm,
                             1e-3 * job.process.roughing_depth_um);
   ChipCheck check(workpiece, element, material, wedge, poses);
   for (const SweptVolume& sweep : sweeps) check.cut(sweep);
@@ -243,11 +242,20 @@ std::string_view Verification::verdict() const {
   return is_unfinished ? "incomplete" : "fail";
 }
 
+double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs) {
+  constexpr double kUsualNm = 10.0;
+  const auto is_fanuc = [](const NcProgram& program) { return program.dialect == NcDialect::fanuc; };
+  if (std::none_of(programs.begin(), programs.end(), is_fanuc)) return kUsualNm;
+  const auto step_nm = static_cast<double>(increments_of(machine.control.increment_system).linear_nm);
+  return std::max(kUsualNm, std::ceil(std::numbers::sqrt3 * step_nm));
+}
+
 Verification verify_programs(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                              const VerifyOptions& options, const std::vector<Machine>& others,
                              const Cancellation* cancellation) {
   check_on_machine(job, machine);
-  const Workpiece3d workpiece = workpiece_of(job, machine, options.tolerance_nm);
+  const Workpiece3d workpiece =
+      workpiece_of(job, machine, options.tolerance_nm.value_or(usual_tolerance_nm(machine, programs)));
   FindingList findings;
   ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));
   ProgramTime standing_time;
@@ -261,14 +269,14 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   check.finish();
   const std::string first = programs.size() <= options.standing ? std::string() : programs[options.standing].file;
   Verification result;
-  result.tolerance_nm = options.tolerance_nm;
+  result.tolerance_nm = workpiece.tolerance_mm * kNmPerMm;
   const std::vector<RigidMotion> poses = check.poses();
   std::vector<bool> cuts(poses.size());
   for (const std::vector<SweptVolume>& sweeps : check.sweeps())
     for (const SweptVolume& sweep : sweeps) cuts[sweep.pose] = true;
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (cuts[i]) result.poses.push_back(check.pose_words()[i]);
-  refuse_other_machine(job, machine, others, options, workpiece, result.poses, first);
+  refuse_other_machine(job, machine, others, workpiece, result.poses, first);
 
   const bool ploughs = job.strategy == Strategy::unidirectional;
   const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(job.element);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,9 +19,13 @@
 
 namespace retrace::fabrication {
 
+/// Tolerance of facet planes that can be kept: 10 nm, or where it is more, what rounding to the increments of a Fanuc's
+/// words does at most at a root: the cuts of its two facets are off by half the diagonal of a box of them each.
+double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs);
+
 struct VerifyOptions {
-  double tolerance_nm = 10.0;  ///< of facet planes; > 0
-  std::size_t standing = 0;    ///< so many of the programs, from the first, are not judged: they made what stands
+  std::optional<double> tolerance_nm;  ///< of facet planes; > 0; without one usual_tolerance_nm()
+  std::size_t standing = 0;            ///< so many of the programs, from the first, are not judged: they made what stands
 };
 
 /// One element that a program leaves.

@@ -73,7 +73,7 @@ std::string verification_table(const VerificationRun& run) {
     text += fmt::format("  {:<28} {}\n", name, value);
   };
   row("elements cut", fmt::format("{} of {}", r.elements_cut, r.elements.size()));
-  row("facet distance", fixed(r.facet_distance_nm_max, 2) + " nm");
+  row("facet distance", fmt::format("{} nm, {} allowed", fixed(r.facet_distance_nm_max, 2), shortest(r.tolerance_nm)));
   row("facet angle", fmt::format("{} arcmin, {} unavoidable", fixed(r.facet_angle_arcmin_max, 4),
                                  fixed(r.facet_angle_arcmin_predicted, 4)));
   row("apex error", fixed(r.apex_error_arcmin_max, 4) + " arcmin");

@@ -18,6 +18,8 @@ constexpr double kLeastStripMm = 2e-6;
 constexpr double kAtRootMm = 1.5e-6;
 /// Of a facet's length: up to there a layer over the other facet may count for the root, whatever the tolerance is.
 constexpr double kMostLayerShare = 0.01;
+/// Of half the width: up to there the ends of the edge may be off by the tolerance, however wide that is.
+constexpr double kMostEndShare = 0.01;
 /// Margin on what is predicted of the region at the root: rounding of poses and positions.
 constexpr double kRootMargin = 1.05;
 constexpr int kEvenLines = 12;
@@ -40,10 +42,10 @@ class Measurer {
     for (const SweptVolume& sweep : sweeps) used_poses_.push_back(sweep.pose);
     std::sort(used_poses_.begin(), used_poses_.end());
     used_poses_.erase(std::unique(used_poses_.begin(), used_poses_.end()), used_poses_.end());
-    find_stations();
+    find_stations(std::min(tolerance_mm, kMostEndShare * groove.half_width_mm));
     const double layer_mm = std::min(tolerance_mm / sine_between(), kMostLayerShare * groove.facet_length_mm);
     layer_end_mm_ = kLeastStripMm + layer_mm;
-    strip_mm_ = std::max(kRootMargin * prediction.root_mm, layer_end_mm_);
+    strip_mm_ = kRootMargin * prediction.root_mm + layer_end_mm_;
     find_burr();
   }
 
@@ -122,7 +124,8 @@ class Measurer {
     return across.dot(sweep.to_mm - pose.point(groove_.root_mm)) / across.dot(pose.direction(groove_.root_direction));
   }
 
-  void find_stations() {
+  /// \param end_mm by which a pass may be off along the root
+  void find_stations(double end_mm) {
     for (const SweptVolume& sweep : sweeps_) {
       const double middle = middle_of(sweep);
       const auto is_same = [&](double known) { return std::abs(known - middle) < kSamePassMm; };
@@ -130,7 +133,7 @@ class Measurer {
         stations_.pass_middles_mm.push_back(middle);
     }
     // The ends of a tilted edge leave slivers at the walls, which the neighbours' cuts take.
-    const double margin = prediction_.wall_mm + 2.0 * kSamePassMm;
+    const double margin = prediction_.wall_mm + end_mm + 2.0 * kSamePassMm;
     const double end = groove_.half_width_mm - margin;
     stations_.along_mm = {-end, -kPlaneShare * end, kPlaneShare * end, end};
     plane_end_mm_ = kPlaneShare * groove_.half_width_mm;

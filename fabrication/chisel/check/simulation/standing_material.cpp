@@ -55,8 +55,7 @@ StandingSection section_of(const SectionPlane& plane, const Groove& groove, cons
 
 /// Where sections cross a prism, along its root: near either end and so densely that each pass has two.
 std::vector<double> stations_mm(const Groove& groove, double wall_mm, double tool_width_mm) {
-  constexpr double kRoundingMm = 1e-5;
-  const double end_mm = std::max(0.5 * groove.half_width_mm, groove.half_width_mm - wall_mm - kRoundingMm);
+  const double end_mm = std::max(0.5 * groove.half_width_mm, groove.half_width_mm - wall_mm);
   const int count = 1 + 2 * static_cast<int>(std::ceil(2.0 * groove.half_width_mm / tool_width_mm - 1e-9));
   std::vector<double> stations;
   for (int k = 0; k < count; ++k) stations.push_back(end_mm * (2.0 * k / (count - 1) - 1.0));
