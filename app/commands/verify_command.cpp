@@ -49,7 +49,9 @@ std::vector<Argument> arguments(VerifyOptions& options) {
            &options.request.standing},
           {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc or pmac, or auto: told from the text",
            &options.request.dialect, one_of(dialects)},
-          {"--tolerance-nm T", "of a job: that facet planes may differ from the design by; 10, or what a Fanuc's increments leave, unless it is given",
+          {"--tolerance-nm T",
+           "of a job: that facet planes may differ from the design by; 10, or what a Fanuc's increments leave, unless "
+           "it is given",
            &options.request.tolerance_nm},
           {"--map FILE", "of a job: draw what the programs leave over the facets to a PNG FILE", &options.map,
            files(".png")},

@@ -21,9 +21,10 @@ struct VerificationRequest {
   std::vector<std::string> programs =
       {};                        ///< files in the order in which they run; FILE@LINE: stopped behind that line
   std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc or pmac, or told from the text
-  /// That facet planes may differ from the design by. By default 10, or what a Fanuc's increments leave if that is more.
+  /// That facet planes may differ from the design by. By default 10, or what a Fanuc's increments leave if that is
+  /// more.
   std::optional<double> tolerance_nm = {};
-  std::string standing = {};     ///< stage before which all has been cut; empty: the blank stands
+  std::string standing = {};                      ///< stage before which all has been cut; empty: the blank stands
   std::filesystem::path as_machined = {};         ///< design file to write of the part that is left; empty: none
   std::map<std::string, std::string> texts = {};  ///< of job and programs, by name, in place of files
 };

@@ -18,9 +18,9 @@ namespace retrace::studies {
 
 /// What to verify.
 struct VerificationRequest {
-  std::string job;                    ///< file
-  std::vector<std::string> programs;  ///< as fabrication::program_name() takes them, in the order in which they run
-  std::string dialect = "auto";       ///< a word of fabrication::kNcDialectWords, or told from the text
+  std::string job;                     ///< file
+  std::vector<std::string> programs;   ///< as fabrication::program_name() takes them, in the order in which they run
+  std::string dialect = "auto";        ///< a word of fabrication::kNcDialectWords, or told from the text
   std::optional<double> tolerance_nm;  ///< of facet planes; without one fabrication::usual_tolerance_nm()
   std::string standing;  ///< stage before which all was cut by the job's own program; empty: the blank stands
   FileTexts texts = {};  ///< of job and programs that are given in place of being read

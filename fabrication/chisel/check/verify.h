@@ -25,7 +25,7 @@ double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& 
 
 struct VerifyOptions {
   std::optional<double> tolerance_nm;  ///< of facet planes; > 0; without one usual_tolerance_nm()
-  std::size_t standing = 0;            ///< so many of the programs, from the first, are not judged: they made what stands
+  std::size_t standing = 0;  ///< so many of the programs, from the first, are not judged: they made what stands
 };
 
 /// One element that a program leaves.
