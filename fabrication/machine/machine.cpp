@@ -74,14 +74,29 @@ RigidMotion machine_from_workpiece(const Machine& machine, const RotaryPose& pos
 
 Vec3 machine_point(const Machine& machine, const AxisPositions& axes) {
   const Vec3 point = linear_directions(machine) * Vec3(axes.x_mm, axes.y_mm, axes.z_mm);
-  return machine.tilt == Tilt::table ? point : Vec3(turn(machine.a, axes.b_deg).transpose() * point);
+  const Vec3 turned = machine.tilt == Tilt::table ? point : Vec3(turn(machine.a, axes.b_deg).transpose() * point);
+  return turned + machine.mount.offset_mm.value;
 }
 
 std::array<double, 3> linear_words(const Machine& machine, const Vec3& machine_point_mm, const RotaryPose& pose) {
-  const Vec3 point =
-      machine.tilt == Tilt::table ? machine_point_mm : Vec3(turn(machine.a, pose.a_deg) * machine_point_mm);
-  const Vec3 words = linear_directions(machine).partialPivLu().solve(point);
+  return words_along(machine, machine_point_mm - machine.mount.offset_mm.value, pose);
+}
+
+std::array<double, 3> words_along(const Machine& machine, const Vec3& direction, const RotaryPose& pose) {
+  const Vec3 along = machine.tilt == Tilt::table ? direction : Vec3(turn(machine.a, pose.a_deg) * direction);
+  const Vec3 words = linear_directions(machine).partialPivLu().solve(along);
   return {words.x(), words.y(), words.z()};
+}
+
+Eigen::Matrix3d tool_turn(const Machine& machine) {
+  const Vec3& turn_deg = machine.mount.turn_deg.value;
+  const double angle_deg = turn_deg.norm();
+  if (angle_deg == 0.0) return Eigen::Matrix3d::Identity();
+  return rotation_about(turn_deg / angle_deg, Angle::from_deg(angle_deg));
+}
+
+Vec3 edge_direction(const Machine& machine) {
+  return tool_turn(machine) * machine.x.direction.value;
 }
 
 ToolPose forward(const Machine& machine, const AxisPositions& axes) {
@@ -97,13 +112,12 @@ AxisPositions inverse(const Machine& machine, const Vec3& reference_mm, const Ro
 }
 
 Vec3 plunged_normal(const Machine& machine) {
-  const Vec3& across = machine.tilt == Tilt::table ? machine.x.direction.value : machine.z.direction.value;
-  const Vec3& along = machine.tilt == Tilt::table ? machine.z.direction.value : machine.y.direction.value;
-  return across.cross(along).normalized();
+  if (machine.tilt == Tilt::table) return edge_direction(machine).cross(machine.z.direction.value).normalized();
+  return tool_turn(machine) * machine.z.direction.value.cross(machine.y.direction.value).normalized();
 }
 
 Vec3 level_direction(const Machine& machine) {
-  return machine.tilt == Tilt::table ? machine.x.direction.value : machine.y.direction.value;
+  return machine.tilt == Tilt::table ? edge_direction(machine) : Vec3(tool_turn(machine) * machine.y.direction.value);
 }
 
 PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, const Vec3& root,

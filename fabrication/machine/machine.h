@@ -73,6 +73,15 @@ struct MachineBody {
   Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least 4, not in one plane
 };
 
+/// How the tool stands in the machine, against how it should: where a set-up left it, or a calibration found it.
+struct ToolMount {
+  /// Of the tool reference point, from where programs take it, along the axes of the machine. Of a head: at B = 0.
+  Sourced<geometry::Vec3> offset_mm = {geometry::Vec3::Zero(), Basis::assumed, "the tool is touched off"};
+  /// By which the tool is turned about its reference point: a vector along the axis of that turn, by the right hand, as
+  /// long as its angle. About X it changes the clearance, about Y an edge is not level, about Z it is not along X.
+  Sourced<geometry::Vec3> turn_deg = {geometry::Vec3::Zero(), Basis::assumed, "the tool is aligned"};
+};
+
 /// What the axis that tilts turns.
 enum class Tilt {
   table,  ///< A: the table, and C with it
@@ -101,6 +110,7 @@ struct Machine {
   Tilt tilt = Tilt::table;
   RotaryAxis a;  ///< the axis that tilts: A, or B of a head, whose point is told from the tool reference point at B = 0
   RotaryAxis c;
+  ToolMount mount;
   std::vector<MachineBody> bodies;
   /// Least Z to which the first move of a program goes, away from the part wherever the other axes stand; above the
   /// limit of Z: that limit.
@@ -146,7 +156,7 @@ struct RigidMotion {
 /// Where a machine puts the tool: as a frame in the workpiece.
 struct ToolPose {
   geometry::Vec3 reference_mm = geometry::Vec3::Zero();  ///< tool reference point, in the workpiece frame
-  /// Turns directions of the machine into those of the workpiece: a chisel's edge lies along +x of the machine.
+  /// Turns directions of the machine into those of the workpiece: a chisel's edge lies along edge_direction().
   Eigen::Matrix3d workpiece_from_machine = Eigen::Matrix3d::Identity();
 };
 
@@ -163,17 +173,24 @@ ToolPose forward(const Machine& machine, const AxisPositions& axes);
 /// within 200 mm of the origin. Limits are not looked at.
 AxisPositions inverse(const Machine& machine, const geometry::Vec3& reference_mm, const RotaryPose& pose);
 
-/// Axis positions as a point of the machine frame, and back; the same numbers if the linear axes are square and the
-/// head, if it is what tilts, stands at B = 0.
+/// Where the tool reference point is in the machine frame, and back; the same numbers as the words if the linear axes
+/// are square, the tool stands where it should and the head, if it is what tilts, at B = 0.
 geometry::Vec3 machine_point(const Machine& machine, const AxisPositions& axes);
 std::array<double, 3> linear_words(const Machine& machine, const geometry::Vec3& machine_point_mm,
                                    const RotaryPose& pose = {});
+/// By how much words change along a direction of the machine frame.
+std::array<double, 3> words_along(const Machine& machine, const geometry::Vec3& direction, const RotaryPose& pose = {});
+
+/// Turns directions of a tool that stands as it should into those of the tool as it is mounted.
+Eigen::Matrix3d tool_turn(const Machine& machine);
+/// Along a chisel's edge, in the machine frame: X, but for how the tool is mounted.
+geometry::Vec3 edge_direction(const Machine& machine);
 
 /// The normal, in the machine frame, that a facet has when the tool can cut it. Where the table tilts: of the plane
-/// that the tool's edge (along X) sweeps when Z moves, on the side of -Y. Where the head tilts: of the plane of Y and Z
-/// of the tool, on the side of -X.
+/// that the tool's edge sweeps when Z moves, on the side of -Y. Where the head tilts: of the plane of Y and Z of the
+/// tool, on the side of -X.
 geometry::Vec3 plunged_normal(const Machine& machine);
-/// The direction of the machine that a facet's level line then has: X, or Y where the head tilts.
+/// The direction of the machine that a facet's level line then has: the edge's, or Y of the tool where the head tilts.
 geometry::Vec3 level_direction(const Machine& machine);
 
 /// A pose that lets the tool plunge a facet.

@@ -62,6 +62,10 @@ Machine machine() {
   m.tilt = *rc::gen::element(Tilt::table, Tilt::head);
   m.a = rotary_axis(m.tilt == Tilt::table ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
   m.c = rotary_axis({0, 0, 1});
+  if (*rc::gen::arbitrary<bool>()) {
+    m.mount.offset_mm = sourced<Vec3>(Vec3(real(-10, 10), real(-1, 1), 0));
+    m.mount.turn_deg = sourced<Vec3>(Vec3(real(-5, 5), 0, real(-1, 1)));
+  }
   for (int k = *rc::gen::inRange(0, 3); k > 0; --k) m.bodies.push_back(body());
   return m;
 }
@@ -78,7 +82,8 @@ bool same(const RotaryAxis& a, const RotaryAxis& b) {
 }
 bool same(const Machine& a, const Machine& b) {
   bool is_same = a.name == b.name && a.title == b.title && a.tilt == b.tilt && same(a.x, b.x) && same(a.y, b.y) &&
-                 same(a.z, b.z) && same(a.a, b.a) && same(a.c, b.c) && a.bodies.size() == b.bodies.size();
+                 same(a.z, b.z) && same(a.a, b.a) && same(a.c, b.c) && same(a.mount.offset_mm, b.mount.offset_mm) &&
+                 same(a.mount.turn_deg, b.mount.turn_deg) && a.bodies.size() == b.bodies.size();
   for (std::size_t i = 0; is_same && i < a.bodies.size(); ++i)
     is_same = a.bodies[i].name == b.bodies[i].name && a.bodies[i].carrier == b.bodies[i].carrier &&
               same(a.bodies[i].points_mm, b.bodies[i].points_mm);

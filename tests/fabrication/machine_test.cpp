@@ -50,6 +50,8 @@ RC_GTEST_PROP(Machine, ForwardUndoesInverse, ()) {
   machine.a.sign.value = *rc::gen::element(1.0, -1.0);
   machine.c.sign.value = *rc::gen::element(1.0, -1.0);
   machine.y.direction.value = Vec3(1e-3, 1, -2e-3).normalized();
+  machine.mount.offset_mm.value = point_within(1);
+  machine.mount.turn_deg.value = point_within(1);
   const Vec3 point = point_within(100);
   const AxisPositions axes = inverse(machine, point, any_pose());
   RC_ASSERT((forward(machine, axes).reference_mm - point).norm() < 1e-12);
@@ -62,6 +64,7 @@ RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
   machine.c.direction.value = (Vec3(0, 0, 1) + 1e-2 * point_within(1)).normalized();
   machine.a.sign.value = *rc::gen::element(1.0, -1.0);
   machine.c.sign.value = *rc::gen::element(1.0, -1.0);
+  machine.mount.turn_deg.value = point_within(0.5);
   const double half_apex = (30.0 + 1e-4 * *rc::gen::inRange(0, 300000)) * std::numbers::pi / 180.0;
   const double azimuth = 1e-6 * *rc::gen::inRange(0, 6283185);
   const Vec3 root(std::cos(azimuth), std::sin(azimuth), 0);
@@ -70,8 +73,12 @@ RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
                            -machine.c.sign.value * azimuth * 180.0 / std::numbers::pi};
   const PlungePose solved = solve_plunge_pose(machine, normal, root, near);
   const RigidMotion motion = machine_from_workpiece(machine, solved.pose);
-  RC_ASSERT((motion.direction(normal) - Vec3(0, -1, 0)).norm() < 1e-14);
-  const Vec3 expected_root = rotation_about(Vec3(0, -1, 0), solved.root_tilt) * Vec3(1, 0, 0);
+  const Vec3 edge = tool_turn(machine) * Vec3(1, 0, 0);
+  const Vec3 plunged = edge.cross(Vec3(0, 0, 1)).normalized();
+  RC_ASSERT((motion.direction(normal) - plunged).norm() < 1e-14);
+  // The root keeps to the facet: what it is turned by is told from the edge's share in it.
+  const Vec3 level = (edge - plunged * plunged.dot(edge)).normalized();
+  const Vec3 expected_root = rotation_about(plunged, solved.root_tilt) * level;
   RC_ASSERT((motion.direction(root) - expected_root).norm() < 1e-14);
   RC_ASSERT(std::abs(solved.pose.a_deg - near.a_deg) < 5.0);
   RC_ASSERT(std::abs(solved.pose.c_deg - near.c_deg) < 5.0);
@@ -128,8 +135,9 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
             "m.toml:9: x.direction: must name its source, got \"\"");
   EXPECT_EQ(refusal(", assumed = \"square guideways\"", ""),
             "m.toml:9: x.direction: must say either measured = \"source\" or assumed = \"why\"");
-  EXPECT_EQ(refusal("[z]", "[w]"),
-            "m.toml:22: w: unknown table, did you mean \"x\"? (allowed: safe_z_mm, x, y, z, a, b, c, control, body)");
+  EXPECT_EQ(
+      refusal("[z]", "[w]"),
+      "m.toml:22: w: unknown table, did you mean \"x\"? (allowed: safe_z_mm, x, y, z, a, b, c, mount, control, body)");
   EXPECT_EQ(refusal("moves_with = \"tool\"", "moves_with = \"spindle\""),
             "m.toml:52: body[2].moves_with: must be \"workpiece\", \"cradle\" or \"tool\", got \"spindle\"");
   const std::string box = "box_mm = { value = [-60, -60, -40, 60, 60, -15]";

@@ -34,7 +34,7 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
     bends_mm_ = {depth_mm, depth_mm};
     return;
   }
-  const Angle rake = Angle::from_deg(tool.clearance_deg + tool.wedge_deg);
+  const Angle rake = Angle::from_deg(tool.clearance_deg + tool.wedge_deg + workpiece.machine->mount.turn_deg.value.x());
   apex_ = Angle::from_rad(std::acos(-groove.facets[0].normal.dot(groove.facets[1].normal)));
   rake_slope_ = std::tan(rake.rad());
   const double sine = std::sin(apex_.rad());

@@ -31,6 +31,7 @@ Prediction predict(const Machine& machine, const Groove& groove, double tool_wid
   if (groove.is_cube()) return predict_cube(machine, groove);
   Prediction prediction;
   prediction.poses.resize(2);
+  const Vec3 edge = edge_direction(machine);
   // Up a facet, from the rim to where the blank ends.
   const double stock_mm = groove.stock_mm / groove.axis.dot(groove.facets[0].up_slope);
   for (std::size_t f = 0; f < 2; ++f) {
@@ -49,9 +50,9 @@ Prediction predict(const Machine& machine, const Groove& groove, double tool_wid
     // The edge stays level while it ploughs the other facet, whose normal has a part along it.
     const std::size_t other = 1 - f;
     const Vec3 other_normal = motion.direction(groove.facets[other].normal);
-    const double along_edge = machine.x.direction.value.dot(other_normal);
+    const double along_edge = edge.dot(other_normal);
     const double slope = along_edge / std::sqrt(1.0 - along_edge * along_edge);
-    const double edge_along_root = machine.x.direction.value.dot(motion.direction(groove.root_direction));
+    const double edge_along_root = edge.dot(motion.direction(groove.root_direction));
     prediction.plough_slope[other] = edge_along_root < 0.0 ? -slope : slope;
   }
   return prediction;

@@ -32,7 +32,7 @@ double ClearWay::least_height_mm(const Place& at, const CuttingPose& pose) const
   const ToolPose tool = forward(machine_, axes);
   double least = face_.height_mm(tool.reference_mm);
   if (half_edge_mm_ == 0.0) return least;
-  const Vec3 half_edge = half_edge_mm_ * (tool.workpiece_from_machine * machine_.x.direction.value);
+  const Vec3 half_edge = half_edge_mm_ * (tool.workpiece_from_machine * edge_direction(machine_));
   for (const double side : {-1.0, 1.0}) least = std::min(least, face_.height_mm(tool.reference_mm + side * half_edge));
   return least;
 }

@@ -46,7 +46,7 @@ void check_root(const Job& job, const CuttingPose& pose, const InputLocation& wh
 }
 
 Vec2 direction_in_words(const Machine& machine, double y, double z) {
-  const auto words = linear_words(machine, Vec3(0.0, y, z));
+  const auto words = words_along(machine, Vec3(0.0, y, z));
   return {words[1], words[2]};
 }
 
@@ -132,8 +132,9 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   section.floor_direction = direction_in_words(machine, -std::sin(apex_rad), std::cos(apex_rad));
   section.bisector = direction_in_words(machine, -std::sin(0.5 * apex_rad), std::cos(0.5 * apex_rad));
   const FacetChoice other{facet.rotated, 3 - facet.facet};
-  const Vec3 design_floor = in_words(machine, motion.direction(pose.turn * facet_normal(element, other)));
-  section.lift_mm = std::abs(design_floor.x() / design_floor.z()) * 0.5 * job.tool.width_mm;
+  const Vec3 design_floor = motion.direction(pose.turn * facet_normal(element, other));
+  section.lift_mm = std::abs(design_floor.dot(edge_direction(machine)) / in_words(machine, design_floor).z()) * 0.5 *
+                    job.tool.width_mm;
   const Vec3 face = in_words(machine, motion.direction(pose.turn.col(2)));
   section.face_normal = {face.y(), face.z()};
   section.depth_mm = root_depth_mm(element);

@@ -265,6 +265,30 @@ constexpr Table rotary(std::string_view name, std::string_view meaning, Child ch
   return {.name = name, .meaning = meaning, .tables = kRotaryTables, .child = child, .presence = presence};
 }
 
+/// Directions that a tool may be off by and still be the same tool.
+constexpr NumberRange kMountDegrees{.low = -5.0, .high = 5.0};
+constexpr NumberRange kMountLength{.low = -10.0, .high = 10.0};
+constexpr auto kMountOffsetRows = sourced<Vec3>(Numbers{3, kMountLength}, access_by<get_point, set_point>);
+constexpr ValueTable kMountOffset = {kMountOffsetRows, kPointRules};
+constexpr auto kMountTurnRows = sourced<Vec3>(Numbers{3, kMountDegrees}, access_by<get_point, set_point>);
+constexpr ValueTable kMountTurn = {kMountTurnRows, kPointRules};
+constexpr Table kMountTables[] = {
+    value("offset_mm", kMountOffset, child<&ToolMount::offset_mm>,
+          "The tool reference point from where programs would take it, along X, Y and Z; of a head at B = 0.", "0"),
+    value("turn_deg", kMountTurn, child<&ToolMount::turn_deg>,
+          "By which the tool is turned about its reference point: a vector along the axis of the turn, by the right "
+          "hand. About X: other clearance; about Y: the edge is not level; about Z: the edge is not along X.",
+          "0")};
+
+/// Not written where the tool stands as it should.
+constexpr Child kMount = {
+    [](const void* machine) -> std::size_t {
+      const ToolMount& mount = static_cast<const Machine*>(machine)->mount;
+      return mount.offset_mm.value == Vec3::Zero() && mount.turn_deg.value == Vec3::Zero() ? 0 : 1;
+    },
+    [](const void* machine, std::size_t) -> const void* { return &static_cast<const Machine*>(machine)->mount; },
+    [](void* machine) -> void* { return &static_cast<Machine*>(machine)->mount; }};
+
 template <std::string Control::*line>
 std::string unfit_text(const Control& control) {
   const std::string& text = control.*line;
@@ -339,6 +363,11 @@ constexpr Table kTables[] = {
     rotary("a", "The axis A about which the table tilts.", kTilting<Tilt::table>, Presence::optional),
     rotary("b", "The axis B about which the head tilts.", kTilting<Tilt::head>, Presence::optional),
     rotary("c", "The axis C of the table.", child<&Machine::c>, Presence::always),
+    {.name = "mount",
+     .meaning = "How the tool stands, where it stands otherwise than it should.",
+     .tables = kMountTables,
+     .child = kMount,
+     .presence = Presence::optional},
     {.name = "control",
      .meaning = "What programs must know of the control; each dialect takes what concerns it.",
      .rows = kControlRows,

@@ -37,8 +37,9 @@ bool narrow(double a, double c, double& low, double& high) {
 }  // namespace
 
 ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex) {
-  const Vec3 x = machine.x.direction.value;
-  const Vec3 z = (machine.z.direction.value - x * x.dot(machine.z.direction.value)).normalized();
+  const Vec3 x = edge_direction(machine);
+  const Vec3 up = tool_turn(machine) * machine.z.direction.value;
+  const Vec3 z = (up - x * x.dot(up)).normalized();
   const Vec3 y = z.cross(x);
   const double clearance = Angle::from_deg(tool.clearance_deg).rad();
   const double rake = Angle::from_deg(tool.clearance_deg + tool.wedge_deg).rad();
