@@ -80,7 +80,8 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
   return surface_along(spans, exit);
 }
 
-/// Share of a facet's breadth at its edges from which its plane is not taken.
+/// Share of a facet's breadth at its edges, and of its edges' length below the blank's face, from which its plane is
+/// not taken: a facet that stands above its design leaves the blank there.
 constexpr double kPlaneMargin = 0.02;
 
 void take(FacetFigures& figures, const Vec2& place, const LineSurface& surface) {
@@ -113,7 +114,7 @@ ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span
       const double exit = place.minCoeff() <= kStripMm ? std::min(at_face, kStripMm) : at_face;
       const LineSurface surface = surface_at(point, normal, exit, sweeps, poses, wedge, spans);
       take(facet, place, surface);
-      if (place.minCoeff() < kPlaneMargin * edge_mm) continue;
+      if (std::min(place.minCoeff(), at_face) < kPlaneMargin * edge_mm) continue;
       plane.add(place.sum() / std::numbers::sqrt2, (place.y() - place.x()) / std::numbers::sqrt2, surface.lowest);
     }
     plane.fit(facet);
