@@ -2,7 +2,7 @@ retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/job_test.cpp
   LIBRARIES retrace::job rapidcheck)
 retrace_test(fabrication_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/machine_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/machine_test.cpp ${CMAKE_CURRENT_LIST_DIR}/setup_test.cpp
   LIBRARIES retrace::machine rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/formats_test.cpp support/key_table.cpp
@@ -22,7 +22,7 @@ retrace_test(fabrication_tests
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/control_state_test.cpp ${CMAKE_CURRENT_LIST_DIR}/partial_programs_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/cutting_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp ${CMAKE_CURRENT_LIST_DIR}/setup_cuts_test.cpp
   LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp ${CMAKE_CURRENT_LIST_DIR}/chip_test.cpp
