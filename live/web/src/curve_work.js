@@ -3,12 +3,15 @@
 import { MOVING, RESTING } from "./session.js";
 
 const CHUNK_S = 0.012;
+const PATIENCE_MS = 700; // after which a coarse curve is shown that is not whole
 export const CURVE_STEPS_DEG = [5, 2.5, 1];
 
-function range(from, to, step) {
-  const list = [];
-  for (let k = Math.round(from / step); k * step <= to + 1e-9; ++k) list.push(k * step);
-  return list;
+/** From -`to` to `to`, those first that stand farther apart, so that a few say something of the whole. */
+function range(to, step) {
+  const most = Math.floor(to / step + 1e-9);
+  const all = Array.from({ length: 2 * most + 1 }, (_, k) => k - most);
+  const rank = (k) => (k % 6 === 0 ? 0 : k % 3 === 0 ? 1 : 2);
+  return all.sort((a, b) => rank(a) - rank(b)).map((k) => k * step);
 }
 
 /** A curve of one design that is being traced, from coarse to fine. */
@@ -19,6 +22,7 @@ export class CurvePass {
     this.points = new Map(); // by incidence: [rre, truncated]
     this.level = -1;
     this.target_error = MOVING;
+    this.begun = performance.now();
     this.queue = [];
     this.advance();
   }
@@ -31,7 +35,7 @@ export class CurvePass {
   advance() {
     if (this.level + 1 >= CURVE_STEPS_DEG.length) return false;
     this.level += 1;
-    this.queue = range(-this.half_range_deg, this.half_range_deg, CURVE_STEPS_DEG[this.level]).filter(
+    this.queue = range(this.half_range_deg, CURVE_STEPS_DEG[this.level]).filter(
       (incidence) => !this.points.has(incidence),
     );
     return true;
@@ -79,23 +83,24 @@ export class Curve {
   next() {
     const { base, isMoving } = this.session;
     if (!base || !base.traces) return null;
-    const pass = this.pass;
-    if (!pass || (pass.level > 0 || pass.isWhole())) {
+    if (!this.pass || this.pass.failed || this.pass.level > 0 || this.pass.isWhole()) {
       const wanted = this.wanted();
-      if (!pass || wanted.key !== pass.key) this.pass = wanted;
+      if (!this.pass || wanted.key !== this.pass.key) this.pass = wanted;
     }
-    if (this.pass.isWhole() && (isMoving || !(this.pass.advance() || this.pass.refine()))) return null;
-    return this.pass.isWhole() ? null : this.pass.job();
+    const { pass } = this;
+    if (pass.failed || (pass.isWhole() && (isMoving || !(pass.advance() || pass.refine())))) return null;
+    return pass.job();
   }
 
   take(job, data) {
     const answer = data.answers && data.answers[0];
-    if (!answer || !answer.ok || job.pass !== this.pass) {
-      if (job.pass === this.pass) this.pass.queue = []; // what one direction cannot, the others will not
+    if (job.pass !== this.pass) return;
+    if (!answer || !answer.ok) {
+      this.pass.failed = true; // what one direction cannot, the others will not
       return;
     }
     this.pass.take(answer);
-    if (this.pass.level === 0 && !this.pass.isWhole()) return;
+    if (this.pass.level === 0 && !this.pass.isWhole() && performance.now() - this.pass.begun < PATIENCE_MS) return;
     this.shown = this.pass;
     this.session.tell("curve", this.pass);
   }

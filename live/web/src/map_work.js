@@ -3,7 +3,9 @@
 import { MOVING } from "./session.js";
 
 const CHUNK_S = 0.014;
-const RING_STEPS_DEG = [10, 5, 2.5];
+const RING_STEPS_DEG = [20, 10, 5, 2.5];
+const WHILE_MOVING = 1; // the level that is waited for before another design is begun,
+const PATIENCE_MS = 700; // unless that takes longer
 const PLACES = 6; // of the first ring; the k-th has k times as many
 
 function turned(azimuth_deg) {
@@ -29,6 +31,7 @@ export class MapPass {
     this.key = `${design.source}\n${design.toml}\n${most_deg}`;
     this.values = new Map(); // by direction: rre
     this.level = -1;
+    this.begun = performance.now();
     this.rings = null; // of the finest level that is whole: [{incidence_deg, values}]
     this.advance();
   }
@@ -50,6 +53,11 @@ export class MapPass {
 
   isWhole() {
     return this.queue.length === 0;
+  }
+
+  /** Fine enough to be left for another design; what is whole but not yet so goes on. */
+  isEnough() {
+    return this.level > WHILE_MOVING || (this.isWhole() && (this.level === WHILE_MOVING || performance.now() - this.begun > PATIENCE_MS));
   }
 
   advance() {
@@ -88,30 +96,29 @@ export class DirectionMap {
   }
 
   next() {
-    const { base, measure } = this.session;
+    const { base, measure, isMoving } = this.session;
     if (!base || !base.traces) return null;
-    if (!this.pass || this.pass.level > 0 || this.pass.isWhole()) {
+    if (!this.pass || this.pass.isEnough() || this.pass.failed) {
       const wanted = new MapPass(base, this.most_deg, measure.drawn.point);
       if (!this.pass || wanted.key !== this.pass.key) this.pass = wanted;
     }
-    if (this.pass.isWhole() && (this.session.isMoving || !this.pass.advance())) return null;
-    return this.pass.job();
+    const { pass } = this;
+    if (pass.failed || (pass.isWhole() && ((isMoving && pass.isEnough()) || !pass.advance()))) return null;
+    return pass.job();
   }
 
   take(job, data) {
+    const { pass } = job;
     const answer = data.answers && data.answers[0];
-    if (job.pass !== this.pass) return;
+    if (pass !== this.pass) return;
     if (!answer || !answer.ok) {
-      this.pass.queue = [];
-      this.pass.level = RING_STEPS_DEG.length;
+      pass.failed = true; // what one direction cannot, the others will not
       return;
     }
-    this.pass.take(answer);
-    if (!this.pass.isWhole()) {
-      this.session.tell("map_progress", this.pass);
-      return;
-    }
-    this.shown = this.pass;
-    this.session.tell("map", this.pass);
+    pass.take(answer);
+    // While something moves a coarse map does not take the place of a finer one.
+    const isShown = pass.isWhole() && (!this.shown || !this.session.isMoving || pass.isEnough());
+    if (isShown) this.shown = pass;
+    this.session.tell(isShown ? "map" : "map_progress", pass);
   }
 }

@@ -83,7 +83,8 @@ export class Session {
   }
 
   settle() {
-    if (this.isDue || this.point.running > 0) {
+    const canGo = this.base || this.wanted;
+    if ((this.isDue && canGo) || this.point.running > 0) {
       this.timer = setTimeout(() => this.settle(), REST_MS);
       return;
     }
