@@ -20,7 +20,7 @@ import { Session } from "./session.js";
 import { startReport } from "../../../report/page/web/src/report.js";
 import { addThemeSwitch } from "../../../report/page/web/src/theme.js";
 
-const FIRST = { incidence_deg: 12, azimuth_deg: 30 };
+const FIRST = { kind: "hexagonal_icc", incidence_deg: 12, azimuth_deg: 30 }; // what a page without a design begins with
 
 /** The form and the text of the design, one of which is shown. Arrow keys go from tab to tab. */
 function designPanel(form, editor) {
@@ -94,7 +94,7 @@ class LivePage {
     this.form.start(form.groups, about.materials || []);
     this.photometry.start(standards.standards);
     this.head.start(about.kinds, () => this.address());
-    await this.begin(about.kinds);
+    await this.begin();
     for (const event of ["rest", "state", "pins"]) this.session.on(event, () => this.remember());
     this.session.on("answer", ({ stamp }) => this.ready(stamp));
     this.session.on("refused", ({ text }) => text != null && this.design.choose("text"));
@@ -102,15 +102,16 @@ class LivePage {
   }
 
   /** The design of the address, else that of the page, else a template. */
-  async begin(kinds) {
-    this.session.direction = { ...FIRST };
-    this.readout.point(FIRST);
+  async begin() {
+    const { incidence_deg, azimuth_deg } = FIRST;
+    this.session.direction = { incidence_deg, azimuth_deg };
+    this.readout.point(this.session.direction);
     if (await this.restore()) return;
     if (this.start.toml != null) {
       this.session.open(this.start.toml, this.start.source);
       return;
     }
-    const { answers } = await this.engine.ask({ asks: [{ ask: "template", kind: kinds[0].kind, extent: "infinite" }] });
+    const { answers } = await this.engine.ask({ asks: [{ ask: "template", kind: FIRST.kind, extent: "infinite" }] });
     this.session.open(answers[0].toml, "design.toml");
   }
 

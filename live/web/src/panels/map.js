@@ -65,6 +65,7 @@ export class MapPanel {
     this.session.on("map_progress", (pass) => this.tell(pass));
     this.session.on("direction", () => this.draw());
     this.paintBar();
+    this.draw();
     const at = (event) => {
       const { x, y, radius } = this.disc();
       const [px, py] = this.canvas.placeOf(event);

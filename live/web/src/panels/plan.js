@@ -92,6 +92,8 @@ export class PlanPanel {
       h("span", {}, "comes back: nothing to all of it"),
       h("span", { class: "swatch hatched" }),
       h("span", {}, "dead zone"),
+      h("span", { class: "stroke" }),
+      h("span", {}, "one period"),
     );
     this.node = panel("plan", "Plan and footprint", { tools: [this.all] }, this.element, legend, this.caption);
   }
@@ -128,6 +130,7 @@ export class PlanPanel {
 
   recolour() {
     this.hatching = null;
+    this.paintRegions();
     this.draw();
   }
 
@@ -143,10 +146,20 @@ export class PlanPanel {
       if (spot && !this.plan.home(spot)) this.session.pick(null);
     }
     const { answer } = this.session;
-    this.regions = answer && answer.footprint ? answer.footprint.regions.map((r) => ({ ...r, outline: corners(r.outline) })) : [];
+    this.regions = answer && answer.footprint ? answer.footprint.regions.map(({ outline, efficiency }) => ({ outline: corners(outline), efficiency })) : [];
+    this.paintRegions();
     this.all.hidden = !this.session.spot;
     this.draw();
     this.tell();
+  }
+
+  /** Regions are opaque, from the colour of the paper to that of light. */
+  paintRegions() {
+    const [paper, light] = ["--paper", "--active"].map((name) => [1, 3, 5].map((k) => parseInt(colour(name).slice(k, k + 2), 16)));
+    for (const region of this.regions || []) {
+      const share = 0.1 + 0.9 * region.efficiency;
+      region.paint = `rgb(${paper.map((c, k) => Math.round(c + share * (light[k] - c)))})`;
+    }
   }
 
   /** One sentence below the picture. */
@@ -186,33 +199,40 @@ export class PlanPanel {
     context.save();
     context.setTransform(this.canvas.ratio * scale, 0, 0, -this.canvas.ratio * scale, this.canvas.ratio * left, this.canvas.ratio * top);
     for (const tile of this.plan.tilesWithin(this.toPlan([0, height]), this.toPlan([width, 0]))) this.drawTile(context, tile, 1 / scale);
+    if (this.plan.isPeriodic) this.drawPeriod(context, 1 / scale);
     this.drawRay(context, 1 / scale);
     context.restore();
     this.drawScale(context, scale);
   }
 
-  /** One period, or the whole of a finite part; neighbours of the period in the middle are fainter. */
+  /** One period, or the whole of a finite part. */
   drawTile(context, [dx, dy], unit) {
     context.save();
     context.translate(dx, dy);
-    const isHome = dx === 0 && dy === 0;
-    context.globalAlpha = isHome ? 1 : 0.38;
     this.trace(context, this.plan.outline);
     context.fillStyle = colour("--panel");
     context.fill();
     this.hatch(context, unit);
-    for (const { outline, efficiency } of this.regions) {
+    for (const { outline, paint } of this.regions) {
       this.trace(context, outline);
-      context.fillStyle = colour("--paper");
+      context.fillStyle = context.strokeStyle = paint;
+      context.lineWidth = 0.6 * unit; // over the seams between regions
       context.fill();
-      context.save();
-      context.globalAlpha *= 0.12 + 0.88 * efficiency;
-      context.fillStyle = colour("--active");
-      context.fill();
-      context.restore();
+      context.stroke();
     }
     this.lines(context, this.plan.roots, unit, "--edge", 0.5);
     this.lines(context, this.plan.rims, 1.3 * unit, "--edge", 1);
+    context.restore();
+  }
+
+  /** What is repeated without end, and what all numbers are of. */
+  drawPeriod(context, unit) {
+    context.save();
+    this.trace(context, this.plan.outline);
+    context.setLineDash([5 * unit, 4 * unit]);
+    context.strokeStyle = colour("--curve-1");
+    context.lineWidth = 1.4 * unit;
+    context.stroke();
     context.restore();
   }
 

@@ -7,6 +7,18 @@ import { colourOf } from "./scene.js";
 
 const MARKS = { total_reflection: "good", reflection: "open", exits: "bad", escapes: "bad", leaves_side: "bad", ends: "bad", leaves: "good" };
 
+const EVENTS = {
+  enters: "enters",
+  total_reflection: "total reflection",
+  reflection: "partial reflection",
+  leaves: "leaves",
+  exits: "goes out behind",
+  enters_again: "comes in again",
+  leaves_side: "leaves at a side",
+  escapes: "is lost behind",
+  ends: "ends",
+};
+
 /** From 0 to 90 degrees: where the light stands, and beyond what angle all of it is reflected. */
 function gauge({ incidence_deg, critical_deg, event }) {
   if (incidence_deg == null) return "";
@@ -91,7 +103,7 @@ export class RayPanel {
       "tr",
       {},
       h("th", { scope: "row" }, k + 1),
-      h("td", { title: step.at_mm ? `at (${step.at_mm.map((c) => short(c)).join(", ")}) mm` : null }, step.text ? step.text.replace(/\.$/, "") : words(step.event)),
+      h("td", { title: step.at_mm ? `at (${step.at_mm.map((c) => short(c)).join(", ")}) mm` : null }, EVENTS[step.event] || words(step.event), step.role && h("span", { class: "role" }, words(step.role))),
       h("td", { class: "n" }, degrees(step.incidence_deg)),
       h("td", { class: "n" }, degrees(step.critical_deg)),
       h("td", { class: "g" }, gauge(step)),

@@ -2,8 +2,9 @@
 import { h, newId } from "../dom.js";
 import { short } from "../units.js";
 
-/** RRE and what may be missing of it, in percent: "76.231 to 76.240". */
-function bounds({ rre, truncated }) {
+/** RRE and how sure it is, in percent: "76.231 … 76.240", or "76.235 ± 0.008" of two standard errors. */
+function bounds({ rre, truncated, std_error }) {
+  if (std_error > 0) return `${(100 * rre).toFixed(3)} ± ${(200 * std_error).toFixed(3)} %`;
   const decimals = truncated > 5e-6 ? 3 : 5;
   const low = (100 * rre).toFixed(decimals);
   const high = (100 * (rre + Math.max(0, truncated))).toFixed(decimals);
@@ -40,8 +41,8 @@ export class Readout {
     this.number = h("output", { class: "number" }, "–");
     this.small = h("output", { "aria-hidden": "true" }, "–"); // beside the pictures of a phone
     this.what = h("span", { class: "what" }, "of the light comes back");
-    this.moving = new Accuracy("moving", "While something moves at most 1e-4 of the light is left untraced");
-    this.resting = new Accuracy("resting", "At rest at most 1e-6 of the light is left untraced");
+    this.moving = new Accuracy("moving", "While something moves: a standard error of at most 1e-4 of the light, or as much left untraced");
+    this.resting = new Accuracy("resting", "At rest: at most 1e-6 of the light left untraced");
     this.spoken = h("p", { class: "spoken", "aria-live": "polite" });
     this.controls = [this.control("incidence_deg", "Incidence", -80, 80, 0.5), this.control("azimuth_deg", "Azimuth", 0, 360, 1)];
     this.node = h(

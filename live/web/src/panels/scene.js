@@ -23,7 +23,7 @@ function solidOf(part) {
     solid: { vertices, triangles: inThrees(part.triangles), edges: inTwos(part.edges) },
     low,
     high,
-    bounds: { middle, size: 0.98 * size },
+    bounds: { middle, size: 1.04 * size },
   };
 }
 

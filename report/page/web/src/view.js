@@ -70,6 +70,7 @@ class Solid {
     this.faces.geometry = new BufferGeometry().setAttribute("position", corners(scene.triangles));
     this.faces.geometry.computeVertexNormals();
     this.edges.geometry = new BufferGeometry().setAttribute("position", corners(scene.edges));
+    this.ink.opacity = scene.edges.length > 200 ? 0.3 : 0.55;
     this.scene = scene;
   }
 
