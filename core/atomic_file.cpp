@@ -44,6 +44,10 @@ class TemporaryFile {
     }
   }
 
+  void go_to(off_t offset, int whence, const fs::path& target) const {
+    if (::lseek(descriptor_, offset, whence) < 0) fail(target);
+  }
+
   void move_to(const fs::path& target) {
     if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target);
     const int descriptor = descriptor_;
@@ -62,6 +66,12 @@ class TemporaryFile {
   int descriptor_ = -1;
   bool moved_ = false;
 };
+
+/// Through a symbolic link the file it points to is replaced or made, not the link.
+fs::path followed(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_symlink(path, ignored) ? fs::weakly_canonical(path.parent_path() / fs::read_symlink(path)) : path;
+}
 
 [[noreturn]] void refuse_unreadable(const fs::path& path, const std::string& why) {
   throw InputError(InputLocation{path.string(), 0, ""}, "cannot be read: " + why);
@@ -98,12 +108,60 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
     if (!stream) throw OutputError(path.string() + ": cannot be written");
     return;
   }
-  // Through a symbolic link the file it points to is replaced or made, not the link.
-  const fs::path target =
-      fs::is_symlink(path, ignored) ? fs::weakly_canonical(path.parent_path() / fs::read_symlink(path)) : path;
+  const fs::path target = followed(path);
   TemporaryFile file(target);
   file.write(content, target);
   file.move_to(target);
+}
+
+/// Pieces are gathered, as many are small.
+class GrowingFile::Hidden {
+ public:
+  explicit Hidden(fs::path target) : target_(std::move(target)), file_(target_) {}
+
+  void append(std::string_view bytes) {
+    constexpr std::size_t kGathered = std::size_t{1} << 18;
+    gathered_ += bytes;
+    if (gathered_.size() >= kGathered) flush();
+  }
+  void overwrite(std::uint64_t offset, std::string_view bytes) {
+    flush();
+    file_.go_to(static_cast<off_t>(offset), SEEK_SET, target_);
+    file_.write(bytes, target_);
+    file_.go_to(0, SEEK_END, target_);
+  }
+  void finish() {
+    flush();
+    file_.move_to(target_);
+  }
+
+ private:
+  void flush() {
+    file_.write(gathered_, target_);
+    gathered_.clear();
+  }
+
+  fs::path target_;
+  TemporaryFile file_;
+  std::string gathered_;
+};
+
+GrowingFile::GrowingFile(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
+    throw OutputError(path.string() + ": cannot be written: it is no regular file");
+  hidden_ = std::make_unique<Hidden>(followed(path));
+}
+GrowingFile::~GrowingFile() = default;
+
+void GrowingFile::append(std::string_view bytes) {
+  hidden_->append(bytes);
+}
+void GrowingFile::overwrite(std::uint64_t offset, std::string_view bytes) {
+  hidden_->overwrite(offset, bytes);
+}
+void GrowingFile::finish() {
+  hidden_->finish();
 }
 
 void make_output_folder(const fs::path& folder) {

@@ -129,6 +129,39 @@ TEST_F(AtomicFile, OnlyFilesAreRead) {
   EXPECT_EQ(read_file(folder_ / "empty"), "");
 }
 
+TEST_F(AtomicFile, AGrowingFileAppearsWhenItIsFinished) {
+  const fs::path file = folder_ / "file";
+  write_file_atomically(file, "before");
+  {
+    GrowingFile growing(file);
+    growing.append("head");
+    for (int k = 0; k < 100'000; ++k) growing.append("0123456789");
+    growing.overwrite(0, "HE");
+    growing.append("tail");
+    EXPECT_EQ(read_file(file), "before");
+    growing.finish();
+  }
+  const std::string text = read_file(file);
+  EXPECT_EQ(text.size(), 1'000'008U);
+  EXPECT_TRUE(text.starts_with("HEad0123456789"));
+  EXPECT_TRUE(text.ends_with("789tail"));
+  EXPECT_EQ(names(), std::set<std::string>{"file"});
+}
+
+TEST_F(AtomicFile, NothingIsLeftOfAGrowingFileThatIsNotFinished) {
+  const fs::path file = folder_ / "file";
+  write_file_atomically(file, "before");
+  GrowingFile(file).append(std::string(1 << 20, 'x'));
+  EXPECT_EQ(read_file(file), "before");
+  EXPECT_EQ(names(), std::set<std::string>{"file"});
+  EXPECT_THROW(GrowingFile("/dev/null"), OutputError);
+  EXPECT_THROW(GrowingFile(folder_ / "no" / "file"), OutputError);
+  const FileSizeLimit limit(1000);
+  GrowingFile growing(folder_ / "full");
+  growing.append(std::string(2000, 'x'));
+  EXPECT_THROW(growing.finish(), OutputError);
+}
+
 /// What a file is refused for.
 std::string complaint_of(const fs::path& file, std::size_t most_bytes) {
   return refusal_of([&] { read_file(file, most_bytes); });
