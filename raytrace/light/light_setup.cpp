@@ -158,8 +158,8 @@ LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const 
   entry = enter(illumination.stokes);
 }
 
-std::size_t LightSetup::cone_of(const Vec3& direction) const {
-  const double chord2 = (direction - to_source).squaredNorm();
+std::size_t LightSetup::cone_of(const Vec3& direction, const Vec3& back) const {
+  const double chord2 = (direction - back).squaredNorm();
   std::size_t k = 0;
   while (k < cone_chord2.size() && chord2 > cone_chord2[k]) ++k;
   return k;

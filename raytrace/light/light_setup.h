@@ -40,7 +40,9 @@ struct LightSetup {
   bool infinite() const { return sides.empty(); }
 
   /// The narrowest cone that holds a direction; their number if none does.
-  std::size_t cone_of(const Vec3& direction) const;
+  std::size_t cone_of(const Vec3& direction) const { return cone_of(direction, to_source); }
+  /// The same of light that came from elsewhere. \param back to where it came from
+  std::size_t cone_of(const Vec3& direction, const Vec3& back) const;
 
   /// What the entrance face makes of the incident light.
   struct Entry {

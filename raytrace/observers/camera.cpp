@@ -149,8 +149,9 @@ class Sight : public ExitObserver, public CellWalker::Observer {
 
   /// Of which path PathWalker tells from here on.
   void begin(std::size_t look) { look_ = static_cast<std::uint32_t>(look); }
-  void leaves(const Vec3& position, const Vec3& direction, double power) override {
-    leaves(look_, position, direction, power);
+  void leaves(const Departure& departure) override {
+    if (departure.is_through_entrance())
+      leaves(look_, departure.position, departure.direction, departure.light.power());
   }
   void leaves(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) override {
     Look& look = looks_[owner];

@@ -89,8 +89,9 @@ class Recorder : public ExitObserver {
     if (light_.optics.entrance.scatters()) return;  // the walker tells what the face sends back
     add(position_mm, light_.entry.front_direction, light_.entry.front.i);
   }
-  void leaves(const Vec3& position, const Vec3& direction, double power) override {
-    add(position.head<2>(), direction, power);
+  void leaves(const Departure& departure) override {
+    if (departure.is_through_entrance())
+      add(departure.position.head<2>(), departure.direction, departure.light.power());
   }
 
  private:

@@ -13,17 +13,15 @@ const SoiledReturn& PathWalker::soiled(const Ray& ray) {
   return from_soiled_;
 }
 
-void PathWalker::enter_soiled(const Vec2& entry_mm) {
-  for (const Ray& ray : soiled({-setup_.to_source, setup_.incident, false, false}).rays) {
-    if (!ray.inside) {
-      book_front(setup_, ray, tally_);
-      if (observer_ != nullptr)
-        observer_->leaves({entry_mm.x(), entry_mm.y(), setup_.thickness_mm}, ray.direction, ray.light.power());
-      continue;
-    }
-    State& state = pending_.emplace_back();
-    static_cast<Ray&>(state) = ray;
-    state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
+/// Light in the air that has come to the face.
+void PathWalker::enter_soiled(const State& state) {
+  for (const Ray& ray : soiled(state).rays) {
+    State next = state;
+    static_cast<Ray&>(next) = ray;
+    if (ray.inside)
+      pending_.push_back(next);
+    else
+      send_back(next, ray.light, ray.direction);
   }
 }
 

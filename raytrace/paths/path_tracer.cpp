@@ -34,25 +34,28 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
 }
 
 void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample) {
-  key_ = key;
-  replicate_ = replicate;
-  sample_ = sample;
-  choices_ = 0;
+  begin(key, replicate, sample);
   enter(entry_mm);
   follow_pending();
 }
 
 void PathWalker::resume(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate,
                         std::uint32_t sample, std::uint32_t& choices) {
-  key_ = key;
-  replicate_ = replicate;
-  sample_ = sample;
-  choices_ = choices;
+  begin(key, replicate, sample, choices);
   State& state = pending_.emplace_back();
   static_cast<Ray&>(state) = ray;
   state.position = position;
   follow_pending();
   choices = choices_;
+}
+
+void PathWalker::begin(RandomKey key, std::uint32_t replicate, std::uint32_t sample, std::uint32_t choices) {
+  key_ = key;
+  replicate_ = replicate;
+  sample_ = sample;
+  choices_ = choices;
+  to_source_ = setup_.to_source;
+  splits_at_front_ = true;
 }
 
 void PathWalker::follow_pending() {
@@ -66,13 +69,16 @@ void PathWalker::follow_pending() {
 
 void PathWalker::enter(const Vec2& entry_mm) {
   if (setup_.entrance_face != nullptr) return enter_entrance_face(entry_mm);
-  if (setup_.soiled) return enter_soiled(entry_mm);
+  State state;
+  state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
+  if (setup_.soiled) {
+    static_cast<Ray&>(state) = {-setup_.to_source, setup_.incident, false, false};
+    return enter_soiled(state);
+  }
   const LightSetup::Entry& entry = setup_.entry;
   tally_.front[entry.front_cone] += entry.front;
   tally_.other[Account::absorbed] += entry.absorbed;
   if (setup_.score != nullptr) setup_.score->add(entry.front_direction, entry.front.i, tally_.score);
-  State state;
-  state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
   state.direction = entry.direction;
   state.light = entry.light;
   pending_.push_back(state);
@@ -222,6 +228,8 @@ PathWalker::Step PathWalker::step_outside(State& state) const {
 
 PathWalker::Step PathWalker::step_outside_periodic(State& state) const {
   Step step;
+  const Vec3 start = state.position;
+  const Vec2 start_shift = state.shift_mm;
   const double dz = state.direction.z();
   for (int wraps = 0; wraps < kMaxWraps; ++wraps) {
     const double down =
@@ -240,6 +248,8 @@ PathWalker::Step PathWalker::step_outside_periodic(State& state) const {
     if (limit == up) return step;
     if (limit == down) {
       step.end = End::escape;
+      state.position = start;  // it leaves from there
+      state.shift_mm = start_shift;
       return step;
     }
     state.position += limit * state.direction;
@@ -261,8 +271,11 @@ double PathWalker::distance_to_tile_border(const State& state) const {
 
 /// Brings a position back into the central period; nothing near it is the facet it came from any more.
 void PathWalker::wrap(State& state) const {
-  for (const Eigen::Index axis : {0, 1})
-    state.position[axis] -= setup_.period_mm[axis] * std::floor(state.position[axis] / setup_.period_mm[axis] + 0.5);
+  for (const Eigen::Index axis : {0, 1}) {
+    const double by = setup_.period_mm[axis] * std::floor(state.position[axis] / setup_.period_mm[axis] + 0.5);
+    state.position[axis] -= by;
+    state.shift_mm[axis] += by;
+  }
   state.source = {};
 }
 
@@ -300,9 +313,25 @@ bool PathWalker::meet_entrance(State& state) {
 
 /// Books light that leaves through the entrance face. \param state where it does \param direction in air
 void PathWalker::leave(const State& state, const Light& light, const Vec3& direction) {
-  returned(state)[setup_.cone_of(direction)] += seen_from_above(light, direction);
-  if (observer_ != nullptr) observer_->leaves(state.position, direction, light.power());
+  const std::size_t cone = setup_.cone_of(direction, to_source_);
+  returned(state)[cone] += seen_from_above(light, direction);
+  const Account outside = state.scattered ? Account::scattered_out : Account::returned_elsewhere;
+  tell(cone < setup_.cone_chord2.size() ? Account::retroreflected : outside, state, direction, light);
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
+}
+
+/// Books light of the state's place that the entrance face sends back at once.
+void PathWalker::send_back(const State& state, const Light& light, const Vec3& direction) {
+  const std::size_t cone = setup_.cone_of(direction, to_source_);
+  (state.scattered ? tally_.scattered : tally_.front)[cone] += seen_from_above(light, direction);
+  const Account outside = state.scattered ? Account::scattered_out : Account::front_specular;
+  tell(cone < setup_.cone_chord2.size() ? Account::retroreflected : outside, state, direction, light);
+  if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
+}
+
+/// Tells who watches of light that leaves the part where the state is.
+void PathWalker::tell(Account account, const State& state, const Vec3& direction, const Light& light) const {
+  if (observer_ != nullptr) observer_->leaves({account, state.position, direction, light, state.shift_mm});
 }
 
 /// Behind a facet: what lies behind its element.
@@ -321,14 +350,20 @@ bool PathWalker::meet_side(State& state, const Vec3& normal) {
   const bool is_border_wall = state.position.z() < 0.0;
   const Optics& optics = is_border_wall ? optics_of_wall(state.position) : setup_.optics;
   if (is_border_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
-  const materials::FresnelCoefficients f =
-      materials::fresnel(is_border_wall ? optics.ratio_at_back(true) : optics.index, normal.dot(state.direction));
+  const double ratio = is_border_wall ? optics.ratio_at_back(true) : optics.index;
+  const double cos_incidence = normal.dot(state.direction);
+  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
   state.light.turn_to(state.direction, normal);
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
   // The part is the prism over a convex outline: what leaves through a side does not come back.
-  if (branch != Branch::reflected) tally_.other[Account::side_exit] += transmitted.power();
+  if (branch != Branch::reflected) {
+    tally_.other[Account::side_exit] += transmitted.power();
+    if (observer_ != nullptr)
+      tell(Account::side_exit, state, refracted(state.direction, -normal, ratio, cos_incidence, f.cos_refracted),
+           transmitted);
+  }
   state.light = reflected;
   state.direction = mirrored(state.direction, normal);
   state.source = {};
@@ -374,19 +409,6 @@ Vec3 PathWalker::normal_at(const State& state, const FacetRef& where) const {
   return formed_normal(setup_.optics, facet.normal, frame, state.position - place, state.direction, state.inside);
 }
 
-/// Follows the branches at a face. \param pass makes of the path the one that goes through
-template <class Pass>
-bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass) {
-  if (branch == Branch::transmitted) {
-    pass(state);
-    return true;
-  }
-  if (branch == Branch::both) pass(pending_.emplace_back(state));
-  state.light = reflected;
-  state.direction = mirrored(state.direction, against);
-  return true;
-}
-
 /// \param plane_normal that of a facet without its form
 bool PathWalker::meet_textured(State& state, const Vec3& normal, const Vec3& plane_normal, const Optics& optics) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
@@ -415,89 +437,9 @@ bool PathWalker::finish(const State& state, Account account) {
 }
 
 bool PathWalker::escape(const State& state) {
-  return finish(state, account_of_exit(state.left_through));
-}
-
-// At a curved entrance surface: what a plane entrance face never calls.
-
-/// The beam crosses the plane that touches the entrance surface from above, over the part's outline.
-void PathWalker::enter_entrance_face(const Vec2& entry_mm) {
-  State state;
-  state.position = {entry_mm.x(), entry_mm.y(), setup_.entrance_face->highest_mm()};
-  state.direction = -setup_.to_source;
-  state.light = setup_.incident;
-  state.inside = false;
-  state.above = true;
-  pending_.push_back(state);
-}
-
-/// From inside: how far the path goes if it meets the entrance surface within `limit`, else `limit`.
-double PathWalker::reach_entrance_face(const State& state, double limit, Step& step) const {
-  const auto met =
-      setup_.entrance_face->first_hit({state.position, state.direction, state.entrance_source, true, limit});
-  if (!met) return limit;
-  step.end = End::entrance;
-  step.hit = met->hit;
-  step.entrance_normal = met->normal;
-  return met->hit.t;
-}
-
-/// In the air above the entrance surface: back into it, or away. The part is the prism over a convex outline, so that
-/// what leaves that prism meets nothing any more.
-bool PathWalker::advance_above(State& state) {
-  double limit = std::numeric_limits<double>::infinity();
-  for (const PathSetup::Side& side : setup_.sides) {
-    const double towards = side.normal.dot(state.direction);
-    if (towards <= 0.0) continue;
-    limit = std::min(limit, std::max(0.0, (side.offset_mm - side.normal.dot(state.position)) / towards));
-  }
-  const auto met =
-      setup_.entrance_face->first_hit({state.position, state.direction, state.entrance_source, false, limit});
-  if (!met) return leave_entrance_face(state);
-  state.position += met->hit.t * state.direction;
-  return meet_entrance_face(state, met->hit, met->normal);
-}
-
-bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const Vec3& normal) {
-  const bool from_inside = state.inside;
-  const bool is_first = state.entrance_source == FacetRef{} && !from_inside;
-  const Vec3 against = from_inside ? Vec3(-normal) : normal;
-  const double cos_incidence = std::max(0.0, -against.dot(state.direction));
-  const double ratio = from_inside ? setup_.optics.index : 1.0 / setup_.optics.index;
-  const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, from_inside, cos_incidence);
-  state.light.turn_to(state.direction, against);
-  state.source = {};
-  state.entrance_source = hit.facet;
-  const bool is_lossless = setup_.optics.lossless_entrance;
-  if (is_lossless && f.total_reflection) {
-    returned(state).back().i += state.light.power();
-    return false;
-  }
-  Light reflected = is_lossless ? Light{Stokes{}, state.light.s_axis} : state.light.reflected(f);
-  Light transmitted = is_lossless ? state.light : state.light.transmitted(f);
-  if (!is_lossless)
-    tally_.other[Account::absorbed] += absorbed_at_entrance(setup_.optics, state.light, reflected, transmitted);
-  // What the first surface makes of the beam is followed both ways, as at a plane entrance face.
-  const Branch branch = is_first && !is_lossless ? Branch::both : choose(reflected, transmitted);
-  return go_on(state, branch, reflected, against, [&](State& through) {
-    through.light = transmitted;
-    through.direction = refracted(through.direction, against, ratio, cos_incidence, f.cos_refracted);
-    through.inside = !from_inside;
-    through.above = from_inside;
-    through.entered = true;
-  });
-}
-
-bool PathWalker::leave_entrance_face(const State& state) {
-  if (state.entrance_source == FacetRef{})
-    return finish(state, Account::transmitted);  // the beam passes beside the part
-  if (state.entered) {
-    leave(state, state.light, state.direction);
-    return false;
-  }
-  tally_.front[setup_.cone_of(state.direction)] += seen_from_above(state.light, state.direction);
-  if (setup_.score != nullptr) setup_.score->add(state.direction, state.light.power(), tally_.score);
-  return false;
+  const Account account = account_of_exit(state.left_through);
+  tell(account, state, state.direction, state.light);
+  return finish(state, account);
 }
 
 }  // namespace retrace::raytrace

@@ -38,7 +38,7 @@ struct PathSetup : LightSetup {
 /// both matter, one chosen at random with the whole power where not. One walker serves one thread.
 class PathWalker {
  public:
-  /// \param observer told of all that leaves through the entrance face from within; null: none
+  /// \param observer told of all that leaves the part; null: none
   PathWalker(const PathSetup& setup, Tally& tally, ExitObserver* observer = nullptr)
       : setup_(setup), tally_(tally), observer_(observer) {}
 
@@ -51,6 +51,13 @@ class PathWalker {
   void resume(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample,
               std::uint32_t& choices);
 
+  /// Traces light of power 1 that comes from anywhere: from above, from a side, from behind, or from inside the part
+  /// where it begins there. Its own way back takes the place of that to the source. What the face that it meets first
+  /// sends back is a branch like others, and counts as `front_specular` at the entrance face, as `side_exit` at sides,
+  /// as `transmitted` behind.
+  /// \return false if it does not meet the part: it is then booked nowhere
+  bool launch(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
+
  private:
   struct State : Ray {
     Vec3 position = Vec3::Zero();
@@ -60,6 +67,7 @@ class PathWalker {
     bool entered = false;                                                 ///< it has passed an entrance surface
     geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through
     std::uint32_t events = 0;
+    Vec2 shift_mm = Vec2::Zero();  ///< infinite part: from `position`, in the central period, to where it really is
   };
   enum class End { facet, entrance, side, escape, miss, trapped };
   struct Step {
@@ -69,6 +77,9 @@ class PathWalker {
     std::size_t side = 0;
     double length_mm = 0.0;
   };
+  /// Where light is that comes to the part.
+  enum class Medium { above, body, below };
+  void begin(RandomKey key, std::uint32_t replicate, std::uint32_t sample, std::uint32_t choices = 0);
   void enter(const Vec2& entry_mm);
   void follow_pending();
   bool advance(State& state);
@@ -89,11 +100,13 @@ class PathWalker {
   bool meet_entrance_face(State& state, const SurfaceHit& hit, const Vec3& normal);
   bool leave_entrance_face(const State& state);
   bool meet_entrance(State& state);
-  void enter_soiled(const Vec2& entry_mm);
+  void send_back(const State& state, const Light& light, const Vec3& direction);
+  void enter_soiled(const State& state);
   bool meet_soiled_entrance(const State& state);
   const SoiledReturn& soiled(const Ray& ray);
   std::vector<Stokes>& returned(const State& state) { return state.scattered ? tally_.scattered : tally_.returned; }
   void leave(const State& state, const Light& light, const Vec3& direction);
+  void tell(Account account, const State& state, const Vec3& direction, const Light& light) const;
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
   Vec3 normal_at(const State& state, const FacetRef& where) const;
@@ -106,15 +119,40 @@ class PathWalker {
   bool finish(const State& state, Account account);
   bool escape(const State& state);
 
+  double start_tolerance(const Vec3& position) const;
+  Medium medium_at(Vec3 position, double tolerance_mm) const;
+  bool arrive_at_body(State& state);
+  bool arrive_at_sheet(State& state);
+  bool arrive_from_above(State& state, double reach_mm, double tolerance_mm);
+  bool arrive_at_entrance(State& state);
+  bool arrive_at_side(State& state, const Vec3& normal);
+  bool arrive_from_below(State& state);
+  bool begin_inside(State& state, double tolerance_mm);
+
   const PathSetup& setup_;
   Tally& tally_;
   ExitObserver* observer_;
   std::vector<State> pending_;
   SoiledReturn from_soiled_;
+  Vec3 to_source_ = Vec3::UnitZ();  ///< of the light that is traced
+  bool splits_at_front_ = true;     ///< both branches of the first interface are followed, whatever their power
   RandomKey key_;
   std::uint32_t replicate_ = 0;
   std::uint32_t sample_ = 0;
   std::uint32_t choices_ = 0;
 };
+
+/// Follows the branches at a face. \param pass makes of the path the one that goes through
+template <class Pass>
+bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass) {
+  if (branch == Branch::transmitted) {
+    pass(state);
+    return true;
+  }
+  if (branch == Branch::both) pass(pending_.emplace_back(state));
+  state.light = reflected;
+  state.direction = mirrored(state.direction, against);
+  return true;
+}
 
 }  // namespace retrace::raytrace

@@ -61,8 +61,9 @@ struct Exits : ExitObserver {
     double power;
   };
   std::vector<Exit> all;
-  void leaves(const Vec3& position, const Vec3& direction, double power) override {
-    all.push_back({position, direction, power});
+  void leaves(const Departure& departure) override {
+    if (departure.is_through_entrance())
+      all.push_back({departure.position, departure.direction, departure.light.power()});
   }
   const Exit& strongest() const {
     return *std::max_element(all.begin(), all.end(), [](const Exit& a, const Exit& b) { return a.power < b.power; });

@@ -104,8 +104,8 @@ TEST(FormedFacets, MiddlesStayWithTheirElements) {
 
 struct Exits : ExitObserver {
   std::vector<Vec3> directions;
-  void leaves(const Vec3&, const Vec3& direction, double power) override {
-    if (power > 0.5) directions.push_back(direction);
+  void leaves(const Departure& departure) override {
+    if (departure.is_through_entrance() && departure.light.power() > 0.5) directions.push_back(departure.direction);
   }
 };
 

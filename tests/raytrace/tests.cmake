@@ -13,6 +13,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/overlay_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/polarisation_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/ray_tracer_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/reference_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/returned_beams_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/robustness_test.cpp

@@ -30,7 +30,8 @@ struct Ray {
   double flux = 1.0;           ///< power of unit field strength
   bool inside = false;
   bool entered = false;
-  FacetRole left_through = FacetRole::entrance;
+  FacetRole left_through = FacetRole::entrance;  ///< before it has entered: what it met first
+  bool has_met = false;                          ///< any face
 
   double power() const { return 0.5 * flux * (field[0].squaredNorm() + field[1].squaredNorm()); }
 };
@@ -67,6 +68,22 @@ class Reference {
   }
   const std::array<double, 4>& stokes() const { return stokes_; }
 
+  ReferenceRay trace(const Vec3& origin, const Vec3& direction, const raytrace::Light& light, bool inside) {
+    ledger_ = Ledger{};
+    exits_.clear();
+    to_source_ = -direction;
+    Ray ray;
+    ray.direction = direction;
+    ray.origin = origin;
+    const raytrace::Stokes& s = light.stokes;
+    ray.field = fields_of({s.i, s.q, -s.u, s.v}, {light.s_axis, -direction.cross(light.s_axis)});
+    ray.inside = ray.entered = inside;
+    double t = 0.0;
+    const bool meets = nearest(ray, t) != nullptr;
+    if (meets) follow(ray);
+    return {meets, ledger_, exits_};
+  }
+
  private:
   /// +x seen from the source, and upwards from there.
   static std::array<Vec3, 2> axes_of(const Vec3& to_source) {
@@ -75,13 +92,14 @@ class Reference {
   }
 
   /// Two orthogonal incoherent fields that add to the incident light: the eigenvectors of its coherency matrix.
-  std::array<Vec3c, 2> incident_fields() const {
-    const auto& [i, q, u, v] = stokes_in_;
+  std::array<Vec3c, 2> incident_fields() const { return fields_of(stokes_in_, axes_of(to_source_)); }
+
+  static std::array<Vec3c, 2> fields_of(const raytrace::Stokes& stokes, const std::array<Vec3, 2>& axes) {
+    const auto& [i, q, u, v] = stokes;
     // Light that comes along -s: clockwise for whom it reaches is first to second for whom it leaves.
     Eigen::Matrix2cd coherency;
     coherency << Complex(i + q), Complex(u, -v), Complex(u, v), Complex(i - q);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd> solver(coherency);
-    const auto axes = axes_of(to_source_);
     std::array<Vec3c, 2> fields;
     for (Eigen::Index k = 0; k < 2; ++k) {
       const Eigen::Vector2cd a = std::sqrt(std::max(0.0, solver.eigenvalues()[k])) * solver.eigenvectors().col(k);
@@ -163,7 +181,8 @@ class Reference {
     Ray mirrored = ray;
     mirrored.direction = (ray.direction + 2.0 * ci * n).normalized();
     mirrored.field = recombined(ray, mirrored.direction, s, r_s, r_p);
-    // The first surface is met from outside at the entrance, before anything has entered.
+    if (!ray.entered && !ray.has_met) mirrored.left_through = hit.role;
+    mirrored.has_met = true;
     follow(mirrored);
     if (sin_t >= 1.0) return;
 
@@ -262,15 +281,17 @@ class Reference {
     }
     const double angle = std::atan2(ray.direction.cross(to_source_).norm(), ray.direction.dot(to_source_));
     const bool in_cone = angle <= cone_rad_ * (1.0 + 1e-9);
-    if (in_cone && (!ray.entered || ray.left_through == FacetRole::entrance)) add_stokes(ray);
-    if (!ray.entered) {
-      ledger_[in_cone ? Account::retroreflected : Account::front_specular] += ray.power();
-    } else if (ray.left_through == FacetRole::entrance) {
-      ledger_[in_cone ? Account::retroreflected : Account::returned_elsewhere] += ray.power();
-    } else {
-      const bool side = ray.left_through == FacetRole::side || ray.left_through == FacetRole::border_wall;
-      ledger_[side ? Account::side_exit : Account::transmitted] += ray.power();
+    const bool side = ray.left_through == FacetRole::side || ray.left_through == FacetRole::border_wall;
+    Account account = side ? Account::side_exit : Account::transmitted;
+    if (ray.left_through == FacetRole::entrance) {
+      account = ray.entered ? Account::returned_elsewhere : Account::front_specular;
+      if (in_cone) account = Account::retroreflected;
+      if (in_cone) add_stokes(ray);
     }
+    ledger_[account] += ray.power();
+    Eigen::Matrix3cd coherency = Eigen::Matrix3cd::Zero();
+    for (const Vec3c& field : ray.field) coherency += 0.5 * ray.flux * field * field.adjoint();
+    exits_.push_back({account, ray.origin, ray.direction, coherency});
   }
 
   void add_stokes(const Ray& ray) {
@@ -293,6 +314,7 @@ class Reference {
   std::array<double, 4> stokes_{};
   std::vector<Triangle> triangles_;
   Ledger ledger_;
+  std::vector<ReferenceExit> exits_;
 };
 
 /// A point of a convex polygon, by rejection from its bounding box.
@@ -347,6 +369,23 @@ ReferenceResult reference_trace(const geometry::Part& part, const raytrace::Opti
     result.std_error[a] = std::sqrt(squares / (kBatches * (kBatches - 1.0)));
   }
   return result;
+}
+
+std::array<double, 4> ReferenceExit::stokes(const Eigen::Vector3d& axis) const {
+  const Eigen::Vector3cd a = axis.cast<Complex>();
+  const Eigen::Vector3cd b = direction.cross(axis).cast<Complex>();
+  const double along_a = a.dot(coherency * a).real();
+  const double along_b = b.dot(coherency * b).real();
+  const Complex cross = 2.0 * a.dot(coherency * b);
+  return {along_a + along_b, along_a - along_b, cross.real(), cross.imag()};
+}
+
+ReferenceRay reference_ray(const geometry::Part& part, const raytrace::Optics& optics, const Eigen::Vector3d& origin_mm,
+                           const Eigen::Vector3d& direction, const raytrace::Light& light, bool inside,
+                           double cone_half_angle_deg) {
+  Reference reference(part, optics, -direction, raytrace::kUnpolarised, Angle::from_deg(cone_half_angle_deg).rad(),
+                      Polarisation::kept);
+  return reference.trace(origin_mm, direction, light, inside);
 }
 
 }  // namespace retrace::testing

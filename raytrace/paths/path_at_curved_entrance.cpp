@@ -1,0 +1,88 @@
+// Paths at a curved entrance surface: what a plane entrance face never calls of PathWalker.
+#include <algorithm>
+#include <limits>
+
+#include "raytrace/paths/path_tracer.h"
+
+namespace retrace::raytrace {
+
+/// The beam crosses the plane that touches the entrance surface from above, over the part's outline.
+void PathWalker::enter_entrance_face(const Vec2& entry_mm) {
+  State state;
+  state.position = {entry_mm.x(), entry_mm.y(), setup_.entrance_face->highest_mm()};
+  state.direction = -setup_.to_source;
+  state.light = setup_.incident;
+  state.inside = false;
+  state.above = true;
+  pending_.push_back(state);
+}
+
+/// From inside: how far the path goes if it meets the entrance surface within `limit`, else `limit`.
+double PathWalker::reach_entrance_face(const State& state, double limit, Step& step) const {
+  const auto met =
+      setup_.entrance_face->first_hit({state.position, state.direction, state.entrance_source, true, limit});
+  if (!met) return limit;
+  step.end = End::entrance;
+  step.hit = met->hit;
+  step.entrance_normal = met->normal;
+  return met->hit.t;
+}
+
+/// In the air above the entrance surface: back into it, or away. The part is the prism over a convex outline, so that
+/// what leaves that prism meets nothing any more.
+bool PathWalker::advance_above(State& state) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const PathSetup::Side& side : setup_.sides) {
+    const double towards = side.normal.dot(state.direction);
+    if (towards <= 0.0) continue;
+    limit = std::min(limit, std::max(0.0, (side.offset_mm - side.normal.dot(state.position)) / towards));
+  }
+  const auto met =
+      setup_.entrance_face->first_hit({state.position, state.direction, state.entrance_source, false, limit});
+  if (!met) return leave_entrance_face(state);
+  state.position += met->hit.t * state.direction;
+  return meet_entrance_face(state, met->hit, met->normal);
+}
+
+bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const Vec3& normal) {
+  const bool from_inside = state.inside;
+  const bool is_first = state.entrance_source == FacetRef{} && !from_inside;
+  const Vec3 against = from_inside ? Vec3(-normal) : normal;
+  const double cos_incidence = std::max(0.0, -against.dot(state.direction));
+  const double ratio = from_inside ? setup_.optics.index : 1.0 / setup_.optics.index;
+  const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, from_inside, cos_incidence);
+  state.light.turn_to(state.direction, against);
+  state.source = {};
+  state.entrance_source = hit.facet;
+  const bool is_lossless = setup_.optics.lossless_entrance;
+  if (is_lossless && f.total_reflection) {
+    returned(state).back().i += state.light.power();
+    return false;
+  }
+  Light reflected = is_lossless ? Light{Stokes{}, state.light.s_axis} : state.light.reflected(f);
+  Light transmitted = is_lossless ? state.light : state.light.transmitted(f);
+  if (!is_lossless)
+    tally_.other[Account::absorbed] += absorbed_at_entrance(setup_.optics, state.light, reflected, transmitted);
+  // What the first surface makes of the beam is followed both ways, as at a plane entrance face.
+  const Branch branch = is_first && splits_at_front_ && !is_lossless ? Branch::both : choose(reflected, transmitted);
+  return go_on(state, branch, reflected, against, [&](State& through) {
+    through.light = transmitted;
+    through.direction = refracted(through.direction, against, ratio, cos_incidence, f.cos_refracted);
+    through.inside = !from_inside;
+    through.above = from_inside;
+    through.entered = true;
+  });
+}
+
+bool PathWalker::leave_entrance_face(const State& state) {
+  if (state.entrance_source == FacetRef{})
+    return finish(state, Account::transmitted);  // the beam passes beside the part
+  if (state.entered) {
+    leave(state, state.light, state.direction);
+    return false;
+  }
+  send_back(state, state.light, state.direction);
+  return false;
+}
+
+}  // namespace retrace::raytrace

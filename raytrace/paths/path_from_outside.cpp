@@ -1,0 +1,215 @@
+// Paths of light that comes from anywhere: how it comes to the part. What light of the beam never calls of PathWalker.
+#include <algorithm>
+#include <cmath>
+
+#include "core/infinity.h"
+#include "raytrace/paths/path_tracer.h"
+
+namespace retrace::raytrace {
+namespace {
+
+// Where light begins is known to a few roundings of single precision, in which files of rays hold it.
+constexpr double kStartTolerance = 0x1p-21;
+
+/// The piece of a line that lies over the part's outline, which is convex; `enter` > `leave` if there is none.
+struct Span {
+  double enter = -kInfinity;
+  double leave = kInfinity;
+  std::size_t side = 0;  ///< through which it comes in
+};
+
+Span span_over_outline(const LightSetup& setup, const Vec3& position, const Vec3& direction) {
+  Span span;
+  for (std::size_t k = 0; k < setup.sides.size(); ++k) {
+    const double towards = setup.sides[k].normal.dot(direction);
+    const double gap = setup.sides[k].offset_mm - setup.sides[k].normal.dot(position);
+    if (towards > 0.0) span.leave = std::min(span.leave, gap / towards);
+    if (towards == 0.0 && gap < 0.0) span.leave = -kInfinity;
+    if (towards >= 0.0 || gap / towards <= span.enter) continue;
+    span.enter = gap / towards;
+    span.side = k;
+  }
+  return span;
+}
+
+}  // namespace
+
+bool PathWalker::launch(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate,
+                        std::uint32_t sample) {
+  begin(key, replicate, sample);
+  to_source_ = -ray.direction;
+  splits_at_front_ = false;
+  State state;
+  static_cast<Ray&>(state) = ray;
+  state.position = position;
+  state.inside = false;
+  const bool meets = setup_.infinite() ? arrive_at_sheet(state) : arrive_at_body(state);
+  if (meets) follow_pending();
+  return meets;
+}
+
+double PathWalker::start_tolerance(const Vec3& position) const {
+  return kStartTolerance * (position.cwiseAbs().maxCoeff() + setup_.centre_mm.cwiseAbs().maxCoeff() +
+                            setup_.thickness_mm + setup_.depth_mm);
+}
+
+/// \pre over the outline
+PathWalker::Medium PathWalker::medium_at(Vec3 position, double tolerance_mm) const {
+  if (setup_.entrance_face == nullptr) {
+    if (position.z() >= setup_.thickness_mm - tolerance_mm) return Medium::above;
+  } else {
+    const Vec3 raised = position + tolerance_mm * Vec3::UnitZ();
+    const bool is_high = raised.z() >= setup_.entrance_face->highest_mm();
+    if (is_high || setup_.entrance_face->first_hit({raised, -Vec3::UnitZ(), {}, false, kInfinity}))
+      return Medium::above;
+  }
+  if (position.z() > setup_.top_mm) return Medium::body;
+  if (position.z() < -setup_.depth_mm) return Medium::below;
+  // Which face lies above says on which side of it this is; rounding must not put the place beside the surface.
+  if (!setup_.infinite()) position.head<2>() *= 1.0 - 1e-9;
+  const auto into_body = setup_.surface.first_hit({position, Vec3::UnitZ(), {}, false, kInfinity});
+  if (!into_body) return Medium::body;
+  const auto out_of_body = setup_.surface.first_hit({position, Vec3::UnitZ(), {}, true, into_body->t});
+  return out_of_body ? Medium::body : Medium::below;
+}
+
+/// A finite part. False if the light passes it; else what is to be followed is pending.
+bool PathWalker::arrive_at_body(State& state) {
+  const double tolerance = start_tolerance(state.position);
+  const Span span = span_over_outline(setup_, state.position, state.direction);
+  const double start = std::max(span.enter, 0.0);
+  if (!(span.leave - start > tolerance)) return false;
+  state.position += start * state.direction;
+  switch (medium_at(state.position, tolerance)) {
+    case Medium::above: return arrive_from_above(state, span.leave - start, tolerance);
+    case Medium::below: return arrive_from_below(state);
+    case Medium::body: break;
+  }
+  return span.enter >= -tolerance ? arrive_at_side(state, setup_.sides[span.side].normal)
+                                  : begin_inside(state, tolerance);
+}
+
+/// An infinite one.
+bool PathWalker::arrive_at_sheet(State& state) {
+  const double tolerance = start_tolerance(state.position);
+  if (state.position.z() >= setup_.thickness_mm - tolerance) return arrive_from_above(state, kInfinity, tolerance);
+  wrap(state);
+  return medium_at(state.position, tolerance) == Medium::below ? arrive_from_below(state)
+                                                               : begin_inside(state, tolerance);
+}
+
+/// \param reach_mm how far the outline goes
+bool PathWalker::arrive_from_above(State& state, double reach_mm, double tolerance_mm) {
+  if (setup_.entrance_face != nullptr) {
+    state.above = true;
+    const auto met = setup_.entrance_face->first_hit({state.position, state.direction, {}, false, reach_mm});
+    if (!met) return false;
+    state.position += met->hit.t * state.direction;
+    if (meet_entrance_face(state, met->hit, met->normal)) pending_.push_back(state);
+    return true;
+  }
+  if (!(state.direction.z() < 0.0)) return false;
+  const double way = std::max(0.0, (setup_.thickness_mm - state.position.z()) / state.direction.z());
+  if (way > reach_mm + tolerance_mm) return false;
+  state.position += way * state.direction;
+  state.position.z() = setup_.thickness_mm;
+  if (setup_.infinite()) wrap(state);
+  return arrive_at_entrance(state);
+}
+
+/// At the plane entrance face, from the air.
+bool PathWalker::arrive_at_entrance(State& state) {
+  ++tally_.segments;
+  if (setup_.soiled) {
+    enter_soiled(state);
+    return true;
+  }
+  const Vec3 up = Vec3::UnitZ();
+  const double cos_incidence = -state.direction.z();
+  const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, false, cos_incidence);
+  const Vec3 front = mirrored(state.direction, up);
+  state.light.turn_to(state.direction, up);
+  Branch branch = Branch::transmitted;
+  if (!setup_.optics.lossless_entrance) {
+    Light reflected = state.light.reflected(f);
+    Light transmitted = state.light.transmitted(f);
+    tally_.other[Account::absorbed] += absorbed_at_entrance(setup_.optics, state.light, reflected, transmitted);
+    branch = choose(reflected, transmitted);
+    if (branch != Branch::transmitted) send_back(state, reflected, front);
+    state.light = transmitted;
+  }
+  if (branch == Branch::reflected) return true;
+  state.direction = refracted(state.direction, up, 1.0 / setup_.optics.index, cos_incidence, f.cos_refracted);
+  state.inside = true;
+  pending_.push_back(state);
+  return true;
+}
+
+/// At a side of the plate, or below z = 0 at the border wall, from outside.
+bool PathWalker::arrive_at_side(State& state, const Vec3& normal) {
+  ++tally_.segments;
+  const bool is_border_wall = state.position.z() < 0.0;
+  const Optics& optics = is_border_wall ? optics_of_wall(state.position) : setup_.optics;
+  if (is_border_wall && optics.absorbing_walls) {
+    finish(state, Account::absorbed);
+    return true;
+  }
+  const double ratio = is_border_wall ? optics.ratio_at_back(false) : 1.0 / optics.index;
+  const double cos_incidence = -normal.dot(state.direction);
+  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
+  state.light.turn_to(state.direction, normal);
+  Light reflected = state.light.reflected(f);
+  Light transmitted = state.light.transmitted(f);
+  const Branch branch = choose(reflected, transmitted);
+  if (branch != Branch::transmitted) {
+    tally_.other[Account::side_exit] += reflected.power();
+    tell(Account::side_exit, state, mirrored(state.direction, normal), reflected);
+  }
+  if (branch == Branch::reflected) return true;
+  state.light = transmitted;
+  state.direction = refracted(state.direction, normal, ratio, cos_incidence, f.cos_refracted);
+  state.inside = true;
+  pending_.push_back(state);
+  return true;
+}
+
+/// In the air below the back surface.
+bool PathWalker::arrive_from_below(State& state) {
+  const double lowest = -setup_.depth_mm - setup_.clearance_mm;
+  if (state.position.z() < lowest) {
+    if (!(state.direction.z() > 0.0)) return false;
+    state.position += (lowest - state.position.z()) / state.direction.z() * state.direction;
+    if (setup_.infinite()) wrap(state);
+  }
+  const Step step = setup_.infinite() ? step_outside_periodic(state) : step_outside(state);
+  if (step.end == End::escape) return false;
+  ++tally_.segments;
+  if (step.end == End::facet) {
+    state.left_through = setup_.surface.facet(step.hit.facet).role;  // of what it sends back
+    if (meet_facet(state, step.hit)) pending_.push_back(state);
+    return true;
+  }
+  if (step.end == End::miss) ++tally_.misses;
+  finish(state, step.end == End::trapped ? Account::truncated : Account::lost);
+  return true;
+}
+
+/// In the body; but what begins on a facet of the back, up to rounding, has come through it or is about to enter.
+bool PathWalker::begin_inside(State& state, double tolerance_mm) {
+  if (const auto left = setup_.surface.first_hit({state.position, state.direction, {}, true, tolerance_mm})) {
+    state.position += left->t * state.direction;
+    state.source = left->facet;
+    return arrive_from_below(state);
+  }
+  if (const auto met = setup_.surface.first_hit({state.position, -state.direction, {}, true, tolerance_mm})) {
+    state.position -= met->t * state.direction;
+    state.left_through = setup_.surface.facet(met->facet).role;
+    if (meet_facet(state, *met)) pending_.push_back(state);
+    return true;
+  }
+  state.inside = true;
+  pending_.push_back(state);
+  return true;
+}
+
+}  // namespace retrace::raytrace

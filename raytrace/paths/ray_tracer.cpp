@@ -1,0 +1,177 @@
+#include "raytrace/paths/ray_tracer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "raytrace/faces/back_surface.h"
+#include "raytrace/paths/path_tracer.h"
+#include "raytrace/sampling/entrance_sampler.h"
+#include "raytrace/sampling/flush_denormals.h"
+#include "raytrace/sampling/threads.h"
+
+namespace retrace::raytrace {
+namespace {
+
+// Philox stream of choices on the way.
+constexpr std::uint32_t kRayChoiceStream = 17;
+// Rays that one task traces: small enough to share out, large enough to hide the cost of a task.
+constexpr std::size_t kRaysTogether = 1024;
+
+}  // namespace
+
+void RayLedger::add(const RayLedger& more) {
+  incident += more.incident;
+  for (std::size_t k = 0; k < kAccountCount; ++k) {
+    ledger.power[k] += more.ledger.power[k];
+    leaving[k] += more.leaving[k];
+  }
+  missed += more.missed;
+  rays += more.rays;
+  rays_missed += more.rays_missed;
+  squares += more.squares;
+  squares_back += more.squares_back;
+  squares_back2 += more.squares_back2;
+}
+
+double RayLedger::std_error() const {
+  if (!(incident > 0.0)) return 0.0;
+  const double share = ledger[Account::retroreflected] / incident;
+  return std::sqrt(std::max(0.0, squares_back2 - 2.0 * share * squares_back + share * share * squares)) / incident;
+}
+
+struct RayTracer::Scene {
+  Scene(const geometry::Part& p, const geometry::Entrance* curved, double cone, const PathPolicy& how,
+        std::uint32_t number)
+      : part(p),
+        centre_mm(EntranceSampler(p).centre_mm()),
+        surface(p, centre_mm),
+        cone_deg(cone),
+        policy(how),
+        seed(number) {
+    if (curved != nullptr) entrance_face = make_entrance_face(*curved, p, centre_mm);
+  }
+
+  const geometry::Part& part;
+  Vec2 centre_mm;
+  BackSurface surface;
+  std::unique_ptr<const EntranceFace> entrance_face;
+  double cone_deg;
+  PathPolicy policy;
+  std::uint32_t seed;
+  std::deque<PathSetup> setups;  ///< by wavelength
+};
+
+/// Follows rays, one after the other, and keeps what becomes of them.
+class RayTracer::Walk : public ExitObserver {
+ public:
+  explicit Walk(const Scene& scene) : scene_(scene), from_centre_(scene.centre_mm.x(), scene.centre_mm.y(), 0.0) {}
+
+  void trace(const IncidentRay& ray, std::uint64_t number, std::uint32_t incident) {
+    const double power = ray.light.power();
+    incident_ = incident;
+    power_ = power;
+    traced_.ledger.incident += power;
+    ++traced_.ledger.rays;
+    traced_.ledger.squares += power * power;
+    if (!(power > 0.0)) return;
+    Ray start{ray.direction, ray.light, false, false};
+    start.light.scale(1.0 / power);
+    tally_ = Tally(1);
+    PathWalker& walker = walker_at(ray.optics);
+    if (!walker.launch(ray.position_mm - from_centre_, start, {scene_.seed, kRayChoiceStream},
+                       static_cast<std::uint32_t>(number >> 32), static_cast<std::uint32_t>(number)))
+      return miss();
+    book();
+  }
+
+  TracedRays take() {
+    TracedRays taken = std::move(traced_);
+    traced_ = {};
+    return taken;
+  }
+
+  void leaves(const Departure& departure) override {
+    LeavingRay& ray = traced_.leaving.emplace_back();
+    ray.incident = incident_;
+    ray.account = departure.account;
+    ray.position_mm = departure.position + from_centre_;
+    ray.position_mm.head<2>() += departure.shift_mm;
+    ray.direction = departure.direction;
+    ray.light = departure.light;
+    ray.light.scale(power_);
+    ++traced_.ledger.leaving[static_cast<std::size_t>(departure.account)];
+  }
+
+ private:
+  PathWalker& walker_at(std::uint32_t optics) {
+    if (walkers_.size() <= optics) walkers_.resize(optics + 1);
+    if (!walkers_[optics]) walkers_[optics] = std::make_unique<PathWalker>(scene_.setups[optics], tally_, this);
+    return *walkers_[optics];
+  }
+
+  void miss() {
+    traced_.missed.push_back(incident_);
+    traced_.ledger.missed += power_;
+    ++traced_.ledger.rays_missed;
+  }
+
+  void book() {
+    const Ledger shares = tally_.ledger(0);
+    for (std::size_t k = 0; k < kAccountCount; ++k) traced_.ledger.ledger.power[k] += power_ * shares.power[k];
+    const double back = shares[Account::retroreflected];
+    traced_.ledger.squares_back += power_ * power_ * back;
+    traced_.ledger.squares_back2 += power_ * power_ * back * back;
+  }
+
+  const Scene& scene_;
+  Vec3 from_centre_;
+  Tally tally_{1};
+  std::vector<std::unique_ptr<PathWalker>> walkers_;  ///< by wavelength
+  TracedRays traced_;
+  std::uint32_t incident_ = 0;
+  double power_ = 0.0;
+};
+
+RayTracer::RayTracer(const geometry::Part& part, const geometry::Entrance* entrance_face, double cone_deg,
+                     const PathPolicy& policy, std::uint32_t seed)
+    : scene_(std::make_unique<Scene>(part, entrance_face, cone_deg, policy, seed)) {}
+RayTracer::~RayTracer() = default;
+
+std::uint32_t RayTracer::add(const Optics& optics) {
+  Scene& s = *scene_;
+  // The direction of incidence means nothing here: rays have their own.
+  s.setups.emplace_back(s.part, s.surface, s.centre_mm, optics, Illumination{}, std::vector<double>{s.cone_deg},
+                        s.policy, s.entrance_face.get());
+  return static_cast<std::uint32_t>(s.setups.size() - 1);
+}
+
+TracedRays RayTracer::trace(std::span<const IncidentRay> rays, std::uint64_t first, const Cancellation* cancel) const {
+  const std::size_t tasks = (rays.size() + kRaysTogether - 1) / kRaysTogether;
+  std::vector<TracedRays> done(tasks);
+  for_each_in_parallel(tasks, [&](std::size_t task) {
+    if (is_cancelled(cancel)) return;
+    const FlushDenormals flush;
+    Walk walk(*scene_);
+    const std::size_t end = std::min(rays.size(), (task + 1) * kRaysTogether);
+    for (std::size_t k = task * kRaysTogether; k < end; ++k)
+      walk.trace(rays[k], first + k, static_cast<std::uint32_t>(k));
+    done[task] = walk.take();
+  });
+  TracedRays all;
+  for (const TracedRays& some : done) {
+    all.leaving.insert(all.leaving.end(), some.leaving.begin(), some.leaving.end());
+    all.missed.insert(all.missed.end(), some.missed.begin(), some.missed.end());
+    all.ledger.add(some.ledger);
+  }
+  if (all.ledger.ledger[Account::lost] > kLostLimit * all.ledger.incident)
+    throw BudgetError(
+        fmt::format("a ray of number {} to {} missed every face from inside the part: this is a defect of retrace, "
+                    "please report the design and the rays",
+                    first + 1, first + rays.size()));
+  return all;
+}
+
+}  // namespace retrace::raytrace
