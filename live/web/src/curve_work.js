@@ -1,6 +1,6 @@
 // RRE against incidence at the azimuth that is pointed at: a coarse curve first, which is finished even while the
-// design moves on, then finer ones, at rest to the full accuracy.
-import { MOVING, RESTING } from "./session.js";
+// design moves on, then finer ones, at rest each place once more and surer.
+import { AT_ONCE, MOVING } from "./session.js";
 
 const CHUNK_S = 0.012;
 const PATIENCE_MS = 700; // after which a coarse curve is shown that is not whole
@@ -19,9 +19,9 @@ export class CurvePass {
   constructor(design, azimuth_deg, half_range_deg, stamp) {
     Object.assign(this, { design, azimuth_deg, half_range_deg, stamp });
     this.key = `${design.source}\n${design.toml}\n${azimuth_deg}\n${half_range_deg}`;
-    this.points = new Map(); // by incidence: [rre, truncated]
+    this.points = new Map(); // by incidence: [rre, truncated, std_error]
     this.level = -1;
-    this.target_error = MOVING;
+    this.target_error = AT_ONCE;
     this.begun = performance.now();
     this.queue = [];
     this.advance();
@@ -41,10 +41,10 @@ export class CurvePass {
     return true;
   }
 
-  /** Once more, to the accuracy of rest. */
+  /** All places once more, surer. */
   refine() {
-    if (this.target_error === RESTING) return false;
-    this.target_error = RESTING;
+    if (this.target_error === MOVING) return false;
+    this.target_error = MOVING;
     this.queue = [...this.points.keys()].sort((a, b) => Math.abs(a) - Math.abs(b));
     return true;
   }
@@ -62,7 +62,7 @@ export class CurvePass {
 
   /** Rising incidences and what was found there. */
   rows() {
-    return [...this.points.entries()].sort((a, b) => a[0] - b[0]).map(([x, [rre, truncated]]) => ({ x, rre, truncated }));
+    return [...this.points.entries()].sort((a, b) => a[0] - b[0]).map(([x, [rre, truncated, std_error = 0]]) => ({ x, rre, truncated, std_error }));
   }
 }
 

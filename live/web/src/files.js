@@ -35,9 +35,9 @@ function quoted(text) {
 
 /** \param curves list of {title, rows} */
 export function curveCsv(curves, azimuth_deg) {
-  const lines = ["design,incidence_deg,azimuth_deg,rre,truncated"];
+  const lines = ["design,incidence_deg,azimuth_deg,rre,truncated,std_error"];
   for (const { title, rows } of curves)
-    for (const { x, rre, truncated } of rows) lines.push([quoted(title), x, azimuth_deg, rre, truncated].join(","));
+    for (const { x, rre, truncated, std_error } of rows) lines.push([quoted(title), x, azimuth_deg, rre, truncated, std_error].join(","));
   return `${lines.join("\n")}\n`;
 }
 

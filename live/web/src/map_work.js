@@ -1,6 +1,6 @@
 // RRE over all directions: rings of incidence with more places the wider they are, from coarse to fine. Where the engine
 // knows that directions are alike by symmetry, one of them is traced.
-import { MOVING } from "./session.js";
+import { AT_ONCE } from "./session.js";
 
 const CHUNK_S = 0.014;
 const RING_STEPS_DEG = [20, 10, 5, 2.5];
@@ -72,7 +72,7 @@ export class MapPass {
     const asked = this.queue;
     const directions = asked.map((name) => name.split(" ").map(Number));
     const { toml, source } = this.design;
-    return { toml, source, pass: this, asks: [{ ask: "rre", directions, target_error: MOVING, seconds: CHUNK_S }] };
+    return { toml, source, pass: this, asks: [{ ask: "rre", directions, target_error: AT_ONCE, seconds: CHUNK_S }] };
   }
 
   take(answer) {

@@ -45,12 +45,12 @@ export class Notice {
     this.remarks.replaceChildren(...lines);
   }
 
-  /** A direction that was not traced, of a design that is. */
+  /** A direction that was not traced, of a design that is: the readout says why, here is what does it. */
   blame() {
     const { why, base } = this.session;
     this.trouble.replaceChildren();
-    if (!why || (base && !base.traces)) return;
+    if (!why || !why.command || (base && !base.traces)) return;
     this.trouble.append(h("p", {}, why.text));
-    if (why.command) this.trouble.append(commandLine(why.command, base && base.source));
+    this.trouble.append(commandLine(why.command, base && base.source));
   }
 }

@@ -46,7 +46,10 @@ export class Rest {
   takeDirection(job, data) {
     if (job.of !== this.stampOf() || this.session.isMoving) return;
     const answer = data.answers && data.answers[0];
-    this.session.tell("rested", answer && answer.ok ? answer : null);
+    if (answer && answer.ok) {
+      this.session.answer = { ...answer, ...this.session.direction };
+      this.session.tell("rested", answer);
+    } else this.session.tell("unrested", answer && answer.kind === "budget" ? `takes longer than ${DIRECTION_S} s` : "–");
   }
 
   pin(design) {

@@ -5,9 +5,10 @@ import { DirectionMap } from "./map_work.js";
 import { Measure } from "./measure.js";
 import { Rest } from "./rest_work.js";
 
-export const MOVING = 1e-4; // by how much RRE may be off while something moves: its standard error, or what is left untraced
-export const RESTING = 1e-6; // the most that is left untraced at rest, as a share of the light
-const PICTURE = 1e-2; // the most that the footprint may lack while something moves
+// By how much RRE may be off: its standard error where weak beams are resampled, else what is left untraced.
+export const MOVING = 1e-4; // while something moves
+export const RESTING = 1e-6; // at rest
+export const AT_ONCE = 1e-3; // of the many directions of curves and maps, at first
 const REST_MS = 260; // without a change, until the picture is traced in full
 const MOST_S = 1.5; // for one direction while moving
 
@@ -106,7 +107,7 @@ export class Session {
     if (Object.keys(this.changes).length > 0) Object.assign(job, { changes: { ...this.changes }, adapt: this.adapt });
     const at = { ...this.direction };
     job.asks = [
-      { ask: "direction", ...at, target_error: MOVING, picture_error: PICTURE, seconds: MOST_S },
+      { ask: "direction", ...at, target_error: MOVING, seconds: MOST_S },
       this.spot ? { ask: "path", ...at, at_mm: this.spot } : { ask: "stories", ...at },
     ];
     if (job.changes || job.wanted || !this.part) job.asks.push({ ask: "part" });

@@ -2,7 +2,7 @@
 // another way than "key = value" on a line below its "[table]" is left to the engine, which writes the text anew.
 
 function headerOf(line) {
-  const found = /^\s*\[([A-Za-z0-9_.-]+)\]\s*(#.*)?$/.exec(line);
+  const found = /^\s*\[([A-Za-z0-9_.-]+)\]\s*(#.*)?\r?$/.exec(line);
   return found ? found[1] : null;
 }
 
@@ -23,7 +23,7 @@ const SCALAR = `("(?:[^"\\\\]|\\\\.)*"|'[^']*'|\\[[^\\]\\n]*\\]|[^\\s#"'\\[{]+)`
 
 /** The line with that key; of several none. \param mark what stands before the key */
 function find(lines, [from, to], key, mark) {
-  const shape = new RegExp(`^(\\s*)(${mark})(${key})(\\s*=\\s*)${SCALAR}(\\s*)(#.*)?$`);
+  const shape = new RegExp(`^(\\s*)(${mark})(${key})(\\s*=\\s*)${SCALAR}([ \\t]*)(#.*)?(\\r?)$`);
   const places = [];
   for (let k = from; k < to; ++k) if (shape.test(lines[k])) places.push(k);
   return places.length === 1 ? { place: places[0], parts: shape.exec(lines[places[0]]) } : null;
@@ -34,11 +34,11 @@ function mentions(lines, [from, to], key) {
 }
 
 /** A comment stays where it stood, if there is room. */
-function rewritten([, indent, mark, key, equals, old, gap, comment], value) {
+function rewritten([, indent, mark, key, equals, old, gap, comment, end], value) {
   const text = textOf(value);
-  if (!comment) return `${indent}${key}${equals}${text}`;
-  const room = Math.max(1, mark.length + gap.length + old.length - text.length);
-  return `${indent}${key}${equals}${text}${" ".repeat(room)}${comment}`;
+  if (!comment) return `${indent}${key}${equals}${text}${gap}${end}`;
+  const room = gap.includes("\t") ? gap : " ".repeat(Math.max(1, mark.length + gap.length + old.length - text.length));
+  return `${indent}${key}${equals}${text}${room}${comment}${end}`;
 }
 
 /** After the last line of the table that is neither empty nor a comment. */
@@ -80,8 +80,7 @@ function changed(lines, path, value) {
 
 /** \return the text with those values, null where it cannot be done line by line */
 export function edited(toml, changes) {
-  const end = toml.includes("\r\n") ? "\r\n" : "\n";
-  let lines = toml.split(end);
+  let lines = toml.split("\n");
   for (const [path, value] of Object.entries(changes)) {
     if (value !== null && typeof value === "object" && !Array.isArray(value)) return null;
     if (Array.isArray(value) && value.some((entry) => typeof entry === "object")) return null;
@@ -89,5 +88,5 @@ export function edited(toml, changes) {
     lines = changed(lines, path, value);
     if (!lines) return null;
   }
-  return lines.join(end);
+  return lines.join("\n");
 }

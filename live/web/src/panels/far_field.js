@@ -31,7 +31,7 @@ export class FarFieldPanel {
 
   start() {
     this.session.on("answer", () => this.take(this.session.answer));
-    this.session.on("rested", (answer) => answer && this.take(answer));
+    this.session.on("rested", (answer) => this.take(answer));
   }
 
   take(answer) {

@@ -24,7 +24,7 @@ export class Ledger {
       return { ...account, piece, value, line };
     });
     this.session.on("answer", () => this.session.answer && this.show(this.session.answer.ledger));
-    this.session.on("rested", (answer) => answer && this.show(answer.ledger));
+    this.session.on("rested", (answer) => this.show(answer.ledger));
   }
 
   show(ledger) {

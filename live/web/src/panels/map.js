@@ -124,7 +124,7 @@ export class MapPanel {
   tell(pass) {
     const done = pass.values.size;
     const finer = pass.queue.length ? `, ${pass.queue.length} to come` : "";
-    this.caption.textContent = `Pick a direction. The rim is ${pass.most_deg}° from the normal; ${done} directions at 10⁻⁴${finer}.`;
+    this.caption.textContent = `Pick a direction. The rim is ${pass.most_deg}° from the normal; ${done} directions at 10⁻³${finer}.`;
   }
 
   /** The disc in pixels, linear between rings; what lies outside stays clear. */

@@ -101,6 +101,7 @@ export class PlanPanel {
   start() {
     this.canvas = new Canvas(this.element, () => this.draw());
     this.session.on("answer", ({ isNewPart }) => this.show(isNewPart));
+    this.session.on("rested", () => this.show(false));
     const pickAt = (event) => {
       const place = this.plan && this.plan.home(this.toPlan(this.canvas.placeOf(event)));
       if (place) this.session.pick(place);

@@ -2,12 +2,12 @@
 import { h, newId } from "../dom.js";
 import { short } from "../units.js";
 
-/** RRE and how sure it is, in percent: "76.231 … 76.240", or "76.235 ± 0.008" of two standard errors. */
-function bounds({ rre, truncated, std_error }) {
-  if (std_error > 0) return `${(100 * rre).toFixed(3)} ± ${(200 * std_error).toFixed(3)} %`;
+/** RRE and how sure it is, in percent: "76.235 ± 0.008" of two standard errors, or "76.231 … 76.240" where light is left. */
+function bounds({ rre, truncated, std_error = 0 }) {
+  if (std_error > truncated) return `${(100 * rre).toFixed(3)} ± ${(200 * std_error).toFixed(3)} %`;
   const decimals = truncated > 5e-6 ? 3 : 5;
-  const low = (100 * rre).toFixed(decimals);
-  const high = (100 * (rre + Math.max(0, truncated))).toFixed(decimals);
+  const low = (100 * (rre - 2 * std_error)).toFixed(decimals);
+  const high = (100 * (rre + Math.max(0, truncated) + 2 * std_error)).toFixed(decimals);
   return low === high ? `${low} %` : `${low} … ${high} %`;
 }
 
@@ -28,6 +28,11 @@ class Accuracy {
     this.cost.replaceChildren(milliseconds(answer), h("span", { class: "beams" }, ` · ${answer.beams} beams`));
     this.node.classList.toggle("incomplete", answer.complete === false);
     this.node.classList.remove("old");
+  }
+
+  fail(why) {
+    this.value.textContent = why;
+    this.cost.textContent = "";
   }
 
   stale() {
@@ -72,7 +77,8 @@ export class Readout {
   start() {
     this.session.on("direction", (direction) => this.point(direction));
     this.session.on("answer", () => this.show());
-    this.session.on("rested", (answer) => answer && this.rest(answer));
+    this.session.on("rested", (answer) => this.rest(answer));
+    this.session.on("unrested", (why) => this.resting.fail(why));
     this.session.on("moving", (moving) => {
       this.node.classList.toggle("is-moving", moving);
       if (moving) this.resting.stale();

@@ -51,6 +51,7 @@ export class ScenePanel {
   start() {
     this.view = openView(this.element);
     this.session.on("answer", ({ isNewPart }) => this.show(isNewPart));
+    this.session.on("rested", () => this.show(false));
     this.session.on("path", (index) => this.choose(index));
     new ResizeObserver(() => this.view.draw()).observe(this.element);
   }
