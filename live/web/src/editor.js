@@ -19,7 +19,7 @@ export class Editor {
   }
 
   start() {
-    this.session.on("design", ({ design }) => this.show(design));
+    this.session.on("design", ({ design, isNew, isOpened }) => (isNew || isOpened) && this.show(design));
     this.session.on("refused", ({ error, text }) => text != null && this.blame(error, text));
   }
 

@@ -4,7 +4,10 @@ import { short } from "../units.js";
 
 /** RRE and how sure it is, in percent: "76.235 ± 0.008" of two standard errors, or "76.231 … 76.240" where light is left. */
 function bounds({ rre, truncated, std_error = 0 }) {
-  if (std_error > truncated) return `${(100 * rre).toFixed(3)} ± ${(200 * std_error).toFixed(3)} %`;
+  if (std_error > truncated) {
+    const decimals = std_error > 1e-5 ? 3 : 5;
+    return `${(100 * rre).toFixed(decimals)} ± ${(200 * std_error).toFixed(decimals)} %`;
+  }
   const decimals = truncated > 5e-6 ? 3 : 5;
   const low = (100 * (rre - 2 * std_error)).toFixed(decimals);
   const high = (100 * (rre + Math.max(0, truncated) + 2 * std_error)).toFixed(decimals);
