@@ -11,6 +11,8 @@ export const RESTING = 1e-6; // at rest
 export const AT_ONCE = 1e-3; // of the many directions of curves and maps, at first
 const REST_MS = 260; // without a change, until the picture is traced in full
 const MOST_S = 1.5; // for one direction while moving
+const QUICK_MS = 45; // that a direction may take while something moves; what takes longer is first traced to AT_ONCE,
+const RATIO = 4; // which is so many times quicker
 
 export class Session {
   constructor(engine) {
@@ -27,6 +29,8 @@ export class Session {
     this.part = null;
     this.isDue = false;
     this.isMoving = false;
+    this.isSlow = false; // whether a direction to MOVING takes too long to follow the hand
+    this.target_error = MOVING; // of the next direction
     this.revision = 0;
     this.measure = new Measure();
     this.point = engine.lane({ next: () => this.nextPoint(), done: (job, data) => this.takePoint(job, data) });
@@ -77,6 +81,7 @@ export class Session {
   touch() {
     this.isDue = true;
     this.isMoving = true;
+    this.target_error = this.isSlow ? AT_ONCE : MOVING;
     this.measure.touched();
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.settle(), REST_MS);
@@ -88,6 +93,13 @@ export class Session {
     const canGo = this.base || this.wanted;
     if ((this.isDue && canGo) || this.point.running > 0) {
       this.timer = setTimeout(() => this.settle(), REST_MS);
+      return;
+    }
+    if (this.answer && this.answer.target_error > MOVING) {
+      this.target_error = MOVING;
+      this.isDue = true;
+      this.timer = setTimeout(() => this.settle(), REST_MS);
+      this.engine.pump();
       return;
     }
     this.isMoving = false;
@@ -107,11 +119,11 @@ export class Session {
     if (Object.keys(this.changes).length > 0) Object.assign(job, { changes: { ...this.changes }, adapt: this.adapt });
     const at = { ...this.direction };
     job.asks = [
-      { ask: "direction", ...at, target_error: MOVING, seconds: MOST_S },
+      { ask: "direction", ...at, target_error: this.target_error, seconds: MOST_S },
       this.spot ? { ask: "path", ...at, at_mm: this.spot } : { ask: "stories", ...at },
     ];
     if (job.changes || job.wanted || !this.part) job.asks.push({ ask: "part" });
-    return Object.assign(job, { at, spot: this.spot, stamp: this.measure.stamp });
+    return Object.assign(job, { at, spot: this.spot, stamp: this.measure.stamp, target_error: this.target_error });
   }
 
   takePoint(job, data) {
@@ -120,9 +132,11 @@ export class Session {
       return;
     }
     this.accept(job, data.design);
+    this.shownOf = JSON.stringify([job.at, job.spot]);
     const [direction, paths, part] = data.answers;
     if (part && part.ok) this.part = part;
-    this.answer = direction.ok ? { ...direction, ...job.at } : null;
+    this.answer = direction.ok ? { ...direction, ...job.at, target_error: job.target_error } : null;
+    this.isSlow = direction.ms > (job.target_error > MOVING ? QUICK_MS / RATIO : QUICK_MS);
     this.why = direction.ok ? null : direction;
     this.paths = !paths.ok ? [] : job.spot ? [{ ...paths, spot: job.spot }] : paths.paths;
     this.tell("answer", { isNewPart: Boolean(part && part.ok), stamp: job.stamp });
@@ -136,7 +150,8 @@ export class Session {
       delete this.changes[path];
       this.refused[path] = value;
     }
-    this.isDue = Boolean(this.base); // where the light comes from may have changed as well
+    // Where the light comes from, or the spot, may have changed as well.
+    if (this.base && this.shownOf !== JSON.stringify([job.at, job.spot])) this.isDue = true;
     this.tell("refused", { error, changes: job.changes || null, text: job.wanted ? job.wanted.toml : null });
     if (job.wanted) job.wanted.then(error);
   }

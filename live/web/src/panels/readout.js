@@ -22,11 +22,13 @@ function milliseconds(answer) {
 class Accuracy {
   constructor(name, title) {
     this.value = h("output", {}, "–");
+    this.power = h("span", { class: "power" }, name === "moving" ? "10⁻⁴" : "10⁻⁶");
     this.cost = h("span", { class: "quiet" });
-    this.node = h("div", { class: `accuracy ${name}`, title }, h("i", { class: "lamp" }), h("span", { class: "power" }, name === "moving" ? "10⁻⁴" : "10⁻⁶"), this.value, this.cost);
+    this.node = h("div", { class: `accuracy ${name}`, title }, h("i", { class: "lamp" }), this.power, this.value, this.cost);
   }
 
   show(answer) {
+    if (answer.target_error) this.power.textContent = answer.target_error > 5e-4 ? "10⁻³" : "10⁻⁴";
     this.value.textContent = bounds(answer);
     this.cost.replaceChildren(milliseconds(answer), h("span", { class: "beams" }, ` · ${answer.beams} beams`));
     this.node.classList.toggle("incomplete", answer.complete === false);
@@ -49,7 +51,7 @@ export class Readout {
     this.number = h("output", { class: "number" }, "–");
     this.small = h("output", { "aria-hidden": "true" }, "–"); // beside the pictures of a phone
     this.what = h("span", { class: "what" }, "of the light comes back");
-    this.moving = new Accuracy("moving", "While something moves: a standard error of at most 1e-4 of the light, or as much left untraced");
+    this.moving = new Accuracy("moving", "While something moves: a standard error of at most 1e-4 of the light, or as much left untraced; 1e-3 where that takes too long to follow the hand");
     this.resting = new Accuracy("resting", "At rest: at most 1e-6 of the light left untraced");
     this.spoken = h("p", { class: "spoken", "aria-live": "polite" });
     this.controls = [this.control("incidence_deg", "Incidence", -80, 80, 0.5), this.control("azimuth_deg", "Azimuth", 0, 360, 1)];
