@@ -18,12 +18,12 @@ function solidOf(part) {
   const high = [0, 1, 2].map((k) => Math.max(...vertices.map((v) => v[k])));
   const size = Math.hypot(...low.map((l, k) => high[k] - l));
   const middle = low.map((l, k) => (l + high[k]) / 2);
-  middle[2] += 0.08 * size;
+  middle[2] += 0.05 * size;
   return {
     solid: { vertices, triangles: inThrees(part.triangles), edges: inTwos(part.edges) },
     low,
     high,
-    bounds: { middle, size: 1.04 * size },
+    bounds: { middle, size: 0.9 * size },
   };
 }
 
