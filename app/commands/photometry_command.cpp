@@ -88,7 +88,7 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
       {"--samples N", "rays for each direction, by Monte Carlo", &options.samples, whole(1)},
       {"--cutoff W",
        "least power of beams that are followed exactly, as a share of what falls on an element; weaker ones are "
-       "resampled, with exact given up [1e-5; resampled, of finite parts: 5e-5]",
+       "resampled, with exact given up [1e-5; resampled, of finite parts: 5e-5, or 5e-7 of all light if that is more]",
        &options.cutoff},
       {"--no-diffraction", "geometric far field alone", &options.no_diffraction},
       {"--window-power", "integrate the power in the far field's window and outside of it, as a check",

@@ -49,6 +49,23 @@ double mean_exp(double a, double b, double c) {
 
 }  // namespace
 
+Beam moved(Beam beam, const Vec2& by_mm, const Vec3& to_source, double index) {
+  const Vec3 by(by_mm.x(), by_mm.y(), 0.0);
+  for (Vec3& corner : beam.corners) corner += by;
+  beam.phase_mm -= (index * beam.direction + to_source).dot(by);
+  beam.path_length.constant_mm -= beam.path_length.slope.dot(by);
+  beam.entry.constant_mm += by_mm - beam.entry.slope * by;
+  for (TexturedHit& hit : beam.hits) {
+    hit.plane.offset_mm += hit.plane.normal.dot(by);
+    hit.constant_mm += by - hit.slope * by;
+    hit.frame.origin_mm += by;
+  }
+  if (beam.trail.first) beam.trail.first->offset_mm += by_mm;
+  beam.start.offset_mm += beam.start.normal.dot(by);
+  beam.places = nullptr;
+  return beam;
+}
+
 FlatPolygon flattened(const Corners& corners, const Frame& frame, double merge_mm) {
   FlatPolygon polygon;
   for (const Vec3& p : corners) add_corner(polygon, frame.across(p), merge_mm);

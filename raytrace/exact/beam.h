@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <boost/container/small_vector.hpp>
+#include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -58,12 +60,12 @@ struct EntryPoint {
 
 /// A cell of the back surface, wherever it stands.
 struct CellPlace {
-  std::uint64_t id = 0;           ///< the same for all copies of a patch
+  std::uint64_t id = 0;           ///< the same for all copies of a patch, or for all cells of a shape
   Vec2 offset_mm = Vec2::Zero();  ///< by which this copy is moved
-  double height_mm = 0.0;         ///< and along z
 
   friend bool operator==(const CellPlace& a, const CellPlace& b) {
-    return a.id == b.id && (a.offset_mm - b.offset_mm).squaredNorm() == 0.0;
+    constexpr double kRounding_mm = 1e-10;
+    return a.id == b.id && (a.offset_mm - b.offset_mm).squaredNorm() <= kRounding_mm * kRounding_mm;
   }
 };
 
@@ -71,11 +73,19 @@ struct CellPlace {
 struct CellTrail {
   std::optional<CellPlace> first;
   bool is_mixed = false;  ///< others as well
+  std::uint64_t met = 0;  ///< tells one order of cells from another, wherever the first of them stands
 
   void meet(const CellPlace& cell) {
     if (!first) first = cell;
     is_mixed = is_mixed || !(*first == cell);
+    const Vec2 away = cell.offset_mm - first->offset_mm;
+    for (const std::uint64_t word : {cell.id, bits_of(away.x()), bits_of(away.y())})
+      met = ((met ^ (met >> 29)) + word) * 0x9e3779b97f4a7c15U;
   }
+
+ private:
+  /// Of a length in steps of 1e-9 mm.
+  static std::uint64_t bits_of(double length_mm) { return static_cast<std::uint64_t>(std::llround(1e9 * length_mm)); }
 };
 
 /// A facet with a texture or a form that light has met: where, as an affine function of where the light is now (as
@@ -100,6 +110,9 @@ struct TexturedHit {
   }
 };
 
+/// Offsets in plan, from each of them to others that are alike.
+using BeamPlaces = std::vector<Vec2>;
+
 /// Light of one direction and polarisation through a polygon.
 struct Beam {
   Corners corners;  ///< of the cross-section, on the plane it starts from
@@ -117,6 +130,12 @@ struct Beam {
   geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through
   std::uint32_t depth = 0;                                              ///< interfaces so far
   std::uint32_t level_steps = 0;                                        ///< without an interface
+  /// At equal elements of an array: where the same beam goes, this one, at the offset 0, included. Null: here alone.
+  std::shared_ptr<const BeamPlaces> places;
+
+  double place_count() const { return places ? static_cast<double>(places->size()) : 1.0; }
+  /// Of this beam and those like it.
+  double total_power() const { return place_count() * power; }
 };
 
 /// Where light of a beam meets a rough facet: the light before, and what the facet scatters of its power.
@@ -130,6 +149,10 @@ struct ScatterSite {
   double scattered = 0.0;       ///< power, as a share of the incident
   bool inside = true;
 };
+
+/// A beam as it is at another place of an array, and there alone. \param to_source as of the light that came in, of
+/// which it has another phase there \param index of where the beam travels
+Beam moved(Beam beam, const Vec2& by_mm, const Vec3& to_source, double index);
 
 /// Coordinates across a beam: (u, v) across, w along.
 struct Frame {

@@ -27,7 +27,7 @@ Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& 
   beam.level_steps = 0;
   beam.corners = lifted(piece, frame, Distance(frame, plane));
   if (from.inside && setup_.optics.absorption_per_mm > 0.0)
-    tally_.other[Account::absorbed] += power_of(at_start(from, frame, piece, share)) - power_of(beam);
+    book(Account::absorbed, power_of(at_start(from, frame, piece, share)) - power_of(beam));
   return beam;
 }
 
@@ -52,7 +52,7 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   Beam beam = arrived(from, frame, piece, share, candidate.plane);
   const bool is_wall = candidate.role == FacetRole::inner_wall || candidate.role == FacetRole::border_wall;
   if (is_wall && setup_.optics.absorbing_walls) {
-    tally_.other[Account::absorbed] += power_of(beam);
+    book(Account::absorbed, power_of(beam));
     return;
   }
   const Vec3 against = from.inside ? Vec3(-candidate.plane.normal) : candidate.plane.normal;
@@ -63,8 +63,8 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   beam.light.turn_to(from.direction, against);
   const CoherentLight reflected = beam.light.reflected(f);
   const CoherentLight transmitted = beam.light.transmitted(f);
-  tally_.other[Account::absorbed] +=
-      transmission_of(beam) * absorbed_at_back(setup_.optics, candidate.role, beam.light, reflected, transmitted);
+  book(Account::absorbed,
+       transmission_of(beam) * absorbed_at_back(setup_.optics, candidate.role, beam.light, reflected, transmitted));
   const CoherentLight left = mean_field(beam, f, candidate.role, cos_incidence, Lobe::reflection);
   double scattered = reflected.power() - left.power();
   if (!f.total_reflection) {
@@ -84,7 +84,7 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
 /// \param beam as it arrives, its light along s and p of the facet
 void BeamWalk::book_scattered(const Beam& beam, const Plane& plane, double power) {
   if (sites_ == nullptr)
-    tally_.other[Account::truncated] += power;
+    book(Account::truncated, power);
   else
     sites_->push_back(
         {beam.corners, beam.direction, beam.light, beam.path_length, plane.normal, beam.share, power, beam.inside});
@@ -124,7 +124,7 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
                          const Plane& plane, FacetRole role) {
   Beam beam = arrived(from, frame, piece, share, plane);
   if (role == FacetRole::border_wall && setup_.optics.absorbing_walls) {
-    tally_.other[Account::absorbed] += power_of(beam);
+    book(Account::absorbed, power_of(beam));
     return;
   }
   const bool is_entrance = role == FacetRole::entrance;
@@ -137,7 +137,7 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
   beam.light.turn_to(from.direction, against);
   if (is_entrance && setup_.optics.lossless_entrance) {
     if (f.total_reflection)
-      tally_.returned.back().i += power_of(beam);
+      tally_.returned.back().i += place_count_ * power_of(beam);
     else
       leave_through_entrance(beam, beam.light, out);
     return;
@@ -145,13 +145,13 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
   const CoherentLight through = beam.light.transmitted(f);
   const CoherentLight reflected = beam.light.reflected(f);
   if (is_entrance)
-    tally_.other[Account::absorbed] +=
-        transmission_of(beam) * absorbed_at_entrance(setup_.optics, beam.light, reflected, through);
+    book(Account::absorbed,
+         transmission_of(beam) * absorbed_at_entrance(setup_.optics, beam.light, reflected, through));
   if (!f.total_reflection) {
     if (is_entrance)
       leave_through_entrance(beam, through, out);
     else
-      tally_.other[account_of_exit(role)] += transmission_of(beam) * through.power();
+      book(account_of_exit(role), transmission_of(beam) * through.power());
   }
   send(std::move(beam), plane, against, mirrored(from.direction, against), reflected, true);
 }
@@ -160,7 +160,7 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
 void BeamWalk::leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction);
   const Stokes stokes = transmission_of(beam) * seen_from_above(light, direction);
-  tally_.returned[cone] += stokes;
+  tally_.returned[cone] += place_count_ * stokes;
   if (!observer_) return;
   ReturnedBeam returned = returned_beam(beam, light, direction);
   returned.stokes = stokes;
@@ -189,6 +189,7 @@ ReturnedBeam BeamWalk::returned_beam(const Beam& beam, CoherentLight light, cons
   returned.replicate = replicate_;
   returned.centre_mm = centre_mm_;
   returned.trail = beam.trail;
+  returned.places = beam.places;
   returned.hits = beam.hits;
   return returned;
 }

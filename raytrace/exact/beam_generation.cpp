@@ -33,8 +33,11 @@ std::uint64_t interleaved(std::uint32_t a, std::uint32_t b) {
 struct SortKey {
   std::tuple<bool, std::int64_t, std::int64_t, std::int64_t, std::uint64_t> state;
   std::size_t beam = 0;
+  std::size_t place = 0;  ///< of Beam::places
 
-  bool operator<(const SortKey& other) const { return std::tie(state, beam) < std::tie(other.state, other.beam); }
+  bool operator<(const SortKey& other) const {
+    return std::tie(state, beam, place) < std::tie(other.state, other.beam, other.place);
+  }
 };
 
 /// Over the size of a period or outline.
@@ -44,15 +47,21 @@ Vec2 scale_of(const geometry::Part& part) {
   return (box.upper - box.lower).cwiseInverse();
 }
 
-SortKey key_of(const Beam& beam, std::size_t number, const Vec2& scale) {
-  const auto rounded = [](double x) { return static_cast<std::int64_t>(std::llround(x / kOneDirection)); };
-  const auto place = [](double x) { return static_cast<std::uint32_t>((x - std::floor(x)) * 65535.0); };
+/// Where it starts, in the mean.
+Vec2 middle_of(const Beam& beam) {
   Vec2 at = Vec2::Zero();
   for (const Vec3& p : beam.corners) at += p.head<2>();
-  at = (at / static_cast<double>(beam.corners.size())).cwiseProduct(scale);
+  return at / static_cast<double>(beam.corners.size());
+}
+
+/// \param at where it starts
+SortKey key_of(const Beam& beam, std::size_t number, std::size_t place, const Vec2& at, const Vec2& scale) {
+  const auto rounded = [](double x) { return static_cast<std::int64_t>(std::llround(x / kOneDirection)); };
+  const auto share = [](double x) { return static_cast<std::uint32_t>((x - std::floor(x)) * 65535.0); };
   return {{beam.inside, rounded(beam.direction.x()), rounded(beam.direction.y()), rounded(beam.direction.z()),
-           interleaved(place(at.x()), place(at.y()))},
-          number};
+           interleaved(share(at.x() * scale.x()), share(at.y() * scale.y()))},
+          number,
+          place};
 }
 
 }  // namespace
@@ -61,12 +70,19 @@ BeamGeneration::BeamGeneration(const geometry::Part& part, const std::vector<Bea
   const Vec2 scale = scale_of(part);
   std::vector<SortKey> keys;
   keys.reserve(beams.size());
-  for (std::size_t k = 0; k < beams.size(); ++k) keys.push_back(key_of(beams[k], k, scale));
+  const bool is_endless = part.period_mm.has_value();
+  for (std::size_t k = 0; k < beams.size(); ++k) {
+    const Vec2 at = middle_of(beams[k]);
+    const std::size_t count = beams[k].places && !is_endless ? beams[k].places->size() : 1;
+    for (std::size_t place = 0; place < count; ++place)
+      keys.push_back(key_of(beams[k], k, place, place == 0 ? at : Vec2(at + (*beams[k].places)[place]), scale));
+  }
   std::sort(keys.begin(), keys.end());
-  places_.reserve(beams.size());
+  places_.reserve(keys.size());
   for (const SortKey& key : keys) {
-    places_.push_back({key.beam, beams[key.beam].power});
-    power_ += beams[key.beam].power;
+    const Beam& beam = beams[key.beam];
+    places_.push_back({key.beam, key.place, is_endless ? beam.total_power() : beam.power});
+    power_ += places_.back().power;
   }
 }
 
@@ -78,7 +94,7 @@ double BeamGeneration::survivor_count(double most_power) const {
   return std::ceil(power_ / most_power);
 }
 
-std::vector<Beam> BeamGeneration::survivors(double most_power, double offset) const {
+std::vector<Beam> BeamGeneration::survivors(double most_power, double offset, const BeamWalk& walk) const {
   std::vector<Beam> chosen;
   if (!counts()) return chosen;
   const double count = survivor_count(most_power);
@@ -90,8 +106,9 @@ std::vector<Beam> BeamGeneration::survivors(double most_power, double offset) co
     passed += place.power / each;
     const double until = &place == &places_.back() ? count : std::floor(passed + offset);
     if (until <= taken) continue;
-    chosen.push_back(beams_[place.beam]);
-    chosen.back().share *= (until - taken) * each / place.power;
+    const Beam& beam = beams_[place.beam];
+    chosen.push_back(beam.places ? walk.at_place(beam, place.place) : beam);
+    chosen.back().share *= (until - taken) * each / beam.power;
     chosen.back().power = (until - taken) * each;
     taken = until;
   }
@@ -104,7 +121,7 @@ double Resampling::offset(std::uint32_t generation) const {
 
 bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGeneration& first, const Resampling& how,
                       const Cancellation* cancel, const std::function<void()>& after_each) {
-  std::vector<Beam> survivors = first.survivors(how.most_power, how.offset(0));
+  std::vector<Beam> survivors = first.survivors(how.most_power, how.offset(0), walk);
   double left = first.power();
   for (std::uint32_t generation = 1; !survivors.empty(); ++generation) {
     std::vector<Beam> next;
@@ -115,7 +132,7 @@ bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGene
     if (after_each) after_each();
     const BeamGeneration parts(part, next);
     left = parts.power();
-    survivors = parts.survivors(how.most_power, how.offset(generation));
+    survivors = parts.survivors(how.most_power, how.offset(generation), walk);
   }
   if (is_cancelled(cancel)) return false;
   walk.book_truncated(left);

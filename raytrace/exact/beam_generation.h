@@ -16,7 +16,8 @@ class BeamWalk;
 
 /// Beams that are as many interfaces away from where they were first too weak, in the order in which survivors are
 /// chosen: sorted by direction and place, as alike beams have alike ends (Array-RQMC: L'Ecuyer, Lecot and Tuffin,
-/// Operations Research 56, 958, 2008).
+/// Operations Research 56, 958, 2008). Beams that stand for several places (Beam::places) count at each, and survivors
+/// are alone; of an endless part's, at the first for all.
 class BeamGeneration {
  public:
   /// \param part whose periods or outline places are compared by \param beams outlive this
@@ -31,11 +32,13 @@ class BeamGeneration {
   /// Chosen by systematic resampling: each stands for `most_power` or less, and all together for what the generation
   /// has. None if it does not count.
   /// \param offset in [0, 1): where the first of equally spaced marks falls
-  std::vector<Beam> survivors(double most_power, double offset) const;
+  /// \param walk knows beams at other places
+  std::vector<Beam> survivors(double most_power, double offset, const BeamWalk& walk) const;
 
  private:
   struct Place {
     std::size_t beam;
+    std::size_t place;  ///< of Beam::places
     double power;
   };
   const std::vector<Beam>& beams_;

@@ -28,8 +28,10 @@ geometry::Polygon entrance_outline(const geometry::Part& part) {
   return part.outline;
 }
 
-BeamTracer::BeamTracer(const geometry::Part& part)
-    : part_(part), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {}
+BeamTracer::BeamTracer(const geometry::Part& part, Elements elements)
+    : part_(part), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {
+  if (elements == Elements::equal_at_once) equal_ = EqualPlaces::of(part, centre_mm_);
+}
 
 BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illumination,
                              const std::vector<double>& cones_deg, const BeamPolicy& policy, const Cancellation* cancel,
@@ -78,10 +80,10 @@ BeamResult BeamTracer::trace_with_weak(const Optics& optics, const Illumination&
                                        const Cancellation* cancel, const BeamObserver& observer) const {
   const WeakBeams& weak = *policy.weak;
   const LightSetup setup(part_, centre_mm_, optics, illumination, cones_deg);
-  BeamWalk strong(part_, centre_mm_, cells_, setup, policy, observer);
+  BeamWalk strong(part_, centre_mm_, cells_, setup, policy, observer, equal_places());
   std::vector<BeamWalk> replicates;
   for (std::uint32_t k = 0; k < weak.replicates; ++k) {
-    replicates.emplace_back(part_, centre_mm_, cells_, setup, policy, observer);
+    replicates.emplace_back(part_, centre_mm_, cells_, setup, policy, observer, equal_places());
     replicates.back().serve_replicate(k);
   }
   strong.pause_at_kept(kMostWaiting);
@@ -120,7 +122,8 @@ BeamTrace::BeamTrace(const BeamTracer& tracer, const Optics& optics, const Illum
 BeamTrace::~BeamTrace() = default;
 
 void BeamTrace::start() {
-  walk_ = std::make_unique<BeamWalk>(tracer_.part_, tracer_.centre_mm_, tracer_.cells_, setup_, policy_, observer_);
+  walk_ = std::make_unique<BeamWalk>(tracer_.part_, tracer_.centre_mm_, tracer_.cells_, setup_, policy_, observer_,
+                                     tracer_.equal_places());
   walk_->enter(entrance_outline(tracer_.part_), cutoff_,
                policy_.cutoff ? BeamWalk::Approach::fixed : BeamWalk::Approach::falling);
 }

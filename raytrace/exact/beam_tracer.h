@@ -12,6 +12,7 @@
 #include "core/progress.h"
 #include "geometry/part/part.h"
 #include "raytrace/exact/beam.h"
+#include "raytrace/exact/equal_places.h"
 #include "raytrace/faces/cell_index.h"
 #include "raytrace/light/light_setup.h"
 
@@ -34,8 +35,8 @@ struct WeakBeams {
 
 /// How far beams are followed.
 struct BeamPolicy {
-  /// Least power of a beam that is followed. Without one it starts at 1e-6 and falls until less than `truncated_goal`
-  /// is left behind.
+  /// Least power of a beam that is followed, of beams at equal elements of a finite part together. Without one it
+  /// starts at 1e-6 and falls until less than `truncated_goal` is left behind.
   std::optional<double> cutoff;
   /// Of beams below it. \pre `cutoff` is set, facets are smooth and plane, and `keeps_phases` is not; for
   /// BeamTracer::trace() alone
@@ -87,9 +88,14 @@ struct ReturnedBeam {
   double phase_mm = 0.0;
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< that centre
   CellTrail trail;
+  /// Offsets of the beams like it that this one stands for, itself included; null: for itself alone. Powers are those
+  /// of one.
+  std::shared_ptr<const BeamPlaces> places;
   /// Of places on the entrance face, relative to the part's centre. The field and its power are those before the phases
   /// of these facets.
   std::vector<TexturedHit> hits;
+
+  double place_count() const { return places ? static_cast<double>(places->size()) : 1.0; }
 };
 
 /// Called for every returned beam, as it is found. With a cut-off that has to be found first, that takes a run of its
@@ -104,8 +110,10 @@ using BeamObserver = std::function<void(const ReturnedBeam&)>;
 /// BeamPolicy::keeps_phases. A value shared by all threads.
 class BeamTracer {
  public:
-  /// \pre `part` outlives the tracer
-  explicit BeamTracer(const geometry::Part& part);
+  enum class Elements { each_by_itself, equal_at_once };
+  /// \param elements `equal_at_once`: trace() and BeamTrace follow beams of elements that are alike once, until a
+  /// border tells them apart, and tell of them once (ReturnedBeam::places) \pre `part` outlives the tracer
+  explicit BeamTracer(const geometry::Part& part, Elements elements = Elements::each_by_itself);
 
   /// Of beams above the cut-off, and of weak ones where BeamPolicy::weak asks for them, which the mean over replicates
   /// counts of.
@@ -121,6 +129,7 @@ class BeamTracer {
   BeamResult trace_with_weak(const Optics& optics, const Illumination& illumination,
                              const std::vector<double>& cones_deg, const BeamPolicy& policy, const Cancellation* cancel,
                              const BeamObserver& observer) const;
+  const EqualPlaces* equal_places() const { return equal_ ? &*equal_ : nullptr; }
 
   friend class BeamTrace;
   friend class StochasticBeams;
@@ -128,6 +137,7 @@ class BeamTracer {
   const geometry::Part& part_;
   Vec2 centre_mm_;
   CellIndex cells_;
+  std::optional<EqualPlaces> equal_;
 };
 
 /// One trace of a BeamTracer that can be paused: to be dropped if something else is quicker. For one thread at a time.

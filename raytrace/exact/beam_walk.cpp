@@ -14,10 +14,10 @@ constexpr double kLeastAreaShare = 1e-15;
 constexpr double kJoinShare = 1e-13;
 // Corners of a cross-section nearer than this share of an element are one.
 constexpr double kMergeShare = 1e-11;
-// Planes seen at a flatter angle than this have no cross-section.
-constexpr double kGrazing = 1e-12;
 // A level beam is followed this many elements at a time, and so often.
 constexpr double kReachInElements = 4.0;
+// One of several places less far, as fewer of them then meet a border.
+constexpr double kReachOfShared = 2.0;
 // A beam that falls so flatly that its far side comes into the layer more than this many elements behind its near side
 // is followed in such steps as well. One that is level above the layer never meets anything.
 constexpr double kFarInElements = 64.0;
@@ -39,13 +39,14 @@ constexpr std::size_t kMostDeferred = 200'000;
 }  // namespace
 
 BeamWalk::BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
-                   const BeamPolicy& policy, BeamObserver observer)
+                   const BeamPolicy& policy, BeamObserver observer, const EqualPlaces* equal)
     : part_(part),
       centre_mm_(centre_mm),
       cells_(cells),
       setup_(setup),
       policy_(policy),
       observer_(std::move(observer)),
+      equal_(equal),
       tally_(setup.cone_chord2.size()),
       least_area_(kLeastAreaShare * part.size_mm * part.size_mm),
       join_area_(kJoinShare * part.size_mm * part.size_mm),
@@ -71,10 +72,14 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
   for (const auto& p : entrance)
     whole.corners.push_back({p.x() - centre_mm_.x(), p.y() - centre_mm_.y(), setup_.thickness_mm});
   const double parts = parts_of_element();
-  if (setup_.infinite() && parts == 1.0)
+  if (equal_ != nullptr && setup_.infinite())
+    enter_within_period(whole, parts);
+  else if (equal_ != nullptr)
+    enter_at_places(whole, parts);
+  else if (setup_.infinite() && parts == 1.0)
     pend(whole);
   else
-    enter_in_pieces(whole, parts);
+    enter_in_pieces(whole, step_of_entrance(parts));
   pass_ = {0.0, pending_power_};
   // Where little is asked, the first pass is one of beams that are strong beside those that enter an element.
   if (approach_ == Approach::falling && policy_.truncated_goal > kFinestGoal)
@@ -83,7 +88,7 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
 
 void BeamWalk::pend(Beam beam) {
   beam.power = power_of(beam);
-  pending_power_ += beam.power;
+  pending_power_ += beam.total_power();
   pending_.push_back(std::move(beam));
 }
 
@@ -96,12 +101,15 @@ double BeamWalk::parts_of_element() const {
   return std::max(1.0, std::ceil(std::sqrt(facets / kFacetsOfPiece)));
 }
 
-/// An entrance in pieces of an element or less, so that each meets few facets.
-void BeamWalk::enter_in_pieces(const Beam& whole, double parts) {
+/// Of pieces of the entrance: an element or less, so that each meets few facets.
+Vec2 BeamWalk::step_of_entrance(double parts) const {
   Vec2 step = Vec2::Constant(part_.size_mm);
   if (const auto* rtp = std::get_if<geometry::RtpElement>(&part_.spec.element))
     step = Vec2(rtp->base_mm + part_.spec.array.x_gap_mm, rtp->width_mm + part_.spec.array.y_gap_mm);
-  step /= parts;
+  return step / parts;
+}
+
+void BeamWalk::enter_in_pieces(const Beam& whole, const Vec2& step) {
   const Frame from_above(-Vec3::UnitZ());
   const double whole_area = area(flattened(whole.corners, from_above, merge_mm_));
   PlanBox box;
@@ -113,13 +121,14 @@ void BeamWalk::enter_in_pieces(const Beam& whole, double parts) {
       Beam piece = whole;
       piece.corners = cut(cut(row, {Vec3::UnitX(), x}), {-Vec3::UnitX(), -(x + step.x())});
       if (piece.corners.empty()) continue;
-      piece.share = area(flattened(piece.corners, from_above, merge_mm_)) / whole_area;
+      piece.share = whole.share * (area(flattened(piece.corners, from_above, merge_mm_)) / whole_area);
       if (piece.share <= 0.0) continue;
       entered += piece.share;
       pend(std::move(piece));
     }
   }
-  book_rest(whole, 1.0 - entered);
+  place_count_ = whole.place_count();
+  book_rest(whole, whole.share - entered);
 }
 
 BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel) {
@@ -128,15 +137,16 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
     while (!pending_.empty() && !may_stop()) {
       if (is_cancelled(cancel)) return End::cancelled;
       if (work_ >= most_work) return End::paused;
-      const Beam beam = std::move(pending_.back());
+      Beam beam = std::move(pending_.back());
       pending_.pop_back();
-      pending_power_ -= beam.power;
-      if (beam.power < cutoff_) {
+      pending_power_ -= beam.total_power();
+      if ((setup_.infinite() ? beam.power : beam.total_power()) < cutoff_) {
         defer(beam);
-        if (deferred_.size() >= most_kept_) return End::paused;
+        if (deferred_places_ >= most_kept_) return End::paused;
         continue;
       }
       if (++beams_ > policy_.max_beams) fail_on_budget();
+      if (beam.places) keep_equal_places(beam);
       advance(beam);
     }
     if (approach_ == Approach::kept) return End::done;
@@ -170,11 +180,12 @@ void BeamWalk::lower_cutoff_to(double cutoff) {
   pending_.swap(deferred_);
   pending_power_ = deferred_power_;
   deferred_power_ = 0.0;
+  deferred_places_ = 0;
 }
 
 /// What is open stays behind.
 void BeamWalk::close() {
-  for (const Beam& beam : pending_) deferred_power_ += beam.power;
+  for (const Beam& beam : pending_) deferred_power_ += beam.total_power();
   pending_.clear();
   pending_power_ = 0.0;
   tally_.other[Account::truncated] += deferred_power_;
@@ -208,12 +219,14 @@ BeamResult BeamWalk::result() const {
 
 /// Beams below the cut-off are kept for a lower one, unless they are so many that they are better found again.
 void BeamWalk::defer(const Beam& beam) {
-  deferred_power_ += beam.power;
+  deferred_power_ += beam.total_power();
+  deferred_places_ += static_cast<std::size_t>(beam.place_count());
   if (approach_ == Approach::kept || deferred_.size() <= kMostDeferred) deferred_.push_back(beam);
 }
 
 std::vector<Beam> BeamWalk::take_kept() {
   deferred_power_ = 0.0;
+  deferred_places_ = 0;
   return std::exchange(deferred_, {});
 }
 
@@ -227,6 +240,7 @@ void BeamWalk::step(const Beam& beam, const Cancellation* cancel, std::vector<Be
 
 void BeamWalk::advance(const Beam& beam) {
   depth_ = std::max(depth_, beam.depth);
+  place_count_ = beam.place_count();
   work_ += kWorkOfBeam;
   const Frame frame(beam.direction);
   const FlatPolygon whole = flattened(beam.corners, frame, merge_mm_);
@@ -279,7 +293,8 @@ Horizon BeamWalk::horizon_of(const Beam& beam) const {
     if (first > kFarInElements * part_.size_mm) first = std::max(0.0, (low - setup_.top_mm) / -dz);
     last = (high + setup_.depth_mm + slack) / -dz;
   }
-  const double reach = first + kReachInElements * part_.size_mm;
+  const bool is_shared = beam.places && !setup_.infinite();
+  const double reach = first + (is_shared ? kReachOfShared : kReachInElements) * part_.size_mm;
   if (last <= reach) return {last, false};
   if (setup_.infinite()) return {reach, true};
   // A finite part ends: what leaves it within reach must be looked for to the end, for its exit is not a facet's.
@@ -319,18 +334,21 @@ void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatP
   // Beyond the horizon facets may be hidden by others that were not looked for.
   const Plane far{-beam.direction, -(nearest + horizon.t)};
   const PlanBox box = box_of(whole);
-  cells_.visit(plan.lower, plan.upper,
-               [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset, double height_mm) {
-                 const CellPlace place{part_.number_of(patch, cell), offset, height_mm};
-                 for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
-                   consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f], place);
-               });
+  cells_.visit(
+      plan.lower, plan.upper,
+      [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset, double height_mm) {
+        const CellPlace place =
+            equal_ != nullptr ? equal_->place_of(patch, cell, offset) : CellPlace{part_.number_of(patch, cell), offset};
+        const Vec3 shift(offset.x(), offset.y(), height_mm);
+        for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
+          consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f], shift, place);
+      });
 }
 
 void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const PlanBox& box,
-                        const Plane* far, const SurfacePatch& patch, const PatchFacet& facet, const CellPlace& cell) {
+                        const Plane* far, const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift,
+                        const CellPlace& cell) {
   ++work_;
-  const Vec3 shift(cell.offset_mm.x(), cell.offset_mm.y(), cell.height_mm);
   const double towards = facet.normal.dot(beam.direction);
   if (beam.inside ? towards <= kGrazing : towards >= -kGrazing) return;
   Corners corners;
@@ -353,7 +371,7 @@ void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon&
   if (piece.size() < 3 || area(piece) <= least_area_) return;
   const PlanBox piece_box = box_of(piece);
   std::optional<Vec2> middle_mm = facet.middle_mm;
-  if (middle_mm) *middle_mm += cell.offset_mm;
+  if (middle_mm) *middle_mm += shift.head<2>();
   candidates_.push_back(
       {plane, facet.role, cell, Distance(frame, plane), std::move(piece), piece_box, false, middle_mm});
 }
@@ -417,7 +435,7 @@ void BeamWalk::pass_by(const Beam& from, const Frame& frame, const FlatPolygon& 
     if (beam.level_steps < kMaxLevelSteps)
       pend(std::move(beam));
     else
-      tally_.other[Account::truncated] += power_of(beam);
+      book(Account::truncated, power_of(beam));
     return;
   }
   if (from.inside) {
@@ -426,7 +444,7 @@ void BeamWalk::pass_by(const Beam& from, const Frame& frame, const FlatPolygon& 
   }
   const bool rises_through_plate = setup_.infinite() && from.direction.z() > 0.0;
   const double power = power_of(at_start(from, frame, piece, share));
-  tally_.other[rises_through_plate ? Account::truncated : account_of_exit(from.left_through)] += power;
+  book(rises_through_plate ? Account::truncated : account_of_exit(from.left_through), power);
 }
 
 /// Out through the nearest of entrance and sides: each takes the part of the piece to which it is nearest.

@@ -10,8 +10,12 @@
 
 #include "raytrace/exact/beam.h"
 #include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/equal_places.h"
 
 namespace retrace::raytrace {
+
+/// Planes seen at a flatter angle than this have no cross-section.
+inline constexpr double kGrazing = 1e-12;
 
 /// A rectangle across a beam or in the plan of the part.
 struct PlanBox {
@@ -58,8 +62,9 @@ geometry::Polygon entrance_outline(const geometry::Part& part);
 /// Follows beams through a part until too little is left of them. Serves one trace() of BeamTracer.
 class BeamWalk {
  public:
+  /// \param equal where beams may be followed once for several places; null: nowhere
   BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
-           const BeamPolicy& policy, BeamObserver observer);
+           const BeamPolicy& policy, BeamObserver observer, const EqualPlaces* equal = nullptr);
 
   enum class Approach { falling, fixed, kept };
   /// \param cutoff that is fixed, or the first of those that fall until little enough is left behind; where beams below
@@ -76,7 +81,8 @@ class BeamWalk {
   std::vector<Beam> take_kept();
   /// What is below the old cut-off and not below this one is for the next run() to follow. \pre likewise
   void lower_cutoff_to(double cutoff);
-  /// Follows a beam to the next faces that it meets. \param next its parts that go on from there are added to these
+  /// Follows a beam that is alone to the next faces that it meets. \param next its parts that go on from there are
+  /// added to these
   void step(const Beam& beam, const Cancellation* cancel, std::vector<Beam>& next);
   /// Beams that it tells of belong to this replicate.
   void serve_replicate(std::uint32_t replicate) { replicate_ = replicate; }
@@ -85,6 +91,8 @@ class BeamWalk {
   /// Power that is given up.
   void book_truncated(double power) { tally_.other[Account::truncated] += power; }
   const Tally& tally() const { return tally_; }
+  /// One of the beams that a beam stands for, by itself.
+  Beam at_place(const Beam& beam, std::size_t place) const;
 
   BeamResult result() const;
   std::uint64_t beams() const { return beams_; }
@@ -103,8 +111,12 @@ class BeamWalk {
   }
   double power_of(const Beam& beam) const { return transmission_of(beam) * beam.light.power(); }
   double parts_of_element() const;
-  void enter_in_pieces(const Beam& whole, double parts);
+  Vec2 step_of_entrance(double parts) const;
+  void enter_in_pieces(const Beam& whole, const Vec2& step);
+  void enter_at_places(const Beam& whole, double parts);
+  void enter_within_period(const Beam& whole, double parts);
   void pend(Beam beam);
+  void keep_equal_places(Beam& beam);
   void defer(const Beam& beam);
   /// Power of beams that wait, in this pass or below its cut-off.
   double open_power() const { return pending_power_ + deferred_power_; }
@@ -112,11 +124,15 @@ class BeamWalk {
   void lower_cutoff();
   void close();
   void advance(const Beam& beam);
+  /// Of powers of the beam at hand, which may stand for others.
+  void book(Account account, double power) { tally_.other[account] += place_count_ * power; }
   Horizon horizon_of(const Beam& beam) const;
+  PlanBox sweep_of(const Beam& beam) const;
   std::pair<double, double> distances_to_hull(const Beam& beam) const;
   void find_candidates(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon);
   void consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const PlanBox& box, const Plane* far,
-                const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet, const CellPlace& cell);
+                const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet, const Vec3& shift,
+                const CellPlace& cell);
   FlatPolygons visible_pieces(std::size_t k) const;
   FlatPolygons visible_on_plane_of(std::size_t k);
   void pass_by(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share, const Horizon& horizon);
@@ -137,9 +153,7 @@ class BeamWalk {
   void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,
             bool inside);
   /// Light of a beam that found no facet for want of digits. Signed: pieces may overlap by rounding as well.
-  void book_rest(const Beam& beam, double share) {
-    tally_.other[Account::truncated] += share / beam.share * power_of(beam);
-  }
+  void book_rest(const Beam& beam, double share) { book(Account::truncated, share / beam.share * power_of(beam)); }
   void leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction);
   ReturnedBeam returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const;
   /// Of where a beam travels behind the entrance face.
@@ -153,6 +167,7 @@ class BeamWalk {
   const LightSetup& setup_;
   const BeamPolicy& policy_;
   BeamObserver observer_;
+  const EqualPlaces* equal_;
   const Cancellation* cancel_ = nullptr;
   std::vector<ScatterSite>* sites_ = nullptr;
   std::optional<std::uint32_t> replicate_;
@@ -161,6 +176,7 @@ class BeamWalk {
   double pending_power_ = 0.0;
   std::vector<Beam> deferred_;  ///< below the cut-off
   double deferred_power_ = 0.0;
+  std::size_t deferred_places_ = 0;  ///< Beam::places of all of them
   std::size_t most_kept_ = std::numeric_limits<std::size_t>::max();
   double cutoff_ = 0.0;
   Approach approach_ = Approach::fixed;
@@ -171,6 +187,7 @@ class BeamWalk {
   };
   Pass pass_;
   std::vector<Candidate> candidates_;  ///< of the beam at hand
+  double place_count_ = 1.0;           ///< likewise
   double least_area_;
   double join_area_;
   double merge_mm_;

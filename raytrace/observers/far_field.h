@@ -144,10 +144,13 @@ class FarFieldCollector {
     double transmission = 0.0;
     double phase_mm = 0.0;
     double power = 0.0;
+    double copies = 1.0;  ///< in an endless part: cells of a period that send it back
     std::vector<FieldHit> hits;
     std::optional<std::uint32_t> replicate;
   };
-  /// One cell; of a beam that met several or was resampled, the beam itself.
+  /// What tells waves apart: where they go, with which field, and where they met facets that bend or scatter them.
+  using WaveKey = std::vector<std::int64_t>;
+  /// One cell; of light that met several, that of one wave by the same cells; of a resampled beam, the beam itself.
   struct Place {
     std::uint64_t cell = 0;
     std::int64_t x = 0;
@@ -159,9 +162,14 @@ class FarFieldCollector {
   void add_ray(const FarFieldRay& ray);
   void add_scattering_ray(const FarFieldRay& ray, double phase_variance);
   double replicates_of(const ReturnedBeam& beam) const;
+  Place place_of(const ReturnedBeam& beam, const Piece& piece);
+  void put(Piece piece, const ReturnedBeam& beam);
+  WaveKey wave_of(const Piece& piece) const;
   Piece moved_home(const ReturnedBeam& beam) const;
-  static geometry::Vec2 middle_of(const std::vector<Piece>& pieces);
-  std::vector<CoherentGroup> groups_of(const std::vector<Piece>& pieces, const geometry::Vec2& middle_mm) const;
+  /// Numbers of pieces.
+  using PiecesOfCell = std::vector<std::uint32_t>;
+  geometry::Vec2 middle_of(const PiecesOfCell& numbers) const;
+  std::vector<CoherentGroup> groups_of(const PiecesOfCell& numbers, const geometry::Vec2& middle_mm) const;
   CoherentGroup group_of(std::vector<Piece> pieces, const geometry::Vec2& middle_mm) const;
   void join(std::vector<Piece>& pieces) const;
   std::vector<CoherentGroup> distinct_groups() const;
@@ -175,9 +183,12 @@ class FarFieldCollector {
   double thickness_mm_ = 0.0;
   Vec3 to_source_;
   FarField field_;
-  std::map<Place, std::vector<Piece>> cells_;
-  std::uint64_t alone_ = 0;              ///< beams that are a place of their own
-  PointLookup<std::size_t> directions_;  ///< indices into the rays
+  /// In the places that they belong to; one that beams of several cells share is there once.
+  std::vector<Piece> pieces_;
+  std::map<Place, PiecesOfCell> cells_;
+  std::uint64_t alone_ = 0;                                           ///< waves and beams that are a place of their own
+  std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;  ///< their numbers, by CellTrail::met
+  PointLookup<std::size_t> directions_;                               ///< indices into the rays
 };
 
 }  // namespace retrace::raytrace

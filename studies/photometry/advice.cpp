@@ -20,9 +20,10 @@ constexpr std::array<double, 14> kAngleSteps = {0.5,  -0.5, 1.0,  -1.0, 1.5,  -1
                                                 -2.0, 3.0,  -3.0, 4.5,  -4.5, 7.0,  -7.0};
 constexpr std::array<double, 8> kSizeFactors = {0.7, 1.4, 0.5, 2.0, 0.35, 2.8, 0.25, 4.0};
 constexpr int kBisections = 4;
-// What the few wavelengths of the search may be wrong by.
-constexpr double kSearchMargin = 0.01;
+// Of a value over its limit: what the few wavelengths of the search may be wrong by is added.
+constexpr double kEnough = 1.01;
 constexpr double kMostErrorArcmin = 300.0;
+constexpr double kWholeTable = -std::numeric_limits<double>::infinity();
 
 /// A parameter of the design and how it is changed.
 struct Knob {
@@ -51,16 +52,6 @@ Knob size_knob(const Design& design) {
   return knob;
 }
 
-/// The least of value over limit, where an undetermined point is no more than 1.
-double least_ratio(const std::vector<PhotometricPoint>& points) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const PhotometricPoint& point : points) {
-    const double most = point.verdict() == Verdict::undetermined ? 1.0 : least;
-    least = std::min({least, most, 1.0 + point.margin()});
-  }
-  return least;
-}
-
 class Search {
  public:
   Search(const Knob& knob, const TestProgramme& programme, const TableOfDesign& table)
@@ -71,13 +62,13 @@ class Search {
     double best = knob_.from;
     double best_ratio = -1.0;
     for (const double value : knob_.tries) {
-      const double ratio = ratio_at(value);
+      const double ratio = ratio_at(value, best_ratio);
       if (is_cancelled_) return std::nullopt;
       if (ratio > best_ratio) {
         best = value;
         best_ratio = ratio;
       }
-      if (ratio < 1.0 + kSearchMargin) continue;
+      if (ratio < kEnough) continue;
       best = nearest_that_passes(value);
       break;
     }
@@ -86,11 +77,12 @@ class Search {
   }
 
  private:
-  /// The least of value over limit; -1 if such a part cannot be made, or the search was cancelled.
-  double ratio_at(double value) {
+  /// The least of value over limit, or less than `enough`; -1 if such a part cannot be made, or the search was
+  /// cancelled.
+  double ratio_at(double value, double enough) {
     if (is_cancelled_) return -1.0;
     try {
-      const auto points = table_(knob_.with(value), kSearchParts);
+      const auto points = table_(knob_.with(value), kSearchParts, enough);
       is_cancelled_ = !points;
       return points ? least_ratio(*points) : -1.0;
     } catch (const InputError&) {
@@ -102,7 +94,7 @@ class Search {
     double failing = knob_.from;
     for (int k = 0; k < kBisections; ++k) {
       const double middle = 0.5 * (failing + passing);
-      (ratio_at(middle) >= 1.0 + kSearchMargin ? passing : failing) = middle;
+      (ratio_at(middle, kEnough) >= kEnough ? passing : failing) = middle;
     }
     return passing;
   }
@@ -115,7 +107,7 @@ class Search {
     found.key = knob_.key;
     found.from = knob_.from;
     found.to = std::round((knob_.from + change) * scale) / scale;
-    const auto points = table_(knob_.with(found.to), materials::kSpectralParts);
+    const auto points = table_(knob_.with(found.to), materials::kSpectralParts, kWholeTable);
     if (!points) return std::nullopt;
     found.points = *points;
     found.verdict = verdict_of(found.points, programme_);
@@ -129,6 +121,15 @@ class Search {
 };
 
 }  // namespace
+
+double least_ratio(const std::vector<PhotometricPoint>& points) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const PhotometricPoint& point : points) {
+    const double most = point.verdict() == Verdict::undetermined ? 1.0 : least;
+    least = std::min({least, most, 1.0 + point.margin()});
+  }
+  return least;
+}
 
 std::vector<PhotometricChange> changes_that_pass(const Design& design, const TestProgramme& programme,
                                                  const TableOfDesign& table) {

@@ -11,7 +11,7 @@ namespace retrace::studies {
 namespace {
 
 // Spans of each colour matching function, of two wavelengths each.
-constexpr std::size_t kColourParts = 3;
+constexpr std::size_t kColourParts = 4;
 // A colour nearer to a boundary than this many standard errors says nothing.
 constexpr double kErrorsOfAColour = 2.0;
 // Odd, so that no two responses share a seed.

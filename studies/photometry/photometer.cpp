@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "materials/io/spectrum_reader.h"
-#include "raytrace/balls/ball_tracer.h"
+#include "raytrace/faces/mirror_symmetry.h"
 #include "raytrace/observers/coefficients.h"
 #include "raytrace/sampling/threads.h"
 #include "studies/design/part_of_design.h"
@@ -16,28 +16,10 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
 
-// Least power of a beam that is followed exactly, as a share of what falls on an element. What is left behind, or does
-// not interfere, changes readings by up to 5e-4, as the choice of wavelengths does by up to 1e-3.
-constexpr double kCutoff = 1e-5;
-// The same where weaker beams of a finite part are resampled: its many elements take their time.
-constexpr double kCutoffOfFinite = 5e-5;
-constexpr std::uint32_t kReplicates = 16;
-// Beams of a direction and wavelength beyond which the choice is Monte Carlo.
-constexpr std::uint64_t kMostBeams = 4'000'000;
-// Cells this many times as wide as the wavelength over the diameter of the discs, or wider, need no diffraction: what
-// it carries past the edge of a disc is less than 1 % (docs/theory/photometry.md).
-constexpr double kWidthsWithoutDiffraction = 64.0;
 // Share of a direction's power by which the budget of polygons may fall short.
 constexpr double kMostBeyondBudget = 1e-4;
-// Lattice points of the window, beyond which its power is not integrated.
-constexpr double kMostLatticePoints = 300'000.0;
-
 Angle deg(double value) {
   return Angle::from_deg(value);
-}
-
-PhotometricGeometry geometry_at(const PhotometerSetting& s, double observation_deg) {
-  return raytrace::geometry_from({deg(s.v_deg), deg(s.h_deg)}, deg(observation_deg), deg(s.rotation_deg));
 }
 
 /// Wavelengths to trace, and the share of the flux that each stands for - without the dye.
@@ -119,13 +101,6 @@ Design dyed(Design design, const PhotometryRequest& request) {
   return design;
 }
 
-/// Of a beam that keeps its phases.
-double scattered_power(const raytrace::ReturnedBeam& beam) {
-  double variance = 0.0;
-  for (const raytrace::TexturedHit& hit : beam.hits) variance += hit.phase.variance();
-  return -std::expm1(-variance) * beam.stokes.i;
-}
-
 /// Calls work(k) for every k on the threads at hand and tells how far it is.
 void for_each_told(std::size_t count, Progress* progress, const std::function<void(std::size_t)>& work) {
   std::mutex mutex;
@@ -169,17 +144,14 @@ std::vector<double> blurred(const std::vector<double>& map, std::size_t columns,
 
 }  // namespace
 
-struct Photometer::Piece {
-  std::vector<double> per_sr;
-  std::vector<double> error_per_sr;
-  std::vector<double> map_per_sr;
-  double rre = 0.0;
-  double std_error = 0.0;
-  double truncated = 0.0;
-  std::optional<PhotometricDirection::Split> split;
-  double beyond_budget = 0.0;  ///< power that is not diffracted for want of time
-  bool complete = false;
-};
+PhotometricGeometry geometry_of(const PhotometerSetting& setting, double observation_deg) {
+  return raytrace::geometry_from({deg(setting.v_deg), deg(setting.h_deg)}, deg(observation_deg),
+                                 deg(setting.rotation_deg));
+}
+
+raytrace::ReturnFrame frame_of(const PhotometerSetting& setting) {
+  return raytrace::return_frame(geometry_of(setting, 0.0));
+}
 
 Photometer::Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts,
                        PhotometricResponse response)
@@ -273,122 +245,9 @@ std::uint32_t Photometer::seed_of(std::size_t wavelength) const {
   return request_.seed + kGolden * static_cast<std::uint32_t>(wavelength);
 }
 
-/// Where the exact engine was asked for, or facets scatter or bend light, weak beams are given up.
-bool Photometer::resamples_weak() const {
-  return is_exact_ && request_.engine == Engine::automatic && model_.optics.is_smooth() && !has_form_;
-}
-
-double Photometer::usual_cutoff() const {
-  return resamples_weak() && !model_.part.period_mm ? kCutoffOfFinite : kCutoff;
-}
-
-Photometer::Piece Photometer::measure_exactly(const PhotometerSetting& setting, std::size_t wavelength, bool split,
-                                              const raytrace::BeamTracer& tracer, const Cancellation* cancel) const {
-  const SpectralOptics& light = model_.spectral[wavelength];
-  const PhotometricGeometry geometry = geometry_at(setting, 0.0);
-  const raytrace::ReturnFrame frame = raytrace::return_frame(geometry);
-  const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
-  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
-  raytrace::FarFieldPolicy policy;
-  policy.diffraction = request_.diffraction;
-  policy.wavelength_nm = light.wavelength_nm;
-  policy.window_rad = deg(1.5 * request_.window_deg).rad();
-  policy.finest_detail_rad = kernel_.reach_rad() / kWidthsWithoutDiffraction;
-  if (has_form_) policy.form = &light.optics.facet_form;
-  if (resamples_weak()) policy.replicates = kReplicates;
-  policy.cancel = cancel;
-  raytrace::BeamPolicy beams;
-  if (resamples_weak()) beams.weak = raytrace::WeakBeams{.seed = seed_of(wavelength), .replicates = kReplicates};
-  beams.cutoff = request_.cutoff.value_or(usual_cutoff()) /
-                 std::max(1.0, static_cast<double>(model_.part.period_mm ? 1 : model_.part.elements_full));
-  beams.by_cell = request_.diffraction;
-  beams.keeps_phases = keeps_phases_;
-  if (request_.engine != Engine::exact) beams.max_beams = kMostBeams;
-  raytrace::FarFieldCollector collector(model_.part, illumination, policy);
-  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
-  double scattered_from_cone = 0.0;
-  const raytrace::BeamResult traced =
-      tracer.trace(light.optics, illumination, cones, beams, cancel, [&](const raytrace::ReturnedBeam& beam) {
-        collector.add(beam);
-        if (beam.cone < cones.size()) scattered_from_cone += scattered_power(beam);
-      });
-  Piece piece;
-  if (!traced.complete) return piece;
-  const raytrace::FarField field = collector.finish();
-  piece.beyond_budget = field.beyond_budget_power();
-  piece.rre = traced.ledgers.back()[raytrace::Account::retroreflected];
-  piece.std_error = traced.std_error.back();
-  piece.truncated = traced.ledgers.back()[raytrace::Account::truncated];
-  if (keeps_phases_) {
-    // What textures take from the cone's beams, and what falls into the cone of all that they scatter.
-    piece.rre += field.scattered_within(frame, deg(cones.back()).rad()) - scattered_from_cone;
-    piece.truncated += field.unplaced_power();
-  }
-  for (const double observation_deg : setting.observation_deg) {
-    const raytrace::FarFieldIntensity seen =
-        field.intensity(frame.direction({0.0, deg(observation_deg).rad()}), kernel_);
-    piece.per_sr.push_back(seen.per_sr);
-    piece.error_per_sr.push_back(seen.error_per_sr);
-  }
-  if (setting.map_columns > 0) {
-    const raytrace::DirectionGrid grid(raytrace::DirectionGrid::Layout::square, deg(request_.window_deg).rad(),
-                                       setting.map_columns, setting.map_columns);
-    piece.map_per_sr = field.binned(frame, grid);
-    piece.map_per_sr.pop_back();
-    for (std::size_t bin = 0; bin < grid.size(); ++bin) piece.map_per_sr[bin] /= grid.solid_angle_sr(bin);
-  }
-  const double window_rad = deg(request_.window_deg).rad();
-  const double points = std::numbers::pi * std::pow(1.5 * window_rad / field.detail_rad(), 2.0);
-  if (split && points < kMostLatticePoints) {
-    const raytrace::FarField::Split parts = field.split(frame, window_rad);
-    piece.split = {light.wavelength_nm, parts.inside, parts.outside, field.total_power()};
-  }
-  piece.complete = !is_cancelled(cancel);
-  return piece;
-}
-
-Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
-                                              const raytrace::MonteCarlo* tracer, const Cancellation* cancel) const {
-  const SpectralOptics& light = model_.spectral[wavelength];
-  const raytrace::ReturnFrame frame = raytrace::return_frame(geometry_at(setting, 0.0));
-  const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
-  raytrace::DirectionScore score{frame, kernel_, {}, {}};
-  for (const double observation_deg : setting.observation_deg)
-    score.receivers.push_back(frame.direction({0.0, deg(observation_deg).rad()}));
-  if (setting.map_columns > 0)
-    score.grid.emplace(raytrace::DirectionGrid::Layout::square, deg(request_.window_deg).rad(), setting.map_columns,
-                       setting.map_columns);
-  raytrace::Sampling sampling;
-  sampling.seed = seed_of(wavelength);
-  sampling.rays = std::max<std::uint64_t>(1, request_.rays / model_.spectral.size());
-  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
-  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
-  const raytrace::MonteCarloResult traced =
-      tracer != nullptr ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score)
-                        : raytrace::BallTracer(*design_.balls())
-                              .trace(light.optics, illumination, cones, sampling, {}, cancel, &score);
-  Piece piece;
-  if (!traced.complete) return piece;
-  const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
-  piece.rre = traced.cones.back().rre;
-  piece.std_error = traced.cones.back().std_error;
-  piece.truncated = traced.cones.back().ledger[raytrace::Account::truncated];
-  piece.per_sr.assign(traced.score.begin(), traced.score.begin() + receivers);
-  piece.error_per_sr.assign(traced.score_error.begin(), traced.score_error.begin() + receivers);
-  // Replicates that all saw nothing agree, but know no better than to the light of one ray.
-  const double one_ray_per_sr = kernel_.per_sr(0.0) / static_cast<double>(sampling.rays.value());
-  for (double& error : piece.error_per_sr) error = std::max(error, one_ray_per_sr);
-  if (score.grid)
-    for (std::size_t bin = 0; bin < score.grid->size(); ++bin)
-      piece.map_per_sr.push_back(traced.score[score.receivers.size() + bin] / score.grid->solid_angle_sr(bin));
-  piece.complete = true;
-  return piece;
-}
-
 PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const {
   PhotometerReading reading;
-  const raytrace::SourceAngles source =
-      raytrace::source_angles(raytrace::directions_of(geometry_at(setting, 0.0)).to_source);
+  const raytrace::SourceAngles source = raytrace::source_angles(frame_of(setting).to_source);
   PhotometricDirection& at = reading.direction;
   at.v_deg = setting.v_deg;
   at.h_deg = setting.h_deg;
@@ -417,7 +276,7 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
       per_sr += weights_[w] * pieces[w].per_sr[k];
       squares += std::pow(weights_[w] * pieces[w].error_per_sr[k], 2.0);
     }
-    const PhotometricGeometry geometry = geometry_at(setting, setting.observation_deg[k]);
+    const PhotometricGeometry geometry = geometry_of(setting, setting.observation_deg[k]);
     reading.r_a.push_back(raytrace::coefficient_of_retroreflection(per_sr, source.incidence));
     reading.r_l.push_back(raytrace::coefficient_of_luminance(reading.r_a.back(), raytrace::viewing_angle(geometry)));
     reading.r_a_error.push_back(cos_beta * std::sqrt(squares));
@@ -429,18 +288,30 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   return reading;
 }
 
+/// Forms of facets may be told in frames that a mirror does not keep.
+std::vector<LitAlike> Photometer::settings_lit_alike(const std::vector<PhotometerSetting>& settings) const {
+  std::vector<Vec3> to_source;
+  for (const PhotometerSetting& setting : settings) to_source.push_back(frame_of(setting).to_source);
+  const raytrace::Stokes& light = design_.light.polarisation;
+  std::array<bool, 2> mirrors{};
+  if (settings.size() > 1 && !has_form_ && light.u == 0.0 && light.v == 0.0)
+    for (const std::size_t axis : {0U, 1U})
+      mirrors[axis] = raytrace::is_its_own_mirror_image(model_.part, static_cast<Eigen::Index>(axis));
+  return lit_alike(to_source, mirrors);
+}
+
 std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vector<PhotometerSetting>& settings,
                                                                   Progress* progress,
                                                                   const Cancellation* cancel) const {
   const std::size_t wavelengths = model_.spectral.size();
   std::vector<std::vector<Piece>> pieces(settings.size(), std::vector<Piece>(wavelengths));
   if (is_exact_) {
-    const raytrace::BeamTracer tracer(model_.part);
-    const std::size_t middle = middle_wavelength();
-    for_each_told(settings.size() * wavelengths, progress, [&](std::size_t k) {
-      const PhotometerSetting& setting = settings[k / wavelengths];
-      const std::size_t w = k % wavelengths;
-      pieces[k / wavelengths][w] = measure_exactly(setting, w, setting.split && w == middle, tracer, cancel);
+    const raytrace::BeamTracer tracer(model_.part, raytrace::BeamTracer::Elements::equal_at_once);
+    const std::vector<LitAlike> traced = settings_lit_alike(settings);
+    for_each_told(traced.size() * wavelengths, progress, [&](std::size_t k) {
+      const LitAlike& alike = traced[k / wavelengths];
+      const std::vector<Piece> seen = measure_exactly(settings, alike, k % wavelengths, tracer, cancel);
+      for (std::size_t s = 0; s < alike.size(); ++s) pieces[alike[s].index][k % wavelengths] = seen[s];
     });
   } else {
     std::optional<raytrace::MonteCarlo> tracer;

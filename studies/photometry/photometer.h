@@ -10,6 +10,7 @@
 #include "raytrace/observers/far_field.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "studies/design/optical_model.h"
+#include "studies/photometry/lit_alike.h"
 #include "studies/photometry/photometry.h"
 
 namespace retrace::studies {
@@ -21,6 +22,10 @@ struct PhotometerSetting {
   std::size_t map_columns = 0;  ///< 0: no map
   bool split = false;
 };
+
+raytrace::PhotometricGeometry geometry_of(const PhotometerSetting& setting, double observation_deg);
+/// Directions round the return, in the part frame.
+raytrace::ReturnFrame frame_of(const PhotometerSetting& setting);
 
 /// What the receiver weighs light by.
 enum class PhotometricResponse { x_bar, y_bar, z_bar };  ///< of the CIE 1931 observer; y_bar is V
@@ -48,6 +53,9 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
                                                         Progress* progress, const Cancellation* cancel) const;
 
+  /// Which settings share their light.
+  std::vector<LitAlike> settings_lit_alike(const std::vector<PhotometerSetting>& settings) const;
+
   const std::vector<std::string>& warnings() const { return model_.warnings; }
   std::vector<double> wavelengths_nm() const;
   std::string engine_name() const;
@@ -67,9 +75,30 @@ class Photometer {
   bool is_exact() const { return is_exact_; }
 
  private:
-  struct Piece;  ///< what one wavelength adds
-  Piece measure_exactly(const PhotometerSetting& setting, std::size_t wavelength, bool split,
-                        const raytrace::BeamTracer& tracer, const Cancellation* cancel) const;
+  /// What one wavelength adds.
+  struct Piece {
+    std::vector<double> per_sr;
+    std::vector<double> error_per_sr;
+    std::vector<double> map_per_sr;
+    double rre = 0.0;
+    double std_error = 0.0;
+    double truncated = 0.0;
+    std::optional<PhotometricDirection::Split> split;
+    double beyond_budget = 0.0;  ///< power that is not diffracted for want of time
+    bool complete = false;
+  };
+  /// Cells this many times as wide as the wavelength over the diameter of the discs, or wider, need no diffraction:
+  /// what it carries past the edge of a disc is less than 1 % (docs/theory/photometry.md).
+  static constexpr double kWidthsWithoutDiffraction = 64.0;
+
+  raytrace::FarFieldPolicy far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const;
+  raytrace::BeamPolicy beam_policy(std::size_t wavelength) const;
+  /// Of settings that share their light, in that order.
+  std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
+                                     std::size_t wavelength, const raytrace::BeamTracer& tracer,
+                                     const Cancellation* cancel) const;
+  void look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
+            std::size_t wavelength, Piece& piece) const;
   /// \param tracer null for balls, which have their own
   Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
                         const Cancellation* cancel) const;
@@ -77,7 +106,7 @@ class Photometer {
   std::size_t middle_wavelength() const;
   std::uint32_t seed_of(std::size_t wavelength) const;
   bool resamples_weak() const;  ///< beams below the cut-off, in place of giving them up
-  double usual_cutoff() const;
+  double cutoff() const;
 
   Design design_;
   PhotometryRequest request_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "core/error.h"
@@ -108,16 +109,22 @@ Plan plan_of(const PhotometryRequest& request, bool mirrors) {
   return plan;
 }
 
-/// The reading of least value of each point.
-std::vector<PhotometricPoint> points_of(const PhotometryRequest& request, const Plan& plan,
-                                        const std::vector<PhotometerReading>& readings) {
+/// By setting; nothing where it was not measured.
+using Readings = std::vector<std::optional<PhotometerReading>>;
+
+/// The reading of least value of each point that was measured.
+std::vector<PhotometricPoint> points_of(const PhotometryRequest& request, const Plan& plan, const Readings& readings) {
   std::vector<PhotometricPoint> points;
   for (std::size_t k = 0; k < request.programme.points.size(); ++k) {
     const TestPoint& asked = request.programme.points[k];
     PhotometricPoint least;
     least.r_a = std::numeric_limits<double>::infinity();
+    bool is_measured = false;
     for (const auto& [setting, angle] : plan.readings_of_point[k]) {
-      const PhotometerReading& reading = readings[setting];
+      if (!readings[setting]) continue;
+      is_measured = true;
+      const PhotometerReading& reading = *readings[setting];
+      least.lacks_diffraction = least.lacks_diffraction || reading.lacks_diffraction;
       if (!(reading.r_a[angle] < least.r_a)) continue;
       least.r_a = reading.r_a[angle];
       least.r_l = reading.r_l[angle];
@@ -126,8 +133,7 @@ std::vector<PhotometricPoint> points_of(const PhotometryRequest& request, const 
       least.std_error_mcd_per_lx =
           in_mcd_per_lx(reading.r_a_error[angle], PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
     }
-    for (const auto& [setting, angle] : plan.readings_of_point[k])
-      least.lacks_diffraction = least.lacks_diffraction || readings[setting].lacks_diffraction;
+    if (!is_measured) continue;
     least.asked = asked;
     least.r_i_mcd_per_lx = in_mcd_per_lx(least.r_a, PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
     least.limit_mcd_per_lx = in_mcd_per_lx(asked.minimum, asked.unit, request.area_cm2);
@@ -180,8 +186,63 @@ std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photomet
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
   const auto readings = photometer.measure(plan.settings, nullptr, cancel);
   if (!readings) return std::nullopt;
-  return points_of(request, plan, *readings);
+  return points_of(request, plan, {readings->begin(), readings->end()});
 }
+
+/// Measures tables of changed designs, one direction that is lit by itself after the other, those first at which
+/// earlier designs failed.
+class TablesOfChanges {
+ public:
+  TablesOfChanges(const PhotometryRequest& request, const Plan& plan, bool exact, const Cancellation* cancel)
+      : request_(request), plan_(plan), exact_(exact), cancel_(cancel), order_(plan.settings.size()) {
+    for (PhotometerSetting& setting : plan_.settings) setting.split = false;
+    std::iota(order_.begin(), order_.end(), 0U);
+  }
+
+  /// As TableOfDesign.
+  std::optional<std::vector<PhotometricPoint>> table(const Design& design, std::size_t parts, double enough) {
+    Photometer photometer(design, request_, parts);
+    if (!exact_) photometer.leave_exact();
+    Readings readings(plan_.settings.size());
+    std::vector<PhotometricPoint> points;
+    for (const LitAlike& alike : in_order(photometer.settings_lit_alike(plan_.settings))) {
+      std::vector<PhotometerSetting> settings;
+      for (const SharedDirection& one : alike) settings.push_back(plan_.settings[one.index]);
+      const auto measured = photometer.measure(settings, nullptr, cancel_);
+      if (!measured) return std::nullopt;
+      for (std::size_t k = 0; k < alike.size(); ++k) readings[alike[k].index] = (*measured)[k];
+      points = points_of(request_, plan_, readings);
+      if (!(least_ratio(points) < enough)) continue;
+      put_first(alike.front().index);
+      break;
+    }
+    return points;
+  }
+
+ private:
+  std::vector<LitAlike> in_order(std::vector<LitAlike> directions) const {
+    const auto rank = [this](const LitAlike& alike) {
+      std::ptrdiff_t least = std::ssize(order_);
+      for (const SharedDirection& one : alike)
+        least = std::min(least, std::find(order_.begin(), order_.end(), one.index) - order_.begin());
+      return least;
+    };
+    std::stable_sort(directions.begin(), directions.end(),
+                     [&](const LitAlike& a, const LitAlike& b) { return rank(a) < rank(b); });
+    return directions;
+  }
+
+  void put_first(std::size_t setting) {
+    const auto at = std::find(order_.begin(), order_.end(), setting);
+    std::rotate(order_.begin(), at, at + 1);
+  }
+
+  const PhotometryRequest& request_;
+  Plan plan_;
+  bool exact_;
+  const Cancellation* cancel_;
+  std::vector<std::size_t> order_;  ///< of settings
+};
 
 }  // namespace
 
@@ -313,12 +374,10 @@ bool add_changes(const Photometer& photometer, const Plan& plan, const Cancellat
   const bool is_asked = request.advice && verdict_of(result.points, request.programme) == Verdict::fail &&
                         area_verdict(request.programme, request.area_cm2) != Verdict::fail;
   if (!is_asked || !design.elements() || design.entrance) return true;
-  const auto measure = [&](const Design& changed, std::size_t parts) {
-    Photometer other(changed, request, parts);
-    if (!photometer.is_exact()) other.leave_exact();
-    return table_of(other, request, plan, cancel);
-  };
-  result.changes = changes_that_pass(design, request.programme, measure);
+  TablesOfChanges tables(request, plan, photometer.is_exact(), cancel);
+  result.changes = changes_that_pass(
+      design, request.programme,
+      [&](const Design& changed, std::size_t parts, double enough) { return tables.table(changed, parts, enough); });
   for (PhotometricChange& change : result.changes)
     change.verdict = std::max(change.verdict, area_verdict(request.programme, request.area_cm2));
   return !is_cancelled(cancel);
@@ -359,7 +418,7 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   result.complete = readings.has_value();
   if (readings) {
     for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);
-    result.measured = points_of(request, plan, *readings);
+    result.measured = points_of(request, plan, {readings->begin(), readings->end()});
     result.points = result.measured;
     result.complete = raise_to_mean_field(photometer, request, plan, cancel, result.points);
     result.verdict =

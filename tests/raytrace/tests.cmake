@@ -8,9 +8,11 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/cant_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/closed_forms_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/edges_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/equal_places_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/form_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/layers_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/mirror_symmetry_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/overlay_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/polarisation_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/ray_tracer_test.cpp

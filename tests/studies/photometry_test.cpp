@@ -370,6 +370,32 @@ TEST(Photometry, IsMeasuredBesideTheMirrorImage) {
   EXPECT_EQ(lossless.points[0].r_a, run(design_of(spec, true), request_of(points_at({0.2}, 1.0))).points[0].r_a);
 }
 
+// Directions that share their light, as turns at normal incidence and mirror images do, have the values that each has
+// by itself.
+TEST(Photometry, DirectionsThatShareTheirLightHaveTheirOwnValues) {
+  TestProgramme all = points_at({0.2, 0.33, 0.33, 0.33}, 1.0);
+  const std::vector<std::pair<double, double>> v_and_h = {{0.0, 0.0}, {5.0, 20.0}, {-5.0, 20.0}, {-5.0, -20.0}};
+  for (std::size_t k = 0; k < v_and_h.size(); ++k) std::tie(all.points[k].v_deg, all.points[k].h_deg) = v_and_h[k];
+  PhotometryRequest request = request_of(all);
+  request.diffraction = true;
+  request.engine = Engine::exact;
+  request.cutoff = 1e-6;
+  const Design design = design_of(honeycomb(2.0));
+  for (const double turn : {0.0, 40.0}) {
+    request.rotation_deg = {turn};
+    request.programme = all;
+    const PhotometryResult together = run(design, request);
+    for (std::size_t k = 0; k < v_and_h.size(); ++k) {
+      request.programme = all;
+      request.programme.points = {all.points[k]};
+      const PhotometryResult alone = run(design, request);
+      EXPECT_NEAR(together.points[k].r_a, alone.points[0].r_a, 1e-4 * alone.points[0].r_a) << k << ", turned " << turn;
+      EXPECT_EQ(together.points[k].v_deg, alone.points[0].v_deg);
+      EXPECT_NEAR(together.directions[k].rre, alone.directions[0].rre, 1e-5) << k;
+    }
+  }
+}
+
 /// Diffracted, at 20 degrees, where light is trapped.
 PhotometryRequest diffracted(Engine engine) {
   TestProgramme programme = points_at({0.0, 0.2, 0.33, 0.5}, 1.0);

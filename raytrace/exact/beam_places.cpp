@@ -1,0 +1,135 @@
+// Beams that stand for those of equal elements: the members of BeamWalk that let light in at several places at once,
+// and part these where a border tells them apart.
+#include <algorithm>
+
+#include "core/infinity.h"
+#include "raytrace/exact/beam_walk.h"
+
+namespace retrace::raytrace {
+namespace {
+
+/// A stretch of the entrance along an axis, and by what it is moved to be like others.
+struct Span {
+  double from = 0.0;
+  double to = 0.0;
+  std::vector<double> shifts;
+};
+
+/// Divides a side into steps, `steps` to a period, of which the last may be less.
+std::vector<Span> spans(double lower, double upper, double period, int steps) {
+  std::vector<Span> all;
+  const double step = period / steps;
+  const double near = 1e-9 * step;
+  for (int k = 0; k < steps; ++k) {
+    const double from = lower + k * step;
+    Span whole{from, from + step, {}};
+    for (std::int64_t i = 0;; ++i) {
+      const double shift = static_cast<double>(i) * period;
+      if (from + shift + step <= upper + near) {
+        whole.shifts.push_back(shift);
+        continue;
+      }
+      if (from + shift < upper - near) all.push_back({from + shift, upper, {0.0}});
+      break;
+    }
+    if (!whole.shifts.empty()) all.push_back(std::move(whole));
+  }
+  return all;
+}
+
+std::shared_ptr<const BeamPlaces> shared(BeamPlaces places) {
+  return places.size() > 1 ? std::make_shared<const BeamPlaces>(std::move(places)) : nullptr;
+}
+
+}  // namespace
+
+Beam BeamWalk::at_place(const Beam& beam, std::size_t place) const {
+  if (!beam.places) return beam;
+  return moved(beam, (*beam.places)[place], setup_.to_source, index_at(beam.inside));
+}
+
+/// \pre the entrance is a rectangle along the axes
+void BeamWalk::enter_at_places(const Beam& whole, double parts) {
+  const Frame from_above(-Vec3::UnitZ());
+  const double whole_area = area(flattened(whole.corners, from_above, merge_mm_));
+  PlanBox box;
+  for (const Vec3& p : whole.corners) box.include(p.head<2>());
+  const Vec2& period = equal_->period_mm();
+  const Vec2 steps = period.cwiseQuotient(step_of_entrance(parts)).array().round().max(1.0);
+  const auto along = [&](Eigen::Index axis) {
+    return spans(box.lower[axis], box.upper[axis], period[axis], static_cast<int>(steps[axis]));
+  };
+  double entered = 0.0;
+  for (const Span& y : along(1)) {
+    const Corners row = cut(cut(whole.corners, {Vec3::UnitY(), y.from}), {-Vec3::UnitY(), -y.to});
+    for (const Span& x : along(0)) {
+      Beam piece = whole;
+      piece.corners = cut(cut(row, {Vec3::UnitX(), x.from}), {-Vec3::UnitX(), -x.to});
+      piece.share = piece.corners.empty() ? 0.0 : area(flattened(piece.corners, from_above, merge_mm_)) / whole_area;
+      if (piece.share <= 0.0) continue;
+      BeamPlaces places;
+      for (const double up : y.shifts)
+        for (const double right : x.shifts) places.emplace_back(right, up);
+      piece.places = shared(std::move(places));
+      entered += piece.share * piece.place_count();
+      pend(std::move(piece));
+    }
+  }
+  book_rest(whole, 1.0 - entered);
+}
+
+/// One period of an endless part, or its half where both are alike.
+void BeamWalk::enter_within_period(const Beam& whole, double parts) {
+  Beam half = whole;
+  if (const auto& by = equal_->within_period_mm()) {
+    const Eigen::Index axis = by->y() > 0.0 ? 1 : 0;
+    PlanBox box;
+    for (const Vec3& p : whole.corners) box.include(p.head<2>());
+    const double middle = box.lower[axis] + 0.5 * equal_->period_mm()[axis];
+    half.corners = cut(whole.corners, {-Vec3::Unit(axis), -middle});
+    half.share = 0.5;
+    half.places = shared({Vec2::Zero(), *by});
+  }
+  if (parts == 1.0)
+    pend(std::move(half));
+  else
+    enter_in_pieces(half, step_of_entrance(parts));
+}
+
+/// In plan, where a beam may meet faces in its next step; all of the plane where it runs level to a side.
+PlanBox BeamWalk::sweep_of(const Beam& beam) const {
+  const Horizon horizon = horizon_of(beam);
+  const double dz = beam.direction.z();
+  PlanBox box;
+  if (beam.inside && horizon.t == 0.0 && dz <= kGrazing) return {-box.lower, -box.upper};
+  for (const Vec3& p : beam.corners) {
+    box.include(p.head<2>());
+    box.include((p + horizon.t * beam.direction).head<2>());
+    if (beam.inside && !horizon.limited && dz > 0.0)
+      box.include((p + (setup_.thickness_mm - p.z()) / dz * beam.direction).head<2>());
+  }
+  return box;
+}
+
+/// Leaves a beam those of its places where it meets the same next, and sends others on their own ways. Those have the
+/// same horizon: along an axis on which they differ no border lies within it, and on which they do not borders are
+/// alike.
+void BeamWalk::keep_equal_places(Beam& beam) {
+  if (setup_.infinite()) return;
+  const PlanBox sweep = sweep_of(beam);
+  std::vector<BeamPlaces> groups = equal_->divided(*beam.places, {sweep.lower, sweep.upper});
+  if (groups.size() == 1) return;
+  for (BeamPlaces& group : groups) {
+    const Vec2 first = group.front();
+    if (first.isZero(0.0)) continue;
+    Beam other = moved(beam, first, setup_.to_source, index_at(beam.inside));
+    for (Vec2& by : group) by -= first;
+    other.places = shared(std::move(group));
+    pend(std::move(other));
+  }
+  const auto own = std::find_if(groups.begin(), groups.end(),
+                                [](const BeamPlaces& group) { return !group.empty() && group.front().isZero(0.0); });
+  beam.places = shared(std::move(*own));
+}
+
+}  // namespace retrace::raytrace

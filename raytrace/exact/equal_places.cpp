@@ -1,0 +1,195 @@
+#include "raytrace/exact/equal_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "geometry/elements/lattice.h"
+#include "raytrace/exact/point_lookup.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::Part, geometry::PatchCell, geometry::PatchFacet, geometry::Placement, geometry::Rectangle,
+    geometry::SurfacePatch;
+
+// Corners nearer than this share of an element are one; normals that differ by less, too.
+constexpr double kSameCorner = 1e-9;
+// An array of fewer periods along both axes is followed element by element.
+constexpr double kFewestPeriods = 2.0;
+
+Vec2 origin_of(const PatchCell& cell) {
+  return cell.lower.head<2>();
+}
+
+bool is_same(const SurfacePatch& a, const PatchFacet& facet_a, const Vec2& origin_a, const SurfacePatch& b,
+             const PatchFacet& facet_b, const Vec2& origin_b, double near_mm) {
+  if (facet_a.role != facet_b.role || facet_a.corner_count != facet_b.corner_count) return false;
+  if ((facet_a.normal - facet_b.normal).cwiseAbs().maxCoeff() > kSameCorner) return false;
+  if (facet_a.middle_mm.has_value() != facet_b.middle_mm.has_value()) return false;
+  const Vec2 by = origin_b - origin_a;
+  if (facet_a.middle_mm && (*facet_a.middle_mm + by - *facet_b.middle_mm).cwiseAbs().maxCoeff() > near_mm) return false;
+  const Vec3 shift(by.x(), by.y(), 0.0);
+  for (std::uint32_t c = 0; c < facet_a.corner_count; ++c) {
+    const Vec3& p = a.vertices[a.corners[facet_a.first_corner + c]];
+    const Vec3& q = b.vertices[b.corners[facet_b.first_corner + c]];
+    if ((p + shift - q).cwiseAbs().maxCoeff() > near_mm) return false;
+  }
+  return true;
+}
+
+bool is_same(const SurfacePatch& a, const PatchCell& cell_a, const SurfacePatch& b, const PatchCell& cell_b,
+             double near_mm) {
+  if (cell_a.facet_count != cell_b.facet_count) return false;
+  for (std::uint32_t f = 0; f < cell_a.facet_count; ++f)
+    if (!is_same(a, a.facets[cell_a.first_facet + f], origin_of(cell_a), b, b.facets[cell_b.first_facet + f],
+                 origin_of(cell_b), near_mm))
+      return false;
+  return true;
+}
+
+/// Whether it is a rectangle along the axes.
+bool is_rectangle(const geometry::Polygon& outline, double near_mm) {
+  const Rectangle box = geometry::bounding_box(outline);
+  const auto is_corner = [&](const Vec2& p) {
+    return (p - box.lower).cwiseAbs().cwiseMin((p - box.upper).cwiseAbs()).maxCoeff() <= near_mm;
+  };
+  return outline.size() == 4 && std::all_of(outline.begin(), outline.end(), is_corner);
+}
+
+Vec3 in_plan(const Vec2& p) {
+  return {p.x(), p.y(), 0.0};
+}
+
+}  // namespace
+
+std::optional<EqualPlaces> EqualPlaces::of(const Part& part, const Vec2& centre_mm) {
+  EqualPlaces equal;
+  equal.part_ = &part;
+  equal.near_mm_ = kSameCorner * part.size_mm;
+  if (part.period_mm) {
+    equal.period_mm_ = *part.period_mm;
+    equal.find_shapes(part);
+    equal.find_shift_within_period(part);
+    return equal;
+  }
+  if (!part.lattice_region_mm || !is_rectangle(part.outline, equal.near_mm_)) return std::nullopt;
+  equal.period_mm_ = geometry::make_lattice(part.spec, true).period_mm;
+  if ((part.lattice_region_mm->size().cwiseQuotient(equal.period_mm_).array() < kFewestPeriods).all())
+    return std::nullopt;
+  equal.find_shapes(part);
+  equal.find_region(part, centre_mm);
+  if ((equal.region_mm_.size().cwiseQuotient(equal.period_mm_).array() < kFewestPeriods).all()) return std::nullopt;
+  return equal;
+}
+
+void EqualPlaces::find_shapes(const Part& part) {
+  struct First {
+    const SurfacePatch* patch;
+    const PatchCell* cell;
+  };
+  std::map<std::uint32_t, std::vector<First>> firsts;  // by the number of facets
+  for (const SurfacePatch& patch : part.patches) {
+    std::vector<Shape>& shapes = shapes_.emplace_back();
+    for (const PatchCell& cell : patch.cells) {
+      std::vector<First>& known = firsts[cell.facet_count];
+      auto first = std::find_if(known.begin(), known.end(), [&](const First& other) {
+        return is_same(*other.patch, *other.cell, patch, cell, near_mm_);
+      });
+      if (first == known.end()) first = known.insert(known.end(), {&patch, &cell});
+      shapes.push_back({part.number_of(*first->patch, *first->cell), origin_of(cell) - origin_of(*first->cell)});
+    }
+  }
+}
+
+CellPlace EqualPlaces::place_of(const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset_mm) const {
+  const Shape& shape = shapes_[static_cast<std::size_t>(&patch - part_->patches.data())]
+                              [static_cast<std::size_t>(&cell - patch.cells.data())];
+  return {shape.id, offset_mm + shape.shift_mm};
+}
+
+/// Cells without a like one a period further on bound the region, each from the side that it is on.
+void EqualPlaces::find_region(const Part& part, const Vec2& centre_mm) {
+  PointLookup<std::uint64_t> cells(near_mm_);
+  const auto visit_all = [&](const auto& visit) {
+    for (const Placement& placement : part.placements)
+      for (const PatchCell& cell : part.patches[placement.patch].cells)
+        visit(cell, placement.offset_mm - centre_mm,
+              place_of(part.patches[placement.patch], cell, placement.offset_mm - centre_mm));
+  };
+  visit_all(
+      [&](const PatchCell&, const Vec2&, const CellPlace& place) { cells.insert(in_plan(place.offset_mm), place.id); });
+  const auto is_there = [&](const CellPlace& place, const Vec2& by) {
+    bool found = false;
+    cells.visit(in_plan(place.offset_mm + by), [&](std::uint64_t id) { found = found || id == place.id; });
+    return found;
+  };
+  region_mm_ = geometry::moved(geometry::bounding_box(part.outline), -centre_mm);
+  const Vec2 middle = region_mm_.middle();
+  visit_all([&](const PatchCell& cell, const Vec2& offset, const CellPlace& place) {
+    for (const Eigen::Index axis : {0, 1}) {
+      const Vec2 step = Vec2::Unit(axis) * period_mm_[axis];
+      const double low = cell.lower[axis] + offset[axis];
+      const double high = cell.upper[axis] + offset[axis];
+      const bool is_low = low + high < 2.0 * middle[axis];
+      const auto bound = [&](double above, double below) {
+        if (is_low)
+          region_mm_.lower[axis] = std::max(region_mm_.lower[axis], above);
+        else
+          region_mm_.upper[axis] = std::min(region_mm_.upper[axis], below);
+      };
+      if (!is_there(place, step)) bound(high, low + step[axis]);
+      if (!is_there(place, -step)) bound(high - step[axis], low);
+    }
+  });
+}
+
+/// A shift by half a period along one axis or both, as honeycombs, brick rows and checkers have it.
+void EqualPlaces::find_shift_within_period(const Part& part) {
+  const SurfacePatch& patch = part.patches.front();
+  PointLookup<std::uint64_t> cells(near_mm_);
+  for (const PatchCell& cell : patch.cells) {
+    const CellPlace place = place_of(patch, cell, Vec2::Zero());
+    cells.insert(in_plan(place.offset_mm), place.id);
+  }
+  const auto side = static_cast<std::size_t>(2 * part.periods_beyond + 1);
+  const std::size_t each = patch.cells.size() / (side * side);
+  const std::size_t first = (side * side / 2) * each;
+  const auto repeats_by = [&](const Vec2& by) {
+    for (std::size_t k = first; k < first + each; ++k) {
+      const CellPlace place = place_of(patch, patch.cells[k], Vec2::Zero());
+      bool found = false;
+      cells.visit(in_plan(place.offset_mm + by), [&](std::uint64_t id) { found = found || id == place.id; });
+      if (!found) return false;
+    }
+    return true;
+  };
+  for (const Vec2& share : {Vec2(0.5, 0.5), Vec2(0.0, 0.5), Vec2(0.5, 0.0)}) {
+    const Vec2 by = share.cwiseProduct(period_mm_);
+    if (!within_period_mm_ && repeats_by(by)) within_period_mm_ = by;
+  }
+}
+
+bool EqualPlaces::is_within(const Rectangle& sweep, const Vec2& by, Eigen::Index axis) const {
+  return sweep.lower[axis] + by[axis] >= region_mm_.lower[axis] - near_mm_ &&
+         sweep.upper[axis] + by[axis] <= region_mm_.upper[axis] + near_mm_;
+}
+
+std::vector<BeamPlaces> EqualPlaces::divided(const BeamPlaces& places, const Rectangle& sweep) const {
+  if (part_->period_mm) return {places};
+  std::vector<BeamPlaces> groups = {places};
+  for (const Eigen::Index axis : {0, 1}) {
+    std::vector<BeamPlaces> finer;
+    for (const BeamPlaces& group : groups) {
+      BeamPlaces inside;
+      std::map<double, BeamPlaces> beside;  // by where they are
+      for (const Vec2& by : group) (is_within(sweep, by, axis) ? inside : beside[by[axis]]).push_back(by);
+      if (!inside.empty()) finer.push_back(std::move(inside));
+      for (auto& [at, own] : beside) finer.push_back(std::move(own));
+    }
+    groups = std::move(finer);
+  }
+  return groups;
+}
+
+}  // namespace retrace::raytrace

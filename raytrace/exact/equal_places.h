@@ -1,0 +1,57 @@
+#pragma once
+
+// Where light of an array meets the same: its elements are alike, so that a beam and its copies at other elements are
+// followed once, until a border tells them apart.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "geometry/part/part.h"
+#include "raytrace/exact/beam.h"
+
+namespace retrace::raytrace {
+
+/// What of an array repeats: cells that are alike, and how far the part is the same when it is moved by a period.
+class EqualPlaces {
+ public:
+  /// Nothing for a part whose elements are not all alike or too few, or whose outline is no rectangle along the axes.
+  /// \param centre_mm point of the plane that becomes the origin
+  static std::optional<EqualPlaces> of(const geometry::Part& part, const geometry::Vec2& centre_mm);
+
+  /// A cell as one of those that are like it: the id is that of the first of them. \param offset_mm as CellIndex tells
+  /// it
+  CellPlace place_of(const geometry::SurfacePatch& patch, const geometry::PatchCell& cell,
+                     const geometry::Vec2& offset_mm) const;
+
+  const geometry::Vec2& period_mm() const { return period_mm_; }
+  /// Of a part that repeats without end: by what it may be moved besides, within its period, and stay the same.
+  const std::optional<geometry::Vec2>& within_period_mm() const { return within_period_mm_; }
+
+  /// Divides places into those where a beam meets the same. \param places offsets of the beam and its copies, moved
+  /// from each other by whole periods \param sweep in plan, of the first: all that it may meet lies there
+  std::vector<BeamPlaces> divided(const BeamPlaces& places, const geometry::Rectangle& sweep) const;
+
+ private:
+  struct Shape {
+    std::uint64_t id = 0;
+    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< from the first of the shape
+  };
+
+  void find_shapes(const geometry::Part& part);
+  void find_region(const geometry::Part& part, const geometry::Vec2& centre_mm);
+  void find_shift_within_period(const geometry::Part& part);
+  bool is_within(const geometry::Rectangle& sweep, const geometry::Vec2& by, Eigen::Index axis) const;
+
+  const geometry::Part* part_ = nullptr;
+  geometry::Vec2 period_mm_ = geometry::Vec2::Zero();
+  std::vector<std::vector<Shape>> shapes_;  ///< by patch and cell
+  /// Along each axis the part is the same moved by a period as long as one stays between these.
+  geometry::Rectangle region_mm_;
+  std::optional<geometry::Vec2> within_period_mm_;
+  double near_mm_ = 0.0;
+};
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,136 @@
+#include "raytrace/faces/mirror_symmetry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "raytrace/exact/point_lookup.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::Part, geometry::PatchCell, geometry::PatchFacet, geometry::Placement, geometry::SurfacePatch;
+using geometry::Vec2, geometry::Vec3;
+
+// Places nearer than this share of an element are one, normals that differ by less are one.
+constexpr double kSamePlace = 1e-8;
+constexpr double kSameNormal = 1e-9;
+
+/// A facet where it stands.
+struct StandingFacet {
+  std::vector<Vec3> corners;
+  Vec3 middle = Vec3::Zero();  ///< mean of the corners
+  Vec3 normal = Vec3::UnitZ();
+  geometry::FacetRole role = geometry::FacetRole::retro_facet;
+};
+
+StandingFacet standing(const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift) {
+  StandingFacet result{{}, Vec3::Zero(), facet.normal, facet.role};
+  for (std::uint32_t c = 0; c < facet.corner_count; ++c) {
+    result.corners.push_back(patch.vertices[patch.corners[facet.first_corner + c]] + shift);
+    result.middle += result.corners.back() / facet.corner_count;
+  }
+  return result;
+}
+
+StandingFacet mirror_image(StandingFacet facet, Eigen::Index axis, double about_mm) {
+  const auto mirror = [&](Vec3& p) { p[axis] = 2.0 * about_mm - p[axis]; };
+  for (Vec3& corner : facet.corners) mirror(corner);
+  mirror(facet.middle);
+  facet.normal[axis] = -facet.normal[axis];
+  return facet;
+}
+
+/// All facets of a part, to be found again by their middles.
+class FacetsByPlace {
+ public:
+  explicit FacetsByPlace(const Part& part) : near_mm_(kSamePlace * part.size_mm), by_middle_(near_mm_) {
+    for (const Placement& placement : part.placements) {
+      const SurfacePatch& patch = part.patches[placement.patch];
+      const Vec3 shift(placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm);
+      for (const PatchFacet& facet : patch.facets) {
+        facets_.push_back(standing(patch, facet, shift));
+        by_middle_.insert(facets_.back().middle, facets_.size() - 1);
+      }
+    }
+  }
+
+  const std::vector<StandingFacet>& all() const { return facets_; }
+
+  bool has(const StandingFacet& facet) const {
+    bool found = false;
+    by_middle_.visit(facet.middle, [&](std::size_t k) { found = found || is_same(facets_[k], facet); });
+    return found;
+  }
+
+ private:
+  bool is_same(const StandingFacet& a, const StandingFacet& b) const {
+    const auto is_corner_of_a = [&](const Vec3& p) {
+      return std::any_of(a.corners.begin(), a.corners.end(),
+                         [&](const Vec3& q) { return (p - q).squaredNorm() <= near_mm_ * near_mm_; });
+    };
+    return a.role == b.role && a.corners.size() == b.corners.size() && (a.normal - b.normal).norm() <= kSameNormal &&
+           std::all_of(b.corners.begin(), b.corners.end(), is_corner_of_a);
+  }
+
+  double near_mm_;
+  std::vector<StandingFacet> facets_;
+  PointLookup<std::size_t> by_middle_;
+};
+
+/// Those of the central period of a part that repeats without end, which holds its periods row by row.
+std::vector<StandingFacet> central_facets(const Part& part) {
+  const SurfacePatch& patch = part.patches.front();
+  const auto side = static_cast<std::size_t>(2 * part.periods_beyond + 1);
+  const std::size_t each = patch.cells.size() / (side * side);
+  const std::size_t first = (side * side / 2) * each;
+  const Vec2& offset = part.placements.front().offset_mm;
+  std::vector<StandingFacet> facets;
+  for (std::size_t k = first; k < first + each; ++k) {
+    const PatchCell& cell = patch.cells[k];
+    for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
+      facets.push_back(standing(patch, patch.facets[f], {offset.x(), offset.y(), 0.0}));
+  }
+  return facets;
+}
+
+bool holds(const FacetsByPlace& part, const std::vector<StandingFacet>& facets, Eigen::Index axis, double about_mm) {
+  return std::all_of(facets.begin(), facets.end(),
+                     [&](const StandingFacet& f) { return part.has(mirror_image(f, axis, about_mm)); });
+}
+
+/// A mirror puts the first facet of the period onto a facet of it or of a neighbour.
+bool endless_is_mirrored(const Part& part, Eigen::Index axis) {
+  const FacetsByPlace all(part);
+  const std::vector<StandingFacet> central = central_facets(part);
+  const StandingFacet& first = central.front();
+  for (const StandingFacet& other : all.all()) {
+    const double about_mm = 0.5 * (first.middle[axis] + other.middle[axis]);
+    const bool is_near = std::abs(other.middle[axis] - first.middle[axis]) <= (*part.period_mm)[axis];
+    const Vec3 image = mirror_image(first, axis, about_mm).middle;
+    if (is_near && (image - other.middle).norm() <= kSamePlace * part.size_mm && holds(all, central, axis, about_mm))
+      return true;
+  }
+  return false;
+}
+
+/// Whether each corner of an outline is mirrored onto one of them.
+bool is_mirrored(const geometry::Polygon& outline, Eigen::Index axis, double about_mm, double near_mm) {
+  return std::all_of(outline.begin(), outline.end(), [&](Vec2 p) {
+    p[axis] = 2.0 * about_mm - p[axis];
+    return std::any_of(outline.begin(), outline.end(), [&](const Vec2& q) { return (p - q).norm() <= near_mm; });
+  });
+}
+
+}  // namespace
+
+bool is_its_own_mirror_image(const Part& part, Eigen::Index axis) {
+  if (part.period_mm) return endless_is_mirrored(part, axis);
+  const double about_mm = geometry::bounding_box(part.outline).middle()[axis];
+  if (!is_mirrored(part.outline, axis, about_mm, kSamePlace * part.size_mm)) return false;
+  const FacetsByPlace all(part);
+  return holds(all, all.all(), axis, about_mm);
+}
+
+}  // namespace retrace::raytrace

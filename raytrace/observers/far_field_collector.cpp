@@ -1,0 +1,417 @@
+// Which of the returned light interferes: the members of FarFieldCollector, which sorts it by cells, waves and paths.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "raytrace/exact/flat_polygon.h"
+#include "raytrace/light/light_setup.h"
+#include "raytrace/observers/far_field.h"
+#include "raytrace/observers/formed_aperture.h"
+#include "raytrace/observers/small_angle.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::Vec2, std::numbers::pi;
+
+// Directions nearer than this are one.
+constexpr double kOneDirection_rad = 1e-9;
+// Beams below this are not looked at one by one.
+constexpr double kFaint = 1e-10;
+// Steps by which fields of cells are compared: of lengths in elements, of cosines, of amplitudes, of paths in mm.
+constexpr double kLengthStep = 1e-7, kCosineStep = 1e-8, kAmplitudeStep = 1e-7, kPathStep_mm = 1e-7;
+// Of places where facets were met, in elements, and of their slopes.
+constexpr double kHitStep = 1e-6;
+// Polygons are joined if their union is convex but for this share of an element's area.
+constexpr double kJoinShare = 1e-10;
+
+std::int64_t step_of(double value, double step) {
+  return std::llround(value / step);
+}
+
+/// Coherency matrix of the incident light along the axes of the source. Its second axis is p of light that comes down
+/// reversed.
+Eigen::Matrix2cd coherency_of(const Stokes& s) {
+  Eigen::Matrix2cd c;
+  c << s.i + s.q, std::complex<double>(s.u, -s.v), std::complex<double>(s.u, s.v), s.i - s.q;
+  return 0.5 * c;
+}
+
+/// What tells fields of two cells apart.
+using Signature = std::vector<std::int64_t>;
+
+/// Where in their frames formed facets were met.
+void add_form_keys(const std::vector<FieldHit>& hits, double size_mm, Signature& key) {
+  for (const FieldHit& hit : hits) {
+    if (hit.path_per_height == 0.0) continue;
+    key.push_back(step_of(hit.path_per_height, kHitStep));
+    for (const double length : hit.form_constant_mm) key.push_back(step_of(length, kHitStep * size_mm));
+    for (const double slope : hit.form_slope.reshaped()) key.push_back(step_of(slope, kHitStep));
+  }
+}
+
+/// The shape of a convex polygon.
+void add_corner_keys(const geometry::Polygon& polygon, double size_mm, Signature& key) {
+  std::vector<std::array<std::int64_t, 2>> corners;
+  for (const Vec2& p : polygon)
+    corners.push_back({step_of(p.x(), kLengthStep * size_mm), step_of(p.y(), kLengthStep * size_mm)});
+  std::sort(corners.begin(), corners.end());
+  for (const auto& corner : corners) key.insert(key.end(), corner.begin(), corner.end());
+}
+
+Signature signature_of(const CoherentGroup& group, double size_mm) {
+  Signature all = {group.replicate ? 1 + std::int64_t{*group.replicate} : 0};
+  for (const FieldPolygon& p : group.polygons) {
+    const Vec2 centroid = geometry::centroid(p.transform.polygon());
+    for (const double length : {centroid.x(), centroid.y(), std::sqrt(p.transform.area_mm2())})
+      all.push_back(step_of(length, kLengthStep * size_mm));
+    all.push_back(step_of(p.cosines.x(), kCosineStep));
+    all.push_back(step_of(p.cosines.y(), kCosineStep));
+    const double scale = 1.0 / std::sqrt(std::max(p.power, std::numeric_limits<double>::min()));
+    for (const std::complex<double>& a : p.amplitude.reshaped()) {
+      const std::complex<double> unit = a * scale * size_mm;
+      all.push_back(step_of(unit.real(), 1e3 * kAmplitudeStep));
+      all.push_back(step_of(unit.imag(), 1e3 * kAmplitudeStep));
+    }
+    add_form_keys(p.hits, size_mm, all);
+    // Resampled light is alone in its place, whose middle says nothing.
+    if (group.replicate) add_corner_keys(p.transform.polygon(), size_mm, all);
+  }
+  return all;
+}
+
+/// How many of a group, whose power may be any where it is of resampled light, are in another of the same shape.
+double copies_in(const CoherentGroup& group, const CoherentGroup& other) {
+  return other.power() * group.copies / group.power();
+}
+
+}  // namespace
+
+FarFieldCollector::FarFieldCollector(const geometry::Part& part, const Illumination& illumination,
+                                     const FarFieldPolicy& policy)
+    : policy_(policy),
+      is_infinite_(part.period_mm.has_value()),
+      size_mm_(part.size_mm),
+      thickness_mm_(part.thickness_mm),
+      to_source_(direction_to_source(illumination)),
+      directions_(kOneDirection_rad) {
+  field_.replicates_ = policy.replicates;
+  field_.wavelength_mm_ = 1e-6 * policy.wavelength_nm;
+  field_.coherency_ = coherency_of(illumination.stokes);
+  field_.cancel_ = policy.cancel;
+}
+
+void FarFieldCollector::add_ray(const FarFieldRay& ray) {
+  std::size_t index = field_.rays_.size();
+  directions_.visit(ray.direction, [&](std::size_t known) {
+    if (field_.rays_[known].replicate == ray.replicate) index = std::min(index, known);
+  });
+  if (index == field_.rays_.size()) {
+    field_.rays_.push_back({ray.direction, 0.0, ray.replicate});
+    directions_.insert(ray.direction, index);
+  }
+  field_.rays_[index].power += ray.power;
+}
+
+/// What is specular of it.
+void FarFieldCollector::add_scattering_ray(const FarFieldRay& ray, double phase_variance) {
+  const double specular = std::exp(-phase_variance) * ray.power;
+  field_.unplaced_power_ += ray.power - specular;
+  add_ray({ray.direction, specular, ray.replicate});
+}
+
+void FarFieldCollector::add(const ReturnedBeam& beam) {
+  const double power = beam.stokes.i / replicates_of(beam);
+  field_.total_power_ += beam.place_count() * power;
+  const bool is_diffracted = policy_.diffraction && beam.trail.first && beam.left_mm.size() >= 3 && power > kFaint &&
+                             small_angle_between(beam.direction, to_source_) <= policy_.window_rad;
+  if (!is_diffracted) {
+    double phase_variance = 0.0;
+    for (const TexturedHit& hit : beam.hits) phase_variance += hit.phase.variance();
+    return add_scattering_ray({beam.direction, beam.place_count() * power, beam.replicate}, phase_variance);
+  }
+  put(moved_home(beam), beam);
+}
+
+/// Into the places of the beams that it comes from.
+void FarFieldCollector::put(Piece piece, const ReturnedBeam& beam) {
+  const auto number = static_cast<std::uint32_t>(pieces_.size());
+  Place place = place_of(beam, piece);
+  if (is_infinite_) piece.copies = beam.place_count();
+  pieces_.push_back(std::move(piece));
+  if (!beam.places || is_infinite_) {
+    cells_[place].push_back(number);
+    return;
+  }
+  for (const Vec2& by : *beam.places) {
+    const Vec2 at = beam.trail.first->offset_mm + by;
+    place.x = step_of(at.x(), kLengthStep * size_mm_);
+    place.y = step_of(at.y(), kLengthStep * size_mm_);
+    cells_[place].push_back(number);
+  }
+}
+
+/// A wave that met several cells may be told in pieces, as its entrance is divided.
+FarFieldCollector::Place FarFieldCollector::place_of(const ReturnedBeam& beam, const Piece& piece) {
+  if (beam.replicate) return {0, 0, 0, ++alone_};
+  Place place{beam.trail.first->id, 0, 0, 0};
+  if (!is_infinite_) {
+    place.x = step_of(beam.trail.first->offset_mm.x(), kLengthStep * size_mm_);
+    place.y = step_of(beam.trail.first->offset_mm.y(), kLengthStep * size_mm_);
+  }
+  if (beam.trail.is_mixed) {
+    const auto [known, is_new] = mixed_.try_emplace({beam.trail.met, wave_of(piece)}, alone_ + 1);
+    if (is_new) ++alone_;
+    place.beam = known->second;
+  }
+  return place;
+}
+
+/// What a beam counts for is its power over this.
+double FarFieldCollector::replicates_of(const ReturnedBeam& beam) const {
+  return beam.replicate ? static_cast<double>(policy_.replicates) : 1.0;
+}
+
+/// The part without errors repeats, and its fields with it: moved by T they are those of light that comes in with the
+/// phase that it has at T.
+FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam) const {
+  const Vec2 by = beam.trail.first->offset_mm;
+  Piece piece;
+  for (const Vec2& p : beam.left_mm) piece.outline_mm.push_back(p - beam.centre_mm - by);
+  piece.direction = beam.direction;
+  piece.jones = beam.jones;
+  piece.transmission = beam.transmission / replicates_of(beam);
+  piece.phase_mm = beam.phase_mm + (beam.direction + to_source_).head<2>().dot(by);
+  piece.power = beam.stokes.i / replicates_of(beam);
+  piece.replicate = beam.replicate;
+  const Vec3 moved(by.x(), by.y(), 0.0);
+  for (const TexturedHit& hit : beam.hits) {
+    FieldHit at_home;
+    at_home.normal = hit.plane.normal;
+    at_home.offset_mm = hit.plane.offset_mm - hit.plane.normal.dot(moved);
+    at_home.constant_mm = hit.of({by.x(), by.y(), thickness_mm_}) - moved;
+    at_home.slope = hit.slope.leftCols<2>();
+    at_home.phase = hit.phase;
+    at_home.path_per_height = hit.path_per_height;
+    Eigen::Matrix<double, 2, 3> axes;
+    axes << hit.frame.level.transpose(), hit.frame.down.transpose();
+    at_home.form_constant_mm = axes * (at_home.constant_mm + moved - hit.frame.origin_mm);
+    at_home.form_slope = axes * at_home.slope;
+    piece.hits.push_back(at_home);
+  }
+  return piece;
+}
+
+Vec2 FarFieldCollector::middle_of(const PiecesOfCell& numbers) const {
+  Vec2 middle = Vec2::Zero();
+  double area = 0.0;
+  for (const std::uint32_t number : numbers) {
+    const double own = geometry::area(pieces_[number].outline_mm);
+    middle += own * geometry::centroid(pieces_[number].outline_mm);
+    area += own;
+  }
+  return area > 0.0 ? Vec2(middle / area) : middle;
+}
+
+/// Divides the light of a cell by the lengths of its paths.
+std::vector<CoherentGroup> FarFieldCollector::groups_of(const PiecesOfCell& numbers, const Vec2& middle_mm) const {
+  const auto path = [&](const Piece& p) { return p.phase_mm + p.direction.head<2>().dot(middle_mm); };
+  std::vector<Piece> sorted;
+  for (const std::uint32_t number : numbers) sorted.push_back(pieces_[number]);
+  std::stable_sort(sorted.begin(), sorted.end(), [&](const Piece& a, const Piece& b) { return path(a) < path(b); });
+  std::vector<CoherentGroup> groups;
+  std::vector<Piece> open;
+  for (const Piece& piece : sorted) {
+    if (!open.empty() && path(piece) - path(open.back()) > policy_.coherence_length_mm) {
+      groups.push_back(group_of(std::move(open), middle_mm));
+      open.clear();
+    }
+    open.push_back(piece);
+  }
+  groups.push_back(group_of(std::move(open), middle_mm));
+  return groups;
+}
+
+FarFieldCollector::WaveKey FarFieldCollector::wave_of(const Piece& p) const {
+  WaveKey key(11);
+  key[0] = step_of(p.direction.x(), kCosineStep);
+  key[1] = step_of(p.direction.y(), kCosineStep);
+  key[2] = step_of(p.phase_mm, kPathStep_mm);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::complex<double> a = p.jones.reshaped()(static_cast<Eigen::Index>(k));
+    key[3 + 2 * k] = step_of(a.real(), kAmplitudeStep);
+    key[4 + 2 * k] = step_of(a.imag(), kAmplitudeStep);
+  }
+  // Light of one wave may have met other places of the facets, or in another order.
+  for (const FieldHit& hit : p.hits) {
+    for (const double cosine : hit.normal) key.push_back(step_of(cosine, kCosineStep));
+    for (const double length : hit.constant_mm) key.push_back(step_of(length, kHitStep * size_mm_));
+    for (const double slope : hit.slope.reshaped()) key.push_back(step_of(slope, kHitStep));
+  }
+  add_form_keys(p.hits, size_mm_, key);
+  return key;
+}
+
+/// Joins what belongs to one wave again: a large entrance is traced in pieces that have nothing to do with its cells.
+void FarFieldCollector::join(std::vector<Piece>& pieces) const {
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [&](const Piece& a, const Piece& b) { return wave_of(a) < wave_of(b); });
+  std::vector<Piece> joined;
+  for (std::size_t first = 0; first < pieces.size();) {
+    std::size_t last = first;
+    FlatPolygons outlines;
+    double area_before = 0.0;
+    double transmission = 0.0;
+    double power = 0.0;
+    for (; last < pieces.size() && wave_of(pieces[last]) == wave_of(pieces[first]); ++last) {
+      outlines.emplace_back(pieces[last].outline_mm.begin(), pieces[last].outline_mm.end());
+      area_before += geometry::area(pieces[last].outline_mm);
+      transmission += pieces[last].transmission;
+      power += pieces[last].power;
+    }
+    if (last - first > 1) join_convex(outlines, kJoinShare * size_mm_ * size_mm_);
+    for (const FlatPolygon& outline : outlines) {
+      Piece piece = pieces[first];
+      piece.outline_mm.assign(outline.begin(), outline.end());
+      const double share = raytrace::area(outline) / area_before;
+      piece.transmission = share * transmission;
+      piece.power = share * power;
+      joined.push_back(std::move(piece));
+    }
+    first = last;
+  }
+  pieces = std::move(joined);
+}
+
+CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2& middle_mm) const {
+  join(pieces);
+  const double wave_number = 2.0 * pi / field_.wavelength_mm_;
+  const auto path = [&](const Piece& p) { return p.phase_mm + p.direction.head<2>().dot(middle_mm); };
+  const auto key = [](const Piece& p) {
+    const Vec2 c = geometry::centroid(p.outline_mm);
+    return std::tuple(step_of(c.x(), 1e-6), step_of(c.y(), 1e-6), step_of(p.direction.x(), kCosineStep));
+  };
+  std::stable_sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) { return key(a) < key(b); });
+  CoherentGroup group;
+  if (!pieces.empty()) {
+    group.replicate = pieces.front().replicate;
+    group.copies = pieces.front().copies;
+  }
+  const double first_path = pieces.empty() ? 0.0 : path(pieces.front());
+  for (const Piece& piece : pieces) {
+    geometry::Polygon outline;
+    for (const Vec2& p : piece.outline_mm) outline.push_back(p - middle_mm);
+    PolygonTransform transform(outline);
+    if (!(transform.area_mm2() > 0.0)) continue;
+    const double phase = wave_number * (path(piece) - first_path);
+    const std::complex<double> factor = std::polar(std::sqrt(piece.transmission / transform.area_mm2()), phase);
+    for (const Vec2& p : outline) group.extent_mm = std::max(group.extent_mm, 2.0 * p.norm());
+    FieldPolygon polygon{std::move(transform), piece.direction.head<2>(), factor * piece.jones, piece.power,
+                         piece.hits};
+    for (FieldHit& hit : polygon.hits) {
+      hit.constant_mm += hit.slope * middle_mm;
+      hit.form_constant_mm += hit.form_slope * middle_mm;
+      polygon.phase_variance += hit.phase.variance();
+    }
+    polygon.mean_factor = std::exp(-0.5 * polygon.phase_variance);
+    group.polygons.push_back(std::move(polygon));
+  }
+  return group;
+}
+
+/// Cells that send back the same field are one, counted.
+std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
+  std::vector<CoherentGroup> groups;
+  std::map<Signature, std::size_t> known;
+  std::map<PiecesOfCell, std::vector<std::size_t>> known_cells;
+  // Copies of a cell have the middle of the first, so that what they send out alike is alike in all of them.
+  std::optional<std::uint64_t> cell;
+  Vec2 middle = Vec2::Zero();
+  for (const auto& [place, pieces] : cells_) {
+    if (is_cancelled(policy_.cancel)) break;
+    const bool is_alone = place.beam != 0;
+    if (!is_alone && place.cell != cell) middle = middle_of(pieces);
+    if (!is_alone) cell = place.cell;
+    const auto [same, is_first] = known_cells.try_emplace(pieces);
+    if (!is_first) {
+      for (const std::size_t group : same->second) groups[group].copies += 1.0;
+      continue;
+    }
+    for (CoherentGroup& group : groups_of(pieces, is_alone ? middle_of(pieces) : middle)) {
+      if (group.polygons.empty()) continue;
+      const auto [it, is_new] = known.try_emplace(signature_of(group, size_mm_), groups.size());
+      same->second.push_back(it->second);
+      if (is_new)
+        groups.push_back(std::move(group));
+      else
+        groups[it->second].copies += group.replicate ? copies_in(groups[it->second], group) : group.copies;
+    }
+  }
+  return groups;
+}
+
+void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
+  double left = 0.0;
+  for (const CoherentGroup& group : groups) left += group.power();
+  const double least = policy_.undiffracted_share * left;
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const CoherentGroup& a, const CoherentGroup& b) { return a.power() > b.power(); });
+  std::size_t polygons = 0;
+  FormedPolicy how_finely{.wave_number = 2.0 * pi / field_.wavelength_mm_, .most_pieces = policy_.most_polygons};
+  for (const CoherentGroup& group : groups)
+    for (const FieldPolygon& p : group.polygons)
+      how_finely.strongest = std::max(how_finely.strongest, group.copies * p.power);
+  field_.scattered_ = ScatteredField(field_.wavelength_mm_, field_.coherency_, std::sin(policy_.window_rad), groups);
+  for (CoherentGroup& group : groups) {
+    if (is_cancelled(policy_.cancel)) return;
+    const bool is_strong = left > least;
+    const bool is_narrow = field_.wavelength_mm_ >= policy_.finest_detail_rad * group.extent_mm;
+    const bool is_to_be_diffracted = is_strong && is_narrow;
+    left -= group.power();
+    const bool is_formed = is_strong && policy_.form != nullptr;
+    CoherentGroup bent = is_formed ? formed(group, *policy_.form, how_finely) : CoherentGroup{};
+    const std::size_t more = is_formed ? bent.polygons.size() : group.polygons.size();
+    const bool is_within_budget = polygons + more <= policy_.most_polygons;
+    if (is_strong && is_within_budget) field_.scattered_.add(group, is_narrow);
+    if (is_formed) {
+      field_.bend_ = std::max(field_.bend_, turn_between(group, bent));
+      if (is_to_be_diffracted && is_within_budget) field_.plane_groups_.push_back(group);
+      group = std::move(bent);
+    }
+    if (is_to_be_diffracted && is_within_budget) {
+      polygons += group.polygons.size();
+      field_.groups_.push_back(std::move(group));
+      continue;
+    }
+    if (is_to_be_diffracted) field_.beyond_budget_power_ += group.power();
+    add_undiffracted(group, is_strong && is_within_budget);
+  }
+}
+
+void FarFieldCollector::add_undiffracted(const CoherentGroup& group, bool has_lobes) {
+  for (const FieldPolygon& p : group.polygons) {
+    const double height = std::sqrt(std::max(0.0, 1.0 - p.cosines.squaredNorm()));
+    const double specular = p.mean_factor * p.mean_factor * p.power;
+    add_ray({{p.cosines.x(), p.cosines.y(), height}, group.copies * specular, group.replicate});
+    if (!has_lobes) field_.unplaced_power_ += group.copies * (p.power - specular);
+  }
+}
+
+FarField FarFieldCollector::finish() {
+  keep_strongest(distinct_groups());
+  cells_.clear();
+  pieces_.clear();
+  const auto fields_of = [&](const std::vector<CoherentGroup>& groups) {
+    return ApertureField(groups, field_.wavelength_mm_, field_.coherency_, kLengthStep * size_mm_, policy_.replicates);
+  };
+  field_.field_ = fields_of(field_.groups_);
+  field_.plane_field_ = fields_of(field_.plane_groups_);
+  return std::move(field_);
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,169 @@
+// What one wavelength adds to a reading: the members of Photometer that trace it.
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/balls/ball_tracer.h"
+#include "studies/photometry/photometer.h"
+
+namespace retrace::studies {
+namespace {
+
+using raytrace::ReturnFrame;
+
+// Least power of a beam that is followed exactly, as a share of what falls on an element. What is left behind, or does
+// not interfere, changes readings by up to 5e-4, as the choice of wavelengths does by up to 1e-3.
+constexpr double kCutoff = 1e-5;
+// The same where weaker beams of a finite part are resampled: its many elements take their time. Of very many it is
+// this share of all light that counts.
+constexpr double kCutoffOfFinite = 5e-5;
+constexpr double kCutoffOfAll = 5e-7;
+constexpr std::uint32_t kReplicates = 16;
+// Beams of a direction and wavelength beyond which the choice is Monte Carlo.
+constexpr std::uint64_t kMostBeams = 4'000'000;
+// Lattice points of the window, beyond which its power is not integrated.
+constexpr double kMostLatticePoints = 300'000.0;
+
+/// Of a beam that keeps its phases.
+double scattered_power(const raytrace::ReturnedBeam& beam) {
+  double variance = 0.0;
+  for (const raytrace::TexturedHit& hit : beam.hits) variance += hit.phase.variance();
+  return -std::expm1(-variance) * beam.stokes.i;
+}
+
+}  // namespace
+
+/// Where the exact engine was asked for, or facets scatter or bend light, weak beams are given up.
+bool Photometer::resamples_weak() const {
+  return is_exact_ && request_.engine == Engine::automatic && model_.optics.is_smooth() && !has_form_;
+}
+
+/// As a share of all light.
+double Photometer::cutoff() const {
+  const double elements = std::max(1.0, static_cast<double>(model_.part.period_mm ? 1 : model_.part.elements_full));
+  if (request_.cutoff) return *request_.cutoff / elements;
+  if (model_.part.period_mm || !resamples_weak()) return kCutoff / elements;
+  return std::max(kCutoffOfFinite / elements, kCutoffOfAll);
+}
+
+raytrace::FarFieldPolicy Photometer::far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const {
+  raytrace::FarFieldPolicy policy;
+  policy.diffraction = request_.diffraction;
+  policy.wavelength_nm = light.wavelength_nm;
+  policy.window_rad = 1.5 * Angle::from_deg(request_.window_deg).rad();
+  policy.finest_detail_rad = kernel_.reach_rad() / kWidthsWithoutDiffraction;
+  if (has_form_) policy.form = &light.optics.facet_form;
+  if (resamples_weak()) policy.replicates = kReplicates;
+  policy.cancel = cancel;
+  return policy;
+}
+
+raytrace::BeamPolicy Photometer::beam_policy(std::size_t wavelength) const {
+  raytrace::BeamPolicy beams;
+  if (resamples_weak()) beams.weak = raytrace::WeakBeams{.seed = seed_of(wavelength), .replicates = kReplicates};
+  beams.cutoff = cutoff();
+  beams.by_cell = request_.diffraction;
+  beams.keeps_phases = keeps_phases_;
+  if (request_.engine != Engine::exact) beams.max_beams = kMostBeams;
+  return beams;
+}
+
+std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<PhotometerSetting>& settings,
+                                                           const LitAlike& alike, std::size_t wavelength,
+                                                           const raytrace::BeamTracer& tracer,
+                                                           const Cancellation* cancel) const {
+  const SpectralOptics& light = model_.spectral[wavelength];
+  const ReturnFrame frame = frame_of(settings[alike.front().index]);
+  const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
+  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
+  raytrace::FarFieldCollector collector(model_.part, illumination, far_field_policy(light, cancel));
+  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
+  double scattered_from_cone = 0.0;
+  const raytrace::BeamResult traced = tracer.trace(
+      light.optics, illumination, cones, beam_policy(wavelength), cancel, [&](const raytrace::ReturnedBeam& beam) {
+        collector.add(beam);
+        if (beam.cone < cones.size()) scattered_from_cone += beam.place_count() * scattered_power(beam);
+      });
+  if (!traced.complete) return std::vector<Piece>(alike.size());
+  const raytrace::FarField field = collector.finish();
+  Piece common;
+  common.beyond_budget = field.beyond_budget_power();
+  common.rre = traced.ledgers.back()[raytrace::Account::retroreflected];
+  common.std_error = traced.std_error.back();
+  common.truncated = traced.ledgers.back()[raytrace::Account::truncated];
+  if (keeps_phases_) {
+    // What textures take from the cone's beams, and what falls into the cone of all that they scatter.
+    common.rre += field.scattered_within(frame, Angle::from_deg(cones.back()).rad()) - scattered_from_cone;
+    common.truncated += field.unplaced_power();
+  }
+  std::vector<Piece> pieces(alike.size(), common);
+  for (std::size_t k = 0; k < alike.size() && !is_cancelled(cancel); ++k)
+    look(settings[alike[k].index], alike[k], field, wavelength, pieces[k]);
+  for (Piece& piece : pieces) piece.complete = !is_cancelled(cancel);
+  return pieces;
+}
+
+/// What a setting sees of a far field that it shares.
+void Photometer::look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
+                      std::size_t wavelength, Piece& piece) const {
+  ReturnFrame frame = frame_of(setting);
+  for (geometry::Vec3* axis : {&frame.to_source, &frame.right, &frame.up}) *axis = shared.mirrored(*axis);
+  for (const double observation_deg : setting.observation_deg) {
+    const raytrace::FarFieldIntensity seen =
+        field.intensity(frame.direction({0.0, Angle::from_deg(observation_deg).rad()}), kernel_);
+    piece.per_sr.push_back(seen.per_sr);
+    piece.error_per_sr.push_back(seen.error_per_sr);
+  }
+  const double window_rad = Angle::from_deg(request_.window_deg).rad();
+  if (setting.map_columns > 0) {
+    const raytrace::DirectionGrid grid(raytrace::DirectionGrid::Layout::square, window_rad, setting.map_columns,
+                                       setting.map_columns);
+    piece.map_per_sr = field.binned(frame, grid);
+    piece.map_per_sr.pop_back();
+    for (std::size_t bin = 0; bin < grid.size(); ++bin) piece.map_per_sr[bin] /= grid.solid_angle_sr(bin);
+  }
+  const double points = std::numbers::pi * std::pow(1.5 * window_rad / field.detail_rad(), 2.0);
+  if (setting.split && wavelength == middle_wavelength() && points < kMostLatticePoints) {
+    const raytrace::FarField::Split parts = field.split(frame, window_rad);
+    piece.split = {model_.spectral[wavelength].wavelength_nm, parts.inside, parts.outside, field.total_power()};
+  }
+}
+
+Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
+                                              const raytrace::MonteCarlo* tracer, const Cancellation* cancel) const {
+  const SpectralOptics& light = model_.spectral[wavelength];
+  const ReturnFrame frame = frame_of(setting);
+  const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
+  raytrace::DirectionScore score{frame, kernel_, {}, {}};
+  for (const double observation_deg : setting.observation_deg)
+    score.receivers.push_back(frame.direction({0.0, Angle::from_deg(observation_deg).rad()}));
+  if (setting.map_columns > 0)
+    score.grid.emplace(raytrace::DirectionGrid::Layout::square, Angle::from_deg(request_.window_deg).rad(),
+                       setting.map_columns, setting.map_columns);
+  raytrace::Sampling sampling;
+  sampling.seed = seed_of(wavelength);
+  sampling.rays = std::max<std::uint64_t>(1, request_.rays / model_.spectral.size());
+  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
+  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
+  const raytrace::MonteCarloResult traced =
+      tracer != nullptr ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score)
+                        : raytrace::BallTracer(*design_.balls())
+                              .trace(light.optics, illumination, cones, sampling, {}, cancel, &score);
+  Piece piece;
+  if (!traced.complete) return piece;
+  const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
+  piece.rre = traced.cones.back().rre;
+  piece.std_error = traced.cones.back().std_error;
+  piece.truncated = traced.cones.back().ledger[raytrace::Account::truncated];
+  piece.per_sr.assign(traced.score.begin(), traced.score.begin() + receivers);
+  piece.error_per_sr.assign(traced.score_error.begin(), traced.score_error.begin() + receivers);
+  // Replicates that all saw nothing agree, but know no better than to the light of one ray.
+  const double one_ray_per_sr = kernel_.per_sr(0.0) / static_cast<double>(sampling.rays.value());
+  for (double& error : piece.error_per_sr) error = std::max(error, one_ray_per_sr);
+  if (score.grid)
+    for (std::size_t bin = 0; bin < score.grid->size(); ++bin)
+      piece.map_per_sr.push_back(traced.score[score.receivers.size() + bin] / score.grid->solid_angle_sr(bin));
+  piece.complete = true;
+  return piece;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,190 @@
+// Light of equal elements, followed once: ledgers, far fields and resampled light are those of each by itself.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/equal_places.h"
+#include "raytrace/observers/far_field.h"
+#include "tests/support/designs.h"
+#include "tests/support/statistics.h"
+
+namespace retrace::testing::equal_places_test {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+using Elements = BeamTracer::Elements;
+
+struct Question {
+  std::string name;
+  PartSpec spec;
+  Illumination light;
+};
+
+/// Arrays whose borders differ from each other and from their middle.
+std::vector<Question> questions() {
+  const RtpElement prism{0.5, 0.4, 90.0};
+  PartSpec land = finite(prism, Arrangement::aligned, 4.3, 3.1, 1.0);
+  land.array.x_gap_mm = 0.1;
+  land.array.y_offset_mm = 0.2;
+  PartSpec omitted = finite(HexagonalCube{0.8}, Arrangement::honeycomb, 6.1, 7.0, 1.0);
+  omitted.array.partial_elements = PartialElements::omit;
+  PartSpec checker = finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 4.0, 4.5, 1.0);
+  checker.edges.rim_chamfer_mm = 0.02;
+  PartSpec errors = finite(TriangularCube{1.0}, Arrangement::triangular, 5.0, 6.0, 1.0);
+  errors.angle_errors.dihedral_error_arcmin = {3.0, 1.0, 2.0};
+  return {{"honeycomb", finite(HexagonalCube{1.0}, Arrangement::honeycomb, 7.0, 8.0, 1.0), from(15.0, 40.0)},
+          {"omitted", omitted, from(5.0, 200.0)},
+          {"triangles with errors", errors, from(10.0, 100.0)},
+          {"bricks", finite(prism, Arrangement::offset, 4.2, 4.4, 1.0), from(20.0, 25.0)},
+          {"land between", land, from(30.0, 300.0)},
+          {"checker with flats", checker, from(10.0, 10.0)}};
+}
+
+BeamPolicy policy_at(double cutoff) {
+  BeamPolicy policy;
+  policy.cutoff = cutoff;
+  policy.by_cell = true;
+  return policy;
+}
+
+TEST(EqualPlaces, LedgersAreThoseOfEachByItself) {
+  Optics optics = pmma();
+  optics.absorption_per_mm = 0.02;
+  for (const Question& question : questions()) {
+    const Part part = build_part(question.spec);
+    const std::vector<double> cones = {0.5, 60.0};
+    const BeamPolicy policy = policy_at(1e-8);
+    const BeamResult alone = BeamTracer(part).trace(optics, question.light, cones, policy);
+    const BeamResult shared = BeamTracer(part, Elements::equal_at_once).trace(optics, question.light, cones, policy);
+    EXPECT_LT(shared.beams, alone.beams) << question.name;
+    for (std::size_t cone = 0; cone < cones.size(); ++cone) {
+      EXPECT_NEAR(shared.ledgers[cone].total(), 1.0, 1e-12) << question.name;
+      const double left = alone.ledgers[cone][Account::truncated] + shared.ledgers[cone][Account::truncated];
+      EXPECT_LT(left, 2e-2) << question.name;
+      for (const Account account : {Account::retroreflected, Account::transmitted, Account::side_exit,
+                                    Account::returned_elsewhere, Account::absorbed})
+        EXPECT_NEAR(shared.ledgers[cone][account], alone.ledgers[cone][account], 0.2 * left + 1e-9)
+            << question.name << ", " << static_cast<int>(account);
+    }
+  }
+}
+
+struct Seen {
+  FarField field;
+  BeamResult result;
+};
+
+Seen seen(const Part& part, const Illumination& light, BeamPolicy beams, Elements elements) {
+  FarFieldPolicy policy;
+  if (beams.weak) policy.replicates = beams.weak->replicates;
+  FarFieldCollector collector(part, light, policy);
+  Seen result;
+  result.result = BeamTracer(part, elements).trace(pmma(), light, {0.5}, beams, nullptr, [&](const ReturnedBeam& beam) {
+    collector.add(beam);
+  });
+  result.field = collector.finish();
+  return result;
+}
+
+std::vector<Vec3> receivers(const Illumination& light) {
+  ReturnFrame frame;
+  frame.to_source = direction_to_source(light);
+  frame.right = source_axis(frame.to_source);
+  frame.up = frame.to_source.cross(frame.right);
+  std::vector<Vec3> directions;
+  for (const Vec2& at_deg : {Vec2(0.0, 0.0), Vec2(0.0, 0.2), Vec2(0.25, -0.2)})
+    directions.push_back(frame.direction(EIGEN_PI / 180.0 * at_deg));
+  return directions;
+}
+
+const ApertureKernel& discs() {
+  static const ApertureKernel kernel({Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)});
+  return kernel;
+}
+
+/// Fields of cells too, wherever the light that they send back came in.
+TEST(EqualPlaces, FarFieldsAreThoseOfEachByItself) {
+  for (const Question& question : questions()) {
+    const Part part = build_part(question.spec);
+    const Seen alone = seen(part, question.light, policy_at(1e-8), Elements::each_by_itself);
+    const Seen shared = seen(part, question.light, policy_at(1e-8), Elements::equal_at_once);
+    EXPECT_NEAR(shared.field.total_power(), alone.field.total_power(), 1e-3) << question.name;
+    for (const Vec3& direction : receivers(question.light)) {
+      const double expected = alone.field.intensity(direction, discs()).per_sr;
+      EXPECT_NEAR(shared.field.intensity(direction, discs()).per_sr, expected, 1e-3 * expected) << question.name;
+    }
+  }
+}
+
+/// Light that enters either half of a period is the same.
+TEST(EqualPlaces, HalvesOfAPeriodAreAlike) {
+  PartSpec quarter = infinite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 1.0);
+  quarter.array.overlap_percent = 25.0;
+  const std::vector<std::pair<PartSpec, bool>> parts = {
+      {infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0), true},
+      {infinite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 1.0), true},
+      {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 1.0), true},
+      {infinite(TriangularCube{1.0}, Arrangement::triangular, 1.0), true},
+      {infinite(RtpElement{0.5, 0.4, 90.0}, Arrangement::aligned, 1.0), false},
+      {quarter, false}};
+  const Illumination light = from(20.0, 25.0);
+  for (const auto& [spec, is_alike] : parts) {
+    const Part part = build_part(spec);
+    ASSERT_EQ(EqualPlaces::of(part, Vec2::Zero())->within_period_mm().has_value(), is_alike);
+    const Seen alone = seen(part, light, policy_at(1e-6), Elements::each_by_itself);
+    const Seen shared = seen(part, light, policy_at(1e-6), Elements::equal_at_once);
+    EXPECT_LT(shared.result.beams, (is_alike ? 0.6 : 1.01) * static_cast<double>(alone.result.beams));
+    EXPECT_NEAR(shared.result.ledgers[0].total(), 1.0, 1e-12);
+    EXPECT_NEAR(shared.field.total_power(), alone.field.total_power(), 1e-4);
+    for (const Vec3& direction : receivers(light)) {
+      const double expected = alone.field.intensity(direction, discs()).per_sr;
+      // Of unlike beams those below the cut-off are missing.
+      EXPECT_NEAR(shared.field.intensity(direction, discs()).per_sr, expected, 3e-3 * expected);
+    }
+  }
+}
+
+/// Beams that stand for several places count at each when they are resampled.
+TEST(EqualPlaces, ResampledLightIsThatOfAllPlaces) {
+  const std::vector<Question> all = questions();
+  for (const Question& question :
+       {all[0], all[2], Question{"endless", infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0), from(20, 10)}}) {
+    const Part part = build_part(question.spec);
+    const double element = 1.0 / static_cast<double>(part.period_mm ? 1 : part.elements_full);
+    const Seen truth = seen(part, question.light, policy_at(1e-4 * element), Elements::each_by_itself);
+    BeamPolicy policy = policy_at(1e-3 * element);
+    policy.weak = WeakBeams{.seed = 1, .replicates = 16, .thinning = 4.0};
+    const Seen own = seen(part, question.light, policy, Elements::equal_at_once);
+    EXPECT_NEAR(own.result.ledgers[0].total(), 1.0, 1e-11) << question.name;
+    EXPECT_NEAR(own.result.ledgers[0][Account::truncated], 0.0, 1e-11) << question.name;
+    const double left = truth.result.ledgers[0][Account::truncated];
+    const double bound = student_bound(3, 16) * own.result.std_error[0];
+    const double rre = truth.result.ledgers[0][Account::retroreflected];
+    EXPECT_GE(own.result.ledgers[0][Account::retroreflected], rre - bound) << question.name;
+    EXPECT_LE(own.result.ledgers[0][Account::retroreflected], rre + left + bound) << question.name;
+    EXPECT_NEAR(own.field.total_power(),
+                1.0 - own.result.ledgers[0][Account::transmitted] - own.result.ledgers[0][Account::side_exit] -
+                    own.result.ledgers[0][Account::absorbed],
+                1e-10)
+        << question.name;
+  }
+}
+
+TEST(EqualPlaces, AreNotThereWhereElementsDiffer) {
+  PartSpec tilted = finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::aligned, 4.0, 4.0, 1.0);
+  tilted.random_tilts = {1.0, 1};
+  const PartSpec small = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.0, 2.0, 1.0);
+  for (const PartSpec& spec : {tilted, small, single(HexagonalCube{1.0}, 1.0)}) {
+    const Part part = build_part(spec);
+    EXPECT_FALSE(EqualPlaces::of(part, Vec2::Zero()));
+    const BeamPolicy policy = policy_at(1e-6);
+    EXPECT_EQ(BeamTracer(part, Elements::equal_at_once).trace(pmma(), from(10.0), {0.5}, policy).beams,
+              BeamTracer(part).trace(pmma(), from(10.0), {0.5}, policy).beams);
+  }
+}
+
+}  // namespace
+}  // namespace retrace::testing::equal_places_test

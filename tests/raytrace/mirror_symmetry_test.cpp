@@ -1,0 +1,110 @@
+// Which parts are their own mirror images, and that light of mirrored directions is mirrored at them.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/faces/mirror_symmetry.h"
+#include "raytrace/observers/far_field.h"
+#include "tests/support/designs.h"
+
+namespace retrace::testing::mirror_symmetry_test {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+
+struct Question {
+  std::string name;
+  PartSpec spec;
+  bool along_x;
+  bool along_y;
+};
+
+PartSpec with_errors(PartSpec spec, const std::array<double, 3>& dihedral_arcmin) {
+  spec.angle_errors.dihedral_error_arcmin = dihedral_arcmin;
+  return spec;
+}
+
+PartSpec bricks(PartSpec spec, double overlap_percent) {
+  spec.array.overlap_percent = overlap_percent;
+  return spec;
+}
+
+/// Cubes are their own mirror images across y = 0, where one of their dihedral edges lies; errors of the other two must
+/// be alike. Triangles, of which half are turned by half a turn, and prisms are so both ways, unless rows are shifted by
+/// an odd share.
+std::vector<Question> questions() {
+  const HexagonalCube hexagon{1.0};
+  const TriangularCube triangle{1.0};
+  const RtpElement prism{0.5, 0.4, 90.0};
+  PartSpec tilted = infinite(prism, Arrangement::aligned, 1.0);
+  tilted.angle_errors.facet_tilt_arcmin = {10.0, 0.0, 0.0};
+  PartSpec at_random = finite(prism, Arrangement::aligned, 2.0, 2.0, 1.0);
+  at_random.random_tilts = {1.0, 1};
+  return {
+      {"honeycomb", infinite(hexagon, Arrangement::honeycomb, 1.0), false, true},
+      {"errors alike", with_errors(infinite(hexagon, Arrangement::honeycomb, 1.0), {1.0, 2.0, 2.0}), false, true},
+      {"unlike errors", with_errors(infinite(hexagon, Arrangement::honeycomb, 1.0), {2.0, 1.0, 2.0}), false, false},
+      {"triangles", infinite(triangle, Arrangement::triangular, 1.0), true, true},
+      {"prisms", infinite(prism, Arrangement::aligned, 1.0), true, true},
+      {"one facet tilted", tilted, false, true},
+      {"bricks", bricks(infinite(prism, Arrangement::offset, 1.0), 50.0), true, true},
+      {"bricks by a quarter", bricks(infinite(prism, Arrangement::offset, 1.0), 25.0), false, true},
+      {"one cube", single(hexagon, 1.0), false, true},
+      {"finite honeycomb", finite(hexagon, Arrangement::honeycomb, 4.0, 5.0, 1.0), false, true},
+      {"rows all of whole prisms", finite(prism, Arrangement::aligned, 2.0, 2.0, 1.0), true, true},
+      {"two rows of bricks", finite(prism, Arrangement::offset, 2.0, 0.8, 1.0), true, false},
+      {"tilts at random", at_random, false, false},
+  };
+}
+
+TEST(MirrorSymmetry, IsThatOfElementsErrorsAndBorders) {
+  for (const Question& question : questions()) {
+    const Part part = build_part(question.spec);
+    EXPECT_EQ(is_its_own_mirror_image(part, 0), question.along_x) << question.name;
+    EXPECT_EQ(is_its_own_mirror_image(part, 1), question.along_y) << question.name;
+  }
+}
+
+FarField field_of(const Part& part, const Illumination& light) {
+  BeamPolicy policy;
+  policy.cutoff = 1e-7;
+  policy.by_cell = true;
+  FarFieldCollector collector(part, light, {});
+  BeamTracer(part).trace(pmma(), light, {0.5}, policy, nullptr, [&](const ReturnedBeam& beam) { collector.add(beam); });
+  return collector.finish();
+}
+
+/// What light does that meets several cells is decided by these and not by how its entrance is divided, which is no
+/// mirror image of itself.
+TEST(MirrorSymmetry, MirroredLightHasTheMirroredFarField) {
+  PartSpec cubes = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 3.1, 3.4, 1.0);
+  cubes.angle_errors.dihedral_error_arcmin.fill(2.0);
+  for (const PartSpec& spec :
+       {cubes, finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 2.0, 2.0, 1.0),
+        with_errors(infinite(TriangularCube{1.0}, Arrangement::triangular, 1.0), {1.0, 1.0, 1.0})}) {
+    const Part part = build_part(spec);
+    ASSERT_TRUE(is_its_own_mirror_image(part, 1));
+    const Illumination light = from(20.0, 14.0);
+    const FarField own = field_of(part, light);
+    const FarField mirrored = field_of(part, from(20.0, -14.0));
+    const ApertureKernel kernel({Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)});
+    ReturnFrame frame;
+    frame.to_source = direction_to_source(light);
+    frame.right = source_axis(frame.to_source);
+    frame.up = frame.to_source.cross(frame.right);
+    for (const Vec2& at_deg : {Vec2(0.0, 0.0), Vec2(0.0, 0.33), Vec2(0.2, -0.3), Vec2(-0.5, 0.1)}) {
+      const Vec3 direction = frame.direction(EIGEN_PI / 180.0 * at_deg);
+      const double expected = own.intensity(direction, kernel).per_sr;
+      EXPECT_GT(expected, 0.0);
+      EXPECT_NEAR(mirrored.intensity({direction.x(), -direction.y(), direction.z()}, kernel).per_sr, expected,
+                  1e-3 * expected)
+          << at_deg.transpose();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace retrace::testing::mirror_symmetry_test
