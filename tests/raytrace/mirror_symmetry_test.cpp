@@ -33,8 +33,8 @@ PartSpec bricks(PartSpec spec, double overlap_percent) {
 }
 
 /// Cubes are their own mirror images across y = 0, where one of their dihedral edges lies; errors of the other two must
-/// be alike. Triangles, of which half are turned by half a turn, and prisms are so both ways, unless rows are shifted by
-/// an odd share.
+/// be alike. Triangles, of which half are turned by half a turn, and prisms are so both ways, unless rows are shifted
+/// by an odd share.
 std::vector<Question> questions() {
   const HexagonalCube hexagon{1.0};
   const TriangularCube triangle{1.0};
