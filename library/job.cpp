@@ -10,6 +10,7 @@
 #include "studies/fabrication/fabricate.h"
 #include "studies/fabrication/io/fabrication_files.h"
 #include "studies/fabrication/job_maker.h"
+#include "studies/setup/io/setup_files.h"
 
 namespace retrace {
 
@@ -41,7 +42,7 @@ Fabrication fabricate(const std::filesystem::path& job, const FabricationRequest
   for (std::size_t k = 0; k < found.plan.programs.size(); ++k)
     result.programs.push_back({found.program_file(k), fabrication::nc_text(found.plan.programs[k], found.dialect)});
   result.warnings = found.warnings;
-  result.json = studies::fabrication_json(found);
+  result.json = studies::fabrication_json(found, studies::setup_json(found, studies::setup_sheet(found)));
   result.table = studies::fabrication_table(found);
   for (const auto& stage : found.plan.stages)
     (stage.roughs ? result.roughing : result.finishing) =

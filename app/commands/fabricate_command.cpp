@@ -1,12 +1,17 @@
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "app/commands.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
 #include "fabrication/post/post.h"
+#include "report/page/setup_page.h"
 #include "report/results/result_plots.h"
 #include "studies/fabrication/fabricate.h"
 #include "studies/fabrication/io/fabrication_files.h"
+#include "studies/setup/io/setup_files.h"
+#include "studies/setup/setup_sheet.h"
 
 namespace retrace::app {
 namespace {
@@ -40,6 +45,20 @@ bool has_stage(const studies::FabricationResult& result, bool roughing) {
   return false;
 }
 
+/// Drawings that the sheet for the set-up shows, each in a file of its own within it: their parts have names.
+std::vector<report::PageFigure> drawings_of(const studies::FabricationResult& result) {
+  std::vector<report::PageFigure> figures;
+  const auto add = [&](const std::string& caption, const std::string& svg) {
+    figures.push_back({caption, "", "image/svg+xml", svg, caption});
+  };
+  add("The elements, in the order in which they are cut", report::render_svg(report::arrangement_plot(result)));
+  for (const bool roughing : {true, false})
+    if (has_stage(result, roughing))
+      add(fmt::format("The way of the tool through one element: {}", roughing ? "roughing" : "finishing"),
+          report::render_svg(report::tool_path_plot(result, roughing)));
+  return figures;
+}
+
 ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
   studies::FabricationRequest request;
   request.job_file = options.job;
@@ -49,6 +68,8 @@ ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
   request.options.stop_every = options.stop_every;
   request.options.split_hours = options.split_hours;
   const studies::FabricationResult result = studies::fabricate(request);
+  // Light is traced for who reads it.
+  const studies::SetupSheet sheet = studies::setup_sheet(result, !common.out.empty() || !common.json.empty());
 
   std::vector<std::string> inputs = {options.job};
   if (std::filesystem::path(result.job.machine).has_extension()) inputs.push_back(result.job.machine);
@@ -62,22 +83,28 @@ ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
   for (std::size_t k = 0; k < result.plan.programs.size(); ++k)
     files.add(result.program_file(k),
               [&result, k] { return fabrication::nc_text(result.plan.programs[k], result.dialect); });
+  files.add("setup.html", [&] { return report::setup_html(report::setup_page(result, sheet, drawings_of(result))); });
   files.prepare();
-  return files.write(studies::fabrication_json(result), studies::fabrication_table(result), result.warnings);
+  std::vector<std::string> warnings = result.warnings;
+  warnings.insert(warnings.end(), sheet.warnings.begin(), sheet.warnings.end());
+  return files.write(studies::fabrication_json(result, studies::setup_json(result, sheet)),
+                     studies::fabrication_table(result), warnings);
 }
 
 }  // namespace
 
 Command fabricate_command() {
-  return {.name = "fabricate",
-          .summary = "NC programs, tool path and time of a fabrication job",
-          .manual =
-              "Plans a job and writes it as NC programs, with drawings of the tool path and the time it takes. "
-              "Long jobs can be split, and begun again at an element or a stage.",
-          .reads = {"retrace.job/1", "retrace.machine/1"},
-          .writes = {"retrace.fabrication/1"},
-          .refuses_set = "fabricate reads no design; change the job file, or make it anew",
-          .begin = begins<FabricateOptions>(arguments, run)};
+  return {
+      .name = "fabricate",
+      .summary = "NC programs, set-up, tool path and time of a fabrication job",
+      .manual =
+          "Plans a job and writes it as NC programs, with drawings of the tool path and the time it takes, and "
+          "setup.html, a sheet for who sets up the machine: blank, tool, zero, axes, control, what to measure when, "
+          "and what an error of each costs. Long jobs can be split, and begun again at an element or a stage.",
+      .reads = {"retrace.job/1", "retrace.machine/1"},
+      .writes = {"retrace.fabrication/1"},
+      .refuses_set = "fabricate reads no design; change the job file, or make it anew",
+      .begin = begins<FabricateOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -14,6 +14,13 @@
 namespace retrace::fabrication {
 namespace {
 
+std::string for_control(std::string_view format, const Control& control) {
+  const std::string codes =
+      std::string(control.has_rotation ? " G69" : "") + (control.has_mirror ? "\nG50.1 X0. Y0. Z0." : "");
+  return fmt::format(fmt::runtime(format), control.coordinate_system,
+                     kIncrementSystemWords[static_cast<std::size_t>(control.increment_system)], codes);
+}
+
 /// Writes one file. Numbers of positions are written from integers, digit by digit.
 class FileWriter {
  public:
@@ -85,24 +92,12 @@ class FileWriter {
     fmt::format_to(std::back_inserter(text_), fmt::runtime(format), values...);
   }
 
-  std::string for_control(std::string_view format) const {
-    const Control& control = program_.control;
-    const std::string codes =
-        std::string(control.has_rotation ? " G69" : "") + (control.has_mirror ? "\nG50.1 X0. Y0. Z0." : "");
-    return fmt::format(fmt::runtime(format), control.coordinate_system,
-                       kIncrementSystemWords[static_cast<std::size_t>(control.increment_system)], codes);
-  }
-
-  void add_for_control(std::string_view format) { text_ += for_control(format); }
+  void add_for_control(std::string_view format) { text_ += for_control(format, program_.control); }
 
   void header() {
     for (const std::string& line : program_.header) add(dialect_.comment, line);
-    const std::string needs = for_control(dialect_.needs);
-    for (std::size_t begin = 0; begin < needs.size();) {
-      const std::size_t end = std::min(needs.find('\n', begin), needs.size());
-      add(dialect_.comment, in_comment(needs.substr(begin, end - begin)));
-      begin = end + 1;
-    }
+    for (const std::string& line : control_needs(dialect_.dialect.name, program_.control))
+      add(dialect_.comment, in_comment(line));
   }
 
   void mist(bool on) {
@@ -244,6 +239,17 @@ std::span<const Dialect> dialects() {
     return result;
   }();
   return all;
+}
+
+std::vector<std::string> control_needs(std::string_view dialect, const Control& control) {
+  const std::string needs = for_control(words_of(dialect).needs, control);
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < needs.size();) {
+    const std::size_t end = std::min(needs.find('\n', begin), needs.size());
+    lines.push_back(needs.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
 }
 
 void check_words(const Program& program, std::string_view dialect) {

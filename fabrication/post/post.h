@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "fabrication/machine/control.h"
 #include "fabrication/program/program.h"
@@ -25,6 +26,10 @@ std::span<const Dialect> dialects();
 /// \pre a spindle has its texts where the dialect has no words for it
 /// \throw InputError for a dialect that is not known
 std::string nc_text(const Program& program, std::string_view dialect);
+
+/// What must hold on the control that no program can say, as lines for people that begin with "Needs: ".
+/// \throw InputError likewise
+std::vector<std::string> control_needs(std::string_view dialect, const Control& control);
 
 /// That the control has words for all that the program says. \throw InputError naming the key of the machine file
 void check_words(const Program& program, std::string_view dialect);

@@ -117,12 +117,9 @@ class HtmlWriter {
     write_header();
     add("<main id=\"main\">\n");
     for (const PageSection& section : page_.sections) write_section(section);
-    add("</main>\n<footer>\n<details><summary>Licences of the code in this page</summary><pre>{}</pre></details>\n"
-        "</footer>\n",
-        html_text(assets.licences));
-    add("<script type=\"application/json\" id=\"page-data\">{{\"charts\":[{}],\"paths\":[{}],\"scene\":{}}}</script>\n",
-        charts_, paths_, page_.scene ? json_of(*page_.scene) : "null");
-    add("<script>{}</script>\n</body>\n</html>\n", assets.script);
+    add("</main>\n");
+    if (!assets.script.empty()) write_scripts(assets);
+    add("</body>\n</html>\n");
     return std::move(html_);
   }
 
@@ -130,6 +127,15 @@ class HtmlWriter {
   template <class... Values>
   void add(fmt::format_string<Values...> format, Values&&... values) {
     fmt::format_to(std::back_inserter(html_), format, std::forward<Values>(values)...);
+  }
+
+  void write_scripts(const PageAssets& assets) {
+    add("<footer>\n<details><summary>Licences of the code in this page</summary><pre>{}</pre></details>\n"
+        "</footer>\n",
+        html_text(assets.licences));
+    add("<script type=\"application/json\" id=\"page-data\">{{\"charts\":[{}],\"paths\":[{}],\"scene\":{}}}</script>\n",
+        charts_, paths_, page_.scene ? json_of(*page_.scene) : "null");
+    add("<script>{}</script>\n", assets.script);
   }
 
   void write_header() {
@@ -147,6 +153,7 @@ class HtmlWriter {
         html_text(section.title));
     for (const std::string& text : section.paragraphs) add("<p>{}</p>\n", html_text(text));
     write_facts(section.facts);
+    write_steps(section.steps);
     if (section.has_scene && page_.scene) write_scene();
     for (const PageChart& chart : section.charts) write_chart(chart);
     for (const PagePath& path : section.paths) write_path(path);
@@ -165,6 +172,13 @@ class HtmlWriter {
       add("<div><dt>{}</dt><dd class=\"{}{}\">{}</dd></div>\n", html_text(fact.name), fact.style,
           fact.value.size() > long_text ? " long" : "", html_text(fact.value));
     add("</dl>\n");
+  }
+
+  void write_steps(const std::vector<std::string>& steps) {
+    if (steps.empty()) return;
+    add("<ol class=\"steps\">\n");
+    for (const std::string& step : steps) add("<li>{}</li>\n", html_text(step));
+    add("</ol>\n");
   }
 
   void write_scene() {

@@ -87,6 +87,7 @@ struct PageSection {
   std::string title;
   std::vector<std::string> paragraphs;
   std::vector<PageFact> facts;
+  std::vector<std::string> steps;  ///< in their order, to be ticked off
   std::vector<PageChart> charts;
   std::vector<PagePath> paths;
   std::vector<PageFigure> figures;
@@ -121,7 +122,7 @@ struct Page {
 
 /// Scripts and styles that go into the page.
 struct PageAssets {
-  std::string script;
+  std::string script;  ///< empty: a page without charts and views, to be printed
   std::string style;
   std::string licences;
 };

@@ -49,40 +49,6 @@ double sa_of(const Job& job) {
   return 0.0;
 }
 
-/// As the design says that the job was made from, if that lies beside the job.
-MachinedBody body_of(const VerificationRun& run, std::vector<std::string>& warnings) {
-  const fs::path file = fs::path(run.request.job).parent_path() / run.job.design;
-  std::error_code error;
-  if (!run.job.design.empty() && fs::is_regular_file(file, error)) {
-    const Design design = read_design(file);
-    return {design.thickness_mm(),
-            design.substance.material,
-            from_anywhere(design.substance.catalogue),
-            design.substance.refractive_index,
-            design.substance.temperature_c,
-            design.substance.absorption_per_mm};
-  }
-  warnings.push_back("the job's design is not beside it: the as-machined part is given a plate of 2 mm of PMMA");
-  return {};
-}
-
-bool is_prism(const Job& job) {
-  return std::holds_alternative<geometry::RtpElement>(job.element);
-}
-
-/// The elements of the job, all alike.
-geometry::PartSpec elements_of(const Job& job, bool has_planes) {
-  geometry::PartSpec part = part_on_substrate(job);
-  // Flares reach into margins: which elements there are, the table of planes says.
-  if (!has_planes || is_prism(job)) {
-    part.array.x_offset_mm = job.array.x_offset_mm;
-    part.array.y_offset_mm = job.array.y_offset_mm;
-  }
-  if (is_prism(job) && !job.substrate && part.array.arrangement != geometry::Arrangement::offset)
-    part.array.partial_elements = geometry::PartialElements::cut;
-  return part;
-}
-
 }  // namespace
 
 PredictedTexture predicted_texture(const Job& job) {
@@ -157,73 +123,34 @@ Unlikeness unlikeness_of(const VerificationRun& run, const std::vector<double>& 
   return unlike;
 }
 
-/// Turns points of a mould's blank into those of the part that is moulded in it.
-class PartFrame {
- public:
-  explicit PartFrame(const Job& job) : scale_(1.0 / blank_scale(job.workpiece)) {
-    const geometry::Vec2 extent_w = scale_ * blank_extent_mm(job);
-    corner_ = {0.5 * extent_w.y(), 0.5 * extent_w.x(), 0.0};
-  }
-  Vec3 point(const Vec3& p) const { return corner_ + scale_ * Vec3(-p.y(), p.x(), p.z()); }
-
- private:
-  double scale_ = 1.0;
-  Vec3 corner_ = Vec3::Zero();
-};
-
-/// The plane through three points, its height told over `centre`.
-geometry::HeightPlane plane_through(const std::array<Vec3, 3>& points, const geometry::Vec2& centre) {
-  const Vec3 normal = (points[1] - points[0]).cross(points[2] - points[0]);
-  geometry::HeightPlane plane;
-  plane.slope = -normal.head<2>() / normal.z();
-  plane.height_mm = points[0].z() + plane.slope.dot(centre - points[0].head<2>());
-  return plane;
-}
-
 /// Along a facet's level line, as its figures count.
 Vec3 level_of(const Groove& groove, std::size_t f) {
   if (!groove.is_cube()) return groove.root_direction;
   return (groove.edges[(f + 1) % 3] - groove.edges[f]).normalized();
 }
 
-/// The planes that verification fitted to an element's facets, in the part's frame.
-geometry::ElementPlanes planes_of(const Groove& groove, const ElementFigures& figures, const PartFrame& frame,
-                                  bool rotated) {
-  geometry::ElementPlanes planes;
-  planes.centre_mm = frame.point(groove.root_mm).head<2>();
-  planes.planes.resize(figures.facets.size());
+/// The planes that verification fitted to an element's facets.
+ElementCutPlanes fitted_planes(const Groove& groove, const ElementFigures& figures) {
+  ElementCutPlanes planes;
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const FacetFigures& facet = figures.facets[f];
     const DesignFacet& design = groove.facets[f];
-    const auto surface = [&](double up_mm, double along_mm) {
-      const double height_mm = 1e-6 * facet.mean_nm + facet.slope_up * (up_mm - facet.mean_up_mm) +
-                               facet.slope_along * (along_mm - facet.mean_along_mm);
-      return frame.point(groove.root_mm + up_mm * design.up_slope + along_mm * level_of(groove, f) +
-                         height_mm * design.normal);
-    };
-    const geometry::HeightPlane plane =
-        plane_through({surface(0.0, 0.0), surface(groove.facet_length_mm, 0.0), surface(0.0, groove.half_width_mm)},
-                      planes.centre_mm);
-    planes.planes[groove.is_cube() ? f : plane.slope[rotated ? 1 : 0] < 0.0 ? 0U : 1U] = plane;
+    const Vec3 level = level_of(groove, f);
+    CutPlane plane;
+    plane.point_mm = groove.root_mm + facet.mean_up_mm * design.up_slope + facet.mean_along_mm * level +
+                     1e-6 * facet.mean_nm * design.normal;
+    plane.normal = (design.normal - facet.slope_up * design.up_slope - facet.slope_along * level).normalized();
+    planes.push_back(plane);
   }
   return planes;
 }
 
 geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
-  const std::vector<CutElement> elements = cut_elements(run.job);
-  const geometry::Element size = blank_element(run.job);
-  const auto* const prism = std::get_if<geometry::RtpElement>(&size);
-  const PartFrame frame(run.job);
-  std::vector<geometry::ElementPlanes> planes;
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    if (!run.result.elements[i].figures.is_cut) continue;
-    const Groove groove = prism != nullptr ? groove_of(elements[i], *prism) : cavity_of(elements[i], size);
-    planes.push_back(planes_of(groove, run.result.elements[i].figures, frame, elements[i].rotated));
-  }
-  if (prism != nullptr) return {std::move(planes), std::min(prism_of(run.job).base_mm, prism_of(run.job).width_mm)};
-  const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&run.job.element);
-  if (hexagonal != nullptr) geometry::add_flares(planes, 0.5 * hexagonal->aperture_mm);
-  return {std::move(planes), geometry::cube_spacing_mm(run.job.element)};
+  const std::vector<Groove> grooves = designed_grooves(run.job);
+  std::vector<ElementCutPlanes> planes(grooves.size());
+  for (std::size_t i = 0; i < grooves.size(); ++i)
+    if (run.result.elements[i].figures.is_cut) planes[i] = fitted_planes(grooves[i], run.result.elements[i].figures);
+  return part_planes(run.job, planes);
 }
 
 /// What a design with all elements alike leaves out.
@@ -307,7 +234,7 @@ AsMachined as_machined(const VerificationRun& run) {
     part.warnings.push_back("scratches of a chipped edge are left out on a base");
     part.scratches.clear();
   }
-  part.body = body_of(run, part.warnings);
+  part.body = machined_body(run.job, run.request.job, part.warnings);
   return part;
 }
 
@@ -315,7 +242,7 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
   const auto rounded = [](double value) { return std::round(1e3 * value) / 1e3; };
   Design design;
   design.title = (run.job.title.empty() ? "Part" : run.job.title) + ", as machined";
-  ElementArray array{elements_of(run.job, part.planes.has_value()), {}, {}};
+  ElementArray array{machined_elements(run.job, part.planes.has_value()), {}, {}};
   if (part.planes)
     array.facet_planes = FacetPlanesFile{facets_file, facets_file};
   else
@@ -327,11 +254,7 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
   array.part.scratches = part.scratches;
   array.part.thickness_mm = part.body.thickness_mm;
   design.shape = std::move(array);
-  design.substance.material = part.body.material;
-  design.substance.catalogue = part.body.catalogue;
-  design.substance.refractive_index = part.body.refractive_index;
-  design.substance.temperature_c = part.body.temperature_c;
-  design.substance.absorption_per_mm = part.body.absorption_per_mm;
+  design.substance = part.body.substance();
   design.surface.texture =
       HarveyShackTexture{rounded(part.texture.roughness_sq_nm), part.texture.correlation_length_um,
                          rounded(part.texture.waviness_sq_nm), rounded(part.texture.waviness_length_um)};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/elements/facet_planes.h"
+#include "studies/closed_loop/part_planes.h"
 #include "studies/closed_loop/verification.h"
 #include "studies/design/design.h"
 
@@ -22,16 +23,6 @@ struct PredictedTexture {
   double waviness_sq_nm = 0.0, waviness_length_um = 0.0;  ///< of the feed marks
 };
 PredictedTexture predicted_texture(const fabrication::Job& job);
-
-/// What the part is made of: that of the job's design, or what is taken without one.
-struct MachinedBody {
-  double thickness_mm = 2.0;
-  std::string material = "PMMA";
-  std::optional<GlassCatalogueFile> catalogue;
-  std::optional<double> refractive_index;
-  std::optional<double> temperature_c;
-  Absorption absorption_per_mm;
-};
 
 /// The part that programs leave, moulded in it or cut directly. Where its elements are alike, a design file says it
 /// with the mean tilts of their facets; else every facet of a moulded part has a plane of its own.

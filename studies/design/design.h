@@ -19,6 +19,10 @@
 #include "raytrace/balls/ball_layer.h"
 #include "raytrace/light/stokes.h"
 
+namespace retrace::geometry {
+class FacetPlanes;
+}
+
 namespace retrace::studies {
 
 /// The optical idealisations a design may ask for, to be checked against theory.
@@ -116,6 +120,7 @@ struct ArrayMask {
 struct FacetPlanesFile {
   std::string name;            ///< as given
   std::filesystem::path file;  ///< the same, from the working directory; checked only when it is read, by part_of()
+  std::shared_ptr<const geometry::FacetPlanes> planes = {};  ///< in place of the file's; null: they are read
 };
 
 /// Elements side by side, the plate in front of them, and what single elements differ in.

@@ -12,6 +12,7 @@ geometry::Part part_of(const Design& design) {
     throw InputError(design.where("array.mask"), "not allowed together with facets in [part]");
   if (design.mask()) return geometry::build_part(design.part(), elements_of_mask(design));
   if (!design.facet_planes()) return geometry::build_part(design.part());
+  if (const auto& planes = design.facet_planes()->planes) return geometry::build_part(design.part(), *planes);
   const std::string file = design.facet_planes()->file.string();
   const geometry::FacetPlanes planes =
       parse_facet_planes(read_file(design.facet_planes()->file, kMostFacetPlanesBytes), file, design.part());

@@ -59,7 +59,7 @@ TEST(Fabricate, WritesProgramsPicturesAndTimesTheSameInEveryRun) {
   for (const std::string out : {"a", "b"})
     ASSERT_EQ(retrace(folder, {"fabricate", "j.toml", "--dialect", "sinumerik", "--quiet", "-o", out}).code, 0);
   for (const std::string file : {"program.mpf", "fabrication.json", "stages.csv", "roughing.svg", "roughing.png",
-                                 "finishing.svg", "finishing.png", "arrangement.svg", "arrangement.png"})
+                                 "setup.html", "finishing.svg", "finishing.png", "arrangement.svg", "arrangement.png"})
     EXPECT_EQ(folder.read("a/" + file), folder.read("b/" + file)) << file;
   EXPECT_EQ(folder.json("a/fabrication.json")["c_rotations"], 8);
   EXPECT_EQ(folder.json("a/fabrication.json")["poses"].size(), 4U);

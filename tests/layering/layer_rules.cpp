@@ -52,6 +52,7 @@ const std::map<std::string, Names>& study_rooms() {
       {"turning", {}},
       {"planing", {}},
       {"closed_loop", {"design"}},
+      {"setup", {"design", "rre", "photometry", "fabrication", "closed_loop"}},
       {"store", {}},
       {"quantity", {"design", "rre", "inspect", "photometry", "fabrication", "closed_loop"}},
       {"sweep", {"design", "store", "quantity"}},
@@ -89,8 +90,8 @@ Side side_of(const std::string& path) {
 
 /// Rooms of studies/ that see fabrication/, themselves or through what they include. A design knows of no tool.
 const Names& rooms_that_see_fabrication() {
-  static const Names rooms = {"closed_loop", "fabrication", "forces",    "optimise", "planing",
-                              "quantity",    "sweep",       "tolerance", "turning",  "validation"};
+  static const Names rooms = {"closed_loop", "fabrication", "forces",    "optimise", "planing",   "quantity",
+                              "setup",       "sweep",       "tolerance", "turning",  "validation"};
   return rooms;
 }
 

@@ -78,6 +78,15 @@ Groove cavity_of(const CutElement& element, const geometry::Element& size, doubl
   return cavity;
 }
 
+std::vector<Groove> designed_grooves(const Job& job) {
+  const geometry::Element size = blank_element(job);
+  const auto* const prism = std::get_if<geometry::RtpElement>(&size);
+  std::vector<Groove> grooves;
+  for (const CutElement& element : cut_elements(job))
+    grooves.push_back(prism != nullptr ? groove_of(element, *prism) : cavity_of(element, size));
+  return grooves;
+}
+
 GrooveMap::GrooveMap(const std::vector<Groove>& grooves) : grooves_(grooves) {
   for (const Groove& groove : grooves) {
     // Seen along z the aperture of an element that leans lies beside its root.

@@ -63,6 +63,8 @@ struct Groove {
 Groove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm = 0.0);
 /// The cavity of a cube corner. \pre size is one
 Groove cavity_of(const CutElement& element, const geometry::Element& size, double stock_mm = 0.0);
+/// All elements of a job on blanks that do not stand over their rims, in the order of cut_elements().
+std::vector<Groove> designed_grooves(const Job& job);
 
 /// Finds the element whose aperture a point of the blank's face lies in; of cube corners the nearest within the radius
 /// of their apertures.

@@ -115,7 +115,7 @@ Json section_path_json(const FabricationResult& result) {
 
 }  // namespace
 
-std::string fabrication_json(const FabricationResult& result) {
+std::string fabrication_json(const FabricationResult& result, const Json& setup) {
   const Plan& plan = result.plan;
   Json programs = Json::array();
   for (std::size_t k = 0; k < plan.programs.size(); ++k) programs.push_back(result.program_file(k));
@@ -156,6 +156,7 @@ std::string fabrication_json(const FabricationResult& result) {
                {"program_times_s", plan.program_times_s}};
   // A V cuts in both directions with its leading edge, always with the same rake.
   if (result.job.strategy == fabrication::Strategy::dmc) json.erase("plough_rake_deg");
+  if (!setup.is_null()) json["setup"] = setup;
   return result_text("retrace.fabrication/1", json, result.warnings);
 }
 

@@ -2,6 +2,7 @@
 
 // Documents and tables of `retrace job` and `retrace fabricate`.
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "studies/fabrication/fabricate.h"
@@ -14,7 +15,8 @@ std::string job_json(const MadeJob& made);
 std::string job_table(const MadeJob& made);
 
 /// The result of `retrace fabricate` as JSON (retrace.fabrication/1), as one line a stage, and as a table.
-std::string fabrication_json(const FabricationResult& result);
+/// \param setup the object `setup` of it; null: there is none
+std::string fabrication_json(const FabricationResult& result, const nlohmann::ordered_json& setup = nullptr);
 std::string stages_csv(const FabricationResult& result);
 std::string fabrication_table(const FabricationResult& result);
 

@@ -1,0 +1,115 @@
+#include "studies/closed_loop/part_planes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <system_error>
+
+#include "fabrication/job/substrate_cells.h"
+#include "geometry/elements/element_cells.h"
+#include "studies/design/io/design_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace fabrication;
+using geometry::Vec3;
+
+bool is_prism(const Job& job) {
+  return std::holds_alternative<geometry::RtpElement>(job.element);
+}
+
+/// Turns points of a mould's blank into those of the part that is moulded in it.
+class PartFrame {
+ public:
+  explicit PartFrame(const Job& job) : scale_(1.0 / blank_scale(job.workpiece)) {
+    const geometry::Vec2 extent_w = scale_ * blank_extent_mm(job);
+    corner_ = {0.5 * extent_w.y(), 0.5 * extent_w.x(), 0.0};
+  }
+  Vec3 point(const Vec3& p) const { return corner_ + scale_ * direction(p); }
+  static Vec3 direction(const Vec3& d) { return {-d.y(), d.x(), d.z()}; }
+
+ private:
+  double scale_ = 1.0;
+  Vec3 corner_ = Vec3::Zero();
+};
+
+/// A plane of the part, its height told over `centre`.
+geometry::HeightPlane height_plane(const PartFrame& frame, const CutPlane& cut, const geometry::Vec2& centre) {
+  const Vec3 normal = PartFrame::direction(cut.normal);
+  const Vec3 point = frame.point(cut.point_mm);
+  geometry::HeightPlane plane;
+  plane.slope = -normal.head<2>() / normal.z();
+  plane.height_mm = point.z() + plane.slope.dot(centre - point.head<2>());
+  return plane;
+}
+
+/// Under the middle of an element's aperture, on the blank's face or its base.
+geometry::ElementPlanes planes_of(const PartFrame& frame, const CutElement& element, const ElementCutPlanes& cuts,
+                                  bool is_prism) {
+  geometry::ElementPlanes planes;
+  planes.centre_mm = frame.point(element.foot_mm).head<2>();
+  planes.planes.resize(cuts.size());
+  for (std::size_t f = 0; f < cuts.size(); ++f) {
+    const geometry::HeightPlane plane = height_plane(frame, cuts[f], planes.centre_mm);
+    planes.planes[!is_prism ? f : plane.slope[element.rotated ? 1 : 0] < 0.0 ? 0U : 1U] = plane;
+  }
+  return planes;
+}
+
+}  // namespace
+
+Substance MachinedBody::substance() const {
+  Substance substance;
+  substance.material = material;
+  substance.catalogue = catalogue;
+  substance.refractive_index = refractive_index;
+  substance.temperature_c = temperature_c;
+  substance.absorption_per_mm = absorption_per_mm;
+  return substance;
+}
+
+std::optional<Design> design_beside(const Job& job, const fs::path& job_file) {
+  const fs::path file = job_file.parent_path() / job.design;
+  std::error_code error;
+  if (job.design.empty() || !fs::is_regular_file(file, error)) return std::nullopt;
+  return read_design(file);
+}
+
+MachinedBody machined_body(const Job& job, const fs::path& job_file, std::vector<std::string>& warnings) {
+  if (const std::optional<Design> design = design_beside(job, job_file))
+    return {design->thickness_mm(),
+            design->substance.material,
+            from_anywhere(design->substance.catalogue),
+            design->substance.refractive_index,
+            design->substance.temperature_c,
+            design->substance.absorption_per_mm};
+  warnings.push_back("the job's design is not beside it: the as-machined part is given a plate of 2 mm of PMMA");
+  return {};
+}
+
+geometry::PartSpec machined_elements(const Job& job, bool has_planes) {
+  geometry::PartSpec part = part_on_substrate(job);
+  // Flares reach into margins: which elements there are, the table of planes says.
+  if (!has_planes || is_prism(job)) {
+    part.array.x_offset_mm = job.array.x_offset_mm;
+    part.array.y_offset_mm = job.array.y_offset_mm;
+  }
+  if (is_prism(job) && !job.substrate && part.array.arrangement != geometry::Arrangement::offset)
+    part.array.partial_elements = geometry::PartialElements::cut;
+  return part;
+}
+
+geometry::FacetPlanes part_planes(const Job& job, const std::vector<ElementCutPlanes>& elements) {
+  const std::vector<CutElement> places = cut_elements(job);
+  const PartFrame frame(job);
+  std::vector<geometry::ElementPlanes> planes;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (!elements[i].empty()) planes.push_back(planes_of(frame, places[i], elements[i], is_prism(job)));
+  if (is_prism(job)) return {std::move(planes), std::min(prism_of(job).base_mm, prism_of(job).width_mm)};
+  if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&job.element))
+    geometry::add_flares(planes, 0.5 * hexagonal->aperture_mm);
+  return {std::move(planes), geometry::cube_spacing_mm(job.element)};
+}
+
+}  // namespace retrace::studies

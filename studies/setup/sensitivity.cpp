@@ -1,0 +1,222 @@
+#include "studies/setup/sensitivity.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "fabrication/chisel/check/groove.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+using geometry::Vec3;
+
+constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
+
+/// Along a facet's level line.
+Vec3 level_of(const Groove& groove, std::size_t facet) {
+  if (!groove.is_cube()) return groove.root_direction;
+  return (groove.edges[(facet + 1) % 3] - groove.edges[facet]).normalized();
+}
+
+std::vector<Vec3> corners_of(const Groove& groove, std::size_t facet) {
+  if (groove.is_cube())
+    return {groove.root_mm, groove.root_mm + groove.facet_length_mm * groove.edges[facet],
+            groove.root_mm + groove.facet_length_mm * groove.edges[(facet + 1) % 3]};
+  const Vec3 up = groove.facet_length_mm * groove.facets[facet].up_slope;
+  const Vec3 along = groove.half_width_mm * groove.root_direction;
+  return {groove.root_mm - along, groove.root_mm + along, groove.root_mm + up + along, groove.root_mm + up - along};
+}
+
+Vec3 middle_of(const std::vector<Vec3>& points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : points) sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+/// A cut of a facet with its plane.
+class PlacedCut {
+ public:
+  PlacedCut(const Machine& machine, const FacetEdgeCut& cut, const Groove& groove)
+      : machine_(&machine), cut_(&cut), groove_(&groove) {
+    plane_ = cut_plane(machine, cut.cut, design().normal);
+  }
+
+  /// By how much the facet rises over a place of the design, mm per unit.
+  double height_mm(const PlaneChange& change, const Vec3& at) const {
+    return change.height_mm(plane_, at, design().normal);
+  }
+  PlaneChange change(const SetupQuantity& quantity) const {
+    return plane_change(*machine_, cut_->cut, quantity, design().normal);
+  }
+
+  const FacetEdgeCut& cut() const { return *cut_; }
+  const Groove& groove() const { return *groove_; }
+  const DesignFacet& design() const { return groove_->facets[cut_->facet]; }
+
+ private:
+  const Machine* machine_;
+  const FacetEdgeCut* cut_;
+  const Groove* groove_;
+  CutPlane plane_;
+};
+
+FacetEffect effect_of(const PlacedCut& placed, const PlaneChange& change) {
+  const std::vector<Vec3> corners = corners_of(placed.groove(), placed.cut().facet);
+  const Vec3 middle = middle_of(corners);
+  FacetEffect effect;
+  const double at_middle = placed.height_mm(change, middle);
+  const auto slope = [&](const Vec3& along) { return placed.height_mm(change, middle + along) - at_middle; };
+  effect.distance_nm = kNmPerMm * at_middle;
+  effect.up_arcmin = kArcminPerRad * slope(placed.design().up_slope);
+  effect.along_arcmin = kArcminPerRad * slope(level_of(placed.groove(), placed.cut().facet));
+  for (const Vec3& corner : corners) {
+    const double nm = kNmPerMm * placed.height_mm(change, corner);
+    if (std::abs(nm) > std::abs(effect.farthest_nm)) effect.farthest_nm = nm;
+  }
+  return effect;
+}
+
+/// The cuts of a job by element and facet, each list in the order of time.
+using CutsOfFacets = std::map<std::pair<std::size_t, std::size_t>, std::vector<PlacedCut>>;
+
+/// By how much the chip of any but the first cut of a facet changes: what the one before leaves, less what it takes.
+double chip_change_nm(const std::vector<PlacedCut>& cuts, const SetupQuantity& quantity) {
+  double most = 0.0;
+  std::optional<double> before;
+  for (const PlacedCut& placed : cuts) {
+    const Vec3 middle = middle_of(corners_of(placed.groove(), placed.cut().facet));
+    const double height = placed.height_mm(placed.change(quantity), middle);
+    if (before) most = std::max(most, std::abs(*before - height));
+    before = height;
+  }
+  return kNmPerMm * most;
+}
+
+/// Where the ends of the edge stand when a cut ends, in the workpiece frame; of a V its tip.
+std::vector<Vec3> edge_ends(const Machine& machine, const EdgeCut& cut, double half_width_mm) {
+  const RigidMotion back = machine_from_workpiece(machine, rotary_pose(machine, cut.at)).inverse();
+  const Vec3 tip = machine_point(machine, cut.at) + tool_turn(machine) * cut.tip_mm;
+  if (machine.tilt == Tilt::head) return {back.point(tip)};
+  const Vec3 half = half_width_mm * cutting_edge(machine, cut.edge_rise);
+  return {back.point(tip - half), back.point(tip + half)};
+}
+
+/// How far the edge of a facet's last cut ends over another facet that was cut too.
+void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut& other, double half_width_mm,
+               const SetupQuantity& quantity, Sensitivity& row) {
+  const EdgeCut& cut = ending.cut().cut;
+  const std::vector<Vec3> before = edge_ends(machine, cut, half_width_mm);
+  const std::vector<Vec3> after = edge_ends(with_error(machine, quantity, 1.0), cut, half_width_mm);
+  const PlaneChange change = other.change(quantity);
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const double end = other.design().normal.dot(after[k] - before[k]);
+    const double over_nm = kNmPerMm * (end - other.height_mm(change, before[k]));
+    row.root_left_nm = std::max(row.root_left_nm, over_nm);
+    row.root_cut_nm = std::max(row.root_cut_nm, -over_nm);
+  }
+}
+
+/// \param ways_up of a V, which sweep the other part of their facets
+Sensitivity row_of(const Machine& machine, double half_width_mm, const SetupQuantity& quantity,
+                   const CutsOfFacets& cuts, const CutsOfFacets& ways_up, const std::vector<CutElement>& elements,
+                   const std::vector<FacetKind>& kinds) {
+  Sensitivity row;
+  row.quantity = &quantity;
+  row.facets.resize(kinds.size());
+  const auto take = [&](std::size_t element, std::size_t facet, const PlacedCut& last) {
+    const auto kind = std::find(kinds.begin(), kinds.end(), FacetKind{facet, elements[element].rotated});
+    FacetEffect& known = row.facets[static_cast<std::size_t>(kind - kinds.begin())];
+    const FacetEffect effect = effect_of(last, last.change(quantity));
+    if (std::abs(effect.farthest_nm) > std::abs(known.farthest_nm)) known = effect;
+  };
+  for (const auto& [place, list] : ways_up) take(place.first, place.second, list.back());
+  for (const auto& [place, list] : cuts) {
+    const auto& [element, facet] = place;
+    take(element, facet, list.back());
+    row.chip_nm = std::max(row.chip_nm, chip_change_nm(list, quantity));
+    if (!list.back().cut().ends_at_root) continue;
+    for (std::size_t other = 0; other < list.back().groove().facets.size(); ++other)
+      if (const auto found = cuts.find({element, other}); other != facet && found != cuts.end())
+        tell_root(machine, list.back(), found->second.back(), half_width_mm, quantity, row);
+  }
+  return row;
+}
+
+std::vector<FacetKind> kinds_of(const CutsOfFacets& cuts, const std::vector<CutElement>& elements) {
+  std::vector<FacetKind> kinds;
+  for (const auto& [place, list] : cuts) {
+    const FacetKind kind{place.second, elements[place.first].rotated};
+    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+  }
+  std::sort(kinds.begin(), kinds.end(), [](const FacetKind& a, const FacetKind& b) {
+    return std::pair(a.rotated, a.facet) < std::pair(b.rotated, b.facet);
+  });
+  return kinds;
+}
+
+}  // namespace
+
+std::string FacetKind::name() const {
+  return fmt::format("facet {}{}", facet + 1, rotated ? " of turned elements" : "");
+}
+
+double Sensitivity::farthest_nm() const {
+  double most = 0.0;
+  for (const FacetEffect& effect : facets) most = std::max(most, std::abs(effect.farthest_nm));
+  return most;
+}
+
+double Sensitivity::largest_nm() const {
+  return std::max({farthest_nm(), chip_nm, root_left_nm, root_cut_nm});
+}
+
+std::vector<std::size_t> outermost_elements(const std::vector<CutElement>& elements) {
+  constexpr int kDirections = 8;
+  std::set<std::size_t> chosen;
+  for (const bool rotated : {false, true}) {
+    std::vector<std::size_t> alike;
+    for (std::size_t k = 0; k < elements.size(); ++k)
+      if (elements[k].rotated == rotated) alike.push_back(k);
+    if (alike.empty()) continue;
+    const auto add_least = [&](const auto& measure) {
+      chosen.insert(*std::min_element(alike.begin(), alike.end(),
+                                      [&](std::size_t a, std::size_t b) { return measure(a) < measure(b); }));
+    };
+    add_least([&](std::size_t k) { return elements[k].foot_mm.norm(); });
+    for (int d = 0; d < kDirections; ++d) {
+      const double azimuth = 2.0 * std::numbers::pi * d / kDirections;
+      const geometry::Vec2 inwards(-std::cos(azimuth), -std::sin(azimuth));
+      add_least([&](std::size_t k) { return inwards.dot(elements[k].foot_mm.head<2>()); });
+    }
+  }
+  return {chosen.begin(), chosen.end()};
+}
+
+Sensitivities sensitivities(const Job& job, const Machine& machine, const Plan& plan) {
+  const std::vector<FacetEdgeCut> cuts = facet_edge_cuts(job, plan, outermost_elements(plan.elements));
+  const std::vector<Groove> grooves = designed_grooves(job);
+  CutsOfFacets by_facet;
+  CutsOfFacets ways_up;
+  for (const FacetEdgeCut& cut : cuts)
+    (cut.ends_at_root || cut.is_ploughed ? by_facet : ways_up)[{cut.element, cut.facet}].emplace_back(
+        machine, cut, grooves[cut.element]);
+  Sensitivities result;
+  result.kinds = kinds_of(by_facet, plan.elements);
+  for (const SetupQuantity& quantity : setup_quantities(machine.tilt))
+    result.rows.push_back(
+        row_of(machine, 0.5 * job.tool.width_mm, quantity, by_facet, ways_up, plan.elements, result.kinds));
+  std::stable_sort(result.rows.begin(), result.rows.end(),
+                   [](const Sensitivity& a, const Sensitivity& b) { return a.largest_nm() > b.largest_nm(); });
+  return result;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,169 @@
+#include "studies/setup/setup_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/plan/edge_cuts.h"
+#include "fabrication/machine/setup.h"
+#include "geometry/elements/element_cells.h"
+#include "studies/closed_loop/part_planes.h"
+#include "studies/photometry/photometer.h"
+#include "studies/rre/rre.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+using geometry::Vec3;
+
+/// Elements along either axis of the array that are traced.
+constexpr double kElementsAcross = 2.0;
+/// Facets that move less than this are not traced again.
+constexpr double kStillMm = 1e-12;
+
+/// Least power of beams that are followed, as a share of what falls on the part, of R_A on an element: what is told is
+/// then smooth to SetupLight::kLeastChangeOfRre and kLeastChangeOfRa. Facets that are askew split weaker beams without
+/// end.
+constexpr double kCutoff = 1e-6;
+
+/// A piece of the job's array from its middle, all of its elements there.
+Job patch_of(Job job) {
+  if (job.array.arrangement == geometry::Arrangement::single) return job;
+  geometry::ArrayLayout& array = job.array;
+  array.pattern.clear();
+  array.x_offset_mm = array.y_offset_mm = 0.0;
+  const geometry::Vec2 size = geometry::bounding_box(geometry::aperture_outline(job.element)).size();
+  const bool is_prism = std::holds_alternative<geometry::RtpElement>(job.element);
+  // Rows of bricks are shifted, and cube corners interlock: so many apertures hold that many elements at least.
+  const double more = is_prism && array.arrangement != geometry::Arrangement::offset ? 0.0 : 1.01;
+  array.x_length_mm = std::min(array.x_length_mm, (kElementsAcross + more) * (size.x() + array.x_gap_mm));
+  array.y_length_mm = std::min(array.y_length_mm, (kElementsAcross + more) * (size.y() + array.y_gap_mm));
+  array.partial_elements = geometry::PartialElements::omit;
+  return job;
+}
+
+/// The cut that makes each facet: of passes side by side that nearest to its middle.
+class LastCuts {
+ public:
+  LastCuts(const Job& job, const Machine& machine) : grooves_(designed_grooves(job)) {
+    cuts_.resize(grooves_.size());
+    const Plan plan = make_plan(job, machine);
+    for (std::size_t i = 0; i < grooves_.size(); ++i) cuts_[i].resize(grooves_[i].facets.size());
+    for (const FacetEdgeCut& cut : facet_edge_cuts(job, plan))
+      if (cut.ends_at_root || cut.is_ploughed) take(machine, cut);
+  }
+
+  std::vector<ElementCutPlanes> planes_on(const Machine& machine) const {
+    std::vector<ElementCutPlanes> elements(cuts_.size());
+    for (std::size_t i = 0; i < cuts_.size(); ++i)
+      for (std::size_t f = 0; f < cuts_[i].size(); ++f)
+        elements[i].push_back(cut_plane(machine, cuts_[i][f]->cut, grooves_[i].facets[f].normal));
+    return elements;
+  }
+  std::size_t size() const { return cuts_.size(); }
+
+ private:
+  void take(const Machine& machine, const FacetEdgeCut& cut) {
+    std::optional<FacetEdgeCut>& known = cuts_[cut.element][cut.facet];
+    const Groove& groove = grooves_[cut.element];
+    const auto off_middle = [&](const FacetEdgeCut& c) {
+      return std::abs(groove.along_mm(forward(machine, c.cut.at).reference_mm));
+    };
+    if (!known || cut.stage != known->stage || off_middle(cut) < off_middle(*known)) known = cut;
+  }
+
+  std::vector<Groove> grooves_;
+  std::vector<std::vector<std::optional<FacetEdgeCut>>> cuts_;
+};
+
+/// The design of the moulded patch but for its planes: smooth and clean, lit as the job's design says.
+Design patch_design(const Job& patch, const std::filesystem::path& job_file, std::vector<std::string>& warnings) {
+  Design design;
+  ElementArray array{machined_elements(patch, true), {}, {}};
+  if (const std::optional<Design> given = design_beside(patch, job_file)) {
+    design.substance = given->substance;
+    design.surface.coating = given->surface.coating;
+    design.light = given->light;
+    design.detector = given->detector;
+    design.idealisation = given->idealisation;
+    array.part.thickness_mm = given->thickness_mm();
+  } else {
+    const MachinedBody body = machined_body(patch, job_file, warnings);
+    design.substance = body.substance();
+    array.part.thickness_mm = body.thickness_mm;
+  }
+  design.shape = std::move(array);
+  return design;
+}
+
+PhotometryRequest photometry_of_patch() {
+  PhotometryRequest request;
+  request.engine = Engine::exact;
+  request.cutoff = kCutoff;
+  request.apertures = {Angle::from_deg(SetupLight::kApertureArcmin / 60.0),
+                       Angle::from_deg(SetupLight::kApertureArcmin / 60.0)};
+  return request;
+}
+
+PartLight light_of(Design design, geometry::FacetPlanes planes) {
+  auto& array = std::get<ElementArray>(design.shape);
+  array.facet_planes = FacetPlanesFile{{}, {}, std::make_shared<const geometry::FacetPlanes>(std::move(planes))};
+  RreRequest request;
+  request.engine = Engine::exact;
+  request.cutoff = kCutoff;
+  PartLight light;
+  for (const RrePoint& point : RreStudy({design}, request).run().points) light.rre.push_back(point.rre);
+  const Photometer photometer(design, photometry_of_patch(), 1);
+  PhotometerSetting setting;
+  setting.h_deg = SetupLight::kEntranceDeg;
+  setting.observation_deg = {SetupLight::kObservationDeg};
+  light.r_a = photometer.measure({setting}, nullptr, nullptr)->front().r_a.front();
+  return light;
+}
+
+bool is_still(const std::vector<ElementCutPlanes>& before, const std::vector<ElementCutPlanes>& after) {
+  for (std::size_t i = 0; i < before.size(); ++i)
+    for (std::size_t f = 0; f < before[i].size(); ++f) {
+      const CutPlane& plane = before[i][f];
+      const Vec3 off = after[i][f].point_mm - plane.point_mm;
+      if (std::abs(plane.normal.dot(off)) > kStillMm || (plane.normal - after[i][f].normal).norm() > kStillMm)
+        return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+std::string why_no_setup_light(const Job& job) {
+  if (job.workpiece.kind == WorkpieceKind::direct) return "the light of parts that are cut directly is not told";
+  if (job.substrate) return "the light of elements on a base is not told";
+  return {};
+}
+
+SetupLight setup_light(const Job& job, const std::filesystem::path& job_file, const Machine& machine,
+                       std::vector<std::string>& warnings) {
+  const Job patch = patch_of(job);
+  const LastCuts cuts(patch, machine);
+  const Design design = patch_design(patch, job_file, warnings);
+  const std::vector<ElementCutPlanes> nominal = cuts.planes_on(machine);
+  SetupLight light;
+  light.elements = cuts.size();
+  light.cones_deg = design.detector.acceptance_half_angle_deg;
+  light.nominal = light_of(design, part_planes(patch, nominal));
+  for (const SetupQuantity& quantity : setup_quantities(machine.tilt)) {
+    const std::vector<ElementCutPlanes> planes = cuts.planes_on(with_error(machine, quantity, 1.0));
+    PartLight change{std::vector<double>(light.nominal.rre.size(), 0.0), 0.0};
+    if (!is_still(nominal, planes)) {
+      change = light_of(design, part_planes(patch, planes));
+      for (std::size_t k = 0; k < change.rre.size(); ++k) change.rre[k] -= light.nominal.rre[k];
+      change.r_a -= light.nominal.r_a;
+    }
+    light.changes.push_back(std::move(change));
+  }
+  return light;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,231 @@
+#include "studies/setup/setup_sheet.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "core/error.h"
+#include "fabrication/chisel/plan/chiseling.h"
+#include "fabrication/chisel/plan/routines.h"
+#include "fabrication/job/substrate_cells.h"
+#include "fabrication/job/tool_angles.h"
+#include "fabrication/post/post.h"
+#include "geometry/elements/element_cells.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+using geometry::Vec3;
+
+constexpr double kUmPerMm = 1e3;
+
+/// Highest point of bodies that move with a carrier, or their lowest.
+std::optional<double> end_of_bodies(const Machine& machine, Carrier carrier, bool highest) {
+  std::optional<double> end;
+  for (const MachineBody& body : machine.bodies)
+    if (body.carrier == carrier)
+      for (const Vec3& p : body.points_mm.value)
+        if (!end || (highest ? p.z() > *end : p.z() < *end)) end = p.z();
+  return end;
+}
+
+/// The height to which a point of the face at that radius around C comes while the axes turn.
+double highest_mm(const FabricationResult& result, double radius_mm) {
+  constexpr int kAzimuths = 72;
+  constexpr int kTilts = 24;
+  const Vec3 centre(result.machine.c.point_mm.value.x(), result.machine.c.point_mm.value.y(), 0.0);
+  double low_deg = 0.0;
+  double high_deg = 0.0;
+  for (const CuttingPose& pose : result.plan.poses) {
+    low_deg = std::min(low_deg, pose.rounded.a_deg);
+    high_deg = std::max(high_deg, pose.rounded.a_deg);
+  }
+  double highest = 0.0;
+  for (int i = 0; i <= kTilts; ++i)
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = 2.0 * std::numbers::pi * k / kAzimuths;
+      const Vec3 p = centre + radius_mm * Vec3(std::cos(azimuth), std::sin(azimuth), 0.0);
+      const double tilt_deg = low_deg + (high_deg - low_deg) * i / kTilts;
+      highest = std::max(highest, machine_from_workpiece(result.machine, {tilt_deg, 0.0}).point(p).z());
+    }
+  return highest;
+}
+
+double free_radius_mm(const FabricationResult& result) {
+  const double room_mm = result.plan.safe_z_mm - result.job.process.rotary_clearance_mm;
+  double low_mm = 0.0;
+  double high_mm = 1000.0;
+  if (highest_mm(result, high_mm) <= room_mm) return high_mm;
+  constexpr int kHalvings = 40;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle_mm = 0.5 * (low_mm + high_mm);
+    (highest_mm(result, middle_mm) <= room_mm ? low_mm : high_mm) = middle_mm;
+  }
+  return low_mm;
+}
+
+BlankSetup blank_of(const FabricationResult& result) {
+  BlankSetup blank;
+  blank.array_mm = blank_extent_mm(result.job);
+  blank.deepest_mm = geometry::element_depth_mm(blank_element(result.job)) + result.plan.stock_mm;
+  blank.stock_mm = result.plan.stock_mm;
+  if (result.job.substrate) blank.base = substrate_description(result.job);
+  if (const auto top = end_of_bodies(result.machine, Carrier::workpiece, true); top && *top < 0.0)
+    blank.fixture_height_mm = -*top;
+  if (result.machine.tilt == Tilt::table) blank.free_radius_mm = free_radius_mm(result);
+  return blank;
+}
+
+ToolSetup tool_of(const FabricationResult& result) {
+  ToolSetup tool;
+  if (const auto low = end_of_bodies(result.machine, Carrier::tool, false); low && *low > 0.0)
+    tool.free_length_mm = low;
+  tool.plunge_rake_deg = plunge_angles(result.job.tool).rake_deg;
+  if (result.job.strategy != Strategy::dmc) tool.plough_rake_deg = plough_angles(result.job.tool).rake_deg;
+  return tool;
+}
+
+std::vector<AxisTravel> travel_of(const FabricationResult& result) {
+  const Machine& m = result.machine;
+  const std::array<std::pair<char, Interval>, kAxes> axes = {{{'X', m.x.limits_mm.value},
+                                                              {'Y', m.y.limits_mm.value},
+                                                              {'Z', m.z.limits_mm.value},
+                                                              {m.tilt_letter(), m.a.limits_deg.value},
+                                                              {'C', m.c.limits_deg.value}}};
+  std::vector<AxisTravel> travel;
+  for (const auto& [letter, limits] : axes) travel.push_back({letter, 1e300, -1e300, limits});
+  for (const Program& program : result.plan.programs)
+    for_each_move(program, [&](const PlannedMove& move) {
+      for (std::size_t k = 0; k < kAxes; ++k) {
+        if (!move.at[k]) continue;
+        const double at = k < 3 ? millimetres(*move.at[k]) : degrees(*move.at[k]);
+        travel[k].low = std::min(travel[k].low, at);
+        travel[k].high = std::max(travel[k].high, at);
+      }
+    });
+  return travel;
+}
+
+std::vector<int> optional_stops_of(const Plan& plan) {
+  std::vector<int> stops;
+  for (const Program& program : plan.programs)
+    stops.push_back(static_cast<int>(std::count_if(program.items.begin(), program.items.end(), [](const Item& item) {
+      return std::holds_alternative<OptionalStop>(item);
+    })));
+  return stops;
+}
+
+/// What a stage leaves on the facets that it cuts.
+double left_um(const Job& job, const Stage& stage) {
+  const Process& p = job.process;
+  const double allowance_um = p.finishing_cuts * p.finishing_depth_um;
+  const double rest = stage.cuts - stage.cut;
+  switch (job.strategy) {
+    case Strategy::unidirectional: return 0.0;
+    case Strategy::bidirectional: return p.roughing_depth_um * rest;
+    case Strategy::two_step: return stage.roughs ? allowance_um : p.finishing_depth_um * rest;
+    case Strategy::dmc: break;
+  }
+  return stage.roughs ? allowance_um + p.roughing_depth_um * rest : p.finishing_depth_um * rest;
+}
+
+/// Follows what stands on the facets of elements that are cut alike.
+class Standing {
+ public:
+  explicit Standing(const FabricationResult& result)
+      : job_(result.job), depth_mm_(geometry::element_depth_mm(blank_element(result.job))) {}
+
+  /// After a cut along `facet`, from 1, that leaves so much. A plough leaves as much on the other one.
+  void cut(int facet, bool ploughs, double left_um) {
+    left_um_[static_cast<std::size_t>(facet - 1)] = left_um;
+    if (ploughs) left_um_[static_cast<std::size_t>(2 - facet)] = left_um;
+  }
+  /// Of the root or the apex where the facets now meet; 0 until all are cut.
+  double root_depth_mm() const {
+    const bool is_cube = job_.strategy == Strategy::dmc;
+    const std::size_t facets = is_cube ? 3 : 2;
+    double sum_um = 0.0;
+    for (std::size_t f = 0; f < facets; ++f) {
+      if (!left_um_[f]) return 0.0;
+      sum_um += *left_um_[f];
+    }
+    const double upright =
+        is_cube ? std::numbers::sqrt3 : 2.0 * std::sin(0.5 * Angle::from_deg(prism_of(job_).apex_angle_deg).rad());
+    return depth_mm_ - sum_um / kUmPerMm / upright;
+  }
+
+ private:
+  const Job& job_;
+  double depth_mm_;
+  std::array<std::optional<double>, 3> left_um_;
+};
+
+/// The last program with a visit of each stage.
+std::map<std::string, std::size_t> last_programs(const Plan& plan) {
+  std::map<std::string, std::size_t> last;
+  for (std::size_t k = 0; k < plan.programs.size(); ++k)
+    for (const Item& item : plan.programs[k].items)
+      if (const auto* const visit = std::get_if<Visit>(&item))
+        last[plan.programs[k].subroutines[visit->subroutine].title] = k;
+  return last;
+}
+
+std::vector<StageCheck> checks_of(const FabricationResult& result) {
+  const Plan& plan = result.plan;
+  const std::map<std::string, std::size_t> programs = last_programs(plan);
+  std::map<std::pair<bool, std::int32_t>, Standing> standing;
+  std::vector<StageCheck> checks;
+  double seconds = 0.0;
+  // Turns of the table lie between stages.
+  const double between_s = plan.time.fixed_s / static_cast<double>(std::max<std::size_t>(1, plan.stages.size()));
+  for (const Stage& stage : plan.stages) {
+    const CuttingPose& pose = plan.poses[stage.pose];
+    seconds += stage.time.total_s() + between_s;
+    const auto program = programs.find(plan.subroutines[stage.subroutine].title);
+    if (program == programs.end()) continue;
+    Standing& alike = standing.try_emplace({pose.facet.rotated, pose.orientation}, result).first->second;
+    StageCheck check;
+    check.stage = stage.name;
+    check.program = program->second;
+    check.ends_s = seconds;
+    check.left_um = left_um(result.job, stage);
+    alike.cut(pose.facet.facet, stage.roughs && result.job.strategy != Strategy::dmc, check.left_um);
+    check.root_depth_mm = alike.root_depth_mm();
+    checks.push_back(std::move(check));
+  }
+  return checks;
+}
+
+}  // namespace
+
+const PartLight* SetupSheet::change_of_light(const SetupQuantity& quantity, Tilt tilt) const {
+  if (!light) return nullptr;
+  return &light->changes[static_cast<std::size_t>(&quantity - setup_quantities(tilt).data())];
+}
+
+SetupSheet setup_sheet(const FabricationResult& result, bool light) {
+  SetupSheet sheet;
+  sheet.blank = blank_of(result);
+  sheet.tool = tool_of(result);
+  sheet.travel = travel_of(result);
+  sheet.control_needs = control_needs(result.dialect, result.machine.control);
+  sheet.optional_stops = optional_stops_of(result.plan);
+  sheet.checks = checks_of(result);
+  sheet.sensitivities = sensitivities(result.job, result.machine, result.plan);
+  sheet.why_no_light = why_no_setup_light(result.job);
+  if (!light || !sheet.why_no_light.empty()) return sheet;
+  try {
+    sheet.light = setup_light(result.job, result.job.source, result.machine, sheet.warnings);
+  } catch (const Error& error) {
+    // A design that has changed since, or has too many beams, must not keep the programs of a job back.
+    sheet.why_no_light = error.what();
+  }
+  return sheet;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,194 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/machine/setup.h"
+#include "fabrication/post/post.h"
+#include "report/page/setup_page.h"
+#include "studies/setup/io/setup_files.h"
+#include "studies/setup/setup_sheet.h"
+
+// The sheet for who sets up a machine: what an error costs is what the verifier finds of it, and the page says it all.
+
+namespace retrace::studies::setup_sheet_test {
+namespace {
+
+using namespace fabrication;
+
+constexpr const char* kJob = R"(schema = "retrace.job/1"
+title = "Four prisms"
+design = "design.toml"
+machine = "ideal"
+strategy = "two-step"
+[element]
+kind = "rtp"
+base_mm = 0.5
+width_mm = 0.5
+[array]
+arrangement = "checker"
+x_length_mm = 1
+y_length_mm = 1
+[tool]
+width_mm = 0.5
+[process]
+name = "test"
+source = "a test"
+clearance_mm = 0.2
+roughing_depth_um = 50
+finishing_depth_um = 5
+plough_length_mm = 0.1
+roughing_feed_mm_per_min = 50
+finishing_feed_mm_per_min = 20
+retract_feed_mm_per_min = 200
+)";
+
+FabricationResult made(const std::string& job = kJob) {
+  FabricationRequest request;
+  request.job_file = "job.toml";
+  request.texts["job.toml"] = job;
+  return fabricate(request);
+}
+
+const Sensitivity& row_of(const SetupSheet& sheet, const std::string& key) {
+  const auto& rows = sheet.sensitivities.rows;
+  return *std::find_if(rows.begin(), rows.end(), [&](const Sensitivity& row) { return row.quantity->key == key; });
+}
+
+/// What the job's programs leave on a machine that errs.
+Verification cut_on(const FabricationResult& result, const Machine& real) {
+  std::vector<NcProgram> programs;
+  for (const Program& program : result.plan.programs)
+    programs.push_back(parse_nc(nc_text(program, result.dialect), "p.ngc", NcDialect::rs274ngc));
+  return verify_programs(result.job, real, programs, {}, {});
+}
+
+TEST(SetupSheet, TheLargestErrorsComeFirst) {
+  const SetupSheet sheet = setup_sheet(made(), false);
+  ASSERT_EQ(sheet.sensitivities.kinds.size(), 4U);
+  for (std::size_t k = 1; k < sheet.sensitivities.rows.size(); ++k)
+    EXPECT_GE(sheet.sensitivities.rows[k - 1].largest_nm(), sheet.sensitivities.rows[k].largest_nm());
+  // A um of the centre shifts facet 2 in parallel, and those of turned elements that face the other way.
+  const Sensitivity& centre = row_of(sheet, "c_y_um");
+  EXPECT_NEAR(centre.facets[0].distance_nm, 0.0, 1e-9);
+  EXPECT_NEAR(centre.facets[1].distance_nm, 1000.0 * std::numbers::sqrt2, 1e-9);
+  EXPECT_NEAR(row_of(sheet, "a_z_um").facets[1].distance_nm, 500.0 * std::numbers::sqrt2, 1e-9);
+  EXPECT_FALSE(sheet.light.has_value());
+}
+
+/// Where facets stay and the edge does not: it stops short of the other facet, or goes below it.
+TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
+  const FabricationResult result = made();
+  const SetupSheet sheet = setup_sheet(result, false);
+  const Sensitivity& row = row_of(sheet, "tool_z_um");
+  EXPECT_NEAR(row.root_left_nm, 1000.0, 0.1);
+  for (const double amount : {1.0, -1.0}) {
+    const Verification v = cut_on(result, with_error(result.machine, *row.quantity, amount));
+    double left_nm = 0.0;
+    double cut_nm = 0.0;
+    for (const ElementResult& element : v.elements)
+      for (const FacetFigures& facet : element.figures.facets) {
+        left_nm = std::max(left_nm, facet.root.nm);
+        cut_nm = std::max(cut_nm, -facet.deepest.nm);
+      }
+    EXPECT_NEAR(amount > 0.0 ? left_nm : cut_nm, row.root_left_nm, 0.03 * row.root_left_nm);
+  }
+  // An edge that is not level stands with one end high and one low.
+  const Sensitivity& level = row_of(sheet, "tool_turn_y_arcsec");
+  const double end_nm = 0.25e6 * std::numbers::pi / 648000.0;
+  EXPECT_NEAR(level.root_left_nm, end_nm, 1e-6);
+  EXPECT_NEAR(level.root_cut_nm, end_nm, 1e-6);
+}
+
+/// Roughing ploughs facet 2 in the pose of facet 1, and its first finishing cut takes what an error of A leaves there.
+TEST(SetupSheet, ChipsAreWhatTheVerifierFinds) {
+  std::string job = kJob;
+  const std::string roughing = "roughing_depth_um = 50";
+  job.replace(job.find(roughing), roughing.size(), "roughing_depth_um = 5");
+  const FabricationResult result = made(job);
+  const SetupSheet sheet = setup_sheet(result, false);
+  const Sensitivity& row = row_of(sheet, "a_z_um");
+  EXPECT_NEAR(row.chip_nm, 1000.0, 1.0);
+  constexpr double kLowerUm = 2.5;
+  const Verification v = cut_on(result, with_error(result.machine, *row.quantity, -kLowerUm));
+  EXPECT_NEAR(v.chip_um_max, result.job.process.finishing_depth_um + kLowerUm * 1e-3 * row.chip_nm, 0.005);
+}
+
+TEST(SetupSheet, SaysWhereTheProgramsGo) {
+  const FabricationResult result = made();
+  const SetupSheet sheet = setup_sheet(result, false);
+  ASSERT_EQ(sheet.travel.size(), 5U);
+  EXPECT_EQ(sheet.travel[2].high, result.machine.first_z_mm());
+  EXPECT_EQ(sheet.travel[3].axis, 'A');
+  EXPECT_EQ(sheet.travel[3].high, 45.0);
+  for (const AxisTravel& axis : sheet.travel) {
+    EXPECT_LE(axis.low, axis.high);
+    EXPECT_TRUE(axis.limits.contains(axis.low) && axis.limits.contains(axis.high)) << axis.axis;
+  }
+  // The table turns below the tool: at that radius a face comes up to just where the clearance begins.
+  const double radius = sheet.blank.free_radius_mm;
+  const double up = radius * std::sin(Angle::from_deg(45.0).rad());
+  EXPECT_NEAR(up + result.job.process.rotary_clearance_mm, result.plan.safe_z_mm, 1e-3);
+  EXPECT_EQ(*sheet.blank.fixture_height_mm, 15.0);
+}
+
+/// After each stage: what is left on its facets, and where the root then is.
+TEST(SetupSheet, SaysWhatToMeasureWhen) {
+  const SetupSheet sheet = setup_sheet(made(), false);
+  ASSERT_EQ(sheet.checks.front().stage, "roughing");
+  EXPECT_EQ(sheet.checks.front().left_um, 10.0);
+  EXPECT_NEAR(sheet.checks.front().root_depth_mm, 0.25 - std::numbers::sqrt2 * 0.010, 1e-12);
+  EXPECT_EQ(sheet.checks.back().left_um, 0.0);
+  EXPECT_NEAR(sheet.checks.back().root_depth_mm, 0.25, 1e-12);
+  for (std::size_t k = 1; k < sheet.checks.size(); ++k) EXPECT_GT(sheet.checks[k].ends_s, sheet.checks[k - 1].ends_s);
+}
+
+/// RRE of perfect prisms falls with a wall between facets that do not meet; what moves no facet changes nothing.
+TEST(SetupSheet, LightChangesWhereFacetsMove) {
+  const FabricationResult result = made();
+  const SetupSheet sheet = setup_sheet(result);
+  ASSERT_TRUE(sheet.light.has_value()) << sheet.why_no_light;
+  EXPECT_EQ(sheet.warnings.size(), 1U) << "the design is not beside the job";
+  EXPECT_NEAR(sheet.light->nominal.rre.front(), 1.0, 1e-5) << "words are rounded to a nanometre";
+  EXPECT_GT(sheet.light->nominal.r_a, 0.0);
+  const PartLight& centre = *sheet.change_of_light(*row_of(sheet, "c_y_um").quantity, Tilt::table);
+  // 1 um of 500: the rims of facet 2 stand over those of its neighbours by it.
+  EXPECT_LT(centre.rre.front(), -1e-3);
+  EXPECT_GT(centre.rre.front(), -1e-2);
+  const PartLight& clearance = *sheet.change_of_light(*row_of(sheet, "tool_turn_x_arcsec").quantity, Tilt::table);
+  EXPECT_EQ(clearance.rre.front(), 0.0);
+  EXPECT_EQ(clearance.r_a, 0.0);
+}
+
+TEST(SetupSheet, APartThatIsCutDirectlyHasNoLight) {
+  std::string job = kJob;
+  job.replace(job.find("[element]"), 0, "[workpiece]\nkind = \"direct\"\n");
+  const SetupSheet sheet = setup_sheet(made(job));
+  EXPECT_FALSE(sheet.light.has_value());
+  EXPECT_FALSE(sheet.why_no_light.empty());
+}
+
+/// The page is whole, and needs no script.
+TEST(SetupSheet, ThePageSaysItAll) {
+  const FabricationResult result = made();
+  const SetupSheet sheet = setup_sheet(result);
+  const std::string html = report::setup_html(report::setup_page(result, sheet, {}));
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  for (const char* const text :
+       {"Four prisms", "1. Blank and fixture", "2. Tool", "3. Zero", "5. Control", "Needs: G54 without rotation",
+        "6. Programs, in this order", "program.ngc", "7. What to measure, and when", "finishing-2-facet-2",
+        "8. What an error costs", "centre of C along Y, um", "1414.2"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  const nlohmann::ordered_json json = setup_json(result, sheet);
+  EXPECT_EQ(json["sensitivities"].size(), 17U);
+  EXPECT_EQ(json["sensitivities"][0]["rre_change"].size(), 1U);
+}
+
+}  // namespace
+}  // namespace retrace::studies::setup_sheet_test
