@@ -36,5 +36,6 @@ Command tolerance_command();
 Command turn_command();
 Command validate_command();
 Command verify_command();
+Command calibrate_command();
 
 }  // namespace retrace::app

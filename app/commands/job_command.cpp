@@ -6,6 +6,7 @@
 #include "app/shared_arguments.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "studies/calibration/io/calibration_files.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/fabrication/io/fabrication_files.h"
 #include "studies/fabrication/reachable.h"
@@ -17,6 +18,7 @@ namespace {
 struct JobOptions : MakingOptions {
   std::string design;
   std::string reachable;  ///< design file of what a chisel makes of cube corners; empty: none
+  std::string test_cuts;  ///< folder of jobs that tell how the machine is set up; empty: none
 };
 
 std::vector<Argument> arguments(JobOptions& options) {
@@ -25,6 +27,10 @@ std::vector<Argument> arguments(JobOptions& options) {
   all.push_back({"--reachable FILE",
                  "write what a chisel with a straight edge makes of cube corners, as a design, instead of a job",
                  &options.reachable, files(".toml")});
+  all.push_back({"--test-cuts FOLDER",
+                 "write jobs of few prisms that tell how the machine is set up, and the table of what to measure of "
+                 "them, instead of a job",
+                 &options.test_cuts, not_with("--reachable")});
   return all;
 }
 
@@ -49,8 +55,24 @@ ExitCode write_reachable(const JobOptions& options, const CommonOptions& common,
   return files.write(studies::reach_json(part, request), studies::reach_table(part));
 }
 
+/// Jobs of test cuts, and measurements.csv to be filled in.
+ExitCode write_test_cuts(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
+  if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --test-cuts");
+  const fs::path folder = options.test_cuts;
+  studies::TestCuts cuts = studies::plan_test_cuts(design, job_request(options, *options.tool_width_mm));
+  CommonOptions outputs = common;
+  outputs.out = options.test_cuts;
+  ResultFiles files(outputs, inputs_of(options, design), "test_cuts.json");
+  for (std::size_t k = 0; k < cuts.jobs.size(); ++k)
+    files.add(cuts.parts.jobs[k], [&, k] { return job_text_at(cuts.jobs[k], folder / cuts.parts.jobs[k]); });
+  files.add("measurements.csv", [&] { return studies::test_cuts_csv(cuts); });
+  files.prepare();
+  return files.write(studies::test_cuts_json(cuts), studies::test_cuts_table(cuts));
+}
+
 ExitCode run(const JobOptions& options, const CommonOptions& common) {
   const studies::Design design = studies::read_design(options.design, common.overrides);
+  if (!options.test_cuts.empty()) return write_test_cuts(options, common, design);
   if (!options.reachable.empty()) return write_reachable(options, common, design);
   studies::MadeJob made = studies::make_job(design, job_request(options, *options.tool_width_mm));
   const std::string text = job_text_at(made, common.out);
@@ -73,9 +95,10 @@ Command job_command() {
           .manual =
               "Makes a fabrication job of a design: blank, tool, machine, strategy and process. Elements on a base "
               "are cut in place; pins are not. With `--reachable FILE` writes the part that a chisel can make of "
-              "cube corners instead.",
+              "cube corners instead, with `--test-cuts FOLDER` the smallest jobs from which `retrace calibrate` tells "
+              "how the machine is set up.",
           .reads = {"retrace.design/1", "retrace.machine/1", "retrace.process/1"},
-          .writes = {"retrace.job_summary/1", "retrace.job/1", "retrace.reach/1"},
+          .writes = {"retrace.job_summary/1", "retrace.job/1", "retrace.reach/1", "retrace.test_cuts/1"},
           .begin = begins<JobOptions>(arguments, run)};
 }
 

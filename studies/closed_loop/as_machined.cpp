@@ -123,19 +123,13 @@ Unlikeness unlikeness_of(const VerificationRun& run, const std::vector<double>& 
   return unlike;
 }
 
-/// Along a facet's level line, as its figures count.
-Vec3 level_of(const Groove& groove, std::size_t f) {
-  if (!groove.is_cube()) return groove.root_direction;
-  return (groove.edges[(f + 1) % 3] - groove.edges[f]).normalized();
-}
-
 /// The planes that verification fitted to an element's facets.
 ElementCutPlanes fitted_planes(const Groove& groove, const ElementFigures& figures) {
   ElementCutPlanes planes;
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const FacetFigures& facet = figures.facets[f];
     const DesignFacet& design = groove.facets[f];
-    const Vec3 level = level_of(groove, f);
+    const Vec3 level = groove.level_of(f);
     CutPlane plane;
     plane.point_mm = groove.root_mm + facet.mean_up_mm * design.up_slope + facet.mean_along_mm * level +
                      1e-6 * facet.mean_nm * design.normal;

@@ -21,27 +21,6 @@ using geometry::Vec3;
 
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 
-/// Along a facet's level line.
-Vec3 level_of(const Groove& groove, std::size_t facet) {
-  if (!groove.is_cube()) return groove.root_direction;
-  return (groove.edges[(facet + 1) % 3] - groove.edges[facet]).normalized();
-}
-
-std::vector<Vec3> corners_of(const Groove& groove, std::size_t facet) {
-  if (groove.is_cube())
-    return {groove.root_mm, groove.root_mm + groove.facet_length_mm * groove.edges[facet],
-            groove.root_mm + groove.facet_length_mm * groove.edges[(facet + 1) % 3]};
-  const Vec3 up = groove.facet_length_mm * groove.facets[facet].up_slope;
-  const Vec3 along = groove.half_width_mm * groove.root_direction;
-  return {groove.root_mm - along, groove.root_mm + along, groove.root_mm + up + along, groove.root_mm + up - along};
-}
-
-Vec3 middle_of(const std::vector<Vec3>& points) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : points) sum += p;
-  return sum / static_cast<double>(points.size());
-}
-
 /// A cut of a facet with its plane.
 class PlacedCut {
  public:
@@ -70,15 +49,14 @@ class PlacedCut {
 };
 
 FacetEffect effect_of(const PlacedCut& placed, const PlaneChange& change) {
-  const std::vector<Vec3> corners = corners_of(placed.groove(), placed.cut().facet);
-  const Vec3 middle = middle_of(corners);
+  const Vec3 middle = placed.groove().facet_middle(placed.cut().facet);
   FacetEffect effect;
   const double at_middle = placed.height_mm(change, middle);
   const auto slope = [&](const Vec3& along) { return placed.height_mm(change, middle + along) - at_middle; };
   effect.distance_nm = kNmPerMm * at_middle;
   effect.up_arcmin = kArcminPerRad * slope(placed.design().up_slope);
-  effect.along_arcmin = kArcminPerRad * slope(level_of(placed.groove(), placed.cut().facet));
-  for (const Vec3& corner : corners) {
+  effect.along_arcmin = kArcminPerRad * slope(placed.groove().level_of(placed.cut().facet));
+  for (const Vec3& corner : placed.groove().facet_corners(placed.cut().facet)) {
     const double nm = kNmPerMm * placed.height_mm(change, corner);
     if (std::abs(nm) > std::abs(effect.farthest_nm)) effect.farthest_nm = nm;
   }
@@ -93,7 +71,7 @@ double chip_change_nm(const std::vector<PlacedCut>& cuts, const SetupQuantity& q
   double most = 0.0;
   std::optional<double> before;
   for (const PlacedCut& placed : cuts) {
-    const Vec3 middle = middle_of(corners_of(placed.groove(), placed.cut().facet));
+    const Vec3 middle = placed.groove().facet_middle(placed.cut().facet);
     const double height = placed.height_mm(placed.change(quantity), middle);
     if (before) most = std::max(most, std::abs(*before - height));
     before = height;

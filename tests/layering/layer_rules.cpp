@@ -48,6 +48,7 @@ const std::map<std::string, Names>& study_rooms() {
       {"drawing", {"design"}},
       {"metrology", {}},
       {"fabrication", {"design"}},
+      {"calibration", {"design", "fabrication"}},
       {"forces", {}},
       {"turning", {}},
       {"planing", {}},
@@ -90,8 +91,8 @@ Side side_of(const std::string& path) {
 
 /// Rooms of studies/ that see fabrication/, themselves or through what they include. A design knows of no tool.
 const Names& rooms_that_see_fabrication() {
-  static const Names rooms = {"closed_loop", "fabrication", "forces",    "optimise", "planing",   "quantity",
-                              "setup",       "sweep",       "tolerance", "turning",  "validation"};
+  static const Names rooms = {"calibration", "closed_loop", "fabrication", "forces",    "optimise", "planing",
+                              "quantity",    "setup",       "sweep",       "tolerance", "turning",  "validation"};
   return rooms;
 }
 

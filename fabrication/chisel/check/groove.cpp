@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "core/angle.h"
 #include "geometry/elements/element_cells.h"
@@ -30,6 +31,23 @@ void stand(Groove& groove, const CutElement& element, double stock_mm) {
 }
 
 }  // namespace
+
+Vec3 Groove::level_of(std::size_t facet) const {
+  return is_cube() ? Vec3((edges[(facet + 1) % 3] - edges[facet]).normalized()) : root_direction;
+}
+
+std::vector<Vec3> Groove::facet_corners(std::size_t facet) const {
+  if (is_cube())
+    return {root_mm, root_mm + facet_length_mm * edges[facet], root_mm + facet_length_mm * edges[(facet + 1) % 3]};
+  const Vec3 up = facet_length_mm * facets[facet].up_slope;
+  const Vec3 along = half_width_mm * root_direction;
+  return {root_mm - along, root_mm + along, root_mm + up + along, root_mm + up - along};
+}
+
+Vec3 Groove::facet_middle(std::size_t facet) const {
+  const std::vector<Vec3> corners = facet_corners(facet);
+  return std::accumulate(corners.begin(), corners.end(), Vec3(Vec3::Zero())) / static_cast<double>(corners.size());
+}
 
 Groove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm) {
   const double half_apex = 0.5 * Angle::from_deg(size.apex_angle_deg).rad();

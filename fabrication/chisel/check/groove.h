@@ -57,6 +57,12 @@ struct Groove {
   }
   /// Along the root, from its middle.
   double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }
+  /// Along a facet's level line, of length 1: of a prism along its root.
+  geometry::Vec3 level_of(std::size_t facet) const;
+  /// Of a facet in the plane of its rim or, of a cube corner, at the ends of its dihedral edges.
+  std::vector<geometry::Vec3> facet_corners(std::size_t facet) const;
+  /// Their mean.
+  geometry::Vec3 facet_middle(std::size_t facet) const;
 };
 
 /// \param stock_mm by which the blank stands over the element's rims

@@ -1,0 +1,189 @@
+#include "studies/calibration/calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "studies/calibration/linear_model.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+using Eigen::Index, Eigen::VectorXd;
+
+/// The last step of Gauss and Newton is shorter than this, in the standard uncertainties of what is told.
+constexpr double kLastStep = 1e-3;
+constexpr int kMostSteps = 20;
+/// By chance one measurement of right ones is taken for an outlier in so many calibrations.
+constexpr double kFalseAlarm = 0.01;
+/// Of measurements, that may be outliers.
+constexpr double kMostOutliers = 0.1;
+/// Leverage from which on nothing checks a measurement.
+constexpr double kUnchecked = 1.0 - 1e-9;
+
+std::vector<CutPart> cut_parts(const MeasuredParts& measured) {
+  std::vector<CutPart> parts;
+  for (std::size_t k = 0; k < measured.plans.size(); ++k) {
+    std::set<std::size_t> elements;
+    for (const Measurement& m : measured.measurements) {
+      if (m.part != k) continue;
+      elements.insert(m.at.element);
+      if (m.from) elements.insert(m.from->element);
+    }
+    parts.emplace_back(measured.plans[k], std::vector<std::size_t>(elements.begin(), elements.end()));
+  }
+  return parts;
+}
+
+void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
+  for (const Measurement& m : measured.measurements)
+    if (const std::string fault = parts[m.part].fault_of(m); !fault.empty())
+      throw InputError({measured.file, m.line, ""}, fault);
+}
+
+/// Gauss-Newton steps among the combinations that are told about the nominal machine: in all others the measurements
+/// change by terms of the second order alone, which would be taken for signs of them.
+Estimate fit(const std::vector<CutPart>& parts, const std::vector<Measurement>& measurements, const Machine& nominal,
+             const std::string& file) {
+  LinearModel model = linear_model(parts, measurements, nominal);
+  Estimate result = estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
+  const Eigen::MatrixXd told = result.told;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const VectorXd before = told.transpose() * result.value;
+    const std::span<const double> amounts(result.value.data(), static_cast<std::size_t>(result.value.size()));
+    model = linear_model(parts, measurements, with_errors(nominal, amounts));
+    const Eigen::MatrixXd of_told = model.of_setup * told;
+    const Estimate next = estimate(of_told, model.of_poses, model.residual + of_told * before, 2.0 * kSetUpByEye);
+    result.value = told * next.value;
+    result.covariance = told * next.covariance * told.transpose();
+    result.residual = next.residual;
+    result.leverage = next.leverage;
+    if ((next.value - before).cwiseQuotient(next.covariance.diagonal().cwiseSqrt()).norm() < kLastStep) return result;
+  }
+  throw InputError({file, 0, ""},
+                   "no machine near that of the jobs leaves what was measured: are units and facets right?");
+}
+
+/// The measurement that the others contradict most, with by how much.
+std::pair<std::size_t, double> worst(const Estimate& estimate) {
+  std::pair<std::size_t, double> found{0, 0.0};
+  for (Index k = 0; k < estimate.residual.size(); ++k) {
+    if (estimate.leverage[k] >= kUnchecked) continue;
+    const double deviations = std::abs(estimate.residual[k]) / std::sqrt(1.0 - estimate.leverage[k]);
+    if (deviations > found.second) found = {static_cast<std::size_t>(k), deviations};
+  }
+  return found;
+}
+
+double most_by_chance(std::size_t measurements) {
+  const double tail = 0.5 * kFalseAlarm / static_cast<double>(measurements);
+  return boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
+}
+
+[[noreturn]] void refuse(const std::string& file, const std::vector<Outlier>& outliers) {
+  std::string lines;
+  for (const Outlier& outlier : outliers)
+    lines += fmt::format("{}{}", lines.empty() ? "" : ", ", outlier.measurement.line);
+  throw InputError(
+      {file, outliers.front().measurement.line, ""},
+      fmt::format("measurements contradict each other by more than their uncertainties: those of lines {}, "
+                  "the worst first",
+                  lines));
+}
+
+/// One combination: "2 c_x_um + 1 tool_x_um".
+std::string words_of(const VectorXd& combination, std::span<const SetupQuantity> quantities) {
+  std::string words;
+  for (Index k = 0; k < combination.size(); ++k) {
+    const double share = combination[k];
+    if (share == 0.0) continue;
+    const std::string size = std::abs(std::abs(share) - 1.0) < 5e-4 ? "" : fmt::format("{:.3g} ", std::abs(share));
+    words += words.empty() ? (share < 0.0 ? "-" : "") : (share < 0.0 ? " - " : " + ");
+    words += size + std::string(quantities[static_cast<std::size_t>(k)].key);
+  }
+  return words;
+}
+
+/// Marks what a calibration found, with how sure it is.
+void tell_source(Machine& machine, const CalibratedQuantity& found, const std::string& file) {
+  const std::string source = fmt::format("retrace calibrate {}", file);
+  const auto mark = [&](auto& sourced) {
+    if (sourced.basis == Basis::measured && sourced.source.starts_with(source)) {
+      sourced.source += fmt::format("; {} {:+.4g} +- {:.2g}", found.quantity->key, found.value, found.uncertainty);
+      return;
+    }
+    sourced.basis = Basis::measured;
+    sourced.source =
+        fmt::format("{}: {} {:+.4g} +- {:.2g}", source, found.quantity->key, found.value, found.uncertainty);
+  };
+  switch (found.quantity->part) {
+    case SetupPart::c_point: return mark(machine.c.point_mm);
+    case SetupPart::tilt_point: return mark(machine.a.point_mm);
+    case SetupPart::c_direction: return mark(machine.c.direction);
+    case SetupPart::tilt_direction: return mark(machine.a.direction);
+    case SetupPart::y_direction: return mark(machine.y.direction);
+    case SetupPart::z_direction: return mark(machine.z.direction);
+    case SetupPart::tool_offset: return mark(machine.mount.offset_mm);
+    case SetupPart::tool_turn: return mark(machine.mount.turn_deg);
+  }
+}
+
+void tell(Calibration& result, const Estimate& fitted) {
+  const Machine& nominal = result.parts.plans.front().machine;
+  const auto quantities = setup_quantities(nominal.tilt);
+  result.machine = with_errors(nominal, {fitted.value.data(), static_cast<std::size_t>(fitted.value.size())});
+  result.covariance = fitted.covariance;
+  for (std::size_t k = 0; k < quantities.size(); ++k) {
+    const auto at = static_cast<Index>(k);
+    const CalibratedQuantity found{&quantities[k], fitted.is_told(at), fitted.value[at],
+                                   std::sqrt(fitted.covariance(at, at))};
+    result.quantities.push_back(found);
+    if (found.value != 0.0)
+      tell_source(result.machine, found, std::filesystem::path(result.parts.file).filename().string());
+  }
+  result.untold = untold_words(fitted, nominal.tilt);
+  result.residuals.assign(fitted.residual.begin(), fitted.residual.end());
+  result.chi_square = fitted.residual.squaredNorm();
+  // The sum of leverages is the number of unknowns that are told, poses included.
+  const double freedom = static_cast<double>(result.residuals.size()) - fitted.leverage.sum();
+  result.freedom = static_cast<std::size_t>(std::max(0L, std::lround(freedom)));
+}
+
+}  // namespace
+
+std::vector<std::string> untold_words(const Estimate& estimate, Tilt tilt) {
+  const Eigen::MatrixXd untold = reduced_combinations(estimate.untold);
+  std::vector<std::string> words;
+  for (Index k = 0; k < untold.cols(); ++k) words.push_back(words_of(untold.col(k), setup_quantities(tilt)));
+  return words;
+}
+
+Calibration calibrate(MeasuredParts measured) {
+  const std::vector<CutPart> parts = cut_parts(measured);
+  check(measured, parts);
+  Calibration result;
+  std::vector<Measurement>& measurements = measured.measurements;
+  const auto most = static_cast<std::size_t>(std::ceil(kMostOutliers * static_cast<double>(measurements.size())));
+  const double by_chance = most_by_chance(measurements.size());
+  const Machine nominal = measured.plans.front().machine;
+  Estimate fitted = fit(parts, measurements, nominal, measured.file);
+  for (auto [at, deviations] = worst(fitted); deviations > by_chance;) {
+    result.outliers.push_back({measurements[at], deviations});
+    if (result.outliers.size() > most) refuse(measured.file, result.outliers);
+    measurements.erase(measurements.begin() + static_cast<std::ptrdiff_t>(at));
+    fitted = fit(parts, measurements, nominal, measured.file);
+    std::tie(at, deviations) = worst(fitted);
+  }
+  result.parts = std::move(measured);
+  tell(result, fitted);
+  return result;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,66 @@
+#pragma once
+
+// From what was measured of parts that a machine cut to what the machine is like. The study behind `retrace calibrate`.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/file_texts.h"
+#include "fabrication/machine/setup.h"
+#include "studies/calibration/estimate.h"
+#include "studies/calibration/measured_facets.h"
+
+namespace retrace::studies {
+
+/// A measurement that the others contradict.
+struct Outlier {
+  Measurement measurement;
+  double deviations = 0.0;  ///< by which it misses what the others say, in the standard deviations of that
+};
+
+/// Parts that a machine cut, and what was measured of them.
+struct MeasuredParts {
+  std::string file;               ///< of the measurements, for messages
+  std::vector<std::string> jobs;  ///< as the file has them
+  std::vector<FabricationResult> plans;
+  std::vector<Measurement> measurements;
+  std::size_t empty_rows = 0;  ///< that have no value yet
+};
+
+/// What a quantity of the set-up is.
+struct CalibratedQuantity {
+  const fabrication::SetupQuantity* quantity = nullptr;
+  bool is_told = false;
+  double value = 0.0;        ///< um or arcsec, from what the job's machine has; of one that is not told: one of many
+  double uncertainty = 0.0;  ///< standard; of one that is not told: of what is told of it
+};
+
+struct Calibration {
+  MeasuredParts parts;           ///< without outliers
+  fabrication::Machine machine;  ///< the calibrated one
+  std::vector<CalibratedQuantity> quantities;
+  Eigen::MatrixXd covariance;       ///< in their order
+  std::vector<std::string> untold;  ///< combinations that the measurements do not tell apart, in words
+  std::vector<double> residuals;    ///< in standard uncertainties
+  std::vector<Outlier> outliers;    ///< left out, the worst first
+  double chi_square = 0.0;
+  std::size_t freedom = 0;  ///< measurements less what is estimated
+  std::vector<std::string> warnings;
+};
+
+/// A combination of the set-up that is less certain than this, in um or arcsec, counts as untold: one sees as much with
+/// a dial gauge.
+inline constexpr double kSetUpByEye = 100.0;
+
+/// The combinations of the set-up that an estimate leaves untold, in words: "-0.707 c_lean_x_arcsec + a_lean_y_arcsec".
+std::vector<std::string> untold_words(const Estimate& estimate, fabrication::Tilt tilt);
+
+/// Estimates the set-up by Gauss-Newton steps. Measurements that miss what the others say by more than chance are left
+/// out one by one (Baarda's data snooping: W. Baarda, A testing procedure for use in geodetic networks, 1968).
+/// \throw InputError naming the lines that contradict each other, if too many do
+Calibration calibrate(MeasuredParts parts);
+
+}  // namespace retrace::studies

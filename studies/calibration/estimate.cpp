@@ -1,0 +1,63 @@
+#include "studies/calibration/estimate.h"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <cmath>
+
+namespace retrace::studies {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+/// Combinations whose share of an unknown is below this leave it told.
+constexpr double kLeastShare = 1e-3;
+
+/// Orthonormal columns that span those of a matrix.
+MatrixXd span_of(const MatrixXd& columns) {
+  if (columns.cols() == 0 || columns.isZero(0.0)) return MatrixXd(columns.rows(), 0);
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(columns);
+  return MatrixXd(qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank()));
+}
+
+}  // namespace
+
+bool Estimate::is_told(Index unknown) const {
+  return untold.cols() == 0 || untold.row(unknown).norm() < kLeastShare;
+}
+
+Estimate estimate(const MatrixXd& derivatives, const MatrixXd& of_nuisance, const VectorXd& observations,
+                  double most_uncertain) {
+  const MatrixXd nuisance = span_of(of_nuisance);
+  const MatrixXd a = derivatives - nuisance * (nuisance.transpose() * derivatives);
+  const VectorXd r = observations - nuisance * (nuisance.transpose() * observations);
+  const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeFullV);
+  Index told = 0;
+  while (told < svd.singularValues().size() && svd.singularValues()[told] * most_uncertain > 1.0) ++told;
+  const MatrixXd u = svd.matrixU().leftCols(told);
+  const VectorXd deviation = svd.singularValues().head(told).cwiseInverse();
+  Estimate result;
+  result.told = svd.matrixV().leftCols(told);
+  result.untold = svd.matrixV().rightCols(svd.matrixV().cols() - told);
+  result.value = result.told * deviation.asDiagonal() * (u.transpose() * r);
+  result.covariance = result.told * deviation.cwiseAbs2().asDiagonal() * result.told.transpose();
+  result.residual = r - a * result.value;
+  result.leverage = nuisance.rowwise().squaredNorm() + u.rowwise().squaredNorm();
+  return result;
+}
+
+MatrixXd reduced_combinations(const MatrixXd& untold) {
+  MatrixXd rows = untold.transpose();
+  // Gauss and Jordan, the largest element of a row first.
+  for (Index k = 0; k < rows.rows(); ++k) {
+    Index row = 0;
+    Index column = 0;
+    rows.bottomRows(rows.rows() - k).cwiseAbs().maxCoeff(&row, &column);
+    rows.row(k).swap(rows.row(k + row));
+    rows.row(k) /= rows(k, column);
+    for (Index other = 0; other < rows.rows(); ++other)
+      if (other != k) rows.row(other) -= rows(other, column) * rows.row(k);
+  }
+  return rows.unaryExpr([](double share) { return std::abs(share) < kLeastShare ? 0.0 : share; }).transpose();
+}
+
+}  // namespace retrace::studies

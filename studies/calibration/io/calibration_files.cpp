@@ -1,0 +1,146 @@
+#include "studies/calibration/io/calibration_files.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/csv.h"
+#include "core/json_text.h"
+#include "core/number_format.h"
+#include "core/schema/writer.h"
+#include "fabrication/machine/io/machine_files.h"
+
+namespace retrace::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string_view word_of(FacetQuantity what) {
+  return kFacetQuantityWords[static_cast<std::size_t>(what)];
+}
+
+std::string place_of(const MeasuredParts& parts, const Measurement& m) {
+  return fmt::format("line {}: {} of element {}, facet {} of {}", m.line, word_of(m.what), m.at.element, m.at.facet + 1,
+                     parts.jobs[m.part]);
+}
+
+/// How much more than their uncertainties say the residuals scatter; 1 without any to spare.
+double scatter(const Calibration& result) {
+  return result.freedom == 0 ? 1.0 : std::sqrt(result.chi_square / static_cast<double>(result.freedom));
+}
+
+}  // namespace
+
+std::string calibration_json(const Calibration& result) {
+  Json json;
+  json["measurements"] = result.parts.file;
+  json["jobs"] = result.parts.jobs;
+  json["machine"] = result.machine.name;
+  json["used"] = result.parts.measurements.size();
+  json["empty"] = result.parts.empty_rows;
+  json["freedom"] = result.freedom;
+  json["scatter"] = scatter(result);
+  json["quantities"] = Json::array();
+  for (const CalibratedQuantity& q : result.quantities)
+    json["quantities"].push_back({{"quantity", q.quantity->key},
+                                  {"words", q.quantity->words},
+                                  {"unit", q.quantity->unit()},
+                                  {"told", q.is_told},
+                                  {"value", q.value},
+                                  {"uncertainty", q.uncertainty}});
+  json["covariance"] = Json::array();
+  for (Eigen::Index k = 0; k < result.covariance.rows(); ++k) {
+    Json row = Json::array();
+    for (Eigen::Index l = 0; l < result.covariance.cols(); ++l) row.push_back(result.covariance(k, l));
+    json["covariance"].push_back(std::move(row));
+  }
+  json["untold"] = result.untold;
+  json["outliers"] = Json::array();
+  for (const Outlier& outlier : result.outliers)
+    json["outliers"].push_back({{"line", outlier.measurement.line}, {"deviations", outlier.deviations}});
+  return result_text("retrace.calibration/1", std::move(json), result.warnings);
+}
+
+std::string calibration_table(const Calibration& result) {
+  std::string text = fmt::format("{} on machine {}: {} measurements\n", result.parts.file, result.machine.name,
+                                 result.parts.measurements.size());
+  for (const CalibratedQuantity& q : result.quantities)
+    text += fmt::format("  {:<38} {}\n", fmt::format("{}, {}", q.quantity->words, q.quantity->unit()),
+                        q.is_told ? fmt::format("{:>12} +- {}", fixed(q.value, 3), fixed(q.uncertainty, 3))
+                                  : fmt::format("{:>12}", "not told"));
+  for (const std::string& combination : result.untold) text += fmt::format("  not told: {}\n", combination);
+  if (result.freedom > 0)
+    text += fmt::format("  residuals scatter {} times their uncertainties, {} to spare\n", fixed(scatter(result), 2),
+                        result.freedom);
+  for (const Outlier& outlier : result.outliers)
+    text += fmt::format("  left out, {} deviations off: {}\n", fixed(outlier.deviations, 1),
+                        place_of(result.parts, outlier.measurement));
+  return text;
+}
+
+std::string calibrated_machine_toml(const Calibration& result) {
+  return schema::object_text(fabrication::machine_format(), &result.machine);
+}
+
+std::string residuals_csv(const Calibration& result) {
+  CsvWriter table("line,job,element,facet,what,value,uncertainty,residual");
+  for (std::size_t k = 0; k < result.residuals.size(); ++k) {
+    const Measurement& m = result.parts.measurements[k];
+    table.row(m.line, result.parts.jobs[m.part], m.at.element, m.at.facet + 1, word_of(m.what), m.value, m.uncertainty,
+              result.residuals[k]);
+  }
+  return table.text();
+}
+
+std::string test_cuts_csv(const TestCuts& cuts) {
+  CsvWriter table("job,element,facet,what,value,uncertainty,from_element,from_facet,at");
+  const std::optional<double> none;
+  for (const Measurement& m : cuts.parts.measurements)
+    table.row(cuts.parts.jobs[m.part], m.at.element, m.at.facet + 1, word_of(m.what), none, m.uncertainty, none, none,
+              m.what == FacetQuantity::end ? std::optional(m.along_edge) : none);
+  return table.text();
+}
+
+std::string test_cuts_json(const TestCuts& cuts) {
+  Json json;
+  json["machine"] = cuts.parts.plans.front().machine.name;
+  json["jobs"] = Json::array();
+  for (std::size_t k = 0; k < cuts.jobs.size(); ++k)
+    json["jobs"].push_back({{"job", cuts.parts.jobs[k]},
+                            {"elements", cuts.jobs[k].elements},
+                            {"time_s", cuts.parts.plans[k].plan.time.total_s()}});
+  json["figures"] = cuts.parts.measurements.size();
+  json["quantities"] = Json::array();
+  for (const PlannedQuantity& q : cuts.quantities) {
+    Json needs = Json::array();
+    for (const std::size_t part : q.needs) needs.push_back(cuts.parts.jobs[part]);
+    json["quantities"].push_back({{"quantity", q.quantity->key},
+                                  {"words", q.quantity->words},
+                                  {"unit", q.quantity->unit()},
+                                  {"told", q.is_told},
+                                  {"uncertainty", q.uncertainty},
+                                  {"needs", std::move(needs)}});
+  }
+  json["untold"] = cuts.untold;
+  return result_text("retrace.test_cuts/1", std::move(json), {});
+}
+
+std::string test_cuts_table(const TestCuts& cuts) {
+  std::string text = fmt::format("Test cuts for machine {}: {} figures to be measured\n",
+                                 cuts.parts.plans.front().machine.name, cuts.parts.measurements.size());
+  for (std::size_t k = 0; k < cuts.jobs.size(); ++k)
+    text += fmt::format("  {:<24} {} prisms, {} s\n", cuts.parts.jobs[k], cuts.jobs[k].elements,
+                        fixed(cuts.parts.plans[k].plan.time.total_s(), 0));
+  for (const PlannedQuantity& q : cuts.quantities) {
+    std::string line = q.is_told ? fmt::format("{:>10}", "+- " + fixed(q.uncertainty, 3)) : "  not told";
+    for (std::size_t k = 0; k < q.needs.size(); ++k)
+      line += fmt::format("{}{}", k == 0 ? "  needs " : ", ", cuts.parts.jobs[q.needs[k]]);
+    text += fmt::format("  {:<38} {}\n", fmt::format("{}, {}", q.quantity->words, q.quantity->unit()), line);
+  }
+  for (const std::string& combination : cuts.untold) text += fmt::format("  not told: {}\n", combination);
+  return text;
+}
+
+}  // namespace retrace::studies

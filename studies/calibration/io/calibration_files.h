@@ -1,0 +1,24 @@
+#pragma once
+
+// The documents of a calibration.
+
+#include <string>
+
+#include "studies/calibration/calibration.h"
+#include "studies/calibration/test_cuts.h"
+
+namespace retrace::studies {
+
+std::string calibration_json(const Calibration& result);
+std::string calibration_table(const Calibration& result);
+/// The calibrated machine's file.
+std::string calibrated_machine_toml(const Calibration& result);
+/// What was measured with what is left of it, in standard uncertainties.
+std::string residuals_csv(const Calibration& result);
+
+/// The table to be filled in with what is measured of test cuts.
+std::string test_cuts_csv(const TestCuts& cuts);
+std::string test_cuts_json(const TestCuts& cuts);
+std::string test_cuts_table(const TestCuts& cuts);
+
+}  // namespace retrace::studies

@@ -1,0 +1,115 @@
+#include "studies/calibration/measured_facets.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fabrication/chisel/plan/edge_cuts.h"
+#include "fabrication/machine/setup.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+using geometry::Vec3;
+
+constexpr double kArcsecPerRad = 180.0 * 3600.0 / std::numbers::pi;
+constexpr double kMmPerUm = 1e-3;
+/// Sines of angles between facets below this: the angle does not change with either of them.
+constexpr double kParallel = 1e-6;
+
+/// The angle of the groove that two planes bound, seen from outside of the material.
+double included_rad(const Vec3& a, const Vec3& b) {
+  return std::numbers::pi - std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+}  // namespace
+
+CutPart::CutPart(const FabricationResult& result, const std::vector<std::size_t>& elements)
+    : grooves_(designed_grooves(result.job)), half_edge_mm_(0.5 * result.job.tool.width_mm) {
+  for (const FacetEdgeCut& cut : facet_edge_cuts(result.job, result.plan, elements))
+    if (cut.ends_at_root || cut.is_ploughed) cuts_[{cut.element, cut.facet}] = cut.cut;
+}
+
+std::string CutPart::fault_of(const Measurement& m) const {
+  for (const std::optional<FacetPlace>& place : {std::optional(m.at), m.from}) {
+    if (!place) continue;
+    if (place->element >= grooves_.size())
+      return fmt::format("the job cuts elements 0 to {}, got {}", grooves_.size() - 1, place->element);
+    const std::size_t facets = grooves_[place->element].facets.size();
+    if (place->facet >= facets)
+      return fmt::format("its elements have facets 1 to {}, got {}", facets, place->facet + 1);
+    if (!cuts_.contains({place->element, place->facet})) return fmt::format("element {} is not cut", place->element);
+  }
+  if (m.what == FacetQuantity::angle) {
+    if (!m.from) return "an angle is one with another facet: from_element and from_facet must be given";
+    const Vec3& a = grooves_[m.at.element].facets[m.at.facet].normal;
+    const Vec3& b = grooves_[m.from->element].facets[m.from->facet].normal;
+    if (a.cross(b).norm() < kParallel) return "facets that are parallel include no angle";
+  }
+  if (m.what == FacetQuantity::end && m.from) return "where a cut ends is told over the other facet of its element";
+  return {};
+}
+
+CutPart::MadeFacet CutPart::made(const FacetPlace& at, const Machine& real, const PartPose& pose) const {
+  const Groove& groove = grooves_[at.element];
+  MadeFacet facet{&groove, at.facet, {}};
+  facet.plane = cut_plane(real, cuts_.at({at.element, at.facet}), groove.facets[at.facet].normal);
+  const Vec3 turn = pose.turn_arcsec / kArcsecPerRad;
+  facet.plane.point_mm += kMmPerUm * pose.shift_um + turn.cross(facet.plane.point_mm);
+  facet.plane.normal = (facet.plane.normal + turn.cross(facet.plane.normal)).normalized();
+  return facet;
+}
+
+double CutPart::depth_nm(const FacetPlace& at, const Machine& real, const PartPose& pose) const {
+  const Groove& groove = grooves_[at.element];
+  const auto facets = static_cast<Eigen::Index>(groove.facets.size());
+  Eigen::MatrixXd normals(facets, 3);
+  Eigen::VectorXd heights(facets);
+  for (Eigen::Index f = 0; f < facets; ++f) {
+    const MadeFacet facet = made({at.element, static_cast<std::size_t>(f)}, real, pose);
+    normals.row(f) = facet.plane.normal.transpose();
+    heights[f] = facet.plane.normal.dot(facet.plane.point_mm - groove.root_mm);
+  }
+  const Vec3 root = normals.completeOrthogonalDecomposition().solve(heights);
+  return -kNmPerMm * groove.axis.dot(root);
+}
+
+double CutPart::end_nm(const Measurement& m, const Machine& real) const {
+  const std::size_t facets = grooves_[m.at.element].facets.size();
+  const MadeFacet other = made({m.at.element, (m.at.facet + 1) % facets}, real, {});
+  const EdgeCut& cut = cuts_.at({m.at.element, m.at.facet});
+  const RigidMotion back = machine_from_workpiece(real, rotary_pose(real, cut.at)).inverse();
+  const Vec3 end =
+      back.point(machine_point(real, cut.at) + tool_turn(real) * cut.tip_mm +
+                 (real.tilt == Tilt::table ? m.along_edge * half_edge_mm_ : 0.0) * cutting_edge(real, cut.edge_rise));
+  return kNmPerMm * other.plane.normal.dot(end - other.plane.point_mm);
+}
+
+double CutPart::of_one(const Measurement& m, const FacetPlace& at, const Machine& real, const PartPose& pose) const {
+  const MadeFacet facet = made(at, real, pose);
+  switch (m.what) {
+    case FacetQuantity::distance: return kNmPerMm * facet.height_mm(facet.groove->facet_middle(at.facet));
+    case FacetQuantity::up: return kArcsecPerRad * facet.rise(facet.design().up_slope);
+    case FacetQuantity::along: return kArcsecPerRad * facet.rise(facet.groove->level_of(at.facet));
+    case FacetQuantity::angle: {
+      const MadeFacet other = made(*m.from, real, pose);
+      return kArcsecPerRad * (included_rad(facet.plane.normal, other.plane.normal) -
+                              included_rad(facet.design().normal, other.design().normal));
+    }
+    case FacetQuantity::depth: return depth_nm(at, real, pose);
+    case FacetQuantity::end: break;
+  }
+  return end_nm(m, real);
+}
+
+double CutPart::predicted(const Measurement& m, const Machine& real, const PartPose& pose) const {
+  const double value = of_one(m, m.at, real, pose);
+  return m.from && m.what != FacetQuantity::angle ? value - of_one(m, *m.from, real, pose) : value;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,96 @@
+#pragma once
+
+// What is measured of facets that a job's programs cut, and what a machine would leave there.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "fabrication/chisel/check/groove.h"
+#include "fabrication/machine/edge_cut.h"
+#include "studies/fabrication/fabricate.h"
+
+namespace retrace::studies {
+
+/// A quantity of a facet, as the difference from what the design has. Heights and distances are positive where material
+/// is left; a facet of a cube corner has its level line in place of a root.
+enum class FacetQuantity {
+  distance,  ///< of the facet's middle along its outward normal, nm
+  up,        ///< its tilt, positive where it rises away from the root, arcsec
+  along,     ///< its tilt, positive where it rises along the root, arcsec
+  angle,     ///< that it includes with another facet through the groove, arcsec
+  depth,     ///< of the line or point in which the element's facets meet, nm; more is deeper
+  end        ///< how far its last cut ends over the other facet at a place along the edge, nm; negative: cut into it
+};
+inline constexpr std::string_view kFacetQuantityWords[] = {"distance_nm",  "up_arcsec", "along_arcsec",
+                                                           "angle_arcsec", "depth_nm",  "end_nm"};
+
+/// A facet of a part.
+struct FacetPlace {
+  std::size_t element = 0;  ///< its number, as programs have it
+  std::size_t facet = 0;    ///< from 0
+
+  auto operator<=>(const FacetPlace&) const = default;
+};
+
+/// One figure that was measured.
+struct Measurement {
+  std::size_t part = 0;  ///< of those that were cut, each by a job of its own
+  FacetPlace at;
+  FacetQuantity what = FacetQuantity::distance;
+  double value = 0.0;              ///< in the quantity's unit
+  double uncertainty = 1.0;        ///< standard, likewise; > 0
+  std::optional<FacetPlace> from;  ///< the value is the difference from this facet's; of `angle` the other facet
+  double along_edge = 0.0;         ///< of `end`: -1 and 1 at the ends of the edge, 0 in its middle
+  int line = 0;                    ///< of the file
+};
+
+/// How a part lies where it is measured, against how it lay when it was cut: small, and never known.
+struct PartPose {
+  geometry::Vec3 shift_um = geometry::Vec3::Zero();
+  geometry::Vec3 turn_arcsec = geometry::Vec3::Zero();
+};
+
+/// The facets of a part as its programs ask for them, so that it can be told what any machine makes of them.
+class CutPart {
+ public:
+  /// Facets of these elements alone, ascending.
+  CutPart(const FabricationResult& result, const std::vector<std::size_t>& elements);
+
+  /// What is wrong with a measurement of this part; empty: nothing.
+  std::string fault_of(const Measurement& measurement) const;
+  /// What would be measured. \pre fault_of() is empty
+  double predicted(const Measurement& measurement, const fabrication::Machine& real, const PartPose& pose) const;
+
+ private:
+  /// A facet as a machine makes it.
+  struct MadeFacet {
+    const fabrication::Groove* groove = nullptr;
+    std::size_t facet = 0;
+    fabrication::CutPlane plane;
+
+    const fabrication::DesignFacet& design() const { return groove->facets[facet]; }
+    double height_mm(const geometry::Vec3& at) const { return plane.height_mm(at, design().normal); }
+    double rise(const geometry::Vec3& along) const {
+      return -plane.normal.dot(along) / plane.normal.dot(design().normal);
+    }
+  };
+
+  MadeFacet made(const FacetPlace& at, const fabrication::Machine& real, const PartPose& pose) const;
+  double of_one(const Measurement& measurement, const FacetPlace& at, const fabrication::Machine& real,
+                const PartPose& pose) const;
+  double depth_nm(const FacetPlace& at, const fabrication::Machine& real, const PartPose& pose) const;
+  double end_nm(const Measurement& measurement, const fabrication::Machine& real) const;
+
+  std::vector<fabrication::Groove> grooves_;
+  std::map<std::pair<std::size_t, std::size_t>, fabrication::EdgeCut> cuts_;  ///< the last, by element and facet
+  double half_edge_mm_ = 0.0;
+};
+
+}  // namespace retrace::studies

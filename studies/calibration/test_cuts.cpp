@@ -1,0 +1,183 @@
+#include "studies/calibration/test_cuts.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "fabrication/job/io/job_files.h"
+#include "studies/calibration/linear_model.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+/// Half of each is an angle of A; a chisel of 50 and 3 degrees cuts all of them.
+constexpr double kApexAnglesDeg[] = {90.0, 70.0, 105.0};
+/// From one prism to the next: a lever for what turns, which a microscope's stage still reaches.
+constexpr double kPitchMm = 10.0;
+/// Figures are taken until what they tell is this much less certain than by all of them.
+constexpr double kEnough = 3.0;
+
+/// Standard uncertainties of who measures with a profiler, an autocollimator and an AFM. The table that is written can
+/// be changed.
+double uncertainty_of(FacetQuantity what) {
+  switch (what) {
+    case FacetQuantity::distance: return 20.0;
+    case FacetQuantity::end: return 10.0;
+    default: return 1.0;
+  }
+}
+
+/// Four prisms of the design's base.
+Design test_design(const Design& design, double apex_angle_deg, double most_mm) {
+  const auto* const array = std::get_if<ElementArray>(&design.shape);
+  const auto* const prism = array ? std::get_if<geometry::RtpElement>(&array->part.element) : nullptr;
+  if (prism == nullptr)
+    throw InputError({"", 0, "--test-cuts"},
+                     "test cuts are prisms: the design must have such (rtp), got another element");
+  Design test = design;
+  test.title = fmt::format("Test cuts, apex angle {} degrees", shortest(apex_angle_deg));
+  const double size_mm = std::min({prism->base_mm, prism->width_mm, most_mm});
+  ElementArray cuts;
+  cuts.part.element = geometry::RtpElement{size_mm, size_mm, apex_angle_deg};
+  cuts.part.array.arrangement = geometry::Arrangement::checker;
+  cuts.part.array.x_gap_mm = cuts.part.array.y_gap_mm = kPitchMm - size_mm;
+  cuts.part.array.x_length_mm = cuts.part.array.y_length_mm = kPitchMm + size_mm;
+  cuts.part.thickness_mm = array->part.thickness_mm;
+  test.shape = std::move(cuts);
+  test.surface = {};
+  return test;
+}
+
+std::vector<Measurement> all_figures(std::size_t part) {
+  std::vector<Measurement> figures;
+  const auto add = [&](std::size_t element, std::size_t facet, FacetQuantity what, double at) {
+    figures.push_back({part, {element, facet}, what, 0.0, uncertainty_of(what), {}, at, 0});
+  };
+  for (std::size_t element = 0; element < 4; ++element)
+    for (std::size_t facet = 0; facet < 2; ++facet) {
+      for (const FacetQuantity what : {FacetQuantity::distance, FacetQuantity::up, FacetQuantity::along})
+        add(element, facet, what, 0.0);
+      for (const double at : {-1.0, 1.0}) add(element, facet, FacetQuantity::end, at);
+    }
+  return figures;
+}
+
+LinearModel rows_of(const LinearModel& all, const std::vector<Index>& chosen) {
+  return {all.of_setup(chosen, Eigen::all), all.of_poses(chosen, Eigen::all), all.residual(chosen)};
+}
+
+Estimate estimate_of(const LinearModel& model) {
+  return estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
+}
+
+/// Takes figures one by one.
+class Chooser {
+ public:
+  explicit Chooser(const LinearModel& all) : all_(all), of_all_(estimate_of(all)) {
+    const Index setup = all.of_setup.cols();
+    rows_.resize(all.of_setup.rows(), setup + all.of_poses.cols());
+    rows_ << all.of_setup, all.of_poses;
+    covariance_ = kSetUpByEye * kSetUpByEye * MatrixXd::Identity(rows_.cols(), rows_.cols());
+    for (Index k = 0; k < setup; ++k)
+      if (of_all_.is_told(k)) told_.push_back(k);
+  }
+
+  std::vector<Index> choose() {
+    std::vector<Index> chosen;
+    while (static_cast<Index>(chosen.size()) < rows_.rows() && !is_enough(chosen)) chosen.push_back(take());
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+  }
+
+ private:
+  bool is_enough(const std::vector<Index>& chosen) const {
+    if (static_cast<Index>(chosen.size()) < rows_.cols()) return false;
+    const Estimate now = estimate_of(rows_of(all_, chosen));
+    if (now.told.cols() < of_all_.told.cols()) return false;
+    constexpr double kChecked = 0.95;
+    return now.leverage.maxCoeff() < kChecked && std::all_of(told_.begin(), told_.end(), [&](Index k) {
+             return now.covariance(k, k) < kEnough * kEnough * of_all_.covariance(k, k);
+           });
+  }
+
+  /// The figure that makes the told quantities most certain, each beside what all figures make of it.
+  Index take() {
+    Index best = 0;
+    double most = -1.0;
+    for (Index k = 0; k < rows_.rows(); ++k) {
+      if (taken_.size() > 0 && taken_[k]) continue;
+      const VectorXd change = covariance_ * rows_.row(k).transpose();
+      double gain = 0.0;
+      for (const Index q : told_) gain += change[q] * change[q] / of_all_.covariance(q, q);
+      gain /= 1.0 + rows_.row(k).dot(change);
+      if (gain > most * (1.0 + 1e-9)) std::tie(best, most) = std::pair(k, gain);
+    }
+    if (taken_.size() == 0) taken_ = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(rows_.rows(), false);
+    taken_[best] = true;
+    const VectorXd change = covariance_ * rows_.row(best).transpose();
+    covariance_ -= change * change.transpose() / (1.0 + rows_.row(best).dot(change));
+    return best;
+  }
+
+  const LinearModel& all_;
+  Estimate of_all_;
+  MatrixXd rows_;        ///< of all unknowns, poses too
+  MatrixXd covariance_;  ///< by the figures taken so far
+  Eigen::Array<bool, Eigen::Dynamic, 1> taken_;
+  std::vector<Index> told_;
+};
+
+void tell(TestCuts& cuts, const LinearModel& chosen, Tilt tilt) {
+  const Estimate all = estimate_of(chosen);
+  std::vector<Estimate> without;
+  for (std::size_t part = 0; part < cuts.parts.jobs.size(); ++part) {
+    std::vector<Index> rows;
+    for (std::size_t k = 0; k < cuts.parts.measurements.size(); ++k)
+      if (cuts.parts.measurements[k].part != part) rows.push_back(static_cast<Index>(k));
+    without.push_back(estimate_of(rows_of(chosen, rows)));
+  }
+  for (const SetupQuantity& quantity : setup_quantities(tilt)) {
+    const auto at = static_cast<Index>(cuts.quantities.size());
+    PlannedQuantity planned{&quantity, all.is_told(at), std::sqrt(all.covariance(at, at)), {}};
+    for (std::size_t part = 0; planned.is_told && part < without.size(); ++part)
+      if (!without[part].is_told(at)) planned.needs.push_back(part);
+    cuts.quantities.push_back(std::move(planned));
+  }
+  cuts.untold = untold_words(all, tilt);
+}
+
+}  // namespace
+
+TestCuts plan_test_cuts(const Design& design, const JobRequest& request) {
+  TestCuts cuts;
+  std::vector<CutPart> parts;
+  std::vector<Measurement> figures;
+  for (const double angle : kApexAnglesDeg) {
+    const std::string name = fmt::format("test-cuts-{}.toml", shortest(angle));
+    cuts.jobs.push_back(make_job(test_design(design, angle, request.tool_width_mm), request));
+    FabricationRequest plan;
+    plan.job_file = name;
+    plan.texts[name] = job_text(cuts.jobs.back().job);
+    cuts.parts.plans.push_back(fabricate(plan));
+    for (const Measurement& figure : all_figures(cuts.parts.jobs.size())) figures.push_back(figure);
+    cuts.parts.jobs.push_back(name);
+    parts.emplace_back(cuts.parts.plans.back(), std::vector<std::size_t>());
+  }
+  const Machine& machine = cuts.parts.plans.front().machine;
+  const LinearModel all = linear_model(parts, figures, machine);
+  const std::vector<Index> chosen = Chooser(all).choose();
+  for (const Index k : chosen) cuts.parts.measurements.push_back(figures[static_cast<std::size_t>(k)]);
+  tell(cuts, rows_of(all, chosen), machine.tilt);
+  return cuts;
+}
+
+}  // namespace retrace::studies

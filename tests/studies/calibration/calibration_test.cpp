@@ -1,0 +1,327 @@
+#include "studies/calibration/calibration.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "core/error.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/post/post.h"
+#include "studies/calibration/io/measurement_reader.h"
+
+// Machines that err in all that a set-up leaves uncertain cut test parts in the verifier, which shares nothing with the
+// derivatives that calibration uses; from what the verifier finds of the facets, with noise, calibration must find the
+// machine.
+
+namespace retrace::studies::calibration_test {
+namespace {
+
+using namespace fabrication;
+
+constexpr double kArcsecPerRad = 180.0 * 3600.0 / std::numbers::pi;
+
+/// Four prisms, two of them turned, 10 mm apart: facets at C = 0, 90, 180 and 270, at the A of their apex angle.
+std::string job_text(double apex_angle_deg) {
+  return fmt::format(R"(schema = "retrace.job/1"
+machine = "ideal"
+strategy = "two-step"
+[element]
+kind = "rtp"
+base_mm = 0.5
+width_mm = 0.5
+apex_angle_deg = {}
+[array]
+arrangement = "checker"
+x_length_mm = 10.5
+y_length_mm = 10.5
+x_gap_mm = 9.5
+y_gap_mm = 9.5
+[tool]
+width_mm = 0.5
+[process]
+name = "test"
+source = "a test"
+clearance_mm = 0.2
+roughing_depth_um = 50
+finishing_depth_um = 30
+finishing_cuts = 1
+plough_length_mm = 0.1
+roughing_feed_mm_per_min = 50
+finishing_feed_mm_per_min = 20
+retract_feed_mm_per_min = 200
+)",
+                     apex_angle_deg);
+}
+
+const std::vector<double> kApexAngles = {90.0, 70.0, 105.0};
+
+FabricationResult planned(const std::string& job) {
+  FabricationRequest request;
+  request.job_file = "job.toml";
+  request.texts["job.toml"] = job;
+  return fabricate(request);
+}
+
+/// The three jobs with their programs as control files.
+struct TestCuts {
+  std::vector<FabricationResult> plans;
+  std::vector<std::vector<NcProgram>> programs;
+
+  TestCuts() {
+    for (const double angle : kApexAngles) {
+      plans.push_back(planned(job_text(angle)));
+      programs.emplace_back();
+      for (const Program& program : plans.back().plan.programs)
+        programs.back().push_back(parse_nc(nc_text(program, plans.back().dialect), "p.ngc", NcDialect::rs274ngc));
+    }
+  }
+};
+
+const TestCuts& test_cuts() {
+  static const TestCuts cuts;
+  return cuts;
+}
+
+/// Standard uncertainties of who measures.
+double uncertainty_of(FacetQuantity what) {
+  return what == FacetQuantity::distance ? 5.0 : 1.0;
+}
+
+double truth_of(const Groove& groove, const FacetFigures& figures, std::size_t facet, FacetQuantity what) {
+  const geometry::Vec3 from_root = groove.facet_middle(facet) - groove.root_mm;
+  const double up_mm = groove.facets[facet].up_slope.dot(from_root) - figures.mean_up_mm;
+  const double along_mm = groove.level_of(facet).dot(from_root) - figures.mean_along_mm;
+  switch (what) {
+    case FacetQuantity::up: return kArcsecPerRad * figures.slope_up;
+    case FacetQuantity::along: return kArcsecPerRad * figures.slope_along;
+    default: return figures.mean_nm + 1e6 * (figures.slope_up * up_mm + figures.slope_along * along_mm);
+  }
+}
+
+/// What is measured on a machine, each part lying askew by up to a degree and a mm: only what a small pose does.
+MeasuredParts measured_on(const Machine& real, std::mt19937& bits) {
+  std::normal_distribution<double> normal;
+  const TestCuts& cuts = test_cuts();
+  MeasuredParts parts;
+  parts.file = "measurements.csv";
+  for (std::size_t k = 0; k < cuts.plans.size(); ++k) {
+    const FabricationResult& plan = cuts.plans[k];
+    parts.jobs.push_back(fmt::format("{}.toml", k));
+    parts.plans.push_back(plan);
+    const Verification v = verify_programs(plan.job, real, cuts.programs[k], {}, {});
+    const std::vector<Groove> grooves = designed_grooves(plan.job);
+    const geometry::Vec3 turn = 50.0 / kArcsecPerRad * geometry::Vec3(normal(bits), normal(bits), normal(bits));
+    const geometry::Vec3 shift_mm(1e-2 * normal(bits), 1e-2 * normal(bits), 0.0);
+    for (std::size_t element = 0; element < grooves.size(); ++element)
+      for (std::size_t facet = 0; facet < 2; ++facet)
+        for (const FacetQuantity what : {FacetQuantity::distance, FacetQuantity::up, FacetQuantity::along}) {
+          const Groove& groove = grooves[element];
+          const geometry::Vec3& n = groove.facets[facet].normal;
+          Measurement m{k, {element, facet}, what, 0.0, uncertainty_of(what), {}, 0.0, 0};
+          const geometry::Vec3 middle = groove.facet_middle(facet);
+          const double of_pose = what == FacetQuantity::distance ? 1e6 * n.dot(shift_mm + turn.cross(middle))
+                                 : what == FacetQuantity::up
+                                     ? kArcsecPerRad * n.dot(turn.cross(groove.facets[facet].up_slope))
+                                     : kArcsecPerRad * n.dot(turn.cross(groove.level_of(facet)));
+          m.value = truth_of(groove, v.elements[element].figures.facets[facet], facet, what) + of_pose +
+                    m.uncertainty * normal(bits);
+          m.line = static_cast<int>(parts.measurements.size()) + 2;
+          parts.measurements.push_back(m);
+        }
+  }
+  return parts;
+}
+
+/// Up to a um, and up to 0.02 degrees. Of more the cuts of roughing would reach below what finishing leaves.
+std::vector<double> hidden_errors(std::mt19937& bits) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<double> errors;
+  for (const SetupQuantity& quantity : setup_quantities(Tilt::table))
+    errors.push_back((quantity.is_angle() ? 72.0 : 1.0) * uniform(bits));
+  return errors;
+}
+
+std::vector<std::string> told(const Calibration& found) {
+  std::vector<std::string> keys;
+  for (const CalibratedQuantity& q : found.quantities)
+    if (q.is_told) keys.emplace_back(q.quantity->key);
+  return keys;
+}
+
+/// Facets tell all but what moves the edge along itself or in its facet, the clearance, and a shift of everything.
+TEST(Calibration, SaysWhatFacetsDoNotTell) {
+  std::mt19937 bits(1);
+  const Calibration found = calibrate(measured_on(test_cuts().plans.front().machine, bits));
+  EXPECT_EQ(told(found), (std::vector<std::string>{"c_lean_y_arcsec", "a_z_um", "tool_turn_z_arcsec"}));
+}
+
+/// Each interval of 95 % holds the hidden truth of what is told in 90 to 99 of 100 machines.
+TEST(Calibration, IntervalsHoldWhatIsHidden) {
+  constexpr int kMachines = 100;
+  std::size_t within = 0;
+  std::size_t all = 0;
+  int with_outliers = 0;
+  for (std::uint32_t seed = 1; seed <= kMachines; ++seed) {
+    std::mt19937 bits(seed);
+    const std::vector<double> hidden = hidden_errors(bits);
+    const Calibration found = calibrate(measured_on(with_errors(test_cuts().plans.front().machine, hidden), bits));
+    with_outliers += found.outliers.empty() ? 0 : 1;
+    for (std::size_t k = 0; k < hidden.size(); ++k) {
+      if (!found.quantities[k].is_told) continue;
+      ++all;
+      if (std::abs(found.quantities[k].value - hidden[k]) < 1.96 * found.quantities[k].uncertainty) ++within;
+    }
+  }
+  const double share = static_cast<double>(within) / static_cast<double>(all);
+  EXPECT_GE(share, 0.90);
+  EXPECT_LE(share, 0.99);
+  EXPECT_LE(with_outliers, kMachines / 20) << "right measurements are rarely taken for wrong ones";
+}
+
+/// How far facets are turned against each other at most: tilts less those of a part that lies askew as a whole.
+double largest_tilt_arcsec(const FabricationResult& plan, const Machine& real) {
+  std::vector<NcProgram> programs;
+  for (const Program& program : plan.plan.programs)
+    programs.push_back(parse_nc(nc_text(program, plan.dialect), "p.ngc", NcDialect::rs274ngc));
+  const Verification v = verify_programs(plan.job, real, programs, {}, {});
+  const std::vector<Groove> grooves = designed_grooves(plan.job);
+  std::vector<double> tilts;
+  std::vector<geometry::Vec3> of_turn;
+  for (std::size_t element = 0; element < grooves.size(); ++element)
+    for (std::size_t facet = 0; facet < 2; ++facet) {
+      const FacetFigures& figures = v.elements[element].figures.facets[facet];
+      const DesignFacet& design = grooves[element].facets[facet];
+      tilts.insert(tilts.end(), {kArcsecPerRad * figures.slope_up, kArcsecPerRad * figures.slope_along});
+      of_turn.push_back(design.up_slope.cross(design.normal));
+      of_turn.push_back(grooves[element].level_of(facet).cross(design.normal));
+    }
+  Eigen::MatrixXd turns(static_cast<Eigen::Index>(tilts.size()), 3);
+  for (std::size_t k = 0; k < tilts.size(); ++k) turns.row(static_cast<Eigen::Index>(k)) = of_turn[k].transpose();
+  const Eigen::VectorXd all = Eigen::VectorXd::Map(tilts.data(), static_cast<Eigen::Index>(tilts.size()));
+  return (all - turns * turns.colPivHouseholderQr().solve(all)).cwiseAbs().maxCoeff();
+}
+
+/// Programs for the calibrated machine leave facets whose tilts are a twentieth of those before, or what was measured.
+TEST(Calibration, TheSecondCutIsRight) {
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    std::mt19937 bits(seed);
+    const Machine real = with_errors(test_cuts().plans.front().machine, hidden_errors(bits));
+    const Calibration found = calibrate(measured_on(real, bits));
+    FabricationResult second = test_cuts().plans.front();
+    const double first_arcsec = largest_tilt_arcsec(second, real);
+    second.machine = found.machine;
+    second.plan = make_plan(second.job, second.machine);
+    EXPECT_LT(largest_tilt_arcsec(second, real), std::max(0.05 * first_arcsec, 2.0)) << seed;
+  }
+}
+
+TEST(Calibration, NamesWhatTheOthersContradict) {
+  std::mt19937 bits(3);
+  MeasuredParts parts = measured_on(test_cuts().plans.front().machine, bits);
+  parts.measurements[10].value += 30.0 * parts.measurements[10].uncertainty;
+  const Calibration found = calibrate(parts);
+  ASSERT_EQ(found.outliers.size(), 1U);
+  EXPECT_EQ(found.outliers[0].measurement.line, parts.measurements[10].line);
+  EXPECT_GT(found.outliers[0].deviations, 20.0);
+  // A third of them wrong: which, cannot be told.
+  std::normal_distribution<double> normal;
+  for (std::size_t k = 0; k < parts.measurements.size(); k += 3)
+    parts.measurements[k].value += 1e4 * normal(bits) * parts.measurements[k].uncertainty;
+  try {
+    calibrate(parts);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("contradict each other"), std::string::npos) << error.what();
+  }
+}
+
+/// Where cuts end is what the verifier finds left at the root, or cut into the other facet.
+TEST(Calibration, WhereCutsEndIsWhatTheVerifierFinds) {
+  const FabricationResult& plan = test_cuts().plans.front();
+  const SetupQuantity& quantity = *setup_quantity(Tilt::table, "tool_z_um");
+  const CutPart part(plan, {});
+  for (const double amount : {1.0, -1.0}) {
+    const Machine real = with_error(plan.machine, quantity, amount);
+    const Verification v = verify_programs(plan.job, real, test_cuts().programs.front(), {}, {});
+    double left_nm = 0.0;
+    double cut_nm = 0.0;
+    for (const FacetFigures& facet : v.elements[0].figures.facets) {
+      left_nm = std::max(left_nm, facet.root.nm);
+      cut_nm = std::max(cut_nm, -facet.deepest.nm);
+    }
+    for (const std::size_t facet : {0U, 1U}) {
+      const double end_nm = part.predicted({0, {0, facet}, FacetQuantity::end, 0.0, 1.0, {}, 0.0, 0}, real, {});
+      EXPECT_NEAR(std::abs(end_nm), amount > 0.0 ? left_nm : cut_nm, 0.03 * std::abs(end_nm));
+      EXPECT_EQ(end_nm > 0.0, amount > 0.0);
+    }
+  }
+}
+
+/// Angles are those of the two tilts, depths those of the two heights.
+TEST(Calibration, AnglesAndDepthsFollowFromFacets) {
+  std::mt19937 bits(5);
+  const FabricationResult& plan = test_cuts().plans.front();
+  const Machine real = with_errors(plan.machine, hidden_errors(bits));
+  const CutPart part(plan, {});
+  for (const std::size_t element : {0U, 1U, 2U, 3U}) {
+    const auto measured = [&](std::size_t facet, FacetQuantity what) {
+      return part.predicted({0, {element, facet}, what, 0.0, 1.0, {}, 0.0, 0}, real, {});
+    };
+    const Measurement angle{0, {element, 0}, FacetQuantity::angle, 0.0, 1.0, FacetPlace{element, 1}, 0.0, 0};
+    EXPECT_NEAR(part.predicted(angle, real, {}), -measured(0, FacetQuantity::up) - measured(1, FacetQuantity::up),
+                0.02);
+    // The middle of a facet lies half its length up: heights at the root are those less the tilts' share of it.
+    const double half_nm = 0.5e6 * std::sqrt(0.125) / kArcsecPerRad;
+    const double sum = measured(0, FacetQuantity::distance) + measured(1, FacetQuantity::distance) -
+                       half_nm * (measured(0, FacetQuantity::up) + measured(1, FacetQuantity::up));
+    EXPECT_NEAR(measured(0, FacetQuantity::depth), -sum / std::sqrt(2.0), 2.0) << "but for terms of the second order";
+  }
+}
+
+/// What is wrong with a table, and what is said of it.
+TEST(Calibration, RefusesTables) {
+  const FileTexts texts = {{"a.toml", job_text(90.0)}, {"b.toml", job_text(90.0)}};
+  const std::string columns = "job,element,facet,what,value,uncertainty,from_element,from_facet,at\n";
+  const auto refused = [&](const std::string& table) -> std::string {
+    try {
+      calibrate(parse_measurements(table, "m.csv", texts));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const auto starts = [&](const std::string& rows, const std::string& message) {
+    const std::string found = refused(rows);
+    EXPECT_TRUE(found.starts_with(message)) << found;
+    EXPECT_EQ(found.find('\n'), std::string::npos);
+  };
+  starts("job,element,facet,what,value\n", "m.csv:1: must have the columns");
+  starts(columns, "m.csv: must have a row with a value");
+  starts(columns + "a.toml,0,1,up_arcsec,,1,,,\n", "m.csv: must have a row with a value");
+  starts(columns + "a.toml,0,1,tilt,1,1,,,\n", "m.csv:2: what: must be \"distance_nm\", \"up_arcsec\"");
+  starts(columns + "a.toml,0,1,up_arcsec,nan,1,,,\n", "m.csv:2: value: must be");
+  starts(columns + "a.toml,0,1,up_arcsec,1,0,,,\n", "m.csv:2: uncertainty: must be a number > 0");
+  starts(columns + "a.toml,0.5,1,up_arcsec,1,1,,,\n", "m.csv:2: element: must be a whole number, got 0.5");
+  starts(columns + "a.toml,4,1,up_arcsec,1,1,,,\n", "m.csv:2: the job cuts elements 0 to 3, got 4");
+  starts(columns + "a.toml,0,3,up_arcsec,1,1,,,\n", "m.csv:2: its elements have facets 1 to 2, got 3");
+  starts(columns + "a.toml,0,1,up_arcsec,1,1,0,,\n", "m.csv:2: from_element and from_facet are given together");
+  starts(columns + "a.toml,0,1,angle_arcsec,1,1,,,\n", "m.csv:2: an angle is one with another facet");
+  starts(columns + "a.toml,0,1,angle_arcsec,1,1,0,1,\n", "m.csv:2: facets that are parallel include no angle");
+  starts(columns + "a.toml,0,1,up_arcsec,1,1,,,0.5\n", "m.csv:2: at: says where along the edge a cut ends");
+  starts(columns + "a.toml,0,1,end_nm,1,1,,,2\n", "m.csv:2: at: must be");
+  starts(columns + ",0,1,up_arcsec,1,1,,,\n", "m.csv:2: job: must name a job file");
+  starts(columns + "c.toml,0,1,up_arcsec,1,1,,,\n", "c.toml: cannot be read");
+  starts(columns +
+             "a.toml,0,1,up_arcsec,1e5,1,,,\na.toml,0,2,up_arcsec,-1e5,1,,,\na.toml,1,1,up_arcsec,9e5,1,,,\n"
+             "a.toml,1,2,up_arcsec,1e5,1,,,\n",
+         "m.csv: no machine near that of the jobs");
+}
+
+}  // namespace
+}  // namespace retrace::studies::calibration_test

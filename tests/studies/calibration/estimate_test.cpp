@@ -1,0 +1,73 @@
+#include "studies/calibration/estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <random>
+
+// Least squares against normal equations, and what observations cannot tell.
+
+namespace retrace::studies::estimate_test {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+MatrixXd random_matrix(Index rows, Index columns, std::uint32_t seed) {
+  std::mt19937 bits(seed);
+  std::normal_distribution<double> normal;
+  return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(bits); });
+}
+
+/// Nuisance unknowns are unknowns that nobody asks for: the normal equations of all together say the same.
+TEST(Estimate, IsThatOfTheNormalEquations) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const MatrixXd a = random_matrix(12, 4, seed);
+    const MatrixXd nuisance = random_matrix(12, 3, seed + 100);
+    const VectorXd r = random_matrix(12, 1, seed + 200);
+    MatrixXd all(12, 7);
+    all << a, nuisance;
+    const MatrixXd inverse = (all.transpose() * all).inverse();
+    const VectorXd expected = inverse * all.transpose() * r;
+    const Estimate found = estimate(a, nuisance, r, 1e6);
+    EXPECT_EQ(found.told.cols(), 4);
+    EXPECT_LT((found.value - expected.head(4)).norm(), 1e-10);
+    EXPECT_LT((found.covariance - inverse.topLeftCorner(4, 4)).norm(), 1e-9);
+    EXPECT_LT((found.residual - (r - all * expected)).norm(), 1e-10);
+    const VectorXd hat = (all * inverse * all.transpose()).diagonal();
+    EXPECT_LT((found.leverage - hat).norm(), 1e-10);
+  }
+}
+
+/// Two unknowns that only show as their sum, and a third that only shows with a nuisance unknown.
+TEST(Estimate, SaysWhatIsNotTold) {
+  MatrixXd a(4, 4);
+  a << 1, 1, 0, 0, 2, 2, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
+  MatrixXd nuisance(4, 1);
+  nuisance << 0, 0, 2, 2;
+  const VectorXd r = a * VectorXd::LinSpaced(4, 3.0, 3.0) + 5.0 * nuisance.col(0);
+  const Estimate found = estimate(a, nuisance, r, 1e6);
+  EXPECT_EQ(found.told.cols(), 2);
+  EXPECT_FALSE(found.is_told(0));
+  EXPECT_FALSE(found.is_told(1));
+  EXPECT_FALSE(found.is_told(2));
+  EXPECT_TRUE(found.is_told(3));
+  EXPECT_NEAR(found.value[3], 3.0, 1e-10);
+  EXPECT_NEAR(found.value[0], 3.0, 1e-10) << "the shortest: shared";
+  EXPECT_NEAR(found.value[2], 0.0, 1e-10);
+  const MatrixXd words = reduced_combinations(found.untold);
+  ASSERT_EQ(words.cols(), 2);
+  EXPECT_LT((a * words - nuisance * (nuisance.transpose() * a * words) / 8.0).norm(), 1e-12);
+  for (Index k = 0; k < 2; ++k) EXPECT_NEAR(words.col(k).cwiseAbs().maxCoeff(), 1.0, 1e-12);
+}
+
+TEST(Estimate, WhatIsTooUncertainIsNotTold) {
+  const MatrixXd a = Eigen::Vector2d(1.0, 1e-3).asDiagonal();
+  const Estimate found = estimate(a, MatrixXd(2, 0), VectorXd::Ones(2), 500.0);
+  EXPECT_TRUE(found.is_told(0));
+  EXPECT_FALSE(found.is_told(1));
+  EXPECT_EQ(found.value[1], 0.0);
+}
+
+}  // namespace
+}  // namespace retrace::studies::estimate_test
